@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "throng/avatar_class.h"
+#include "throng/base.h"
+#include "throng/context.h"
+#include "throng/result.h"
+#include "throng/scene.h"
+#include "throng/world.h"
+
+/// From triangles to a world that one can walk in: columns of spans, level tiles, clearance, zones.
+namespace throng {
+
+struct BakeConfig {
+  double cell = 0.1;             ///< Side of a cell. [m, 0.02 to 5]
+  double resolution = 0.1;       ///< Headroom that may be lost. [m, 0.001 to 1]
+  double zone = 160;             ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
+  std::vector<AvatarClass> classes = default_classes();
+  int32_t workers = 0;           ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+};
+
+/// What a bake did. Seconds are summed over threads where several work.
+struct BakeReport {
+  uint64_t zones = 0;
+  uint64_t tiles = 0;            ///< Tiles with at least one level.
+  uint64_t level_tiles = 0;
+  uint64_t constant_level_tiles = 0;  ///< Whose floor is stored as a constant or a plane.
+  uint64_t spans = 0;            ///< Solid spans after merging.
+  uint64_t bytes = 0;            ///< Of all zone files.
+  std::vector<double> walkable_area;  ///< Per class. [m^2]
+  double seconds_columns = 0;
+  double seconds_levels = 0;
+  double seconds_clearance = 0;
+  double seconds_write = 0;
+  double seconds_total = 0;      ///< Wall clock.
+};
+
+/// Bakes into memory. Fails with kBadConfig, kBadInput (no triangles), kLimit, kCancelled.
+[[nodiscard]] THRONG_API Result<World> bake_world(const Scene& scene, const BakeConfig& config,
+                                                  Context& context, BakeReport* report = nullptr);
+
+/// Bakes into a folder: one file a zone and a manifest, written beside `path` and renamed at the
+/// end, so that a failed or cancelled bake leaves what was there before. Memory: the scene and a
+/// few zones, whatever the size of the world.
+[[nodiscard]] THRONG_API Result<BakeReport> bake_world_to(const std::string& path,
+                                                          const Scene& scene,
+                                                          const BakeConfig& config,
+                                                          Context& context);
+
+}  // namespace throng

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/math.h"
+#include "throng/result.h"
+#include "throng/slices.h"
+#include "throng/world.h"
+
+/// Pictures without a window: plans of each level, a section, the levels fanned out.
+namespace throng {
+
+/// An avatar to draw as a disc.
+struct PictureAvatar {
+  Vec3d position;              ///< Feet. [m]
+  double radius = 0.25;        ///< [m]
+};
+
+struct PictureConfig {
+  int32_t avatar_class = 0;    ///< Whose clearance to show.
+  int32_t storey = -1;         ///< Only this storey, or all (-1).
+  int32_t width = 1600;        ///< Of the whole picture. [px, 200 to 16000]
+  std::string title;
+};
+
+/// 8-bit RGB, rows from the top.
+struct Image {
+  int32_t width = 0;
+  int32_t height = 0;
+  std::vector<uint8_t> rgb;
+};
+
+/// Plans of the storeys (floor height, obstacles, clearance, avatars), a side section and one
+/// oblique view with the levels fanned out; scale bar, legend, units.
+[[nodiscard]] THRONG_API Result<Image> draw_world(const World& world,
+                                                  std::span<const PictureAvatar> avatars,
+                                                  const PictureConfig& config);
+
+/// One slice as [ML06] figures 9 and 10 draw it: darker is higher.
+[[nodiscard]] THRONG_API Image draw_slice(const SliceSet& slices, size_t index);
+
+/// Fails with kIo; writes beside and renames.
+[[nodiscard]] THRONG_API Result<void> write_png(const Image& image, const std::string& path);
+
+}  // namespace throng

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/context.h"
+#include "throng/result.h"
+#include "throng/scene.h"
+#include "throng/world.h"
+
+/// Proof: an oracle that knows nothing of columns or tiles tests a baked world against the source
+/// triangles, with the exact body.
+namespace throng {
+
+struct VerifyConfig {
+  uint64_t samples = 100000;    ///< Sampled states; as many moves and as many surface points again.
+  uint64_t seed = 1;
+  int32_t avatar_class = 0;
+  int32_t workers = 0;          ///< [>= 0]
+};
+
+/// A place where a claim failed, to look at.
+struct VerifyFault {
+  std::string what;             ///< "entered", "unsupported", "lost"
+  Vec3d position;               ///< Feet. [m]
+  uint32_t triangle = 0;        ///< Of the scene, where one is to blame.
+};
+
+struct VerifyReport {
+  uint64_t states = 0;
+  uint64_t moves = 0;
+  uint64_t surface_points = 0;
+  uint64_t entered = 0;             ///< Legal states or moves whose body meets a triangle. Must be 0.
+  uint64_t unsupported = 0;         ///< Legal states with no surface in reach of the feet. Must be 0.
+  double feet_error_mean = 0;       ///< [m]
+  double feet_error_p95 = 0;        ///< [m]
+  double lost_grown = 0;            ///< Share of area where the grown body stands and the bake denies.
+  double lost_exact = 0;            ///< The same for the body as it is.
+  double standable_area_grown = 0;  ///< [m^2]
+  double standable_area_exact = 0;  ///< [m^2]
+  std::vector<VerifyFault> faults;  ///< The first few of each kind.
+  double seconds = 0;
+};
+
+/// Time: about samples x triangles near a body. Fails with kBadConfig, kBadInput, kCancelled.
+[[nodiscard]] THRONG_API Result<VerifyReport> verify_world(const World& world, const Scene& source,
+                                                           const VerifyConfig& config,
+                                                           Context& context);
+
+}  // namespace throng

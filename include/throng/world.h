@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "throng/avatar_class.h"
+#include "throng/base.h"
+#include "throng/math.h"
+#include "throng/result.h"
+
+/// The baked world: what everything after the bake reads. Opened by mapping its files.
+namespace throng {
+
+struct WorldData;  // Internal: zones, tiles, planes.
+
+/// A place for feet: a position on one level. A zero-initialised place is nowhere.
+struct Place {
+  Vec3d position;         ///< Y at the feet. [m]
+  uint32_t level1 = 0;    ///< Level tile of the world plus one; 0 is nowhere.
+  [[nodiscard]] explicit operator bool() const { return level1 != 0; }
+};
+
+/// How a move ended.
+enum class MoveEnd { kArrived, kBlocked };
+
+struct MoveResult {
+  Place place;                       ///< Where the body is now: the goal, or where it began.
+  MoveEnd end = MoveEnd::kBlocked;
+};
+
+/// One 64 x 64 sheet of a world in plain arrays, for tools and pictures.
+struct LevelTileContent {
+  int32_t tile_x = 0;                ///< World tile coordinates: the tile covers cells
+  int32_t tile_z = 0;                ///< [64 tile_x, 64 tile_x + 64) of the world's grid.
+  std::vector<int32_t> floor;        ///< 4096, row by row; kNoFloor where the sheet has none. [mm]
+  std::vector<int32_t> ceiling;      ///< 4096; kOpenSky where nothing is above. [mm]
+  std::vector<uint8_t> area;         ///< 4096 area kinds.
+  std::vector<std::vector<uint8_t>> clearance;  ///< Per class 4096: 0 illegal, k: every point within
+                                                ///< (k - 1) cells of this cell is legal too. [0 to 8]
+};
+
+inline constexpr int32_t kNoFloor = INT32_MIN;
+inline constexpr int32_t kOpenSky = INT32_MAX;
+inline constexpr int32_t kTileCells = 64;
+
+struct WorldSummary {
+  double cell = 0;                   ///< [m]
+  double resolution = 0;             ///< [m]
+  Vec3d origin;                      ///< Of cell (0, 0) of the grid; heights count from y = origin.y.
+  Box3d bounds;                      ///< Of the source triangles.
+  int32_t tiles_x = 0;
+  int32_t tiles_z = 0;
+  uint64_t zones = 0;
+  uint64_t level_tiles = 0;
+  uint64_t bytes = 0;                ///< Of all zones.
+  uint64_t source_triangles = 0;
+  std::vector<AvatarClass> classes;
+  std::vector<double> walkable_area; ///< Per class. [m^2]
+};
+
+/// A baked world. Cheap to copy (shared, immutable); safe to read from many threads.
+class THRONG_API World {
+ public:
+  World() = default;
+  explicit World(std::shared_ptr<const WorldData> data) : data_(std::move(data)) {}
+
+  /// Opens a folder written by bake_world_to. Fails with kBadFile (by name) or kIo.
+  [[nodiscard]] static Result<World> open(const std::string& path);
+  /// Checks every zone against the manifest's checksums. Fails with kBadFile and the zone's name.
+  [[nodiscard]] Result<void> check_all() const;
+
+  [[nodiscard]] WorldSummary summary() const;
+  /// Index of a class by name, or none.
+  [[nodiscard]] std::optional<int32_t> find_class(const std::string& name) const;
+
+  [[nodiscard]] uint32_t level_tile_count() const;
+  [[nodiscard]] LevelTileContent level_tile(uint32_t index) const;
+  /// Storey of each level tile: sheets that continue each other across tile borders share a number;
+  /// 0 is the lowest. For pictures and reports.
+  [[nodiscard]] std::vector<int32_t> storeys() const;
+
+  /// The legal place of a class under or over `position` whose feet are nearest to position.y
+  /// within `reach` metres, or nowhere. Exact column only.
+  [[nodiscard]] Place find_place(int32_t avatar_class, Vec3d position, double reach) const;
+  /// The n-th of a reproducible stream of places, uniform over the class's walkable area. Nowhere
+  /// only if the class has no place at all.
+  [[nodiscard]] Place random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const;
+  /// Walks the straight line from `from` by (dx, dz), checking every cell on the way by the
+  /// conservative form of [ML06] algorithm 1. The feet follow the surface.
+  [[nodiscard]] MoveResult move(int32_t avatar_class, const Place& from, double dx,
+                                double dz) const;
+  /// Height of the feet on the surface of the place's level at (x, z) of its position. [m]
+  [[nodiscard]] double feet(const Place& place) const;
+
+  [[nodiscard]] const std::shared_ptr<const WorldData>& data() const { return data_; }
+
+ private:
+  std::shared_ptr<const WorldData> data_;
+};
+
+}  // namespace throng

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+/// Threads only through here. Bodies write only what their index owns, so results never depend on
+/// the number of workers.
+namespace throng {
+
+/// Threads to use for a setting: 0 means all that the machine gives this process.
+int32_t worker_count(int32_t workers);
+
+/// Calls body(begin, end) over [0, count) in pieces of at least `grain`, on up to `workers` threads.
+void parallel_ranges(size_t count, size_t grain, int32_t workers,
+                     const std::function<void(size_t, size_t)>& body);
+
+/// Calls body(index) for every index in [0, count).
+template <class Body>
+void parallel_for(size_t count, int32_t workers, Body&& body) {
+  parallel_ranges(count, 1, workers, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Like parallel_for, but also tells the body which worker it runs on: [0, worker_count(workers)).
+/// For scratch memory only; the result must not depend on it.
+void parallel_for_worker(size_t count, int32_t workers,
+                         const std::function<void(size_t index, int32_t worker)>& body);
+
+}  // namespace throng

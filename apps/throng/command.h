@@ -3,27 +3,36 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "throng/context.h"
 #include "throng/result.h"
 
 /// What every command of the program shares. One file a command: it adds its options to the parser
-/// and returns an exit code: 0 done, 1 the answer is no, 2 bad usage or bad input.
+/// and a callback that sets the exit code.
 namespace throng::app {
 
-enum ExitCode : int { kDone = 0, kAnswerIsNo = 1, kBadUsage = 2 };
+enum ExitCode : int { kDone = 0, kAnswerIsNo = 1, kBadUsage = 2, kInterrupted = 130 };
 
 using Json = nlohmann::ordered_json;
 
-/// Registers one command: `add` gives it options and a callback that sets the exit code.
+/// What one run of the program knows. There is one; commands get a reference to it.
 struct Session {
-  bool json = false;       ///< --json: one object on standard output, all else on standard error.
+  bool json = false;  ///< --json: one object on standard output, all else on standard error.
   int exit_code = kDone;
-  Context context;         ///< Draws progress on a terminal, lines elsewhere; Ctrl-C cancels.
+  Context context;  ///< Draws progress on a terminal, lines elsewhere; Ctrl-C cancels.
 };
+
+/// The program: registers all commands, parses, runs one. Returns the exit code.
+int run_program(int argc, const char* const* argv,
+                const std::function<void(CLI::App&, Session&)>& add);
+
+/// Shows progress of work that a command does itself; library calls use session.context.
+void show_progress(Session& session, std::string_view stage, uint64_t done, uint64_t total);
 
 /// Prints a result: the object as JSON, or `text` for people.
 void print_result(const Session& session, const Json& object, const std::string& text);
@@ -31,9 +40,19 @@ void print_result(const Session& session, const Json& object, const std::string&
 /// Prints "throng: <message>" on standard error and returns kBadUsage (130 if cancelled).
 int fail(const Error& error);
 
-/// A subcommand with --json and an example that `--help` shows and that works as printed.
+/// Prints "throng: note: <sentence>" on standard error.
+void note(const std::string& sentence);
+
+/// A subcommand with --json and an example that `--help` shows and that works as printed: one
+/// command a line, run one after the other in an empty folder by scripts/test_examples.
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
+
+/// Most memory that this process has held so far. [bytes]
+uint64_t peak_memory();
+
+/// "1.2 MB", "35 kB".
+std::string human_bytes(uint64_t bytes);
 
 void add_bake(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);

@@ -1,14 +1,153 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <mutex>
+#include <new>
 
 #include "command.h"
 
 namespace throng::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// A signal handler can reach nothing but a global; this is the program's only one.
+std::atomic<std::atomic<bool>*> g_cancel = nullptr;
+
+// The first Ctrl-C asks the work to stop and clean up; the second does not wait for it.
+extern "C" void on_interrupt(int) {
+  std::atomic<bool>* const cancel = g_cancel.load();
+  if (cancel == nullptr || cancel->exchange(true)) _exit(kInterrupted);
+}
+
+// Draws where the work is: one line that redraws itself on a terminal, elsewhere a line at each
+// tenth or each five seconds, whichever comes later than a second after the last.
+class ProgressLine {
+ public:
+  void show(const Progress& progress) {
+    const std::lock_guard lock(mutex_);
+    if (progress.stage != stage_) begin(progress.stage);
+    const double percent =
+        progress.total > 0 ? 100.0 * static_cast<double>(std::min(progress.done, progress.total)) /
+                                 static_cast<double>(progress.total)
+                           : 0;
+    const double quiet = seconds_since(last_);
+    if (terminal_) {
+      if (drawn_ && quiet < 0.1 && progress.done != progress.total) return;
+      draw(progress, percent);
+    } else {
+      const int tenth = static_cast<int>(percent / 10);
+      if (!(quiet >= 5 || (quiet >= 1 && tenth > tenth_))) return;
+      tenth_ = tenth;
+      fmt::print(stderr, "{}: {}\n", stage_, describe(progress, percent));
+    }
+    last_ = Clock::now();
+  }
+
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    if (drawn_) fmt::print(stderr, "\r\x1b[K");
+    drawn_ = false;
+  }
+
+ private:
+  void begin(std::string_view stage) {
+    stage_ = stage;
+    start_ = last_ = Clock::now();
+    tenth_ = 0;
+  }
+
+  [[nodiscard]] std::string describe(const Progress& progress, double percent) const {
+    if (progress.total == 0)
+      return fmt::format("{}, {:.0f} s", progress.done, seconds_since(start_));
+    return fmt::format("{:.0f} %, {:.0f} s", percent, seconds_since(start_));
+  }
+
+  void draw(const Progress& progress, double percent) {
+    constexpr size_t kWidth = 30;
+    const auto filled = static_cast<size_t>(percent / 100 * kWidth);
+    const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
+    fmt::print(stderr, "\r\x1b[K{:<10} [{}] {}", stage_, bar, describe(progress, percent));
+    std::fflush(stderr);
+    drawn_ = true;
+  }
+
+  const bool terminal_ = isatty(STDERR_FILENO) != 0;
+  std::mutex mutex_;
+  std::string stage_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_ = Clock::now();
+  int tenth_ = 0;
+  bool drawn_ = false;
+};
+
+ProgressLine& progress_line() {
+  static ProgressLine line;
+  return line;
+}
+
+// CLI11 ends some messages with a full stop or a line of help: one sentence is enough.
+std::string one_sentence(const std::string& message) {
+  const std::string line = message.substr(0, message.find('\n'));
+  const size_t end = line.find_last_not_of(" .");
+  return end == std::string::npos ? "bad usage" : line.substr(0, end + 1);
+}
+
+std::string command_in_use(const CLI::App& parser) {
+  const auto commands = parser.get_subcommands();
+  return commands.empty() ? "throng" : "throng " + commands.front()->get_name();
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv,
+                const std::function<void(CLI::App&, Session&)>& add) {
+  CLI::App parser{"throng fills any 3D world with moving people", "throng"};
+  parser.require_subcommand(1);
+  parser.set_version_flag("--version", "throng " THRONG_VERSION);
+  Session session;
+  session.context.on_progress = [](const Progress& progress) { progress_line().show(progress); };
+  add(parser, session);
+
+  g_cancel = &session.context.cancel;
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  try {
+    parser.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help and --version
+    session.exit_code = parser.exit(success);
+  } catch (const CLI::ParseError& error) {
+    session.exit_code =
+        fail({Errc::kBadConfig, fmt::format("{}; see {} --help", one_sentence(error.what()),
+                                            command_in_use(parser))});
+  } catch (const std::bad_alloc&) {
+    session.exit_code = fail(
+        {Errc::kLimit, fmt::format("{}: out of memory; use larger cells, a smaller world or fewer "
+                                   "avatars",
+                                   command_in_use(parser))});
+  }
+  progress_line().clear();
+  g_cancel = nullptr;
+  return session.exit_code;
+}
+
+void show_progress(Session& session, std::string_view stage, uint64_t done, uint64_t total) {
+  if (session.context.on_progress) session.context.on_progress({stage, done, total});
+}
 
 void print_result(const Session& session, const Json& object, const std::string& text) {
+  progress_line().clear();
   if (session.json) {
     fmt::print("{}\n", object.dump());
   } else {
@@ -17,16 +156,38 @@ void print_result(const Session& session, const Json& object, const std::string&
 }
 
 int fail(const Error& error) {
+  progress_line().clear();
   fmt::print(stderr, "throng: {}\n", error.message);
-  return error.code == Errc::kCancelled ? 130 : kBadUsage;
+  return error.code == Errc::kCancelled ? kInterrupted : kBadUsage;
+}
+
+void note(const std::string& sentence) {
+  progress_line().clear();
+  fmt::print(stderr, "throng: note: {}\n", sentence);
 }
 
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example) {
   CLI::App* command = parser.add_subcommand(name, summary);
   command->add_flag("--json", session.json, "Print one JSON object on standard output");
-  command->footer("Example:\n  " + example);
+  std::string indented = "Example:\n  ";
+  for (const char c : example) indented += c == '\n' ? std::string("\n  ") : std::string(1, c);
+  command->footer(indented);
   return command;
+}
+
+uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kB.
+}
+
+std::string human_bytes(uint64_t bytes) {
+  const auto value = static_cast<double>(bytes);
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  if (value < 1e6) return fmt::format("{:.1f} kB", value / 1e3);
+  if (value < 1e9) return fmt::format("{:.1f} MB", value / 1e6);
+  return fmt::format("{:.2f} GB", value / 1e9);
 }
 
 }  // namespace throng::app

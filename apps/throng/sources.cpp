@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "sources.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+namespace throng::app {
+namespace {
+
+constexpr std::string_view kBuiltin = "builtin:";
+
+Error bad_builtin(const std::string& text, const std::string& what) {
+  return {Errc::kBadConfig,
+          fmt::format("{}: {}; write builtin:NAME[,size=M][,levels=N][,triangles=N]"
+                      "[,seed=N]",
+                      text, what)};
+}
+
+template <class T>
+bool parse_number(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+bool set_field(BuiltinWorldConfig& config, std::string_view key, std::string_view value) {
+  if (key == "size") return parse_number(value, config.size);
+  if (key == "levels") return parse_number(value, config.levels);
+  if (key == "triangles") return parse_number(value, config.triangles);
+  return key == "seed" && parse_number(value, config.seed);
+}
+
+}  // namespace
+
+void add_source_options(CLI::App* command, SourceOptions& options, const std::string& name) {
+  CLI::Option* files = command->add_option(
+      name, options.files,
+      "Model files, or builtin:NAME[,size=M][,levels=N][,triangles=N][,seed=N]");
+  files->type_name("FILE");
+  command->add_option("--up", options.up, "Axis that points up in the files")
+      ->check(CLI::IsMember({"y", "z"}));
+  command->add_option("--scale", options.scale, "Metres per unit of the files")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--scene", options.scene,
+                      "Scene file (TOML or JSON): sources and area rules");
+}
+
+Result<BuiltinWorldConfig> parse_builtin(const std::string& text) {
+  std::string_view rest = std::string_view(text).substr(kBuiltin.size());
+  BuiltinWorldConfig config;
+  for (bool first = true; first || !rest.empty(); first = false) {
+    const size_t comma = rest.find(',');
+    const std::string_view word = rest.substr(0, comma);
+    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+    const size_t equals = word.find('=');
+    if (first) {
+      if (word.empty() || equals != std::string_view::npos)
+        return bad_builtin(text, "no world's name");
+      config.name = word;
+    } else if (equals == std::string_view::npos ||
+               !set_field(config, word.substr(0, equals), word.substr(equals + 1))) {
+      return bad_builtin(text, fmt::format("cannot use '{}'", word));
+    }
+  }
+  return config;
+}
+
+void append_scene(Scene& scene, const Scene& other) {
+  const auto first_vertex = static_cast<uint32_t>(scene.positions.size());
+  const auto first_triangle = static_cast<uint32_t>(scene.triangles.size());
+  scene.positions.insert(scene.positions.end(), other.positions.begin(), other.positions.end());
+  scene.triangles.reserve(scene.triangles.size() + other.triangles.size());
+  for (const auto& [a, b, c] : other.triangles) {
+    scene.triangles.push_back({first_vertex + a, first_vertex + b, first_vertex + c});
+  }
+  scene.area.insert(scene.area.end(), other.area.begin(), other.area.end());
+  for (ScenePart part : other.parts) {
+    part.first_triangle += first_triangle;
+    scene.parts.push_back(std::move(part));
+  }
+  scene.patches.insert(scene.patches.end(), other.patches.begin(), other.patches.end());
+  scene.report.triangles_read += other.report.triangles_read;
+  scene.report.non_finite += other.report.non_finite;
+  scene.report.bad_index += other.report.bad_index;
+  scene.report.degenerate += other.report.degenerate;
+  scene.report.duplicate += other.report.duplicate;
+  scene.report.ignored += other.report.ignored;
+  scene.report.spikes += other.report.spikes;
+  scene.report.warnings.insert(scene.report.warnings.end(), other.report.warnings.begin(),
+                               other.report.warnings.end());
+}
+
+Result<Scene> read_sources(const SourceOptions& options, Context& context) {
+  SceneConfig config;
+  if (!options.scene.empty()) {
+    Result<SceneConfig> loaded = load_scene_config(options.scene);
+    if (!loaded) return loaded.error();
+    config = *std::move(loaded);
+  }
+  std::vector<BuiltinWorldConfig> builtins;
+  for (const std::string& file : options.files) {
+    if (file.starts_with(kBuiltin)) {
+      Result<BuiltinWorldConfig> builtin = parse_builtin(file);
+      if (!builtin) return builtin.error();
+      builtins.push_back(*std::move(builtin));
+      continue;
+    }
+    SceneSource source{.path = file, .up = {}, .scale = {}, .transform = {}};
+    if (!options.up.empty()) source.up = options.up.front();
+    if (options.scale > 0) source.scale = options.scale;
+    config.sources.push_back(std::move(source));
+  }
+  if (config.sources.empty() && builtins.empty()) {
+    return Error{Errc::kBadConfig, "no model given; name a file, a scene file or builtin:garage"};
+  }
+
+  Scene scene;
+  if (!config.sources.empty()) {
+    Result<Scene> loaded = load_scene(config, context);
+    if (!loaded) return loaded.error();
+    scene = *std::move(loaded);
+  }
+  for (const BuiltinWorldConfig& builtin : builtins) {
+    Result<Scene> made = make_builtin_world(builtin);
+    if (!made) return made.error();
+    if (scene.triangles.empty() && scene.report.triangles_read == 0) {
+      scene = *std::move(made);
+    } else {
+      append_scene(scene, *made);
+    }
+  }
+  for (const std::string& warning : scene.report.warnings) note(warning);
+  return scene;
+}
+
+Json report_json(const SceneReport& report) {
+  Json json = {{"triangles_read", report.triangles_read}};
+  const auto add = [&](const char* name, uint64_t count) {
+    if (count > 0) json[name] = count;
+  };
+  add("non_finite", report.non_finite);
+  add("bad_index", report.bad_index);
+  add("degenerate", report.degenerate);
+  add("duplicate", report.duplicate);
+  add("ignored", report.ignored);
+  add("spikes", report.spikes);
+  json["warnings"] = report.warnings;
+  return json;
+}
+
+}  // namespace throng::app

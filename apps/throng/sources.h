@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "throng/builtin_worlds.h"
+#include "throng/context.h"
+#include "throng/result.h"
+#include "throng/scene.h"
+
+/// Turns the FILE arguments that several commands share into one Scene.
+namespace throng::app {
+
+/// FILE... --up --scale --scene. A FILE is a model, or `builtin:NAME[,size=..][,levels=..]
+/// [,triangles=..][,seed=..]`.
+struct SourceOptions {
+  std::vector<std::string> files;
+  std::string up;     ///< "y", "z" or empty: the format's own. Files only.
+  double scale = 0;   ///< Metres per unit, 0: the format's own. Files only.
+  std::string scene;  ///< A scene file: more sources, and rules for area kinds of all files.
+};
+
+/// Adds the options; `name` is "FILE" for positionals or an option such as "--source".
+void add_source_options(CLI::App* command, SourceOptions& options,
+                        const std::string& name = "FILE");
+
+/// Reads "builtin:garage,size=60,seed=3". Fails with kBadConfig and the word that is wrong.
+Result<BuiltinWorldConfig> parse_builtin(const std::string& text);
+
+/// Appends `other` to `scene`, its report included.
+void append_scene(Scene& scene, const Scene& other);
+
+/// Reads everything that the options name: the scene file's sources, then the files, then the
+/// built-in worlds. Prints the report's warnings as notes.
+Result<Scene> read_sources(const SourceOptions& options, Context& context);
+
+/// What an import met, as JSON: only the counts that are not zero, and the warnings.
+Json report_json(const SceneReport& report);
+
+}  // namespace throng::app

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/triangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace throng {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kTouch = 1e-3;  // Cells: a box this close to a square is binned there.
+
+// Cosine of the steepest slope that each class stands on, with a hair of tolerance: a ramp modelled
+// at exactly the limit is allowed.
+std::vector<double> slope_limits(std::span<const AvatarClass> classes) {
+  std::vector<double> cosines;
+  for (const AvatarClass& avatar : classes) {
+    cosines.push_back(std::cos(avatar.max_slope * kPi / 180) - 1e-5);
+  }
+  return cosines;
+}
+
+}  // namespace
+
+double snap_mm(double metres) {
+  const double mm = metres * 1000;
+  const double whole = std::round(mm);
+  return std::fabs(mm - whole) < 1e-3 ? whole : mm;
+}
+
+SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes) {
+  const std::vector<double> cosines = slope_limits(classes);
+  std::vector<double> bins = cosines;
+  std::sort(bins.begin(), bins.end());
+  bins.erase(std::unique(bins.begin(), bins.end()), bins.end());
+
+  // A key orders surfaces by how much they restrict: steeper, then area; blocked comes last.
+  const size_t bin_count = bins.size();
+  const size_t blocked_key = bin_count * 64;
+  std::vector<uint16_t> key(scene.triangles.size());
+  std::vector<uint8_t> used(blocked_key + 1, 0);
+  for (size_t t = 0; t < key.size(); ++t) {
+    const auto& corner = scene.triangles[t];
+    const Vec3d a = scene.positions[corner[0]];
+    const Vec3d normal = cross(scene.positions[corner[1]] - a, scene.positions[corner[2]] - a);
+    const double size = length(normal);
+    const double cosine = size > 0 ? std::fabs(normal.y) / size : 0;
+    const size_t exceeded = static_cast<size_t>(
+        std::count_if(bins.begin(), bins.end(), [&](double limit) { return cosine < limit; }));
+    const AreaKind area = scene.area.empty() ? kAreaWalkable : scene.area[t];
+    const bool blocked = area == kAreaBlocked || exceeded == bin_count;
+    key[t] =
+        static_cast<uint16_t>(blocked ? blocked_key : exceeded * 64 + std::min(area, kAreaLast));
+    used[key[t]] = 1;
+  }
+
+  std::vector<uint8_t> code_of_key(used.size(), 255);
+  used[blocked_key] = 1;
+  for (size_t k = 0; k < used.size(); ++k) {
+    // More than 255 kinds of surface: the rest count as blocked, which loses area but is safe.
+    if (used[k] == 0 || (codes_.codes.size() == 255 && k != blocked_key)) continue;
+    const bool blocked = k == blocked_key;
+    code_of_key[k] = static_cast<uint8_t>(codes_.codes.size());
+    codes_.codes.push_back({static_cast<uint8_t>(k / 64),
+                            blocked ? kAreaBlocked : static_cast<AreaKind>(k % 64)});
+    uint32_t allowed = 0;
+    for (size_t c = 0; c < cosines.size() && !blocked; ++c) {
+      // Limits ascend with the cosine: a surface that exceeds n limits exceeds the n largest.
+      const auto rank = static_cast<size_t>(
+          std::lower_bound(bins.begin(), bins.end(), cosines[c]) - bins.begin());
+      if (bin_count - rank > k / 64) allowed |= 1u << c;
+    }
+    codes_.allowed.push_back(allowed);
+  }
+  triangle_code_.resize(key.size());
+  for (size_t t = 0; t < key.size(); ++t) triangle_code_[t] = code_of_key[key[t]];
+}
+
+CellTriangle to_cell_triangle(const Scene& scene, uint32_t triangle, const Grid& grid,
+                              uint8_t code) {
+  CellTriangle out;
+  out.code = code;
+  std::array<Vec3d, 3> p;
+  for (size_t i = 0; i < 3; ++i) {
+    const Vec3d v = scene.positions[scene.triangles[triangle][i]];
+    p[i] = {grid.to_cell_x(v.x), snap_mm(v.y), grid.to_cell_z(v.z)};
+  }
+  const auto less = [](const Vec3d& a, const Vec3d& b) {
+    return a.z != b.z ? a.z < b.z : (a.x != b.x ? a.x < b.x : a.y < b.y);
+  };
+  if (less(p[1], p[0])) std::swap(p[0], p[1]);
+  if (less(p[2], p[1])) std::swap(p[1], p[2]);
+  if (less(p[1], p[0])) std::swap(p[0], p[1]);
+  for (size_t i = 0; i < 3; ++i) {
+    out.x[i] = p[i].x;
+    out.y[i] = p[i].y;
+    out.z[i] = p[i].z;
+  }
+  out.low = static_cast<int32_t>(std::floor(std::min({p[0].y, p[1].y, p[2].y})));
+  out.high = static_cast<int32_t>(std::ceil(std::max({p[0].y, p[1].y, p[2].y})));
+  return out;
+}
+
+Grid make_grid(const Box3d& bounds, double cell) {
+  Grid grid;
+  grid.cell = cell;
+  grid.origin_x = std::floor(bounds.min.x / cell + 1e-6) * cell;
+  grid.origin_z = std::floor(bounds.min.z / cell + 1e-6) * cell;
+  grid.width = std::max(1, static_cast<int32_t>(std::ceil(grid.to_cell_x(bounds.max.x) - 1e-6)));
+  grid.depth = std::max(1, static_cast<int32_t>(std::ceil(grid.to_cell_z(bounds.max.z) - 1e-6)));
+  return grid;
+}
+
+TriangleBins bin_triangles(std::span<const CellTriangle> triangles, int32_t cell_x, int32_t cell_z,
+                           int32_t squares_x, int32_t squares_z, int32_t side, int32_t apron) {
+  TriangleBins bins;
+  bins.squares_x = squares_x;
+  bins.squares_z = squares_z;
+  bins.first.assign(static_cast<size_t>(squares_x) * static_cast<size_t>(squares_z) + 1, 0);
+  const double inverse = 1.0 / side;
+  const double margin = apron + kTouch;
+  const auto square_of = [&](double v) {
+    return static_cast<int32_t>(std::floor(std::clamp(v * inverse, -1.0, 2e9)));
+  };
+  const auto for_each_square = [&](const CellTriangle& t, auto&& visit) {
+    const double x_low = std::min({t.x[0], t.x[1], t.x[2]}) - cell_x;
+    const double x_high = std::max({t.x[0], t.x[1], t.x[2]}) - cell_x;
+    const int32_t x0 = std::max(0, square_of(x_low - margin));
+    const int32_t x1 = std::min(squares_x - 1, square_of(x_high + margin));
+    const int32_t z0 = std::max(0, square_of(t.z[0] - cell_z - margin));
+    const int32_t z1 = std::min(squares_z - 1, square_of(t.z[2] - cell_z + margin));
+    for (int32_t z = z0; z <= z1; ++z) {
+      for (int32_t x = x0; x <= x1; ++x) {
+        visit(static_cast<size_t>(z) * static_cast<size_t>(squares_x) + static_cast<size_t>(x));
+      }
+    }
+  };
+  for (const CellTriangle& t : triangles) {
+    for_each_square(t, [&](size_t square) { ++bins.first[square + 1]; });
+  }
+  std::inclusive_scan(bins.first.begin(), bins.first.end(), bins.first.begin());
+  bins.items.resize(bins.first.back());
+  std::vector<uint32_t> next(bins.first.begin(), bins.first.end() - 1);
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    for_each_square(triangles[i],
+                    [&](size_t square) { bins.items[next[square]++] = static_cast<uint32_t>(i); });
+  }
+  return bins;
+}
+
+}  // namespace throng

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/grid.h"
+#include "throng/avatar_class.h"
+#include "throng/math.h"
+#include "throng/scene.h"
+
+/// Triangles as the rasteriser wants them: in cells and millimetres, corners sorted by z.
+namespace throng {
+
+struct CellTriangle {
+  std::array<double, 3> x;  // cells from the grid's origin
+  std::array<double, 3> z;  // cells, ascending
+  std::array<double, 3> y;  // mm, snapped to a whole mm if within 1 um of it
+  int32_t low = 0;          // mm, rounded outward
+  int32_t high = 0;
+  uint8_t code = 0;  // index into SurfaceCodes
+};
+
+/// What a surface is to the classes: how steep and of which area kind, as one byte. Larger codes
+/// are more restrictive, so that of two surfaces at one height the worse one counts.
+struct SurfaceCode {
+  uint8_t slope_bin = 0;  // number of distinct slope limits that it exceeds
+  AreaKind area = kAreaWalkable;
+};
+
+struct SurfaceCodes {
+  std::vector<SurfaceCode> codes;  // at most 256; the last is "nobody stands here"
+  std::vector<uint32_t> allowed;   // per code: bit c is set if class c may stand on it
+};
+
+/// Steepness limits of the classes, and the codes in use by a scene.
+class SurfaceCoder {
+ public:
+  SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes);
+  [[nodiscard]] uint8_t code(uint32_t triangle) const { return triangle_code_[triangle]; }
+  [[nodiscard]] const SurfaceCodes& codes() const { return codes_; }
+
+ private:
+  SurfaceCodes codes_;
+  std::vector<uint8_t> triangle_code_;
+};
+
+/// Millimetres of a height in metres: whole if within 1 um of whole.
+double snap_mm(double metres);
+
+CellTriangle to_cell_triangle(const Scene& scene, uint32_t triangle, const Grid& grid,
+                              uint8_t code);
+
+/// The grid that covers a scene: origin on a whole multiple of the cell.
+Grid make_grid(const Box3d& bounds, double cell);
+
+/// Triangles by square of `side` cells, conservatively by their boxes: square s = z * squares_x + x
+/// owns items[first[s]] to items[first[s + 1]], in order of triangles.
+struct TriangleBins {
+  int32_t squares_x = 0;
+  int32_t squares_z = 0;
+  std::vector<uint32_t> first;
+  std::vector<uint32_t> items;
+};
+
+/// Squares cover cells [cell_x, cell_x + squares_x * side) and likewise in z; `apron` widens each
+/// square on all sides. [cells]
+TriangleBins bin_triangles(std::span<const CellTriangle> triangles, int32_t cell_x, int32_t cell_z,
+                           int32_t squares_x, int32_t squares_z, int32_t side, int32_t apron);
+
+}  // namespace throng

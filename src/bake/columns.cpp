@@ -233,12 +233,10 @@ struct Cutter {
   }
   // The point at z = at of the side from the first to the last corner.
   HWY_INLINE Corner on_long(double at) const {
-    if (at >= z[2]) return {x[2], y[2]};
     return {x[0] + (at - z[0]) * kx02, y[0] + (at - z[0]) * ky02};
   }
   // The same on the two sides by way of the middle corner.
   HWY_INLINE Corner on_short(double at) const {
-    if (at >= z[2]) return {x[2], y[2]};
     if (at <= z[1]) return {x[0] + (at - z[0]) * kx01, y[0] + (at - z[0]) * ky01};
     return {x[1] + (at - z[1]) * kx12, y[1] + (at - z[1]) * ky12};
   }
@@ -290,8 +288,11 @@ void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint
     for (task.row = row0; task.row <= row1; ++task.row) {
       const double from = std::max(task.row - kWiden, cut.z[0]);
       const double to = std::min(task.row + 1 + kWiden, cut.z[2]);
-      const Corner l0 = cut.on_long(from), l1 = cut.on_long(to);
-      const Corner s0 = cut.on_short(from), s1 = cut.on_short(to);
+      // The last corner is taken as it is: a triangle within one z has no point "at" it.
+      const bool has_last = cut.z[2] <= to;
+      const Corner last{cut.x[2], cut.y[2]};
+      const Corner l0 = cut.on_long(from), l1 = has_last ? last : cut.on_long(to);
+      const Corner s0 = cut.on_short(from), s1 = has_last ? last : cut.on_short(to);
       const bool has_middle = cut.z[1] >= from && cut.z[1] <= to;
       const Corner middle{cut.x[1], cut.y[1]};
       double x_low = std::min(std::min(l0.x, l1.x), std::min(s0.x, s1.x));
@@ -321,6 +322,8 @@ void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint
       fill_row(columns, task, row, join);
     }
   }
+  std::stable_sort(columns.spills.begin(), columns.spills.end(),
+                   [](const auto& a, const auto& b) { return a.cell < b.cell; });
 }
 
 // Spans of one vector of columns, while they are sorted.
@@ -374,11 +377,8 @@ void gaps_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_g
     const SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
     spans.push_back({cell, layer.low[c], layer.high[c], layer.support[c]});
   }
-  if (columns.count[c] == TileColumns::kMaxLayers) {
-    for (const auto& spilled : columns.spills) {
-      if (spilled.cell == cell) spans.push_back(spilled);
-    }
-  }
+  const auto spilled = columns.spills_of(cell);
+  spans.insert(spans.end(), spilled.begin(), spilled.end());
   std::sort(spans.begin(), spans.end(), [](const auto& a, const auto& b) {
     return a.low != b.low ? a.low < b.low : a.high < b.high;
   });
@@ -508,6 +508,13 @@ void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
   HWY_DYNAMIC_DISPATCH(FindGaps)(columns, min_gap, gaps);
 }
 
+std::span<const TileColumns::Spill> TileColumns::spills_of(int32_t cell) const {
+  if (count[static_cast<size_t>(cell)] < kMaxLayers) return {};
+  const auto less = [](const Spill& a, const Spill& b) { return a.cell < b.cell; };
+  const auto range = std::equal_range(spills.begin(), spills.end(), Spill{cell, 0, 0, 0}, less);
+  return {range.first, range.second};
+}
+
 void sort_spans(const TileColumns& columns, TileSpans& spans) {
   spans.first.assign(kTileArea + 1, 0);
   spans.low.clear();
@@ -520,11 +527,8 @@ void sort_spans(const TileColumns& columns, TileSpans& spans) {
       const SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
       column.emplace_back(layer.low[c] + columns.base, layer.high[c] + columns.base);
     }
-    if (columns.count[c] == TileColumns::kMaxLayers) {
-      for (const auto& spilled : columns.spills) {
-        if (spilled.cell != cell) continue;
-        column.emplace_back(spilled.low + columns.base, spilled.high + columns.base);
-      }
+    for (const auto& spilled : columns.spills_of(cell)) {
+      column.emplace_back(spilled.low + columns.base, spilled.high + columns.base);
     }
     std::sort(column.begin(), column.end());
     const size_t begin = spans.low.size();

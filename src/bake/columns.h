@@ -35,7 +35,9 @@ struct TileColumns {
   int32_t base = 0;  // [mm]
   alignas(64) std::array<int32_t, kTileArea> count;
   std::vector<std::unique_ptr<SpanLayer>> layers;  // unsorted; layer k of cell c holds if k < count[c]
-  std::vector<Spill> spills;
+  std::vector<Spill> spills;  // by cell
+
+  [[nodiscard]] std::span<const Spill> spills_of(int32_t cell) const;
 };
 
 /// Part of a tile: cells [x0, x1) x [z0, z1).

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.h"
+#include "sources.h"
+#include "throng/bake.h"
+
+// throng bake: any model in, a folder of zone files out.
+namespace throng::app {
+namespace {
+
+struct BakeOptions {
+  SourceOptions sources;
+  std::string output;
+  std::string classes;
+  BakeConfig config;
+};
+
+Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
+  Json areas = Json::object();
+  for (size_t i = 0; i < report.walkable_area.size(); ++i) {
+    areas[options.config.classes[i].name] = report.walkable_area[i];
+  }
+  return {{"world", options.output},
+          {"triangles", scene.triangles.size()},
+          {"import", report_json(scene.report)},
+          {"cell", options.config.cell},
+          {"resolution", options.config.resolution},
+          {"zones", report.zones},
+          {"tiles", report.tiles},
+          {"level_tiles", report.level_tiles},
+          {"constant_level_tiles", report.constant_level_tiles},
+          {"spans", report.spans},
+          {"bytes", report.bytes},
+          {"walkable_area", areas},
+          {"seconds_columns", report.seconds_columns},
+          {"seconds_levels", report.seconds_levels},
+          {"seconds_clearance", report.seconds_clearance},
+          {"seconds_write", report.seconds_write},
+          {"seconds_total", report.seconds_total},
+          {"peak_bytes", peak_memory()}};
+}
+
+std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
+  std::string text =
+      fmt::format("{}: {} triangles in {:.2f} s, {} zones, {} level tiles ({} of them flat), {}\n",
+                  options.output, scene.triangles.size(), report.seconds_total, report.zones,
+                  report.level_tiles, report.constant_level_tiles, human_bytes(report.bytes));
+  for (size_t i = 0; i < report.walkable_area.size(); ++i) {
+    text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
+                        report.walkable_area[i]);
+  }
+  return text;
+}
+
+int bake(Session& session, BakeOptions& options) {
+  if (!options.classes.empty()) {
+    Result<std::vector<AvatarClass>> classes = load_classes(options.classes);
+    if (!classes) return fail(classes.error());
+    options.config.classes = *std::move(classes);
+  }
+  const Result<Scene> scene = read_sources(options.sources, session.context);
+  if (!scene) return fail(scene.error());
+  const Result<BakeReport> report =
+      bake_world_to(options.output, *scene, options.config, session.context);
+  if (!report) return fail(report.error());
+  print_result(session, bake_json(options, *scene, *report), bake_text(options, *scene, *report));
+  return kDone;
+}
+
+}  // namespace
+
+void add_bake(CLI::App& parser, Session& session) {
+  CLI::App* command = add_command(parser, session, "bake", "Turn models into a walkable world",
+                                  "throng bake builtin:garage -o garage.throng");
+  const auto options = std::make_shared<BakeOptions>();
+  add_source_options(command, options->sources);
+  BakeConfig& config = options->config;
+  command->add_option("-o,--output", options->output, "World folder to write")
+      ->required()
+      ->type_name("WORLD.throng");
+  command->add_option("--cell", config.cell, "Side of a cell [m]")->capture_default_str();
+  command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
+      ->capture_default_str();
+  command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
+  command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)");
+  command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  command->callback([&session, options] { session.exit_code = bake(session, *options); });
+}
+
+}  // namespace throng::app

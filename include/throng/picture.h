@@ -18,14 +18,14 @@ namespace throng {
 
 /// An avatar to draw as a disc.
 struct PictureAvatar {
-  Vec3d position;              ///< Feet. [m]
-  double radius = 0.25;        ///< [m]
+  Vec3d position;        ///< Feet. [m]
+  double radius = 0.25;  ///< [m]
 };
 
 struct PictureConfig {
-  int32_t avatar_class = 0;    ///< Whose clearance to show.
-  int32_t storey = -1;         ///< Only this storey, or all (-1).
-  int32_t width = 1600;        ///< Of the whole picture. [px, 200 to 16000]
+  int32_t avatar_class = 0;  ///< Whose clearance to show.
+  int32_t storey = -1;       ///< Only this storey, or all (-1).
+  int32_t width = 1600;      ///< Of the whole picture. [px, 200 to 16000]
   std::string title;
 };
 

@@ -19,13 +19,14 @@ struct SliceConfig {
   double avatar_height = 1.75;  ///< The smallest avatar's. [m, > 0]
   double resolution = 0.1;      ///< Vertical distance that may be lost over a head. [m, >= 0.001]
   double cell = 0.1;            ///< Side of a cell. [m, >= 0.01]
-  int32_t workers = 0;          ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
 
 /// One kept slice. Heights are on the world's grid of 1 mm.
 struct Slice {
-  int32_t height = 0;            ///< Where the cut was taken. [mm]
-  std::vector<int32_t> surface;  ///< Highest surface below it, per cell; the far plane if none. [mm]
+  int32_t height = 0;  ///< Where the cut was taken. [mm]
+  std::vector<int32_t>
+      surface;  ///< Highest surface below it, per cell; the far plane if none. [mm]
 };
 
 /// All kept slices, highest first. Cell (x, z) is index z * width + x and covers
@@ -34,10 +35,10 @@ struct SliceSet {
   int32_t width = 0;
   int32_t depth = 0;
   double cell = 0;
-  double origin_x = 0;           ///< [m]
-  double origin_z = 0;           ///< [m]
-  int32_t far_plane = 0;         ///< eq. 2: min_y - resolution. [mm]
-  int32_t taken = 0;             ///< Slices cut, kept or not.
+  double origin_x = 0;                 ///< [m]
+  double origin_z = 0;                 ///< [m]
+  int32_t far_plane = 0;               ///< eq. 2: min_y - resolution. [mm]
+  int32_t taken = 0;                   ///< Slices cut, kept or not.
   std::vector<int32_t> taken_heights;  ///< [mm], highest first
   std::vector<Slice> kept;
 };

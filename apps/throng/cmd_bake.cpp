@@ -19,7 +19,8 @@ struct BakeOptions {
   BakeConfig config;
 };
 
-Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
+Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport& report,
+               uint64_t peak_read) {
   Json areas = Json::object();
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     areas[options.config.classes[i].name] = report.walkable_area[i];
@@ -41,6 +42,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"seconds_clearance", report.seconds_clearance},
           {"seconds_write", report.seconds_write},
           {"seconds_total", report.seconds_total},
+          {"peak_bytes_read", peak_read},  // Before the bake began: the scene and its reader.
           {"peak_bytes", peak_memory()}};
 }
 
@@ -64,10 +66,12 @@ int bake(Session& session, BakeOptions& options) {
   }
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
+  const uint64_t peak_read = peak_memory();
   const Result<BakeReport> report =
       bake_world_to(options.output, *scene, options.config, session.context);
   if (!report) return fail(report.error());
-  print_result(session, bake_json(options, *scene, *report), bake_text(options, *scene, *report));
+  print_result(session, bake_json(options, *scene, *report, peak_read),
+               bake_text(options, *scene, *report));
   return kDone;
 }
 

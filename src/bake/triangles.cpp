@@ -10,7 +10,6 @@ namespace throng {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kTouch = 1e-3;  // Cells: a box this close to a square is binned there.
 
 // Cosine of the steepest slope that each class stands on, with a hair of tolerance: a ramp modelled
 // at exactly the limit is allowed.
@@ -115,39 +114,24 @@ Grid make_grid(const Box3d& bounds, double cell) {
 
 TriangleBins bin_triangles(std::span<const CellTriangle> triangles, int32_t cell_x, int32_t cell_z,
                            int32_t squares_x, int32_t squares_z, int32_t side, int32_t apron) {
-  TriangleBins bins;
-  bins.squares_x = squares_x;
-  bins.squares_z = squares_z;
-  bins.first.assign(static_cast<size_t>(squares_x) * static_cast<size_t>(squares_z) + 1, 0);
-  const double inverse = 1.0 / side;
-  const double margin = apron + kTouch;
-  const auto square_of = [&](double v) {
-    return static_cast<int32_t>(std::floor(std::clamp(v * inverse, -1.0, 2e9)));
+  const auto box = [&](size_t i) -> CellBox {
+    const CellTriangle& t = triangles[i];
+    return {std::min({t.x[0], t.x[1], t.x[2]}), std::max({t.x[0], t.x[1], t.x[2]}), t.z[0], t.z[2]};
   };
-  const auto for_each_square = [&](const CellTriangle& t, auto&& visit) {
-    const double x_low = std::min({t.x[0], t.x[1], t.x[2]}) - cell_x;
-    const double x_high = std::max({t.x[0], t.x[1], t.x[2]}) - cell_x;
-    const int32_t x0 = std::max(0, square_of(x_low - margin));
-    const int32_t x1 = std::min(squares_x - 1, square_of(x_high + margin));
-    const int32_t z0 = std::max(0, square_of(t.z[0] - cell_z - margin));
-    const int32_t z1 = std::min(squares_z - 1, square_of(t.z[2] - cell_z + margin));
-    for (int32_t z = z0; z <= z1; ++z) {
-      for (int32_t x = x0; x <= x1; ++x) {
-        visit(static_cast<size_t>(z) * static_cast<size_t>(squares_x) + static_cast<size_t>(x));
-      }
-    }
-  };
-  for (const CellTriangle& t : triangles) {
-    for_each_square(t, [&](size_t square) { ++bins.first[square + 1]; });
+  return bin_boxes(triangles.size(), box, cell_x, cell_z, squares_x, squares_z, side, apron);
+}
+
+CellBox scene_box(const Scene& scene, uint32_t triangle, const Grid& grid) {
+  CellBox box{1e300, -1e300, 1e300, -1e300};
+  for (const uint32_t corner : scene.triangles[triangle]) {
+    const double x = grid.to_cell_x(scene.positions[corner].x);
+    const double z = grid.to_cell_z(scene.positions[corner].z);
+    box.x0 = std::min(box.x0, x);
+    box.x1 = std::max(box.x1, x);
+    box.z0 = std::min(box.z0, z);
+    box.z1 = std::max(box.z1, z);
   }
-  std::inclusive_scan(bins.first.begin(), bins.first.end(), bins.first.begin());
-  bins.items.resize(bins.first.back());
-  std::vector<uint32_t> next(bins.first.begin(), bins.first.end() - 1);
-  for (size_t i = 0; i < triangles.size(); ++i) {
-    for_each_square(triangles[i],
-                    [&](size_t square) { bins.items[next[square]++] = static_cast<uint32_t>(i); });
-  }
-  return bins;
+  return box;
 }
 
 }  // namespace throng

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -66,9 +69,54 @@ struct TriangleBins {
   std::vector<uint32_t> items;
 };
 
+/// What a triangle covers of the grid. [cells]
+struct CellBox {
+  double x0, x1, z0, z1;
+};
+
 /// Squares cover cells [cell_x, cell_x + squares_x * side) and likewise in z; `apron` widens each
-/// square on all sides. [cells]
+/// square on all sides. `box(i)` gives the box of triangle i of `count`.
+template <class Box>
+TriangleBins bin_boxes(size_t count, Box box, int32_t cell_x, int32_t cell_z, int32_t squares_x,
+                       int32_t squares_z, int32_t side, int32_t apron) {
+  TriangleBins bins;
+  bins.squares_x = squares_x;
+  bins.squares_z = squares_z;
+  bins.first.assign(static_cast<size_t>(squares_x) * static_cast<size_t>(squares_z) + 1, 0);
+  const double inverse = 1.0 / side;
+  const double margin = apron + 1e-3;  // A box that close to a square touches it.
+  const auto square_of = [&](double v, int32_t squares) {
+    return static_cast<int32_t>(std::floor(std::clamp(v * inverse, -1.0, squares + 1.0)));
+  };
+  const auto for_each_square = [&](size_t i, auto&& visit) {
+    const CellBox b = box(i);
+    const int32_t x0 = std::max(0, square_of(b.x0 - cell_x - margin, squares_x));
+    const int32_t x1 = std::min(squares_x - 1, square_of(b.x1 - cell_x + margin, squares_x));
+    const int32_t z0 = std::max(0, square_of(b.z0 - cell_z - margin, squares_z));
+    const int32_t z1 = std::min(squares_z - 1, square_of(b.z1 - cell_z + margin, squares_z));
+    for (int32_t z = z0; z <= z1; ++z) {
+      for (int32_t x = x0; x <= x1; ++x) {
+        visit(static_cast<size_t>(z) * static_cast<size_t>(squares_x) + static_cast<size_t>(x));
+      }
+    }
+  };
+  for (size_t i = 0; i < count; ++i) {
+    for_each_square(i, [&](size_t square) { ++bins.first[square + 1]; });
+  }
+  std::inclusive_scan(bins.first.begin(), bins.first.end(), bins.first.begin());
+  bins.items.resize(bins.first.back());
+  std::vector<uint32_t> next(bins.first.begin(), bins.first.end() - 1);
+  for (size_t i = 0; i < count; ++i) {
+    for_each_square(i, [&](size_t square) { bins.items[next[square]++] = static_cast<uint32_t>(i); });
+  }
+  return bins;
+}
+
+/// The same for prepared triangles.
 TriangleBins bin_triangles(std::span<const CellTriangle> triangles, int32_t cell_x, int32_t cell_z,
                            int32_t squares_x, int32_t squares_z, int32_t side, int32_t apron);
+
+/// Box of a triangle of a scene on a grid.
+CellBox scene_box(const Scene& scene, uint32_t triangle, const Grid& grid);
 
 }  // namespace throng

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/clearance.h"
+
+#include <bit>
+#include <cstdlib>
+
+// A cell's margin is k if every cell that a point within k cells of it can lie on is legal. Two cells
+// at (dx, dz) are max(|dx| - 1, 0), max(|dz| - 1, 0) apart, and the offsets nearer than k are, for k =
+// 1 to 7, exactly the sums of these squares S and crosses P: S, S, S, P, P, S, P. So each margin is
+// one more erosion of the last, a row of bits at a time.
+namespace throng {
+namespace {
+
+using Row = unsigned __int128;  // bit x + kApronBits is column x
+
+constexpr std::array<bool, kMaxMargin> kSquare{true, true, true, false, false, true, false};
+
+// A row of a sheet with up to 8 columns of the sheets to its left and right.
+Row wide_row(const TileLegality* left, const TileLegality* right, const SheetLegality& sheet,
+             size_t avatar_class, int32_t step, size_t z) {
+  Row row = static_cast<Row>(sheet.classes[avatar_class].legal[z]) << kApronBits;
+  const int16_t l = sheet.link[0][z];
+  if (l >= 0 && left != nullptr && sheet.rise[0][z] <= step) {
+    row |= (*left)[static_cast<size_t>(l)].classes[avatar_class].legal[z] >> (kTileSide - kApronBits);
+  }
+  const int16_t r = sheet.link[1][z];
+  if (r >= 0 && right != nullptr && sheet.rise[1][z] <= step) {
+    const uint64_t bits = (*right)[static_cast<size_t>(r)].classes[avatar_class].legal[z] & 0xff;
+    row |= static_cast<Row>(bits) << (kApronBits + kTileSide);
+  }
+  return row;
+}
+
+// Adds the rows of the tile above or below: columns go to whichever sheet continues them.
+void add_rows(const std::array<const TileLegality*, 3>& tiles, const SheetLegality& sheet, size_t side,
+              size_t avatar_class, int32_t step, size_t first_z, Row* rows) {
+  const TileLegality* tile = tiles[1];
+  if (tile == nullptr) return;
+  for (size_t s = 0; s < tile->size(); ++s) {
+    Row columns = 0;
+    for (size_t x = 0; x < kTileSide; ++x) {
+      if (sheet.link[side][x] == static_cast<int16_t>(s) && sheet.rise[side][x] <= step) {
+        columns |= static_cast<Row>(1) << (x + kApronBits);
+      }
+    }
+    if (columns == 0) continue;
+    const Row corner = 0xff;
+    if ((columns & (static_cast<Row>(1) << kApronBits)) != 0) columns |= corner;
+    if ((columns & (static_cast<Row>(1) << (kApronBits + kTileSide - 1))) != 0) {
+      columns |= corner << (kApronBits + kTileSide);
+    }
+    for (size_t i = 0; i < kApronBits; ++i) {
+      rows[i] |= columns & wide_row(tiles[0], tiles[2], (*tile)[s], avatar_class, step, first_z + i);
+    }
+  }
+}
+
+}  // namespace
+
+void link_sheet(const Sheet& sheet, const std::array<const TileSheets*, 4>& sides, int32_t max_step,
+                SheetLegality& out) {
+  for (size_t side = 0; side < 4; ++side) {
+    out.link[side].fill(-1);
+    out.rise[side].fill(0);
+    const TileSheets* tile = sides[side];
+    if (tile == nullptr || tile->empty()) continue;
+    for (int32_t i = 0; i < kTileSide; ++i) {
+      const int32_t last = kTileSide - 1;
+      const std::array<int32_t, 4> own{i * kTileSide, i * kTileSide + last, i, last * kTileSide + i};
+      const std::array<int32_t, 4> across{i * kTileSide + last, i * kTileSide, last * kTileSide + i, i};
+      const uint16_t feet = sheet.feet[static_cast<size_t>(own[side])];
+      if (feet == kNone16) continue;
+      int32_t best = max_step + 1;
+      for (size_t s = 0; s < tile->size(); ++s) {
+        const Sheet& other = *(*tile)[s];
+        const uint16_t other_feet = other.feet[static_cast<size_t>(across[side])];
+        if (other_feet == kNone16) continue;
+        const int32_t rise = std::abs(other.base + other_feet - sheet.base - feet);
+        if (rise >= best) continue;
+        best = rise;
+        out.link[side][static_cast<size_t>(i)] = static_cast<int16_t>(s);
+        out.rise[side][static_cast<size_t>(i)] = static_cast<uint16_t>(rise);
+      }
+    }
+  }
+}
+
+void erode(const std::array<const TileLegality*, 9>& tiles, size_t sheet, size_t avatar_class,
+           int32_t step, ClearancePlanes& out) {
+  const SheetLegality& own = (*tiles[4])[sheet];
+  constexpr size_t kRows = kTileSide + 2 * kApronBits;
+  std::array<Row, kRows> rows{};
+  for (size_t z = 0; z < kTileSide; ++z) {
+    rows[z + kApronBits] = wide_row(tiles[3], tiles[5], own, avatar_class, step, z);
+  }
+  add_rows({tiles[0], tiles[1], tiles[2]}, own, 2, avatar_class, step, kTileSide - kApronBits, &rows[0]);
+  add_rows({tiles[6], tiles[7], tiles[8]}, own, 3, avatar_class, step, 0, &rows[kTileSide + kApronBits]);
+
+  out = {};
+  out.legal = own.classes[avatar_class].legal;
+  for (const uint64_t row : out.legal) out.cells += std::popcount(row);
+  std::array<Row, kRows> next;
+  bool full = out.cells == kTileArea;
+  for (int32_t k = 0; k < kMaxMargin; ++k) {
+    for (size_t z = 0; z < kRows; ++z) {
+      const Row row = rows[z];
+      const Row across = row & (row << 1) & (row >> 1);
+      const size_t up = z > 0 ? z - 1 : z, down = z + 1 < kRows ? z + 1 : z;
+      if (!kSquare[static_cast<size_t>(k)]) {
+        next[z] = across & rows[up] & rows[down];
+        continue;
+      }
+      const Row column = row & rows[up] & rows[down];
+      next[z] = column & (column << 1) & (column >> 1);
+    }
+    rows = next;
+    uint64_t left = 0, missing = 0;
+    for (size_t z = 0; z < kTileSide; ++z) {
+      const uint64_t survivors = static_cast<uint64_t>(rows[z + kApronBits] >> kApronBits);
+      // A counter of three bits per cell: add one to the survivors.
+      const uint64_t carry0 = out.margin[0][z] & survivors;
+      out.margin[0][z] ^= survivors;
+      const uint64_t carry1 = out.margin[1][z] & carry0;
+      out.margin[1][z] ^= carry0;
+      out.margin[2][z] ^= carry1;
+      left |= survivors;
+      missing |= ~survivors;
+    }
+    full = full && missing == 0;
+    if (left == 0) break;
+  }
+  out.all = full;
+}
+
+}  // namespace throng

@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/legality.h"
+
+#include <algorithm>
+
+#include "world/surface.h"
+
+// Windowed maxima and minima with a disc: rows first, for each width that the disc has, by doubling;
+// then columns. (The horizontal part after van Herk, Gil, Werman; the windows are a few cells, so
+// doubling beats their recurrences.) Everything is 16 bit, so a vector holds a quarter of a row or more.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bake/legality.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace throng {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DU = hn::CappedTag<uint16_t, 32>;
+using VU = hn::Vec<DU>;
+using MU = hn::Mask<DU>;
+
+HWY_INLINE MU at_most(VU a, VU b) { return hn::Eq(hn::Min(a, b), a); }
+
+// Sets bits [x, x + lanes) of a row.
+HWY_INLINE void store_bits(MU mask, int32_t x, uint64_t& row) {
+  const DU du;
+  alignas(8) uint8_t bytes[8] = {};
+  if constexpr (HWY_TARGET == HWY_SCALAR) {
+    bytes[0] = hn::AllTrue(du, mask) ? 1 : 0;
+  } else {
+    hn::StoreMaskBits(du, mask, bytes);
+  }
+  uint64_t bits = 0;
+  for (int i = 7; i >= 0; --i) bits = bits << 8 | bytes[i];
+  const size_t lanes = hn::Lanes(du);
+  if (lanes < 64) bits &= (1ULL << lanes) - 1;
+  row |= bits << x;
+}
+
+struct Highest {
+  HWY_INLINE VU operator()(VU a, VU b) const { return hn::Max(a, b); }
+};
+struct Lowest {
+  HWY_INLINE VU operator()(VU a, VU b) const { return hn::Min(a, b); }
+};
+
+// out[x] = extreme of in[x - w .. x + w] for x in [0, 64). `in` has w valid cells on both sides.
+template <class Op>
+HWY_INLINE void extreme_row(const uint16_t* HWY_RESTRICT in, int32_t w, uint16_t* HWY_RESTRICT out, Op op) {
+  const DU du;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
+  for (int32_t x = 0; x < kTileSide; x += lanes) {
+    VU value = hn::LoadU(du, in + x - w);
+    for (int32_t i = 1 - w; i <= w; ++i) value = op(value, hn::LoadU(du, in + x + i));
+    hn::Store(value, du, out + x);
+  }
+}
+
+// Rows of horizontal extremes: for width index k, quantity q, row z: rows[((k * 3 + q) * count + z) * 64].
+struct RowTable {
+  uint16_t* data;
+  int32_t count;  // rows
+  [[nodiscard]] HWY_INLINE uint16_t* row(int32_t k, int32_t q, int32_t z) const {
+    return data + (static_cast<size_t>((k * 3 + q) * count + z)) * kTileSide;
+  }
+};
+
+void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+                  LegalityScratch& scratch, LegalCells& out) {
+  const DU du;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
+  const int32_t reach = body.reach;
+  const int32_t count = kTileSide + 2 * reach;
+
+  std::array<int32_t, 65> width_index{};
+  std::vector<int32_t> widths;
+  for (int32_t d = 0; d <= reach; ++d) {
+    const int32_t w = body.width[static_cast<size_t>(d)];
+    if (widths.empty() || widths.back() != w) widths.push_back(w);
+    width_index[static_cast<size_t>(d)] = static_cast<int32_t>(widths.size()) - 1;
+  }
+  scratch.rows.resize(widths.size() * 3 * static_cast<size_t>(count) * kTileSide + 64);
+  uint16_t* aligned = scratch.rows.data();
+  aligned += (64 - reinterpret_cast<uintptr_t>(aligned) % 64) % 64 / sizeof(uint16_t);
+  const RowTable table{aligned, count};
+  for (int32_t z = -reach; z < kTileSide + reach; ++z) {
+    const uint16_t* top = &scratch.window.top[scratch.window.index(0, z)];
+    const uint16_t* ceiling = &scratch.window.ceiling[scratch.window.index(0, z)];
+    for (int32_t k = 0; k < static_cast<int32_t>(widths.size()); ++k) {
+      const int32_t w = widths[static_cast<size_t>(k)];
+      extreme_row(top, w, table.row(k, 0, z + reach), Highest{});
+      extreme_row(top, w, table.row(k, 1, z + reach), Lowest{});
+      extreme_row(ceiling, w, table.row(k, 2, z + reach), Lowest{});
+    }
+  }
+
+  const VU none = hn::Set(du, kNone16);
+  const VU bottom = hn::Set(du, static_cast<uint16_t>(std::min(body.bottom, 65535)));
+  const VU rise = hn::Set(du, static_cast<uint16_t>(std::max(0, body.bottom - 1)));
+  const VU height = hn::Set(du, static_cast<uint16_t>(std::min(body.height, 65534)));
+  const bool uniform = sheet.one_code;
+  const bool uniform_ok = (limits.allowed[sheet.some_code] & body.class_bit) != 0;
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    uint64_t legal = 0, close = 0;
+    for (int32_t x = 0; x < kTileSide; x += lanes) {
+      const size_t cell = static_cast<size_t>(z * kTileSide + x);
+      const VU feet = hn::Load(du, &sheet.feet[cell]);
+      const MU stands = hn::Ne(feet, none);
+      if (hn::AllFalse(du, stands)) continue;
+      VU high_top = hn::Zero(du), low_top = none, low_ceiling = none;
+      for (int32_t d = -reach; d <= reach; ++d) {
+        const int32_t k = width_index[static_cast<size_t>(d < 0 ? -d : d)];
+        const int32_t row = z + d + reach;
+        high_top = hn::Max(high_top, hn::Load(du, table.row(k, 0, row) + x));
+        low_top = hn::Min(low_top, hn::Load(du, table.row(k, 1, row) + x));
+        low_ceiling = hn::Min(low_ceiling, hn::Load(du, table.row(k, 2, row) + x));
+      }
+      const VU tilt = hn::Load(du, &scratch.tilt[cell]);
+      const VU feet_low = hn::SaturatedSub(feet, tilt);
+      const VU feet_high = hn::SaturatedAdd(feet, tilt);
+      const MU low_enough = at_most(high_top, hn::SaturatedAdd(feet_low, rise));
+      const MU no_drop = at_most(feet_high, hn::SaturatedAdd(low_top, bottom));
+      // A saturated ceiling is at least 65.535 m over the base: no class is that tall.
+      const MU room = at_most(hn::SaturatedAdd(feet_high, height), low_ceiling);
+      const MU closed = hn::Ne(high_top, none);
+      const MU free = hn::And(hn::And(stands, room), closed);
+      const MU even = hn::And(low_enough, no_drop);
+      store_bits(hn::And(free, even), x, legal);
+      store_bits(hn::AndNot(even, free), x, close);
+    }
+    if (uniform) {
+      if (!uniform_ok) legal = close = 0;
+    } else {
+      uint64_t allowed = 0;
+      for (int32_t x = 0; x < kTileSide; ++x) {
+        const uint8_t code = sheet.code[static_cast<size_t>(z * kTileSide + x)];
+        allowed |= static_cast<uint64_t>((limits.allowed[code] & body.class_bit) != 0) << x;
+      }
+      legal &= allowed;
+      close &= allowed;
+    }
+    out.legal[static_cast<size_t>(z)] = legal;
+    out.close_call[static_cast<size_t>(z)] = close;
+  }
+}
+
+// Bits of cells whose feet differ from the next cell's (in x, and in z) by more than the step.
+bool StepSafe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
+  const DU du;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
+  const VU limit = hn::Set(du, static_cast<uint16_t>(std::min(step, 65535)));
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    uint64_t across = 0, along = 0;
+    for (int32_t x = 0; x < kTileSide; x += lanes) {
+      const size_t cell = static_cast<size_t>(z * kTileSide + x);
+      const VU feet = hn::Load(du, &sheet.feet[cell]);
+      // Past the row's end this reads the next row or, at the very end, the array that follows: masked.
+      const VU right = hn::LoadU(du, &sheet.feet[0] + cell + 1);
+      const VU dx = hn::Sub(hn::Max(feet, right), hn::Min(feet, right));
+      store_bits(hn::Not(at_most(dx, limit)), x, across);
+      if (z + 1 == kTileSide) continue;
+      const VU below = hn::Load(du, &sheet.feet[cell + kTileSide]);
+      const VU dz = hn::Sub(hn::Max(feet, below), hn::Min(feet, below));
+      store_bits(hn::Not(at_most(dz, limit)), x, along);
+    }
+    const uint64_t row = legal[static_cast<size_t>(z)];
+    if ((row & (row >> 1) & across) != 0) return false;
+    if (z + 1 < kTileSide && (row & legal[static_cast<size_t>(z) + 1] & along) != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace throng
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace throng {
+
+HWY_EXPORT(LegalCellsOf);
+HWY_EXPORT(StepSafe);
+
+void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+                 LegalityScratch& scratch, LegalCells& out) {
+  HWY_DYNAMIC_DISPATCH(LegalCellsOf)(sheet, body, limits, scratch, out);
+}
+
+bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
+  return HWY_DYNAMIC_DISPATCH(StepSafe)(sheet, legal, step);
+}
+
+void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
+  if (sheet.present == kTileArea && sheet.low_feet == sheet.high_feet) {
+    tilt.fill(0);
+    return;
+  }
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    for (int32_t x = 0; x < kTileSide; ++x) {
+      const auto at = [&](int32_t cx, int32_t cz) {
+        return sheet.feet[static_cast<size_t>(cz * kTileSide + cx)];
+      };
+      const auto slope = [&](int32_t i, auto cell) {
+        return sheet_slope(
+            i, [&](int32_t k) { return static_cast<int32_t>(cell(k)); },
+            [&](int32_t k) { return cell(k) != kNone16; });
+      };
+      const int32_t gx = slope(x, [&](int32_t k) { return at(k, z); });
+      const int32_t gz = slope(z, [&](int32_t k) { return at(x, k); });
+      tilt[static_cast<size_t>(z * kTileSide + x)] =
+          static_cast<uint16_t>(std::min((std::abs(gx) + std::abs(gz) + 1) / 2, 65535));
+    }
+  }
+}
+
+}  // namespace throng
+#endif  // HWY_ONCE

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/sheets.h"
+
+/// Where a class may stand: one bit per cell of a sheet.
+namespace throng {
+
+/// 64 rows of 64 bits; bit x of row z is cell (x, z).
+using BitPlane = std::array<uint64_t, kTileSide>;
+
+/// A class's body as the windows see it. [mm, cells]
+struct BodyWindow {
+  int32_t bottom = 0;  // [mm]
+  int32_t height = 0;
+  int32_t step = 0;
+  int32_t reach = 0;   // rows that a body on a cell can touch beyond it
+  std::vector<int32_t> width;  // per row distance 0..reach: columns on either side
+  uint32_t class_bit = 0;
+};
+
+BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell);
+
+/// Sheets of a tile and its eight neighbours, row by row from (-1, -1); null: no tile there.
+using Neighbourhood = std::array<const TileSheets*, 9>;
+
+/// Matter and room around one sheet, with the neighbours' cells filled in. [mm from the sheet's base]
+class SheetWindow {
+ public:
+  /// `reach` is the largest of all classes. [cells, <= 64]
+  void assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach, int32_t max_step,
+                int32_t min_gap);
+
+  [[nodiscard]] int32_t pad() const { return pad_; }
+  [[nodiscard]] int32_t stride() const { return stride_; }
+  /// Cell (x, z) may lie up to `reach` outside the tile.
+  [[nodiscard]] size_t index(int32_t x, int32_t z) const {
+    return static_cast<size_t>((z + pad_) * stride_ + x + pad_);
+  }
+  std::vector<uint16_t> top;
+  std::vector<uint16_t> ceiling;
+
+ private:
+  void copy_own(const Sheet& own);
+  void fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach);
+  void fill_holes(const TileSheets& tile, size_t sheet, int32_t max_step, int32_t min_gap);
+
+  int32_t pad_ = 0;
+  int32_t stride_ = 0;
+};
+
+/// Scratch of one worker for legal_cells.
+struct LegalityScratch {
+  SheetWindow window;
+  std::vector<uint16_t> rows;  // horizontal extremes
+  std::array<uint16_t, kTileArea> tilt;  // half of the feet's rise over a cell
+};
+
+/// What legal_cells found for one class.
+struct LegalCells {
+  BitPlane legal{};
+  BitPlane close_call{};  // failed for the height of matter only: even slopes may deserve a closer look
+};
+
+/// True if nothing in sight can stop this class anywhere on the sheet, judged by the sheets'
+/// extremes alone: the common case of open flat ground.
+bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+               const BodyLimits& limits);
+
+/// The test of docs/design/000-house.md, "legality is tested by value", for one class. `scratch`
+/// holds the window (assembled) and the tilt (from make_tilt).
+void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+                 LegalityScratch& scratch, LegalCells& out);
+
+/// True if any two legal neighbours on the sheet differ by at most the step.
+bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step);
+
+/// Half of what the feet may rise or fall over each cell, see world/surface.h. [mm]
+void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt);
+
+}  // namespace throng

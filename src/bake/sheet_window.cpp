@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "bake/legality.h"
+
+// The window of a sheet: its own cells, and around them the cells of whichever neighbouring sheets
+// continue it. Which sheet a cell is taken from decides how much is found to be legal, never
+// whether what is found is safe: any gap that holds the body proves its column free.
+namespace throng {
+namespace {
+
+// A height of another sheet on this sheet's scale.
+uint16_t rebased(uint16_t value, int32_t shift) {
+  if (value == kNone16) return kNone16;
+  return static_cast<uint16_t>(std::clamp<int32_t>(value + shift, 0, kNone16));
+}
+
+// The sheet of a tile whose gap at `cell` is nearest to `near_top` (absolute), or null.
+const Sheet* nearest_sheet(const TileSheets& tile, size_t cell, int32_t near_top) {
+  const Sheet* best = nullptr;
+  int32_t best_distance = INT32_MAX;
+  for (const auto& sheet : tile) {
+    if (sheet->top[cell] == kNone16) continue;
+    const int32_t distance = std::abs(sheet->base + sheet->top[cell] - near_top);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = sheet.get();
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell) {
+  BodyWindow body;
+  body.bottom = bottom_mm(avatar);
+  body.height = height_mm(avatar);
+  body.step = static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
+  body.class_bit = 1u << class_index;
+  // Cells at distance (dx, dz) are max(|d| - 1, 0) cells apart; a body that just touches is not in.
+  const double radius = avatar.radius / cell - 1e-9;
+  for (int32_t dz = 0;; ++dz) {
+    const double apart = std::max(dz - 1, 0);
+    if (apart >= radius) break;
+    const double half = std::sqrt(radius * radius - apart * apart);
+    body.width.push_back(static_cast<int32_t>(std::ceil(half)));
+  }
+  body.reach = static_cast<int32_t>(body.width.size()) - 1;
+  return body;
+}
+
+void SheetWindow::assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach,
+                           int32_t max_step, int32_t min_gap) {
+  pad_ = (reach + 31) / 32 * 32;
+  stride_ = kTileSide + 2 * pad_;
+  const size_t size = static_cast<size_t>(stride_) * static_cast<size_t>(stride_);
+  top.resize(size);
+  ceiling.resize(size);
+  for (int32_t z = -reach; z < kTileSide + reach; ++z) {
+    const size_t begin = index(-pad_, z);
+    std::fill_n(&top[begin], stride_, kNone16);
+    std::fill_n(&ceiling[begin], stride_, uint16_t{0});
+  }
+  const TileSheets& tile = *tiles[4];
+  copy_own(*tile[sheet]);
+  if (tile.size() > 1) fill_holes(tile, sheet, max_step, min_gap);
+  fill_apron(tiles, *tile[sheet], reach);
+}
+
+void SheetWindow::copy_own(const Sheet& own) {
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    const size_t from = static_cast<size_t>(z * kTileSide);
+    std::copy_n(&own.top[from], kTileSide, &top[index(0, z)]);
+    std::copy_n(&own.ceiling[from], kTileSide, &ceiling[index(0, z)]);
+  }
+}
+
+void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach) {
+  for (int32_t side = 0; side < 9; ++side) {
+    if (side == 4 || tiles[static_cast<size_t>(side)] == nullptr) continue;
+    const TileSheets& tile = *tiles[static_cast<size_t>(side)];
+    if (tile.empty()) continue;
+    const int32_t dx = side % 3 - 1, dz = side / 3 - 1;
+    const auto range = [&](int32_t d) -> std::pair<int32_t, int32_t> {
+      if (d < 0) return {-reach, 0};
+      if (d > 0) return {kTileSide, kTileSide + reach};
+      return {0, kTileSide};
+    };
+    const auto [x0, x1] = range(dx);
+    const auto [z0, z1] = range(dz);
+    if (tile.size() == 1) {
+      const Sheet& other = *tile[0];
+      const int32_t shift = other.base - own.base;
+      for (int32_t z = z0; z < z1; ++z) {
+        for (int32_t x = x0; x < x1; ++x) {
+          const size_t from = static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
+          top[index(x, z)] = rebased(other.top[from], shift);
+          ceiling[index(x, z)] = rebased(other.ceiling[from], shift);
+        }
+      }
+      continue;
+    }
+    // Several sheets: walk outward from the tile, each cell continuing the one before it.
+    int32_t last = own.low_top;
+    for (int32_t step_z = 0; step_z < z1 - z0; ++step_z) {
+      const int32_t z = dz < 0 ? z1 - 1 - step_z : z0 + step_z;
+      for (int32_t step_x = 0; step_x < x1 - x0; ++step_x) {
+        const int32_t x = dx < 0 ? x1 - 1 - step_x : x0 + step_x;
+        const uint16_t inward = top[index(x - dx, z - dz)];
+        const uint16_t beside = dx != 0 && dz != 0 ? top[index(x - dx, z)] : inward;
+        int32_t near_top = inward != kNone16 ? inward : (beside != kNone16 ? beside : last);
+        const size_t from = static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
+        const Sheet* other = nearest_sheet(tile, from, near_top + own.base);
+        if (other == nullptr) continue;
+        const int32_t shift = other->base - own.base;
+        top[index(x, z)] = rebased(other->top[from], shift);
+        ceiling[index(x, z)] = rebased(other->ceiling[from], shift);
+        last = near_top;
+      }
+    }
+  }
+}
+
+// Where the sheet has no gap but another sheet of the tile continues it (a seam), takes that one's.
+void SheetWindow::fill_holes(const TileSheets& tile, size_t sheet, int32_t max_step,
+                             int32_t min_gap) {
+  const Sheet& own = *tile[sheet];
+  if (own.cells == kTileArea) return;
+  const auto try_fill = [&](int32_t x, int32_t z) {
+    const size_t at = index(x, z);
+    if (top[at] != kNone16) return;
+    const size_t cell = static_cast<size_t>(z * kTileSide + x);
+    const std::array<size_t, 4> around{index(x - 1, z), index(x + 1, z), index(x, z - 1),
+                                       index(x, z + 1)};
+    for (const size_t next : around) {
+      if (top[next] == kNone16) continue;
+      const Sheet* other = nearest_sheet(tile, cell, own.base + top[next]);
+      if (other == nullptr) continue;
+      const int32_t shift = other->base - own.base;
+      const uint16_t other_top = rebased(other->top[cell], shift);
+      const uint16_t other_ceiling = rebased(other->ceiling[cell], shift);
+      if (std::abs(other_top - top[next]) > max_step ||
+          std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]) < min_gap) {
+        continue;
+      }
+      top[at] = other_top;
+      ceiling[at] = other_ceiling;
+      return;
+    }
+  };
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    for (int32_t x = 0; x < kTileSide; ++x) try_fill(x, z);
+  }
+  for (int32_t z = kTileSide - 1; z >= 0; --z) {
+    for (int32_t x = kTileSide - 1; x >= 0; --x) try_fill(x, z);
+  }
+}
+
+bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+               const BodyLimits& limits) {
+  const Sheet& own = *(*tiles[4])[sheet];
+  if (own.present != kTileArea || !own.one_code ||
+      (limits.allowed[own.some_code] & body.class_bit) == 0) {
+    return false;
+  }
+  // The feet's tilt is at most half the range of feet over neighbouring cells, so at most the range.
+  const int32_t low_feet = own.base + 2 * own.low_feet - own.high_feet;
+  const int32_t high_feet = own.base + 2 * own.high_feet - own.low_feet;
+  if (own.high_feet - own.low_feet > body.step) return false;
+  for (const TileSheets* tile : tiles) {
+    if (tile == nullptr || tile->size() != 1) return false;
+    const Sheet& other = *(*tile)[0];
+    if (other.cells != kTileArea) return false;
+    const int32_t ceiling = other.low_ceiling == kNone16 ? INT32_MAX : other.base + other.low_ceiling;
+    if (other.base + other.high_top > low_feet + body.bottom - 1 ||
+        other.base + other.low_top < high_feet - body.bottom || ceiling < high_feet + body.height) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace throng

@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/zone_bake.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "bake/clearance.h"
+#include "bake/columns.h"
+#include "bake/zone_builder.h"
+#include "core/parallel.h"
+
+// A zone is baked in bands of tile rows, so that only a few rows of sheets are alive at a time:
+// while a band's columns are dealt to sheets, legality is judged one row behind it, because it looks into the
+// next tiles, and clearance is eroded one row behind that. A ring of tiles around the zone is
+// rasterised as far as the zone looks, so that no zone depends on another's result.
+namespace throng {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr int32_t kBand = 8;  // tile rows
+
+struct TileState {
+  TileSheets sheets;
+  std::vector<FloorPlane> planes;
+  TileLegality legality;
+  std::vector<std::vector<ClearancePlanes>> clearance;  // per sheet and class; empty: drop the sheet
+};
+
+// Tiles of a zone and its ring, row by row; the ring is row and column 0 and n + 1.
+class ZoneJob {
+ public:
+  ZoneJob(const BakePlan& plan, int32_t zone_x, int32_t zone_z, ZoneScratch& scratch)
+      : plan_(plan),
+        scratch_(scratch),
+        first_x_(zone_x * plan.tiles_per_zone - 1),
+        first_z_(zone_z * plan.tiles_per_zone - 1),
+        side_(plan.tiles_per_zone + 2),
+        tiles_(static_cast<size_t>(side_) * static_cast<size_t>(side_)) {}
+
+  bool run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t zone_z, Context& context,
+           ZoneResult& result);
+
+ private:
+  [[nodiscard]] TileState& at(int32_t column, int32_t row) {
+    return tiles_[static_cast<size_t>(row * side_ + column)];
+  }
+  [[nodiscard]] bool in_world(int32_t column, int32_t row) const {
+    const int32_t x = first_x_ + column, z = first_z_ + row;
+    return column >= 0 && row >= 0 && column < side_ && row < side_ && x >= 0 && z >= 0 &&
+           x < plan_.grid.tiles_x() && z < plan_.grid.tiles_z();
+  }
+  template <class Body>
+  void for_tiles(int32_t row0, int32_t row1, Body body);
+
+  void make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  void judge(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  void clear(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  void emit(int32_t row, ZoneBuilder& builder);
+  bool is_open(int32_t column, int32_t row, size_t avatar_class) const;
+
+  const BakePlan& plan_;
+  ZoneScratch& scratch_;
+  int32_t first_x_, first_z_;  // of the ring, in tiles of the world
+  int32_t side_;
+  std::vector<TileState> tiles_;
+  TriangleBins bins_;
+};
+
+}  // namespace
+
+struct ZoneScratch::Worker {
+  TileColumns columns;
+  TileGaps gaps;
+  SheetScratch sheets;
+  LegalityScratch legality;
+  double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
+  uint64_t spans = 0;
+};
+
+ZoneScratch::ZoneScratch(int32_t count) {
+  for (int32_t i = 0; i < count; ++i) workers.push_back(std::make_unique<Worker>());
+}
+
+ZoneScratch::~ZoneScratch() = default;
+
+int32_t BakePlan::apron() const { return reach + kApronBits + 1; }
+
+namespace {
+
+template <class Body>
+void ZoneJob::for_tiles(int32_t row0, int32_t row1, Body body) {
+  row0 = std::max(row0, 0);
+  row1 = std::min(row1, side_);
+  if (row0 >= row1) return;
+  parallel_for_worker(static_cast<size_t>((row1 - row0) * side_), plan_.config->workers,
+                      [&](size_t i, int32_t worker) {
+                        const int32_t column = static_cast<int32_t>(i) % side_;
+                        const int32_t row = row0 + static_cast<int32_t>(i) / side_;
+                        if (in_world(column, row)) {
+                          body(column, row, *scratch_.workers[static_cast<size_t>(worker)]);
+                        }
+                      });
+}
+
+void ZoneJob::make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
+  const size_t bin = static_cast<size_t>(row * side_ + column);
+  const uint32_t begin = bins_.first[bin], end = bins_.first[bin + 1];
+  if (begin == end) return;
+  const auto start = Clock::now();
+  TileRect rect;  // of a ring tile only what the zone looks at
+  const int32_t apron = plan_.apron(), last = side_ - 1;
+  if (column == 0) rect.x0 = std::max(0, kTileSide - apron);
+  if (column == last) rect.x1 = std::min(kTileSide, apron);
+  if (row == 0) rect.z0 = std::max(0, kTileSide - apron);
+  if (row == last) rect.z1 = std::min(kTileSide, apron);
+  rasterise_tile(scratch_.triangles, {&bins_.items[begin], end - begin},
+                 (first_x_ + column) * kTileSide, (first_z_ + row) * kTileSide, rect,
+                 plan_.limits.min_gap - 1, worker.columns);
+  find_gaps(worker.columns, plan_.limits.min_gap, worker.gaps);
+  worker.seconds_columns += seconds_since(start);
+  if (column > 0 && row > 0 && column < last && row < last) worker.spans += worker.gaps.spans;
+
+  const auto deal_start = Clock::now();
+  TileState& tile = at(column, row);
+  deal_gaps(worker.gaps, plan_.limits, scratch_.pool, worker.sheets, tile.sheets);
+  for (auto& sheet : tile.sheets) tile.planes.push_back(fit_plane(*sheet));
+  worker.seconds_levels += seconds_since(deal_start);
+}
+
+void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
+  TileState& tile = at(column, row);
+  if (tile.sheets.empty()) return;
+  const auto start = Clock::now();
+  Neighbourhood around{};
+  std::array<const TileSheets*, 4> sides{};
+  for (int32_t i = 0; i < 9; ++i) {
+    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
+    if (in_world(x, z)) around[static_cast<size_t>(i)] = &at(x, z).sheets;
+  }
+  sides = {around[3], around[5], around[1], around[7]};
+  tile.legality.resize(tile.sheets.size());
+  for (size_t s = 0; s < tile.sheets.size(); ++s) {
+    const Sheet& sheet = *tile.sheets[s];
+    SheetLegality& legality = tile.legality[s];
+    legality.classes.resize(plan_.bodies.size());
+    link_sheet(sheet, sides, plan_.max_step, legality);
+    bool assembled = false;
+    for (size_t c = 0; c < plan_.bodies.size(); ++c) {
+      const BodyWindow& body = plan_.bodies[c];
+      SheetLegality::PerClass& verdict = legality.classes[c];
+      if (all_legal(around, s, body, plan_.limits)) {
+        verdict.legal.fill(~uint64_t{0});
+        verdict.all = verdict.any = true;
+        continue;
+      }
+      if (!assembled) {
+        worker.legality.window.assemble(around, s, plan_.reach, plan_.limits.max_bottom,
+                                        plan_.limits.min_gap);
+        make_tilt(sheet, worker.legality.tilt);
+        assembled = true;
+      }
+      LegalCells cells;
+      legal_cells(sheet, body, plan_.limits, worker.legality, cells);
+      verdict.legal = cells.legal;
+      uint64_t any = 0, all = ~uint64_t{0};
+      for (const uint64_t bits : cells.legal) {
+        any |= bits;
+        all &= bits;
+      }
+      verdict.any = any != 0;
+      verdict.all = all == ~uint64_t{0};
+      verdict.step_safe = any == 0 || body.bottom <= body.step || step_safe(sheet, cells.legal, body.step);
+    }
+  }
+  worker.seconds_clearance += seconds_since(start);
+}
+
+// True if this tile and all around it are single sheets, legal everywhere, without a step between.
+bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
+  int32_t low = INT32_MAX, high = INT32_MIN;
+  for (int32_t i = 0; i < 9; ++i) {
+    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
+    if (!in_world(x, z)) return false;
+    const TileState& tile = tiles_[static_cast<size_t>(z * side_ + x)];
+    if (tile.legality.size() != 1 || !tile.legality[0].classes[avatar_class].all) return false;
+    const Sheet& sheet = *tile.sheets[0];
+    low = std::min(low, sheet.base + sheet.low_feet);
+    high = std::max(high, sheet.base + sheet.high_feet);
+  }
+  return high - low <= plan_.bodies[avatar_class].step;
+}
+
+void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
+  if (column == 0 || row == 0 || column == side_ - 1 || row == side_ - 1) return;
+  TileState& tile = at(column, row);
+  if (tile.sheets.empty()) return;
+  const auto start = Clock::now();
+  std::array<const TileLegality*, 9> around{};
+  for (int32_t i = 0; i < 9; ++i) {
+    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
+    if (in_world(x, z)) around[static_cast<size_t>(i)] = &at(x, z).legality;
+  }
+  tile.clearance.resize(tile.sheets.size());
+  for (size_t s = 0; s < tile.sheets.size(); ++s) {
+    const SheetLegality& legality = tile.legality[s];
+    const bool used = std::any_of(legality.classes.begin(), legality.classes.end(),
+                                  [](const auto& verdict) { return verdict.any; });
+    if (!used) continue;
+    tile.clearance[s].resize(plan_.bodies.size());
+    for (size_t c = 0; c < plan_.bodies.size(); ++c) {
+      ClearancePlanes& planes = tile.clearance[s][c];
+      if (is_open(column, row, c)) {
+        planes.all = true;
+        planes.cells = kTileArea;
+      } else if (legality.classes[c].any) {
+        erode(around, s, c, plan_.bodies[c].step, planes);
+      }
+    }
+  }
+  worker.seconds_clearance += seconds_since(start);
+}
+
+void ZoneJob::emit(int32_t row, ZoneBuilder& builder) {
+  if (row <= 0 || row >= side_ - 1) return;
+  for (int32_t column = 1; column < side_ - 1; ++column) {
+    TileState& tile = at(column, row);
+    for (size_t s = 0; s < tile.clearance.size(); ++s) {
+      if (tile.clearance[s].empty()) continue;
+      std::vector<uint8_t> step_safe;
+      for (const auto& verdict : tile.legality[s].classes) step_safe.push_back(verdict.step_safe);
+      builder.add_level(static_cast<uint32_t>((row - 1) * plan_.tiles_per_zone + column - 1),
+                        *tile.sheets[s], tile.planes[s], tile.clearance[s], step_safe);
+    }
+  }
+}
+
+bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t zone_z, Context& context,
+                  ZoneResult& result) {
+  for (auto& worker : scratch_.workers) {
+    worker->seconds_columns = worker->seconds_levels = worker->seconds_clearance = 0;
+    worker->spans = 0;
+  }
+  const auto start = Clock::now();
+  scratch_.triangles.resize(triangles.size());
+  parallel_ranges(triangles.size(), 4096, plan_.config->workers, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      scratch_.triangles[i] =
+          to_cell_triangle(*plan_.scene, triangles[i], plan_.grid, plan_.coder->code(triangles[i]));
+    }
+  });
+  bins_ = bin_triangles(scratch_.triangles, first_x_ * kTileSide, first_z_ * kTileSide, side_, side_,
+                        kTileSide, 0);
+  result.seconds_columns = seconds_since(start);
+
+  ZoneBuilder builder(static_cast<uint32_t>(plan_.tiles_per_zone), plan_.bodies.size(), plan_.codes);
+  using Worker = ZoneScratch::Worker;
+  for (int32_t row = 0; row < side_ + 2; row += kBand) {
+    if (context.cancel) return false;
+    const int32_t end = row + kBand;
+    for_tiles(row, end, [&](int32_t x, int32_t z, Worker& w) { make_sheets(x, z, w); });
+    for_tiles(row - 1, end - 1, [&](int32_t x, int32_t z, Worker& w) { judge(x, z, w); });
+    for_tiles(row - 2, end - 2, [&](int32_t x, int32_t z, Worker& w) { clear(x, z, w); });
+    for (int32_t z = std::max(row - 2, 0); z < std::min(end - 2, side_); ++z) emit(z, builder);
+    // Rows that nothing will look at again.
+    for (int32_t z = std::max(row - 4, 0); z < std::min(end - 4, side_); ++z) {
+      for (int32_t x = 0; x < side_; ++x) {
+        for (auto& sheet : at(x, z).sheets) scratch_.pool.give(std::move(sheet));
+        at(x, z) = {};
+      }
+    }
+  }
+  for (auto& tile : tiles_) {
+    for (auto& sheet : tile.sheets) scratch_.pool.give(std::move(sheet));
+    tile = {};
+  }
+  for (const auto& worker : scratch_.workers) {
+    result.seconds_columns += worker->seconds_columns;
+    result.seconds_levels += worker->seconds_levels;
+    result.seconds_clearance += worker->seconds_clearance;
+    result.spans += worker->spans;
+  }
+  result.levels = builder.level_count();
+  result.plain_levels = builder.plain_count();
+  result.tiles = builder.tile_count();
+  result.legal_cells.assign(builder.legal_cells().begin(), builder.legal_cells().end());
+  result.bytes.clear();
+  if (result.levels > 0) result.bytes = builder.finish(zone_x, zone_z);
+  return true;
+}
+
+}  // namespace
+
+bool bake_zone(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
+               std::span<const uint32_t> triangles, ZoneScratch& scratch, Context& context,
+               ZoneResult& result) {
+  result = {};
+  result.legal_cells.assign(plan.bodies.size(), 0);
+  if (triangles.empty()) return true;
+  return ZoneJob(plan, zone_x, zone_z, scratch).run(triangles, zone_x, zone_z, context, result);
+}
+
+}  // namespace throng

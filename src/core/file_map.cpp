@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "core/file_map.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace throng {
+namespace {
+
+Error io_error(const std::string& path, const char* what) {
+  return {Errc::kIo, path + ": cannot be " + what + ": " + std::strerror(errno)};
+}
+
+}  // namespace
+
+FileMap::~FileMap() {
+  if (!data_.empty()) munmap(const_cast<uint8_t*>(data_.data()), data_.size());
+}
+
+Result<FileMap> FileMap::open(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return io_error(path, "opened");
+  struct stat info {};
+  if (fstat(file, &info) != 0) {
+    Error error = io_error(path, "read");
+    close(file);
+    return error;
+  }
+  if (S_ISDIR(info.st_mode)) {
+    close(file);
+    return Error{Errc::kIo, path + ": is a folder, a file was expected"};
+  }
+  FileMap map;
+  const auto size = static_cast<size_t>(info.st_size);
+  if (size > 0) {
+    void* data = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
+    if (data == MAP_FAILED) {
+      Error error = io_error(path, "mapped");
+      close(file);
+      return error;
+    }
+    map.data_ = {static_cast<const uint8_t*>(data), size};
+  }
+  close(file);
+  return map;
+}
+
+Result<void> write_file(const std::string& path, std::span<const uint8_t> bytes) {
+  const std::string part = path + ".part";
+  std::FILE* file = std::fopen(part.c_str(), "wb");
+  if (file == nullptr) return io_error(path, "written");
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const bool closed = std::fclose(file) == 0;
+  if (!written || !closed || std::rename(part.c_str(), path.c_str()) != 0) {
+    Error error = io_error(path, "written");
+    std::remove(part.c_str());
+    return error;
+  }
+  return {};
+}
+
+}  // namespace throng

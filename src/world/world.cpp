@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/world.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "core/random.h"
+#include "world/ground.h"
+#include "world/zone_data.h"
+
+namespace throng {
+namespace {
+
+constexpr int32_t kArea = kTileCells * kTileCells;
+
+GroundPoint to_point(const WorldData& world, double x, double z) {
+  const double scale = kUnitsPerCell / world.summary.cell;
+  return {static_cast<int64_t>(std::floor((x - world.summary.origin.x) * scale)),
+          static_cast<int64_t>(std::floor((z - world.summary.origin.z) * scale))};
+}
+
+bool in_grid(const WorldData& world, GroundPoint p) {
+  return p.x >= 0 && p.z >= 0 && p.x < (int64_t{world.width} << kUnitBits) &&
+         p.z < (int64_t{world.depth} << kUnitBits);
+}
+
+double feet_at(const GroundLevel& level, GroundPoint p) {
+  return level.view.feet(p.cell_x() & 63, p.cell_z() & 63,
+                         static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
+                         static_cast<int32_t>(p.z & (kUnitsPerCell - 1))) *
+         1e-3;
+}
+
+int32_t step_mm(const AvatarClass& avatar) {
+  return static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
+}
+
+bool good_class(const WorldData& world, int32_t avatar_class) {
+  return avatar_class >= 0 && static_cast<size_t>(avatar_class) < world.summary.classes.size();
+}
+
+// Position of the n-th set bit of a word. [n < popcount]
+int32_t nth_bit(uint64_t word, uint32_t n) {
+  for (; n > 0; --n) word &= word - 1;
+  return std::countr_zero(word);
+}
+
+// Legal cells of a class before each level, and in all at the end.
+const std::vector<uint64_t>& cells_before(const WorldData& world, int32_t avatar_class) {
+  ClassIndex& index = *world.class_index[static_cast<size_t>(avatar_class)];
+  std::call_once(index.once, [&] {
+    index.cells_before.push_back(0);
+    for (size_t s = 0; s < world.slots.size(); ++s) {
+      const Zone* zone = world.zone(s);
+      for (uint32_t i = 0; i < world.slots[s]->entry.levels(); ++i) {
+        const uint64_t cells =
+            zone == nullptr ? 0
+                            : zone->clearance(i, static_cast<uint32_t>(avatar_class)).legal_cells();
+        index.cells_before.push_back(index.cells_before.back() + cells);
+      }
+    }
+  });
+  return index.cells_before;
+}
+
+}  // namespace
+
+Result<World> World::open(const std::string& path) {
+  const std::string name = path + "/manifest.thm";
+  auto map = FileMap::open(name);
+  if (!map) {
+    return Error{Errc::kBadFile, path + ": not a baked world (no manifest.thm); make one with "
+                                        "`throng bake MODEL -o " + path + "`"};
+  }
+  auto world = read_manifest(map->bytes(), name);
+  if (!world) return world.error();
+  (*world)->path = path;
+  return World(std::move(*world));
+}
+
+Result<void> World::check_all() const {
+  THRONG_ASSERT(data_);
+  for (size_t s = 0; s < data_->slots.size(); ++s) {
+    if (data_->zone(s) == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
+  }
+  return {};
+}
+
+WorldSummary World::summary() const {
+  THRONG_ASSERT(data_);
+  return data_->summary;
+}
+
+std::optional<int32_t> World::find_class(const std::string& name) const {
+  const auto& classes = data_->summary.classes;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    if (classes[c].name == name) return static_cast<int32_t>(c);
+  }
+  return std::nullopt;
+}
+
+uint32_t World::level_tile_count() const { return data_->level_count; }
+
+LevelTileContent World::level_tile(uint32_t index) const {
+  THRONG_ASSERT(index < data_->level_count);
+  LevelTileContent out;
+  out.floor.assign(kArea, kNoFloor);
+  out.ceiling.assign(kArea, kOpenSky);
+  out.area.assign(kArea, 0);
+  out.clearance.assign(data_->summary.classes.size(), std::vector<uint8_t>(kArea, 0));
+  const size_t slot = data_->slot_of_level(index);
+  const Zone* zone = data_->zone(slot);
+  if (zone == nullptr) return out;
+  const uint32_t local = index - data_->slots[slot]->first_level;
+  const format::Level& level = zone->level(local);
+  const auto per_zone = static_cast<int32_t>(data_->tiles_per_zone);
+  out.tile_x = zone->root().x() * per_zone + level.tile() % per_zone;
+  out.tile_z = zone->root().z() * per_zone + level.tile() / per_zone;
+  const LevelView view = zone->view(local);
+  const uint16_t* ceilings = level.ceiling_kind() == format::HeightKind::Samples
+                                 ? zone->heights(level.ceiling_offset())
+                                 : nullptr;
+  const uint8_t* areas =
+      level.area_kind() == format::BitsKind::Planes ? zone->areas(level.area_offset()) : nullptr;
+  for (int32_t c = 0; c < kArea; ++c) {
+    const int32_t x = c % 64, z = c / 64;
+    const size_t i = static_cast<size_t>(c);
+    if (!view.has(x, z)) continue;
+    out.floor[i] = view.sample(x, z);
+    out.area[i] = areas != nullptr ? areas[c] : level.area_value();
+    if (level.ceiling_kind() == format::HeightKind::Constant) out.ceiling[i] = level.ceiling_base();
+    if (ceilings != nullptr && ceilings[c] != 65535) out.ceiling[i] = level.ceiling_base() + ceilings[c];
+  }
+  for (size_t k = 0; k < out.clearance.size(); ++k) {
+    const format::Clearance& clearance = zone->clearance(local, static_cast<uint32_t>(k));
+    if (clearance.kind() == format::BitsKind::All) out.clearance[k].assign(kArea, 8);
+    if (clearance.kind() != format::BitsKind::Planes) continue;
+    const uint64_t* planes = zone->planes(clearance.offset());
+    for (size_t c = 0; c < kArea; ++c) {
+      const size_t row = c / 64;
+      const auto bit = [&](size_t plane) {
+        return static_cast<uint8_t>((planes[plane * 64 + row] >> (c % 64)) & 1);
+      };
+      if (bit(0) != 0) {
+        out.clearance[k][c] = static_cast<uint8_t>(1 + bit(1) + 2 * bit(2) + 4 * bit(3));
+      }
+    }
+  }
+  return out;
+}
+
+Place World::find_place(int32_t avatar_class, Vec3d position, double reach) const {
+  if (!good_class(*data_, avatar_class) || !std::isfinite(position.x + position.y + position.z)) return {};
+  const GroundPoint p = to_point(*data_, position.x, position.z);
+  if (!in_grid(*data_, p)) return {};
+  const auto tile = data_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
+  Place best;
+  double best_distance = reach;
+  for (uint32_t i = tile.first; i < tile.last; ++i) {
+    const GroundLevel level =
+        ground_level(*tile.zone, tile.zone_first + i - tile.first, i, avatar_class);
+    if (!level.is_legal(p.cell_x() & 63, p.cell_z() & 63)) continue;
+    const double feet_height = feet_at(level, p);
+    const double distance = std::fabs(feet_height - position.y);
+    if (distance > best_distance) continue;
+    best_distance = distance;
+    best = {{position.x, feet_height, position.z}, i + 1};
+  }
+  return best;
+}
+
+Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const {
+  if (!good_class(*data_, avatar_class)) return {};
+  const std::vector<uint64_t>& before = cells_before(*data_, avatar_class);
+  if (before.back() == 0) return {};
+  const uint64_t pick = random_below(seed, n, 0, before.back());
+  const auto level_index = static_cast<uint32_t>(
+      std::upper_bound(before.begin(), before.end(), pick) - before.begin() - 1);
+  auto rank = static_cast<uint32_t>(pick - before[level_index]);
+  const GroundLevel level = ground_level(*data_, level_index, avatar_class);
+  int32_t x = static_cast<int32_t>(rank % 64), z = static_cast<int32_t>(rank / 64);
+  if (level.legal != nullptr) {
+    for (z = 0;; ++z) {
+      const auto count = static_cast<uint32_t>(std::popcount(level.legal[z]));
+      if (rank < count) break;
+      rank -= count;
+    }
+    x = nth_bit(level.legal[z], rank);
+  }
+  const auto per_zone = static_cast<int32_t>(data_->tiles_per_zone);
+  const format::Zone& zone = level.zone->root();
+  const int32_t tile = level.view.record->tile();
+  const int64_t cell_x = int64_t{(zone.x() * per_zone + tile % per_zone)} * 64 + x;
+  const int64_t cell_z = int64_t{(zone.z() * per_zone + tile / per_zone)} * 64 + z;
+  const GroundPoint p{(cell_x << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 1, kUnitsPerCell)),
+                      (cell_z << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 2, kUnitsPerCell))};
+  // The middle of the unit, so that the place's own coordinates lead back to it.
+  const double unit = data_->summary.cell / kUnitsPerCell;
+  return {{data_->summary.origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet_at(level, p),
+           data_->summary.origin.z + (static_cast<double>(p.z) + 0.5) * unit},
+          level_index + 1};
+}
+
+MoveResult World::move(int32_t avatar_class, const Place& from, double dx, double dz) const {
+  MoveResult result{from, MoveEnd::kBlocked};
+  if (!good_class(*data_, avatar_class) || !from || from.level1 > data_->level_count ||
+      !std::isfinite(dx + dz)) {
+    return result;
+  }
+  const Vec3d goal{from.position.x + dx, 0, from.position.z + dz};
+  const GroundPoint start = to_point(*data_, from.position.x, from.position.z);
+  const GroundPoint end = to_point(*data_, goal.x, goal.z);
+  if (!in_grid(*data_, start) || !in_grid(*data_, end)) return result;
+  GroundLevel level = ground_level(*data_, from.level1 - 1, avatar_class);
+  if (level.zone == nullptr || !level.is_legal(start.cell_x() & 63, start.cell_z() & 63)) return result;
+  const int32_t step = step_mm(data_->summary.classes[static_cast<size_t>(avatar_class)]);
+  if (!walk(*data_, level, start, end, avatar_class, step)) return result;
+  result.place = {{goal.x, feet_at(level, end), goal.z}, level.world_level + 1};
+  result.end = MoveEnd::kArrived;
+  return result;
+}
+
+double World::feet(const Place& place) const {
+  if (!place || place.level1 > data_->level_count) return place.position.y;
+  const GroundLevel level = ground_level(*data_, place.level1 - 1, 0);
+  const GroundPoint p = to_point(*data_, place.position.x, place.position.z);
+  if (level.zone == nullptr || !in_grid(*data_, p)) return place.position.y;
+  return feet_at(level, p);
+}
+
+}  // namespace throng

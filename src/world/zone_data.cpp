@@ -1,0 +1,273 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "world/zone_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/hash.h"
+
+namespace throng {
+namespace {
+
+constexpr uint32_t kArea = 4096;
+
+Error bad_file(const std::string& name, const std::string& what) {
+  return {Errc::kBadFile, name + ": " + what + "; bake the world again"};
+}
+
+// True if [offset, offset + count) lies within `size`.
+bool fits(uint64_t offset, uint64_t count, uint64_t size) { return offset + count <= size; }
+
+}  // namespace
+
+Result<std::unique_ptr<Zone>> Zone::from_bytes(std::vector<uint8_t> bytes, const std::string& name) {
+  auto zone = std::make_unique<Zone>();
+  zone->owned_ = std::move(bytes);
+  zone->bytes_ = zone->owned_;
+  if (auto attached = zone->attach(name); !attached) return attached.error();
+  return zone;
+}
+
+Result<std::unique_ptr<Zone>> Zone::from_file(FileMap map, const std::string& name) {
+  auto zone = std::make_unique<Zone>();
+  zone->map_ = std::move(map);
+  zone->bytes_ = zone->map_.bytes();
+  if (auto attached = zone->attach(name); !attached) return attached.error();
+  return zone;
+}
+
+// The verifier proves that every vector lies within the file; the rest proves that every offset in the
+// records lies within its vector, so that look-ups need no checks.
+Result<void> Zone::attach(const std::string& name) {
+  flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
+  if (bytes_.size() < 8 || !format::ZoneBufferHasIdentifier(bytes_.data()) ||
+      !format::VerifyZoneBuffer(verifier)) {
+    return bad_file(name, "not a zone file, or truncated");
+  }
+  root_ = format::GetZone(bytes_.data());
+  if (root_->version() != kZoneVersion) {
+    return bad_file(name, "zone version " + std::to_string(root_->version()) + ", this program reads " +
+                              std::to_string(kZoneVersion));
+  }
+  const auto* first = root_->tile_first();
+  const auto* levels = root_->levels();
+  const auto* clearance = root_->clearance();
+  const auto* heights = root_->heights();
+  const auto* planes = root_->planes();
+  const auto* areas = root_->areas();
+  if (!first || !levels || !clearance || !heights || !planes || !areas) {
+    return bad_file(name, "an array is missing");
+  }
+  const uint64_t side = root_->tiles_per_side();
+  class_count_ = root_->class_count();
+  level_count_ = levels->size();
+  if (side == 0 || side > 255 || first->size() != side * side + 1 || first->Get(0) != 0 ||
+      first->Get(first->size() - 1) != level_count_ || class_count_ == 0 ||
+      clearance->size() != uint64_t{level_count_} * class_count_) {
+    return bad_file(name, "its arrays do not fit together");
+  }
+  for (uint32_t tile = 0; tile + 1 < first->size(); ++tile) {
+    const uint32_t begin = first->Get(tile), end = first->Get(tile + 1);
+    if (begin > end || end > level_count_) return bad_file(name, "its tiles are out of order");
+    for (uint32_t i = begin; i < end; ++i) {
+      const format::Level& level = *levels->Get(i);
+      const bool floor_ok = level.floor_kind() == format::HeightKind::Constant ||
+                            level.floor_kind() == format::HeightKind::Plane ||
+                            (level.floor_kind() == format::HeightKind::Samples &&
+                             fits(level.floor_offset(), kArea, heights->size()));
+      const bool ceiling_ok = level.ceiling_kind() == format::HeightKind::None ||
+                              level.ceiling_kind() == format::HeightKind::Constant ||
+                              (level.ceiling_kind() == format::HeightKind::Samples &&
+                               fits(level.ceiling_offset(), kArea, heights->size()));
+      const bool present_ok = level.present_kind() == format::BitsKind::All ||
+                              (level.present_kind() == format::BitsKind::Planes &&
+                               fits(level.present_offset(), 64, planes->size()));
+      const bool area_ok = level.area_kind() == format::BitsKind::All ||
+                           (level.area_kind() == format::BitsKind::Planes &&
+                            fits(level.area_offset(), kArea, areas->size()));
+      if (level.tile() != tile || !floor_ok || !ceiling_ok || !present_ok || !area_ok) {
+        return bad_file(name, "level " + std::to_string(i) + " points outside the file");
+      }
+    }
+  }
+  for (uint32_t i = 0; i < clearance->size(); ++i) {
+    const format::Clearance& entry = *clearance->Get(i);
+    if (entry.kind() > format::BitsKind::Planes ||
+        (entry.kind() == format::BitsKind::Planes && !fits(entry.offset(), 256, planes->size()))) {
+      return bad_file(name, "clearance " + std::to_string(i) + " points outside the file");
+    }
+  }
+  tile_first_ = first->data();
+  levels_ = reinterpret_cast<const format::Level*>(levels->Data());
+  clearance_ = reinterpret_cast<const format::Clearance*>(clearance->Data());
+  heights_ = heights->data();
+  planes_ = planes->data();
+  areas_ = areas->data();
+  return {};
+}
+
+LevelView Zone::view(uint32_t index) const {
+  const format::Level& level = levels_[index];
+  LevelView view;
+  view.record = &level;
+  view.floor_base = level.floor_base();
+  if (level.floor_kind() == format::HeightKind::Samples) view.floor = heights(level.floor_offset());
+  if (level.floor_kind() == format::HeightKind::Plane) {
+    view.floor_um = level.floor_um();
+    view.slope_x = level.slope_x();
+    view.slope_z = level.slope_z();
+  }
+  if (level.present_kind() == format::BitsKind::Planes) view.present = planes(level.present_offset());
+  return view;
+}
+
+const Zone* WorldData::zone(size_t slot) const {
+  const Slot& entry = *slots[slot];
+  std::call_once(entry.once, [&] {
+    if (entry.zone || path.empty()) return;
+    const std::string name = path + "/" + zone_file_name(entry.entry.x(), entry.entry.z());
+    auto map = FileMap::open(name);
+    if (!map) {
+      entry.error = map.error().message;
+      return;
+    }
+    if (map->bytes().size() != entry.entry.bytes() ||
+        hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
+      entry.error = bad_file(name, "its checksum is not the manifest's (truncated, damaged or of "
+                                   "another bake)").message;
+      return;
+    }
+    auto zone = Zone::from_file(std::move(*map), name);
+    if (!zone) {
+      entry.error = zone.error().message;
+      return;
+    }
+    const format::Zone& root = (*zone)->root();
+    if (root.tiles_per_side() != tiles_per_zone || root.class_count() != summary.classes.size() ||
+        (*zone)->level_count() != entry.entry.levels() || root.x() != entry.entry.x() ||
+        root.z() != entry.entry.z()) {
+      entry.error = bad_file(name, "belongs to another world").message;
+      return;
+    }
+    entry.zone = std::move(*zone);
+  });
+  return entry.zone.get();
+}
+
+size_t WorldData::slot_of_level(uint32_t level) const {
+  const auto after = std::upper_bound(slots.begin(), slots.end(), level,
+                                      [](uint32_t l, const auto& s) { return l < s->first_level; });
+  return static_cast<size_t>(after - slots.begin()) - 1;
+}
+
+WorldData::TileLevels WorldData::tile_levels(int32_t tile_x, int32_t tile_z) const {
+  const auto per_zone = static_cast<int32_t>(tiles_per_zone);
+  if (tile_x < 0 || tile_z < 0) return {};
+  const int32_t zx = tile_x / per_zone, zz = tile_z / per_zone;
+  if (zx >= zones_x || zz >= zones_z) return {};
+  const int32_t slot = slot_of_zone[static_cast<size_t>(zz * zones_x + zx)];
+  if (slot < 0) return {};
+  const Zone* found = zone(static_cast<size_t>(slot));
+  if (found == nullptr) return {};
+  const auto tile = static_cast<uint32_t>((tile_z - zz * per_zone) * per_zone + tile_x - zx * per_zone);
+  const auto [first, last] = found->tile_levels(tile);
+  const uint32_t base = slots[static_cast<size_t>(slot)]->first_level;
+  return {found, base + first, base + last, first};
+}
+
+std::string zone_file_name(int32_t x, int32_t z) {
+  return "zone_" + std::to_string(x) + "_" + std::to_string(z) + ".thz";
+}
+
+Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes, const std::string& name) {
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  if (bytes.size() < 8 || !format::ManifestBufferHasIdentifier(bytes.data()) ||
+      !format::VerifyManifestBuffer(verifier)) {
+    return bad_file(name, "not a manifest, or truncated");
+  }
+  const format::Manifest& root = *format::GetManifest(bytes.data());
+  if (root.version() != kManifestVersion) {
+    return bad_file(name, "manifest version " + std::to_string(root.version()) +
+                              ", this program reads " + std::to_string(kManifestVersion));
+  }
+  const auto* bounds = root.bounds();
+  const bool sound = root.zones() && root.classes() && bounds && bounds->size() == 6 &&
+                     root.classes()->size() >= 1 && root.classes()->size() <= kMaxAvatarClasses &&
+                     root.cell() > 0 && std::isfinite(root.cell()) && root.width() > 0 &&
+                     root.depth() > 0 && root.tiles_per_zone() > 0 && root.tiles_per_zone() < 256;
+  if (!sound) return bad_file(name, "its numbers make no sense");
+
+  auto world = std::make_shared<WorldData>();
+  WorldSummary& summary = world->summary;
+  summary.cell = root.cell();
+  summary.resolution = root.resolution();
+  summary.origin = {root.origin_x(), 0, root.origin_z()};
+  summary.bounds.min = {bounds->Get(0), bounds->Get(1), bounds->Get(2)};
+  summary.bounds.max = {bounds->Get(3), bounds->Get(4), bounds->Get(5)};
+  summary.source_triangles = root.source_triangles();
+  world->width = root.width();
+  world->depth = root.depth();
+  world->tiles_per_zone = root.tiles_per_zone();
+  const auto tiles = [](int32_t cells) { return (cells + 63) / 64; };
+  summary.tiles_x = tiles(root.width());
+  summary.tiles_z = tiles(root.depth());
+  const auto per_zone = static_cast<int32_t>(root.tiles_per_zone());
+  world->zones_x = (summary.tiles_x + per_zone - 1) / per_zone;
+  world->zones_z = (summary.tiles_z + per_zone - 1) / per_zone;
+  if (int64_t{world->zones_x} * world->zones_z > (1 << 26)) return bad_file(name, "its grid is absurd");
+  world->slot_of_zone.assign(static_cast<size_t>(world->zones_x) * static_cast<size_t>(world->zones_z), -1);
+  for (uint32_t c = 0; c < root.classes()->size(); ++c) {
+    const format::ClassEntry& entry = *root.classes()->Get(c);
+    summary.classes.push_back({.name = entry.name() ? entry.name()->str() : "",
+                               .height = entry.height(),
+                               .radius = entry.radius(),
+                               .step = entry.step(),
+                               .max_slope = entry.max_slope(),
+                               .speed = entry.speed()});
+    summary.walkable_area.push_back(entry.walkable_area());
+    world->class_index.push_back(std::make_unique<ClassIndex>());
+  }
+  if (auto ok = check_classes(summary.classes); !ok) return bad_file(name, ok.error().message);
+  uint64_t level_count = 0;
+  for (uint32_t i = 0; i < root.zones()->size(); ++i) {
+    auto slot = std::make_unique<WorldData::Slot>();
+    slot->entry = *root.zones()->Get(i);
+    const int32_t x = slot->entry.x(), z = slot->entry.z();
+    if (x < 0 || z < 0 || x >= world->zones_x || z >= world->zones_z) {
+      return bad_file(name, "zone " + std::to_string(i) + " lies outside the grid");
+    }
+    slot->first_level = static_cast<uint32_t>(level_count);
+    level_count += slot->entry.levels();
+    summary.bytes += slot->entry.bytes();
+    world->slot_of_zone[static_cast<size_t>(z * world->zones_x + x)] = static_cast<int32_t>(i);
+    world->slots.push_back(std::move(slot));
+  }
+  if (level_count >= UINT32_MAX) return bad_file(name, "more than 2^32 levels");
+  world->level_count = static_cast<uint32_t>(level_count);
+  summary.zones = world->slots.size();
+  summary.level_tiles = level_count;
+  return world;
+}
+
+std::vector<uint8_t> write_manifest(const WorldData& world) {
+  flatbuffers::FlatBufferBuilder builder;
+  std::vector<flatbuffers::Offset<format::ClassEntry>> classes;
+  const WorldSummary& s = world.summary;
+  for (size_t c = 0; c < s.classes.size(); ++c) {
+    const AvatarClass& a = s.classes[c];
+    classes.push_back(format::CreateClassEntryDirect(builder, a.name.c_str(), a.height, a.radius, a.step,
+                                                     a.max_slope, a.speed, s.walkable_area[c]));
+  }
+  std::vector<format::ZoneEntry> zones;
+  for (const auto& slot : world.slots) zones.push_back(slot->entry);
+  const std::vector<double> bounds{s.bounds.min.x, s.bounds.min.y, s.bounds.min.z,
+                                   s.bounds.max.x, s.bounds.max.y, s.bounds.max.z};
+  builder.Finish(format::CreateManifestDirect(builder, kManifestVersion, s.cell, s.resolution, s.origin.x,
+                                              s.origin.z, world.width, world.depth, world.tiles_per_zone,
+                                              &bounds, s.source_triangles, &zones, &classes),
+                 format::ManifestIdentifier());
+  return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
+}
+
+}  // namespace throng

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/file_map.h"
+#include "throng/result.h"
+#include "throng/world.h"
+#include "world/level_view.h"
+#include "world/manifest_generated.h"
+#include "world/zone_generated.h"
+
+/// Zones in memory: mapped from files, or owned by a world that was baked in memory.
+namespace throng {
+
+inline constexpr uint32_t kZoneVersion = 1;
+inline constexpr uint32_t kManifestVersion = 1;
+
+/// A zone's bytes after the verifier and the checks of its offsets.
+class Zone {
+ public:
+  /// Fails with kBadFile and `name` if the bytes are not a sound zone of this version.
+  static Result<std::unique_ptr<Zone>> from_bytes(std::vector<uint8_t> bytes, const std::string& name);
+  static Result<std::unique_ptr<Zone>> from_file(FileMap map, const std::string& name);
+
+  [[nodiscard]] std::span<const uint8_t> bytes() const { return bytes_; }
+  [[nodiscard]] const format::Zone& root() const { return *root_; }
+  [[nodiscard]] uint32_t level_count() const { return level_count_; }
+  [[nodiscard]] const format::Level& level(uint32_t index) const { return levels_[index]; }
+  [[nodiscard]] LevelView view(uint32_t index) const;
+  /// Levels of a tile of the zone: [first, last).
+  [[nodiscard]] std::pair<uint32_t, uint32_t> tile_levels(uint32_t tile) const {
+    return {tile_first_[tile], tile_first_[tile + 1]};
+  }
+  [[nodiscard]] const format::Clearance& clearance(uint32_t level, uint32_t avatar_class) const {
+    return clearance_[static_cast<size_t>(level) * class_count_ + avatar_class];
+  }
+  [[nodiscard]] const uint64_t* planes(uint32_t offset) const { return planes_ + offset; }
+  [[nodiscard]] const uint16_t* heights(uint32_t offset) const { return heights_ + offset; }
+  [[nodiscard]] const uint8_t* areas(uint32_t offset) const { return areas_ + offset; }
+
+ private:
+  Result<void> attach(const std::string& name);
+
+  std::vector<uint8_t> owned_;
+  FileMap map_;
+  std::span<const uint8_t> bytes_;
+  const format::Zone* root_ = nullptr;
+  const uint32_t* tile_first_ = nullptr;
+  const format::Level* levels_ = nullptr;
+  const format::Clearance* clearance_ = nullptr;
+  const uint16_t* heights_ = nullptr;
+  const uint64_t* planes_ = nullptr;
+  const uint8_t* areas_ = nullptr;
+  uint32_t level_count_ = 0;
+  uint32_t class_count_ = 0;
+};
+
+/// Legal cells of a class before each level of the world: made when first asked for.
+struct ClassIndex {
+  std::once_flag once;
+  std::vector<uint64_t> cells_before;  // levels + 1
+};
+
+/// What World points to.
+struct WorldData {
+  struct Slot {
+    format::ZoneEntry entry;
+    uint32_t first_level = 0;        // of the world
+    mutable std::once_flag once;
+    mutable std::unique_ptr<Zone> zone;
+    mutable std::string error;       // why the zone could not be used
+  };
+
+  WorldSummary summary;
+  int32_t width = 0, depth = 0;      // cells
+  uint32_t tiles_per_zone = 0;
+  int32_t zones_x = 0, zones_z = 0;
+  std::string path;                  // empty: baked in memory
+  std::vector<int32_t> slot_of_zone; // zones_x * zones_z, -1: no levels there
+  std::vector<std::unique_ptr<Slot>> slots;
+  uint32_t level_count = 0;
+  std::vector<std::unique_ptr<ClassIndex>> class_index;  // per class
+
+  /// The zone of a slot, opened and checked at its first touch; null if it cannot be used.
+  [[nodiscard]] const Zone* zone(size_t slot) const;
+  /// Slot that holds a level of the world. [level < level_count]
+  [[nodiscard]] size_t slot_of_level(uint32_t level) const;
+  /// Levels of the world over a tile: [first, last), and the zone; {0, 0} where there are none.
+  struct TileLevels {
+    const Zone* zone = nullptr;
+    uint32_t first = 0, last = 0;    // levels of the world
+    uint32_t zone_first = 0;         // first as a level of the zone
+  };
+  [[nodiscard]] TileLevels tile_levels(int32_t tile_x, int32_t tile_z) const;
+};
+
+std::string zone_file_name(int32_t x, int32_t z);
+
+/// Fills everything but the zones from a manifest's bytes. Fails with kBadFile and `name`.
+Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes, const std::string& name);
+std::vector<uint8_t> write_manifest(const WorldData& world);
+
+}  // namespace throng

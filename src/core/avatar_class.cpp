@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "throng/avatar_class.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fmt/format.h>
 #include <numbers>
 
 #include "core/config_file.h"
@@ -59,11 +60,23 @@ std::vector<AvatarClass> default_classes() {
   constexpr double kSixPercent = 3.4336303624505224;
   return {
       AvatarClass{},
-      AvatarClass{.name = "child", .height = 1.10, .radius = 0.18, .step = 0.3, .max_slope = 45,
+      AvatarClass{.name = "child",
+                  .height = 1.10,
+                  .radius = 0.18,
+                  .step = 0.3,
+                  .max_slope = 45,
                   .speed = 1.1},
-      AvatarClass{.name = "wheelchair", .height = 1.35, .radius = 0.4, .step = 0.02,
-                  .max_slope = kSixPercent, .speed = 1.0},
-      AvatarClass{.name = "giant", .height = 3.0, .radius = 0.5, .step = 0.8, .max_slope = 45,
+      AvatarClass{.name = "wheelchair",
+                  .height = 1.35,
+                  .radius = 0.4,
+                  .step = 0.02,
+                  .max_slope = kSixPercent,
+                  .speed = 1.0},
+      AvatarClass{.name = "giant",
+                  .height = 3.0,
+                  .radius = 0.5,
+                  .step = 0.8,
+                  .max_slope = 45,
                   .speed = 2.0},
   };
 }

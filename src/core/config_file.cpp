@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "core/config_file.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace throng {
@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kMaxDepth = 64;
 
-// The JSON parser does not say where a value stood, so its input counts the bytes taken. Only numbers
-// look one byte ahead; stepping back one byte is harmless for all other tokens.
+// The JSON parser does not say where a value stood, so its input counts the bytes taken. Only
+// numbers look one byte ahead; stepping back one byte is harmless for all other tokens.
 struct CountingIterator {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -55,8 +55,12 @@ class JsonTree : public nlohmann::json_sax<nlohmann::json> {
     if (node != nullptr) node->flag = value;
     return node != nullptr;
   }
-  bool number_integer(number_integer_t value) override { return number(static_cast<double>(value)); }
-  bool number_unsigned(number_unsigned_t value) override { return number(static_cast<double>(value)); }
+  bool number_integer(number_integer_t value) override {
+    return number(static_cast<double>(value));
+  }
+  bool number_unsigned(number_unsigned_t value) override {
+    return number(static_cast<double>(value));
+  }
   bool number_float(number_float_t value, const string_t&) override { return number(value); }
   bool string(string_t& value) override {
     ConfigNode* node = add(ConfigNode::Kind::kString);
@@ -122,8 +126,13 @@ class JsonTree : public nlohmann::json_sax<nlohmann::json> {
   }
 
   const std::string& text_;
-  ConfigNode root_{.kind = ConfigNode::Kind::kArray, .line = 0, .flag = false, .number = 0,
-                   .text = {}, .items = {}, .entries = {}};
+  ConfigNode root_{.kind = ConfigNode::Kind::kArray,
+                   .line = 0,
+                   .flag = false,
+                   .number = 0,
+                   .text = {},
+                   .items = {},
+                   .entries = {}};
   std::vector<ConfigNode*> stack_;
   std::string key_;
   size_t counted_ = 0;
@@ -133,9 +142,9 @@ class JsonTree : public nlohmann::json_sax<nlohmann::json> {
 Result<ConfigNode> parse_json(const std::string& text, const std::string& name) {
   JsonTree tree(text);
   const char* begin = text.data();
-  const bool parsed = nlohmann::json::sax_parse(
-      CountingIterator{begin, begin, &tree.taken},
-      CountingIterator{begin + text.size(), begin, &tree.taken}, &tree);
+  const bool parsed =
+      nlohmann::json::sax_parse(CountingIterator{begin, begin, &tree.taken},
+                                CountingIterator{begin + text.size(), begin, &tree.taken}, &tree);
   if (!parsed) {
     return Error{Errc::kBadFile, fmt::format("{}:{}: {}", name, tree.line(),
                                              tree.message.empty() ? "not JSON" : tree.message)};
@@ -185,8 +194,8 @@ Result<ConfigNode> parse_toml(const std::string& text, const std::string& name) 
     const toml::table table = toml::parse(text, name);
     return from_toml(table, name, 0);
   } catch (const toml::parse_error& error) {
-    return Error{Errc::kBadFile, fmt::format("{}:{}: {}", name, error.source().begin.line,
-                                             error.description())};
+    return Error{Errc::kBadFile,
+                 fmt::format("{}:{}: {}", name, error.source().begin.line, error.description())};
   }
 }
 

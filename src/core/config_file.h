@@ -21,8 +21,8 @@ struct ConfigNode {
   bool flag = false;
   double number = 0;
   std::string text;
-  std::vector<ConfigNode> items;                             ///< Of an array.
-  std::vector<std::pair<std::string, ConfigNode>> entries;   ///< Of a table, in the file's order.
+  std::vector<ConfigNode> items;                            ///< Of an array.
+  std::vector<std::pair<std::string, ConfigNode>> entries;  ///< Of a table, in the file's order.
 
   [[nodiscard]] const ConfigNode* find(std::string_view key) const;
 };

@@ -24,9 +24,11 @@ Result<std::string> read_file(const std::string& path) {
 
   std::string bytes;
   const auto expected = std::filesystem::file_size(path, failure);
-  if (!failure) bytes.reserve(expected);  // Pipes have no size: they are read in pieces all the same.
+  if (!failure)
+    bytes.reserve(expected);  // Pipes have no size: they are read in pieces all the same.
   char piece[1 << 16];
-  while (const size_t got = std::fread(piece, 1, sizeof piece, file.get())) bytes.append(piece, got);
+  while (const size_t got = std::fread(piece, 1, sizeof piece, file.get()))
+    bytes.append(piece, got);
   if (std::ferror(file.get()) != 0) return Error{Errc::kIo, path + ": reading it failed half-way"};
   return bytes;
 }

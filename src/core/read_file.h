@@ -9,7 +9,8 @@
 /// Whole files in memory.
 namespace throng {
 
-/// The bytes of a file. Fails with kBadFile (missing, a folder) or kIo; the sentence names the path.
+/// The bytes of a file. Fails with kBadFile (missing, a folder) or kIo; the sentence names the
+/// path.
 [[nodiscard]] Result<std::string> read_file(const std::string& path);
 
 }  // namespace throng

@@ -25,8 +25,8 @@ void Scene::add_box(Vec3d low, Vec3d high, AreaKind kind) {
     positions.push_back({(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
                          (corner & 4) != 0 ? high.z : low.z});
   }
-  constexpr std::array<std::array<uint32_t, 4>, 6> kSides{{
-      {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  constexpr std::array<std::array<uint32_t, 4>, 6> kSides{
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
   for (const auto& side : kSides) {
     triangles.push_back({first + side[0], first + side[1], first + side[2]});
     triangles.push_back({first + side[0], first + side[2], first + side[3]});

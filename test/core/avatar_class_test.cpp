@@ -17,7 +17,8 @@ class ClassFile {
  public:
   ClassFile(const std::string& name, const std::string& text) {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("throng_classes_") + test->name());
+    folder_ =
+        std::filesystem::path(testing::TempDir()) / (std::string("throng_classes_") + test->name());
     std::filesystem::create_directories(folder_);
     path = (folder_ / name).string();
     std::ofstream(path) << text;
@@ -77,7 +78,8 @@ TEST(AvatarClass, TomlAndJsonGiveTheSameClasses) {
 TEST(AvatarClass, AWrongSettingIsNamedByLineKeyAndLimit) {
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\n\nheight = 40\n"),
             ":4: avatar class 1: height = 40 is outside 0.1 to 30");
-  EXPECT_EQ(refusal("c.json", "{\"class\": [\n {\"name\": \"a\"},\n {\"name\": \"b\",\n  \"radius\": 9\n}]}"),
+  EXPECT_EQ(refusal("c.json",
+                    "{\"class\": [\n {\"name\": \"a\"},\n {\"name\": \"b\",\n  \"radius\": 9\n}]}"),
             ":4: avatar class 2: radius = 9 is outside 0.01 to 5");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nheigth = 1\n"),
             ":3: avatar class 1: unknown key 'heigth'; known are name, height, radius, step, "
@@ -112,7 +114,8 @@ TEST(AvatarClass, AMissingFileIsNamed) {
 
 TEST(AvatarClass, SeventeenClassesAreTooMany) {
   std::vector<AvatarClass> classes(17);
-  for (size_t i = 0; i < classes.size(); ++i) classes[i].name = std::string(1, static_cast<char>('a' + i));
+  for (size_t i = 0; i < classes.size(); ++i)
+    classes[i].name = std::string(1, static_cast<char>('a' + i));
   const auto checked = check_classes(classes);
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().message, "avatar classes: need 1 to 16, not 17");

@@ -17,35 +17,35 @@
 namespace throng {
 
 struct VerifyConfig {
-  uint64_t samples = 100000;    ///< Sampled states; as many moves and as many surface points again.
+  uint64_t samples = 100000;  ///< Sampled states; as many moves and as many surface points again.
   uint64_t seed = 1;
   int32_t avatar_class = 0;
-  int32_t workers = 0;          ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
 
 /// A place where a claim failed, to look at.
 struct VerifyFault {
-  std::string what;             ///< "entered", "unsupported", "torn", "lost"
-  Vec3d position;               ///< Feet. [m]
-  uint32_t triangle = 0;        ///< Of the scene: the intruder, or the surface that was lost.
+  std::string what;       ///< "entered", "unsupported", "torn", "lost"
+  Vec3d position;         ///< Feet. [m]
+  uint32_t triangle = 0;  ///< Of the scene: the intruder, or the surface that was lost.
 };
 
 /// What the oracle found. docs/algorithms.md gives the exact meaning of each number.
 struct VerifyReport {
   uint64_t states = 0;
-  uint64_t moves = 0;               ///< Legal ones: those that the world let arrive.
+  uint64_t moves = 0;  ///< Legal ones: those that the world let arrive.
   uint64_t surface_points = 0;
-  uint64_t entered = 0;             ///< Legal states or moves whose body meets a triangle. Must be 0.
-  uint64_t unsupported = 0;         ///< Legal states or moves with no surface in reach. Must be 0.
-  uint64_t torn = 0;                ///< Legal moves over a point with no legal place. Must be 0.
+  uint64_t entered = 0;      ///< Legal states or moves whose body meets a triangle. Must be 0.
+  uint64_t unsupported = 0;  ///< Legal states or moves with no surface in reach. Must be 0.
+  uint64_t torn = 0;         ///< Legal moves over a point with no legal place. Must be 0.
   uint64_t no_surface_under_centre = 0;  ///< States left out of feet_error (cracks and rims).
-  double feet_error_mean = 0;       ///< [m]
-  double feet_error_p95 = 0;        ///< [m]
-  double lost_grown = 0;            ///< Share of area where the grown body stands and the bake denies.
-  double lost_grown_error = 0;      ///< One standard error of it.
-  double lost_exact = 0;            ///< The same for the body as it is.
+  double feet_error_mean = 0;            ///< [m]
+  double feet_error_p95 = 0;             ///< [m]
+  double lost_grown = 0;        ///< Share of area where the grown body stands and the bake denies.
+  double lost_grown_error = 0;  ///< One standard error of it.
+  double lost_exact = 0;        ///< The same for the body as it is.
   double lost_exact_error = 0;
-  double isolated_grown = 0;        ///< Share that is denied but cannot be walked to: not in `lost`.
+  double isolated_grown = 0;  ///< Share that is denied but cannot be walked to: not in `lost`.
   double isolated_exact = 0;
   double standable_area_grown = 0;  ///< [m^2]
   double standable_area_exact = 0;  ///< [m^2]

@@ -21,7 +21,7 @@
 namespace throng::verify {
 namespace {
 
-constexpr size_t kBatch = 8192;          ///< Samples between two looks at `cancel`.
+constexpr size_t kBatch = 8192;  ///< Samples between two looks at `cancel`.
 constexpr size_t kFaultsOfAKind = 8;
 constexpr uint64_t kSurfaceSalt = 0x73757266;  ///< Not the stream of the world's places.
 
@@ -91,9 +91,7 @@ class Judge {
     const BodyCheck body(tree_, claims_.avatar, claims_.cell);
     std::vector<double> errors;
     const bool finished = for_each_sample<StateRecord>(
-        [&] {
-          return [&](uint64_t n) { return check_state(claims_, body, config_.seed, n); };
-        },
+        [&] { return [&](uint64_t n) { return check_state(claims_, body, config_.seed, n); }; },
         [&](const StateRecord& r) {
           if (!r.exists) return;
           ++report_.states;

@@ -16,7 +16,7 @@
 namespace throng::verify {
 
 struct StateRecord {
-  bool exists = false;       ///< The world has a place.
+  bool exists = false;  ///< The world has a place.
   bool entered = false;
   bool unsupported = false;
   std::optional<double> feet_error;  ///< [m]
@@ -29,10 +29,10 @@ struct StateRecord {
                                       uint64_t n);
 
 struct MoveRecord {
-  bool legal = false;        ///< The world let the move arrive.
+  bool legal = false;  ///< The world let the move arrive.
   bool entered = false;
   bool unsupported = false;
-  bool torn = false;         ///< A point on the way has no legal place.
+  bool torn = false;  ///< A point on the way has no legal place.
   Vec3d entered_at, unsupported_at, torn_at;
   uint32_t intruder = 0;
 };

@@ -19,8 +19,8 @@ constexpr double kSameSurface = 1e-3;
 constexpr double kSlack = 1e-6;
 
 // Rings no further apart than `spacing`, points on them likewise, and the centre. The outermost has
-// twice as many points and goes around the disc, not through it: a straight rim of the floor must not
-// slip in between two of them. (It asks for up to 1 mm too much for an adult.) Rounded, so that
+// twice as many points and goes around the disc, not through it: a straight rim of the floor must
+// not slip in between two of them. (It asks for up to 1 mm too much for an adult.) Rounded, so that
 // every machine looks at the same points whatever its sine.
 std::vector<std::array<double, 2>> disc_points(double radius, double spacing) {
   using std::numbers::pi;

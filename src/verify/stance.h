@@ -28,9 +28,9 @@ struct BodyShape {
 
 /// How a walk through places where a body stands ended.
 enum class WalkEnd {
-  kReached,   ///< It came to a place that the caller accepts.
-  kIsland,    ///< The whole area that can be walked from there has no such place.
-  kLarge,     ///< The area is larger than the limit, and no such place was met in it.
+  kReached,  ///< It came to a place that the caller accepts.
+  kIsland,   ///< The whole area that can be walked from there has no such place.
+  kLarge,    ///< The area is larger than the limit, and no such place was met in it.
 };
 
 /// Stands one body shape on a scene. Owns scratch memory: one per thread.

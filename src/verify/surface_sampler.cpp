@@ -26,8 +26,7 @@ SurfaceSampler::SurfaceSampler(const Scene& scene, double levelness_limit) : sce
 SurfaceSampler::Point SurfaceSampler::point(uint64_t seed, uint64_t n) const {
   const double target = random_unit(seed, n, 0) * area();
   const auto found = std::upper_bound(up_to_.begin(), up_to_.end(), target);
-  const auto index =
-      std::min(static_cast<size_t>(found - up_to_.begin()), triangles_.size() - 1);
+  const auto index = std::min(static_cast<size_t>(found - up_to_.begin()), triangles_.size() - 1);
   const auto& [a, b, c] = scene_->triangles[triangles_[index]];
   const Vec3d p = scene_->positions[a];
   // The square root folds the unit square onto a triangle without crowding a corner.

@@ -52,8 +52,7 @@ TEST(Cylinder, PlaneAroundTheAxisIsMetThoughItsEdgesAreFar) {
 TEST(Cylinder, CornerOutsideTheDiscButInsideItsBoxIsNotMet) {
   const double d = 0.5 * 0.7072;  // Just past the rim along the diagonal.
   EXPECT_FALSE(meets(kBody, {at_body(d, 0, d), at_body(d, 2, d), at_body(2, 1, 2)}));
-  EXPECT_TRUE(
-      meets(kBody, {at_body(0.353, 0, 0.353), at_body(0.353, 2, 0.353), at_body(2, 1, 2)}));
+  EXPECT_TRUE(meets(kBody, {at_body(0.353, 0, 0.353), at_body(0.353, 2, 0.353), at_body(2, 1, 2)}));
 }
 
 TEST(Cylinder, SegmentsAndPointsAreMatterToo) {

@@ -20,10 +20,10 @@ struct FakeWorld {
   using Floor = std::function<std::optional<double>(double x, double z)>;
 
   Scene scene;
-  double side = 12;                ///< All places lie in [0, side] x [0, side]. [m]
+  double side = 12;  ///< All places lie in [0, side] x [0, side]. [m]
   AvatarClass avatar;
   Floor floor;
-  Floor floor_on_moves;            ///< What move and find_place say instead, if they differ.
+  Floor floor_on_moves;  ///< What move and find_place say instead, if they differ.
   bool moves_look_at_ends_only = false;
 
   [[nodiscard]] Claims claims() const {
@@ -33,36 +33,36 @@ struct FakeWorld {
       return y ? Place{{x, *y, z}, 1} : Place{};
     };
     const bool ends_only = moves_look_at_ends_only;
-    return {
-        .avatar = avatar,
-        .cell = 0.1,
-        .resolution = 0.1,
-        .random_place =
-            [f = floor, size = side, place_at](uint64_t seed, uint64_t n) {
-              for (uint64_t k = 0; k < 2000; k += 2) {
-                const double x = size * random_unit(seed, n, k);
-                const double z = size * random_unit(seed, n, k + 1);
-                if (const Place place = place_at(f, x, z)) return place;
-              }
-              return Place{};
-            },
-        .find_place =
-            [moving, place_at](Vec3d p, double reach) {
-              const Place place = place_at(moving, p.x, p.z);
-              return place && std::fabs(place.position.y - p.y) <= reach ? place : Place{};
-            },
-        .move =
-            [moving, place_at, ends_only](const Place& from, double dx, double dz) {
-              const Vec3d p = from.position;
-              const int parts =
-                  ends_only ? 1 : std::max(1, static_cast<int>(std::hypot(dx, dz) / 0.002));
-              for (int k = 1; k <= parts; ++k) {
-                const double t = static_cast<double>(k) / parts;
-                if (!moving(p.x + t * dx, p.z + t * dz)) return MoveResult{from, MoveEnd::kBlocked};
-              }
-              return MoveResult{place_at(moving, p.x + dx, p.z + dz), MoveEnd::kArrived};
-            },
-        .feet = [](const Place& place) { return place.position.y; }};
+    return {.avatar = avatar,
+            .cell = 0.1,
+            .resolution = 0.1,
+            .random_place =
+                [f = floor, size = side, place_at](uint64_t seed, uint64_t n) {
+                  for (uint64_t k = 0; k < 2000; k += 2) {
+                    const double x = size * random_unit(seed, n, k);
+                    const double z = size * random_unit(seed, n, k + 1);
+                    if (const Place place = place_at(f, x, z)) return place;
+                  }
+                  return Place{};
+                },
+            .find_place =
+                [moving, place_at](Vec3d p, double reach) {
+                  const Place place = place_at(moving, p.x, p.z);
+                  return place && std::fabs(place.position.y - p.y) <= reach ? place : Place{};
+                },
+            .move =
+                [moving, place_at, ends_only](const Place& from, double dx, double dz) {
+                  const Vec3d p = from.position;
+                  const int parts =
+                      ends_only ? 1 : std::max(1, static_cast<int>(std::hypot(dx, dz) / 0.002));
+                  for (int k = 1; k <= parts; ++k) {
+                    const double t = static_cast<double>(k) / parts;
+                    if (!moving(p.x + t * dx, p.z + t * dz))
+                      return MoveResult{from, MoveEnd::kBlocked};
+                  }
+                  return MoveResult{place_at(moving, p.x + dx, p.z + dz), MoveEnd::kArrived};
+                },
+            .feet = [](const Place& place) { return place.position.y; }};
   }
 };
 

@@ -48,8 +48,11 @@ TEST(TriangleTree, FindsWhatATestOfEveryTriangleFinds) {
       for (uint64_t n = 0; n < 150; ++n) {
         const auto random = [&](uint64_t k) { return random_unit(3, n, k) - 0.5; };
         const double low = 6 * random(2);
-        const Cylinder body{.x = offset + 20 * random(0), .z = offset + 20 * random(1),
-                            .low = low, .high = low + 1.5, .radius = 0.6 + random(3)};
+        const Cylinder body{.x = offset + 20 * random(0),
+                            .z = offset + 20 * random(1),
+                            .low = low,
+                            .high = low + 1.5,
+                            .radius = 0.6 + random(3)};
         std::vector<uint32_t> expected;
         for (uint32_t t = 0; t < count; ++t) {
           if (meets(body, tree.corners(t))) expected.push_back(t);

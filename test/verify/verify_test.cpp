@@ -138,9 +138,9 @@ TEST(Verify, NobodyStandsBesideTheFloor) {
   world.side = 14;  // Its places reach 2 m over the rim.
   world.floor = [](double, double) { return 0.0; };
   const VerifyReport report = judge(world);
-  EXPECT_NEAR(static_cast<double>(report.no_surface_under_centre) /
-                  static_cast<double>(report.states),
-              1 - 144.0 / 196, 0.03);
+  EXPECT_NEAR(
+      static_cast<double>(report.no_surface_under_centre) / static_cast<double>(report.states),
+      1 - 144.0 / 196, 0.03);
   EXPECT_GT(report.unsupported, 1000u);
 }
 

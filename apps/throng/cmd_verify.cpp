@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "sources.h"
+#include "throng/verify.h"
+#include "throng/world.h"
+
+// throng verify: a baked world against the triangles that it came from.
+namespace throng::app {
+namespace {
+
+constexpr double kLostLimit = 0.01;  ///< Of the area where the grown body stands.
+
+struct VerifyOptions {
+  std::string world;
+  SourceOptions sources;
+  std::string class_name = "all";
+  VerifyConfig config;
+};
+
+struct ClassReport {
+  std::string name;
+  VerifyReport report;
+};
+
+bool passes(const VerifyReport& report) {
+  return report.entered == 0 && report.unsupported == 0 && report.torn == 0 &&
+         report.lost_grown <= kLostLimit;
+}
+
+// Where a triangle came from, or nothing for worlds without parts.
+Json part_json(const Scene& scene, uint32_t triangle) {
+  const auto after =
+      std::upper_bound(scene.parts.begin(), scene.parts.end(), triangle,
+                       [](uint32_t t, const ScenePart& part) { return t < part.first_triangle; });
+  if (after == scene.parts.begin()) return nullptr;
+  const ScenePart& part = *std::prev(after);
+  return {{"file", part.file}, {"node", part.node}, {"material", part.material}};
+}
+
+Json faults_json(const Scene& scene, const VerifyReport& report) {
+  Json faults = Json::array();
+  for (const VerifyFault& fault : report.faults) {
+    Json json = {{"what", fault.what},
+                 {"feet", {fault.position.x, fault.position.y, fault.position.z}}};
+    if (fault.what == "entered" || fault.what == "lost") {
+      json["triangle"] = fault.triangle;
+      json["part"] = part_json(scene, fault.triangle);
+    }
+    faults.push_back(std::move(json));
+  }
+  return faults;
+}
+
+Json class_json(const Scene& scene, const ClassReport& entry) {
+  const VerifyReport& report = entry.report;
+  return {{"class", entry.name},
+          {"states", report.states},
+          {"moves", report.moves},
+          {"surface_points", report.surface_points},
+          {"entered", report.entered},
+          {"unsupported", report.unsupported},
+          {"torn", report.torn},
+          {"no_surface_under_centre", report.no_surface_under_centre},
+          {"feet_error", {{"mean", report.feet_error_mean}, {"p95", report.feet_error_p95}}},
+          {"lost",
+           {{"grown", report.lost_grown},
+            {"grown_error", report.lost_grown_error},
+            {"exact", report.lost_exact},
+            {"exact_error", report.lost_exact_error}}},
+          {"isolated", {{"grown", report.isolated_grown}, {"exact", report.isolated_exact}}},
+          {"standable_area",
+           {{"grown", report.standable_area_grown}, {"exact", report.standable_area_exact}}},
+          {"faults", faults_json(scene, report)},
+          {"seconds", report.seconds},
+          {"passed", passes(report)}};
+}
+
+// The sums and the worst of all classes, and each class by itself.
+Json verify_json(const VerifyOptions& options, const Scene& scene,
+                 const std::vector<ClassReport>& entries) {
+  VerifyReport all;
+  Json classes = Json::array();
+  for (const auto& [name, report] : entries) {
+    all.entered += report.entered;
+    all.unsupported += report.unsupported;
+    all.torn += report.torn;
+    all.states += report.states;
+    all.moves += report.moves;
+    all.surface_points += report.surface_points;
+    all.seconds += report.seconds;
+    all.feet_error_mean = std::max(all.feet_error_mean, report.feet_error_mean);
+    all.feet_error_p95 = std::max(all.feet_error_p95, report.feet_error_p95);
+    all.lost_grown = std::max(all.lost_grown, report.lost_grown);
+    all.lost_exact = std::max(all.lost_exact, report.lost_exact);
+    classes.push_back(class_json(scene, {name, report}));
+  }
+  return {{"world", options.world},
+          {"triangles", scene.triangles.size()},
+          {"seed", options.config.seed},
+          {"states", all.states},
+          {"moves", all.moves},
+          {"surface_points", all.surface_points},
+          {"entered", all.entered},
+          {"unsupported", all.unsupported},
+          {"torn", all.torn},
+          {"feet_error", {{"mean", all.feet_error_mean}, {"p95", all.feet_error_p95}}},
+          {"lost", {{"grown", all.lost_grown}, {"exact", all.lost_exact}}},
+          {"classes", classes},
+          {"seconds", all.seconds},
+          {"peak_bytes", peak_memory()},
+          {"passed", passes(all)}};
+}
+
+std::string class_text(const ClassReport& entry) {
+  const VerifyReport& report = entry.report;
+  std::string text = fmt::format(
+      "{}: {} states, {} moves, {} points of surfaces in {:.1f} s\n"
+      "  entered {}, unsupported {}, torn {}\n"
+      "  feet off by {:.1f} mm on average, {:.1f} mm at p95 ({} without a surface under the "
+      "centre)\n"
+      "  lost {:.3f} % +- {:.3f} of {:.0f} m2 for the body grown by a cell, isolated {:.3f} %\n"
+      "  lost {:.3f} % +- {:.3f} of {:.0f} m2 for the body as it is, isolated {:.3f} %\n",
+      entry.name, report.states, report.moves, report.surface_points, report.seconds,
+      report.entered, report.unsupported, report.torn, report.feet_error_mean * 1e3,
+      report.feet_error_p95 * 1e3, report.no_surface_under_centre, report.lost_grown * 100,
+      report.lost_grown_error * 100, report.standable_area_grown, report.isolated_grown * 100,
+      report.lost_exact * 100, report.lost_exact_error * 100, report.standable_area_exact,
+      report.isolated_exact * 100);
+  for (const VerifyFault& fault : report.faults) {
+    text += fmt::format("  {} at {:.4f} {:.4f} {:.4f}", fault.what, fault.position.x,
+                        fault.position.y, fault.position.z);
+    if (fault.what == "entered") text += fmt::format(" by triangle {}", fault.triangle);
+    text += '\n';
+  }
+  return text;
+}
+
+// The indices of the classes to verify.
+Result<std::vector<int32_t>> pick_classes(const World& world, const std::string& name) {
+  const std::vector<AvatarClass> classes = world.summary().classes;
+  std::vector<int32_t> picked;
+  std::string known = "all";
+  for (size_t i = 0; i < classes.size(); ++i) {
+    if (name == "all" || name == classes[i].name) picked.push_back(static_cast<int32_t>(i));
+    known += ", " + classes[i].name;
+  }
+  if (!picked.empty()) return picked;
+  return Error{Errc::kNotFound,
+               fmt::format("--class {}: the world has no such class; choose from {}", name, known)};
+}
+
+int verify(Session& session, VerifyOptions& options) {
+  const Result<World> world = World::open(options.world);
+  if (!world) return fail(world.error());
+  const Result<std::vector<int32_t>> picked = pick_classes(*world, options.class_name);
+  if (!picked) return fail(picked.error());
+  const Result<Scene> scene = read_sources(options.sources, session.context);
+  if (!scene) return fail(scene.error());
+
+  const std::vector<AvatarClass> classes = world->summary().classes;
+  std::vector<ClassReport> entries;
+  std::string text;
+  bool passed = true;
+  for (const int32_t index : *picked) {
+    options.config.avatar_class = index;
+    Result<VerifyReport> report = verify_world(*world, *scene, options.config, session.context);
+    if (!report) return fail(report.error());
+    entries.push_back({classes[static_cast<size_t>(index)].name, *std::move(report)});
+    text += class_text(entries.back());
+    passed = passed && passes(entries.back().report);
+  }
+  text += passed ? "passed\n" : "NOT passed\n";
+  print_result(session, verify_json(options, *scene, entries), text);
+  return passed ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& parser, Session& session) {
+  CLI::App* command =
+      add_command(parser, session, "verify", "Test a baked world against its source triangles",
+                  "throng bake builtin:garage -o garage.throng\n"
+                  "throng verify garage.throng --source builtin:garage --samples 2000");
+  const auto options = std::make_shared<VerifyOptions>();
+  command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
+  add_source_options(command, options->sources, "--source");
+  command
+      ->add_option("--samples", options->config.samples,
+                   "States a class; as many moves and points of surfaces again")
+      ->capture_default_str();
+  command->add_option("--seed", options->config.seed, "Seed of the samples")->capture_default_str();
+  command->add_option("--class", options->class_name, "Avatar class by name, or all")
+      ->capture_default_str();
+  command->add_option("--threads", options->config.workers, "Threads, 0 for all cores");
+  command->callback([&session, options] { session.exit_code = verify(session, *options); });
+}
+
+}  // namespace throng::app

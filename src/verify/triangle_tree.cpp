@@ -3,7 +3,6 @@
 #include "verify/triangle_tree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/parallel.h"
@@ -42,22 +41,6 @@ void split_at_median(Item* begin, Item* middle, Item* end) {
 
 }  // namespace
 
-std::array<float, 3> TriangleTree::round_down(Vec3d p) {
-  const auto down = [](double v) {
-    const float f = static_cast<float>(v);
-    return f <= v ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
-  };
-  return {down(p.x), down(p.y), down(p.z)};
-}
-
-std::array<float, 3> TriangleTree::round_up(Vec3d p) {
-  const auto up = [](double v) {
-    const float f = static_cast<float>(v);
-    return f >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
-  };
-  return {up(p.x), up(p.y), up(p.z)};
-}
-
 bool TriangleTree::overlaps(const Corners& c, const Box3d& box) {
   const auto apart = [&](double Vec3d::*axis) {
     return std::min({c[0].*axis, c[1].*axis, c[2].*axis}) > box.max.*axis ||
@@ -76,10 +59,7 @@ TriangleTree::TriangleTree(const Scene& scene, int32_t workers) : scene_(&scene)
   parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
     for (size_t t = begin; t < end; ++t) {
       const Corners c = corners(static_cast<uint32_t>(t));
-      const Vec3d centre = (c[0] + c[1] + c[2]) * (1.0 / 3.0);
-      items[t] = {{static_cast<float>(centre.x), static_cast<float>(centre.y),
-                   static_cast<float>(centre.z)},
-                  static_cast<uint32_t>(t)};
+      items[t] = {to_float((c[0] + c[1] + c[2]) * (1.0 / 3.0)), static_cast<uint32_t>(t)};
     }
   });
 
@@ -102,7 +82,7 @@ TriangleTree::TriangleTree(const Scene& scene, int32_t workers) : scene_(&scene)
       for (size_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
         for (const Vec3d& p : corners(order_[i])) box.add(p);
       }
-      nodes_[first_leaf_ + leaf] = {round_down(box.min), round_up(box.max)};
+      nodes_[first_leaf_ + leaf] = {to_float(box.min), to_float(box.max)};
     }
   });
   for (size_t i = first_leaf_; i-- > 0;) {

@@ -32,8 +32,8 @@ class TriangleTree {
   /// returns true; tells whether one did. The order is the same on every run.
   template <class Visit>
   bool find(const Box3d& box, Visit&& visit) const {
-    const auto low = round_down(box.min);
-    const auto high = round_up(box.max);
+    const auto low = to_float(box.min);
+    const auto high = to_float(box.max);
     std::array<uint32_t, 64> stack;
     size_t depth = 0;
     stack[depth++] = 0;
@@ -59,14 +59,16 @@ class TriangleTree {
   }
 
  private:
-  /// Rounded outward: a float box never loses a part of its triangle.
+  /// In floats. Rounding keeps the order of numbers, and queries are rounded too: what overlaps in
+  /// double overlaps here; what does not is sorted out by the triangles' own boxes.
   struct Node {
     std::array<float, 3> low;
     std::array<float, 3> high;
   };
 
-  static std::array<float, 3> round_down(Vec3d p);
-  static std::array<float, 3> round_up(Vec3d p);
+  static std::array<float, 3> to_float(Vec3d p) {
+    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  }
   static bool overlaps(const Corners& c, const Box3d& box);
   [[nodiscard]] size_t leaf_begin(size_t leaf) const { return order_.size() * leaf >> depth_; }
 

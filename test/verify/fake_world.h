@@ -24,10 +24,12 @@ struct FakeWorld {
   AvatarClass avatar;
   Floor floor;
   Floor floor_on_moves;  ///< What move and find_place say instead, if they differ.
+  Floor floor_found;     ///< What find_place alone says instead.
   bool moves_look_at_ends_only = false;
 
   [[nodiscard]] Claims claims() const {
     const Floor moving = floor_on_moves ? floor_on_moves : floor;
+    const Floor found = floor_found ? floor_found : moving;
     const auto place_at = [](const Floor& f, double x, double z) -> Place {
       const auto y = f(x, z);
       return y ? Place{{x, *y, z}, 1} : Place{};
@@ -46,8 +48,8 @@ struct FakeWorld {
                   return Place{};
                 },
             .find_place =
-                [moving, place_at](Vec3d p, double reach) {
-                  const Place place = place_at(moving, p.x, p.z);
+                [found, place_at](Vec3d p, double reach) {
+                  const Place place = place_at(found, p.x, p.z);
                   return place && std::fabs(place.position.y - p.y) <= reach ? place : Place{};
                 },
             .move =

@@ -49,6 +49,20 @@ TEST(Stance, RimOfTheFloorIsAnObstacle) {
   EXPECT_FALSE(stands(scene, {4.751, 0, 0}));
 }
 
+TEST(Stance, StraightRimDoesNotSlipBetweenTwoPointsOfTheDisc) {
+  for (int degrees = 0; degrees < 360; degrees += 3) {
+    const double c = std::cos(degrees * std::acos(-1.0) / 180);
+    const double s = std::sin(degrees * std::acos(-1.0) / 180);
+    const auto at = [&](double along, double across) {
+      return Vec3d{c * along - s * across, 0, s * along + c * across};
+    };
+    Scene scene;
+    scene.add_quad(at(-5, -5), at(0, -5), at(0, 5), at(-5, 5));
+    EXPECT_FALSE(stands(scene, at(-0.2499, 0))) << degrees;
+    EXPECT_TRUE(stands(scene, at(-0.252, 0))) << degrees;
+  }
+}
+
 TEST(Stance, DropOfLessThanTheBottomIsNoRim) {
   Scene scene = floor_scene();
   scene.add_quad({5, -0.39, -5}, {9, -0.39, -5}, {9, -0.39, 5}, {5, -0.39, 5});

@@ -74,6 +74,29 @@ TEST(Verify, WallThatOnlyMovesIgnoreIsEnteredOnTheWay) {
   EXPECT_EQ(report.torn, 0u);
 }
 
+TEST(Verify, BodyIsLookedAtOnTheWayAndNotOnlyAtTheEnds) {
+  FakeWorld world = flat_world(one_wall());
+  world.moves_look_at_ends_only = true;
+  world.floor_found = flat_world({}).floor;
+  const VerifyReport report = judge(world);
+  EXPECT_GT(report.entered, 20u);
+  EXPECT_EQ(report.torn, 0u);
+}
+
+TEST(Verify, MoveThatEndsOnAnotherFloorIsTorn) {
+  FakeWorld world = flat_world({});
+  Claims claims = world.claims();
+  claims.move = [honest = claims.move](const Place& from, double dx, double dz) {
+    MoveResult result = honest(from, dx, dz);
+    if (result.end == MoveEnd::kArrived) result.place.position.y += 0.6;
+    return result;
+  };
+  Context context;
+  const auto report = verify_claims(claims, world.scene, {.samples = 200}, context);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->torn, report->moves);
+}
+
 TEST(Verify, MoveThatJumpsOverAWallIsTorn) {
   FakeWorld world = flat_world(one_wall());
   world.moves_look_at_ends_only = true;
@@ -98,6 +121,19 @@ TEST(Verify, CeilingThatIsTooLowIsEntered) {
   };
   EXPECT_EQ(judge(with_ceiling(head), 300).entered, 0u);
   EXPECT_GT(judge(with_ceiling(head - 0.01), 300).entered, 0u);
+}
+
+TEST(Verify, HeadroomWithinTheResolutionMayBeLostToTheGrownBodyOnly) {
+  FakeWorld world = flat_world({});
+  const double y = world.avatar.height + 0.05;
+  world.scene.add_quad({4, y, 4}, {8, y, 4}, {8, y, 8}, {4, y, 8}, kAreaBlocked);
+  world.floor = [honest = world.floor](double x, double z) {
+    return Rectangle{4, 4, 8, 8}.distance(x, z) < 0.34 ? std::nullopt : honest(x, z);
+  };
+  const VerifyReport report = judge(world, 800);
+  EXPECT_EQ(report.lost_grown, 0);
+  EXPECT_EQ(report.isolated_grown, 0);
+  EXPECT_NEAR(report.lost_exact, 4.6 * 4.6 / 125, 0.06);
 }
 
 TEST(Verify, FloatingFeetAreMeasuredAndThenUnsupported) {

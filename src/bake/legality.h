@@ -65,7 +65,7 @@ struct LegalityScratch {
 /// What legal_cells found for one class.
 struct LegalCells {
   BitPlane legal{};
-  BitPlane close_call{};  // failed for the height of matter only: even slopes may deserve a closer look
+  BitPlane stands{};  // feet, and a surface that the class may stand on
 };
 
 /// True if nothing in sight can stop this class anywhere on the sheet, judged by the sheets'
@@ -77,6 +77,11 @@ bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
 /// holds the window (assembled) and the tilt (from make_tilt).
 void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
                  LegalityScratch& scratch, LegalCells& out);
+
+/// The same test for cells that failed it near a seam, where the window may have followed the wrong
+/// sheet: each column around may show any of its gaps. Slow, exact, for few cells.
+void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+                   const LegalityScratch& scratch, LegalCells& cells);
 
 /// True if any two legal neighbours on the sheet differ by at most the step.
 bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step);

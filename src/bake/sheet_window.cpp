@@ -66,7 +66,7 @@ void SheetWindow::assemble(const Neighbourhood& tiles, size_t sheet, int32_t rea
   }
   const TileSheets& tile = *tiles[4];
   copy_own(*tile[sheet]);
-  if (tile.size() > 1) fill_holes(tile, sheet, max_step, min_gap);
+  if (tile[sheet]->seams) fill_holes(tile, sheet, max_step, min_gap);
   fill_apron(tiles, *tile[sheet], reach);
 }
 

@@ -280,6 +280,7 @@ void summarise(Sheet& sheet) {
 }
 
 void clear(Sheet& sheet) {
+  sheet.seams = false;
   sheet.top.fill(kNone16);
   sheet.ceiling.fill(0);
   sheet.feet.fill(kNone16);
@@ -369,10 +370,12 @@ void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
   label_gaps(gaps, linker, scratch);
   std::vector<Component> components = number_components(gaps, scratch);
   const size_t found = components.size();
+  bool seams = false;
   for (size_t i = 0; i < found; ++i) {
     const bool too_tall = components[i].high - components[i].low > Sheet::kHighest - Sheet::kBelow;
     if (components[i].overlaps_itself || too_tall) {
       split_component(gaps, linker, static_cast<int32_t>(i), scratch, components);
+      seams = true;
     }
   }
   std::vector<int32_t> sheet_of;
@@ -395,7 +398,10 @@ void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
                 *dealt[static_cast<size_t>(sheet_of[static_cast<size_t>(index)])]);
     }
   }
-  for (auto& sheet : dealt) keep_if_used(std::move(sheet), gaps.base, pool, sheets);
+  for (auto& sheet : dealt) {
+    sheet->seams = seams;
+    keep_if_used(std::move(sheet), gaps.base, pool, sheets);
+  }
   std::stable_sort(sheets.begin(), sheets.end(), [](const auto& a, const auto& b) {
     return a->base + a->low_feet < b->base + b->low_feet;
   });

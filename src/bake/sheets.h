@@ -32,6 +32,7 @@ struct Sheet {
   uint16_t low_top = 0, high_top = 0;    // over cells with a gap
   uint16_t low_feet = 0, high_feet = 0;  // over cells with feet
   uint16_t low_ceiling = 0;              // over cells with a gap
+  bool seams = false;    // the tile has sheets that continue each other inside it
   bool one_code = false;                 // all feet have the code of the first of them
   uint8_t some_code = 0;
   alignas(64) std::array<uint16_t, kTileArea> top;      // matter below the gap; kNone16: no gap

@@ -3,23 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
-#include <optional>
 
+#include "world/walk.h"
 #include "world/zone_data.h"
 
-/// Walking on level tiles: the conservative form of [ML06] algorithm 1.
+/// The ground of a mapped world for one class, as world/walk.h wants it.
 namespace throng {
-
-/// Positions on the ground: 1/2048 cell from the corner of the world's grid.
-inline constexpr int32_t kUnitBits = 11;
-inline constexpr int32_t kUnitsPerCell = 1 << kUnitBits;
-
-struct GroundPoint {
-  int64_t x = 0, z = 0;  // units
-  [[nodiscard]] int32_t cell_x() const { return static_cast<int32_t>(x >> kUnitBits); }
-  [[nodiscard]] int32_t cell_z() const { return static_cast<int32_t>(z >> kUnitBits); }
-};
 
 /// One level of the world with what a class needs to walk on it.
 struct GroundLevel {
@@ -40,16 +29,21 @@ GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_l
 /// By the world's number; null zone if its zone cannot be used.
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class);
 
-/// The level on which a body that stands on `from` at cell (x, z) stands after the step into the
-/// neighbouring cell (nx, nz), or none: not legal there, or more than the step up or down. The
-/// printed algorithm 1 checks the ceiling over A only; a cell is legal here only if a body clears the
-/// ceilings of all cells that it can reach from it, so A and B are checked both.
-std::optional<GroundLevel> step_to(const WorldData& world, const GroundLevel& from, int32_t x, int32_t z,
-                                   int32_t nx, int32_t nz, int32_t avatar_class, int32_t step_mm);
+struct WorldGround {
+  using Level = GroundLevel;
+  const WorldData& world;
+  int32_t avatar_class;
 
-/// Walks from `from` to `to` in a straight line, cell by cell; through a corner only if both cells
-/// beside it let the body pass. False leaves `level` as it was.
-bool walk(const WorldData& world, GroundLevel& level, GroundPoint from, GroundPoint to,
-          int32_t avatar_class, int32_t step_mm);
+  [[nodiscard]] bool is_legal(const Level& level, int32_t x, int32_t z) const { return level.is_legal(x, z); }
+  [[nodiscard]] int32_t sample(const Level& level, int32_t x, int32_t z) const { return level.view.sample(x, z); }
+  [[nodiscard]] bool step_safe(const Level& level) const { return level.step_safe; }
+  template <class Visit>
+  void for_tile(int32_t tile_x, int32_t tile_z, Visit visit) const {
+    const auto tile = world.tile_levels(tile_x, tile_z);
+    for (uint32_t i = tile.first; i < tile.last; ++i) {
+      visit(ground_level(*tile.zone, tile.zone_first + i - tile.first, i, avatar_class));
+    }
+  }
+};
 
 }  // namespace throng

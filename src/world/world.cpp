@@ -217,7 +217,7 @@ MoveResult World::move(int32_t avatar_class, const Place& from, double dx, doubl
   GroundLevel level = ground_level(*data_, from.level1 - 1, avatar_class);
   if (level.zone == nullptr || !level.is_legal(start.cell_x() & 63, start.cell_z() & 63)) return result;
   const int32_t step = step_mm(data_->summary.classes[static_cast<size_t>(avatar_class)]);
-  if (!walk(*data_, level, start, end, avatar_class, step)) return result;
+  if (!walk(WorldGround{*data_, avatar_class}, level, start, end, step)) return result;
   result.place = {{goal.x, feet_at(level, end), goal.z}, level.world_level + 1};
   result.end = MoveEnd::kArrived;
   return result;

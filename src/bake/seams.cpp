@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <bit>
+#include <cstdlib>
+
+#include "bake/legality.h"
+
+// Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its sheet is cut,
+// and near the cut a window may have followed the lower floor where the body walks on the upper. Any gap
+// that holds the body proves a column free, so there all gaps are asked.
+namespace throng {
+namespace {
+
+constexpr int32_t kLast = kTileSide - 1;
+
+// Absolute heights that a body on one cell needs. [mm]
+struct Need {
+  int32_t low_top, high_top, ceiling;
+};
+
+bool column_is_free(const TileSheets& tile, size_t cell, const Need& need) {
+  for (const auto& sheet : tile) {
+    if (sheet->top[cell] == kNone16) continue;
+    const int32_t top = sheet->base + sheet->top[cell];
+    const bool room = sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;
+    if (top <= need.high_top && top >= need.low_top && room) return true;
+  }
+  return false;
+}
+
+bool body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int32_t z,
+               const Need& need) {
+  for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
+    const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
+    for (int32_t dx = -w; dx <= w; ++dx) {
+      const int32_t cx = x + dx, cz = z + dz;
+      const int32_t side = (cz < 0 ? 0 : (cz > kLast ? 6 : 3)) + (cx < 0 ? 0 : (cx > kLast ? 2 : 1));
+      const TileSheets* tile = tiles[static_cast<size_t>(side)];
+      const size_t cell = static_cast<size_t>((cz & kLast) * kTileSide + (cx & kLast));
+      if (tile == nullptr || !column_is_free(*tile, cell, need)) return false;
+    }
+  }
+  return true;
+}
+
+// Cells of a sheet whose neighbour is continued by another sheet of the tile.
+BitPlane seam_cells(const TileSheets& tile, const Sheet& own, int32_t max_step) {
+  BitPlane seams{};
+  const auto continues = [&](const Sheet& sheet, size_t cell, int32_t top) {
+    return sheet.top[cell] != kNone16 && std::abs(sheet.base + sheet.top[cell] - top) <= max_step;
+  };
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    for (int32_t x = 0; x < kTileSide; ++x) {
+      const size_t cell = static_cast<size_t>(z * kTileSide + x);
+      if (own.top[cell] == kNone16) continue;
+      const int32_t top = own.base + own.top[cell];
+      const std::array<std::array<int32_t, 2>, 4> around{{{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
+      for (const auto& [nx, nz] : around) {
+        if (nx < 0 || nz < 0 || nx > kLast || nz > kLast) continue;
+        const size_t next = static_cast<size_t>(nz * kTileSide + nx);
+        if (continues(own, next, top)) continue;
+        for (const auto& other : tile) {
+          if (other.get() != &own && continues(*other, next, top)) {
+            seams[static_cast<size_t>(z)] |= 1ULL << x;
+          }
+        }
+      }
+    }
+  }
+  return seams;
+}
+
+// Every cell within `reach` of a set bit, along rows and columns.
+BitPlane widened(const BitPlane& plane, int32_t reach) {
+  BitPlane across = plane, out{};
+  for (auto& row : across) {
+    for (int32_t i = 0; i < reach; ++i) row |= (row << 1) | (row >> 1);
+  }
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    for (int32_t dz = -reach; dz <= reach; ++dz) {
+      if (z + dz < 0 || z + dz > kLast) continue;
+      out[static_cast<size_t>(z)] |= across[static_cast<size_t>(z + dz)];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+                   const LegalityScratch& scratch, LegalCells& cells) {
+  const TileSheets& tile = *tiles[4];
+  const Sheet& own = *tile[sheet];
+  BitPlane doubtful{};
+  if (own.seams) doubtful = widened(seam_cells(tile, own, body.bottom), body.reach);
+  // Along the border of a tile of several sheets the window may have followed the wrong one too.
+  const auto several = [&](size_t side) { return tiles[side] != nullptr && tiles[side]->size() > 1; };
+  const int32_t reach = std::min(body.reach, kTileSide);
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    uint64_t& row = doubtful[static_cast<size_t>(z)];
+    const uint64_t left = reach >= 64 ? ~uint64_t{0} : (1ULL << reach) - 1;
+    if (several(3)) row |= left;
+    if (several(5)) row |= left << (kTileSide - reach);
+    if (z < reach && (several(0) || several(1) || several(2))) row = ~uint64_t{0};
+    if (z >= kTileSide - reach && (several(6) || several(7) || several(8))) row = ~uint64_t{0};
+  }
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    const size_t r = static_cast<size_t>(z);
+    uint64_t row = doubtful[r] & cells.stands[r] & ~cells.legal[r];
+    for (; row != 0; row &= row - 1) {
+      const int32_t x = std::countr_zero(row);
+      const size_t cell = static_cast<size_t>(z * kTileSide + x);
+      const int32_t feet = own.base + own.feet[cell], tilt = scratch.tilt[cell];
+      const Need need{feet + tilt - body.bottom, feet - tilt + body.bottom - 1,
+                      feet + tilt + body.height};
+      if (body_fits(tiles, body, x, z, need)) cells.legal[r] |= 1ULL << x;
+    }
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/crowd.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "crowd/crowd_check.h"
+#include "crowd/crowd_step.h"
+#include "crowd/placement.h"
+
+namespace throng {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr int32_t kBlockPixels = 16;
+
+// A direction, uniform over the circle, without trigonometry: a point of the disc, put on its rim.
+std::pair<double, double> random_direction(uint64_t seed, uint64_t id) {
+  for (uint64_t i = 0;; i += 2) {
+    const double x = random_unit(seed, id, i) * 2 - 1, z = random_unit(seed, id, i + 1) * 2 - 1;
+    const double square = x * x + z * z;
+    if (square > 1 || square < 1e-4) continue;
+    const double size = std::sqrt(square);
+    return {x / size, z / size};
+  }
+}
+
+}  // namespace
+
+struct Crowd::State {
+  World world;
+  CrowdConfig config;
+  AvatarClass body;
+  CrowdGround ground;
+  std::optional<CollisionMap> map;
+  std::optional<CrowdBlocks> blocks;
+  std::vector<Avatar> avatars;   // by block
+  std::vector<Avatar> scratch;
+  double unit = 0;               // metres
+  int32_t sub_steps = 1;
+  uint64_t step = 0;
+  uint64_t sub_step = 0;
+  int64_t drift = 0;             // units that anybody can have moved since the last sort
+  int64_t stride = 0;            // units that anybody can move in a sub-step
+  int64_t max_drift = 0;
+};
+
+Crowd::Crowd(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Crowd::Crowd(Crowd&&) noexcept = default;
+Crowd& Crowd::operator=(Crowd&&) noexcept = default;
+Crowd::~Crowd() = default;
+
+Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
+  const auto bad = [](const std::string& what) { return Error{Errc::kBadConfig, "crowd: " + what}; };
+  if (!world.data()) return bad("there is no world");
+  const WorldData& data = *world.data();
+  if (config.avatar_class < 0 || static_cast<size_t>(config.avatar_class) >= data.summary.classes.size()) {
+    return Error{Errc::kNotFound, "crowd: class " + std::to_string(config.avatar_class) +
+                                      " is not in this world, which has " +
+                                      std::to_string(data.summary.classes.size())};
+  }
+  if (!(config.dt > 0 && config.dt <= 10)) return bad("dt must be above 0 and at most 10 s");
+  if (!(config.speed >= 0 && config.speed <= 1000)) return bad("speed must be 0 to 1000 m/s");
+  if (config.workers < 0) return bad("workers must be 0 (all cores) or more");
+
+  auto state = std::make_unique<State>();
+  state->world = world;
+  state->config = config;
+  state->body = data.summary.classes[static_cast<size_t>(config.avatar_class)];
+  const AvatarClass& body = state->body;
+  auto ground = CrowdGround::make(data, config.avatar_class);
+  if (!ground) return ground.error();
+  state->ground = std::move(*ground);
+
+  const double cell = data.summary.cell;
+  const auto pixel_cells = static_cast<int32_t>(std::ceil(2 * body.radius / cell - 1e-9));
+  const auto body_mm = static_cast<int32_t>(std::ceil(body.height * 1000 - 1e-6));
+  const auto low = static_cast<int32_t>(std::floor(data.summary.bounds.min.y * 1000)) - 1000;
+  const auto high = static_cast<int32_t>(std::ceil(data.summary.bounds.max.y * 1000)) + 1000;
+  state->map.emplace(data.width, data.depth, pixel_cells, low, high, body_mm);
+  state->unit = cell / kUnitsPerCell;
+
+  // Nobody moves further than a radius at a time.
+  const double speed = config.speed > 0 ? config.speed : body.speed;
+  const double length = speed * config.dt;
+  state->sub_steps = std::max(1, static_cast<int32_t>(std::ceil(length / body.radius - 1e-9)));
+  if (state->sub_steps > 10000) return bad("speed times dt is over 10000 radii; take shorter steps");
+  const double units = length / state->sub_steps / state->unit;
+  state->stride = static_cast<int64_t>(std::ceil(units)) + 1;
+  // A mover reads one pixel further than it goes; two movers of one colour keep a block between them.
+  const int64_t pixel_units = int64_t{pixel_cells} << kUnitBits;
+  state->max_drift = (kBlockPixels / 2 - 2) * pixel_units;
+  state->blocks.emplace(data.width, data.depth, pixel_cells, kBlockPixels);
+
+  state->avatars = place_avatars(state->ground, config.avatars, config.seed, *state->map);
+  if (state->avatars.size() < config.avatars) {
+    return Error{Errc::kLimit, "crowd: " + std::to_string(state->avatars.size()) + " avatars of class " +
+                                   body.name + " fit in this world, " + std::to_string(config.avatars) +
+                                   " were asked for; ask for fewer or take a larger world"};
+  }
+  for (Avatar& avatar : state->avatars) {
+    const auto [dx, dz] = random_direction(config.seed ^ 0x68656164, avatar.id);
+    avatar.vx = static_cast<int32_t>(std::lround(dx * units));
+    avatar.vz = static_cast<int32_t>(std::lround(dz * units));
+  }
+  state->scratch.resize(state->avatars.size());
+  state->drift = state->max_drift + 1;  // sort first
+  return Crowd(std::move(state));
+}
+
+StepReport Crowd::step() {
+  State& s = *state_;
+  const auto start = Clock::now();
+  StepReport report;
+  report.step = ++s.step;
+  std::atomic<uint64_t> moved{0}, wall{0}, avatar{0}, waited{0};
+  StepInput input{.ground = &s.ground,
+                  .map = &*s.map,
+                  .seed = s.config.seed,
+                  .step_mm = static_cast<int32_t>(std::floor(s.body.step * 1000 + 1e-6)),
+                  .units_x = s.world.data()->width << kUnitBits,
+                  .units_z = s.world.data()->depth << kUnitBits};
+  for (int32_t i = 0; i < s.sub_steps; ++i) {
+    if (s.drift + s.stride > s.max_drift) {
+      const auto sort_start = Clock::now();
+      s.blocks->sort(s.avatars, s.scratch);
+      s.drift = 0;
+      report.seconds_sort += seconds_since(sort_start);
+    }
+    const auto move_start = Clock::now();
+    input.step = ++s.sub_step;
+    for (uint32_t turn = 0; turn < 4; ++turn) {
+      // Colours take turns at being first.
+      const auto& runs = s.blocks->runs((turn + static_cast<uint32_t>(input.step)) & 3);
+      parallel_ranges(runs.size(), 16, s.config.workers, [&](size_t begin, size_t end) {
+        StepCounts counts;
+        for (size_t r = begin; r < end; ++r) {
+          move_run(input, s.avatars.data() + runs[r].first, s.avatars.data() + runs[r].last, counts);
+        }
+        moved.fetch_add(counts.moved, std::memory_order_relaxed);
+        wall.fetch_add(counts.blocked_by_wall, std::memory_order_relaxed);
+        avatar.fetch_add(counts.blocked_by_avatar, std::memory_order_relaxed);
+        waited.fetch_add(counts.waited, std::memory_order_relaxed);
+      });
+    }
+    s.drift += s.stride;
+    report.seconds_move += seconds_since(move_start);
+  }
+  report.moved = moved;
+  report.blocked_by_wall = wall;
+  report.blocked_by_avatar = avatar;
+  report.waited = waited;
+  report.seconds_total = seconds_since(start);
+  return report;
+}
+
+CrowdCheck Crowd::check() const {
+  return check_avatars(state_->world, state_->config.avatar_class, state_->avatars, state_->config.workers);
+}
+
+uint64_t Crowd::state_hash() const {
+  std::vector<Avatar> by_id(state_->avatars.size());
+  for (const Avatar& avatar : state_->avatars) by_id[avatar.id] = avatar;
+  return hash_span(std::span<const Avatar>(by_id));
+}
+
+void Crowd::read(std::vector<AvatarState>& out) const {
+  const State& s = *state_;
+  out.resize(s.avatars.size());
+  const Vec3d origin = s.world.data()->summary.origin;
+  for (const Avatar& avatar : s.avatars) {
+    AvatarState& state = out[avatar.id];
+    state.id = avatar.id;
+    state.avatar_class = s.config.avatar_class;
+    state.position = {origin.x + (avatar.x + 0.5) * s.unit, avatar.y * 1e-3,
+                      origin.z + (avatar.z + 0.5) * s.unit};
+    const double size = std::hypot(avatar.vx, avatar.vz);
+    state.heading_x = size > 0 ? avatar.vx / size : 0;
+    state.heading_z = size > 0 ? avatar.vz / size : 1;
+  }
+}
+
+uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->avatars.size()); }
+
+uint64_t Crowd::bytes() const {
+  return (state_->avatars.capacity() + state_->scratch.capacity()) * sizeof(Avatar) +
+         state_->ground.bytes() + state_->map->bytes() + state_->blocks->bytes();
+}
+
+}  // namespace throng

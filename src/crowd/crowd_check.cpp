@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/crowd_check.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/parallel.h"
+#include "world/ground.h"
+
+namespace throng {
+
+CrowdCheck check_avatars(const World& world, int32_t avatar_class, std::span<const Avatar> avatars,
+                         int32_t workers) {
+  const WorldData& data = *world.data();
+  const AvatarClass& body = data.summary.classes[static_cast<size_t>(avatar_class)];
+  const double unit = data.summary.cell / kUnitsPerCell;
+
+  std::atomic<uint64_t> wall_entries{0}, overlaps{0};
+  parallel_ranges(avatars.size(), 1024, workers, [&](size_t begin, size_t end) {
+    uint64_t found = 0;
+    for (size_t i = begin; i < end; ++i) {
+      const Avatar& a = avatars[i];
+      const GroundLevel level = ground_level(data, a.level, avatar_class);
+      const auto [cx, cz] = std::pair{a.x >> kUnitBits, a.z >> kUnitBits};
+      const auto tile = data.tile_levels(cx >> 6, cz >> 6);
+      const bool on_tile = a.level >= tile.first && a.level < tile.last;
+      const bool stands = on_tile && level.zone != nullptr && level.is_legal(cx & 63, cz & 63);
+      const int32_t feet =
+          stands ? level.view.feet(cx & 63, cz & 63, a.x & (kUnitsPerCell - 1), a.z & (kUnitsPerCell - 1)) : 0;
+      found += !stands || feet != a.y;
+    }
+    wall_entries += found;
+  });
+
+  // Avatars in order of a column of squares one body wide, then along it: partners are near in the list.
+  const double width = 2 * body.radius;
+  struct Entry {
+    int64_t column;
+    double x, z, y;
+  };
+  std::vector<Entry> entries(avatars.size());
+  for (size_t i = 0; i < avatars.size(); ++i) {
+    const Avatar& a = avatars[i];
+    const double x = a.x * unit;
+    entries[i] = {static_cast<int64_t>(std::floor(x / width)), x, a.z * unit, a.y * 1e-3};
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.column != b.column ? a.column < b.column : a.z < b.z;
+  });
+  const auto clash = [&](const Entry& a, const Entry& b) {
+    const double dx = a.x - b.x, dz = a.z - b.z;
+    const double reach = width - 1e-9;
+    return dx * dx + dz * dz < reach * reach && std::fabs(a.y - b.y) < body.height;
+  };
+  parallel_ranges(entries.size(), 1024, workers, [&](size_t begin, size_t end) {
+    uint64_t found = 0;
+    for (size_t i = begin; i < end; ++i) {
+      const Entry& a = entries[i];
+      for (size_t j = i + 1; j < entries.size() && entries[j].column == a.column &&
+                             entries[j].z - a.z < width; ++j) {
+        found += clash(a, entries[j]);
+      }
+      const Entry key{a.column + 1, 0, a.z - width, 0};
+      auto next = std::lower_bound(entries.begin(), entries.end(), key, [](const Entry& p, const Entry& q) {
+        return p.column != q.column ? p.column < q.column : p.z < q.z;
+      });
+      for (; next != entries.end() && next->column == a.column + 1 && next->z - a.z < width; ++next) {
+        found += clash(a, *next);
+      }
+    }
+    overlaps += found;
+  });
+  return {wall_entries, overlaps};
+}
+
+}  // namespace throng

@@ -24,9 +24,8 @@ struct SliceConfig {
 
 /// One kept slice. Heights are on the world's grid of 1 mm.
 struct Slice {
-  int32_t height = 0;  ///< Where the cut was taken. [mm]
-  std::vector<int32_t>
-      surface;  ///< Highest surface below it, per cell; the far plane if none. [mm]
+  int32_t height = 0;            ///< Where the cut was taken. [mm]
+  std::vector<int32_t> surface;  ///< Highest surface below, per cell; the far plane if none. [mm]
 };
 
 /// All kept slices, highest first. Cell (x, z) is index z * width + x and covers

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "bake/columns.h"
+#include "throng/builtin_worlds.h"
+
+namespace {
+
+using namespace throng;
+
+// A built-in world cut into tiles, one of which after the other is rasterised.
+struct Tiles {
+  Grid grid;
+  std::vector<CellTriangle> triangles;
+  TriangleBins bins;
+
+  explicit Tiles(const Scene& scene) : grid(make_grid(scene.bounds(), 0.1)) {
+    const std::vector<AvatarClass> classes = default_classes();
+    const SurfaceCoder coder(scene, classes);
+    for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
+      triangles.push_back(to_cell_triangle(scene, t, grid, coder.code(t)));
+    }
+    bins = bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), kTileSide, 0);
+  }
+
+  void rasterise(size_t tile, TileColumns& columns) const {
+    const auto index = static_cast<int32_t>(tile);
+    rasterise_tile(
+        triangles, {bins.items.data() + bins.first[tile], bins.first[tile + 1] - bins.first[tile]},
+        index % bins.squares_x * kTileSide, index / bins.squares_x * kTileSide, {}, 500, columns);
+  }
+};
+
+// Items are cells.
+void rasterise(benchmark::State& state, const char* name) {
+  const auto scene = make_builtin_world({.name = name});
+  if (!scene) return state.SkipWithError(scene.error().message.c_str());
+  const Tiles tiles(*scene);
+  TileColumns columns;
+  for (auto _ : state) {
+    for (size_t tile = 0; tile + 1 < tiles.bins.first.size(); ++tile) {
+      tiles.rasterise(tile, columns);
+      benchmark::DoNotOptimize(columns.count.data());
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * (static_cast<int64_t>(tiles.bins.first.size()) - 1) *
+                          kTileArea);
+}
+
+void rasterise_and_find_gaps(benchmark::State& state, const char* name) {
+  const auto scene = make_builtin_world({.name = name});
+  if (!scene) return state.SkipWithError(scene.error().message.c_str());
+  const Tiles tiles(*scene);
+  TileColumns columns;
+  TileGaps gaps;
+  for (auto _ : state) {
+    for (size_t tile = 0; tile + 1 < tiles.bins.first.size(); ++tile) {
+      tiles.rasterise(tile, columns);
+      find_gaps(columns, 500, gaps);
+      benchmark::DoNotOptimize(gaps.count.data());
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * (static_cast<int64_t>(tiles.bins.first.size()) - 1) *
+                          kTileArea);
+}
+
+BENCHMARK_CAPTURE(rasterise, garage, "garage");
+BENCHMARK_CAPTURE(rasterise, stairs, "stairs");
+BENCHMARK_CAPTURE(rasterise_and_find_gaps, garage, "garage");
+BENCHMARK_CAPTURE(rasterise_and_find_gaps, stairs, "stairs");
+
+}  // namespace

@@ -6,7 +6,6 @@ int main(int argc, char** argv) {
   using namespace throng::app;
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {
     // One line a command, in the order of --help.
-    (void)parser;
-    (void)session;
+    add_world(parser, session);
   });
 }

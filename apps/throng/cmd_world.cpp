@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "command.h"
+#include "throng/builtin_worlds.h"
+
+// throng world: writes a built-in world as a GLB file.
+namespace throng::app {
+namespace {
+
+struct WorldOptions {
+  BuiltinWorldConfig config;
+  std::string output;
+  bool list = false;
+};
+
+int list_worlds(const Session& session) {
+  Json worlds = Json::array();
+  std::string text;
+  for (const BuiltinWorldInfo& info : builtin_worlds()) {
+    worlds.push_back({{"name", std::string(info.name)},
+                      {"summary", std::string(info.summary)},
+                      {"default_size", info.default_size}});
+    text += fmt::format("{:<11} {:>6} m  {}\n", info.name, info.default_size, info.summary);
+  }
+  print_result(session, {{"worlds", worlds}}, text);
+  return kDone;
+}
+
+int make_world(const Session& session, const WorldOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const Result<Scene> scene = make_builtin_world(options.config);
+  if (!scene) return fail(scene.error());
+  const double made = seconds();
+  if (session.context.cancel)
+    return fail({Errc::kCancelled, "world: stopped; nothing was written"});
+  const Result<void> written = write_glb(*scene, options.output);
+  if (!written) return fail(written.error());
+
+  const Box3d box = scene->bounds();
+  const Vec3d size = box.max - box.min;
+  const Json json = {{"world", options.config.name},
+                     {"file", options.output},
+                     {"triangles", scene->triangles.size()},
+                     {"vertices", scene->positions.size()},
+                     {"parts", scene->parts.size()},
+                     {"min", {box.min.x, box.min.y, box.min.z}},
+                     {"max", {box.max.x, box.max.y, box.max.z}},
+                     {"extent", {size.x, size.y, size.z}},
+                     {"seconds_make", made},
+                     {"seconds", seconds()},
+                     {"peak_memory", peak_memory()}};
+  print_result(
+      session, json,
+      fmt::format("{}: {} triangles, {} vertices, {:.2f} x {:.2f} m, {:.2f} m high, {:.1f} s\n",
+                  options.output, scene->triangles.size(), scene->positions.size(), size.x, size.z,
+                  size.y, seconds()));
+  return kDone;
+}
+
+}  // namespace
+
+void add_world(CLI::App& parser, Session& session) {
+  CLI::App* command = add_command(parser, session, "world", "Write a built-in world as a GLB file",
+                                  "throng world --list\n"
+                                  "throng world garage --size 120 --levels 4 -o garage.glb");
+  const auto options = std::make_shared<WorldOptions>();
+  BuiltinWorldConfig& config = options->config;
+  config.name.clear();
+  auto* list = command->add_flag("--list", options->list, "Name the built-in worlds and stop");
+  command->add_option("name", config.name, "One of the names that --list shows")->type_name("NAME");
+  command->add_option("--size", config.size, "Side of the footprint [m]; 0: the world's own")
+      ->type_name("M");
+  command->add_option("--levels", config.levels, "Storeys, where the world has storeys")
+      ->type_name("N");
+  command
+      ->add_option("--triangles", config.triangles,
+                   "Grow the world to about this many (powerplant, city)")
+      ->type_name("N");
+  command->add_option("--seed", config.seed, "Another seed, another world")->type_name("S");
+  auto* output =
+      command->add_option("-o,--output", options->output, "File to write")->type_name("GLB");
+  list->excludes(output);
+  command->callback([&session, options] {
+    if (options->list) {
+      session.exit_code = list_worlds(session);
+    } else if (options->config.name.empty() || options->output.empty()) {
+      session.exit_code =
+          fail({Errc::kBadConfig,
+                "world: say which one and where to: throng world NAME -o FILE.glb, or --list"});
+    } else {
+      session.exit_code = make_world(session, *options);
+    }
+  });
+}
+
+}  // namespace throng::app

@@ -70,7 +70,7 @@ struct CrowdRow {
 // A garage with four square metres for each avatar, so that rows differ in size, not in density.
 BuiltinWorldConfig garage_for(uint32_t avatars) {
   BuiltinWorldConfig world{.name = "garage", .levels = 4};
-  world.size = std::max(30.0, std::ceil(std::sqrt(avatars * 4.0 / 4)));
+  world.size = std::max(60.0, std::ceil(std::sqrt(avatars)));
   return world;
 }
 

@@ -6,6 +6,9 @@ int main(int argc, char** argv) {
   using namespace throng::app;
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {
     // One line a command, in the order of --help.
+    add_info(parser, session);
+    add_run(parser, session);
     add_world(parser, session);
+    add_bench(parser, session);
   });
 }

@@ -38,7 +38,7 @@ struct Plan {
   // What lies along the boundary below row bz: a canal, a street with an underpass, a street.
   [[nodiscard]] bool is_canal(int32_t bz) const { return bz > 0 && bz < n && bz % 4 == 2; }
   [[nodiscard]] bool has_underpass(int32_t bx, int32_t bz) const {
-    return bz > 0 && bz < n && bz % 4 == 0 && bx % 4 == 1;
+    return bz > 0 && bz < n && bz % 4 == 1 && bx % 4 == 1;
   }
   [[nodiscard]] bool has_canal_stairs(int32_t bx, int32_t bz) const {
     return is_canal(bz) && bx % 2 == 1;

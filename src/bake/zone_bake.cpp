@@ -177,7 +177,10 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       }
       verdict.any = any != 0;
       verdict.all = all == ~uint64_t{0};
-      verdict.step_safe = any == 0 || body.bottom <= body.step || step_safe(sheet, cells.legal, body.step);
+      // A window that fits within a step makes neighbours safe, but only where the sheet is the only
+      // one: at a seam the neighbour that fits is another sheet's, and this one's may be a storey off.
+      const bool window_is_enough = tile.sheets.size() == 1 && body.bottom <= body.step;
+      verdict.step_safe = any == 0 || window_is_enough || step_safe(sheet, cells.legal, body.step);
     }
   }
   worker.seconds_clearance += seconds_since(start);

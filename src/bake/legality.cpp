@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "world/surface.h"
-
 // Windowed maxima and minima with a disc: rows first, for each width that the disc has, by doubling;
 // then columns. (The horizontal part after van Herk, Gil, Werman; the windows are a few cells, so
 // doubling beats their recurrences.) Everything is 16 bit, so a vector holds a quarter of a row or more.
@@ -191,29 +189,6 @@ void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& l
 
 bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
   return HWY_DYNAMIC_DISPATCH(StepSafe)(sheet, legal, step);
-}
-
-void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
-  if (sheet.present == kTileArea && sheet.low_feet == sheet.high_feet) {
-    tilt.fill(0);
-    return;
-  }
-  for (int32_t z = 0; z < kTileSide; ++z) {
-    for (int32_t x = 0; x < kTileSide; ++x) {
-      const auto at = [&](int32_t cx, int32_t cz) {
-        return sheet.feet[static_cast<size_t>(cz * kTileSide + cx)];
-      };
-      const auto slope = [&](int32_t i, auto cell) {
-        return sheet_slope(
-            i, [&](int32_t k) { return static_cast<int32_t>(cell(k)); },
-            [&](int32_t k) { return cell(k) != kNone16; });
-      };
-      const int32_t gx = slope(x, [&](int32_t k) { return at(k, z); });
-      const int32_t gz = slope(z, [&](int32_t k) { return at(x, k); });
-      tilt[static_cast<size_t>(z * kTileSide + x)] =
-          static_cast<uint16_t>(std::min((std::abs(gx) + std::abs(gz) + 1) / 2, 65535));
-    }
-  }
 }
 
 }  // namespace throng

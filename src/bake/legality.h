@@ -59,7 +59,7 @@ class SheetWindow {
 struct LegalityScratch {
   SheetWindow window;
   std::vector<uint16_t> rows;  // horizontal extremes
-  std::array<uint16_t, kTileArea> tilt;  // half of the feet's rise over a cell
+  alignas(64) std::array<uint16_t, kTileArea> tilt;  // half of the feet's rise over a cell
 };
 
 /// What legal_cells found for one class.
@@ -85,8 +85,5 @@ void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& b
 
 /// True if any two legal neighbours on the sheet differ by at most the step.
 bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step);
-
-/// Half of what the feet may rise or fall over each cell, see world/surface.h. [mm]
-void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt);
 
 }  // namespace throng

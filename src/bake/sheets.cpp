@@ -3,319 +3,375 @@
 #include "bake/sheets.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
-// Gaps of neighbouring columns belong together when a step leads from one to the other. Connected
-// components are found with union-find in one raster pass (Rosenfeld, Pfaltz. Sequential operations
-// in digital picture processing. 1966); a component that lies over itself, like a spiral ramp, is
-// split along its breadth-first order; then components are packed first-fit into sheets.
+#include "bake/sheet_kernels.h"
+
+// Gaps of neighbouring columns belong together when a step leads from one to the other. Runs of linked
+// gaps in a row are the units; they are joined with union-find in one raster pass (after Rosenfeld,
+// Pfaltz. Sequential operations in digital picture processing. 1966). Most gaps continue the gap of
+// the same rank beside them, which vectors find; only where ranks shift, at walls and edges, are
+// columns compared one by one. A component that lies over itself, like a spiral ramp, is split along
+// its breadth-first order; then components are packed first-fit into sheets.
 namespace throng {
 namespace {
 
 constexpr int32_t kSide = kTileSide;
+constexpr int32_t kMaxRange = Sheet::kHighest - Sheet::kBelow;  // of tops in a sheet [mm]
 
-struct GapRef {
-  int32_t cell;
-  int32_t layer;
+using Rows = std::array<uint64_t, kTileSide>;
+
+uint64_t run_mask(int32_t first, int32_t last) {
+  return (~uint64_t{0} >> (63 - (last - first))) << first;
+}
+
+// A run of linked gaps of one layer in one row.
+struct Run {
+  int32_t layer, z;
+  uint64_t cells;
+  int32_t parent;     // union-find
+  int32_t component;
 };
 
 struct Component {
-  int32_t cells = 0;
-  int32_t first_cell = 0;
-  int32_t low = INT32_MAX, high = INT32_MIN;  // tops
-  int32_t last_cell = -1;
+  Rows cells{};
+  int32_t count = 0;
+  TopRange tops;
   bool overlaps_itself = false;
 };
 
-struct Linker {
-  const TileGaps& gaps;
-  int32_t max_step;
-  int32_t min_gap;
-
-  [[nodiscard]] bool linked(size_t cell_a, const GapLayer& a, size_t cell_b, const GapLayer& b) const {
-    const int32_t top_a = a.top[cell_a], top_b = b.top[cell_b];
-    const int32_t step = top_a > top_b ? top_a - top_b : top_b - top_a;
-    if (step > max_step) return false;
-    return std::min(a.ceiling[cell_a], b.ceiling[cell_b]) - std::max(top_a, top_b) >= min_gap;
-  }
+// What goes into a sheet: gaps of a layer in a row.
+struct Piece {
+  int32_t layer, z;
+  uint64_t cells;
+  int32_t component;
 };
 
-int32_t find_root(std::vector<int32_t>& parent, int32_t label) {
-  while (parent[static_cast<size_t>(label)] != label) {
-    auto& up = parent[static_cast<size_t>(label)];
-    up = parent[static_cast<size_t>(up)];
-    label = up;
+class Dealer {
+ public:
+  Dealer(const TileGaps& gaps, const BodyLimits& limits) : gaps_(gaps), limits_(limits) {}
+
+  void deal(SheetPool& pool, TileSheets& sheets);
+
+ private:
+  [[nodiscard]] const GapLayer& layer(int32_t k) const { return *gaps_.layers[static_cast<size_t>(k)]; }
+  [[nodiscard]] bool linked(size_t cell_a, int32_t a, size_t cell_b, int32_t b) const {
+    const GapLayer &p = layer(a), &q = layer(b);
+    const int32_t high = std::max(p.top[cell_a], q.top[cell_b]);
+    const int32_t low = std::min(p.top[cell_a], q.top[cell_b]);
+    if (high - low > limits_.max_bottom) return false;
+    return std::min(p.ceiling[cell_a], q.ceiling[cell_b]) - high >= limits_.min_gap;
   }
-  return label;
+  int32_t root(int32_t run);
+  void unite(int32_t a, int32_t b);
+  void find_runs();
+  void join_ranks(size_t cell, size_t other, const int32_t* runs, const int32_t* other_runs);
+  void make_components();
+  void split(int32_t component);
+  int32_t pack(std::vector<int32_t>& sheet_of) const;
+
+  const TileGaps& gaps_;
+  const BodyLimits& limits_;
+  std::vector<Run> runs_;
+  std::vector<Component> components_;
+  std::vector<Piece> pieces_;
+};
+
+int32_t Dealer::root(int32_t run) {
+  while (runs_[static_cast<size_t>(run)].parent != run) {
+    int32_t& up = runs_[static_cast<size_t>(run)].parent;
+    up = runs_[static_cast<size_t>(up)].parent;
+    run = up;
+  }
+  return run;
 }
 
-int32_t unite(std::vector<int32_t>& parent, int32_t a, int32_t b) {
-  a = find_root(parent, a);
-  b = find_root(parent, b);
-  if (a == b) return a;
-  parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
-  return std::min(a, b);
+void Dealer::unite(int32_t a, int32_t b) {
+  a = root(a);
+  b = root(b);
+  runs_[static_cast<size_t>(std::max(a, b))].parent = std::min(a, b);
 }
 
-// Provisional labels for every gap, then roots.
-void label_gaps(const TileGaps& gaps, const Linker& linker, SheetScratch& scratch) {
-  const size_t layers = static_cast<size_t>(gaps.max_count);
-  scratch.label.resize(layers * kTileArea);
-  scratch.parent.clear();
-  const auto label_of = [&](int32_t layer, size_t cell) -> int32_t& {
-    return scratch.label[static_cast<size_t>(layer) * kTileArea + cell];
-  };
-  // The label of the gap of `other` that continues gap `k` of `cell`, or -1. Gaps ascend, so the
-  // search begins where the last one ended.
-  const auto continued = [&](size_t cell, int32_t k, size_t other, int32_t& from) -> int32_t {
-    const GapLayer& layer = *gaps.layers[static_cast<size_t>(k)];
-    const int32_t lowest = layer.top[cell] - linker.max_step;
-    const int32_t count = gaps.count[other];
-    while (from < count && gaps.layers[static_cast<size_t>(from)]->top[other] < lowest) ++from;
-    for (int32_t m = from; m < count; ++m) {
-      const GapLayer& candidate = *gaps.layers[static_cast<size_t>(m)];
-      if (candidate.top[other] > layer.top[cell] + linker.max_step) break;
-      if (linker.linked(cell, layer, other, candidate)) return label_of(m, other);
+// Joins gaps of different ranks in two neighbouring columns. `runs` hold the run of each layer.
+void Dealer::join_ranks(size_t cell, size_t other, const int32_t* runs, const int32_t* other_runs) {
+  int32_t from = 0;
+  for (int32_t k = 0; k < gaps_.count[cell]; ++k) {
+    const int32_t top = layer(k).top[cell];
+    const int32_t count = gaps_.count[other];
+    while (from < count && layer(from).top[other] < top - limits_.max_bottom) ++from;
+    for (int32_t m = from; m < count && layer(m).top[other] <= top + limits_.max_bottom; ++m) {
+      if (linked(cell, k, other, m)) unite(runs[k * kSide], other_runs[m * kSide]);
     }
-    return -1;
-  };
+  }
+}
+
+void Dealer::find_runs() {
+  const int32_t layers = gaps_.max_count;
+  std::vector<LayerLinks> links(static_cast<size_t>(layers));
+  for (int32_t k = 0; k < layers; ++k) {
+    link_layer(gaps_, k, limits_.max_bottom, limits_.min_gap, links[static_cast<size_t>(k)]);
+  }
+  // Run of each layer and column, in this row and the one above.
+  std::vector<int32_t> now(static_cast<size_t>(layers * kSide)), above(now.size());
   for (int32_t z = 0; z < kSide; ++z) {
-    for (int32_t x = 0; x < kSide; ++x) {
-      const size_t cell = static_cast<size_t>(z * kSide + x);
-      int32_t from_left = 0, from_up = 0;
-      for (int32_t k = 0; k < gaps.count[cell]; ++k) {
-        const int32_t left = x > 0 ? continued(cell, k, cell - 1, from_left) : -1;
-        const int32_t up = z > 0 ? continued(cell, k, cell - kSide, from_up) : -1;
-        int32_t label = left >= 0 ? left : up;
-        if (label < 0) {
-          label = static_cast<int32_t>(scratch.parent.size());
-          scratch.parent.push_back(label);
-        } else if (left >= 0 && up >= 0 && left != up) {
-          label = unite(scratch.parent, left, up);
+    const size_t row = static_cast<size_t>(z);
+    std::swap(now, above);
+    uint64_t odd_left = 0, odd_up = 0;  // columns whose ranks may have shifted
+    for (int32_t k = 0; k < layers; ++k) {
+      const LayerLinks& l = links[static_cast<size_t>(k)];
+      const uint64_t has = l.has[row];
+      if (z > 0) odd_up |= (has | l.has[row - 1]) & ~l.up[row];
+      if (has == 0) continue;
+      odd_left |= (has | has << 1) & ~l.left[row];
+      // A run begins where a gap does not continue its left neighbour.
+      uint64_t starts = has & ~l.left[row];
+      for (; starts != 0; starts &= starts - 1) {
+        const int32_t first = std::countr_zero(starts);
+        const uint64_t after = ~(l.left[row] & has) & (first < 63 ? ~uint64_t{0} << (first + 1) : 0);
+        const int32_t last = after == 0 ? 63 : std::countr_zero(after) - 1;
+        const auto index = static_cast<int32_t>(runs_.size());
+        runs_.push_back({k, z, run_mask(first, last), index, -1});
+        std::fill_n(&now[static_cast<size_t>(k * kSide + first)], last - first + 1, index);
+        // One union per run above that it touches.
+        uint64_t up = l.up[row] & runs_.back().cells;
+        while (up != 0) {
+          const int32_t x = std::countr_zero(up);
+          const int32_t run_above = above[static_cast<size_t>(k * kSide + x)];
+          unite(index, run_above);
+          up &= ~runs_[static_cast<size_t>(run_above)].cells;
         }
-        label_of(k, cell) = label;
       }
+    }
+    for (uint64_t odd = odd_left & ~uint64_t{1}; odd != 0; odd &= odd - 1) {
+      const int32_t x = std::countr_zero(odd);
+      const size_t cell = static_cast<size_t>(z * kSide + x);
+      join_ranks(cell, cell - 1, &now[static_cast<size_t>(x)], &now[static_cast<size_t>(x - 1)]);
+    }
+    for (; odd_up != 0; odd_up &= odd_up - 1) {
+      const int32_t x = std::countr_zero(odd_up);
+      const size_t cell = static_cast<size_t>(z * kSide + x);
+      join_ranks(cell, cell - kSide, &now[static_cast<size_t>(x)], &above[static_cast<size_t>(x)]);
     }
   }
 }
 
-// Replaces labels by component numbers in order of first appearance.
-std::vector<Component> number_components(const TileGaps& gaps, SheetScratch& scratch) {
-  std::vector<int32_t> number(scratch.parent.size(), -1);
-  std::vector<Component> components;
-  for (int32_t cell = 0; cell < kTileArea; ++cell) {
-    for (int32_t k = 0; k < gaps.count[static_cast<size_t>(cell)]; ++k) {
-      int32_t& label =
-          scratch.label[static_cast<size_t>(k) * kTileArea + static_cast<size_t>(cell)];
-      int32_t& index = number[static_cast<size_t>(find_root(scratch.parent, label))];
-      if (index < 0) {
-        index = static_cast<int32_t>(components.size());
-        components.push_back({.first_cell = cell});
-      }
-      label = index;
-      Component& component = components[static_cast<size_t>(index)];
-      const int32_t top = gaps.layers[static_cast<size_t>(k)]->top[static_cast<size_t>(cell)];
-      ++component.cells;
-      component.low = std::min(component.low, top);
-      component.high = std::max(component.high, top);
-      component.overlaps_itself |= component.last_cell == cell;
-      component.last_cell = cell;
+void Dealer::make_components() {
+  TopRange all;
+  for (int32_t k = 0; k < gaps_.max_count; ++k) {
+    const TopRange range = layer_range(gaps_, k);
+    all.low = std::min(all.low, range.low);
+    all.high = std::max(all.high, range.high);
+  }
+  const bool tall = static_cast<int64_t>(all.high) - all.low > kMaxRange;
+  for (size_t i = 0; i < runs_.size(); ++i) {
+    Run& run = runs_[i];
+    const int32_t top = root(static_cast<int32_t>(i));
+    if (top == static_cast<int32_t>(i)) {
+      run.component = static_cast<int32_t>(components_.size());
+      components_.emplace_back();
+      if (!tall) components_.back().tops = all;
+    } else {
+      run.component = runs_[static_cast<size_t>(top)].component;
+    }
+    Component& component = components_[static_cast<size_t>(run.component)];
+    uint64_t& row = component.cells[static_cast<size_t>(run.z)];
+    component.overlaps_itself |= (row & run.cells) != 0;
+    row |= run.cells;
+    component.count += std::popcount(run.cells);
+    for (uint64_t cells = tall ? run.cells : 0; cells != 0; cells &= cells - 1) {
+      const size_t cell = static_cast<size_t>(run.z * kSide + std::countr_zero(cells));
+      component.tops.low = std::min(component.tops.low, layer(run.layer).top[cell]);
+      component.tops.high = std::max(component.tops.high, layer(run.layer).top[cell]);
     }
   }
-  return components;
+  // A component whose heights lie too far apart for 16 bits is cut like one that overlaps itself.
+  for (Component& c : components_) {
+    c.overlaps_itself |= static_cast<int64_t>(c.tops.high) - c.tops.low > kMaxRange;
+  }
 }
 
-// Cuts a component that lies over itself, or is too tall for 16 bits, into pieces that do not.
-void split_component(const TileGaps& gaps, const Linker& linker, int32_t index,
-                     SheetScratch& scratch, std::vector<Component>& components) {
-  const auto label_of = [&](const GapRef& gap) -> int32_t& {
-    return scratch.label[static_cast<size_t>(gap.layer) * kTileArea +
-                         static_cast<size_t>(gap.cell)];
+// Cuts a component into pieces that lie over themselves nowhere, breadth first from its first gap.
+void Dealer::split(int32_t index) {
+  const size_t layers = static_cast<size_t>(gaps_.max_count);
+  constexpr int32_t kForeign = -1, kPending = -2;
+  std::vector<int32_t> label(layers * kTileArea, kForeign);
+  const auto label_of = [&](int32_t cell, int32_t k) -> int32_t& {
+    return label[static_cast<size_t>(k) * kTileArea + static_cast<size_t>(cell)];
   };
-  std::vector<GapRef> pending;
-  for (int32_t cell = 0; cell < kTileArea; ++cell) {
-    for (int32_t k = 0; k < gaps.count[static_cast<size_t>(cell)]; ++k) {
-      if (label_of({cell, k}) == index) pending.push_back({cell, k});
+  struct Gap {
+    int32_t cell, layer;
+  };
+  std::vector<Gap> pending;
+  for (const Run& run : runs_) {
+    if (run.component != index) continue;
+    for (uint64_t cells = run.cells; cells != 0; cells &= cells - 1) {
+      pending.push_back({run.z * kSide + std::countr_zero(cells), run.layer});
+      label_of(pending.back().cell, run.layer) = kPending;
     }
   }
-  constexpr int32_t kPending = -2;
-  for (const GapRef& gap : pending) label_of(gap) = kPending;
   std::vector<int32_t> taken(kTileArea, -1);  // which piece has a gap in this column
-  std::vector<GapRef> queue;
-  bool reuse = true;  // the first piece keeps the component's number
-  for (const GapRef& seed : pending) {
-    if (label_of(seed) != kPending) continue;
-    const int32_t piece = reuse ? index : static_cast<int32_t>(components.size());
-    if (!reuse) components.emplace_back();
-    reuse = false;
-    Component& component = components[static_cast<size_t>(piece)];
-    component = {.first_cell = seed.cell};
-    const auto take = [&](const GapRef& gap) {
-      const int32_t top = gaps.layers[static_cast<size_t>(gap.layer)]->top[static_cast<size_t>(gap.cell)];
-      const int32_t low = std::min(component.low, top), high = std::max(component.high, top);
-      if (high - low > Sheet::kHighest - Sheet::kBelow) return;
-      label_of(gap) = piece;
-      taken[static_cast<size_t>(gap.cell)] = piece;
-      component.low = low;
-      component.high = high;
-      ++component.cells;
-      queue.push_back(gap);
-    };
+  std::vector<Gap> queue;
+  std::vector<Rows> rows(layers);
+  components_[static_cast<size_t>(index)].count = 0;  // its number is used no more
+  for (const Gap& seed : pending) {
+    if (label_of(seed.cell, seed.layer) != kPending) continue;
+    const auto piece = static_cast<int32_t>(components_.size());
+    Component component;
+    for (Rows& r : rows) r.fill(0);
     queue.clear();
-    take(seed);
+    const auto take = [&](int32_t cell, int32_t k) {
+      const int32_t top = layer(k).top[static_cast<size_t>(cell)];
+      const int32_t low = std::min(component.tops.low, top), high = std::max(component.tops.high, top);
+      if (static_cast<int64_t>(high) - low > kMaxRange) return;
+      component.tops = {low, high};
+      ++component.count;
+      label_of(cell, k) = piece;
+      taken[static_cast<size_t>(cell)] = piece;
+      const size_t z = static_cast<size_t>(cell / kSide);
+      component.cells[z] |= uint64_t{1} << (cell % kSide);
+      rows[static_cast<size_t>(k)][z] |= uint64_t{1} << (cell % kSide);
+      queue.push_back({cell, k});
+    };
+    take(seed.cell, seed.layer);
     for (size_t head = 0; head < queue.size(); ++head) {
-      const GapRef gap = queue[head];
+      const Gap gap = queue[head];
       const int32_t x = gap.cell % kSide, z = gap.cell / kSide;
-      const GapLayer& layer = *gaps.layers[static_cast<size_t>(gap.layer)];
       const std::array<std::array<int32_t, 2>, 4> around{{{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
       for (const auto& [nx, nz] : around) {
         if (nx < 0 || nz < 0 || nx >= kSide || nz >= kSide) continue;
         const int32_t other = nz * kSide + nx;
         if (taken[static_cast<size_t>(other)] == piece) continue;
-        for (int32_t m = 0; m < gaps.count[static_cast<size_t>(other)]; ++m) {
-          if (label_of({other, m}) != kPending) continue;
-          if (linker.linked(static_cast<size_t>(gap.cell), layer, static_cast<size_t>(other),
-                            *gaps.layers[static_cast<size_t>(m)])) {
-            take({other, m});
-            break;
+        for (int32_t m = 0; m < gaps_.count[static_cast<size_t>(other)]; ++m) {
+          if (label_of(other, m) != kPending ||
+              !linked(static_cast<size_t>(gap.cell), gap.layer, static_cast<size_t>(other), m)) {
+            continue;
           }
+          take(other, m);
+          break;
         }
+      }
+    }
+    components_.push_back(component);
+    for (int32_t k = 0; k < gaps_.max_count; ++k) {
+      for (int32_t z = 0; z < kSide; ++z) {
+        const uint64_t cells = rows[static_cast<size_t>(k)][static_cast<size_t>(z)];
+        if (cells != 0) pieces_.push_back({k, z, cells, piece});
       }
     }
   }
 }
 
-using Rows = std::array<uint64_t, kTileSide>;
-
 // Deals components to sheets, larger first, each to the first sheet whose columns are free.
-int32_t pack_components(const TileGaps& gaps, const SheetScratch& scratch,
-                        const std::vector<Component>& components, std::vector<int32_t>& sheet_of) {
-  std::vector<Rows> cells(components.size(), Rows{});
-  for (int32_t cell = 0; cell < kTileArea; ++cell) {
-    for (int32_t k = 0; k < gaps.count[static_cast<size_t>(cell)]; ++k) {
-      const int32_t index =
-          scratch.label[static_cast<size_t>(k) * kTileArea + static_cast<size_t>(cell)];
-      cells[static_cast<size_t>(index)][static_cast<size_t>(cell / kSide)] |= 1ULL << (cell % kSide);
-    }
+int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
+  std::vector<int32_t> order;
+  for (size_t i = 0; i < components_.size(); ++i) {
+    if (components_[i].count > 0) order.push_back(static_cast<int32_t>(i));
   }
-  std::vector<int32_t> order(components.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
-    const Component& p = components[static_cast<size_t>(a)];
-    const Component& q = components[static_cast<size_t>(b)];
-    return p.cells != q.cells ? p.cells > q.cells : a < b;
+  std::stable_sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
+    return components_[static_cast<size_t>(a)].count > components_[static_cast<size_t>(b)].count;
   });
   struct Bin {
     Rows used{};
-    int32_t low = INT32_MAX, high = INT32_MIN;
+    TopRange tops;
   };
   std::vector<Bin> bins;
-  sheet_of.assign(components.size(), 0);
+  sheet_of.assign(components_.size(), -1);
   for (const int32_t index : order) {
-    const Component& component = components[static_cast<size_t>(index)];
-    const Rows& rows = cells[static_cast<size_t>(index)];
+    const Component& component = components_[static_cast<size_t>(index)];
     size_t b = 0;
     for (; b < bins.size(); ++b) {
-      const int32_t low = std::min(bins[b].low, component.low);
-      const int32_t high = std::max(bins[b].high, component.high);
-      if (high - low > Sheet::kHighest - Sheet::kBelow) continue;
+      const int64_t low = std::min(bins[b].tops.low, component.tops.low);
+      if (std::max(bins[b].tops.high, component.tops.high) - low > kMaxRange) continue;
       bool clash = false;
-      for (size_t z = 0; z < rows.size() && !clash; ++z) clash = (bins[b].used[z] & rows[z]) != 0;
+      for (size_t z = 0; z < kTileSide && !clash; ++z) clash = (bins[b].used[z] & component.cells[z]) != 0;
       if (!clash) break;
     }
     if (b == bins.size()) bins.emplace_back();
     Bin& bin = bins[b];
-    bin.low = std::min(bin.low, component.low);
-    bin.high = std::max(bin.high, component.high);
-    for (size_t z = 0; z < rows.size(); ++z) bin.used[z] |= rows[z];
+    bin.tops.low = std::min(bin.tops.low, component.tops.low);
+    bin.tops.high = std::max(bin.tops.high, component.tops.high);
+    for (size_t z = 0; z < kTileSide; ++z) bin.used[z] |= component.cells[z];
     sheet_of[static_cast<size_t>(index)] = static_cast<int32_t>(b);
   }
   return static_cast<int32_t>(bins.size());
 }
 
-// Writes one gap into a sheet whose base is set.
-void write_gap(const GapLayer& layer, size_t cell, const BodyLimits& limits, Sheet& sheet) {
-  const int32_t top = layer.top[cell] - sheet.base;
-  const int32_t ceiling = layer.ceiling[cell];
-  const int64_t ceiling_from_base = static_cast<int64_t>(ceiling) - sheet.base;
-  sheet.top[cell] = static_cast<uint16_t>(top);
-  sheet.ceiling[cell] = static_cast<uint16_t>(
-      ceiling == kOpenSkyMm ? kNone16 : std::min<int64_t>(ceiling_from_base, kNone16));
-  sheet.feet[cell] = kNone16;
-  sheet.code[cell] = 0;
-  if (layer.support[cell] == kNoSupport) return;
-  const int32_t feet = (layer.support[cell] >> 8) - sheet.base;
-  const uint8_t code = static_cast<uint8_t>(layer.support[cell] & 255);
-  if (limits.allowed[code] == 0 || top - feet > limits.max_bottom || feet < 0 ||
-      sheet.ceiling[cell] < feet + limits.min_height) {
-    return;
+void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
+  find_runs();
+  make_components();
+  bool seams = false;
+  const size_t found = components_.size();
+  for (size_t i = 0; i < found; ++i) {
+    if (!components_[i].overlaps_itself) continue;
+    split(static_cast<int32_t>(i));
+    seams = true;
   }
-  sheet.feet[cell] = static_cast<uint16_t>(feet);
-  sheet.code[cell] = code;
+  for (const Run& run : runs_) {
+    if (components_[static_cast<size_t>(run.component)].overlaps_itself) continue;
+    pieces_.push_back({run.layer, run.z, run.cells, run.component});
+  }
+  std::vector<int32_t> sheet_of;
+  const int32_t count = pack(sheet_of);
+  std::vector<std::unique_ptr<Sheet>> dealt;
+  std::vector<int32_t> low(static_cast<size_t>(count), INT32_MAX);
+  for (const Piece& piece : pieces_) {
+    int32_t& lowest = low[static_cast<size_t>(sheet_of[static_cast<size_t>(piece.component)])];
+    for (uint64_t cells = piece.cells; cells != 0; cells &= cells - 1) {
+      const size_t cell = static_cast<size_t>(piece.z * kSide + std::countr_zero(cells));
+      lowest = std::min(lowest, layer(piece.layer).top[cell]);
+    }
+  }
+  for (const int32_t lowest : low) {
+    dealt.push_back(pool.take());
+    dealt.back()->base = lowest - Sheet::kBelow;
+    dealt.back()->seams = seams;
+    clear_sheet(*dealt.back());
+  }
+  for (const Piece& piece : pieces_) {
+    const int32_t sheet = sheet_of[static_cast<size_t>(piece.component)];
+    write_gaps(layer(piece.layer), piece.z, piece.cells, limits_, *dealt[static_cast<size_t>(sheet)]);
+  }
+  for (auto& sheet : dealt) {
+    summarise(*sheet);
+    sheet->base += gaps_.base;
+    if (sheet->present == 0) {
+      pool.give(std::move(sheet));
+    } else {
+      sheets.push_back(std::move(sheet));
+    }
+  }
+  std::stable_sort(sheets.begin(), sheets.end(), [](const auto& a, const auto& b) {
+    return a->base + a->low_feet < b->base + b->low_feet;
+  });
 }
 
-void summarise(Sheet& sheet) {
-  sheet.low_top = sheet.low_feet = sheet.low_ceiling = kNone16;
-  sheet.high_top = sheet.high_feet = 0;
-  sheet.cells = sheet.present = 0;
-  uint8_t low_code = 255, high_code = 0;
+// A tile of single gaps that fit 16 bits needs no runs: any deal is as safe as any other.
+bool deal_single_layer(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
+                       TileSheets& sheets) {
+  const TopRange range = layer_range(gaps, 0);
+  if (static_cast<int64_t>(range.high) - range.low > kMaxRange) return false;
+  auto sheet = pool.take();
+  sheet->base = range.low - Sheet::kBelow;
+  sheet->seams = false;
+  uint64_t missing = 0;
+  Rows has{};
   for (size_t c = 0; c < kTileArea; ++c) {
-    const uint16_t top = sheet.top[c];
-    const bool gap = top != kNone16;
-    sheet.cells += gap;
-    sheet.low_top = std::min(sheet.low_top, top);
-    sheet.high_top = std::max<uint16_t>(sheet.high_top, gap ? top : 0);
-    sheet.low_ceiling = std::min<uint16_t>(sheet.low_ceiling, gap ? sheet.ceiling[c] : kNone16);
-    const uint16_t feet = sheet.feet[c];
-    const bool has_feet = feet != kNone16;
-    sheet.present += has_feet;
-    sheet.low_feet = std::min(sheet.low_feet, feet);
-    sheet.high_feet = std::max<uint16_t>(sheet.high_feet, has_feet ? feet : 0);
-    low_code = std::min<uint8_t>(low_code, has_feet ? sheet.code[c] : 255);
-    high_code = std::max<uint8_t>(high_code, has_feet ? sheet.code[c] : 0);
+    has[c / kTileSide] |= static_cast<uint64_t>(gaps.count[c] > 0) << (c % kTileSide);
   }
-  sheet.one_code = low_code == high_code;
-  sheet.some_code = high_code;
-}
-
-void clear(Sheet& sheet) {
-  sheet.seams = false;
-  sheet.top.fill(kNone16);
-  sheet.ceiling.fill(0);
-  sheet.feet.fill(kNone16);
-  sheet.code.fill(0);
-}
-
-// Heights so far become heights from the tile's own zero; bases are made absolute at the end.
-void keep_if_used(std::unique_ptr<Sheet> sheet, int32_t base, SheetPool& pool, TileSheets& sheets) {
+  for (const uint64_t row : has) missing |= ~row;
+  if (missing != 0) clear_sheet(*sheet);
+  for (int32_t z = 0; z < kSide; ++z) {
+    write_gaps(*gaps.layers[0], z, has[static_cast<size_t>(z)], limits, *sheet);
+  }
   summarise(*sheet);
-  sheet->base += base;
+  sheet->base += gaps.base;
   if (sheet->present == 0) {
     pool.give(std::move(sheet));
   } else {
     sheets.push_back(std::move(sheet));
   }
-}
-
-// A tile of single gaps that fit 16 bits needs no labels: any deal is as safe as any other.
-bool deal_single_layer(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
-                       TileSheets& sheets) {
-  const GapLayer& layer = *gaps.layers[0];
-  int32_t low = INT32_MAX, high = INT32_MIN;
-  for (size_t c = 0; c < kTileArea; ++c) {
-    if (gaps.count[c] == 0) continue;
-    low = std::min(low, layer.top[c]);
-    high = std::max(high, layer.top[c]);
-  }
-  if (high - low > Sheet::kHighest - Sheet::kBelow) return false;
-  auto sheet = pool.take();
-  sheet->base = low - Sheet::kBelow;
-  clear(*sheet);
-  for (size_t c = 0; c < kTileArea; ++c) {
-    if (gaps.count[c] > 0) write_gap(layer, c, limits, *sheet);
-  }
-  keep_if_used(std::move(sheet), gaps.base, pool, sheets);
   return true;
 }
 
@@ -334,10 +390,11 @@ BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes&
   limits.min_gap = limits.min_height = INT32_MAX;
   for (const AvatarClass& avatar : classes) {
     const int32_t bottom = bottom_mm(avatar), height = height_mm(avatar);
-    limits.min_gap = std::min(limits.min_gap, height - bottom);
+    limits.min_gap = std::min(limits.min_gap, std::max(1, height - bottom));
     limits.min_height = std::min(limits.min_height, height);
     limits.max_bottom = std::max(limits.max_bottom, bottom);
   }
+  limits.blocked_code = static_cast<int32_t>(codes.codes.size()) - 1;
   limits.allowed.assign(256, 0);
   std::copy(codes.allowed.begin(), codes.allowed.end(), limits.allowed.begin());
   return limits;
@@ -360,51 +417,11 @@ void SheetPool::give(std::unique_ptr<Sheet> sheet) {
   free_.push_back(std::move(sheet));
 }
 
-void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
-               SheetScratch& scratch, TileSheets& sheets) {
+void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool, TileSheets& sheets) {
   sheets.clear();
   if (gaps.max_count == 0) return;
   if (gaps.max_count == 1 && deal_single_layer(gaps, limits, pool, sheets)) return;
-
-  const Linker linker{gaps, limits.max_bottom, limits.min_gap};
-  label_gaps(gaps, linker, scratch);
-  std::vector<Component> components = number_components(gaps, scratch);
-  const size_t found = components.size();
-  bool seams = false;
-  for (size_t i = 0; i < found; ++i) {
-    const bool too_tall = components[i].high - components[i].low > Sheet::kHighest - Sheet::kBelow;
-    if (components[i].overlaps_itself || too_tall) {
-      split_component(gaps, linker, static_cast<int32_t>(i), scratch, components);
-      seams = true;
-    }
-  }
-  std::vector<int32_t> sheet_of;
-  const int32_t count = pack_components(gaps, scratch, components, sheet_of);
-  std::vector<std::unique_ptr<Sheet>> dealt(static_cast<size_t>(count));
-  std::vector<int32_t> low(static_cast<size_t>(count), INT32_MAX);
-  for (size_t i = 0; i < components.size(); ++i) {
-    int32_t& lowest = low[static_cast<size_t>(sheet_of[i])];
-    lowest = std::min(lowest, components[i].low);
-  }
-  for (size_t s = 0; s < dealt.size(); ++s) {
-    dealt[s] = pool.take();
-    dealt[s]->base = low[s] - Sheet::kBelow;
-    clear(*dealt[s]);
-  }
-  for (size_t cell = 0; cell < kTileArea; ++cell) {
-    for (int32_t k = 0; k < gaps.count[cell]; ++k) {
-      const int32_t index = scratch.label[static_cast<size_t>(k) * kTileArea + cell];
-      write_gap(*gaps.layers[static_cast<size_t>(k)], cell, limits,
-                *dealt[static_cast<size_t>(sheet_of[static_cast<size_t>(index)])]);
-    }
-  }
-  for (auto& sheet : dealt) {
-    sheet->seams = seams;
-    keep_if_used(std::move(sheet), gaps.base, pool, sheets);
-  }
-  std::stable_sort(sheets.begin(), sheets.end(), [](const auto& a, const auto& b) {
-    return a->base + a->low_feet < b->base + b->low_feet;
-  });
+  Dealer(gaps, limits).deal(pool, sheets);
 }
 
 }  // namespace throng

@@ -47,6 +47,7 @@ struct BodyLimits {
   int32_t min_gap = 0;      // smallest height - bottom: less room than this is matter
   int32_t min_height = 0;   // smallest height
   int32_t max_bottom = 0;   // largest bottom = how far matter may top the feet
+  int32_t blocked_code = 0; // of the surface that no class may stand on
   std::vector<uint32_t> allowed;  // per surface code: which classes may stand there
 };
 
@@ -70,13 +71,7 @@ class SheetPool {
 /// The sheets of one tile, those with feet only, lowest first.
 using TileSheets = std::vector<std::unique_ptr<Sheet>>;
 
-/// Scratch of one worker for deal_gaps.
-struct SheetScratch {
-  std::vector<int32_t> label;   // per layer and cell
-  std::vector<int32_t> parent;  // union-find over provisional labels
-};
-
-void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
-               SheetScratch& scratch, TileSheets& sheets);
+/// Deals the gaps of a tile to sheets. Linear in the gaps.
+void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool, TileSheets& sheets);
 
 }  // namespace throng

@@ -8,6 +8,7 @@
 
 #include "bake/clearance.h"
 #include "bake/columns.h"
+#include "bake/sheet_kernels.h"
 #include "bake/zone_builder.h"
 #include "core/parallel.h"
 
@@ -78,7 +79,6 @@ class ZoneJob {
 struct ZoneScratch::Worker {
   TileColumns columns;
   TileGaps gaps;
-  SheetScratch sheets;
   LegalityScratch legality;
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
   uint64_t spans = 0;
@@ -129,7 +129,7 @@ void ZoneJob::make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& work
 
   const auto deal_start = Clock::now();
   TileState& tile = at(column, row);
-  deal_gaps(worker.gaps, plan_.limits, scratch_.pool, worker.sheets, tile.sheets);
+  deal_gaps(worker.gaps, plan_.limits, scratch_.pool, tile.sheets);
   for (auto& sheet : tile.sheets) tile.planes.push_back(fit_plane(*sheet));
   worker.seconds_levels += seconds_since(deal_start);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/sheet_kernels.h"
 #include "world/level_view.h"
 #include "world/zone_data.h"
 
@@ -30,6 +31,7 @@ FloorPlane fit_plane(Sheet& sheet) {
     plane.base = sheet.base + sheet.low_feet;
     return plane;
   }
+  if (!may_be_plane(sheet)) return plane;
   // Least squares over the cells that have feet, about their mean so that the sums stay small.
   double n = 0, sx = 0, sz = 0, sh = 0;
   for (int32_t z = 0; z < kTileSide; ++z) {

@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/sheet_kernels.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bake/sheet_kernels.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace throng {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DI = hn::CappedTag<int32_t, 16>;
+using DH = hn::Rebind<uint16_t, DI>;  // 16-bit halves of a vector of heights
+using DB = hn::Rebind<uint8_t, DI>;
+using DU = hn::CappedTag<uint16_t, 32>;
+using DC = hn::Rebind<uint8_t, DU>;
+
+template <class D>
+HWY_INLINE uint64_t bits_of(D d, hn::Mask<D> mask) {
+  if constexpr (HWY_TARGET == HWY_SCALAR) {
+    return hn::AllTrue(d, mask) ? 1 : 0;
+  } else {
+    alignas(8) uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    uint64_t bits;
+    __builtin_memcpy(&bits, bytes, 8);
+    return hn::Lanes(d) < 64 ? bits & ((1ULL << hn::Lanes(d)) - 1) : bits;
+  }
+}
+
+template <class D>
+HWY_INLINE hn::Mask<D> mask_of(D d, uint64_t bits) {
+  if constexpr (HWY_TARGET == HWY_SCALAR) {
+    return hn::MaskFromVec(hn::Set(d, static_cast<hn::TFromD<D>>((bits & 1) != 0 ? -1 : 0)));
+  } else {
+    alignas(8) uint8_t bytes[8];
+    __builtin_memcpy(bytes, &bits, 8);
+    return hn::LoadMaskBits(d, bytes);
+  }
+}
+
+// Gaps a and b continue each other: a small step, and room over both.
+HWY_INLINE hn::Mask<DI> linked(hn::Vec<DI> top_a, hn::Vec<DI> ceiling_a, hn::Vec<DI> top_b,
+                               hn::Vec<DI> ceiling_b, hn::Vec<DI> max_step, hn::Vec<DI> min_gap) {
+  const auto high = hn::Max(top_a, top_b), low = hn::Min(top_a, top_b);
+  const auto room = hn::Sub(hn::Min(ceiling_a, ceiling_b), high);
+  return hn::Not(hn::Or(hn::Gt(hn::Sub(high, low), max_step), hn::Lt(room, min_gap)));
+}
+
+void LinkLayer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap,
+               LayerLinks& links) {
+  const DI di;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
+  const GapLayer& g = *gaps.layers[static_cast<size_t>(layer)];
+  const auto step = hn::Set(di, max_step), gap = hn::Set(di, min_gap), k = hn::Set(di, layer);
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    uint64_t has = 0, left = 0, up = 0;
+    for (int32_t x = 0; x < kTileSide; x += lanes) {
+      const size_t c = static_cast<size_t>(z * kTileSide + x);
+      const auto top = hn::Load(di, &g.top[c]), ceiling = hn::Load(di, &g.ceiling[c]);
+      has |= bits_of(di, hn::Gt(hn::Load(di, &gaps.count[c]), k)) << x;
+      if (c > 0) {
+        left |= bits_of(di, linked(top, ceiling, hn::LoadU(di, &g.top[c] - 1),
+                                   hn::LoadU(di, &g.ceiling[c] - 1), step, gap)) << x;
+      } else {
+        // The first cell has nothing to its left; the others of its vector look one back.
+        for (int32_t i = 1; i < lanes; ++i) {
+          const size_t at = static_cast<size_t>(i);
+          const int32_t high = std::max(g.top[at], g.top[at - 1]), low = std::min(g.top[at], g.top[at - 1]);
+          const int32_t ceil = std::min(g.ceiling[at], g.ceiling[at - 1]);
+          const bool ok = static_cast<int64_t>(high) - low <= max_step &&
+                          static_cast<int64_t>(ceil) - high >= min_gap;
+          left |= static_cast<uint64_t>(ok) << i;
+        }
+      }
+      if (z == 0) continue;
+      const size_t above = c - kTileSide;
+      up |= bits_of(di, linked(top, ceiling, hn::Load(di, &g.top[above]), hn::Load(di, &g.ceiling[above]),
+                               step, gap)) << x;
+    }
+    const size_t row = static_cast<size_t>(z);
+    links.has[row] = has;
+    links.left[row] = left & has & (has << 1);
+    links.up[row] = z > 0 ? up & has & links.has[row - 1] : 0;
+  }
+}
+
+TopRange LayerRange(const TileGaps& gaps, int32_t layer) {
+  const DI di;
+  const GapLayer& g = *gaps.layers[static_cast<size_t>(layer)];
+  auto low = hn::Set(di, INT32_MAX), high = hn::Set(di, INT32_MIN);
+  for (size_t c = 0; c < kTileArea; c += hn::Lanes(di)) {
+    const auto has = hn::Gt(hn::Load(di, &gaps.count[c]), hn::Set(di, layer));
+    const auto top = hn::Load(di, &g.top[c]);
+    low = hn::IfThenElse(has, hn::Min(low, top), low);
+    high = hn::IfThenElse(has, hn::Max(high, top), high);
+  }
+  return {hn::GetLane(hn::MinOfLanes(di, low)), hn::GetLane(hn::MaxOfLanes(di, high))};
+}
+
+void ClearSheet(Sheet& sheet) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16), zero = hn::Zero(du);
+  for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
+    hn::Store(none, du, &sheet.top[c]);
+    hn::Store(zero, du, &sheet.ceiling[c]);
+    hn::Store(none, du, &sheet.feet[c]);
+  }
+}
+
+// Lower halves of 32-bit lanes that hold 16-bit values.
+HWY_INLINE hn::Vec<DH> narrow(hn::Vec<DI> v) {
+  const DH dh;
+  const hn::RebindToUnsigned<DI> dw;
+  return hn::TruncateTo(dh, hn::BitCast(dw, v));
+}
+
+void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits, Sheet& sheet) {
+  const DI di;
+  const DH dh;
+  const DB db;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
+  const auto base = hn::Set(di, sheet.base), none = hn::Set(di, kNone16);
+  const auto sky = hn::Set(di, kOpenSkyMm);
+  for (int32_t x = 0; x < kTileSide; x += lanes) {
+    const uint64_t here = cells >> x & (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL);
+    if (here == 0) continue;
+    const size_t c = static_cast<size_t>(z * kTileSide + x);
+    const auto support = hn::Load(di, &layer.support[c]);
+    const auto top = hn::Sub(hn::Load(di, &layer.top[c]), base);
+    const auto raw_ceiling = hn::Load(di, &layer.ceiling[c]);
+    // An open sky would overflow the difference: it is replaced after it.
+    const auto ceiling = hn::IfThenElse(hn::Eq(raw_ceiling, sky), none,
+                                        hn::Min(hn::Sub(raw_ceiling, base), none));
+    const auto feet = hn::Sub(hn::ShiftRight<8>(support), base);
+    const auto code = hn::And(support, hn::Set(di, 255));
+    const auto bad = hn::Or(
+        hn::Or(hn::Eq(support, hn::Set(di, kNoSupport)), hn::Eq(code, hn::Set(di, limits.blocked_code))),
+        hn::Or(hn::Gt(hn::Sub(top, feet), hn::Set(di, limits.max_bottom)),
+               hn::Or(hn::Lt(feet, hn::Zero(di)),
+                      hn::Lt(ceiling, hn::Add(feet, hn::Set(di, limits.min_height))))));
+    const auto kept = hn::IfThenElse(bad, none, feet);
+    if (here == (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL)) {
+      hn::StoreU(narrow(top), dh, &sheet.top[c]);
+      hn::StoreU(narrow(ceiling), dh, &sheet.ceiling[c]);
+      hn::StoreU(narrow(kept), dh, &sheet.feet[c]);
+    } else {
+      const auto mask = mask_of(dh, here);
+      hn::BlendedStore(narrow(top), mask, dh, &sheet.top[c]);
+      hn::BlendedStore(narrow(ceiling), mask, dh, &sheet.ceiling[c]);
+      hn::BlendedStore(narrow(kept), mask, dh, &sheet.feet[c]);
+    }
+    alignas(64) uint8_t codes[64];
+    const hn::RebindToUnsigned<DI> dw;
+    hn::StoreU(hn::TruncateTo(db, hn::BitCast(dw, code)), db, codes);
+    for (uint64_t left = here; left != 0; left &= left - 1) {
+      const int i = __builtin_ctzll(left);
+      sheet.code[c + static_cast<size_t>(i)] = codes[i];
+    }
+  }
+}
+
+void Summarise(Sheet& sheet) {
+  const DU du;
+  const DC dc;
+  const auto none = hn::Set(du, kNone16), zero = hn::Zero(du), one = hn::Set(du, 1);
+  auto low_top = none, high_top = zero, low_feet = none, high_feet = zero, low_ceiling = none;
+  auto cells = zero, present = zero, low_code = none, high_code = zero;
+  for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
+    const auto top = hn::Load(du, &sheet.top[c]);
+    const auto feet = hn::Load(du, &sheet.feet[c]);
+    const auto code = hn::PromoteTo(du, hn::LoadU(dc, &sheet.code[c]));
+    const auto gap = hn::Ne(top, none), stands = hn::Ne(feet, none);
+    low_top = hn::Min(low_top, top);
+    high_top = hn::Max(high_top, hn::IfThenElseZero(gap, top));
+    low_feet = hn::Min(low_feet, feet);
+    high_feet = hn::Max(high_feet, hn::IfThenElseZero(stands, feet));
+    low_ceiling = hn::Min(low_ceiling, hn::IfThenElse(gap, hn::Load(du, &sheet.ceiling[c]), none));
+    cells = hn::Add(cells, hn::IfThenElseZero(gap, one));
+    present = hn::Add(present, hn::IfThenElseZero(stands, one));
+    low_code = hn::Min(low_code, hn::IfThenElse(stands, code, none));
+    high_code = hn::Max(high_code, hn::IfThenElseZero(stands, code));
+  }
+  sheet.low_top = hn::GetLane(hn::MinOfLanes(du, low_top));
+  sheet.high_top = hn::GetLane(hn::MaxOfLanes(du, high_top));
+  sheet.low_feet = hn::GetLane(hn::MinOfLanes(du, low_feet));
+  sheet.high_feet = hn::GetLane(hn::MaxOfLanes(du, high_feet));
+  sheet.low_ceiling = hn::GetLane(hn::MinOfLanes(du, low_ceiling));
+  alignas(64) uint16_t sums[2][32] = {};
+  hn::Store(cells, du, sums[0]);
+  hn::Store(present, du, sums[1]);
+  sheet.cells = sheet.present = 0;
+  for (size_t i = 0; i < hn::Lanes(du); ++i) {
+    sheet.cells += sums[0][i];
+    sheet.present += sums[1][i];
+  }
+  sheet.some_code = static_cast<uint8_t>(hn::GetLane(hn::MaxOfLanes(du, high_code)));
+  sheet.one_code = hn::GetLane(hn::MinOfLanes(du, low_code)) == sheet.some_code;
+}
+
+bool MayBePlane(const Sheet& sheet) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16), bias = hn::Set(du, 32768);
+  auto low_x = none, high_x = hn::Zero(du), low_z = none, high_z = hn::Zero(du);
+  const auto widen = [&](hn::Vec<DU> a, hn::Vec<DU> b, hn::Mask<DU> both, hn::Vec<DU>& low, hn::Vec<DU>& high) {
+    const auto difference = hn::Add(hn::Sub(b, a), bias);
+    low = hn::IfThenElse(both, hn::Min(low, difference), low);
+    high = hn::IfThenElse(both, hn::Max(high, difference), high);
+  };
+  const auto spread = [&](hn::Vec<DU> low, hn::Vec<DU> high) {
+    return int32_t{hn::GetLane(hn::MaxOfLanes(du, high))} - int32_t{hn::GetLane(hn::MinOfLanes(du, low))};
+  };
+  const hn::Mask<DU> not_last = [&] {
+    return hn::Lt(hn::Iota(du, 1), hn::Set(du, static_cast<uint16_t>(hn::Lanes(du))));
+  }();
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    for (int32_t x = 0; x < kTileSide; x += static_cast<int32_t>(hn::Lanes(du))) {
+      const size_t c = static_cast<size_t>(z * kTileSide + x);
+      const auto feet = hn::Load(du, &sheet.feet[c]);
+      const auto stands = hn::Ne(feet, none);
+      const auto right = hn::LoadU(du, &sheet.feet[0] + c + 1);
+      auto both = hn::And(stands, hn::Ne(right, none));
+      if (x + static_cast<int32_t>(hn::Lanes(du)) == kTileSide) both = hn::And(both, not_last);
+      widen(feet, right, both, low_x, high_x);
+      if (z + 1 == kTileSide) continue;
+      const auto below = hn::Load(du, &sheet.feet[c + kTileSide]);
+      widen(feet, below, hn::And(stands, hn::Ne(below, none)), low_z, high_z);
+    }
+    if (z % 8 == 7 && (spread(low_x, high_x) > 2 || spread(low_z, high_z) > 2)) return false;
+  }
+  return true;
+}
+
+// Size of the gentler of the differences b - a and c - b, 0 if they disagree or a cell has no feet.
+HWY_INLINE hn::Vec<DU> gentler(hn::Vec<DU> a, hn::Vec<DU> b, hn::Vec<DU> c) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16);
+  const auto first = hn::Sub(hn::Max(a, b), hn::Min(a, b)), second = hn::Sub(hn::Max(b, c), hn::Min(b, c));
+  const auto agree = hn::Not(hn::Xor(hn::Gt(b, a), hn::Gt(c, b)));
+  const auto all = hn::And(hn::Ne(a, none), hn::And(hn::Ne(b, none), hn::Ne(c, none)));
+  return hn::IfThenElseZero(hn::And(agree, all), hn::Min(first, second));
+}
+
+void MakeTilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
+  const DU du;
+  const size_t lanes = hn::Lanes(du);
+  alignas(64) uint16_t along[kTileSide], across[kTileSide + 64];
+  for (size_t z = 0; z < kTileSide; ++z) {
+    const size_t middle = std::clamp<size_t>(z, 1, kTileSide - 2);
+    const uint16_t* row = &sheet.feet[z * kTileSide];
+    const uint16_t* centre = &sheet.feet[middle * kTileSide];
+    for (size_t x = 0; x < kTileSide; x += lanes) {
+      hn::Store(gentler(hn::Load(du, centre + x - kTileSide), hn::Load(du, centre + x),
+                        hn::Load(du, centre + x + kTileSide)), du, along + x);
+      // Written for x + 1: rows are read from their first cell on, never before the array.
+      hn::StoreU(gentler(hn::Load(du, row + x), hn::LoadU(du, row + x + 1), hn::LoadU(du, row + x + 2)), du,
+                 across + x + 1);
+    }
+    across[0] = across[1];
+    across[kTileSide - 1] = across[kTileSide - 2];
+    for (size_t x = 0; x < kTileSide; x += lanes) {
+      hn::StoreU(hn::AverageRound(hn::Load(du, along + x), hn::Load(du, across + x)), du,
+                 &tilt[z * kTileSide + x]);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace throng
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace throng {
+
+HWY_EXPORT(LinkLayer);
+HWY_EXPORT(LayerRange);
+HWY_EXPORT(ClearSheet);
+HWY_EXPORT(WriteGaps);
+HWY_EXPORT(Summarise);
+HWY_EXPORT(MayBePlane);
+HWY_EXPORT(MakeTilt);
+
+void link_layer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap, LayerLinks& links) {
+  HWY_DYNAMIC_DISPATCH(LinkLayer)(gaps, layer, max_step, min_gap, links);
+}
+
+TopRange layer_range(const TileGaps& gaps, int32_t layer) {
+  return HWY_DYNAMIC_DISPATCH(LayerRange)(gaps, layer);
+}
+
+void clear_sheet(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(ClearSheet)(sheet); }
+
+void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits, Sheet& sheet) {
+  HWY_DYNAMIC_DISPATCH(WriteGaps)(layer, z, cells, limits, sheet);
+}
+
+void summarise(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(Summarise)(sheet); }
+
+bool may_be_plane(const Sheet& sheet) { return HWY_DYNAMIC_DISPATCH(MayBePlane)(sheet); }
+
+void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
+  HWY_DYNAMIC_DISPATCH(MakeTilt)(sheet, tilt);
+}
+
+}  // namespace throng
+#endif  // HWY_ONCE

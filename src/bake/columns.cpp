@@ -38,41 +38,6 @@ HWY_INLINE MI within(VI index, int32_t first, int32_t last) {
   return hn::And(at_least(index, hn::Set(di, first)), at_least(hn::Set(di, last), index));
 }
 
-// A corner of a row's cut: x in cells of the tile, y in mm from the base.
-struct Corner {
-  double x, y;
-};
-
-// One edge of a row's cut.
-struct RowEdge {
-  float x0, x1;  // x0 <= x1
-  float y0;      // at x0
-  float slope;   // mm per cell; unused if upright
-  float low, high;
-  bool upright;  // too short in x for a slope: its whole height counts
-};
-
-struct RowPolygon {
-  RowEdge edges[5];
-  int32_t edge_count = 0;
-
-  HWY_INLINE void add_edge(Corner a, Corner b) {
-    if (a.x > b.x) std::swap(a, b);
-    RowEdge& e = edges[edge_count++];
-    const double dx = b.x - a.x;
-    // Only the part over the tile: a far end would cost the float its precision.
-    const double x0 = std::max(a.x, -1.0);
-    e.x0 = static_cast<float>(x0);
-    e.x1 = static_cast<float>(std::min(b.x, 65.0));
-    e.low = static_cast<float>(std::min(a.y, b.y));
-    e.high = static_cast<float>(std::max(a.y, b.y));
-    e.upright = !(dx > 1e-3);
-    const double slope = e.upright ? 0 : (b.y - a.y) / dx;
-    e.slope = static_cast<float>(slope);
-    e.y0 = static_cast<float>(a.y + (x0 - a.x) * slope);
-  }
-};
-
 HWY_INLINE SpanLayer& layer_at(TileColumns& columns, int32_t k) {
   while (static_cast<int32_t>(columns.layers.size()) <= k) {
     columns.layers.push_back(std::make_unique_for_overwrite<SpanLayer>());
@@ -99,10 +64,10 @@ HWY_INLINE void insert(TileColumns& columns, int32_t cell, MI mask, VI low, VI h
   const DI di;
   const size_t c = static_cast<size_t>(cell);
   const VI count = hn::Load(di, &columns.count[c]);
-  const int32_t deepest = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(mask, count)));
+  uint8_t& depth = columns.depth[c / hn::Lanes(di)];
   const VI reach_low = hn::Sub(low, hn::Set(di, join));
   const VI reach_high = hn::Add(high, hn::Set(di, join));
-  for (int32_t k = 0; k < deepest; ++k) {
+  for (int32_t k = 0; k < depth; ++k) {
     SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
     const VI other_low = hn::Load(di, &layer.low[c]);
     const VI other_high = hn::Load(di, &layer.high[c]);
@@ -117,33 +82,198 @@ HWY_INLINE void insert(TileColumns& columns, int32_t cell, MI mask, VI low, VI h
     if (hn::AllFalse(di, mask)) return;
   }
   // What touched nothing is appended: mostly all lanes to the same layer.
-  for (int32_t k = 0; k <= std::min(deepest, TileColumns::kMaxLayers - 1); ++k) {
+  const int32_t last = std::min<int32_t>(depth, TileColumns::kMaxLayers - 1);
+  for (int32_t k = 0; k <= last; ++k) {
     const MI here = hn::And(mask, hn::Eq(count, hn::Set(di, k)));
     if (hn::AllFalse(di, here)) continue;
     SpanLayer& layer = layer_at(columns, k);
     hn::BlendedStore(low, here, di, &layer.low[c]);
     hn::BlendedStore(high, here, di, &layer.high[c]);
     hn::BlendedStore(support, here, di, &layer.support[c]);
+    if (k == depth) depth = static_cast<uint8_t>(k + 1);
   }
   const MI fits = hn::And(mask, hn::Lt(count, hn::Set(di, TileColumns::kMaxLayers)));
   hn::Store(hn::Add(count, hn::IfThenElseZero(fits, hn::Set(di, 1))), di, &columns.count[c]);
+  if (HWY_LIKELY(depth < TileColumns::kMaxLayers)) return;
   const MI left = hn::AndNot(fits, mask);
-  if (HWY_UNLIKELY(!hn::AllFalse(di, left))) spill(columns, cell, left, low, high, support);
+  if (!hn::AllFalse(di, left)) spill(columns, cell, left, low, high, support);
 }
 
-// What a triangle does in one row of the tile.
-struct RowTask {
-  int32_t row;
-  int32_t x0, x1;  // cells touched, inclusive
-  int32_t c0, c1;  // cells whose centre is covered, inclusive; none if c0 > c1
-  float centre_x = 0, centre_y = 0, centre_slope = 0;  // the surface along the row's centre line
-  int32_t low, high;                       // of the triangle, mm from the base
+// The edges of a row's cut: the triangle's three sides, and the two lines that cut it out.
+enum Edge : size_t { kLong, kFirst, kSecond, kFrom, kTo, kEdges };
+
+constexpr int32_t kBatch = 16;  // rows that are cut together
+constexpr float kAbsent = 1e9f;
+
+// Edges of a batch of rows, in the tile's frame: x in cells, y in mm from the base.
+struct EdgeBatch {
+  alignas(64) float x0[kBatch], x1[kBatch];    // x0 <= x1; kAbsent: the row has no such edge
+  alignas(64) float low[kBatch], high[kBatch];
+  alignas(64) float slope[kBatch];             // mm per cell; 0 if too upright for one
+  alignas(64) float y_low[kBatch], y_high[kBatch];  // at x0; the whole height of an upright edge
+};
+
+// What a triangle does in a batch of rows.
+struct RowBatch {
+  EdgeBatch edges[kEdges];
+  alignas(64) int32_t x0[kBatch], x1[kBatch];  // cells touched, inclusive, not yet cut to the tile
+  alignas(64) int32_t c0[kBatch], c1[kBatch];  // cells whose centre is covered; none if c0 > c1
+  alignas(64) float centre_x[kBatch], centre_y[kBatch], centre_slope[kBatch];
+};
+
+// One triangle in one tile.
+struct TileTriangle {
+  int32_t low, high;  // mm from the base
   int32_t code;
   bool flat;
 };
 
+// A triangle in the tile's frame, ready to be cut into rows. T is float where the triangle is near
+// enough for it: kWiden is ten times what a float errs at 256 cells.
+template <class T>
+struct Corners {
+  T x[3], y[3], z[3];
+  T kx02, ky02, kx01, ky01, kx12, ky12;
+
+  HWY_INLINE void derive() {
+    const T d02 = z[2] > z[0] ? 1 / (z[2] - z[0]) : 0;
+    const T d01 = z[1] > z[0] ? 1 / (z[1] - z[0]) : 0;
+    const T d12 = z[2] > z[1] ? 1 / (z[2] - z[1]) : 0;
+    kx02 = (x[2] - x[0]) * d02;
+    ky02 = (y[2] - y[0]) * d02;
+    kx01 = (x[1] - x[0]) * d01;
+    ky01 = (y[1] - y[0]) * d01;
+    kx12 = (x[2] - x[1]) * d12;
+    ky12 = (y[2] - y[1]) * d12;
+  }
+};
+
+// The lanes of a vector of rows, so that one piece of code cuts rows in floats and in doubles.
+template <class D>
+class RowCutter {
+ public:
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using T = hn::TFromD<D>;
+
+  RowCutter(const Corners<T>& corners) : t_(corners) {}
+
+  // Cuts rows [row, row + lanes), into the batch's entries from `at` on.
+  HWY_INLINE void cut(int32_t row, size_t at, bool flat, RowBatch& out) const {
+    const D d;
+    const V rows = hn::Iota(d, static_cast<T>(row));
+    const V from = hn::Max(hn::Sub(rows, set(kWiden)), set(t_.z[0]));
+    const V to = hn::Min(hn::Add(rows, set(1 + kWiden)), set(t_.z[2]));
+    const M has_first = hn::Le(from, set(t_.z[1]));
+    const M has_second = hn::Ge(to, set(t_.z[1]));
+    // The last corners are taken as they are: a side within one z has no point "at" it.
+    const M to_end = hn::Ge(to, set(t_.z[2]));
+    const Point l0 = on(0, from, t_.kx02, t_.ky02);
+    const Point l1 = choose(to_end, corner(2), on(0, to, t_.kx02, t_.ky02));
+    const Point a0 = on(0, from, t_.kx01, t_.ky01);
+    const Point a1 = choose(has_second, corner(1), on(0, to, t_.kx01, t_.ky01));
+    const Point b0 = choose(has_first, corner(1), on(1, from, t_.kx12, t_.ky12));
+    const Point b1 = choose(to_end, corner(2), on(1, to, t_.kx12, t_.ky12));
+    const Point s0 = choose(has_first, a0, b0);
+    const Point s1 = choose(has_second, b1, a1);
+    V x_low = hn::Min(hn::Min(l0.x, l1.x), hn::Min(s0.x, s1.x));
+    V x_high = hn::Max(hn::Max(l0.x, l1.x), hn::Max(s0.x, s1.x));
+    const M has_middle = hn::And(has_first, has_second);
+    x_low = hn::IfThenElse(has_middle, hn::Min(x_low, set(t_.x[1])), x_low);
+    x_high = hn::IfThenElse(has_middle, hn::Max(x_high, set(t_.x[1])), x_high);
+    store_int(hn::Floor(hn::Sub(x_low, set(kWiden))), out.x0 + at);
+    store_int(hn::Floor(hn::Add(x_high, set(kWiden))), out.x1 + at);
+    if (!flat) {
+      const M all = hn::Eq(rows, rows);
+      add_edge(all, l0, l1, out.edges[kLong], at);
+      add_edge(has_first, a0, a1, out.edges[kFirst], at);
+      add_edge(has_second, b0, b1, out.edges[kSecond], at);
+      add_edge(hn::Gt(from, set(t_.z[0])), l0, s0, out.edges[kFrom], at);
+      add_edge(hn::Lt(to, set(t_.z[2])), l1, s1, out.edges[kTo], at);
+    }
+    cut_centre(rows, at, out);
+  }
+
+ private:
+  struct Point {
+    V x, y;
+  };
+  static HWY_INLINE V set(double value) { return hn::Set(D(), static_cast<T>(value)); }
+  HWY_INLINE Point corner(size_t i) const { return {set(t_.x[i]), set(t_.y[i])}; }
+  static HWY_INLINE Point choose(M mask, Point a, Point b) {
+    return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y)};
+  }
+  // The point at z = at of the side that begins at corner i.
+  HWY_INLINE Point on(size_t i, V at, T kx, T ky) const {
+    const V along = hn::Sub(at, set(t_.z[i]));
+    return {hn::Add(set(t_.x[i]), hn::Mul(along, set(kx))), hn::Add(set(t_.y[i]), hn::Mul(along, set(ky)))};
+  }
+  static HWY_INLINE void store(V v, float* out) {
+    if constexpr (sizeof(T) == 4) {
+      hn::StoreU(v, D(), out);
+    } else {
+      const hn::Rebind<float, D> df;
+      hn::StoreU(hn::DemoteTo(df, v), df, out);
+    }
+  }
+  static HWY_INLINE void store_int(V v, int32_t* out) {
+    const V held = hn::Min(hn::Max(v, set(-1e6)), set(1e6));
+    const hn::Rebind<int32_t, D> di;
+    if constexpr (sizeof(T) == 4) {
+      hn::StoreU(hn::ConvertTo(di, held), di, out);
+    } else {
+      hn::StoreU(hn::DemoteTo(di, held), di, out);
+    }
+  }
+
+  HWY_INLINE void add_edge(M here, Point a, Point b, EdgeBatch& out, size_t at) const {
+    const M swap = hn::Gt(a.x, b.x);
+    const V xa = hn::IfThenElse(swap, b.x, a.x), xb = hn::IfThenElse(swap, a.x, b.x);
+    const V ya = hn::IfThenElse(swap, b.y, a.y), yb = hn::IfThenElse(swap, a.y, b.y);
+    const V dx = hn::Sub(xb, xa);
+    const M upright = hn::Le(dx, set(1e-3));
+    const V slope = hn::IfThenElse(upright, set(0), hn::Div(hn::Sub(yb, ya), hn::Max(dx, set(1e-3))));
+    const V low = hn::Min(ya, yb), high = hn::Max(ya, yb);
+    // Only the part over the tile: a far end would cost the float its precision.
+    const V x0 = hn::Max(xa, set(-1)), x1 = hn::Min(xb, set(65));
+    const V y0 = hn::Add(ya, hn::Mul(hn::Sub(x0, xa), slope));
+    store(hn::IfThenElse(here, x0, set(kAbsent)), out.x0 + at);
+    store(hn::IfThenElse(here, x1, set(-kAbsent)), out.x1 + at);
+    store(low, out.low + at);
+    store(high, out.high + at);
+    store(slope, out.slope + at);
+    store(hn::IfThenElse(upright, low, y0), out.y_low + at);
+    store(hn::IfThenElse(upright, high, y0), out.y_high + at);
+  }
+
+  // Which centres of each row the triangle covers, and its surface there.
+  HWY_INLINE void cut_centre(V rows, size_t at, RowBatch& out) const {
+    const V centre = hn::Add(rows, set(0.5));
+    const Point l = on(0, centre, t_.kx02, t_.ky02);
+    const Point s = choose(hn::Le(centre, set(t_.z[1])), on(0, centre, t_.kx01, t_.ky01),
+                           on(1, centre, t_.kx12, t_.ky12));
+    const M swap = hn::Gt(l.x, s.x);
+    const Point a = choose(swap, s, l), b = choose(swap, l, s);
+    const V dx = hn::Sub(b.x, a.x);
+    constexpr double kOn = kWiden / 2;  // A centre on a shared edge belongs to both triangles.
+    const V first = hn::Ceil(hn::Sub(a.x, set(0.5 + kOn)));
+    const V last = hn::Floor(hn::Sub(b.x, set(0.5 - kOn)));
+    const M covers = hn::And(hn::And(hn::Ge(centre, set(t_.z[0])), hn::Le(centre, set(t_.z[2]))),
+                             hn::Gt(dx, set(1e-6)));
+    store_int(hn::IfThenElse(covers, first, set(1)), out.c0 + at);
+    store_int(hn::IfThenElse(covers, last, set(0)), out.c1 + at);
+    const V slope = hn::Div(hn::Sub(b.y, a.y), hn::Max(dx, set(1e-6)));
+    const V x = hn::Max(a.x, set(-1));
+    store(x, out.centre_x + at);
+    store(hn::Add(a.y, hn::Mul(hn::Sub(x, a.x), slope)), out.centre_y + at);
+    store(slope, out.centre_slope + at);
+  }
+
+  const Corners<T>& t_;
+};
+
 // The triangle's heights over one vector of cells of its row.
-HWY_INLINE void row_heights(const RowPolygon& row, VF x, VI& low, VI& high) {
+HWY_INLINE void row_heights(const RowBatch& rows, size_t r, VF x, VI& low, VI& high) {
   const DF df;
   const DI di;
   const float widen = static_cast<float>(kWiden);
@@ -151,22 +281,18 @@ HWY_INLINE void row_heights(const RowPolygon& row, VF x, VI& low, VI& high) {
   const VF cell_high = hn::Add(x, hn::Set(df, 1.0f + widen));
   VF y_low = hn::Set(df, 3e38f);
   VF y_high = hn::Set(df, -3e38f);
-  for (int32_t i = 0; i < row.edge_count; ++i) {
-    const RowEdge& e = row.edges[i];
-    const VF x0 = hn::Set(df, e.x0);
+  for (const EdgeBatch& e : rows.edges) {
+    if (e.x0[r] > e.x1[r]) continue;
+    const VF x0 = hn::Set(df, e.x0[r]);
+    const VF slope = hn::Set(df, e.slope[r]);
     const VF a = hn::Max(x0, cell_low);
-    const VF b = hn::Min(hn::Set(df, e.x1), cell_high);
+    const VF b = hn::Min(hn::Set(df, e.x1[r]), cell_high);
     const auto meets = hn::Le(a, b);
-    VF lo = hn::Set(df, e.low);
-    VF hi = hn::Set(df, e.high);
-    if (!e.upright) {
-      const VF slope = hn::Set(df, e.slope);
-      const VF y0 = hn::Set(df, e.y0);
-      const VF ya = hn::Add(y0, hn::Mul(hn::Sub(a, x0), slope));
-      const VF yb = hn::Add(y0, hn::Mul(hn::Sub(b, x0), slope));
-      lo = hn::Max(lo, e.slope >= 0 ? ya : yb);
-      hi = hn::Min(hi, e.slope >= 0 ? yb : ya);
-    }
+    const bool rises = e.slope[r] >= 0;
+    const VF at_low = hn::Mul(hn::Sub(rises ? a : b, x0), slope);
+    const VF at_high = hn::Mul(hn::Sub(rises ? b : a, x0), slope);
+    const VF lo = hn::Max(hn::Set(df, e.low[r]), hn::Add(hn::Set(df, e.y_low[r]), at_low));
+    const VF hi = hn::Min(hn::Set(df, e.high[r]), hn::Add(hn::Set(df, e.y_high[r]), at_high));
     y_low = hn::IfThenElse(meets, hn::Min(y_low, lo), y_low);
     y_high = hn::IfThenElse(meets, hn::Max(y_high, hi), y_high);
   }
@@ -177,150 +303,105 @@ HWY_INLINE void row_heights(const RowPolygon& row, VF x, VI& low, VI& high) {
   high = hn::Min(high, hn::ConvertTo(di, hn::Ceil(hn::Add(y_high, margin))));
 }
 
-HWY_INLINE void fill_row(TileColumns& columns, const RowTask& task, const RowPolygon& row,
-                         int32_t join) {
+HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowBatch& rows, size_t r,
+                         int32_t row, const TileRect& rect, int32_t join) {
   const DF df;
   const DI di;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(df));
-  const VI tri_low = hn::Set(di, task.low);
-  const VI tri_high = hn::Set(di, task.high);
-  for (int32_t begin = task.x0 & ~(lanes - 1); begin <= task.x1; begin += lanes) {
+  const int32_t x0 = std::max(rows.x0[r], rect.x0), x1 = std::min(rows.x1[r], rect.x1 - 1);
+  const int32_t c0 = rows.c0[r], c1 = rows.c1[r];
+  const VI tri_low = hn::Set(di, t.low);
+  const VI tri_high = hn::Set(di, t.high);
+  for (int32_t begin = x0 & ~(lanes - 1); begin <= x1; begin += lanes) {
     const VI index = hn::Iota(di, begin);
     const VF x = hn::ConvertTo(df, index);
-    const MI mask = within(index, task.x0, task.x1);
+    const MI mask = within(index, x0, x1);
     VI low = tri_low;
     VI high = tri_high;
-    if (!task.flat) row_heights(row, x, low, high);
+    if (!t.flat) row_heights(rows, r, x, low, high);
     VI support = hn::Set(di, kNoSupport);
-    if (task.c0 <= task.c1 && task.c1 >= begin && task.c0 < begin + lanes) {
-      const MI covered = within(index, task.c0, task.c1);
+    if (c0 <= c1 && c1 >= begin && c0 < begin + lanes) {
       VI height = tri_low;
-      if (!task.flat) {
-        const VF along = hn::Sub(hn::Add(x, hn::Set(df, 0.5f)), hn::Set(df, task.centre_x));
-        const VF y = hn::Add(hn::Set(df, task.centre_y),
-                             hn::Mul(along, hn::Set(df, task.centre_slope)));
+      if (!t.flat) {
+        const VF along = hn::Sub(hn::Add(x, hn::Set(df, 0.5f)), hn::Set(df, rows.centre_x[r]));
+        const VF y = hn::Add(hn::Set(df, rows.centre_y[r]),
+                             hn::Mul(along, hn::Set(df, rows.centre_slope[r])));
         height = hn::Min(tri_high, hn::Max(tri_low, hn::NearestInt(y)));
       }
       // Over 8 km above the tile's lowest matter there is nothing to stand on.
-      const MI near = hn::And(covered, hn::Lt(height, hn::Set(di, 1 << 23)));
-      const VI packed = hn::Or(hn::ShiftLeft<8>(height), hn::Set(di, task.code));
+      const MI near = hn::And(within(index, c0, c1), hn::Lt(height, hn::Set(di, 1 << 23)));
+      const VI packed = hn::Or(hn::ShiftLeft<8>(height), hn::Set(di, t.code));
       support = hn::IfThenElse(near, packed, support);
     }
-    insert(columns, task.row * kTileSide + begin, mask, low, high, support, join);
+    insert(columns, row * kTileSide + begin, mask, low, high, support, join);
   }
 }
 
-// A triangle in the tile's frame, ready to be cut into rows.
-struct Cutter {
-  double x[3], y[3], z[3];
-  double kx02, ky02, kx01, ky01, kx12, ky12;
-
-  Cutter(const CellTriangle& t, int32_t cell_x, int32_t cell_z, int32_t base) {
-    for (size_t i = 0; i < 3; ++i) {
-      x[i] = t.x[i] - cell_x;
-      y[i] = t.y[i] - base;
-      z[i] = t.z[i] - cell_z;
+// Fills the rows of one triangle, sixteen at a time.
+template <class D, class T>
+HWY_INLINE void fill_triangle(const Corners<T>& corners, const TileTriangle& t, const TileRect& rect,
+                              int32_t join, TileColumns& columns) {
+  const D d;
+  const double z_first = std::floor(static_cast<double>(corners.z[0]) - kWiden);
+  const double z_last = std::floor(static_cast<double>(corners.z[2]) + kWiden);
+  const int32_t row0 = static_cast<int32_t>(std::max<double>(z_first, rect.z0));
+  const int32_t row1 = static_cast<int32_t>(std::min<double>(z_last, rect.z1 - 1));
+  const RowCutter<D> cutter(corners);
+  RowBatch rows;
+  for (int32_t begin = row0; begin <= row1; begin += kBatch) {
+    const int32_t count = std::min(kBatch, row1 - begin + 1);
+    for (int32_t i = 0; i < count; i += static_cast<int32_t>(hn::Lanes(d))) {
+      cutter.cut(begin + i, static_cast<size_t>(i), t.flat, rows);
     }
-    const double d02 = z[2] > z[0] ? 1 / (z[2] - z[0]) : 0;
-    const double d01 = z[1] > z[0] ? 1 / (z[1] - z[0]) : 0;
-    const double d12 = z[2] > z[1] ? 1 / (z[2] - z[1]) : 0;
-    kx02 = (x[2] - x[0]) * d02;
-    ky02 = (y[2] - y[0]) * d02;
-    kx01 = (x[1] - x[0]) * d01;
-    ky01 = (y[1] - y[0]) * d01;
-    kx12 = (x[2] - x[1]) * d12;
-    ky12 = (y[2] - y[1]) * d12;
+    for (int32_t i = 0; i < count; ++i) {
+      fill_row(columns, t, rows, static_cast<size_t>(i), begin + i, rect, join);
+    }
   }
-  // The point at z = at of the side from the first to the last corner.
-  HWY_INLINE Corner on_long(double at) const {
-    return {x[0] + (at - z[0]) * kx02, y[0] + (at - z[0]) * ky02};
-  }
-  // The same on the two sides by way of the middle corner.
-  HWY_INLINE Corner on_short(double at) const {
-    if (at <= z[1]) return {x[0] + (at - z[0]) * kx01, y[0] + (at - z[0]) * ky01};
-    return {x[1] + (at - z[1]) * kx12, y[1] + (at - z[1]) * ky12};
-  }
-};
-
-// Which centres of the row the triangle covers, and its surface there.
-HWY_INLINE void cut_centre(const Cutter& cut, const TileRect& rect, RowTask& task) {
-  task.c0 = 1;
-  task.c1 = 0;
-  const double centre = task.row + 0.5;
-  if (centre < cut.z[0] || centre > cut.z[2]) return;
-  Corner a = cut.on_long(centre), b = cut.on_short(centre);
-  if (a.x > b.x) std::swap(a, b);
-  constexpr double kOn = 1e-6;  // A centre on a shared edge belongs to both triangles.
-  const double first = std::ceil(a.x - 0.5 - kOn);
-  const double last = std::floor(b.x - 0.5 + kOn);
-  if (first > last || last < rect.x0 || first >= rect.x1 || !(b.x - a.x > 1e-9)) return;
-  task.c0 = static_cast<int32_t>(std::max<double>(first, rect.x0));
-  task.c1 = static_cast<int32_t>(std::min<double>(last, rect.x1 - 1));
-  const double slope = (b.y - a.y) / (b.x - a.x);
-  const double at = task.c0 + 0.5;
-  task.centre_x = static_cast<float>(at);
-  task.centre_y = static_cast<float>(a.y + (at - a.x) * slope);
-  task.centre_slope = static_cast<float>(slope);
 }
 
 void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint32_t> items,
                    int32_t cell_x, int32_t cell_z, const TileRect& rect, int32_t join,
                    TileColumns& columns) {
   columns.count.fill(0);
+  std::fill_n(columns.depth.begin(), kTileArea / hn::Lanes(DI()), uint8_t{0});
   columns.spills.clear();
   columns.base = items.empty() ? 0 : INT32_MAX;
   for (const uint32_t item : items) columns.base = std::min(columns.base, triangles[item].low);
 
   for (const uint32_t item : items) {
-    const CellTriangle& t = triangles[item];
-    const Cutter cut(t, cell_x, cell_z, columns.base);
-    const double z_first = std::floor(cut.z[0] - kWiden);
-    const double z_last = std::floor(cut.z[2] + kWiden);
-    if (z_last < rect.z0 || z_first >= rect.z1) continue;
-    const int32_t row0 = static_cast<int32_t>(std::max<double>(z_first, rect.z0));
-    const int32_t row1 = static_cast<int32_t>(std::min<double>(z_last, rect.z1 - 1));
-
-    RowTask task;
-    task.low = t.low - columns.base;
-    task.high = t.high - columns.base;
-    task.code = t.code;
-    task.flat = task.low == task.high;
-    for (task.row = row0; task.row <= row1; ++task.row) {
-      const double from = std::max(task.row - kWiden, cut.z[0]);
-      const double to = std::min(task.row + 1 + kWiden, cut.z[2]);
-      // The last corner is taken as it is: a triangle within one z has no point "at" it.
-      const bool has_last = cut.z[2] <= to;
-      const Corner last{cut.x[2], cut.y[2]};
-      const Corner l0 = cut.on_long(from), l1 = has_last ? last : cut.on_long(to);
-      const Corner s0 = cut.on_short(from), s1 = has_last ? last : cut.on_short(to);
-      const bool has_middle = cut.z[1] >= from && cut.z[1] <= to;
-      const Corner middle{cut.x[1], cut.y[1]};
-      double x_low = std::min(std::min(l0.x, l1.x), std::min(s0.x, s1.x));
-      double x_high = std::max(std::max(l0.x, l1.x), std::max(s0.x, s1.x));
-      if (has_middle) {
-        x_low = std::min(x_low, middle.x);
-        x_high = std::max(x_high, middle.x);
-      }
-      const double touch_low = std::floor(x_low - kWiden);
-      const double touch_high = std::floor(x_high + kWiden);
-      if (touch_high < rect.x0 || touch_low >= rect.x1) continue;
-      task.x0 = static_cast<int32_t>(std::max<double>(touch_low, rect.x0));
-      task.x1 = static_cast<int32_t>(std::min<double>(touch_high, rect.x1 - 1));
-      RowPolygon row;
-      if (!task.flat) {
-        row.add_edge(l0, l1);
-        if (has_middle) {
-          row.add_edge(s0, middle);
-          row.add_edge(middle, s1);
-        } else {
-          row.add_edge(s0, s1);
-        }
-        row.add_edge(l0, s0);
-        row.add_edge(l1, s1);
-      }
-      cut_centre(cut, rect, task);
-      fill_row(columns, task, row, join);
+    const CellTriangle& source = triangles[item];
+    Corners<double> corners;
+    double x_low = 1e300, x_high = -1e300;
+    for (size_t i = 0; i < 3; ++i) {
+      corners.x[i] = source.x[i] - cell_x;
+      corners.y[i] = source.y[i] - columns.base;
+      corners.z[i] = source.z[i] - cell_z;
+      x_low = std::min(x_low, corners.x[i]);
+      x_high = std::max(x_high, corners.x[i]);
     }
+    if (x_high < rect.x0 - kWiden || x_low > rect.x1 + kWiden || corners.z[2] < rect.z0 - kWiden ||
+        corners.z[0] > rect.z1 + kWiden) {
+      continue;
+    }
+    TileTriangle t;
+    t.low = source.low - columns.base;
+    t.high = source.high - columns.base;
+    t.code = source.code;
+    t.flat = t.low == t.high;
+    const bool near = x_low > -256 && x_high < 256 && corners.z[0] > -256 && corners.z[2] < 256;
+    if (near) {
+      Corners<float> small;
+      for (size_t i = 0; i < 3; ++i) {
+        small.x[i] = static_cast<float>(corners.x[i]);
+        small.y[i] = static_cast<float>(corners.y[i]);
+        small.z[i] = static_cast<float>(corners.z[i]);
+      }
+      small.derive();
+      fill_triangle<DF>(small, t, rect, join, columns);
+      continue;
+    }
+    corners.derive();
+    fill_triangle<hn::CappedTag<double, 8>>(corners, t, rect, join, columns);
   }
   std::stable_sort(columns.spills.begin(), columns.spills.end(),
                    [](const auto& a, const auto& b) { return a.cell < b.cell; });
@@ -468,7 +549,7 @@ void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
   for (int32_t cell = 0; cell < kTileArea; cell += lanes) {
     const size_t c = static_cast<size_t>(cell);
     const VI count = hn::Load(di, &columns.count[c]);
-    const size_t n = static_cast<size_t>(hn::GetLane(hn::MaxOfLanes(di, count)));
+    const size_t n = columns.depth[c / hn::Lanes(di)];
     if (n > kNetwork) {
       for (int32_t i = cell; i < cell + lanes; ++i) {
         gaps.count[static_cast<size_t>(i)] = 0;

@@ -34,6 +34,7 @@ struct TileColumns {
 
   int32_t base = 0;  // [mm]
   alignas(64) std::array<int32_t, kTileArea> count;
+  std::array<uint8_t, kTileArea> depth;  // largest count in each vector of cells
   std::vector<std::unique_ptr<SpanLayer>> layers;  // unsorted; layer k of cell c holds if k < count[c]
   std::vector<Spill> spills;  // by cell
 

@@ -15,7 +15,7 @@ namespace {
 LevelView view_of(const FloorPlane& plane) {
   LevelView view;
   view.floor_base = plane.base;
-  view.floor_um = plane.um;
+  view.floor_part = plane.part;
   view.slope_x = plane.slope_x;
   view.slope_z = plane.slope_z;
   return view;
@@ -32,50 +32,40 @@ FloorPlane fit_plane(Sheet& sheet) {
     return plane;
   }
   if (!may_be_plane(sheet)) return plane;
-  // Least squares over the cells that have feet, about their mean so that the sums stay small.
-  double n = 0, sx = 0, sz = 0, sh = 0;
+  // Neighbours differ alike, so the ends of rows and columns tell the slopes.
+  const auto feet = [&](int32_t x, int32_t z) { return sheet.feet[static_cast<size_t>(z * kTileSide + x)]; };
+  double rise_x = 0, run_x = 0, rise_z = 0, run_z = 0;
+  for (int32_t i = 0; i < kTileSide; ++i) {
+    const auto ends = [&](auto at, double& rise, double& run) {
+      int32_t first = 0, last = kTileSide - 1;
+      while (first <= last && at(first) == kNone16) ++first;
+      while (last > first && at(last) == kNone16) --last;
+      if (first >= last) return;
+      rise += static_cast<double>(at(last)) - at(first);
+      run += last - first;
+    };
+    ends([&](int32_t x) { return feet(x, i); }, rise_x, run_x);
+    ends([&](int32_t z) { return feet(i, z); }, rise_z, run_z);
+  }
+  const double gx = run_x > 0 ? rise_x / run_x : 0, gz = run_z > 0 ? rise_z / run_z : 0;
+  constexpr double kSteepest = kMaxSlope / 1024 - 1;
+  if (!(std::fabs(gx) < kSteepest && std::fabs(gz) < kSteepest)) return plane;
+  double sum = 0;
   for (int32_t z = 0; z < kTileSide; ++z) {
-    for (int32_t x = 0; x < kTileSide; ++x) {
-      const uint16_t h = sheet.feet[static_cast<size_t>(z * kTileSide + x)];
-      if (h == kNone16) continue;
-      n += 1;
-      sx += x;
-      sz += z;
-      sh += h;
+    for (int32_t x = z % 4; x < kTileSide; x += 4) {
+      if (feet(x, z) != kNone16) sum += feet(x, z) - gx * x - gz * z;
     }
   }
-  const double mx = sx / n, mz = sz / n, mh = sh / n;
-  double xx = 0, xz = 0, zz = 0, xh = 0, zh = 0;
+  double counted = 0;
   for (int32_t z = 0; z < kTileSide; ++z) {
-    for (int32_t x = 0; x < kTileSide; ++x) {
-      const uint16_t h = sheet.feet[static_cast<size_t>(z * kTileSide + x)];
-      if (h == kNone16) continue;
-      const double dx = x - mx, dz = z - mz, dh = h - mh;
-      xx += dx * dx;
-      xz += dx * dz;
-      zz += dz * dz;
-      xh += dx * dh;
-      zh += dz * dh;
-    }
+    for (int32_t x = z % 4; x < kTileSide; x += 4) counted += feet(x, z) != kNone16;
   }
-  const double determinant = xx * zz - xz * xz;
-  double gx = 0, gz = 0;
-  if (determinant > 1e-6 * (xx + zz) * (xx + zz)) {
-    gx = (xh * zz - zh * xz) / determinant;
-    gz = (zh * xx - xh * xz) / determinant;
-  } else if (xx > 0 && zz == 0) {
-    gx = xh / xx;
-  } else if (zz > 0 && xx == 0) {
-    gz = zh / zz;
-  }
-  if (!(std::fabs(gx) < 1e5 && std::fabs(gz) < 1e5)) return plane;
-  const double at_zero = (mh - gx * mx - gz * mz) * 1000;  // um from the sheet's base
-  const auto um = static_cast<int64_t>(std::llround(at_zero));
-  const int64_t mm = um >= 0 ? um / 1000 : -((999 - um) / 1000);
-  plane.base = sheet.base + static_cast<int32_t>(mm);
-  plane.um = static_cast<int32_t>(um - mm * 1000);
-  plane.slope_x = static_cast<int32_t>(std::lround(gx * 1000));
-  plane.slope_z = static_cast<int32_t>(std::lround(gz * 1000));
+  if (counted == 0) return plane;
+  const auto base = static_cast<int64_t>(std::llround(sum / counted * 1024));
+  plane.base = sheet.base + static_cast<int32_t>(base >> 10);
+  plane.part = static_cast<int32_t>(base & 1023);
+  plane.slope_x = static_cast<int32_t>(std::lround(gx * 1024));
+  plane.slope_z = static_cast<int32_t>(std::lround(gz * 1024));
   const LevelView view = view_of(plane);
   for (int32_t z = 0; z < kTileSide; ++z) {
     for (int32_t x = 0; x < kTileSide; ++x) {
@@ -186,7 +176,7 @@ void ZoneBuilder::add_level(uint32_t tile, const Sheet& sheet, const FloorPlane&
 
   levels_.emplace_back(static_cast<uint16_t>(tile), floor_kind, ceiling_kind, floor_base, ceiling_base,
                        plane.found ? plane.slope_x : 0, plane.found ? plane.slope_z : 0, floor_offset,
-                       ceiling_offset, static_cast<int16_t>(plane.found ? plane.um : 0),
+                       ceiling_offset, static_cast<int16_t>(plane.found ? plane.part : 0),
                        all_present ? format::BitsKind::All : format::BitsKind::Planes,
                        one_area ? format::BitsKind::All : format::BitsKind::Planes, area_value,
                        present_offset, area_offset);

@@ -15,8 +15,8 @@ struct LevelView {
   const uint16_t* floor = nullptr;      // 4096 samples, or null
   const uint64_t* present = nullptr;    // 64 rows, or null: every cell has a floor
   int32_t floor_base = 0;               // [mm]
-  int32_t floor_um = 0;
-  int32_t slope_x = 0;                  // [um per cell]
+  int32_t floor_part = 0;               // [1/1024 mm]
+  int32_t slope_x = 0;                  // [1/1024 mm per cell], below 2^24
   int32_t slope_z = 0;
 
   [[nodiscard]] bool has(int32_t x, int32_t z) const {
@@ -26,10 +26,7 @@ struct LevelView {
   [[nodiscard]] int32_t sample(int32_t x, int32_t z) const {
     if (floor != nullptr) return floor_base + floor[z * 64 + x];
     if ((slope_x | slope_z) == 0) return floor_base;
-    // Rounded to nearest; the offset keeps the division away from negative numbers.
-    constexpr int64_t kShift = int64_t{1} << 40;
-    const int64_t um = int64_t{floor_um} + int64_t{slope_x} * x + int64_t{slope_z} * z;
-    return floor_base + static_cast<int32_t>((um + kShift * 1000 + 500) / 1000 - kShift);
+    return floor_base + ((floor_part + slope_x * x + slope_z * z + 512) >> 10);
   }
   [[nodiscard]] bool is_constant() const { return floor == nullptr && (slope_x | slope_z) == 0; }
 

@@ -72,8 +72,10 @@ Result<void> Zone::attach(const std::string& name) {
     if (begin > end || end > level_count_) return bad_file(name, "its tiles are out of order");
     for (uint32_t i = begin; i < end; ++i) {
       const format::Level& level = *levels->Get(i);
+      const auto gentle = [](int32_t slope) { return slope > -kMaxSlope && slope < kMaxSlope; };
       const bool floor_ok = level.floor_kind() == format::HeightKind::Constant ||
-                            level.floor_kind() == format::HeightKind::Plane ||
+                            (level.floor_kind() == format::HeightKind::Plane &&
+                             gentle(level.slope_x()) && gentle(level.slope_z())) ||
                             (level.floor_kind() == format::HeightKind::Samples &&
                              fits(level.floor_offset(), kArea, heights->size()));
       const bool ceiling_ok = level.ceiling_kind() == format::HeightKind::None ||
@@ -114,7 +116,7 @@ LevelView Zone::view(uint32_t index) const {
   view.floor_base = level.floor_base();
   if (level.floor_kind() == format::HeightKind::Samples) view.floor = heights(level.floor_offset());
   if (level.floor_kind() == format::HeightKind::Plane) {
-    view.floor_um = level.floor_um();
+    view.floor_part = level.floor_part();
     view.slope_x = level.slope_x();
     view.slope_z = level.slope_z();
   }

@@ -21,6 +21,7 @@ namespace throng {
 
 inline constexpr uint32_t kZoneVersion = 1;
 inline constexpr uint32_t kManifestVersion = 1;
+inline constexpr int32_t kMaxSlope = 1 << 23;  // of a plane [1/1024 mm per cell]: no overflow in 64 cells
 
 /// A zone's bytes after the verifier and the checks of its offsets.
 class Zone {

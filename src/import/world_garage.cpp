@@ -158,8 +158,8 @@ void add_outer_walls(WorldBuilder& b, const Plan& p) {
     }
   };
   const double h = kWall / 2;
-  side(h, h, w - h, h, true);
-  side(h, d - h, w - h, d - h, true);
+  side(0, h, w, h, true);
+  side(0, d - h, w, d - h, true);
   side(h, kWall, h, d - kWall, false);
   side(w - h, kWall, w - h, d - kWall, false);
 }

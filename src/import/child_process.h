@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "throng/context.h"
+#include "throng/result.h"
+
+/// Runs code that we do not trust with our memory in a child process that talks through a pipe.
+namespace throng {
+
+/// How much a child may use before the system ends it.
+struct ChildLimits {
+  uint64_t bytes = 0;    ///< Memory beyond what the parent has. [> 0]
+  uint64_t seconds = 0;  ///< Time on a processor. [> 0]
+};
+
+/// A child's way to its parent. Ends the child if the parent is gone.
+class PipeWriter {
+ public:
+  explicit PipeWriter(int file) : file_(file) {}
+  void write(const void* data, size_t size) const;
+
+ private:
+  int file_;
+};
+
+/// The parent's end.
+class PipeReader {
+ public:
+  PipeReader(int file, Context& context) : file_(file), context_(context) {}
+  /// False at the end of the pipe or when the context cancels; then `data` is not complete.
+  bool read(void* data, size_t size);
+
+ private:
+  int file_;
+  Context& context_;
+};
+
+/// Forks; the child calls `child` and ends, the parent calls `parent` meanwhile, which returns true
+/// once it got all it wanted. Fails with kBadFile and a clause that says how the child ended, with
+/// kCancelled, or with kIo. Needs a POSIX system.
+[[nodiscard]] Result<void> run_in_child(const ChildLimits& limits, Context& context,
+                                        const std::function<void(const PipeWriter&)>& child,
+                                        const std::function<bool(PipeReader&)>& parent);
+
+}  // namespace throng

@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/clean.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "core/hash.h"
+#include "import/raw_scene.h"
+
+namespace throng {
+namespace {
+
+constexpr double kFarthest = 1e9;      // [m] Beyond it a double keeps less than a micrometre.
+constexpr double kLargestWorld = 1e6;  // [m] 1000 km.
+constexpr double kSpikeLength = 1000;  // [m] Shorter ones do no harm.
+
+bool is_finite(Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+double largest_side(const Box3d& box) {
+  if (box.empty()) return 0;
+  const Vec3d size = box.max - box.min;
+  return std::max({size.x, size.y, size.z});
+}
+
+// Keeps the triangles that keep(t) wants, and the parts' ranges with them.
+template <class Keep>
+void filter_triangles(Scene& scene, Keep keep) {
+  size_t kept = 0;
+  size_t done = 0;
+  const auto move_range = [&](size_t end) {
+    for (; done < end; ++done) {
+      if (!keep(done)) continue;
+      scene.triangles[kept] = scene.triangles[done];
+      scene.area[kept] = scene.area[done];
+      ++kept;
+    }
+  };
+  std::vector<ScenePart> parts;
+  for (ScenePart& part : scene.parts) {
+    move_range(part.first_triangle);
+    const auto first = static_cast<uint32_t>(kept);
+    move_range(size_t{part.first_triangle} + part.triangle_count);
+    part.first_triangle = first;
+    part.triangle_count = static_cast<uint32_t>(kept) - first;
+    if (part.triangle_count > 0) parts.push_back(std::move(part));
+  }
+  move_range(scene.triangles.size());
+  scene.parts = std::move(parts);
+  scene.triangles.resize(kept);
+  scene.area.resize(kept);
+}
+
+void drop_broken(Scene& scene) {
+  const size_t vertices = scene.positions.size();
+  filter_triangles(scene, [&](size_t t) {
+    const auto& corners = scene.triangles[t];
+    for (const uint32_t corner : corners) {
+      if (corner < vertices) continue;
+      ++scene.report.bad_index;
+      return false;
+    }
+    for (const uint32_t corner : corners) {
+      if (is_finite(scene.positions[corner])) continue;
+      ++scene.report.non_finite;
+      return false;
+    }
+    return true;
+  });
+}
+
+void drop_unused_vertices(Scene& scene) {
+  std::vector<uint32_t> renamed(scene.positions.size(), kNoVertex);
+  for (const auto& corners : scene.triangles) {
+    for (const uint32_t corner : corners) renamed[corner] = 0;
+  }
+  uint32_t kept = 0;
+  for (size_t i = 0; i < renamed.size(); ++i) {
+    if (renamed[i] == kNoVertex) continue;
+    scene.positions[kept] = scene.positions[i];
+    renamed[i] = kept++;
+  }
+  if (kept == scene.positions.size()) return;
+  scene.positions.resize(kept);
+  for (auto& corners : scene.triangles) {
+    for (uint32_t& corner : corners) corner = renamed[corner];
+  }
+}
+
+// Triangles without area. They stay: a wire is matter.
+uint64_t count_degenerate(const Scene& scene) {
+  uint64_t count = 0;
+  for (const auto& [ia, ib, ic] : scene.triangles) {
+    const Vec3d a = scene.positions[ia];
+    const Vec3d ab = scene.positions[ib] - a;
+    const Vec3d ac = scene.positions[ic] - a;
+    const Vec3d normal = cross(ab, ac);
+    const double longest = std::max(dot(ab, ab), dot(ac, ac));
+    if (!(dot(normal, normal) > 1e-20 * longest * longest)) ++count;
+  }
+  return count;
+}
+
+// Triangles with the same three corners in whatever order, beyond the first of each: one 64-bit
+// hash a triangle, sorted. Two different triangles out of ten million share one with a chance of
+// 3e-6.
+uint64_t count_duplicates(const Scene& scene) {
+  std::vector<uint64_t> hashes;
+  hashes.reserve(scene.triangles.size());
+  for (const auto& corners : scene.triangles) {
+    std::array<std::array<uint64_t, 3>, 3> bits;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d p = scene.positions[corners[k]];
+      // Adding zero makes -0 and 0 the same bits.
+      bits[k] = {std::bit_cast<uint64_t>(p.x + 0.0), std::bit_cast<uint64_t>(p.y + 0.0),
+                 std::bit_cast<uint64_t>(p.z + 0.0)};
+    }
+    std::sort(bits.begin(), bits.end());
+    hashes.push_back(hash_bytes(bits.data(), sizeof bits));
+  }
+  std::sort(hashes.begin(), hashes.end());
+  uint64_t count = 0;
+  for (size_t i = 1; i < hashes.size(); ++i) count += hashes[i] == hashes[i - 1] ? 1 : 0;
+  return count;
+}
+
+// A spike is a triangle over 1 km long and thin, ten times longer than all others together: one
+// corner went astray. The box of the others grows by the shorter candidates first, so a model of
+// kilometres that really is that large has none.
+Box3d count_spikes(Scene& scene) {
+  Box3d box;
+  std::vector<std::pair<double, uint32_t>> candidates;
+  for (size_t t = 0; t < scene.triangles.size(); ++t) {
+    const auto& [ia, ib, ic] = scene.triangles[t];
+    const Vec3d a = scene.positions[ia];
+    const Vec3d b = scene.positions[ib];
+    const Vec3d c = scene.positions[ic];
+    const std::array<double, 3> sides{dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)};
+    const double longest = *std::max_element(sides.begin(), sides.end());
+    const double shortest = *std::min_element(sides.begin(), sides.end());
+    if (longest > kSpikeLength * kSpikeLength && shortest < 0.01 * longest) {
+      candidates.emplace_back(std::sqrt(longest), static_cast<uint32_t>(t));
+      continue;
+    }
+    for (const Vec3d& p : {a, b, c}) box.add(p);
+  }
+  std::sort(candidates.begin(), candidates.end());
+  for (const auto& [length_of, t] : candidates) {
+    if (!box.empty() && length_of > 10 * length(box.max - box.min)) {
+      ++scene.report.spikes;
+      continue;
+    }
+    for (const uint32_t corner : scene.triangles[t]) box.add(scene.positions[corner]);
+  }
+  return box;
+}
+
+// The box that holds the middle 98 of 100 vertices on each axis, by at most a million samples.
+Box3d bulk_box(const Scene& scene) {
+  const size_t stride = scene.positions.size() / 1'000'000 + 1;
+  std::vector<double> values;
+  const auto range = [&](auto member, double& low, double& high) {
+    values.clear();
+    for (size_t i = 0; i < scene.positions.size(); i += stride) {
+      values.push_back(scene.positions[i].*member);
+    }
+    const size_t tail = values.size() / 100;
+    std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(tail), values.end());
+    low = values[tail];
+    const size_t top = values.size() - 1 - tail;
+    std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(top), values.end());
+    high = values[top];
+  };
+  Box3d box;
+  range(&Vec3d::x, box.min.x, box.max.x);
+  range(&Vec3d::y, box.min.y, box.max.y);
+  range(&Vec3d::z, box.min.z, box.max.z);
+  return box;
+}
+
+uint64_t count_outside(const Scene& scene, const Box3d& bulk, double margin) {
+  uint64_t count = 0;
+  for (const auto& corners : scene.triangles) {
+    for (const uint32_t corner : corners) {
+      const Vec3d p = scene.positions[corner];
+      const double away = std::max({bulk.min.x - p.x, p.x - bulk.max.x, bulk.min.y - p.y,
+                                    p.y - bulk.max.y, bulk.min.z - p.z, p.z - bulk.max.z});
+      if (away <= margin) continue;
+      ++count;
+      break;
+    }
+  }
+  return count;
+}
+
+void warn_of_size(Scene& scene, const std::string& name, double side) {
+  std::string what;
+  if (side < 0.5) what = fmt::format("only {:.3g} m across", side);
+  if (side > 200'000) what = fmt::format("{:.4g} km across", side / 1000);
+  if (what.empty()) return;
+  scene.report.warnings.push_back(
+      fmt::format("{}: the model is {}; if its unit is not the metre, give its scale", name, what));
+}
+
+}  // namespace
+
+Result<void> clean_scene(Scene& scene, const std::string& name, Context& context) {
+  drop_broken(scene);
+  const SceneReport& report = scene.report;
+  if (scene.triangles.empty()) {
+    return Error{
+        Errc::kBadInput,
+        fmt::format("{}: no triangle is left of {} ({} ignored, {} not finite, {} with bad "
+                    "indices); check the file and the rules",
+                    name, report.triangles_read, report.ignored, report.non_finite,
+                    report.bad_index)};
+  }
+  drop_unused_vertices(scene);
+  if (context.cancel) return Error{Errc::kCancelled, "cancelled while cleaning"};
+  const Box3d all = scene.bounds();
+  for (const double value : {all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z}) {
+    if (std::fabs(value) <= kFarthest) continue;
+    return Error{Errc::kBadInput,
+                 fmt::format("{}: a vertex lies {:.3g} km from the origin; remove it, or give the "
+                             "scale if the unit is not the metre",
+                             name, std::fabs(value) / 1000)};
+  }
+  scene.report.degenerate += count_degenerate(scene);
+  scene.report.duplicate += count_duplicates(scene);
+  if (context.cancel) return Error{Errc::kCancelled, "cancelled while cleaning"};
+
+  const uint64_t spikes_before = report.spikes;
+  const Box3d box = count_spikes(scene);
+  const uint64_t spikes = report.spikes - spikes_before;
+  const Box3d bulk = bulk_box(scene);
+  const double bulk_side = std::max(largest_side(bulk), 1.0);
+  const double margin = std::max(10 * bulk_side, kSpikeLength);
+  const uint64_t outside = count_outside(scene, bulk, margin);
+  if (largest_side(all) > kLargestWorld && outside + spikes > 0) {
+    return Error{Errc::kBadInput,
+                 fmt::format("{}: {} triangles reach {:.4g} km while the rest is {:.4g} km across; "
+                             "remove them",
+                             name, std::max(outside, spikes), largest_side(all) / 1000,
+                             (spikes > 0 ? largest_side(box) : bulk_side) / 1000)};
+  }
+  if (spikes > 0) {
+    scene.report.warnings.push_back(fmt::format(
+        "{}: {} spikes, triangles up to {:.4g} km long beside a model of {:.4g} m; they are kept",
+        name, spikes, largest_side(all) / 1000, largest_side(box)));
+  } else if (outside > 0) {
+    scene.report.warnings.push_back(
+        fmt::format("{}: {} triangles lie more than {:.4g} km away from the rest; they are kept",
+                    name, outside, margin / 1000));
+  }
+  warn_of_size(scene, name, spikes > 0 ? largest_side(box) : largest_side(all));
+  return {};
+}
+
+}  // namespace throng

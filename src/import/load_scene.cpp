@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "core/read_file.h"
+#include "import/area_rules.h"
+#include "import/assimp_reader.h"
+#include "import/bsp.h"
+#include "import/city.h"
+#include "import/clean.h"
+#include "import/obj.h"
+#include "import/plan.h"
+#include "import/raw_scene.h"
+
+// Every way in ends here: read each file as it is, place it in metres with Y up, name its areas,
+// join, clean.
+namespace throng {
+namespace {
+
+using Reader = Result<RawScene> (*)(std::string_view, const ReadOptions&, Context&);
+
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+// A .json file may be a city or a plan; the city says so in one of its first keys, or in its last.
+Reader json_reader(std::string_view bytes) {
+  return bytes.find("\"CityJSON\"") != std::string_view::npos ? &read_cityjson : &read_geojson;
+}
+
+Result<RawScene> read_source(const SceneSource& source, const ReadOptions& options,
+                             Context& context) {
+  const std::string extension = lower_case(std::filesystem::path(source.path).extension().string());
+  for (const char* known : {".gltf", ".glb", ".fbx", ".ply", ".stl", ".dae", ".ifc", ".3ds"}) {
+    if (extension != known) continue;
+    // The child reads the file itself; here only the sentence for a missing one is wanted.
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(source.path, failure)) break;
+    return read_with_assimp(source.path, options, context);
+  }
+  const bool known = extension == ".obj" || extension == ".json" || extension == ".gml" ||
+                     extension == ".bsp" || extension == ".wkt" || extension == ".geojson";
+  const auto bytes = read_file(source.path);
+  if (!bytes) return bytes.error();
+  if (!known) {
+    return Error{Errc::kBadFile,
+                 fmt::format("{}: unknown kind of file '{}'; readable are obj gltf glb fbx ply stl "
+                             "dae ifc 3ds city.json gml bsp wkt geojson",
+                             source.path, extension)};
+  }
+  Reader reader = nullptr;
+  if (extension == ".obj")
+    reader = &read_obj;
+  else if (extension == ".json")
+    reader = json_reader(*bytes);
+  else if (extension == ".gml")
+    reader = &read_citygml;
+  else if (extension == ".bsp")
+    reader = &read_bsp;
+  else if (extension == ".wkt")
+    reader = &read_wkt;
+  else
+    reader = &read_geojson;
+  return reader(*bytes, options, context);
+}
+
+// Into metres with Y up, then the source's own transform, as one matrix.
+Transform placement(const SceneSource& source, const RawScene& raw) {
+  const double s = source.scale.value_or(raw.metres_per_unit);
+  const bool z_up = source.up.value_or(raw.up) == 'z';
+  Transform out;
+  for (size_t row = 0; row < 3; ++row) {
+    const auto& m = source.transform.m[row];
+    // Z up: (x, y, z) lies at (x, z, -y).
+    out.m[row] = {m[0] * s, (z_up ? -m[2] : m[1]) * s, (z_up ? m[1] : m[2]) * s, m[3]};
+  }
+  return out;
+}
+
+void append(Scene& all, Scene&& one) {
+  if (all.triangles.empty() && all.positions.empty()) {
+    const SceneReport report = std::move(all.report);
+    all = std::move(one);
+    all.report.triangles_read += report.triangles_read;
+    all.report.bad_index += report.bad_index;
+    all.report.ignored += report.ignored;
+    all.report.warnings.insert(all.report.warnings.begin(), report.warnings.begin(),
+                               report.warnings.end());
+    return;
+  }
+  const auto first_vertex = static_cast<uint32_t>(all.positions.size());
+  const auto first_triangle = static_cast<uint32_t>(all.triangles.size());
+  all.positions.insert(all.positions.end(), one.positions.begin(), one.positions.end());
+  one.positions = {};
+  for (const auto& corners : one.triangles) {
+    auto& moved = all.triangles.emplace_back(corners);
+    for (uint32_t& corner : moved) corner = corner == kNoVertex ? kNoVertex : corner + first_vertex;
+  }
+  all.area.insert(all.area.end(), one.area.begin(), one.area.end());
+  for (ScenePart& part : one.parts) {
+    part.first_triangle += first_triangle;
+    all.parts.push_back(std::move(part));
+  }
+  std::move(one.patches.begin(), one.patches.end(), std::back_inserter(all.patches));
+  all.report.triangles_read += one.report.triangles_read;
+  all.report.bad_index += one.report.bad_index;
+  all.report.ignored += one.report.ignored;
+  std::move(one.report.warnings.begin(), one.report.warnings.end(),
+            std::back_inserter(all.report.warnings));
+}
+
+Result<void> check(const SceneConfig& config) {
+  const auto bad = [](std::string what) { return Error{Errc::kBadConfig, "scene: " + what}; };
+  if (config.sources.empty()) return bad("no source; name at least one file");
+  if (!(config.plan_height > 0 && config.plan_height <= 1e6)) return bad("need plan_height > 0");
+  if (!(config.curve_tolerance > 0 && config.curve_tolerance <= 1e6)) {
+    return bad("need curve_tolerance > 0");
+  }
+  for (const SceneSource& source : config.sources) {
+    if (source.up && *source.up != 'y' && *source.up != 'z') {
+      return bad(source.path + ": up must be y or z");
+    }
+    if (source.scale && !(*source.scale > 0 && *source.scale <= 1e9)) {
+      return bad(source.path + ": need scale > 0");
+    }
+    for (const auto& row : source.transform.m) {
+      for (const double value : row) {
+        if (!std::isfinite(value)) return bad(source.path + ": the transform is not finite");
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const SceneConfig& config, Context& context) {
+  if (const auto checked = check(config); !checked) return checked.error();
+  Scene all;
+  for (size_t i = 0; i < config.sources.size(); ++i) {
+    const SceneSource& source = config.sources[i];
+    if (context.on_progress) context.on_progress({"read", i, config.sources.size()});
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
+    ReadOptions options;
+    options.name = source.path;
+    options.curve_tolerance = config.curve_tolerance;
+    options.plan_height = config.plan_height;
+    options.metres_per_unit = source.scale;
+    auto raw = read_source(source, options, context);
+    if (!raw) return raw.error();
+    const Transform place = placement(source, *raw);
+    for (Vec3d& p : raw->scene.positions) p = place(p);
+    for (ControlGrid& patch : raw->scene.patches) {
+      for (Vec3d& p : patch.points) p = place(p);
+    }
+    apply_rules(raw->scene, config.rules);
+    const uint64_t vertices = uint64_t{all.positions.size()} + raw->scene.positions.size();
+    const uint64_t triangles = uint64_t{all.triangles.size()} + raw->scene.triangles.size();
+    if (vertices >= kNoVertex || triangles >= kNoVertex) {
+      return Error{Errc::kLimit,
+                   "scene: more than 4.29 thousand million vertices; bake it in parts"};
+    }
+    append(all, std::move(raw->scene));
+  }
+  const std::string name = config.sources.size() == 1
+                               ? config.sources.front().path
+                               : fmt::format("scene of {} files", config.sources.size());
+  if (auto cleaned = clean_scene(all, name, context); !cleaned) return cleaned.error();
+  if (context.on_progress) {
+    context.on_progress({"read", config.sources.size(), config.sources.size()});
+  }
+  return all;
+}
+
+}  // namespace throng

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/obj.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "import/text_cursor.h"
+
+namespace throng {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class ObjReader {
+ public:
+  explicit ObjReader(const ReadOptions& options) : writer_(options) {}
+
+  Result<RawScene> read(std::string_view bytes, Context& context) {
+    size_t lines = 0;
+    while (!bytes.empty()) {
+      read_line(next_line(bytes));
+      if ((++lines & 0xffff) == 0 && context.cancel) return Error{Errc::kCancelled, "cancelled"};
+    }
+    auto scene = writer_.finish();
+    if (!scene) return scene.error();
+    return RawScene{.scene = *std::move(scene), .up = 'y', .metres_per_unit = 1};
+  }
+
+ private:
+  // The next line, with lines that end in a backslash joined to it.
+  std::string_view next_line(std::string_view& bytes) {
+    joined_.clear();
+    for (;;) {
+      const size_t end = bytes.find('\n');
+      std::string_view line = bytes.substr(0, end);
+      bytes = end == std::string_view::npos ? std::string_view() : bytes.substr(end + 1);
+      while (!line.empty() && TextCursor::is_space(line.back())) line.remove_suffix(1);
+      const bool goes_on = !line.empty() && line.back() == '\\' && !bytes.empty();
+      if (!goes_on && joined_.empty()) return line;
+      joined_ += goes_on ? line.substr(0, line.size() - 1) : line;
+      if (!goes_on) return joined_;
+      joined_ += ' ';
+    }
+  }
+
+  void read_line(std::string_view line) {
+    TextCursor cursor(line);
+    const std::string_view word = cursor.take_word();
+    if (word == "v") {
+      Vec3d p{kNan, kNan, kNan};  // A broken vertex still takes its number; its triangles drop out.
+      if (!(cursor.take(p.x) && cursor.take(p.y) && cursor.take(p.z))) p = {kNan, kNan, kNan};
+      writer_.add_vertex(p);
+    } else if (word == "f" || word == "fo") {
+      read_face(cursor);
+    } else if (word == "o") {
+      object_ = name(cursor);
+      group_.clear();
+      changed_ = true;
+    } else if (word == "g") {
+      group_ = name(cursor);
+      changed_ = true;
+    } else if (word == "usemtl") {
+      material_ = name(cursor);
+      changed_ = true;
+    } else if (word == "l" || word == "p" || word == "curv") {
+      writer_.count_points_and_lines(1);
+    }
+  }
+
+  static std::string name(TextCursor& cursor) {
+    cursor.skip_space();
+    return std::string(cursor.rest());
+  }
+
+  void read_face(TextCursor& cursor) {
+    corners_.clear();
+    bool good = !writer_.full();
+    while (good) {
+      long long index = 0;
+      const std::string_view word = cursor.take_word();
+      if (word.empty()) break;
+      TextCursor corner(word);
+      good = corner.take(index) && (corner.at_end() || corner.peek() == '/');
+      const auto count = static_cast<long long>(writer_.scene().positions.size());
+      if (index < 0) index += count + 1;  // Negative ones count back from the last vertex.
+      good = good && index >= 1 && index <= count;
+      if (good) corners_.push_back(static_cast<uint32_t>(index - 1));
+    }
+    if (!good || corners_.size() < 3) {
+      writer_.count_bad(corners_.size() > 3 ? corners_.size() - 2 : 1);
+      return;
+    }
+    if (changed_) {
+      std::string node = object_;
+      if (!node.empty() && !group_.empty()) node += '/';
+      writer_.begin_part(node + group_, material_);
+      changed_ = false;
+    }
+    if (corners_.size() == 3) {
+      writer_.add_triangle(corners_[0], corners_[1], corners_[2]);
+      return;
+    }
+    points_.clear();
+    for (const uint32_t corner : corners_) points_.push_back(writer_.scene().positions[corner]);
+    const uint32_t rings[2] = {0, static_cast<uint32_t>(corners_.size())};
+    writer_.add_polygon(points_, rings, corners_);
+  }
+
+  SceneWriter writer_;
+  std::string joined_;
+  std::string object_, group_, material_;
+  bool changed_ = true;
+  std::vector<uint32_t> corners_;
+  std::vector<Vec3d> points_;
+};
+
+}  // namespace
+
+Result<RawScene> read_obj(std::string_view bytes, const ReadOptions& options, Context& context) {
+  return ObjReader(options).read(bytes, context);
+}
+
+}  // namespace throng

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/raw_scene.h"
+
+#include <fmt/format.h>
+
+namespace throng {
+
+void SceneWriter::begin_part(std::string_view node, std::string_view material) {
+  const auto first = static_cast<uint32_t>(scene_.triangles.size());
+  if (!scene_.parts.empty()) {
+    ScenePart& last = scene_.parts.back();
+    if (last.node == node && last.material == material) return;
+    last.triangle_count = first - last.first_triangle;
+    if (last.triangle_count == 0) scene_.parts.pop_back();
+  }
+  scene_.parts.push_back({.file = file_,
+                          .node = std::string(node),
+                          .material = std::string(material),
+                          .first_triangle = first,
+                          .triangle_count = 0});
+}
+
+uint32_t SceneWriter::add_vertex(Vec3d p) {
+  scene_.positions.push_back(p);
+  return static_cast<uint32_t>(scene_.positions.size() - 1);
+}
+
+void SceneWriter::add_triangle(uint32_t a, uint32_t b, uint32_t c) {
+  if (scene_.parts.empty()) begin_part({}, {});
+  scene_.triangles.push_back({a, b, c});
+}
+
+void SceneWriter::add_polygon(std::span<const Vec3d> points, std::span<const uint32_t> ring_first) {
+  const uint32_t corners = ring_first[1] - ring_first[0];
+  if (corners < 3 || full()) {
+    ++bad_;
+    return;
+  }
+  const auto base = static_cast<uint32_t>(scene_.positions.size());
+  scene_.positions.insert(scene_.positions.end(), points.begin(), points.end());
+  cut_.clear();
+  if (!cutter_.cut(points, ring_first, cut_)) ++inexact_;
+  for (const auto& [a, b, c] : cut_) add_triangle(base + a, base + b, base + c);
+}
+
+void SceneWriter::add_polygon(std::span<const Vec3d> points, std::span<const uint32_t> ring_first,
+                              std::span<const uint32_t> vertices) {
+  cut_.clear();
+  if (!cutter_.cut(points, ring_first, cut_)) ++inexact_;
+  for (const auto& [a, b, c] : cut_) add_triangle(vertices[a], vertices[b], vertices[c]);
+}
+
+bool SceneWriter::full() const { return scene_.positions.size() >= kNoVertex - 65536; }
+
+Result<Scene> SceneWriter::finish() {
+  if (full() || scene_.triangles.size() >= kNoVertex) {
+    return Error{Errc::kLimit,
+                 file_ + ": more than 4.29 thousand million vertices; split the file"};
+  }
+  if (!scene_.parts.empty()) {
+    ScenePart& last = scene_.parts.back();
+    last.triangle_count = static_cast<uint32_t>(scene_.triangles.size()) - last.first_triangle;
+    if (last.triangle_count == 0) scene_.parts.pop_back();
+  }
+  scene_.area.resize(scene_.triangles.size(), kAreaWalkable);
+  scene_.report.bad_index += bad_;
+  scene_.report.triangles_read = scene_.triangles.size() + bad_;
+  if (thin_ > 0) {
+    warn(fmt::format("{}: skipped {} points and lines; only surfaces are matter", file_, thin_));
+  }
+  if (inexact_ > 0) {
+    warn(fmt::format("{}: {} polygons cross themselves; their area is a best effort", file_,
+                     inexact_));
+  }
+  return std::move(scene_);
+}
+
+}  // namespace throng

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "import/polygon.h"
+#include "throng/context.h"
+#include "throng/result.h"
+#include "throng/scene.h"
+
+/// What the readers of single formats share. A reader turns bytes into triangles as they are in the
+/// file: its units, its axes, nothing cleaned. load_scene does the rest.
+namespace throng {
+
+/// A corner of a triangle that names no vertex; clean_scene drops and counts the triangle.
+inline constexpr uint32_t kNoVertex = UINT32_MAX;
+
+struct RawScene {
+  Scene scene;    ///< In the file's units and axes.
+  char up = 'y';  ///< Which axis of these numbers points up.
+  double metres_per_unit = 1;
+};
+
+struct ReadOptions {
+  std::string name;                       ///< The file, for messages and parts.
+  double curve_tolerance = 0.02;          ///< [m]
+  double plan_height = 3;                 ///< [m]
+  std::optional<double> metres_per_unit;  ///< The user's own, where given.
+};
+
+/// Adds meshes and polygons to a scene, and counts what cannot be matter.
+class SceneWriter {
+ public:
+  explicit SceneWriter(const ReadOptions& options) : file_(options.name) {}
+
+  /// What follows belongs to this node and material.
+  void begin_part(std::string_view node, std::string_view material);
+  uint32_t add_vertex(Vec3d p);
+  void add_triangle(uint32_t a, uint32_t b, uint32_t c);
+  /// A polygon by its corners; rings as in PolygonCutter::cut. Too short rings are counted.
+  void add_polygon(std::span<const Vec3d> points, std::span<const uint32_t> ring_first);
+  /// The same over vertices that were added before: `vertices[i]` is the index of points[i].
+  void add_polygon(std::span<const Vec3d> points, std::span<const uint32_t> ring_first,
+                   std::span<const uint32_t> vertices);
+
+  void count_bad(uint64_t triangles) { bad_ += triangles; }
+  void count_points_and_lines(uint64_t count) { thin_ += count; }
+  void warn(std::string sentence) { scene_.report.warnings.push_back(std::move(sentence)); }
+  [[nodiscard]] Scene& scene() { return scene_; }
+  [[nodiscard]] bool full() const;  ///< More vertices than indices can name.
+
+  /// Closes the last part and turns the counts into the report. Fails with kLimit.
+  Result<Scene> finish();
+
+ private:
+  std::string file_;
+  Scene scene_;
+  PolygonCutter cutter_;
+  std::vector<std::array<uint32_t, 3>> cut_;
+  uint64_t bad_ = 0;
+  uint64_t thin_ = 0;
+  uint64_t inexact_ = 0;
+};
+
+}  // namespace throng

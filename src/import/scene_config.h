@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "core/config_file.h"
+#include "throng/scene.h"
+
+/// The scene file: which models, how they lie, what their surfaces are for.
+namespace throng {
+
+/// The settings of a parsed scene file; relative paths begin at `folder`. Fails with kBadFile, line
+/// and key.
+[[nodiscard]] Result<SceneConfig> read_scene_config(const ConfigNode& root, const std::string& name,
+                                                    const std::string& folder);
+
+}  // namespace throng

@@ -98,7 +98,7 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   plan.zones_z = (plan.grid.tiles_z() + plan.tiles_per_zone - 1) / plan.tiles_per_zone;
   plan.coder = &coder;
   plan.codes = coder.codes();
-  plan.limits = body_limits(config.classes, plan.codes);
+  plan.limits = body_limits(config.classes, plan.codes, config.cell);
   for (size_t c = 0; c < config.classes.size(); ++c) {
     plan.bodies.push_back(body_window(config.classes[c], static_cast<int32_t>(c), config.cell));
     plan.reach = std::max(plan.reach, plan.bodies.back().reach);

@@ -103,6 +103,21 @@ TopRange LayerRange(const TileGaps& gaps, int32_t layer) {
   return {hn::GetLane(hn::MinOfLanes(di, low)), hn::GetLane(hn::MaxOfLanes(di, high))};
 }
 
+TopRange RunRange(const GapLayer& layer, int32_t z, uint64_t cells) {
+  const DI di;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
+  auto low = hn::Set(di, INT32_MAX), high = hn::Set(di, INT32_MIN);
+  for (int32_t x = 0; x < kTileSide; x += lanes) {
+    const uint64_t here = cells >> x & ((1ULL << lanes) - 1);
+    if (here == 0) continue;
+    const auto mask = mask_of(di, here);
+    const auto top = hn::Load(di, &layer.top[static_cast<size_t>(z * kTileSide + x)]);
+    low = hn::IfThenElse(mask, hn::Min(low, top), low);
+    high = hn::IfThenElse(mask, hn::Max(high, top), high);
+  }
+  return {hn::GetLane(hn::MinOfLanes(di, low)), hn::GetLane(hn::MaxOfLanes(di, high))};
+}
+
 void ClearSheet(Sheet& sheet) {
   const DU du;
   const auto none = hn::Set(du, kNone16), zero = hn::Zero(du);
@@ -279,6 +294,7 @@ namespace throng {
 
 HWY_EXPORT(LinkLayer);
 HWY_EXPORT(LayerRange);
+HWY_EXPORT(RunRange);
 HWY_EXPORT(ClearSheet);
 HWY_EXPORT(WriteGaps);
 HWY_EXPORT(Summarise);
@@ -291,6 +307,10 @@ void link_layer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t m
 
 TopRange layer_range(const TileGaps& gaps, int32_t layer) {
   return HWY_DYNAMIC_DISPATCH(LayerRange)(gaps, layer);
+}
+
+TopRange run_range(const GapLayer& layer, int32_t z, uint64_t cells) {
+  return HWY_DYNAMIC_DISPATCH(RunRange)(layer, z, cells);
 }
 
 void clear_sheet(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(ClearSheet)(sheet); }

@@ -26,6 +26,8 @@ struct TopRange {
   int32_t low = INT32_MAX, high = INT32_MIN;
 };
 TopRange layer_range(const TileGaps& gaps, int32_t layer);
+/// The same over the cells of row z whose bits are set.
+TopRange run_range(const GapLayer& layer, int32_t z, uint64_t cells);
 
 /// Sets every cell to "no gap".
 void clear_sheet(Sheet& sheet);

@@ -70,6 +70,7 @@ class Dealer {
   void join_ranks(size_t cell, size_t other, const int32_t* runs, const int32_t* other_runs);
   void make_components();
   void split(int32_t component);
+  [[nodiscard]] bool is_crumb(const Component& c) const;
   int32_t pack(std::vector<int32_t>& sheet_of) const;
 
   const TileGaps& gaps_;
@@ -158,20 +159,12 @@ void Dealer::find_runs() {
 }
 
 void Dealer::make_components() {
-  TopRange all;
-  for (int32_t k = 0; k < gaps_.max_count; ++k) {
-    const TopRange range = layer_range(gaps_, k);
-    all.low = std::min(all.low, range.low);
-    all.high = std::max(all.high, range.high);
-  }
-  const bool tall = static_cast<int64_t>(all.high) - all.low > kMaxRange;
   for (size_t i = 0; i < runs_.size(); ++i) {
     Run& run = runs_[i];
     const int32_t top = root(static_cast<int32_t>(i));
     if (top == static_cast<int32_t>(i)) {
       run.component = static_cast<int32_t>(components_.size());
       components_.emplace_back();
-      if (!tall) components_.back().tops = all;
     } else {
       run.component = runs_[static_cast<size_t>(top)].component;
     }
@@ -180,11 +173,9 @@ void Dealer::make_components() {
     component.overlaps_itself |= (row & run.cells) != 0;
     row |= run.cells;
     component.count += std::popcount(run.cells);
-    for (uint64_t cells = tall ? run.cells : 0; cells != 0; cells &= cells - 1) {
-      const size_t cell = static_cast<size_t>(run.z * kSide + std::countr_zero(cells));
-      component.tops.low = std::min(component.tops.low, layer(run.layer).top[cell]);
-      component.tops.high = std::max(component.tops.high, layer(run.layer).top[cell]);
-    }
+    const TopRange tops = run_range(layer(run.layer), run.z, run.cells);
+    component.tops.low = std::min(component.tops.low, tops.low);
+    component.tops.high = std::max(component.tops.high, tops.high);
   }
   // A component whose heights lie too far apart for 16 bits is cut like one that overlaps itself.
   for (Component& c : components_) {
@@ -263,11 +254,24 @@ void Dealer::split(int32_t index) {
   }
 }
 
-// Deals components to sheets, larger first, each to the first sheet whose columns are free.
+// True if no body of any class has room on the component: it is smaller than the smallest footprint
+// and ends inside the tile. Tops of pillars and rails go this way.
+bool Dealer::is_crumb(const Component& c) const {
+  if (c.count >= limits_.min_footprint || c.cells[0] != 0 || c.cells[kSide - 1] != 0) return false;
+  uint64_t columns = 0;
+  for (const uint64_t row : c.cells) columns |= row;
+  return (columns & 0x8000000000000001u) == 0;
+}
+
+// Deals components to sheets, larger first, each to the first sheet of about its height whose columns
+// are free: floors stay constant when a crate's top goes elsewhere. Many sheets are worse than
+// mixed ones, so after kManySheets any free columns do.
 int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
+  constexpr size_t kManySheets = 24;
+  constexpr int32_t kSameHeight = 500;  // [mm]
   std::vector<int32_t> order;
   for (size_t i = 0; i < components_.size(); ++i) {
-    if (components_[i].count > 0) order.push_back(static_cast<int32_t>(i));
+    if (components_[i].count > 0 && !is_crumb(components_[i])) order.push_back(static_cast<int32_t>(i));
   }
   std::stable_sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
     return components_[static_cast<size_t>(a)].count > components_[static_cast<size_t>(b)].count;
@@ -284,6 +288,9 @@ int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
     for (; b < bins.size(); ++b) {
       const int64_t low = std::min(bins[b].tops.low, component.tops.low);
       if (std::max(bins[b].tops.high, component.tops.high) - low > kMaxRange) continue;
+      const bool apart = component.tops.low - bins[b].tops.high > kSameHeight ||
+                         bins[b].tops.low - component.tops.high > kSameHeight;
+      if (apart && bins.size() < kManySheets) continue;
       bool clash = false;
       for (size_t z = 0; z < kTileSide && !clash; ++z) clash = (bins[b].used[z] & component.cells[z]) != 0;
       if (!clash) break;
@@ -316,12 +323,10 @@ void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
   const int32_t count = pack(sheet_of);
   std::vector<std::unique_ptr<Sheet>> dealt;
   std::vector<int32_t> low(static_cast<size_t>(count), INT32_MAX);
-  for (const Piece& piece : pieces_) {
-    int32_t& lowest = low[static_cast<size_t>(sheet_of[static_cast<size_t>(piece.component)])];
-    for (uint64_t cells = piece.cells; cells != 0; cells &= cells - 1) {
-      const size_t cell = static_cast<size_t>(piece.z * kSide + std::countr_zero(cells));
-      lowest = std::min(lowest, layer(piece.layer).top[cell]);
-    }
+  for (size_t i = 0; i < components_.size(); ++i) {
+    if (sheet_of[i] < 0) continue;
+    int32_t& lowest = low[static_cast<size_t>(sheet_of[i])];
+    lowest = std::min(lowest, components_[i].tops.low);
   }
   for (const int32_t lowest : low) {
     dealt.push_back(pool.take());
@@ -331,6 +336,7 @@ void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
   }
   for (const Piece& piece : pieces_) {
     const int32_t sheet = sheet_of[static_cast<size_t>(piece.component)];
+    if (sheet < 0) continue;
     write_gaps(layer(piece.layer), piece.z, piece.cells, limits_, *dealt[static_cast<size_t>(sheet)]);
   }
   for (auto& sheet : dealt) {
@@ -385,14 +391,25 @@ int32_t height_mm(const AvatarClass& avatar) {
   return static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
 }
 
-BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes& codes) {
+namespace {
+
+// Cells that a body on one cell can touch, at least.
+int32_t footprint_cells(const AvatarClass& avatar, double cell) {
+  const auto reach = static_cast<int32_t>(std::floor(avatar.radius / cell / 1.5));
+  return (2 * reach + 1) * (2 * reach + 1);
+}
+
+}  // namespace
+
+BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes& codes, double cell) {
   BodyLimits limits;
-  limits.min_gap = limits.min_height = INT32_MAX;
+  limits.min_gap = limits.min_height = limits.min_footprint = INT32_MAX;
   for (const AvatarClass& avatar : classes) {
     const int32_t bottom = bottom_mm(avatar), height = height_mm(avatar);
     limits.min_gap = std::min(limits.min_gap, std::max(1, height - bottom));
     limits.min_height = std::min(limits.min_height, height);
     limits.max_bottom = std::max(limits.max_bottom, bottom);
+    limits.min_footprint = std::min(limits.min_footprint, footprint_cells(avatar, cell));
   }
   limits.blocked_code = static_cast<int32_t>(codes.codes.size()) - 1;
   limits.allowed.assign(256, 0);

@@ -46,12 +46,13 @@ struct Sheet {
 struct BodyLimits {
   int32_t min_gap = 0;      // smallest height - bottom: less room than this is matter
   int32_t min_height = 0;   // smallest height
+  int32_t min_footprint = 0;  // fewest cells that a body needs [cells]
   int32_t max_bottom = 0;   // largest bottom = how far matter may top the feet
   int32_t blocked_code = 0; // of the surface that no class may stand on
   std::vector<uint32_t> allowed;  // per surface code: which classes may stand there
 };
 
-BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes& codes);
+BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes& codes, double cell);
 
 /// Bottom of a class's body in whole mm, rounded down; height rounded up.
 int32_t bottom_mm(const AvatarClass& avatar);

@@ -61,6 +61,12 @@ class CollisionMap {
     if ((around(m.plane, m.pixel) & m.low) != 0) return false;
     return m.high == 0 || (around(m.plane + 1, m.pixel) & m.high) == 0;
   }
+  void prefetch(GroundPoint p) const {
+    const uint64_t* w = words_.get() + static_cast<uint64_t>(pixel_x(p.z)) * stride_ + pixel_x(p.x);
+    __builtin_prefetch(w - stride_);
+    __builtin_prefetch(w);
+    __builtin_prefetch(w + stride_);
+  }
   [[nodiscard]] uint32_t stride() const { return stride_; }
   [[nodiscard]] uint32_t rows() const { return rows_; }
   [[nodiscard]] uint64_t bytes() const { return size_ * sizeof(uint64_t); }

@@ -34,6 +34,12 @@ class CrowdGround {
     for (uint32_t i = range.first; i < range.last; ++i) visit(i);
   }
 
+  void prefetch_record(Level level) const { __builtin_prefetch(&records_[level]); }
+  void prefetch_row(Level level, int32_t z_units) const {
+    const Record& r = records_[level];
+    __builtin_prefetch(&r.legal[((z_units >> kUnitBits) & 63) & r.row_mask]);
+  }
+
   /// True if every cell of the box is legal on one level of one tile without a step in it: then any
   /// walk inside the box is legal, and stays on the level. Cells of the tile, inclusive.
   [[nodiscard]] bool box_is_free(Level level, int32_t x0, int32_t x1, int32_t z0, int32_t z1) const {

@@ -10,6 +10,8 @@
 namespace throng {
 namespace {
 
+constexpr int kAhead = 16;
+
 enum class Try { kMoved, kWall, kAvatar };
 
 // Moves one avatar by (vx, vz) if ground and map allow.
@@ -68,10 +70,24 @@ void CrowdBlocks::sort(std::vector<Avatar>& avatars, std::vector<Avatar>& scratc
   scratch.resize(avatars.size());
   for (const Avatar& avatar : avatars) scratch[first_[block(avatar)]++] = avatar;
   avatars.swap(scratch);
+  // Within a block, avatars of one level lie together: they read the same rows of it.
+  for (const auto& runs : runs_) {
+    for (const Run& run : runs) {
+      std::stable_sort(avatars.begin() + run.first, avatars.begin() + run.last,
+                       [](const Avatar& a, const Avatar& b) { return a.level < b.level; });
+    }
+  }
 }
 
 void move_run(const StepInput& in, Avatar* first, Avatar* last, StepCounts& counts) {
   for (Avatar* a = first; a != last; ++a) {
+    // What the next avatars will read is on its way while this one moves.
+    if (last - a > kAhead) in.ground->prefetch_record(a[kAhead].level);
+    if (last - a > kAhead / 2) {
+      const Avatar& next = a[kAhead / 2];
+      in.ground->prefetch_row(next.level, next.z);
+      in.map->prefetch(next.point());
+    }
     const Try straight = try_move(in, *a, a->vx, a->vz);
     if (straight == Try::kMoved) {
       ++counts.moved;

@@ -6,8 +6,11 @@ int main(int argc, char** argv) {
   using namespace throng::app;
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {
     // One line a command, in the order of --help.
+    add_bake(parser, session);
     add_info(parser, session);
     add_run(parser, session);
+    add_slices(parser, session);
+    add_verify(parser, session);
     add_world(parser, session);
     add_bench(parser, session);
   });

@@ -56,7 +56,7 @@ struct SceneReport {
 };
 
 /// Owned triangle soup. Triangle t has corners positions[triangles[t][0..2]] and area[t].
-struct Scene {
+struct THRONG_API Scene {
   std::vector<Vec3d> positions;
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<AreaKind> area;        ///< One per triangle.

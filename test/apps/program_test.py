@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: 2026 the throng authors
+# SPDX-License-Identifier: MIT
+"""The program's manners: exit codes, one sentence, one JSON object, whole files or none.
+
+python3 program_test.py build/release/throng"""
+import json
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else pathlib.Path("throng")
+
+
+class Program(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.keep = tempfile.TemporaryDirectory()
+        cls.world = pathlib.Path(cls.keep.name) / "garage.throng"
+        done = subprocess.run([PROGRAM, "bake", "builtin:garage,levels=2", "-o", cls.world, "--cell", "0.2"],
+                              capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.keep.cleanup()
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def run_throng(self, *arguments):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.path, capture_output=True, text=True,
+                              check=False)
+
+    def assert_refused(self, done, *words):
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stdout, "")
+        lines = done.stderr.splitlines()
+        self.assertEqual(len(lines), 1, done.stderr)
+        self.assertTrue(lines[0].startswith("throng: "), lines[0])
+        for word in words:
+            self.assertIn(word, lines[0])
+
+    def test_help_and_version_are_not_errors(self):
+        for flag in ("--help", "--version"):
+            done = self.run_throng(flag)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("throng", done.stdout)
+
+    def test_bad_usage_is_one_sentence_and_two(self):
+        self.assert_refused(self.run_throng(), "throng --help")
+        self.assert_refused(self.run_throng("nosuch"), "throng --help")
+        self.assert_refused(self.run_throng("bake", "builtin:cube"), "--output", "throng bake --help")
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x", "--cell", "wide"), "--cell")
+        self.assert_refused(self.run_throng("run", self.world, "--avatars", "-5"), "--avatars")
+        self.assert_refused(self.run_throng("bake", "--json", "-o", "x.throng"), "no model")
+
+    def test_bad_input_is_one_sentence_and_two(self):
+        self.assert_refused(self.run_throng("bake", "missing.obj", "-o", "x.throng", "--json"), "missing.obj")
+        self.assert_refused(self.run_throng("bake", "builtin:nosuch", "-o", "x.throng"), "nosuch")
+        self.assert_refused(self.run_throng("bake", "builtin:cube,size=wide", "-o", "x.throng"), "size=wide")
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x.throng", "--cell", "0"), "cell")
+        self.assert_refused(self.run_throng("info", self.path), str(self.path))
+        self.assert_refused(self.run_throng("run", self.world, "--class", "horse"), "horse", "adult")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_asking_for_more_avatars_than_fit_says_how_many_fit(self):
+        done = self.run_throng("run", self.world, "--avatars", 10_000_000, "--steps", 1)
+        self.assert_refused(done, "fit")
+        counts = [int(n) for n in re.findall(r"\d+", done.stderr)]
+        fitting = [n for n in counts if 0 < n < 10_000_000]
+        self.assertTrue(fitting, done.stderr)
+        again = self.run_throng("run", self.world, "--avatars", max(fitting), "--steps", 1)
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_json_is_one_object_on_standard_output(self):
+        for arguments in (("bake", "builtin:cube", "-o", "cube.throng", "--json"),
+                          ("info", self.world, "--check", "--json"),
+                          ("run", self.world, "--avatars", 50, "--steps", 5, "--json")):
+            done = self.run_throng(*arguments)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIsInstance(json.loads(done.stdout), dict)
+
+    def test_a_run_has_the_same_state_for_any_threads_and_another_for_another_seed(self):
+        def state(**options):
+            words = [word for key, value in options.items() for word in (f"--{key}", value)]
+            report = json.loads(self.run_throng("run", self.world, "--avatars", 300, "--steps", 40, "--json",
+                                                *words).stdout)
+            self.assertEqual((report["wall_entries"], report["overlaps"]), (0, 0))
+            self.assertGreater(report["moved"], 0)
+            return report["state_hash"]
+        self.assertEqual(len({state(threads=threads) for threads in (1, 2, 3, 8)}), 1)
+        self.assertNotEqual(state(seed=1), state(seed=2))
+
+    def test_trajectories_have_a_line_an_avatar_a_step_with_four_decimals(self):
+        done = self.run_throng("run", self.world, "--avatars", 20, "--steps", 10, "--every", 5, "--trajectories",
+                               "walk.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        head, *lines = (self.path / "walk.csv").read_text().splitlines()
+        self.assertEqual(head, "step,id,class,x,y,z,radius")
+        self.assertEqual(len(lines), 20 * 3)  # Steps 0, 5 and 10.
+        for line in lines:
+            self.assertRegex(line, r"^\d+,\d+,adult(,-?\d+\.\d{4}){4}$")
+        self.assertEqual([entry.name for entry in self.path.iterdir()], ["walk.csv"])
+
+    def test_a_changed_byte_of_a_world_is_found_and_its_file_named(self):
+        copy = self.path / "copy.throng"
+        subprocess.run(["cp", "-r", self.world, copy], check=True)
+        zone = max(copy.iterdir(), key=lambda entry: entry.stat().st_size)
+        content = bytearray(zone.read_bytes())
+        content[len(content) // 2] ^= 0x10
+        zone.chmod(0o644)
+        zone.write_bytes(content)
+        self.assert_refused(self.run_throng("info", copy, "--check"), zone.name)
+
+    def test_interrupting_a_bake_leaves_nothing_half_written(self):
+        process = subprocess.Popen([PROGRAM, "bake", "builtin:city,size=1500", "-o", "city.throng", "--threads", "1"],
+                                   cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not any(self.path.iterdir()) and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self.assertIsNone(process.poll(), "the bake was over before it could be interrupted")
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, err)
+        self.assertEqual(out, "")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_interrupting_a_run_leaves_no_trajectories(self):
+        process = subprocess.Popen([PROGRAM, "run", self.world, "--avatars", "100", "--steps", "100000000",
+                                    "--trajectories", "walk.csv", "--every", "100000"],
+                                   cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not any(self.path.iterdir()) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(list(self.path.iterdir()), [])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

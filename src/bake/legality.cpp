@@ -104,7 +104,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const bool uniform = sheet.one_code;
   const bool uniform_ok = (limits.allowed[sheet.some_code] & body.class_bit) != 0;
   for (int32_t z = 0; z < kTileSide; ++z) {
-    uint64_t legal = 0, stand = 0;
+    uint64_t legal = 0, stand = 0, slanted = 0;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const VU feet = hn::Load(du, &sheet.feet[cell]);
@@ -126,12 +126,14 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       // A saturated ceiling is at least 65.535 m over the base: no class is that tall.
       const MU room = at_most(hn::SaturatedAdd(feet_high, height), low_ceiling);
       const MU closed = hn::Ne(high_top, none);
-      const MU free = hn::And(hn::And(room, closed), hn::And(low_enough, no_drop));
+      const MU open = hn::And(stands, hn::And(room, closed));
+      const MU even = hn::And(low_enough, no_drop);
       store_bits(stands, x, stand);
-      store_bits(hn::And(stands, free), x, legal);
+      store_bits(hn::And(open, even), x, legal);
+      store_bits(hn::AndNot(even, open), x, slanted);
     }
     if (uniform) {
-      if (!uniform_ok) legal = stand = 0;
+      if (!uniform_ok) legal = stand = slanted = 0;
     } else {
       uint64_t allowed = 0;
       for (int32_t x = 0; x < kTileSide; ++x) {
@@ -140,9 +142,11 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       }
       legal &= allowed;
       stand &= allowed;
+      slanted &= allowed;
     }
     out.legal[static_cast<size_t>(z)] = legal;
     out.stands[static_cast<size_t>(z)] = stand;
+    out.slanted[static_cast<size_t>(z)] = slanted;
   }
 }
 

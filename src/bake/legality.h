@@ -20,6 +20,7 @@ struct BodyWindow {
   int32_t bottom = 0;  // [mm]
   int32_t height = 0;
   int32_t step = 0;
+  double radius = 0;   // [cells]
   int32_t reach = 0;   // rows that a body on a cell can touch beyond it
   std::vector<int32_t> width;  // per row distance 0..reach: columns on either side
   uint32_t class_bit = 0;
@@ -66,6 +67,7 @@ struct LegalityScratch {
 struct LegalCells {
   BitPlane legal{};
   BitPlane stands{};  // feet, and a surface that the class may stand on
+  BitPlane slanted{};  // of those, failed only for how high or low the matter around is
 };
 
 /// True if nothing in sight can stop this class anywhere on the sheet, judged by the sheets'
@@ -77,6 +79,11 @@ bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
 /// holds the window (assembled) and the tilt (from make_tilt).
 void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
                  LegalityScratch& scratch, LegalCells& out);
+
+/// The same test, relative to the plane of the feet, for cells that failed it only for the matter's
+/// height: on a slope whole cells look higher than the part of them that the body reaches.
+void recheck_slopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
+                    LegalCells& cells);
 
 /// The same test for cells that failed it near a seam, where the window may have followed the wrong
 /// sheet: each column around may show any of its gaps. Slow, exact, for few cells.

@@ -42,6 +42,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
   body.class_bit = 1u << class_index;
   // Cells at distance (dx, dz) are max(|d| - 1, 0) cells apart; a body that just touches is not in.
   const double radius = avatar.radius / cell - 1e-9;
+  body.radius = avatar.radius / cell;
   for (int32_t dz = 0;; ++dz) {
     const double apart = std::max(dz - 1, 0);
     if (apart >= radius) break;

@@ -168,6 +168,7 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       }
       LegalCells cells;
       legal_cells(sheet, body, plan_.limits, worker.legality, cells);
+      recheck_slopes(sheet, body, worker.legality, cells);
       recheck_seams(around, s, body, worker.legality, cells);
       verdict.legal = cells.legal;
       uint64_t any = 0, all = ~uint64_t{0};

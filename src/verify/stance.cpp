@@ -64,7 +64,7 @@ bool Stance::is_floor(Vec3d feet) const {
   double top = -std::numeric_limits<double>::infinity();
   for (const Candidate& c : near_) {
     const auto y = height_at(c.corners, feet.x, feet.z);
-    if (y && *y <= feet.y + shape_.bottom) top = std::max(top, *y);
+    if (y && *y <= feet.y + shape_.bottom + kSlack) top = std::max(top, *y);
   }
   if (!(std::fabs(top - feet.y) <= kSameSurface)) return false;
   // Several surfaces may coincide there; one that can be stood on is enough.

@@ -17,10 +17,10 @@ inline constexpr Rgb kInk{31, 36, 46};
 inline constexpr Rgb kFaintInk{118, 124, 134};
 inline constexpr Rgb kRule{206, 210, 216};
 inline constexpr Rgb kContext{239, 240, 242};  ///< Under or over other storeys.
-inline constexpr Rgb kObstacle{52, 56, 66};
+inline constexpr Rgb kSolid{38, 42, 50};
 inline constexpr Rgb kNoStanding{214, 216, 220};
 inline constexpr Rgb kHatch{160, 164, 171};
-inline constexpr Rgb kOpenBelow{226, 233, 243};
+inline constexpr Rgb kShaft{226, 233, 243};
 inline constexpr Rgb kAvatar{232, 74, 28};
 
 /// The height ramp at t in [0, 1]: dark violet, blue, green, light yellow. Lightness rises evenly

@@ -2,15 +2,18 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "world/zone_data.h"
 
-// Storeys: sheets of neighbouring tiles that continue each other are flooded into groups, never two
-// that lie over each other; groups of like height that do not overlap then share a number.
+// Storeys: sheets of neighbouring tiles that continue each other are joined into groups, the surest
+// first (Kruskal), never two that lie over each other; groups of like height that do not overlap
+// then share a number.
 namespace throng {
 namespace {
 
@@ -54,13 +57,115 @@ int32_t shared_cells(const LevelView& a, const LevelView& b, int32_t side, int32
   return count;
 }
 
+// Two levels of neighbouring tiles that continue each other. The more cells and the closer their
+// heights, the heavier: a floor goes on as a floor before it turns into the ramp to the next one.
+struct Seam {
+  uint32_t a = 0, b = 0;
+  double weight = 0;
+};
+
+std::vector<Seam> find_seams(const WorldData& world, const std::vector<LevelInfo>& levels,
+                             int32_t max_step) {
+  constexpr std::array<std::array<int32_t, 3>, 2> kSides{{{1, 0, 1}, {0, 1, 3}}};
+  std::vector<Seam> seams;
+  for (uint32_t a = 0; a < levels.size(); ++a) {
+    for (const auto& [dx, dz, side] : kSides) {
+      const auto tile = world.tile_levels(levels[a].tile_x + dx, levels[a].tile_z + dz);
+      for (uint32_t b = tile.first; b < tile.last; ++b) {
+        const int32_t shared = shared_cells(levels[a].view, levels[b].view, side, max_step);
+        if (shared < 4) continue;
+        seams.push_back({a, b, shared / (1 + std::fabs(levels[a].mean - levels[b].mean) / 500)});
+      }
+    }
+  }
+  std::stable_sort(seams.begin(), seams.end(),
+                   [](const Seam& p, const Seam& q) { return p.weight > q.weight; });
+  return seams;
+}
+
+// Levels joined over their seams, heaviest first, into groups that never lie over each other.
+class Groups {
+ public:
+  explicit Groups(const std::vector<LevelInfo>& levels) : levels_(levels), parent_(levels.size()) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+    tiles_.resize(levels.size());
+    size_.assign(levels.size(), 1);
+    for (uint32_t l = 0; l < levels.size(); ++l) tiles_[l][key(l)] = {l};
+  }
+
+  uint32_t find(uint32_t level) {
+    while (parent_[level] != level) level = parent_[level] = parent_[parent_[level]];
+    return level;
+  }
+
+  void join(uint32_t a, uint32_t b) {
+    a = find(a);
+    b = find(b);
+    if (size_[a] < size_[b] || (size_[a] == size_[b] && b < a)) std::swap(a, b);
+    if (a == b || clashing_.contains({a, b})) return;
+    if (clash(a, b)) {
+      clashing_.insert({a, b});  // For good: groups only grow.
+      return;
+    }
+    parent_[b] = a;
+    size_[a] += size_[b];
+    for (auto& [tile, members] : tiles_[b]) {
+      auto& into = tiles_[a][tile];
+      into.insert(into.end(), members.begin(), members.end());
+    }
+    tiles_[b].clear();
+  }
+
+ private:
+  using Tile = std::pair<int32_t, int32_t>;
+
+  [[nodiscard]] Tile key(uint32_t level) const {
+    return {levels_[level].tile_z, levels_[level].tile_x};
+  }
+
+  [[nodiscard]] bool clash(uint32_t large, uint32_t small) const {
+    for (const auto& [tile, members] : tiles_[small]) {
+      const auto found = tiles_[large].find(tile);
+      if (found == tiles_[large].end()) continue;
+      for (const uint32_t p : members) {
+        for (const uint32_t q : found->second) {
+          if (overlap(levels_[p].view, levels_[q].view)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  const std::vector<LevelInfo>& levels_;
+  std::vector<uint32_t> parent_;
+  std::vector<uint32_t> size_;
+  std::vector<std::map<Tile, std::vector<uint32_t>>> tiles_;
+  std::set<std::pair<uint32_t, uint32_t>> clashing_;
+};
+
+std::vector<std::vector<uint32_t>> group_levels(const WorldData& world,
+                                                const std::vector<LevelInfo>& levels,
+                                                int32_t max_step) {
+  Groups groups(levels);
+  for (const Seam& seam : find_seams(world, levels, max_step)) groups.join(seam.a, seam.b);
+  std::vector<std::vector<uint32_t>> members;
+  std::map<uint32_t, size_t> index;
+  for (uint32_t l = 0; l < levels.size(); ++l) {
+    const auto [at, is_new] = index.try_emplace(groups.find(l), members.size());
+    if (is_new) members.emplace_back();
+    members[at->second].push_back(l);
+  }
+  return members;
+}
+
 }  // namespace
 
 std::vector<int32_t> World::storeys() const {
   const WorldData& world = *data_;
   std::vector<LevelInfo> levels(world.level_count);
   double max_step = 0;
-  for (const AvatarClass& avatar : world.summary.classes) max_step = std::max(max_step, avatar.step);
+  for (const AvatarClass& avatar : world.summary.classes)
+    max_step = std::max(max_step, avatar.step);
   const auto step = static_cast<int32_t>(max_step * 1000);
   const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
   for (size_t s = 0; s < world.slots.size(); ++s) {
@@ -92,40 +197,10 @@ std::vector<int32_t> World::storeys() const {
     }
   }
 
-  constexpr std::array<std::array<int32_t, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
-  std::vector<int32_t> group(levels.size(), -1);
-  std::vector<std::vector<uint32_t>> members;
-  std::vector<uint32_t> order(levels.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](uint32_t a, uint32_t b) { return levels[a].cells > levels[b].cells; });
-  const auto blocked = [&](uint32_t level, int32_t in_group) {
-    const auto tile = world.tile_levels(levels[level].tile_x, levels[level].tile_z);
-    for (uint32_t other = tile.first; other < tile.last; ++other) {
-      if (group[other] == in_group && overlap(levels[level].view, levels[other].view)) return true;
-    }
-    return false;
-  };
-  for (const uint32_t seed : order) {
-    if (group[seed] >= 0) continue;
-    const auto id = static_cast<int32_t>(members.size());
-    members.push_back({seed});
-    group[seed] = id;
-    for (size_t head = 0; head < members.back().size(); ++head) {
-      const LevelInfo& level = levels[members.back()[head]];
-      for (int32_t side = 0; side < 4; ++side) {
-        const auto [dx, dz] = kSides[static_cast<size_t>(side)];
-        const auto tile = world.tile_levels(level.tile_x + dx, level.tile_z + dz);
-        for (uint32_t other = tile.first; other < tile.last; ++other) {
-          if (group[other] >= 0 || shared_cells(level.view, levels[other].view, side, step) < 4 ||
-              blocked(other, id)) {
-            continue;
-          }
-          group[other] = id;
-          members.back().push_back(other);
-        }
-      }
-    }
+  const std::vector<std::vector<uint32_t>> members = group_levels(world, levels, step);
+  std::vector<int32_t> group(levels.size(), 0);
+  for (size_t g = 0; g < members.size(); ++g) {
+    for (const uint32_t level : members[g]) group[level] = static_cast<int32_t>(g);
   }
 
   // Groups of about one height that do not lie over each other share a storey.
@@ -144,7 +219,8 @@ std::vector<int32_t> World::storeys() const {
   };
   std::vector<double> sizes;
   for (size_t g = 0; g < members.size(); ++g) sizes.push_back(size_of(g));
-  std::stable_sort(by_size.begin(), by_size.end(), [&](size_t a, size_t b) { return sizes[a] > sizes[b]; });
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [&](size_t a, size_t b) { return sizes[a] > sizes[b]; });
   for (const size_t g : by_size) {
     double mean = 0;
     for (const uint32_t level : members[g]) mean += levels[level].mean * levels[level].cells;
@@ -168,7 +244,8 @@ std::vector<int32_t> World::storeys() const {
     }
     if (best == storeys.size()) storeys.emplace_back();
     Storey& storey = storeys[best];
-    storey.mean = (storey.mean * storey.cells + mean * sizes[g]) / std::max(1.0, storey.cells + sizes[g]);
+    storey.mean =
+        (storey.mean * storey.cells + mean * sizes[g]) / std::max(1.0, storey.cells + sizes[g]);
     storey.cells += sizes[g];
     for (const uint32_t level : members[g]) {
       storey.tiles[{levels[level].tile_z, levels[level].tile_x}].push_back(level);
@@ -180,7 +257,8 @@ std::vector<int32_t> World::storeys() const {
   std::stable_sort(by_height.begin(), by_height.end(), [&](int32_t a, int32_t b) {
     return storeys[static_cast<size_t>(a)].mean < storeys[static_cast<size_t>(b)].mean;
   });
-  for (size_t i = 0; i < by_height.size(); ++i) rank[static_cast<size_t>(by_height[i])] = static_cast<int32_t>(i);
+  for (size_t i = 0; i < by_height.size(); ++i)
+    rank[static_cast<size_t>(by_height[i])] = static_cast<int32_t>(i);
   std::vector<int32_t> out(levels.size(), 0);
   for (size_t l = 0; l < out.size(); ++l) {
     out[l] = rank[static_cast<size_t>(storey_of[static_cast<size_t>(group[l])])];

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "avatars_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+namespace throng::app {
+namespace {
+
+constexpr std::string_view kColumns = "step,id,class,x,y,z,radius";
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (size_t comma = 0; comma != std::string_view::npos;) {
+    comma = line.find(',');
+    fields.push_back(line.substr(0, comma));
+    line = comma == std::string_view::npos ? line : line.substr(comma + 1);
+  }
+  return fields;
+}
+
+template <class T>
+bool parse(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+struct CsvRow {
+  uint64_t step = 0;
+  PictureAvatar avatar;
+};
+
+// One line of the file, or what is wrong with it.
+Result<CsvRow> parse_row(const std::string& where, std::string_view line) {
+  const std::vector<std::string_view> fields = split(line);
+  if (fields.size() != 7) {
+    return Error{Errc::kBadFile,
+                 fmt::format("{}: {} fields; write 7: {}", where, fields.size(), kColumns)};
+  }
+  CsvRow row;
+  if (!parse(fields[0], row.step)) {
+    return Error{Errc::kBadFile,
+                 fmt::format("{}: step is '{}'; write a whole number", where, fields[0])};
+  }
+  Vec3d& p = row.avatar.position;
+  const std::pair<const char*, double*> numbers[] = {
+      {"x", &p.x}, {"y", &p.y}, {"z", &p.z}, {"radius", &row.avatar.radius}};
+  for (size_t i = 0; i < 4; ++i) {
+    if (parse(fields[3 + i], *numbers[i].second) && std::isfinite(*numbers[i].second)) continue;
+    return Error{Errc::kBadFile, fmt::format("{}: {} is '{}'; write a number in metres", where,
+                                             numbers[i].first, fields[3 + i])};
+  }
+  if (!(row.avatar.radius > 0)) {
+    return Error{Errc::kBadFile,
+                 fmt::format("{}: radius is {}; write more than 0", where, fields[6])};
+  }
+  return row;
+}
+
+}  // namespace
+
+Result<std::vector<PictureAvatar>> read_avatars(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) {
+    return Error{Errc::kBadFile,
+                 fmt::format("{}: cannot read; write one with throng run --trajectories", path)};
+  }
+  std::vector<PictureAvatar> avatars;
+  uint64_t last = 0, number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (number == 1) {
+      if (line == kColumns) continue;
+      return Error{Errc::kBadFile, fmt::format("{}:1: the columns are '{}'; write {}", path,
+                                               line.substr(0, 60), kColumns)};
+    }
+    if (line.empty()) continue;
+    const Result<CsvRow> row = parse_row(fmt::format("{}:{}", path, number), line);
+    if (!row) return row.error();
+    if (row->step > last) avatars.clear();
+    if (row->step >= last) avatars.push_back(row->avatar);
+    last = std::max(last, row->step);
+  }
+  if (number == 0) {
+    return Error{Errc::kBadFile, fmt::format("{}:1: the file is empty; write {}", path, kColumns)};
+  }
+  return avatars;
+}
+
+}  // namespace throng::app

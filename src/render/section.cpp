@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/marks.h"
+#include "render/text.h"
+#include "render/views.h"
+
+// A section: the world cut along x. Matter is dark, free space light, and the
+// floors lie in it as coloured lines, so that the levels are seen as they stack.
+namespace throng {
+namespace {
+
+constexpr Rgb kMatter{176, 180, 187};
+constexpr Rgb kAir{250, 251, 253};
+
+}  // namespace
+
+Section cut_section(const PictureWorld& world, const RasterGrid& grid, int32_t row,
+                    int32_t columns) {
+  Section section;
+  section.gaps.resize(static_cast<size_t>(columns));
+  section.z = world.origin.z + (row + 0.5) * world.cell;
+  std::vector<int32_t> cells;  // Sampled, not averaged: half a wall would be no wall.
+  for (int32_t c = 0; c < columns; ++c) {
+    cells.push_back(grid.cell_x + static_cast<int32_t>((c + 0.5) / columns * grid.cells_x));
+  }
+  for (uint32_t i = 0; i < world.storeys.size(); ++i) {
+    const LevelTileContent tile = world.level_tile(i);
+    if (tile.tile_z != row / kTileCells) continue;
+    for (size_t c = 0; c < cells.size(); ++c) {
+      if (cells[c] / kTileCells != tile.tile_x) continue;
+      const auto cell = static_cast<size_t>(row % kTileCells * kTileCells + cells[c] % kTileCells);
+      if (tile.floor[cell] == kNoFloor) continue;
+      const double ceiling = tile.ceiling[cell] == kOpenSky
+                                 ? std::numeric_limits<double>::infinity()
+                                 : world.origin.y + tile.ceiling[cell] / 1000.0;
+      const auto avatar_class = static_cast<size_t>(world.avatar_class);
+      section.gaps[c].push_back({.floor = world.origin.y + tile.floor[cell] / 1000.0,
+                                 .ceiling = ceiling,
+                                 .stands = tile.clearance[avatar_class][cell] > 0});
+    }
+  }
+  for (auto& gaps : section.gaps) {
+    std::sort(gaps.begin(), gaps.end(),
+              [](const SectionGap& a, const SectionGap& b) { return a.floor < b.floor; });
+  }
+  return section;
+}
+
+void draw_section(Canvas& canvas, const Rect& rect, const Section& section, double low,
+                  double pixels_per_metre, double text, const HeightScale& scale) {
+  const double bottom = rect.y + rect.height;
+  const auto y_of = [&](double height) {
+    return std::clamp(bottom - (height - low) * pixels_per_metre, rect.y, bottom);
+  };
+  const double column = rect.width / static_cast<double>(section.gaps.size());
+  const double line = std::max(1.5, text * 0.22);
+  for (size_t c = 0; c < section.gaps.size(); ++c) {
+    const double x = rect.x + static_cast<double>(c) * column;
+    if (section.gaps[c].empty()) continue;
+    canvas.fill({x, rect.y, column, rect.height}, kAir);
+    const double top = y_of(section.gaps[c].back().floor);
+    canvas.fill({x, top, column, bottom - top}, kMatter);
+    for (const SectionGap& gap : section.gaps[c]) {
+      const double ceiling = y_of(gap.ceiling), floor = y_of(gap.floor);
+      canvas.fill({x, ceiling, column, floor - ceiling}, kAir);
+    }
+    for (const SectionGap& gap : section.gaps[c]) {
+      const double floor = y_of(gap.floor);
+      canvas.fill({x, floor, column, line}, gap.stands ? scale.colour(gap.floor) : kHatch);
+    }
+  }
+  canvas.frame({rect.x - 1, rect.y - 1, rect.width + 2, rect.height + 2}, 1, kRule);
+
+  const double high = low + rect.height / pixels_per_metre;
+  double tick = round_below((high - low) / 2);
+  for (const double finer : {tick / 2, tick / 5}) {
+    if ((high - low) / finer <= rect.height / (text * 2.2)) tick = round_below(finer * 1.001);
+  }
+  for (double height = std::ceil(low / tick - 1e-6) * tick; height <= high + 1e-6; height += tick) {
+    const double y = y_of(height);
+    canvas.line({rect.x - text * 0.5, y}, {rect.x - 1, y}, 1, kFaintInk);
+    draw_text(
+        canvas, {rect.x - text * 0.8, y + text / 2},
+        fmt::format("{:.{}f} m", std::fabs(height) < tick / 2 ? 0.0 : height, tick < 1 ? 1 : 0),
+        {.size = text, .colour = kFaintInk, .align = Align::kRight});
+  }
+}
+
+}  // namespace throng

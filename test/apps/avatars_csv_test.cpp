@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "avatars_csv.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+namespace throng::app {
+namespace {
+
+const std::string kHead = "step,id,class,x,y,z,radius\n";
+
+class AvatarsCsv : public testing::Test {
+ protected:
+  Result<std::vector<PictureAvatar>> read(const std::string& text) {
+    std::ofstream(path_, std::ios::binary) << text;
+    return read_avatars(path_);
+  }
+  // The message after the file's name.
+  std::string refusal(const std::string& text) {
+    const auto result = read(text);
+    return result ? "accepted" : result.error().message.substr(path_.size());
+  }
+  void TearDown() override { std::remove(path_.c_str()); }
+
+  std::string path_ = testing::TempDir() + "throng_avatars.csv";
+};
+
+TEST_F(AvatarsCsv, TheLastStepCounts) {
+  const auto avatars = read(kHead + "0,1,adult,1,2,3,0.25\n9,1,adult,1.5,2.5,-3.5,0.25\n" +
+                            "9,2,giant,4,5,6,0.4\r\n\n10,7,adult,-1.25,0,8,0.3\n");
+  ASSERT_TRUE(avatars) << avatars.error().message;
+  ASSERT_EQ(avatars->size(), 1u);
+  EXPECT_EQ((*avatars)[0].position, (Vec3d{-1.25, 0, 8}));
+  EXPECT_EQ((*avatars)[0].radius, 0.3);
+}
+
+TEST_F(AvatarsCsv, AHeadAloneIsAnEmptyWorld) {
+  const auto avatars = read(kHead);
+  ASSERT_TRUE(avatars);
+  EXPECT_TRUE(avatars->empty());
+}
+
+TEST_F(AvatarsCsv, WhatIsWrongIsNamedWithItsLine) {
+  EXPECT_EQ(refusal(""), ":1: the file is empty; write step,id,class,x,y,z,radius");
+  EXPECT_EQ(refusal("id,x\n"), ":1: the columns are 'id,x'; write step,id,class,x,y,z,radius");
+  EXPECT_EQ(refusal(kHead + "0,1,adult,1,2,3\n"),
+            ":2: 6 fields; write 7: step,id,class,x,y,z,radius");
+  EXPECT_EQ(refusal(kHead + "0,1,adult,1,2,3,0.2\n-1,1,adult,1,2,3,0.2\n"),
+            ":3: step is '-1'; write a whole number");
+  EXPECT_EQ(refusal(kHead + "0,1,adult,1,2,3m,0.2\n"), ":2: z is '3m'; write a number in metres");
+  EXPECT_EQ(refusal(kHead + "0,1,adult,1,nan,3,0.2\n"), ":2: y is 'nan'; write a number in metres");
+  EXPECT_EQ(refusal(kHead + "0,1,adult,1,2,3,0\n"), ":2: radius is 0; write more than 0");
+  EXPECT_EQ(read_avatars("/nowhere/a.csv").error().message,
+            "/nowhere/a.csv: cannot read; write one with throng run --trajectories");
+}
+
+}  // namespace
+}  // namespace throng::app

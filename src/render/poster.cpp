@@ -248,14 +248,16 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
   const StoreyIndex index(world);
   const StoreyChoice choice = index.choose(config.storey, kMostStoreys);
   PosterText head = text;
-  if (choice.left_out > 0) {
-    head.lines.push_back(fmt::format("{} of {} storeys are shown; the others hold {:.0f} m2",
-                                     choice.shown.size(), last + 1, choice.left_out_area));
-  }
+  if (choice.left_out > 0) head.lines.emplace_back();  // Written below.
   Sheet sheet = make_sheet(config.width, head.lines.size());
   lay_out_plans(sheet, world, one ? 1 : choice.shown.size());
-  const std::vector<StoreyRaster> storeys =
-      rasterise_storeys(world, index, choice.shown, sheet.grid);
+  const StoreyRasters rasters = rasterise_storeys(world, index, choice.shown, sheet.grid);
+  const std::span<const StoreyRaster> storeys = rasters.storeys;
+  if (choice.left_out > 0) {
+    head.lines.back() = fmt::format(
+        "{} of {} storeys are shown, with the small ones near them; {:.0f} m2 of floor are not",
+        choice.shown.size(), last + 1, rasters.left_out_area);
+  }
   std::vector<size_t> plans;
   for (size_t s = 0; s < storeys.size(); ++s) {
     if (!one || storeys[s].storey == config.storey) plans.push_back(s);

@@ -77,9 +77,10 @@ void draw_section(Canvas& canvas, const Rect& rect, const Section& section, doub
   canvas.frame({rect.x - 1, rect.y - 1, rect.width + 2, rect.height + 2}, 1, kRule);
 
   const double high = low + rect.height / pixels_per_metre;
-  double tick = round_below((high - low) / 2);
-  for (const double finer : {tick / 2, tick / 5}) {
-    if ((high - low) / finer <= rect.height / (text * 2.2)) tick = round_below(finer * 1.001);
+  double tick = round_below(high - low);
+  for (double finer = tick; (high - low) / finer <= rect.height / (text * 2.4);) {
+    tick = finer;
+    finer = round_below(tick * 0.55);  // 5, 2, 1, 0.5 ...
   }
   for (double height = std::ceil(low / tick - 1e-6) * tick; height <= high + 1e-6; height += tick) {
     const double y = y_of(height);

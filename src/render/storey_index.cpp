@@ -9,7 +9,7 @@
 namespace throng {
 namespace {
 
-constexpr double kCrumb = 0.004;  // Storeys with less than this share of all floor are not shown.
+constexpr double kCrumb = 0.01;  // Storeys with less than this share of all floor are not shown.
 
 }  // namespace
 
@@ -84,7 +84,6 @@ StoreyChoice StoreyIndex::choose(int32_t wanted, size_t most) const {
                                            [&](int32_t a, int32_t b) { return rank(a) < rank(b); });
     if (choice.shown.size() <= most && rank(*smallest) >= kCrumb * all) break;
     ++choice.left_out;
-    choice.left_out_area += area_[static_cast<size_t>(*smallest)];
     choice.shown.erase(smallest);
   }
   return choice;

@@ -45,7 +45,6 @@ struct LocalStoreys {
 struct StoreyChoice {
   std::vector<int32_t> shown;  ///< Lowest first.
   int32_t left_out = 0;
-  double left_out_area = 0;  ///< Floor of those left out. [m^2]
 };
 
 /// Reads every level tile once.

@@ -75,30 +75,39 @@ void find_pieces(const LevelTileContent& tile, size_t level, std::vector<Piece>&
 }
 
 // A level tile belongs to one storey as a whole, but near a ramp or a stair it can hold pieces of
-// several. So every piece goes to the storey around whose height is nearest to its own, the larger
-// piece first, if nothing lies there yet; it leaves home only for one that is clearly nearer.
+// several. A piece far from its storey's height goes to one around at just its own height, the
+// larger piece first, if nothing lies there yet; if something does, it is not shown. Pieces of
+// storeys that are not shown have no home: they join the nearest storey, or are not shown either.
 std::vector<size_t> deal_pieces(std::span<const Piece> pieces, std::span<const size_t> home,
                                 const LocalStoreys& local) {
-  constexpr double kClear = 750;  // mm
+  constexpr double kAtHome = 1500, kJustRight = 500, kReach = 2500;  // mm
   std::vector<size_t> order(pieces.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return pieces[a].count > pieces[b].count; });
   std::vector<CellMask> taken(local.storey.size());
-  std::vector<size_t> storey(pieces.size());
+  std::vector<size_t> storey(pieces.size(), kNotShown);
   for (const size_t p : order) {
     const size_t own = home[pieces[p].level];
-    storey[p] = own;
-    double least = std::numeric_limits<double>::infinity();
-    size_t best = taken.size();
-    for (size_t s = 0; s < local.storey.size(); ++s) {
-      const double far =
-          std::fabs(pieces[p].mean - local.height[s]) - (local.storey[s] == own ? kClear : 0);
-      if (far >= least || (taken[s] & pieces[p].cells).any()) continue;
-      least = far;
-      best = s;
+    const auto distance = [&](size_t s) { return std::fabs(pieces[p].mean - local.height[s]); };
+    size_t at = 0;  // Where its own storey is in `local`.
+    while (at < local.storey.size() && local.storey[at] != own) ++at;
+    const bool homeless = at == local.storey.size();
+    const bool stray = !homeless && distance(at) > kAtHome;
+    size_t best = homeless ? kNotShown : at;
+    if (homeless || stray) {
+      double least = homeless ? kReach : kJustRight;
+      for (size_t s = 0; s < local.storey.size(); ++s) {
+        if (distance(s) >= least) continue;
+        if ((taken[s] & pieces[p].cells).any()) {
+          if (stray && distance(at) > kReach && best == at) best = kNotShown;
+          continue;
+        }
+        least = distance(s);
+        best = s;
+      }
     }
-    if (best == taken.size()) continue;
+    if (best == kNotShown) continue;
     taken[best] |= pieces[p].cells;
     storey[p] = local.storey[best];
   }
@@ -106,14 +115,19 @@ std::vector<size_t> deal_pieces(std::span<const Piece> pieces, std::span<const s
 }
 
 // Adds the floors of all level tiles of one tile to the sums of their storeys; `place` says where
-// these are.
-void add_tile(std::span<const LevelTileContent> levels, std::span<const size_t> home,
-              const LocalStoreys& local, const RasterGrid& grid, size_t avatar_class,
-              std::span<const size_t> place, std::vector<std::vector<Sums>>& sums) {
+// these are. Returns how many cells belong to no storey that is shown.
+uint64_t add_tile(std::span<const LevelTileContent> levels, std::span<const size_t> home,
+                  const LocalStoreys& local, const RasterGrid& grid, size_t avatar_class,
+                  std::span<const size_t> place, std::vector<std::vector<Sums>>& sums) {
   std::vector<Piece> pieces;
   for (size_t l = 0; l < levels.size(); ++l) find_pieces(levels[l], l, pieces);
   const std::vector<size_t> storeys = deal_pieces(pieces, home, local);
+  uint64_t left_out = 0;
   for (size_t p = 0; p < pieces.size(); ++p) {
+    if (storeys[p] == kNotShown) {
+      left_out += pieces[p].count;
+      continue;
+    }
     const LevelTileContent& tile = levels[pieces[p].level];
     auto& out = sums[place[storeys[p]]];
     for (size_t i = 0; i < tile.floor.size(); ++i) {
@@ -133,6 +147,7 @@ void add_tile(std::span<const LevelTileContent> levels, std::span<const size_t> 
       sum.clearance += tile.clearance[avatar_class][i];
     }
   }
+  return left_out;
 }
 
 uint8_t share(uint32_t part, uint32_t all) {
@@ -271,14 +286,14 @@ RasterGrid make_raster_grid(const PictureWorld& world, int32_t max_width, int32_
   return grid;
 }
 
-std::vector<StoreyRaster> rasterise_storeys(const PictureWorld& world, const StoreyIndex& index,
-                                            std::span<const int32_t> shown,
-                                            const RasterGrid& grid) {
+StoreyRasters rasterise_storeys(const PictureWorld& world, const StoreyIndex& index,
+                                std::span<const int32_t> shown, const RasterGrid& grid) {
   std::vector<std::vector<Sums>> sums(
       shown.size(),
       std::vector<Sums>(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height)));
   std::vector<size_t> place(index.storey_count(), kNotShown);
   for (size_t s = 0; s < shown.size(); ++s) place[static_cast<size_t>(shown[s])] = s;
+  uint64_t left_out = 0;
   std::vector<LevelTileContent> levels;
   std::vector<size_t> home;
   for (const auto& [tile, entries] : index.tiles()) {
@@ -286,9 +301,8 @@ std::vector<StoreyRaster> rasterise_storeys(const PictureWorld& world, const Sto
     home.clear();
     for (const LevelEntry& entry : entries) {
       const auto storey = static_cast<size_t>(world.storeys[entry.level]);
-      if (place[storey] == kNotShown) continue;
       levels.push_back(world.level_tile(entry.level));
-      home.push_back(storey);
+      home.push_back(place[storey] == kNotShown ? kNotShown : storey);
     }
     LocalStoreys local = index.around(tile);
     for (size_t s = local.storey.size(); s-- > 0;) {
@@ -296,16 +310,19 @@ std::vector<StoreyRaster> rasterise_storeys(const PictureWorld& world, const Sto
       local.storey.erase(local.storey.begin() + static_cast<ptrdiff_t>(s));
       local.height.erase(local.height.begin() + static_cast<ptrdiff_t>(s));
     }
-    add_tile(levels, home, local, grid, static_cast<size_t>(world.avatar_class), place, sums);
+    left_out +=
+        add_tile(levels, home, local, grid, static_cast<size_t>(world.avatar_class), place, sums);
   }
-  std::vector<StoreyRaster> rasters;
+  StoreyRasters out;
+  out.left_out_area = static_cast<double>(left_out) * grid.cell * grid.cell;
+  std::vector<StoreyRaster>& rasters = out.storeys;
   for (size_t s = 0; s < shown.size(); ++s) {
     rasters.push_back(to_raster(sums[s], grid, world.origin.y));
     rasters.back().storey = shown[s];
     sums[s] = {};
   }
   for (size_t s = 0; s < rasters.size(); ++s) find_enclosed(rasters, s);
-  return rasters;
+  return out;
 }
 
 }  // namespace throng

@@ -50,10 +50,15 @@ struct StoreyRaster {
   double floor_area = 0;     ///< [m^2]
 };
 
-/// Rasters of the storeys `shown`. Time: all level tiles once. Memory: 24 bytes a texel and storey.
-[[nodiscard]] std::vector<StoreyRaster> rasterise_storeys(const PictureWorld& world,
-                                                          const StoreyIndex& index,
-                                                          std::span<const int32_t> shown,
-                                                          const RasterGrid& grid);
+struct StoreyRasters {
+  std::vector<StoreyRaster> storeys;
+  double left_out_area = 0;  ///< Floor that no storey here has. [m^2]
+};
+
+/// Rasters of the storeys `shown`; small pieces of others join them where they lie near and free.
+/// Time: all level tiles once. Memory: 24 bytes a texel and storey.
+[[nodiscard]] StoreyRasters rasterise_storeys(const PictureWorld& world, const StoreyIndex& index,
+                                              std::span<const int32_t> shown,
+                                              const RasterGrid& grid);
 
 }  // namespace throng

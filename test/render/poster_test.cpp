@@ -52,7 +52,8 @@ struct HandMade {
   std::vector<StoreyRaster> rasters(int32_t size) const {
     const StoreyIndex index(world);
     return rasterise_storeys(world, index, index.choose(-1, 12).shown,
-                             make_raster_grid(world, size, size));
+                             make_raster_grid(world, size, size))
+        .storeys;
   }
 };
 
@@ -118,9 +119,24 @@ TEST(StoreyRaster, CrumbsAreLeftOutUnlessTheyAreAskedFor) {
   const StoreyIndex index(crumbs.world);
   EXPECT_EQ(index.choose(-1, 12).shown, (std::vector<int32_t>{0, 2}));
   EXPECT_EQ(index.choose(-1, 12).left_out, 1);
-  EXPECT_EQ(index.choose(-1, 12).left_out_area, 4);
   EXPECT_EQ(index.choose(1, 12).shown, (std::vector<int32_t>{0, 1, 2}));
   EXPECT_EQ(index.choose(1, 1).shown, (std::vector<int32_t>{1}));
+}
+
+TEST(StoreyRaster, CrumbsJoinAStoreyThatIsNearAndFreeThere) {
+  // Storey 1 is a landing at 1.2 in a hole of storey 0, storey 2 a perch far above everything.
+  const HandMade crumbs(2, 2, 3, [](int32_t level, int32_t x, int32_t z) {
+    const bool landing = in(x, 20, 24) && in(z, 20, 24), perch = in(x, 40, 44) && in(z, 40, 44);
+    if (level == 0) return landing ? kNoFloor : 0;
+    return level == 1 ? (landing ? 1200 : kNoFloor) : (perch ? 9000 : kNoFloor);
+  });
+  const StoreyIndex index(crumbs.world);
+  const auto rasters = rasterise_storeys(crumbs.world, index, index.choose(-1, 12).shown,
+                                         make_raster_grid(crumbs.world, 128, 128));
+  ASSERT_EQ(rasters.storeys.size(), 1u);
+  EXPECT_EQ(rasters.storeys[0].floor[22 * 128 + 22], 1.2f);
+  EXPECT_EQ(rasters.storeys[0].floor[42 * 128 + 42], 0);
+  EXPECT_EQ(rasters.left_out_area, 4);
 }
 
 TEST(Views, AvatarsGoToTheNearestFloor) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/classes_file.h"
 #include "core/config_file.h"
 #include "core/read_file.h"
 
@@ -103,19 +104,14 @@ Result<void> check_classes(std::span<const AvatarClass> classes) {
   return {};
 }
 
-Result<std::vector<AvatarClass>> load_classes(const std::string& path) {
-  const auto text = read_file(path);
-  if (!text) return text.error();
-  const auto root = parse_config(*text, path);
-  if (!root) return root.error();
-
-  ConfigReader top(path, *root, "avatar classes");
+Result<std::vector<AvatarClass>> read_classes(const ConfigNode& root, const std::string& name) {
+  ConfigReader top(name, root, "avatar classes");
   top.only({"class"});
   top.require("class");
   std::vector<AvatarClass> classes;
   for (const ConfigNode* table : top.tables("class")) {
     AvatarClass avatar;
-    ConfigReader reader(path, *table, fmt::format("avatar class {}", classes.size() + 1));
+    ConfigReader reader(name, *table, fmt::format("avatar class {}", classes.size() + 1));
     reader.require("name");
     reader.text("name", avatar.name);
     reader.only({"name", "height", "radius", "step", "max_slope", "speed"});
@@ -132,9 +128,17 @@ Result<std::vector<AvatarClass>> load_classes(const std::string& path) {
   }
   if (!top.ok()) return top.error();
   if (const auto checked = check_classes(classes); !checked) {  // Count and names: the whole list.
-    return Error{Errc::kBadFile, path + ": " + checked.error().message};
+    return Error{Errc::kBadFile, name + ": " + checked.error().message};
   }
   return classes;
+}
+
+Result<std::vector<AvatarClass>> load_classes(const std::string& path) {
+  const auto text = read_file(path);
+  if (!text) return text.error();
+  const auto root = parse_config(*text, path);
+  if (!root) return root.error();
+  return read_classes(*root, path);
 }
 
 }  // namespace throng

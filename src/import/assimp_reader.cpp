@@ -287,8 +287,7 @@ Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions& op
   const uint64_t size = std::filesystem::file_size(path, failure);
   if (failure) return Error{Errc::kBadFile, path + ": no such file; check the path"};
   // Generous: a damaged small file may cost a second, never the machine.
-  const ChildLimits limits{.bytes = (uint64_t{2} << 30) + 100 * size,
-                           .seconds = 30 + size / 20'000};
+  const ChildLimits limits{.bytes = (uint64_t{2} << 30) + 100 * size, .seconds = 5 + size / 20'000};
   Receiver receiver(options);
   const auto done = run_in_child(
       limits, context, [&](const PipeWriter& pipe) { read_and_send(path, pipe); },

@@ -6,7 +6,7 @@
 
 #include "import/raw_scene.h"
 
-/// glTF, GLB, FBX, PLY, STL, DAE, IFC and 3DS through assimp, in a process of its own.
+/// glTF, GLB, FBX, STL, DAE, IFC and 3DS through assimp, in a process of its own.
 namespace throng {
 
 /// Reads a model. Nodes become "parent/child" paths. Fails with kBadFile where assimp refuses, runs

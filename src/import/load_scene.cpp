@@ -15,6 +15,7 @@
 #include "import/clean.h"
 #include "import/obj.h"
 #include "import/plan.h"
+#include "import/ply.h"
 #include "import/raw_scene.h"
 
 // Every way in ends here: read each file as it is, place it in metres with Y up, name its areas,
@@ -39,15 +40,16 @@ Reader json_reader(std::string_view bytes) {
 Result<RawScene> read_source(const SceneSource& source, const ReadOptions& options,
                              Context& context) {
   const std::string extension = lower_case(std::filesystem::path(source.path).extension().string());
-  for (const char* known : {".gltf", ".glb", ".fbx", ".ply", ".stl", ".dae", ".ifc", ".3ds"}) {
+  for (const char* known : {".gltf", ".glb", ".fbx", ".stl", ".dae", ".ifc", ".3ds"}) {
     if (extension != known) continue;
     // The child reads the file itself; here only the sentence for a missing one is wanted.
     std::error_code failure;
     if (!std::filesystem::is_regular_file(source.path, failure)) break;
     return read_with_assimp(source.path, options, context);
   }
-  const bool known = extension == ".obj" || extension == ".json" || extension == ".gml" ||
-                     extension == ".bsp" || extension == ".wkt" || extension == ".geojson";
+  const bool known = extension == ".obj" || extension == ".ply" || extension == ".json" ||
+                     extension == ".gml" || extension == ".bsp" || extension == ".wkt" ||
+                     extension == ".geojson";
   const auto bytes = read_file(source.path);
   if (!bytes) return bytes.error();
   if (!known) {
@@ -59,6 +61,8 @@ Result<RawScene> read_source(const SceneSource& source, const ReadOptions& optio
   Reader reader = nullptr;
   if (extension == ".obj")
     reader = &read_obj;
+  else if (extension == ".ply")
+    reader = &read_ply;
   else if (extension == ".json")
     reader = json_reader(*bytes);
   else if (extension == ".gml")

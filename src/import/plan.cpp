@@ -32,6 +32,13 @@ bool cross_each_other(const Segment& s, const Segment& t) {
          orient(t.a, t.b, s.a) * orient(t.a, t.b, s.b) < 0;
 }
 
+Vec2d crossing_point(const Segment& s, const Segment& t) {
+  const Vec2d d{s.b.x - s.a.x, s.b.y - s.a.y};
+  const Vec2d e{t.b.x - t.a.x, t.b.y - t.a.y};
+  const double k = ((t.a.x - s.a.x) * e.y - (t.a.y - s.a.y) * e.x) / (d.x * e.y - d.y * e.x);
+  return {s.a.x + k * d.x, s.a.y + k * d.y};
+}
+
 // Where two edges of the polygon cross, as words, or nothing. Edges are compared only while a line
 // that sweeps from left to right touches both.
 std::string find_crossing(const Polygon& polygon) {
@@ -62,7 +69,8 @@ std::string find_crossing(const Polygon& polygon) {
       if (std::min(t.a.y, t.b.y) > std::max(s.a.y, s.b.y)) continue;
       if (!cross_each_other(s, t)) continue;
       const char* who = s.ring == t.ring ? "the outline crosses itself" : "two rings cross";
-      return fmt::format("{} near ({:.3f}, {:.3f})", who, s.a.x, s.a.y);
+      const Vec2d at = crossing_point(s, t);
+      return fmt::format("{} near ({:.3f}, {:.3f})", who, at.x, at.y);
     }
     active.push_back(i);
   }

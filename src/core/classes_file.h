@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/config_file.h"
+#include "throng/avatar_class.h"
+
+/// What load_classes does once the file is parsed.
+namespace throng {
+
+[[nodiscard]] Result<std::vector<AvatarClass>> read_classes(const ConfigNode& root,
+                                                            const std::string& name);
+
+}  // namespace throng

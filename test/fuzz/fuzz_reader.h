@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdlib>
+
+#include "import/clean.h"
+#include "import/raw_scene.h"
+
+/// What all targets for readers do: read, clean, check the result's order.
+namespace throng {
+
+inline int fuzz_reader(Result<RawScene> (*read)(std::string_view, const ReadOptions&, Context&),
+                       const uint8_t* bytes, size_t size) {
+  Context context;
+  ReadOptions options;
+  options.name = "fuzz";
+  auto raw = read({reinterpret_cast<const char*>(bytes), size}, options, context);
+  if (!raw || !clean_scene(raw->scene, "fuzz", context)) return 0;
+  const Scene& scene = raw->scene;
+  if (scene.area.size() != scene.triangles.size()) std::abort();
+  for (const auto& corners : scene.triangles) {
+    for (const uint32_t corner : corners) {
+      if (corner >= scene.positions.size()) std::abort();
+    }
+  }
+  return 0;
+}
+
+}  // namespace throng

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "throng/bake.h"
+#include "throng/builtin_worlds.h"
 #include "throng/verify.h"
 
 /// The oracle on baked worlds, through the public API alone.
@@ -62,6 +63,27 @@ TEST(VerifyWorld, BakedHallHoldsForEveryClass) {
     EXPECT_LE(report.feet_error_p95, 0.03) << classes[c].name;
     EXPECT_LE(report.lost_grown, 0.03) << classes[c].name;  // A small hall is mostly rims.
     EXPECT_GT(report.standable_area_grown, 150) << classes[c].name;
+  }
+}
+
+// Floors above each other in one tile, close enough that sheets meet: where a step was once taken
+// from a floor to the one above it.
+TEST(VerifyWorld, BuiltInWorldsHoldForEveryClass) {
+  for (const char* name : {"stairs", "church", "garage"}) {
+    const auto scene = make_builtin_world({.name = name});
+    ASSERT_TRUE(scene) << scene.error().message;
+    Context context;
+    const auto world = bake_world(*scene, {}, context);
+    ASSERT_TRUE(world) << world.error().message;
+    for (int32_t c = 0; c < 4; ++c) {
+      const VerifyReport report = judge(*world, *scene, c, 6000);
+      EXPECT_EQ(report.states, 6000u) << name << c;
+      EXPECT_EQ(report.entered, 0u) << name << c;
+      EXPECT_EQ(report.unsupported, 0u) << name << c;
+      EXPECT_EQ(report.torn, 0u) << name << c;
+      EXPECT_LE(report.feet_error_mean, 0.01) << name << c;
+      EXPECT_LE(report.feet_error_p95, 0.03) << name << c;
+    }
   }
 }
 

@@ -3,6 +3,8 @@
 #include "core/parallel.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -15,10 +17,13 @@ namespace throng {
 namespace {
 
 // One arena per thread count for the life of the process: starting threads for each call costs more
-// than a whole step of a small crowd.
+// than a whole step of a small crowd. More threads than cores are allowed when asked for (results do
+// not depend on it, and tests prove that), which TBB must be told, or it complains on standard error.
 tbb::task_arena& arena_for(int32_t threads) {
   static std::mutex mutex;
   static std::map<int32_t, std::unique_ptr<tbb::task_arena>> arenas;
+  constexpr size_t kMostThreads = 256;
+  static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, kMostThreads);
   const std::lock_guard lock(mutex);
   auto& arena = arenas[threads];
   if (!arena) arena = std::make_unique<tbb::task_arena>(threads);
@@ -28,7 +33,7 @@ tbb::task_arena& arena_for(int32_t threads) {
 }  // namespace
 
 int32_t worker_count(int32_t workers) {
-  return workers > 0 ? workers : std::max(1, tbb::this_task_arena::max_concurrency());
+  return workers > 0 ? workers : std::max(1, tbb::info::default_concurrency());
 }
 
 void parallel_ranges(size_t count, size_t grain, int32_t workers,

@@ -102,7 +102,7 @@ class TileState {
       const bool above = value[x] > height;
       const bool goes_on = low[x] <= height;
       ended |= static_cast<int32_t>(above & !goes_on);
-      value[x] = above & goes_on ? height : value[x];
+      value[x] = (above & goes_on) ? height : value[x];
     }
     return ended != 0;
   }

@@ -104,7 +104,8 @@ class JsonTree : public nlohmann::json_sax<nlohmann::json> {
     ConfigNode& parent = *stack_.back();
     ConfigNode* node = nullptr;
     if (parent.kind == ConfigNode::Kind::kTable) {
-      node = &parent.entries.emplace_back(key_, ConfigNode{}).second;
+      parent.entries.push_back({.name = key_, .value = {}});
+      node = &parent.entries.back().value;
     } else {
       node = &parent.items.emplace_back();
     }
@@ -164,11 +165,11 @@ Result<ConfigNode> from_toml(const toml::node& in, const std::string& name, int 
     for (const auto& [key, value] : *table) {
       auto child = from_toml(value, name, depth + 1);
       if (!child) return child.error();
-      out.entries.emplace_back(std::string(key.str()), std::move(*child));
+      out.entries.push_back({.name = std::string(key.str()), .value = std::move(*child)});
     }
     // The library keeps keys sorted; messages read better in the file's own order.
     std::stable_sort(out.entries.begin(), out.entries.end(),
-                     [](const auto& a, const auto& b) { return a.second.line < b.second.line; });
+                     [](const auto& a, const auto& b) { return a.value.line < b.value.line; });
   } else if (const auto* array = in.as_array()) {
     out.kind = ConfigNode::Kind::kArray;
     for (const auto& value : *array) {

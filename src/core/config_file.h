@@ -14,6 +14,8 @@
 /// a wrong setting can be named by file, line, key and limit.
 namespace throng {
 
+struct ConfigEntry;
+
 struct ConfigNode {
   enum class Kind { kNone, kBool, kNumber, kString, kArray, kTable };
   Kind kind = Kind::kNone;
@@ -22,9 +24,15 @@ struct ConfigNode {
   double number = 0;
   std::string text;
   std::vector<ConfigNode> items;                            ///< Of an array.
-  std::vector<std::pair<std::string, ConfigNode>> entries;  ///< Of a table, in the file's order.
+  std::vector<ConfigEntry> entries;  ///< Of a table, in the file's order.
 
   [[nodiscard]] const ConfigNode* find(std::string_view key) const;
+};
+
+/// A key of a table and its value.
+struct ConfigEntry {
+  std::string name;
+  ConfigNode value;
 };
 
 /// Parses TOML, or JSON where the text begins with `{` or the name ends in ".json". `name` is for

@@ -87,8 +87,9 @@ bool Stance::is_free(Vec3d feet) const {
 bool Stance::is_supported(Vec3d feet) const {
   size_t last = 0;  // Mostly one triangle carries the whole disc.
   for (const auto& [dx, dz] : disc_) {
+    const double x = feet.x + dx, z = feet.z + dz;
     const auto carries = [&](const Candidate& c) {
-      const auto y = height_at(c.corners, feet.x + dx, feet.z + dz);
+      const auto y = height_at(c.corners, x, z);
       return y && std::fabs(*y - feet.y) <= shape_.bottom + kSlack;
     };
     if (last < near_.size() && carries(near_[last])) continue;

@@ -227,6 +227,8 @@ bool PolygonCutter::blocks(uint32_t node, uint32_t ear) const {
   if (third < 0) return false;
   if (first > 0 && second > 0 && third > 0) return true;
   if (q.at == p || q.at == n) return false;
+  // On the new edge itself: it would be cut off from its own triangles, see clip().
+  if (third == 0 && !straighten_) return true;
   // It touches the triangle's rim. That is harmless unless an edge goes on into the triangle.
   const auto enters = [&](Vec2d t) {
     if (first == 0 && orient(p, c.at, t) <= 0) return false;
@@ -320,20 +322,34 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     const Node& c = nodes_[node];
     return orient(nodes_[c.prev].at, c.at, nodes_[c.next].at);
   };
-  // Takes a corner out, then all that this leaves without area beside it: a corner on a straight
-  // edge, a doubled corner, the end of a spike. Spikes must go before the next ear: two edges that
-  // lie on each other look like the two sides of a corner.
+  const auto emit = [&](uint32_t node) {
+    const Node& c = nodes_[node];
+    cut_area_ += std::fabs(cross2(nodes_[c.prev].at, c.at, nodes_[c.next].at)) / 2;
+    out.push_back({nodes_[c.prev].point, c.point, nodes_[c.next].point});
+  };
+  // Corners that go at once: doubled ones, ends of spikes (two edges that lie on each other look
+  // like the two sides of a corner), and those on an edge that is straight in space. Where the edge
+  // is straight in the plane only, say a kerb seen from above, the corner carries a height: it
+  // stays until nothing else is left to cut.
+  const auto is_idle = [&](uint32_t node) {
+    if (turn(node) != 0) return false;
+    return straighten_ || !bends_in_space(node);
+  };
+  const auto drop = [&](uint32_t node) {
+    if (bends_in_space(node)) emit(node);  // An upright sliver: no matter is lost.
+    return remove(node);
+  };
   const auto take_out = [&](uint32_t node) {
     uint32_t prev = nodes_[node].prev;
     uint32_t next = remove(node);
     --left;
     while (left > 2) {
-      if (turn(prev) == 0) {
+      if (is_idle(prev)) {
         const uint32_t gone = prev;
         prev = nodes_[gone].prev;
-        remove(gone);
-      } else if (turn(next) == 0) {
-        next = remove(next);
+        drop(gone);
+      } else if (is_idle(next)) {
+        next = drop(next);
       } else {
         break;
       }
@@ -343,14 +359,10 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     queue_.push_back(prev);
     queue_.push_back(next);
   };
-  const auto emit = [&](uint32_t node) {
-    const Node& c = nodes_[node];
-    cut_area_ += std::fabs(cross2(nodes_[c.prev].at, c.at, nodes_[c.next].at)) / 2;
-    out.push_back({nodes_[c.prev].point, c.point, nodes_[c.next].point});
-  };
   // Where rings cross, soon only speed matters.
   const auto careful = [&] { return forced < kMostForced && ear_budget_ > 0; };
-  bool flat_ones = true;
+  straighten_ = false;
+  bool idle_ones = true;
   while (left > 2) {
     build_grid(start);  // Also lists all nodes in queue_.
     const size_t built = left;
@@ -358,8 +370,10 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     for (size_t k = 0; k < queue_.size() && left > 2; ++k) {
       const uint32_t node = queue_[k];
       if (!nodes_[node].alive) continue;
-      if (flat_ones) {  // The first pass straightens, so that all others may take ears alone.
-        if (turn(node) == 0) take_out(node);
+      if (idle_ones) {  // This pass takes no ears, so that later ones find no idle corner.
+        if (!is_idle(node)) continue;
+        if (bends_in_space(node)) emit(node);
+        take_out(node);
         continue;
       }
       if (!(careful() ? is_ear(node) : turn(node) > 0)) continue;
@@ -367,7 +381,11 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
       take_out(node);
       if (left < built / 2 && left > 16) break;  // Few are left in many cells: list them afresh.
     }
-    if (std::exchange(flat_ones, false) || left < before || left <= 2) continue;
+    if (std::exchange(idle_ones, false) || left < before || left <= 2) continue;
+    if (!std::exchange(straighten_, true)) {
+      idle_ones = true;
+      continue;
+    }
     // Rings that cross: give up exactness, never the end of the loop.
     exact = false;
     ++forced;
@@ -381,6 +399,19 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     take_out(pick);
   }
   return exact;
+}
+
+// Is a corner that lies straight on an edge, seen in the plane, off that edge in space?
+bool PolygonCutter::bends_in_space(uint32_t node) const {
+  const Node& c = nodes_[node];
+  const Vec2d p = nodes_[c.prev].at;
+  const Vec2d n = nodes_[c.next].at;
+  const bool between = (p.x - c.at.x) * (n.x - c.at.x) + (p.y - c.at.y) * (n.y - c.at.y) < 0;
+  if (!between) return false;
+  const Vec3d in = points_[c.point] - points_[nodes_[c.prev].point];
+  const Vec3d out = points_[nodes_[c.next].point] - points_[c.point];
+  constexpr double kStraight = 1e-7;  // [rad] A tenth of a millimetre in a kilometre.
+  return length(cross(in, out)) > kStraight * length(in) * length(out);
 }
 
 void PolygonCutter::fan(std::span<const uint32_t> ring_first,
@@ -402,6 +433,7 @@ bool PolygonCutter::cut(std::span<const Vec3d> points, std::span<const uint32_t>
     fan(ring_first, out);
     return true;
   }
+  points_ = points;
   nodes_.clear();
   holes_.clear();
   bridge_budget_ = 20'000'000;

@@ -42,11 +42,13 @@ class PolygonCutter {
   bool opens_towards(uint32_t node, Vec2d target) const;
   bool clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& out);
   bool is_ear(uint32_t node);
+  bool bends_in_space(uint32_t node) const;
   bool blocks(uint32_t node, uint32_t ear) const;
   void build_grid(uint32_t start);
   uint32_t remove(uint32_t node);
   void fan(std::span<const uint32_t> ring_first, std::vector<std::array<uint32_t, 3>>& out) const;
 
+  std::span<const Vec3d> points_;
   std::vector<Vec2d> flat_;
   std::vector<Node> nodes_;
   std::vector<uint32_t> holes_;
@@ -54,6 +56,7 @@ class PolygonCutter {
   uint64_t bridge_budget_ = 0;
   uint64_t ear_budget_ = 0;
   double cut_area_ = 0;
+  bool straighten_ = false;
 
   // Nodes by grid cell: cell c owns grid_nodes_[grid_first_[c]] to [grid_first_[c + 1]].
   std::vector<uint32_t> grid_first_;

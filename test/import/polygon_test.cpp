@@ -224,6 +224,38 @@ TEST(Polygon, TiltedPlanesInNationalCoordinatesKeepTheirArea) {
   }
 }
 
+TEST(Polygon, AStraightKerbKeepsTheHeightsOfItsCorners) {
+  // A strip that is a rectangle from above and goes up and down along both long sides.
+  for (const int n : {2, 3, 10, 60}) {
+    const auto height = [](double x) { return 0.1 * x * x - x; };
+    Points ring;
+    for (int i = 0; i <= n; ++i) ring.push_back({1.0 * i, 0});
+    for (int i = n; i >= 0; --i) ring.push_back({1.0 * i, 3});
+    const Cut out = cut({ring}, [&](Vec2d p) { return Vec3d{p.x, p.y, height(p.x)}; });
+    EXPECT_TRUE(out.exact);
+    std::vector<bool> used(ring.size(), false);
+    double flat = 0;
+    for (const auto& triangle : out.triangles) {
+      double low = 1e9;
+      double high = -1e9;
+      for (const uint32_t corner : triangle) {
+        used[corner] = true;
+        low = std::fmin(low, ring[corner].x);
+        high = std::fmax(high, ring[corner].x);
+      }
+      EXPECT_LE(high - low, n + 0.5);
+      const Vec2d a = ring[triangle[0]];
+      const Vec2d b = ring[triangle[1]];
+      const Vec2d c = ring[triangle[2]];
+      flat += ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+      EXPECT_NE(orient(a, b, c), 0);  // No upright slivers: the surface itself bends.
+    }
+    EXPECT_NEAR(flat, 3 * n, 1e-9);
+    EXPECT_EQ(out.triangles.size(), ring.size() - 2);
+    for (const bool corner : used) EXPECT_TRUE(corner);
+  }
+}
+
 TEST(Polygon, CrossingRingsAreToldAndEnd) {
   EXPECT_FALSE(cut({{{0, 0}, {4, 4}, {4, 0}, {0, 5}}}).exact);  // a bow tie
   EXPECT_FALSE(cut({{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{9, 9}, {8, 9}, {8, 8}}}).exact);  // outside

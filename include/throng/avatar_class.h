@@ -16,11 +16,11 @@ namespace throng {
 /// A body as an upright cylinder, and what it can climb. At most kMaxAvatarClasses in one world.
 struct AvatarClass {
   std::string name = "adult";
-  double height = 1.75;     ///< [m, 0.1 to 30]
-  double radius = 0.25;     ///< [m, 0.01 to 5]
-  double step = 0.4;        ///< Largest climb and drop between neighbouring places. [m, 0 to height / 2]
-  double max_slope = 45;    ///< Steepest surface it stands on. [degrees, 0 to 89]
-  double speed = 1.34;      ///< Preferred walking speed. [m/s, > 0]
+  double height = 1.75;  ///< [m, 0.1 to 30]
+  double radius = 0.25;  ///< [m, 0.01 to 5]
+  double step = 0.4;  ///< Largest climb and drop between neighbouring places. [m, 0 to height / 2]
+  double max_slope = 45;  ///< Steepest surface it stands on. [degrees, 0 to 89]
+  double speed = 1.34;    ///< Preferred walking speed. [m/s, > 0]
 };
 
 inline constexpr int32_t kMaxAvatarClasses = 16;

@@ -17,27 +17,27 @@
 namespace throng {
 
 struct BakeConfig {
-  double cell = 0.1;             ///< Side of a cell. [m, 0.02 to 5]
-  double resolution = 0.1;       ///< Headroom that may be lost. [m, 0.001 to 1]
-  double zone = 160;             ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
+  double cell = 0.1;        ///< Side of a cell. [m, 0.02 to 5]
+  double resolution = 0.1;  ///< Headroom that may be lost. [m, 0.001 to 1]
+  double zone = 160;        ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
   std::vector<AvatarClass> classes = default_classes();
-  int32_t workers = 0;           ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
 
 /// What a bake did. Seconds are summed over threads where several work.
 struct BakeReport {
   uint64_t zones = 0;
-  uint64_t tiles = 0;            ///< Tiles with at least one level.
+  uint64_t tiles = 0;  ///< Tiles with at least one level.
   uint64_t level_tiles = 0;
   uint64_t constant_level_tiles = 0;  ///< Whose floor is stored as a constant or a plane.
-  uint64_t spans = 0;            ///< Solid spans after merging.
-  uint64_t bytes = 0;            ///< Of all zone files.
+  uint64_t spans = 0;                 ///< Solid spans after merging.
+  uint64_t bytes = 0;                 ///< Of all zone files.
   std::vector<double> walkable_area;  ///< Per class. [m^2]
   double seconds_columns = 0;
   double seconds_levels = 0;
   double seconds_clearance = 0;
   double seconds_write = 0;
-  double seconds_total = 0;      ///< Wall clock.
+  double seconds_total = 0;  ///< Wall clock.
 };
 
 /// Bakes into memory. Fails with kBadConfig, kBadInput (no triangles), kLimit, kCancelled.

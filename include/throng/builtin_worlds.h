@@ -16,17 +16,17 @@ namespace throng {
 
 /// What to build. Zero means the world's own default.
 struct BuiltinWorldConfig {
-  std::string name = "garage";   ///< cube stairs garage bridge church powerplant city maze
-  double size = 0;               ///< Side of the footprint. [m, >= 0]
-  uint64_t triangles = 0;        ///< Grow the world until it has about this many (powerplant, city).
-  int32_t levels = 0;            ///< Storeys, where the world has storeys. [>= 0]
+  std::string name = "garage";  ///< cube stairs garage bridge church powerplant city maze
+  double size = 0;              ///< Side of the footprint. [m, >= 0]
+  uint64_t triangles = 0;       ///< Grow the world until it has about this many (powerplant, city).
+  int32_t levels = 0;           ///< Storeys, where the world has storeys. [>= 0]
   uint64_t seed = 1;
 };
 
 struct BuiltinWorldInfo {
   std::string_view name;
-  std::string_view summary;      ///< One line for `throng world --list`.
-  double default_size = 0;       ///< [m]
+  std::string_view summary;  ///< One line for `throng world --list`.
+  double default_size = 0;   ///< [m]
 };
 
 [[nodiscard]] THRONG_API std::span<const BuiltinWorldInfo> builtin_worlds();

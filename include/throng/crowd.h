@@ -18,20 +18,20 @@ namespace throng {
 
 struct CrowdConfig {
   uint32_t avatars = 1000;
-  int32_t avatar_class = 0;   ///< Class of the avatars, index into the world's classes.
-  double dt = 0.1;            ///< Length of a step. [s, > 0]
-  double speed = 0;           ///< Walking speed, 0 for the class's own. [m/s, >= 0]
+  int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.
+  double dt = 0.1;           ///< Length of a step. [s, > 0]
+  double speed = 0;          ///< Walking speed, 0 for the class's own. [m/s, >= 0]
   uint64_t seed = 1;
-  int32_t workers = 0;        ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
 
 /// What one step did.
 struct StepReport {
-  uint64_t step = 0;             ///< Number of the step just made, from 1.
+  uint64_t step = 0;  ///< Number of the step just made, from 1.
   uint64_t moved = 0;
   uint64_t blocked_by_wall = 0;  ///< Straight on was illegal.
   uint64_t blocked_by_avatar = 0;
-  uint64_t waited = 0;           ///< Neither straight on nor the turned way was free.
+  uint64_t waited = 0;  ///< Neither straight on nor the turned way was free.
   double seconds_sort = 0;
   double seconds_move = 0;
   double seconds_total = 0;
@@ -39,16 +39,16 @@ struct StepReport {
 
 /// What an independent look at the present positions found. All zero, always.
 struct CrowdCheck {
-  uint64_t wall_entries = 0;     ///< Avatars on a cell that their class may not stand on.
-  uint64_t overlaps = 0;         ///< Pairs whose discs and heights both overlap.
+  uint64_t wall_entries = 0;  ///< Avatars on a cell that their class may not stand on.
+  uint64_t overlaps = 0;      ///< Pairs whose discs and heights both overlap.
 };
 
 /// Read-back of one avatar.
 struct AvatarState {
   uint32_t id = 0;
   int32_t avatar_class = 0;
-  Vec3d position;                ///< Y at the feet. [m]
-  double heading_x = 0;          ///< Unit vector of the walk.
+  Vec3d position;        ///< Y at the feet. [m]
+  double heading_x = 0;  ///< Unit vector of the walk.
   double heading_z = 0;
 };
 

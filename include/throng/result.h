@@ -15,13 +15,13 @@ namespace throng {
 /// What kind of failure an Error is. The message says the rest.
 enum class Errc {
   kOk = 0,
-  kBadConfig,   ///< A setting is out of its documented limits.
-  kBadInput,    ///< A model, plan or table cannot be used as it is.
-  kBadFile,     ///< A file is missing, truncated, corrupt, foreign or of another version.
-  kIo,          ///< The system refused to read or write.
-  kNotFound,    ///< The thing asked for is not there (class, level, place).
-  kLimit,       ///< More than fits; the message says how much fits.
-  kCancelled,   ///< The caller's Context asked to stop; nothing half-written is left.
+  kBadConfig,  ///< A setting is out of its documented limits.
+  kBadInput,   ///< A model, plan or table cannot be used as it is.
+  kBadFile,    ///< A file is missing, truncated, corrupt, foreign or of another version.
+  kIo,         ///< The system refused to read or write.
+  kNotFound,   ///< The thing asked for is not there (class, level, place).
+  kLimit,      ///< More than fits; the message says how much fits.
+  kCancelled,  ///< The caller's Context asked to stop; nothing half-written is left.
 };
 
 /// A failure as one sentence: file, place, what is wrong, what to do.
@@ -34,8 +34,8 @@ struct Error {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}        // NOLINT: a value is a result
-  Result(Error error) : state_(std::move(error)) {}    // NOLINT: so is an error
+  Result(T value) : state_(std::move(value)) {}      // NOLINT: a value is a result
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT: so is an error
 
   [[nodiscard]] explicit operator bool() const { return state_.index() == 0; }
   [[nodiscard]] T& operator*() & { return std::get<0>(state_); }
@@ -54,7 +54,7 @@ template <>
 class [[nodiscard]] Result<void> {
  public:
   Result() = default;
-  Result(Error error) : error_(std::move(error)) {}    // NOLINT: an error is a result
+  Result(Error error) : error_(std::move(error)) {}  // NOLINT: an error is a result
 
   [[nodiscard]] explicit operator bool() const { return !error_.has_value(); }
   [[nodiscard]] const Error& error() const { return *error_; }

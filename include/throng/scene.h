@@ -21,8 +21,8 @@ namespace throng {
 
 /// What a surface is for. 2 to 63 are the user's own numbers, walkable like 1.
 using AreaKind = uint8_t;
-inline constexpr AreaKind kAreaBlocked = 0;    ///< Matter that nobody may stand on.
-inline constexpr AreaKind kAreaWalkable = 1;   ///< The default.
+inline constexpr AreaKind kAreaBlocked = 0;   ///< Matter that nobody may stand on.
+inline constexpr AreaKind kAreaWalkable = 1;  ///< The default.
 inline constexpr AreaKind kAreaLast = 63;
 inline constexpr AreaKind kAreaIgnored = 255;  ///< In a rule only: the triangles are dropped.
 
@@ -46,12 +46,12 @@ struct ControlGrid {
 /// What an import met and did. All zero for a clean model.
 struct SceneReport {
   uint64_t triangles_read = 0;
-  uint64_t non_finite = 0;          ///< Triangles dropped: a vertex is NaN or infinite.
-  uint64_t bad_index = 0;           ///< Triangles dropped: an index is out of range.
-  uint64_t degenerate = 0;          ///< Zero-area triangles: kept as lines and points of matter.
-  uint64_t duplicate = 0;           ///< Coincident triangles: harmless, counted.
-  uint64_t ignored = 0;             ///< Triangles dropped by an `ignored` rule.
-  uint64_t spikes = 0;              ///< Triangles over 10 times longer than all others together need.
+  uint64_t non_finite = 0;  ///< Triangles dropped: a vertex is NaN or infinite.
+  uint64_t bad_index = 0;   ///< Triangles dropped: an index is out of range.
+  uint64_t degenerate = 0;  ///< Zero-area triangles: kept as lines and points of matter.
+  uint64_t duplicate = 0;   ///< Coincident triangles: harmless, counted.
+  uint64_t ignored = 0;     ///< Triangles dropped by an `ignored` rule.
+  uint64_t spikes = 0;      ///< Triangles over 10 times longer than all others together need.
   std::vector<std::string> warnings;  ///< Sentences: suspicious units, far-off parts ...
 };
 
@@ -59,8 +59,8 @@ struct SceneReport {
 struct THRONG_API Scene {
   std::vector<Vec3d> positions;
   std::vector<std::array<uint32_t, 3>> triangles;
-  std::vector<AreaKind> area;        ///< One per triangle.
-  std::vector<ScenePart> parts;      ///< In order of triangles; may be empty.
+  std::vector<AreaKind> area;    ///< One per triangle.
+  std::vector<ScenePart> parts;  ///< In order of triangles; may be empty.
   std::vector<ControlGrid> patches;
   SceneReport report;
 
@@ -74,9 +74,9 @@ struct THRONG_API Scene {
 /// One file to read and how to place it. Unset options take the file format's own convention.
 struct SceneSource {
   std::string path;
-  std::optional<char> up;             ///< 'y' or 'z'.
-  std::optional<double> scale;        ///< Metres per unit. [> 0]
-  Transform transform;                ///< Applied last, in metres, Y up.
+  std::optional<char> up;       ///< 'y' or 'z'.
+  std::optional<double> scale;  ///< Metres per unit. [> 0]
+  Transform transform;          ///< Applied last, in metres, Y up.
 };
 
 /// Gives triangles an area kind: the last rule that matches wins. Patterns are shell globs
@@ -91,14 +91,15 @@ struct AreaRule {
 struct SceneConfig {
   std::vector<SceneSource> sources;
   std::vector<AreaRule> rules;
-  double plan_height = 3.0;           ///< How high obstacles of 2D plans rise. [m, > 0]
-  double curve_tolerance = 0.02;      ///< Largest gap between a curved patch and its triangles. [m, > 0]
+  double plan_height = 3.0;  ///< How high obstacles of 2D plans rise. [m, > 0]
+  double curve_tolerance =
+      0.02;  ///< Largest gap between a curved patch and its triangles. [m, > 0]
 };
 
 /// Reads all sources into one Scene. Bad triangles are dropped and counted; a file that cannot be
 /// used is refused with kBadFile or kBadInput and a sentence. Never crashes on any bytes.
-/// Formats by extension: obj gltf glb fbx ply stl dae ifc 3ds (assimp), city.json/json (CityJSON 1-2),
-/// gml (CityGML 2-3), bsp (Quake 3), wkt, geojson (2D plans).
+/// Formats by extension: obj gltf glb fbx ply stl dae ifc 3ds (assimp), city.json/json (CityJSON
+/// 1-2), gml (CityGML 2-3), bsp (Quake 3), wkt, geojson (2D plans).
 [[nodiscard]] THRONG_API Result<Scene> load_scene(const SceneConfig& config, Context& context);
 
 /// Reads a scene file (TOML or JSON). Paths inside are relative to the file. Fails with kBadFile,
@@ -116,10 +117,10 @@ struct Polygon {
 
 /// A world without a 3D model: a flat ground and obstacles that rise from it.
 struct PlaneConfig {
-  Polygon ground;                     ///< Where one may walk.
+  Polygon ground;  ///< Where one may walk.
   std::vector<Polygon> obstacles;
-  double ground_height = 0;           ///< [m]
-  double obstacle_height = 3.0;       ///< [m, > 0]
+  double ground_height = 0;      ///< [m]
+  double obstacle_height = 3.0;  ///< [m, > 0]
 };
 
 /// Builds the triangles of a plane world. Fails with kBadInput and the polygon's index.

@@ -21,8 +21,8 @@ struct WorldData;  // Internal: zones, tiles, planes.
 
 /// A place for feet: a position on one level. A zero-initialised place is nowhere.
 struct Place {
-  Vec3d position;         ///< Y at the feet. [m]
-  uint32_t level1 = 0;    ///< Level tile of the world plus one; 0 is nowhere.
+  Vec3d position;       ///< Y at the feet. [m]
+  uint32_t level1 = 0;  ///< Level tile of the world plus one; 0 is nowhere.
   [[nodiscard]] explicit operator bool() const { return level1 != 0; }
 };
 
@@ -30,19 +30,20 @@ struct Place {
 enum class MoveEnd { kArrived, kBlocked };
 
 struct MoveResult {
-  Place place;                       ///< Where the body is now: the goal, or where it began.
+  Place place;  ///< Where the body is now: the goal, or where it began.
   MoveEnd end = MoveEnd::kBlocked;
 };
 
 /// One 64 x 64 sheet of a world in plain arrays, for tools and pictures.
 struct LevelTileContent {
-  int32_t tile_x = 0;                ///< World tile coordinates: the tile covers cells
-  int32_t tile_z = 0;                ///< [64 tile_x, 64 tile_x + 64) of the world's grid.
-  std::vector<int32_t> floor;        ///< 4096, row by row; kNoFloor where the sheet has none. [mm]
-  std::vector<int32_t> ceiling;      ///< 4096; kOpenSky where nothing is above. [mm]
-  std::vector<uint8_t> area;         ///< 4096 area kinds.
-  std::vector<std::vector<uint8_t>> clearance;  ///< Per class 4096: 0 illegal, k: every point within
-                                                ///< (k - 1) cells of this cell is legal too. [0 to 8]
+  int32_t tile_x = 0;            ///< World tile coordinates: the tile covers cells
+  int32_t tile_z = 0;            ///< [64 tile_x, 64 tile_x + 64) of the world's grid.
+  std::vector<int32_t> floor;    ///< 4096, row by row; kNoFloor where the sheet has none. [mm]
+  std::vector<int32_t> ceiling;  ///< 4096; kOpenSky where nothing is above. [mm]
+  std::vector<uint8_t> area;     ///< 4096 area kinds.
+  std::vector<std::vector<uint8_t>>
+      clearance;  ///< Per class 4096: 0 illegal, k: every point within
+                  ///< (k - 1) cells of this cell is legal too. [0 to 8]
 };
 
 inline constexpr int32_t kNoFloor = INT32_MIN;
@@ -50,18 +51,18 @@ inline constexpr int32_t kOpenSky = INT32_MAX;
 inline constexpr int32_t kTileCells = 64;
 
 struct WorldSummary {
-  double cell = 0;                   ///< [m]
-  double resolution = 0;             ///< [m]
-  Vec3d origin;                      ///< Of cell (0, 0) of the grid; heights count from y = origin.y.
-  Box3d bounds;                      ///< Of the source triangles.
+  double cell = 0;        ///< [m]
+  double resolution = 0;  ///< [m]
+  Vec3d origin;           ///< Of cell (0, 0) of the grid; heights count from y = origin.y.
+  Box3d bounds;           ///< Of the source triangles.
   int32_t tiles_x = 0;
   int32_t tiles_z = 0;
   uint64_t zones = 0;
   uint64_t level_tiles = 0;
-  uint64_t bytes = 0;                ///< Of all zones.
+  uint64_t bytes = 0;  ///< Of all zones.
   uint64_t source_triangles = 0;
   std::vector<AvatarClass> classes;
-  std::vector<double> walkable_area; ///< Per class. [m^2]
+  std::vector<double> walkable_area;  ///< Per class. [m^2]
 };
 
 /// A baked world. Cheap to copy (shared, immutable); safe to read from many threads.

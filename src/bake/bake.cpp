@@ -82,8 +82,10 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   const double width = (bounds.max.x - bounds.min.x) / config.cell;
   const double depth = (bounds.max.z - bounds.min.z) / config.cell;
   if (std::max(width, depth) > kMaxCells - 64) {
-    return Error{Errc::kLimit, "bake: the world is " + std::to_string(static_cast<int64_t>(std::max(width, depth))) +
-                                   " cells across, at most 1048512 fit; use a larger cell or check the units"};
+    return Error{Errc::kLimit,
+                 "bake: the world is " +
+                     std::to_string(static_cast<int64_t>(std::max(width, depth))) +
+                     " cells across, at most 1048512 fit; use a larger cell or check the units"};
   }
   if (std::max(std::fabs(bounds.min.y), std::fabs(bounds.max.y)) > kMaxHeight) {
     return Error{Errc::kLimit, "bake: heights reach beyond 2000 km; check the units"};
@@ -150,7 +152,8 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
   world->tiles_per_zone = static_cast<uint32_t>(plan.tiles_per_zone);
   world->zones_x = plan.zones_x;
   world->zones_z = plan.zones_z;
-  world->slot_of_zone.assign(static_cast<size_t>(plan.zones_x) * static_cast<size_t>(plan.zones_z), -1);
+  world->slot_of_zone.assign(static_cast<size_t>(plan.zones_x) * static_cast<size_t>(plan.zones_z),
+                             -1);
 
   ZoneScratch scratch(worker_count(config.workers));
   std::vector<uint64_t> legal_cells(config.classes.size(), 0);
@@ -234,8 +237,8 @@ Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& 
   return World(std::move(*world));
 }
 
-Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene, const BakeConfig& config,
-                                 Context& context) {
+Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
+                                 const BakeConfig& config, Context& context) {
   const fs::path target(path);
   const fs::path manifest = "manifest.thm";
   std::error_code error;

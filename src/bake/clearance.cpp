@@ -5,10 +5,10 @@
 #include <bit>
 #include <cstdlib>
 
-// A cell's margin is k if every cell that a point within k cells of it can lie on is legal. Two cells
-// at (dx, dz) are max(|dx| - 1, 0), max(|dz| - 1, 0) apart, and the offsets nearer than k are, for k =
-// 1 to 7, exactly the sums of these squares S and crosses P: S, S, S, P, P, S, P. So each margin is
-// one more erosion of the last, a row of bits at a time.
+// A cell's margin is k if every cell that a point within k cells of it can lie on is legal. Two
+// cells at (dx, dz) are max(|dx| - 1, 0), max(|dz| - 1, 0) apart, and the offsets nearer than k
+// are, for k = 1 to 7, exactly the sums of these squares S and crosses P: S, S, S, P, P, S, P. So
+// each margin is one more erosion of the last, a row of bits at a time.
 namespace throng {
 namespace {
 
@@ -22,7 +22,8 @@ Row wide_row(const TileLegality* left, const TileLegality* right, const SheetLeg
   Row row = static_cast<Row>(sheet.classes[avatar_class].legal[z]) << kApronBits;
   const int16_t l = sheet.link[0][z];
   if (l >= 0 && left != nullptr && sheet.rise[0][z] <= step) {
-    row |= (*left)[static_cast<size_t>(l)].classes[avatar_class].legal[z] >> (kTileSide - kApronBits);
+    row |=
+        (*left)[static_cast<size_t>(l)].classes[avatar_class].legal[z] >> (kTileSide - kApronBits);
   }
   const int16_t r = sheet.link[1][z];
   if (r >= 0 && right != nullptr && sheet.rise[1][z] <= step) {
@@ -33,8 +34,8 @@ Row wide_row(const TileLegality* left, const TileLegality* right, const SheetLeg
 }
 
 // Adds the rows of the tile above or below: columns go to whichever sheet continues them.
-void add_rows(const std::array<const TileLegality*, 3>& tiles, const SheetLegality& sheet, size_t side,
-              size_t avatar_class, int32_t step, size_t first_z, Row* rows) {
+void add_rows(const std::array<const TileLegality*, 3>& tiles, const SheetLegality& sheet,
+              size_t side, size_t avatar_class, int32_t step, size_t first_z, Row* rows) {
   const TileLegality* tile = tiles[1];
   if (tile == nullptr) return;
   for (size_t s = 0; s < tile->size(); ++s) {
@@ -51,7 +52,8 @@ void add_rows(const std::array<const TileLegality*, 3>& tiles, const SheetLegali
       columns |= corner << (kApronBits + kTileSide);
     }
     for (size_t i = 0; i < kApronBits; ++i) {
-      rows[i] |= columns & wide_row(tiles[0], tiles[2], (*tile)[s], avatar_class, step, first_z + i);
+      rows[i] |=
+          columns & wide_row(tiles[0], tiles[2], (*tile)[s], avatar_class, step, first_z + i);
     }
   }
 }
@@ -67,8 +69,10 @@ void link_sheet(const Sheet& sheet, const std::array<const TileSheets*, 4>& side
     if (tile == nullptr || tile->empty()) continue;
     for (int32_t i = 0; i < kTileSide; ++i) {
       const int32_t last = kTileSide - 1;
-      const std::array<int32_t, 4> own{i * kTileSide, i * kTileSide + last, i, last * kTileSide + i};
-      const std::array<int32_t, 4> across{i * kTileSide + last, i * kTileSide, last * kTileSide + i, i};
+      const std::array<int32_t, 4> own{i * kTileSide, i * kTileSide + last, i,
+                                       last * kTileSide + i};
+      const std::array<int32_t, 4> across{i * kTileSide + last, i * kTileSide, last * kTileSide + i,
+                                          i};
       const uint16_t feet = sheet.feet[static_cast<size_t>(own[side])];
       if (feet == kNone16) continue;
       int32_t best = max_step + 1;
@@ -94,8 +98,10 @@ void erode(const std::array<const TileLegality*, 9>& tiles, size_t sheet, size_t
   for (size_t z = 0; z < kTileSide; ++z) {
     rows[z + kApronBits] = wide_row(tiles[3], tiles[5], own, avatar_class, step, z);
   }
-  add_rows({tiles[0], tiles[1], tiles[2]}, own, 2, avatar_class, step, kTileSide - kApronBits, &rows[0]);
-  add_rows({tiles[6], tiles[7], tiles[8]}, own, 3, avatar_class, step, 0, &rows[kTileSide + kApronBits]);
+  add_rows({tiles[0], tiles[1], tiles[2]}, own, 2, avatar_class, step, kTileSide - kApronBits,
+           &rows[0]);
+  add_rows({tiles[6], tiles[7], tiles[8]}, own, 3, avatar_class, step, 0,
+           &rows[kTileSide + kApronBits]);
 
   out = {};
   out.legal = own.classes[avatar_class].legal;

@@ -19,14 +19,14 @@ inline constexpr int32_t kApronBits = 8;  // columns and rows that erosion looks
 struct SheetLegality {
   struct PerClass {
     BitPlane legal{};
-    bool all = false;        // every cell of the sheet
+    bool all = false;  // every cell of the sheet
     bool any = false;
     bool step_safe = true;
   };
   std::vector<PerClass> classes;
 
-  /// Which sheet of the neighbouring tile continues this one across each border cell (-1: none), and
-  /// by how much the feet differ. Sides: 0 left, 1 right, 2 up (z - 1), 3 down. [mm]
+  /// Which sheet of the neighbouring tile continues this one across each border cell (-1: none),
+  /// and by how much the feet differ. Sides: 0 left, 1 right, 2 up (z - 1), 3 down. [mm]
   std::array<std::array<int16_t, kTileSide>, 4> link;
   std::array<std::array<uint16_t, kTileSide>, 4> rise;
 };

@@ -54,7 +54,8 @@ void spill(TileColumns& columns, int32_t cell, MI mask, VI low, VI high, VI supp
   hn::Store(support, di, supports);
   hn::Store(hn::IfThenElseZero(mask, hn::Set(di, 1)), di, set);
   for (int32_t lane = 0; lane < static_cast<int32_t>(hn::Lanes(di)); ++lane) {
-    if (set[lane] != 0) columns.spills.push_back({cell + lane, lows[lane], highs[lane], supports[lane]});
+    if (set[lane] != 0)
+      columns.spills.push_back({cell + lane, lows[lane], highs[lane], supports[lane]});
   }
 }
 
@@ -71,8 +72,9 @@ HWY_INLINE void insert(TileColumns& columns, int32_t cell, MI mask, VI low, VI h
     SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
     const VI other_low = hn::Load(di, &layer.low[c]);
     const VI other_high = hn::Load(di, &layer.high[c]);
-    const MI touch = hn::And(hn::And(mask, hn::Gt(count, hn::Set(di, k))),
-                             hn::And(at_least(other_high, reach_low), at_least(reach_high, other_low)));
+    const MI touch =
+        hn::And(hn::And(mask, hn::Gt(count, hn::Set(di, k))),
+                hn::And(at_least(other_high, reach_low), at_least(reach_high, other_low)));
     if (hn::AllFalse(di, touch)) continue;
     hn::BlendedStore(hn::Min(low, other_low), touch, di, &layer.low[c]);
     hn::BlendedStore(hn::Max(high, other_high), touch, di, &layer.high[c]);
@@ -107,9 +109,9 @@ constexpr float kAbsent = 1e9f;
 
 // Edges of a batch of rows, in the tile's frame: x in cells, y in mm from the base.
 struct EdgeBatch {
-  alignas(64) float x0[kBatch], x1[kBatch];    // x0 <= x1; kAbsent: the row has no such edge
+  alignas(64) float x0[kBatch], x1[kBatch];  // x0 <= x1; kAbsent: the row has no such edge
   alignas(64) float low[kBatch], high[kBatch];
-  alignas(64) float slope[kBatch];             // mm per cell; 0 if too upright for one
+  alignas(64) float slope[kBatch];                  // mm per cell; 0 if too upright for one
   alignas(64) float y_low[kBatch], y_high[kBatch];  // at x0; the whole height of an upright edge
 };
 
@@ -206,7 +208,8 @@ class RowCutter {
   // The point at z = at of the side that begins at corner i.
   HWY_INLINE Point on(size_t i, V at, T kx, T ky) const {
     const V along = hn::Sub(at, set(t_.z[i]));
-    return {hn::Add(set(t_.x[i]), hn::Mul(along, set(kx))), hn::Add(set(t_.y[i]), hn::Mul(along, set(ky)))};
+    return {hn::Add(set(t_.x[i]), hn::Mul(along, set(kx))),
+            hn::Add(set(t_.y[i]), hn::Mul(along, set(ky)))};
   }
   static HWY_INLINE void store(V v, float* out) {
     if constexpr (sizeof(T) == 4) {
@@ -232,7 +235,8 @@ class RowCutter {
     const V ya = hn::IfThenElse(swap, b.y, a.y), yb = hn::IfThenElse(swap, a.y, b.y);
     const V dx = hn::Sub(xb, xa);
     const M upright = hn::Le(dx, set(1e-3));
-    const V slope = hn::IfThenElse(upright, set(0), hn::Div(hn::Sub(yb, ya), hn::Max(dx, set(1e-3))));
+    const V slope =
+        hn::IfThenElse(upright, set(0), hn::Div(hn::Sub(yb, ya), hn::Max(dx, set(1e-3))));
     const V low = hn::Min(ya, yb), high = hn::Max(ya, yb);
     // Only the part over the tile: a far end would cost the float its precision.
     const V x0 = hn::Max(xa, set(-1)), x1 = hn::Min(xb, set(65));
@@ -303,8 +307,8 @@ HWY_INLINE void row_heights(const RowBatch& rows, size_t r, VF x, VI& low, VI& h
   high = hn::Min(high, hn::ConvertTo(di, hn::Ceil(hn::Add(y_high, margin))));
 }
 
-HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowBatch& rows, size_t r,
-                         int32_t row, const TileRect& rect, int32_t join) {
+HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowBatch& rows,
+                         size_t r, int32_t row, const TileRect& rect, int32_t join) {
   const DF df;
   const DI di;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(df));
@@ -339,8 +343,8 @@ HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowB
 
 // Fills the rows of one triangle, sixteen at a time.
 template <class D, class T>
-HWY_INLINE void fill_triangle(const Corners<T>& corners, const TileTriangle& t, const TileRect& rect,
-                              int32_t join, TileColumns& columns) {
+HWY_INLINE void fill_triangle(const Corners<T>& corners, const TileTriangle& t,
+                              const TileRect& rect, int32_t join, TileColumns& columns) {
   const D d;
   const double z_first = std::floor(static_cast<double>(corners.z[0]) - kWiden);
   const double z_last = std::floor(static_cast<double>(corners.z[2]) + kWiden);
@@ -528,9 +532,8 @@ HWY_INLINE VI find_vector(const TileColumns& columns, size_t c, size_t n, VI cou
     }
     const MI joined = hn::AndNot(apart, has);
     top = hn::IfThenElse(apart, high, hn::IfThenElse(joined, hn::Max(top, high), top));
-    support = hn::IfThenElse(
-        apart, spans.support[k],
-        hn::IfThenElse(joined, hn::Max(support, spans.support[k]), support));
+    support = hn::IfThenElse(apart, spans.support[k],
+                             hn::IfThenElse(joined, hn::Max(support, spans.support[k]), support));
   }
   const MI any = hn::Gt(count, hn::Zero(di));
   emit(gaps, c, any, found, deepest, top, sky, support);

@@ -35,7 +35,8 @@ struct TileColumns {
   int32_t base = 0;  // [mm]
   alignas(64) std::array<int32_t, kTileArea> count;
   std::array<uint8_t, kTileArea> depth;  // largest count in each vector of cells
-  std::vector<std::unique_ptr<SpanLayer>> layers;  // unsorted; layer k of cell c holds if k < count[c]
+  std::vector<std::unique_ptr<SpanLayer>>
+      layers;                 // unsorted; layer k of cell c holds if k < count[c]
   std::vector<Spill> spills;  // by cell
 
   [[nodiscard]] std::span<const Spill> spills_of(int32_t cell) const;
@@ -78,7 +79,8 @@ struct TileGaps {
   int32_t max_count = 0;
   uint64_t spans = 0;  // after joining
   alignas(64) std::array<int32_t, kTileArea> count;
-  std::vector<std::unique_ptr<GapLayer>> layers;  // ascending; layer k of cell c holds if k < count[c]
+  std::vector<std::unique_ptr<GapLayer>>
+      layers;  // ascending; layer k of cell c holds if k < count[c]
 };
 
 /// Joins spans that are less than `min_gap` apart and lists what is free above each run.

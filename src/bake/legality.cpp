@@ -4,9 +4,10 @@
 
 #include <algorithm>
 
-// Windowed maxima and minima with a disc: rows first, for each width that the disc has, by doubling;
-// then columns. (The horizontal part after van Herk, Gil, Werman; the windows are a few cells, so
-// doubling beats their recurrences.) Everything is 16 bit, so a vector holds a quarter of a row or more.
+// Windowed maxima and minima with a disc: rows first, for each width that the disc has, by
+// doubling; then columns. (The horizontal part after van Herk, Gil, Werman; the windows are a few
+// cells, so doubling beats their recurrences.) Everything is 16 bit, so a vector holds a quarter of
+// a row or more.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/legality.cpp"
@@ -49,7 +50,8 @@ struct Lowest {
 
 // out[x] = extreme of in[x - w .. x + w] for x in [0, 64). `in` has w valid cells on both sides.
 template <class Op>
-HWY_INLINE void extreme_row(const uint16_t* HWY_RESTRICT in, int32_t w, uint16_t* HWY_RESTRICT out, Op op) {
+HWY_INLINE void extreme_row(const uint16_t* HWY_RESTRICT in, int32_t w, uint16_t* HWY_RESTRICT out,
+                            Op op) {
   const DU du;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
   for (int32_t x = 0; x < kTileSide; x += lanes) {
@@ -59,7 +61,8 @@ HWY_INLINE void extreme_row(const uint16_t* HWY_RESTRICT in, int32_t w, uint16_t
   }
 }
 
-// Rows of horizontal extremes: for width index k, quantity q, row z: rows[((k * 3 + q) * count + z) * 64].
+// Rows of horizontal extremes: for width index k, quantity q, row z: rows[((k * 3 + q) * count + z)
+// * 64].
 struct RowTable {
   uint16_t* data;
   int32_t count;  // rows
@@ -160,7 +163,8 @@ bool StepSafe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const VU feet = hn::Load(du, &sheet.feet[cell]);
-      // Past the row's end this reads the next row or, at the very end, the array that follows: masked.
+      // Past the row's end this reads the next row or, at the very end, the array that follows:
+      // masked.
       const VU right = hn::LoadU(du, &sheet.feet[0] + cell + 1);
       const VU dx = hn::Sub(hn::Max(feet, right), hn::Min(feet, right));
       store_bits(hn::Not(at_most(dx, limit)), x, across);

@@ -20,8 +20,8 @@ struct BodyWindow {
   int32_t bottom = 0;  // [mm]
   int32_t height = 0;
   int32_t step = 0;
-  double radius = 0;   // [cells]
-  int32_t reach = 0;   // rows that a body on a cell can touch beyond it
+  double radius = 0;           // [cells]
+  int32_t reach = 0;           // rows that a body on a cell can touch beyond it
   std::vector<int32_t> width;  // per row distance 0..reach: columns on either side
   uint32_t class_bit = 0;
 };
@@ -31,7 +31,8 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
 /// Sheets of a tile and its eight neighbours, row by row from (-1, -1); null: no tile there.
 using Neighbourhood = std::array<const TileSheets*, 9>;
 
-/// Matter and room around one sheet, with the neighbours' cells filled in. [mm from the sheet's base]
+/// Matter and room around one sheet, with the neighbours' cells filled in. [mm from the sheet's
+/// base]
 class SheetWindow {
  public:
   /// `reach` is the largest of all classes. [cells, <= 64]
@@ -59,14 +60,14 @@ class SheetWindow {
 /// Scratch of one worker for legal_cells.
 struct LegalityScratch {
   SheetWindow window;
-  std::vector<uint16_t> rows;  // horizontal extremes
+  std::vector<uint16_t> rows;                        // horizontal extremes
   alignas(64) std::array<uint16_t, kTileArea> tilt;  // half of the feet's rise over a cell
 };
 
 /// What legal_cells found for one class.
 struct LegalCells {
   BitPlane legal{};
-  BitPlane stands{};  // feet, and a surface that the class may stand on
+  BitPlane stands{};   // feet, and a surface that the class may stand on
   BitPlane slanted{};  // of those, failed only for how high or low the matter around is
 };
 

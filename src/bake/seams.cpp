@@ -5,9 +5,9 @@
 
 #include "bake/legality.h"
 
-// Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its sheet is cut,
-// and near the cut a window may have followed the lower floor where the body walks on the upper. Any gap
-// that holds the body proves a column free, so there all gaps are asked.
+// Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its sheet
+// is cut, and near the cut a window may have followed the lower floor where the body walks on the
+// upper. Any gap that holds the body proves a column free, so there all gaps are asked.
 namespace throng {
 namespace {
 
@@ -22,7 +22,8 @@ bool column_is_free(const TileSheets& tile, size_t cell, const Need& need) {
   for (const auto& sheet : tile) {
     if (sheet->top[cell] == kNone16) continue;
     const int32_t top = sheet->base + sheet->top[cell];
-    const bool room = sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;
+    const bool room =
+        sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;
     if (top <= need.high_top && top >= need.low_top && room) return true;
   }
   return false;
@@ -34,7 +35,8 @@ bool body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, in
     const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
     for (int32_t dx = -w; dx <= w; ++dx) {
       const int32_t cx = x + dx, cz = z + dz;
-      const int32_t side = (cz < 0 ? 0 : (cz > kLast ? 6 : 3)) + (cx < 0 ? 0 : (cx > kLast ? 2 : 1));
+      const int32_t side =
+          (cz < 0 ? 0 : (cz > kLast ? 6 : 3)) + (cx < 0 ? 0 : (cx > kLast ? 2 : 1));
       const TileSheets* tile = tiles[static_cast<size_t>(side)];
       const size_t cell = static_cast<size_t>((cz & kLast) * kTileSide + (cx & kLast));
       if (tile == nullptr || !column_is_free(*tile, cell, need)) return false;
@@ -54,7 +56,8 @@ BitPlane seam_cells(const TileSheets& tile, const Sheet& own, int32_t max_step) 
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       if (own.top[cell] == kNone16) continue;
       const int32_t top = own.base + own.top[cell];
-      const std::array<std::array<int32_t, 2>, 4> around{{{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
+      const std::array<std::array<int32_t, 2>, 4> around{
+          {{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
       for (const auto& [nx, nz] : around) {
         if (nx < 0 || nz < 0 || nx > kLast || nz > kLast) continue;
         const size_t next = static_cast<size_t>(nz * kTileSide + nx);
@@ -94,7 +97,9 @@ void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& b
   BitPlane doubtful{};
   if (own.seams) doubtful = widened(seam_cells(tile, own, body.bottom), body.reach);
   // Along the border of a tile of several sheets the window may have followed the wrong one too.
-  const auto several = [&](size_t side) { return tiles[side] != nullptr && tiles[side]->size() > 1; };
+  const auto several = [&](size_t side) {
+    return tiles[side] != nullptr && tiles[side]->size() > 1;
+  };
   const int32_t reach = std::min(body.reach, kTileSide);
   for (int32_t z = 0; z < kTileSide; ++z) {
     uint64_t& row = doubtful[static_cast<size_t>(z)];

@@ -66,12 +66,14 @@ void LinkLayer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t mi
       has |= bits_of(di, hn::Gt(hn::Load(di, &gaps.count[c]), k)) << x;
       if (c > 0) {
         left |= bits_of(di, linked(top, ceiling, hn::LoadU(di, &g.top[c] - 1),
-                                   hn::LoadU(di, &g.ceiling[c] - 1), step, gap)) << x;
+                                   hn::LoadU(di, &g.ceiling[c] - 1), step, gap))
+                << x;
       } else {
         // The first cell has nothing to its left; the others of its vector look one back.
         for (int32_t i = 1; i < lanes; ++i) {
           const size_t at = static_cast<size_t>(i);
-          const int32_t high = std::max(g.top[at], g.top[at - 1]), low = std::min(g.top[at], g.top[at - 1]);
+          const int32_t high = std::max(g.top[at], g.top[at - 1]),
+                        low = std::min(g.top[at], g.top[at - 1]);
           const int32_t ceil = std::min(g.ceiling[at], g.ceiling[at - 1]);
           const bool ok = static_cast<int64_t>(high) - low <= max_step &&
                           static_cast<int64_t>(ceil) - high >= min_gap;
@@ -80,8 +82,9 @@ void LinkLayer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t mi
       }
       if (z == 0) continue;
       const size_t above = c - kTileSide;
-      up |= bits_of(di, linked(top, ceiling, hn::Load(di, &g.top[above]), hn::Load(di, &g.ceiling[above]),
-                               step, gap)) << x;
+      up |= bits_of(di, linked(top, ceiling, hn::Load(di, &g.top[above]),
+                               hn::Load(di, &g.ceiling[above]), step, gap))
+            << x;
     }
     const size_t row = static_cast<size_t>(z);
     links.has[row] = has;
@@ -135,7 +138,8 @@ HWY_INLINE hn::Vec<DH> narrow(hn::Vec<DI> v) {
   return hn::TruncateTo(dh, hn::BitCast(dw, v));
 }
 
-void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits, Sheet& sheet) {
+void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits,
+               Sheet& sheet) {
   const DI di;
   const DH dh;
   const DB db;
@@ -150,15 +154,16 @@ void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimit
     const auto top = hn::Sub(hn::Load(di, &layer.top[c]), base);
     const auto raw_ceiling = hn::Load(di, &layer.ceiling[c]);
     // An open sky would overflow the difference: it is replaced after it.
-    const auto ceiling = hn::IfThenElse(hn::Eq(raw_ceiling, sky), none,
-                                        hn::Min(hn::Sub(raw_ceiling, base), none));
+    const auto ceiling =
+        hn::IfThenElse(hn::Eq(raw_ceiling, sky), none, hn::Min(hn::Sub(raw_ceiling, base), none));
     const auto feet = hn::Sub(hn::ShiftRight<8>(support), base);
     const auto code = hn::And(support, hn::Set(di, 255));
-    const auto bad = hn::Or(
-        hn::Or(hn::Eq(support, hn::Set(di, kNoSupport)), hn::Eq(code, hn::Set(di, limits.blocked_code))),
-        hn::Or(hn::Gt(hn::Sub(top, feet), hn::Set(di, limits.max_bottom)),
-               hn::Or(hn::Lt(feet, hn::Zero(di)),
-                      hn::Lt(ceiling, hn::Add(feet, hn::Set(di, limits.min_height))))));
+    const auto bad =
+        hn::Or(hn::Or(hn::Eq(support, hn::Set(di, kNoSupport)),
+                      hn::Eq(code, hn::Set(di, limits.blocked_code))),
+               hn::Or(hn::Gt(hn::Sub(top, feet), hn::Set(di, limits.max_bottom)),
+                      hn::Or(hn::Lt(feet, hn::Zero(di)),
+                             hn::Lt(ceiling, hn::Add(feet, hn::Set(di, limits.min_height))))));
     const auto kept = hn::IfThenElse(bad, none, feet);
     if (here == (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL)) {
       hn::StoreU(narrow(top), dh, &sheet.top[c]);
@@ -222,13 +227,15 @@ bool MayBePlane(const Sheet& sheet) {
   const DU du;
   const auto none = hn::Set(du, kNone16), bias = hn::Set(du, 32768);
   auto low_x = none, high_x = hn::Zero(du), low_z = none, high_z = hn::Zero(du);
-  const auto widen = [&](hn::Vec<DU> a, hn::Vec<DU> b, hn::Mask<DU> both, hn::Vec<DU>& low, hn::Vec<DU>& high) {
+  const auto widen = [&](hn::Vec<DU> a, hn::Vec<DU> b, hn::Mask<DU> both, hn::Vec<DU>& low,
+                         hn::Vec<DU>& high) {
     const auto difference = hn::Add(hn::Sub(b, a), bias);
     low = hn::IfThenElse(both, hn::Min(low, difference), low);
     high = hn::IfThenElse(both, hn::Max(high, difference), high);
   };
   const auto spread = [&](hn::Vec<DU> low, hn::Vec<DU> high) {
-    return int32_t{hn::GetLane(hn::MaxOfLanes(du, high))} - int32_t{hn::GetLane(hn::MinOfLanes(du, low))};
+    return int32_t{hn::GetLane(hn::MaxOfLanes(du, high))} -
+           int32_t{hn::GetLane(hn::MinOfLanes(du, low))};
   };
   const hn::Mask<DU> not_last = [&] {
     return hn::Lt(hn::Iota(du, 1), hn::Set(du, static_cast<uint16_t>(hn::Lanes(du))));
@@ -255,7 +262,8 @@ bool MayBePlane(const Sheet& sheet) {
 HWY_INLINE hn::Vec<DU> gentler(hn::Vec<DU> a, hn::Vec<DU> b, hn::Vec<DU> c) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
-  const auto first = hn::Sub(hn::Max(a, b), hn::Min(a, b)), second = hn::Sub(hn::Max(b, c), hn::Min(b, c));
+  const auto first = hn::Sub(hn::Max(a, b), hn::Min(a, b)),
+             second = hn::Sub(hn::Max(b, c), hn::Min(b, c));
   const auto agree = hn::Not(hn::Xor(hn::Gt(b, a), hn::Gt(c, b)));
   const auto all = hn::And(hn::Ne(a, none), hn::And(hn::Ne(b, none), hn::Ne(c, none)));
   return hn::IfThenElseZero(hn::And(agree, all), hn::Min(first, second));
@@ -271,10 +279,12 @@ void MakeTilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
     const uint16_t* centre = &sheet.feet[middle * kTileSide];
     for (size_t x = 0; x < kTileSide; x += lanes) {
       hn::Store(gentler(hn::Load(du, centre + x - kTileSide), hn::Load(du, centre + x),
-                        hn::Load(du, centre + x + kTileSide)), du, along + x);
+                        hn::Load(du, centre + x + kTileSide)),
+                du, along + x);
       // Written for x + 1: rows are read from their first cell on, never before the array.
-      hn::StoreU(gentler(hn::Load(du, row + x), hn::LoadU(du, row + x + 1), hn::LoadU(du, row + x + 2)), du,
-                 across + x + 1);
+      hn::StoreU(
+          gentler(hn::Load(du, row + x), hn::LoadU(du, row + x + 1), hn::LoadU(du, row + x + 2)),
+          du, across + x + 1);
     }
     across[0] = across[1];
     across[kTileSide - 1] = across[kTileSide - 2];
@@ -301,7 +311,8 @@ HWY_EXPORT(Summarise);
 HWY_EXPORT(MayBePlane);
 HWY_EXPORT(MakeTilt);
 
-void link_layer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap, LayerLinks& links) {
+void link_layer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap,
+                LayerLinks& links) {
   HWY_DYNAMIC_DISPATCH(LinkLayer)(gaps, layer, max_step, min_gap, links);
 }
 
@@ -315,7 +326,8 @@ TopRange run_range(const GapLayer& layer, int32_t z, uint64_t cells) {
 
 void clear_sheet(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(ClearSheet)(sheet); }
 
-void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits, Sheet& sheet) {
+void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits,
+                Sheet& sheet) {
   HWY_DYNAMIC_DISPATCH(WriteGaps)(layer, z, cells, limits, sheet);
 }
 

@@ -97,7 +97,8 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
       const int32_t shift = other.base - own.base;
       for (int32_t z = z0; z < z1; ++z) {
         for (int32_t x = x0; x < x1; ++x) {
-          const size_t from = static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
+          const size_t from =
+              static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
           top[index(x, z)] = rebased(other.top[from], shift);
           ceiling[index(x, z)] = rebased(other.ceiling[from], shift);
         }
@@ -113,7 +114,8 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
         const uint16_t inward = top[index(x - dx, z - dz)];
         const uint16_t beside = dx != 0 && dz != 0 ? top[index(x - dx, z)] : inward;
         int32_t near_top = inward != kNone16 ? inward : (beside != kNone16 ? beside : last);
-        const size_t from = static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
+        const size_t from =
+            static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
         const Sheet* other = nearest_sheet(tile, from, near_top + own.base);
         if (other == nullptr) continue;
         const int32_t shift = other->base - own.base;
@@ -167,7 +169,8 @@ bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
       (limits.allowed[own.some_code] & body.class_bit) == 0) {
     return false;
   }
-  // The feet's tilt is at most half the range of feet over neighbouring cells, so at most the range.
+  // The feet's tilt is at most half the range of feet over neighbouring cells, so at most the
+  // range.
   const int32_t low_feet = own.base + 2 * own.low_feet - own.high_feet;
   const int32_t high_feet = own.base + 2 * own.high_feet - own.low_feet;
   if (own.high_feet - own.low_feet > body.step) return false;
@@ -175,7 +178,8 @@ bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
     if (tile == nullptr || tile->size() != 1) return false;
     const Sheet& other = *(*tile)[0];
     if (other.cells != kTileArea) return false;
-    const int32_t ceiling = other.low_ceiling == kNone16 ? INT32_MAX : other.base + other.low_ceiling;
+    const int32_t ceiling =
+        other.low_ceiling == kNone16 ? INT32_MAX : other.base + other.low_ceiling;
     if (other.base + other.high_top > low_feet + body.bottom - 1 ||
         other.base + other.low_top < high_feet - body.bottom || ceiling < high_feet + body.height) {
       return false;

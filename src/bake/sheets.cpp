@@ -9,12 +9,12 @@
 
 #include "bake/sheet_kernels.h"
 
-// Gaps of neighbouring columns belong together when a step leads from one to the other. Runs of linked
-// gaps in a row are the units; they are joined with union-find in one raster pass (after Rosenfeld,
-// Pfaltz. Sequential operations in digital picture processing. 1966). Most gaps continue the gap of
-// the same rank beside them, which vectors find; only where ranks shift, at walls and edges, are
-// columns compared one by one. A component that lies over itself, like a spiral ramp, is split along
-// its breadth-first order; then components are packed first-fit into sheets.
+// Gaps of neighbouring columns belong together when a step leads from one to the other. Runs of
+// linked gaps in a row are the units; they are joined with union-find in one raster pass (after
+// Rosenfeld, Pfaltz. Sequential operations in digital picture processing. 1966). Most gaps continue
+// the gap of the same rank beside them, which vectors find; only where ranks shift, at walls and
+// edges, are columns compared one by one. A component that lies over itself, like a spiral ramp, is
+// split along its breadth-first order; then components are packed first-fit into sheets.
 namespace throng {
 namespace {
 
@@ -31,7 +31,7 @@ uint64_t run_mask(int32_t first, int32_t last) {
 struct Run {
   int32_t layer, z;
   uint64_t cells;
-  int32_t parent;     // union-find
+  int32_t parent;  // union-find
   int32_t component;
 };
 
@@ -56,7 +56,9 @@ class Dealer {
   void deal(SheetPool& pool, TileSheets& sheets);
 
  private:
-  [[nodiscard]] const GapLayer& layer(int32_t k) const { return *gaps_.layers[static_cast<size_t>(k)]; }
+  [[nodiscard]] const GapLayer& layer(int32_t k) const {
+    return *gaps_.layers[static_cast<size_t>(k)];
+  }
   [[nodiscard]] bool linked(size_t cell_a, int32_t a, size_t cell_b, int32_t b) const {
     const GapLayer &p = layer(a), &q = layer(b);
     const int32_t high = std::max(p.top[cell_a], q.top[cell_b]);
@@ -130,7 +132,8 @@ void Dealer::find_runs() {
       uint64_t starts = has & ~l.left[row];
       for (; starts != 0; starts &= starts - 1) {
         const int32_t first = std::countr_zero(starts);
-        const uint64_t after = ~(l.left[row] & has) & (first < 63 ? ~uint64_t{0} << (first + 1) : 0);
+        const uint64_t after =
+            ~(l.left[row] & has) & (first < 63 ? ~uint64_t{0} << (first + 1) : 0);
         const int32_t last = after == 0 ? 63 : std::countr_zero(after) - 1;
         const auto index = static_cast<int32_t>(runs_.size());
         runs_.push_back({k, z, run_mask(first, last), index, -1});
@@ -214,7 +217,8 @@ void Dealer::split(int32_t index) {
     queue.clear();
     const auto take = [&](int32_t cell, int32_t k) {
       const int32_t top = layer(k).top[static_cast<size_t>(cell)];
-      const int32_t low = std::min(component.tops.low, top), high = std::max(component.tops.high, top);
+      const int32_t low = std::min(component.tops.low, top),
+                    high = std::max(component.tops.high, top);
       if (static_cast<int64_t>(high) - low > kMaxRange) return;
       component.tops = {low, high};
       ++component.count;
@@ -229,7 +233,8 @@ void Dealer::split(int32_t index) {
     for (size_t head = 0; head < queue.size(); ++head) {
       const Gap gap = queue[head];
       const int32_t x = gap.cell % kSide, z = gap.cell / kSide;
-      const std::array<std::array<int32_t, 2>, 4> around{{{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
+      const std::array<std::array<int32_t, 2>, 4> around{
+          {{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
       for (const auto& [nx, nz] : around) {
         if (nx < 0 || nz < 0 || nx >= kSide || nz >= kSide) continue;
         const int32_t other = nz * kSide + nx;
@@ -263,15 +268,16 @@ bool Dealer::is_crumb(const Component& c) const {
   return (columns & 0x8000000000000001u) == 0;
 }
 
-// Deals components to sheets, larger first, each to the first sheet of about its height whose columns
-// are free: floors stay constant when a crate's top goes elsewhere. Many sheets are worse than
-// mixed ones, so after kManySheets any free columns do.
+// Deals components to sheets, larger first, each to the first sheet of about its height whose
+// columns are free: floors stay constant when a crate's top goes elsewhere. Many sheets are worse
+// than mixed ones, so after kManySheets any free columns do.
 int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
   constexpr size_t kManySheets = 24;
   constexpr int32_t kSameHeight = 500;  // [mm]
   std::vector<int32_t> order;
   for (size_t i = 0; i < components_.size(); ++i) {
-    if (components_[i].count > 0 && !is_crumb(components_[i])) order.push_back(static_cast<int32_t>(i));
+    if (components_[i].count > 0 && !is_crumb(components_[i]))
+      order.push_back(static_cast<int32_t>(i));
   }
   std::stable_sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
     return components_[static_cast<size_t>(a)].count > components_[static_cast<size_t>(b)].count;
@@ -292,7 +298,8 @@ int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
                          bins[b].tops.low - component.tops.high > kSameHeight;
       if (apart && bins.size() < kManySheets) continue;
       bool clash = false;
-      for (size_t z = 0; z < kTileSide && !clash; ++z) clash = (bins[b].used[z] & component.cells[z]) != 0;
+      for (size_t z = 0; z < kTileSide && !clash; ++z)
+        clash = (bins[b].used[z] & component.cells[z]) != 0;
       if (!clash) break;
     }
     if (b == bins.size()) bins.emplace_back();
@@ -337,7 +344,8 @@ void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
   for (const Piece& piece : pieces_) {
     const int32_t sheet = sheet_of[static_cast<size_t>(piece.component)];
     if (sheet < 0) continue;
-    write_gaps(layer(piece.layer), piece.z, piece.cells, limits_, *dealt[static_cast<size_t>(sheet)]);
+    write_gaps(layer(piece.layer), piece.z, piece.cells, limits_,
+               *dealt[static_cast<size_t>(sheet)]);
   }
   for (auto& sheet : dealt) {
     summarise(*sheet);
@@ -401,7 +409,8 @@ int32_t footprint_cells(const AvatarClass& avatar, double cell) {
 
 }  // namespace
 
-BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes& codes, double cell) {
+BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes& codes,
+                       double cell) {
   BodyLimits limits;
   limits.min_gap = limits.min_height = limits.min_footprint = INT32_MAX;
   for (const AvatarClass& avatar : classes) {
@@ -434,7 +443,8 @@ void SheetPool::give(std::unique_ptr<Sheet> sheet) {
   free_.push_back(std::move(sheet));
 }
 
-void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool, TileSheets& sheets) {
+void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
+               TileSheets& sheets) {
   sheets.clear();
   if (gaps.max_count == 0) return;
   if (gaps.max_count == 1 && deal_single_layer(gaps, limits, pool, sheets)) return;

@@ -7,10 +7,11 @@
 #include "bake/legality.h"
 #include "world/surface.h"
 
-// Feet on a cell lie on a plane p with gradient g. For a body at P and matter at Q within its radius r,
+// Feet on a cell lie on a plane p with gradient g. For a body at P and matter at Q within its
+// radius r,
 //   y(Q) - p(P) = (y(Q) - p(Q)) + g (Q - P) <= (y(Q) - p(Q)) + |g| r,
-// and over a cell B whose matter tops out at top, y(Q) - p(Q) <= top - min over B of p. So the body is
-// free if, for the highest of these over all cells that it reaches, the sum stays below its
+// and over a cell B whose matter tops out at top, y(Q) - p(Q) <= top - min over B of p. So the body
+// is free if, for the highest of these over all cells that it reaches, the sum stays below its
 // bottom. Whole cells are compared with the plane where they are, not with one height. At creases,
 // where the feet's slope is the gentler one, a plane between the two may prove what theirs
 // cannot; it then owes how far the feet can be from it on the cell.
@@ -24,12 +25,13 @@ struct Plane {
 };
 
 // All in half millimetres: centres of cells lie half a cell from their corners.
-bool clears(const SheetWindow& window, const BodyWindow& body, int32_t x, int32_t z, const Plane& plane,
-            int32_t owed, int32_t feet_tilt) {
+bool clears(const SheetWindow& window, const BodyWindow& body, int32_t x, int32_t z,
+            const Plane& plane, int32_t owed, int32_t feet_tilt) {
   const int32_t tilt = std::abs(plane.gx) + std::abs(plane.gz);  // of the plane over a cell [mm]
-  const auto lean = static_cast<int32_t>(
-      std::ceil(std::sqrt(static_cast<double>(plane.gx) * plane.gx + static_cast<double>(plane.gz) * plane.gz) *
-                body.radius));
+  const auto lean =
+      static_cast<int32_t>(std::ceil(std::sqrt(static_cast<double>(plane.gx) * plane.gx +
+                                               static_cast<double>(plane.gz) * plane.gz) *
+                                     body.radius));
   const int32_t budget = 2 * (body.bottom - lean - kRounding - owed);
   if (budget < 0) return false;
   // A column may also pass as in the window: its whole top against the lowest and highest feet.

@@ -62,13 +62,13 @@ SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> clas
     if (used[k] == 0 || (codes_.codes.size() == 255 && k != blocked_key)) continue;
     const bool blocked = k == blocked_key;
     code_of_key[k] = static_cast<uint8_t>(codes_.codes.size());
-    codes_.codes.push_back({static_cast<uint8_t>(k / 64),
-                            blocked ? kAreaBlocked : static_cast<AreaKind>(k % 64)});
+    codes_.codes.push_back(
+        {static_cast<uint8_t>(k / 64), blocked ? kAreaBlocked : static_cast<AreaKind>(k % 64)});
     uint32_t allowed = 0;
     for (size_t c = 0; c < cosines.size() && !blocked; ++c) {
       // Limits ascend with the cosine: a surface that exceeds n limits exceeds the n largest.
-      const auto rank = static_cast<size_t>(
-          std::lower_bound(bins.begin(), bins.end(), cosines[c]) - bins.begin());
+      const auto rank = static_cast<size_t>(std::lower_bound(bins.begin(), bins.end(), cosines[c]) -
+                                            bins.begin());
       if (bin_count - rank > k / 64) allowed |= 1u << c;
     }
     codes_.allowed.push_back(allowed);

@@ -107,7 +107,8 @@ TriangleBins bin_boxes(size_t count, Box box, int32_t cell_x, int32_t cell_z, in
   bins.items.resize(bins.first.back());
   std::vector<uint32_t> next(bins.first.begin(), bins.first.end() - 1);
   for (size_t i = 0; i < count; ++i) {
-    for_each_square(i, [&](size_t square) { bins.items[next[square]++] = static_cast<uint32_t>(i); });
+    for_each_square(i,
+                    [&](size_t square) { bins.items[next[square]++] = static_cast<uint32_t>(i); });
   }
   return bins;
 }

@@ -13,9 +13,9 @@
 #include "core/parallel.h"
 
 // A zone is baked in bands of tile rows, so that only a few rows of sheets are alive at a time:
-// while a band's columns are dealt to sheets, legality is judged one row behind it, because it looks into the
-// next tiles, and clearance is eroded one row behind that. A ring of tiles around the zone is
-// rasterised as far as the zone looks, so that no zone depends on another's result.
+// while a band's columns are dealt to sheets, legality is judged one row behind it, because it
+// looks into the next tiles, and clearance is eroded one row behind that. A ring of tiles around
+// the zone is rasterised as far as the zone looks, so that no zone depends on another's result.
 namespace throng {
 namespace {
 
@@ -31,7 +31,8 @@ struct TileState {
   TileSheets sheets;
   std::vector<FloorPlane> planes;
   TileLegality legality;
-  std::vector<std::vector<ClearancePlanes>> clearance;  // per sheet and class; empty: drop the sheet
+  std::vector<std::vector<ClearancePlanes>>
+      clearance;  // per sheet and class; empty: drop the sheet
 };
 
 // Tiles of a zone and its ring, row by row; the ring is row and column 0 and n + 1.
@@ -178,8 +179,9 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       }
       verdict.any = any != 0;
       verdict.all = all == ~uint64_t{0};
-      // A window that fits within a step makes neighbours safe, but only where the sheet is the only
-      // one: at a seam the neighbour that fits is another sheet's, and this one's may be a storey off.
+      // A window that fits within a step makes neighbours safe, but only where the sheet is the
+      // only one: at a seam the neighbour that fits is another sheet's, and this one's may be a
+      // storey off.
       const bool window_is_enough = tile.sheets.size() == 1 && body.bottom <= body.step;
       verdict.step_safe = any == 0 || window_is_enough || step_safe(sheet, cells.legal, body.step);
     }
@@ -246,8 +248,8 @@ void ZoneJob::emit(int32_t row, ZoneBuilder& builder) {
   }
 }
 
-bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t zone_z, Context& context,
-                  ZoneResult& result) {
+bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t zone_z,
+                  Context& context, ZoneResult& result) {
   for (auto& worker : scratch_.workers) {
     worker->seconds_columns = worker->seconds_levels = worker->seconds_clearance = 0;
     worker->spans = 0;
@@ -260,11 +262,12 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
           to_cell_triangle(*plan_.scene, triangles[i], plan_.grid, plan_.coder->code(triangles[i]));
     }
   });
-  bins_ = bin_triangles(scratch_.triangles, first_x_ * kTileSide, first_z_ * kTileSide, side_, side_,
-                        kTileSide, 0);
+  bins_ = bin_triangles(scratch_.triangles, first_x_ * kTileSide, first_z_ * kTileSide, side_,
+                        side_, kTileSide, 0);
   result.seconds_columns = seconds_since(start);
 
-  ZoneBuilder builder(static_cast<uint32_t>(plan_.tiles_per_zone), plan_.bodies.size(), plan_.codes);
+  ZoneBuilder builder(static_cast<uint32_t>(plan_.tiles_per_zone), plan_.bodies.size(),
+                      plan_.codes);
   using Worker = ZoneScratch::Worker;
   for (int32_t row = 0; row < side_ + 2; row += kBand) {
     if (context.cancel) return false;

@@ -33,7 +33,9 @@ FloorPlane fit_plane(Sheet& sheet) {
   }
   if (!may_be_plane(sheet)) return plane;
   // Neighbours differ alike, so the ends of rows and columns tell the slopes.
-  const auto feet = [&](int32_t x, int32_t z) { return sheet.feet[static_cast<size_t>(z * kTileSide + x)]; };
+  const auto feet = [&](int32_t x, int32_t z) {
+    return sheet.feet[static_cast<size_t>(z * kTileSide + x)];
+  };
   double rise_x = 0, run_x = 0, rise_z = 0, run_z = 0;
   for (int32_t i = 0; i < kTileSide; ++i) {
     const auto ends = [&](auto at, double& rise, double& run) {
@@ -174,9 +176,10 @@ void ZoneBuilder::add_level(uint32_t tile, const Sheet& sheet, const FloorPlane&
     }
   }
 
-  levels_.emplace_back(static_cast<uint16_t>(tile), floor_kind, ceiling_kind, floor_base, ceiling_base,
-                       plane.found ? plane.slope_x : 0, plane.found ? plane.slope_z : 0, floor_offset,
-                       ceiling_offset, static_cast<int16_t>(plane.found ? plane.part : 0),
+  levels_.emplace_back(static_cast<uint16_t>(tile), floor_kind, ceiling_kind, floor_base,
+                       ceiling_base, plane.found ? plane.slope_x : 0,
+                       plane.found ? plane.slope_z : 0, floor_offset, ceiling_offset,
+                       static_cast<int16_t>(plane.found ? plane.part : 0),
                        all_present ? format::BitsKind::All : format::BitsKind::Planes,
                        one_area ? format::BitsKind::All : format::BitsKind::Planes, area_value,
                        present_offset, area_offset);
@@ -200,7 +203,8 @@ void ZoneBuilder::add_level(uint32_t tile, const Sheet& sheet, const FloorPlane&
 std::vector<uint8_t> ZoneBuilder::finish(int32_t zone_x, int32_t zone_z) const {
   std::vector<uint32_t> first(levels_of_tile_.size() + 1, 0);
   for (size_t t = 0; t < levels_of_tile_.size(); ++t) first[t + 1] = first[t] + levels_of_tile_[t];
-  flatbuffers::FlatBufferBuilder builder(heights_.size() * 2 + planes_.size() * 8 + areas_.size() + 4096);
+  flatbuffers::FlatBufferBuilder builder(heights_.size() * 2 + planes_.size() * 8 + areas_.size() +
+                                         4096);
   builder.Finish(format::CreateZoneDirect(builder, kZoneVersion, zone_x, zone_z, tiles_per_side_,
                                           static_cast<uint32_t>(class_count_), &first, &levels_,
                                           &clearance_, &heights_, &planes_, &areas_),

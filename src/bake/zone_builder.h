@@ -17,7 +17,7 @@ namespace throng {
 /// legality is judged, so that everything after sees the feet that the moves will see.
 struct FloorPlane {
   bool found = false;
-  int32_t base = 0;  // [mm], absolute, at the centre of cell (0, 0)
+  int32_t base = 0;                  // [mm], absolute, at the centre of cell (0, 0)
   int32_t part = 0;                  // of the base below 1 mm [1/1024 mm]
   int32_t slope_x = 0, slope_z = 0;  // [1/1024 mm per cell]
 };

@@ -23,7 +23,7 @@ struct ConfigNode {
   bool flag = false;
   double number = 0;
   std::string text;
-  std::vector<ConfigNode> items;                            ///< Of an array.
+  std::vector<ConfigNode> items;     ///< Of an array.
   std::vector<ConfigEntry> entries;  ///< Of a table, in the file's order.
 
   [[nodiscard]] const ConfigNode* find(std::string_view key) const;

@@ -17,13 +17,15 @@ namespace throng {
 namespace {
 
 // One arena per thread count for the life of the process: starting threads for each call costs more
-// than a whole step of a small crowd. More threads than cores are allowed when asked for (results do
-// not depend on it, and tests prove that), which TBB must be told, or it complains on standard error.
+// than a whole step of a small crowd. More threads than cores are allowed when asked for (results
+// do not depend on it, and tests prove that), which TBB must be told, or it complains on standard
+// error.
 tbb::task_arena& arena_for(int32_t threads) {
   static std::mutex mutex;
   static std::map<int32_t, std::unique_ptr<tbb::task_arena>> arenas;
   constexpr size_t kMostThreads = 256;
-  static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, kMostThreads);
+  static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                         kMostThreads);
   const std::lock_guard lock(mutex);
   auto& arena = arenas[threads];
   if (!arena) arena = std::make_unique<tbb::task_arena>(threads);
@@ -58,12 +60,13 @@ void parallel_for_worker(size_t count, int32_t workers,
     return;
   }
   arena_for(threads).execute([&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1),
-                      [&](const tbb::blocked_range<size_t>& r) {
-                        const int32_t worker = tbb::this_task_arena::current_thread_index();
-                        for (size_t i = r.begin(); i < r.end(); ++i) body(i, worker);
-                      },
-                      tbb::simple_partitioner());
+    tbb::parallel_for(
+        tbb::blocked_range<size_t>(0, count, 1),
+        [&](const tbb::blocked_range<size_t>& r) {
+          const int32_t worker = tbb::this_task_arena::current_thread_index();
+          for (size_t i = r.begin(); i < r.end(); ++i) body(i, worker);
+        },
+        tbb::simple_partitioner());
   });
 }
 

@@ -13,7 +13,8 @@ namespace throng {
 /// Threads to use for a setting: 0 means all that the machine gives this process.
 int32_t worker_count(int32_t workers);
 
-/// Calls body(begin, end) over [0, count) in pieces of at least `grain`, on up to `workers` threads.
+/// Calls body(begin, end) over [0, count) in pieces of at least `grain`, on up to `workers`
+/// threads.
 void parallel_ranges(size_t count, size_t grain, int32_t workers,
                      const std::function<void(size_t, size_t)>& body);
 

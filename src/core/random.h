@@ -17,7 +17,8 @@ constexpr uint64_t mix64(uint64_t x) {
 }
 
 constexpr uint64_t random_u64(uint64_t seed, uint64_t stream, uint64_t counter) {
-  return mix64(mix64(mix64(seed + 0x9e3779b97f4a7c15ULL) ^ stream) + counter * 0x9e3779b97f4a7c15ULL);
+  return mix64(mix64(mix64(seed + 0x9e3779b97f4a7c15ULL) ^ stream) +
+               counter * 0x9e3779b97f4a7c15ULL);
 }
 
 /// Uniform in [0, 1), 53 bits.
@@ -27,7 +28,8 @@ constexpr double random_unit(uint64_t seed, uint64_t stream, uint64_t counter) {
 
 /// Uniform in [0, n) for n >= 1, by the high half of a 128-bit product.
 constexpr uint64_t random_below(uint64_t seed, uint64_t stream, uint64_t counter, uint64_t n) {
-  return static_cast<uint64_t>((static_cast<unsigned __int128>(random_u64(seed, stream, counter)) * n) >> 64);
+  return static_cast<uint64_t>(
+      (static_cast<unsigned __int128>(random_u64(seed, stream, counter)) * n) >> 64);
 }
 
 }  // namespace throng

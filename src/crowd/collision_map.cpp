@@ -7,8 +7,8 @@
 
 namespace throng {
 
-CollisionMap::CollisionMap(int32_t width, int32_t depth, int32_t pixel_cells, int32_t low, int32_t high,
-                           int32_t body_height)
+CollisionMap::CollisionMap(int32_t width, int32_t depth, int32_t pixel_cells, int32_t low,
+                           int32_t high, int32_t body_height)
     : low_(low - kSlab), body_height_(body_height) {
   const uint64_t units = static_cast<uint64_t>(pixel_cells) << kUnitBits;
   magic_ = ((uint64_t{1} << 52) + units - 1) / units;

@@ -12,10 +12,11 @@
 /// cell and level of [ML06] section 3.1.
 namespace throng {
 
-/// Pixels are at least two radii wide, so bodies whose pixels do not touch cannot touch. [TC00] adds 1
-/// to nine pixels and asks for a 0; setting bits in one pixel and reading nine is the same, with a
-/// ninth of the writes. A pixel's bits are slices of kSlab height, so floors above each other do not
-/// see each other. Two bodies whose heights overlap share a slice. Not synchronised: see CrowdStep.
+/// Pixels are at least two radii wide, so bodies whose pixels do not touch cannot touch. [TC00]
+/// adds 1 to nine pixels and asks for a 0; setting bits in one pixel and reading nine is the same,
+/// with a ninth of the writes. A pixel's bits are slices of kSlab height, so floors above each
+/// other do not see each other. Two bodies whose heights overlap share a slice. Not synchronised:
+/// see CrowdStep.
 class CollisionMap {
  public:
   static constexpr int32_t kSlab = 250;  // height of a slice, more for bodies over 12 m [mm]

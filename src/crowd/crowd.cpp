@@ -46,14 +46,14 @@ struct Crowd::State {
   CrowdGround ground;
   std::optional<CollisionMap> map;
   std::optional<CrowdBlocks> blocks;
-  std::vector<Avatar> avatars;   // by block
+  std::vector<Avatar> avatars;  // by block
   std::vector<Avatar> scratch;
-  double unit = 0;               // metres
+  double unit = 0;  // metres
   int32_t sub_steps = 1;
   uint64_t step = 0;
   uint64_t sub_step = 0;
-  int64_t drift = 0;             // units that anybody can have moved since the last sort
-  int64_t stride = 0;            // units that anybody can move in a sub-step
+  int64_t drift = 0;   // units that anybody can have moved since the last sort
+  int64_t stride = 0;  // units that anybody can move in a sub-step
   int64_t max_drift = 0;
 };
 
@@ -63,10 +63,13 @@ Crowd& Crowd::operator=(Crowd&&) noexcept = default;
 Crowd::~Crowd() = default;
 
 Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
-  const auto bad = [](const std::string& what) { return Error{Errc::kBadConfig, "crowd: " + what}; };
+  const auto bad = [](const std::string& what) {
+    return Error{Errc::kBadConfig, "crowd: " + what};
+  };
   if (!world.data()) return bad("there is no world");
   const WorldData& data = *world.data();
-  if (config.avatar_class < 0 || static_cast<size_t>(config.avatar_class) >= data.summary.classes.size()) {
+  if (config.avatar_class < 0 ||
+      static_cast<size_t>(config.avatar_class) >= data.summary.classes.size()) {
     return Error{Errc::kNotFound, "crowd: class " + std::to_string(config.avatar_class) +
                                       " is not in this world, which has " +
                                       std::to_string(data.summary.classes.size())};
@@ -96,18 +99,21 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   const double speed = config.speed > 0 ? config.speed : body.speed;
   const double length = speed * config.dt;
   state->sub_steps = std::max(1, static_cast<int32_t>(std::ceil(length / body.radius - 1e-9)));
-  if (state->sub_steps > 10000) return bad("speed times dt is over 10000 radii; take shorter steps");
+  if (state->sub_steps > 10000)
+    return bad("speed times dt is over 10000 radii; take shorter steps");
   const double units = length / state->sub_steps / state->unit;
   state->stride = static_cast<int64_t>(std::ceil(units)) + 1;
-  // A mover reads one pixel further than it goes; two movers of one colour keep a block between them.
+  // A mover reads one pixel further than it goes; two movers of one colour keep a block between
+  // them.
   const int64_t pixel_units = int64_t{pixel_cells} << kUnitBits;
   state->max_drift = (kBlockPixels / 2 - 2) * pixel_units;
   state->blocks.emplace(data.width, data.depth, pixel_cells, kBlockPixels);
 
   state->avatars = place_avatars(state->ground, config.avatars, config.seed, *state->map);
   if (state->avatars.size() < config.avatars) {
-    return Error{Errc::kLimit, "crowd: " + std::to_string(state->avatars.size()) + " avatars of class " +
-                                   body.name + " fit in this world, " + std::to_string(config.avatars) +
+    return Error{Errc::kLimit, "crowd: " + std::to_string(state->avatars.size()) +
+                                   " avatars of class " + body.name + " fit in this world, " +
+                                   std::to_string(config.avatars) +
                                    " were asked for; ask for fewer or take a larger world"};
   }
   for (Avatar& avatar : state->avatars) {
@@ -147,7 +153,8 @@ StepReport Crowd::step() {
       parallel_ranges(runs.size(), 16, s.config.workers, [&](size_t begin, size_t end) {
         StepCounts counts;
         for (size_t r = begin; r < end; ++r) {
-          move_run(input, s.avatars.data() + runs[r].first, s.avatars.data() + runs[r].last, counts);
+          move_run(input, s.avatars.data() + runs[r].first, s.avatars.data() + runs[r].last,
+                   counts);
         }
         moved.fetch_add(counts.moved, std::memory_order_relaxed);
         wall.fetch_add(counts.blocked_by_wall, std::memory_order_relaxed);
@@ -167,7 +174,8 @@ StepReport Crowd::step() {
 }
 
 CrowdCheck Crowd::check() const {
-  return check_avatars(state_->world, state_->config.avatar_class, state_->avatars, state_->config.workers);
+  return check_avatars(state_->world, state_->config.avatar_class, state_->avatars,
+                       state_->config.workers);
 }
 
 uint64_t Crowd::state_hash() const {

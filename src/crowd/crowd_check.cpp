@@ -29,14 +29,16 @@ CrowdCheck check_avatars(const World& world, int32_t avatar_class, std::span<con
       const auto tile = data.tile_levels(cx >> 6, cz >> 6);
       const bool on_tile = a.level >= tile.first && a.level < tile.last;
       const bool stands = on_tile && level.zone != nullptr && level.is_legal(cx & 63, cz & 63);
-      const int32_t feet =
-          stands ? level.view.feet(cx & 63, cz & 63, a.x & (kUnitsPerCell - 1), a.z & (kUnitsPerCell - 1)) : 0;
+      const int32_t feet = stands ? level.view.feet(cx & 63, cz & 63, a.x & (kUnitsPerCell - 1),
+                                                    a.z & (kUnitsPerCell - 1))
+                                  : 0;
       found += !stands || feet != a.y;
     }
     wall_entries += found;
   });
 
-  // Avatars in order of a column of squares one body wide, then along it: partners are near in the list.
+  // Avatars in order of a column of squares one body wide, then along it: partners are near in the
+  // list.
   const double width = 2 * body.radius;
   struct Entry {
     int64_t column;
@@ -60,15 +62,17 @@ CrowdCheck check_avatars(const World& world, int32_t avatar_class, std::span<con
     uint64_t found = 0;
     for (size_t i = begin; i < end; ++i) {
       const Entry& a = entries[i];
-      for (size_t j = i + 1; j < entries.size() && entries[j].column == a.column &&
-                             entries[j].z - a.z < width; ++j) {
+      for (size_t j = i + 1;
+           j < entries.size() && entries[j].column == a.column && entries[j].z - a.z < width; ++j) {
         found += clash(a, entries[j]);
       }
       const Entry key{a.column + 1, 0, a.z - width, 0};
-      auto next = std::lower_bound(entries.begin(), entries.end(), key, [](const Entry& p, const Entry& q) {
-        return p.column != q.column ? p.column < q.column : p.z < q.z;
-      });
-      for (; next != entries.end() && next->column == a.column + 1 && next->z - a.z < width; ++next) {
+      auto next =
+          std::lower_bound(entries.begin(), entries.end(), key, [](const Entry& p, const Entry& q) {
+            return p.column != q.column ? p.column < q.column : p.z < q.z;
+          });
+      for (; next != entries.end() && next->column == a.column + 1 && next->z - a.z < width;
+           ++next) {
         found += clash(a, *next);
       }
     }

@@ -39,8 +39,9 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
         return Error{Errc::kBadFile, zone_file_name(zone->root().x(), zone->root().z()) +
                                          ": has levels outside the world; bake the world again"};
       }
-      Range& range = ground.tiles_[static_cast<size_t>(record.tile_z) * static_cast<size_t>(ground.tiles_x_) +
-                                   static_cast<size_t>(record.tile_x)];
+      Range& range =
+          ground.tiles_[static_cast<size_t>(record.tile_z) * static_cast<size_t>(ground.tiles_x_) +
+                        static_cast<size_t>(record.tile_x)];
       if (range.last == 0) range.first = base + i;
       range.last = base + i + 1;
     }

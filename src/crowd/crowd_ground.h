@@ -42,7 +42,8 @@ class CrowdGround {
 
   /// True if every cell of the box is legal on one level of one tile without a step in it: then any
   /// walk inside the box is legal, and stays on the level. Cells of the tile, inclusive.
-  [[nodiscard]] bool box_is_free(Level level, int32_t x0, int32_t x1, int32_t z0, int32_t z1) const {
+  [[nodiscard]] bool box_is_free(Level level, int32_t x0, int32_t x1, int32_t z0,
+                                 int32_t z1) const {
     const Record& r = records_[level];
     if (!r.step_safe) return false;
     uint64_t rows = ~uint64_t{0};
@@ -53,7 +54,8 @@ class CrowdGround {
   [[nodiscard]] int32_t feet(Level level, GroundPoint p) const {
     const LevelView& view = records_[level].view;
     if (view.is_constant()) return view.floor_base;
-    return view.feet(p.cell_x() & 63, p.cell_z() & 63, static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
+    return view.feet(p.cell_x() & 63, p.cell_z() & 63,
+                     static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
                      static_cast<int32_t>(p.z & (kUnitsPerCell - 1)));
   }
 
@@ -61,7 +63,7 @@ class CrowdGround {
   struct Record {
     const uint64_t* legal = nullptr;  // rows; one shared row where all are alike
     LevelView view;
-    int32_t row_mask = 63;            // 0 where legal holds one row for all
+    int32_t row_mask = 63;  // 0 where legal holds one row for all
     uint32_t legal_cells = 0;
     int32_t tile_x = 0, tile_z = 0;
     bool step_safe = false;

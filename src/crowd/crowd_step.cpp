@@ -25,7 +25,8 @@ inline Try try_move(const StepInput& in, Avatar& a, int32_t vx, int32_t vz) {
     const bool same_tile = (x0 >> 6) == (x1 >> 6) && (z0 >> 6) == (z1 >> 6);
     const auto [low_x, high_x] = std::minmax(x0, x1);
     const auto [low_z, high_z] = std::minmax(z0, z1);
-    if (!same_tile || !in.ground->box_is_free(level, low_x & 63, high_x & 63, low_z & 63, high_z & 63)) {
+    if (!same_tile ||
+        !in.ground->box_is_free(level, low_x & 63, high_x & 63, low_z & 63, high_z & 63)) {
       if (!walk(*in.ground, level, from, to, in.step_mm)) return Try::kWall;
     }
   }
@@ -64,7 +65,8 @@ void CrowdBlocks::sort(std::vector<Avatar>& avatars, std::vector<Avatar>& scratc
   std::inclusive_scan(first_.begin(), first_.end(), first_.begin());
   for (uint32_t z = 0, b = 0; z < blocks_z_; ++z) {
     for (uint32_t x = 0; x < blocks_x_; ++x, ++b) {
-      if (first_[b] != first_[b + 1]) runs_[(z & 1) * 2 + (x & 1)].push_back({first_[b], first_[b + 1]});
+      if (first_[b] != first_[b + 1])
+        runs_[(z & 1) * 2 + (x & 1)].push_back({first_[b], first_[b + 1]});
     }
   }
   scratch.resize(avatars.size());

@@ -50,13 +50,14 @@ struct StepInput {
   const CrowdGround* ground = nullptr;
   CollisionMap* map = nullptr;
   uint64_t seed = 0;
-  uint64_t step = 0;     // number of the sub-step: with seed and id, the random stream
+  uint64_t step = 0;  // number of the sub-step: with seed and id, the random stream
   int32_t step_mm = 0;
   int32_t units_x = 0, units_z = 0;  // extent of the world
 };
 
-/// Moves the avatars of one run, in order. Straight on; if that is blocked, one random turn to the left or
-/// right is tried; if that is blocked too, the avatar waits, turned. Source: [ML06] section 4.
+/// Moves the avatars of one run, in order. Straight on; if that is blocked, one random turn to the
+/// left or right is tried; if that is blocked too, the avatar waits, turned. Source: [ML06]
+/// section 4.
 void move_run(const StepInput& input, Avatar* first, Avatar* last, StepCounts& counts);
 
 }  // namespace throng

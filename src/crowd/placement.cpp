@@ -56,8 +56,8 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
     const uint64_t pick = random_below(seed, 0x706c6163, draw, before.back());
     const uint64_t within = random_u64(seed, 0x77697468, draw);
     ++draw;
-    const auto level = static_cast<uint32_t>(
-        std::upper_bound(before.begin(), before.end(), pick) - before.begin() - 1);
+    const auto level = static_cast<uint32_t>(std::upper_bound(before.begin(), before.end(), pick) -
+                                             before.begin() - 1);
     const auto [x, z] = nth_legal(records[level], static_cast<uint32_t>(pick - before[level]));
     failed += !try_place(level, x, z, static_cast<int32_t>(within & (kUnitsPerCell - 1)),
                          static_cast<int32_t>((within >> 32) & (kUnitsPerCell - 1)));

@@ -10,7 +10,8 @@ GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_l
   level.zone = &zone;
   level.world_level = world_level;
   level.view = zone.view(zone_level);
-  const format::Clearance& clearance = zone.clearance(zone_level, static_cast<uint32_t>(avatar_class));
+  const format::Clearance& clearance =
+      zone.clearance(zone_level, static_cast<uint32_t>(avatar_class));
   level.kind = clearance.kind();
   level.step_safe = clearance.step_safe() != 0;
   if (level.kind == format::BitsKind::Planes) level.legal = zone.planes(clearance.offset());

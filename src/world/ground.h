@@ -25,7 +25,8 @@ struct GroundLevel {
   }
 };
 
-GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_level, int32_t avatar_class);
+GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_level,
+                         int32_t avatar_class);
 /// By the world's number; null zone if its zone cannot be used.
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class);
 
@@ -34,8 +35,12 @@ struct WorldGround {
   const WorldData& world;
   int32_t avatar_class;
 
-  [[nodiscard]] bool is_legal(const Level& level, int32_t x, int32_t z) const { return level.is_legal(x, z); }
-  [[nodiscard]] int32_t sample(const Level& level, int32_t x, int32_t z) const { return level.view.sample(x, z); }
+  [[nodiscard]] bool is_legal(const Level& level, int32_t x, int32_t z) const {
+    return level.is_legal(x, z);
+  }
+  [[nodiscard]] int32_t sample(const Level& level, int32_t x, int32_t z) const {
+    return level.view.sample(x, z);
+  }
   [[nodiscard]] bool step_safe(const Level& level) const { return level.step_safe; }
   template <class Visit>
   void for_tile(int32_t tile_x, int32_t tile_z, Visit visit) const {

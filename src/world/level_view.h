@@ -12,11 +12,11 @@ namespace throng {
 
 struct LevelView {
   const format::Level* record = nullptr;
-  const uint16_t* floor = nullptr;      // 4096 samples, or null
-  const uint64_t* present = nullptr;    // 64 rows, or null: every cell has a floor
-  int32_t floor_base = 0;               // [mm]
-  int32_t floor_part = 0;               // [1/1024 mm]
-  int32_t slope_x = 0;                  // [1/1024 mm per cell], below 2^24
+  const uint16_t* floor = nullptr;    // 4096 samples, or null
+  const uint64_t* present = nullptr;  // 64 rows, or null: every cell has a floor
+  int32_t floor_base = 0;             // [mm]
+  int32_t floor_part = 0;             // [1/1024 mm]
+  int32_t slope_x = 0;                // [1/1024 mm per cell], below 2^24
   int32_t slope_z = 0;
 
   [[nodiscard]] bool has(int32_t x, int32_t z) const {

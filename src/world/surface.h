@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstdint>
 
-/// How feet follow a sheet between the centres of its cells: a plane through the cell's sample whose
-/// slope is the gentler of the two that its neighbours suggest (minmod, van Leer's limiter), so
-/// that planes are met exactly and stairs stay stairs. Bake and moves share this rule.
+/// How feet follow a sheet between the centres of its cells: a plane through the cell's sample
+/// whose slope is the gentler of the two that its neighbours suggest (minmod, van Leer's limiter),
+/// so that planes are met exactly and stairs stay stairs. Bake and moves share this rule.
 namespace throng {
 
 /// The smaller in size of two differences, 0 if they disagree in sign.

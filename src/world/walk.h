@@ -6,13 +6,15 @@
 #include <cstdlib>
 #include <optional>
 
-/// Walking on level tiles: the conservative form of [ML06] algorithm 1, for any way of keeping levels.
+/// Walking on level tiles: the conservative form of [ML06] algorithm 1, for any way of keeping
+/// levels.
 ///
 /// A Ground has a type Level (a handle), and
 ///   bool is_legal(Level, int32_t x, int32_t z)      may the body stand on cell (x, z) of the tile?
 ///   int32_t sample(Level, int32_t x, int32_t z)     floor under the middle of that cell [mm]
-///   bool step_safe(Level)                           legal neighbours never differ by more than the step
-///   void for_tile(int32_t tile_x, int32_t tile_z, Visit)   visits the levels of a tile of the world
+///   bool step_safe(Level)                           legal neighbours never differ by more than the
+///   step void for_tile(int32_t tile_x, int32_t tile_z, Visit)   visits the levels of a tile of the
+///   world
 namespace throng {
 
 /// Positions on the ground: 1/2048 cell from the corner of the world's grid.
@@ -30,16 +32,17 @@ struct GroundPoint {
 /// printed algorithm 1 checks the ceiling over A only; here a cell is legal only if a body on it
 /// clears the ceilings of all cells that it reaches from there, so A and B are both checked.
 template <class Ground>
-std::optional<typename Ground::Level> step_to(const Ground& ground, const typename Ground::Level& from,
-                                              int32_t x, int32_t z, int32_t nx, int32_t nz,
-                                              int32_t step_mm) {
+std::optional<typename Ground::Level> step_to(const Ground& ground,
+                                              const typename Ground::Level& from, int32_t x,
+                                              int32_t z, int32_t nx, int32_t nz, int32_t step_mm) {
   using Level = typename Ground::Level;
   const int32_t lx = nx & 63, lz = nz & 63;
   const bool same_tile = (x >> 6) == (nx >> 6) && (z >> 6) == (nz >> 6);
   if (same_tile && ground.step_safe(from) && ground.is_legal(from, lx, lz)) return from;
   const int32_t feet = ground.sample(from, x & 63, z & 63);
   const auto rise_to = [&](const Level& level) {
-    return ground.is_legal(level, lx, lz) ? std::abs(ground.sample(level, lx, lz) - feet) : INT32_MAX;
+    return ground.is_legal(level, lx, lz) ? std::abs(ground.sample(level, lx, lz) - feet)
+                                          : INT32_MAX;
   };
   if (same_tile && rise_to(from) <= step_mm) return from;
   std::optional<Level> best;

@@ -72,8 +72,10 @@ Result<World> World::open(const std::string& path) {
   const std::string name = path + "/manifest.thm";
   auto map = FileMap::open(name);
   if (!map) {
-    return Error{Errc::kBadFile, path + ": not a baked world (no manifest.thm); make one with "
-                                        "`throng bake MODEL -o " + path + "`"};
+    return Error{Errc::kBadFile, path +
+                                     ": not a baked world (no manifest.thm); make one with "
+                                     "`throng bake MODEL -o " +
+                                     path + "`"};
   }
   auto world = read_manifest(map->bytes(), name);
   if (!world) return world.error();
@@ -132,7 +134,8 @@ LevelTileContent World::level_tile(uint32_t index) const {
     out.floor[i] = view.sample(x, z);
     out.area[i] = areas != nullptr ? areas[c] : level.area_value();
     if (level.ceiling_kind() == format::HeightKind::Constant) out.ceiling[i] = level.ceiling_base();
-    if (ceilings != nullptr && ceilings[c] != 65535) out.ceiling[i] = level.ceiling_base() + ceilings[c];
+    if (ceilings != nullptr && ceilings[c] != 65535)
+      out.ceiling[i] = level.ceiling_base() + ceilings[c];
   }
   for (size_t k = 0; k < out.clearance.size(); ++k) {
     const format::Clearance& clearance = zone->clearance(local, static_cast<uint32_t>(k));
@@ -153,7 +156,8 @@ LevelTileContent World::level_tile(uint32_t index) const {
 }
 
 Place World::find_place(int32_t avatar_class, Vec3d position, double reach) const {
-  if (!good_class(*data_, avatar_class) || !std::isfinite(position.x + position.y + position.z)) return {};
+  if (!good_class(*data_, avatar_class) || !std::isfinite(position.x + position.y + position.z))
+    return {};
   const GroundPoint p = to_point(*data_, position.x, position.z);
   if (!in_grid(*data_, p)) return {};
   const auto tile = data_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
@@ -195,8 +199,9 @@ Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const
   const int32_t tile = level.view.record->tile();
   const int64_t cell_x = int64_t{(zone.x() * per_zone + tile % per_zone)} * 64 + x;
   const int64_t cell_z = int64_t{(zone.z() * per_zone + tile / per_zone)} * 64 + z;
-  const GroundPoint p{(cell_x << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 1, kUnitsPerCell)),
-                      (cell_z << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 2, kUnitsPerCell))};
+  const GroundPoint p{
+      (cell_x << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 1, kUnitsPerCell)),
+      (cell_z << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 2, kUnitsPerCell))};
   // The middle of the unit, so that the place's own coordinates lead back to it.
   const double unit = data_->summary.cell / kUnitsPerCell;
   return {{data_->summary.origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet_at(level, p),
@@ -215,7 +220,8 @@ MoveResult World::move(int32_t avatar_class, const Place& from, double dx, doubl
   const GroundPoint end = to_point(*data_, goal.x, goal.z);
   if (!in_grid(*data_, start) || !in_grid(*data_, end)) return result;
   GroundLevel level = ground_level(*data_, from.level1 - 1, avatar_class);
-  if (level.zone == nullptr || !level.is_legal(start.cell_x() & 63, start.cell_z() & 63)) return result;
+  if (level.zone == nullptr || !level.is_legal(start.cell_x() & 63, start.cell_z() & 63))
+    return result;
   const int32_t step = step_mm(data_->summary.classes[static_cast<size_t>(avatar_class)]);
   if (!walk(WorldGround{*data_, avatar_class}, level, start, end, step)) return result;
   result.place = {{goal.x, feet_at(level, end), goal.z}, level.world_level + 1};

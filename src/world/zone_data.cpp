@@ -21,7 +21,8 @@ bool fits(uint64_t offset, uint64_t count, uint64_t size) { return offset + coun
 
 }  // namespace
 
-Result<std::unique_ptr<Zone>> Zone::from_bytes(std::vector<uint8_t> bytes, const std::string& name) {
+Result<std::unique_ptr<Zone>> Zone::from_bytes(std::vector<uint8_t> bytes,
+                                               const std::string& name) {
   auto zone = std::make_unique<Zone>();
   zone->owned_ = std::move(bytes);
   zone->bytes_ = zone->owned_;
@@ -37,8 +38,8 @@ Result<std::unique_ptr<Zone>> Zone::from_file(FileMap map, const std::string& na
   return zone;
 }
 
-// The verifier proves that every vector lies within the file; the rest proves that every offset in the
-// records lies within its vector, so that look-ups need no checks.
+// The verifier proves that every vector lies within the file; the rest proves that every offset in
+// the records lies within its vector, so that look-ups need no checks.
 Result<void> Zone::attach(const std::string& name) {
   flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
   if (bytes_.size() < 8 || !format::ZoneBufferHasIdentifier(bytes_.data()) ||
@@ -47,8 +48,8 @@ Result<void> Zone::attach(const std::string& name) {
   }
   root_ = format::GetZone(bytes_.data());
   if (root_->version() != kZoneVersion) {
-    return bad_file(name, "zone version " + std::to_string(root_->version()) + ", this program reads " +
-                              std::to_string(kZoneVersion));
+    return bad_file(name, "zone version " + std::to_string(root_->version()) +
+                              ", this program reads " + std::to_string(kZoneVersion));
   }
   const auto* first = root_->tile_first();
   const auto* levels = root_->levels();
@@ -120,7 +121,8 @@ LevelView Zone::view(uint32_t index) const {
     view.slope_x = level.slope_x();
     view.slope_z = level.slope_z();
   }
-  if (level.present_kind() == format::BitsKind::Planes) view.present = planes(level.present_offset());
+  if (level.present_kind() == format::BitsKind::Planes)
+    view.present = planes(level.present_offset());
   return view;
 }
 
@@ -136,8 +138,10 @@ const Zone* WorldData::zone(size_t slot) const {
     }
     if (map->bytes().size() != entry.entry.bytes() ||
         hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
-      entry.error = bad_file(name, "its checksum is not the manifest's (truncated, damaged or of "
-                                   "another bake)").message;
+      entry.error = bad_file(name,
+                             "its checksum is not the manifest's (truncated, damaged or of "
+                             "another bake)")
+                        .message;
       return;
     }
     auto zone = Zone::from_file(std::move(*map), name);
@@ -172,7 +176,8 @@ WorldData::TileLevels WorldData::tile_levels(int32_t tile_x, int32_t tile_z) con
   if (slot < 0) return {};
   const Zone* found = zone(static_cast<size_t>(slot));
   if (found == nullptr) return {};
-  const auto tile = static_cast<uint32_t>((tile_z - zz * per_zone) * per_zone + tile_x - zx * per_zone);
+  const auto tile =
+      static_cast<uint32_t>((tile_z - zz * per_zone) * per_zone + tile_x - zx * per_zone);
   const auto [first, last] = found->tile_levels(tile);
   const uint32_t base = slots[static_cast<size_t>(slot)]->first_level;
   return {found, base + first, base + last, first};
@@ -182,7 +187,8 @@ std::string zone_file_name(int32_t x, int32_t z) {
   return "zone_" + std::to_string(x) + "_" + std::to_string(z) + ".thz";
 }
 
-Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes, const std::string& name) {
+Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
+                                                 const std::string& name) {
   flatbuffers::Verifier verifier(bytes.data(), bytes.size());
   if (bytes.size() < 8 || !format::ManifestBufferHasIdentifier(bytes.data()) ||
       !format::VerifyManifestBuffer(verifier)) {
@@ -217,8 +223,10 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
   const auto per_zone = static_cast<int32_t>(root.tiles_per_zone());
   world->zones_x = (summary.tiles_x + per_zone - 1) / per_zone;
   world->zones_z = (summary.tiles_z + per_zone - 1) / per_zone;
-  if (int64_t{world->zones_x} * world->zones_z > (1 << 26)) return bad_file(name, "its grid is absurd");
-  world->slot_of_zone.assign(static_cast<size_t>(world->zones_x) * static_cast<size_t>(world->zones_z), -1);
+  if (int64_t{world->zones_x} * world->zones_z > (1 << 26))
+    return bad_file(name, "its grid is absurd");
+  world->slot_of_zone.assign(
+      static_cast<size_t>(world->zones_x) * static_cast<size_t>(world->zones_z), -1);
   for (uint32_t c = 0; c < root.classes()->size(); ++c) {
     const format::ClassEntry& entry = *root.classes()->Get(c);
     summary.classes.push_back({.name = entry.name() ? entry.name()->str() : "",
@@ -258,17 +266,19 @@ std::vector<uint8_t> write_manifest(const WorldData& world) {
   const WorldSummary& s = world.summary;
   for (size_t c = 0; c < s.classes.size(); ++c) {
     const AvatarClass& a = s.classes[c];
-    classes.push_back(format::CreateClassEntryDirect(builder, a.name.c_str(), a.height, a.radius, a.step,
-                                                     a.max_slope, a.speed, s.walkable_area[c]));
+    classes.push_back(format::CreateClassEntryDirect(builder, a.name.c_str(), a.height, a.radius,
+                                                     a.step, a.max_slope, a.speed,
+                                                     s.walkable_area[c]));
   }
   std::vector<format::ZoneEntry> zones;
   for (const auto& slot : world.slots) zones.push_back(slot->entry);
   const std::vector<double> bounds{s.bounds.min.x, s.bounds.min.y, s.bounds.min.z,
                                    s.bounds.max.x, s.bounds.max.y, s.bounds.max.z};
-  builder.Finish(format::CreateManifestDirect(builder, kManifestVersion, s.cell, s.resolution, s.origin.x,
-                                              s.origin.z, world.width, world.depth, world.tiles_per_zone,
-                                              &bounds, s.source_triangles, &zones, &classes),
-                 format::ManifestIdentifier());
+  builder.Finish(
+      format::CreateManifestDirect(builder, kManifestVersion, s.cell, s.resolution, s.origin.x,
+                                   s.origin.z, world.width, world.depth, world.tiles_per_zone,
+                                   &bounds, s.source_triangles, &zones, &classes),
+      format::ManifestIdentifier());
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 

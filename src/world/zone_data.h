@@ -21,13 +21,15 @@ namespace throng {
 
 inline constexpr uint32_t kZoneVersion = 1;
 inline constexpr uint32_t kManifestVersion = 1;
-inline constexpr int32_t kMaxSlope = 1 << 23;  // of a plane [1/1024 mm per cell]: no overflow in 64 cells
+inline constexpr int32_t kMaxSlope =
+    1 << 23;  // of a plane [1/1024 mm per cell]: no overflow in 64 cells
 
 /// A zone's bytes after the verifier and the checks of its offsets.
 class Zone {
  public:
   /// Fails with kBadFile and `name` if the bytes are not a sound zone of this version.
-  static Result<std::unique_ptr<Zone>> from_bytes(std::vector<uint8_t> bytes, const std::string& name);
+  static Result<std::unique_ptr<Zone>> from_bytes(std::vector<uint8_t> bytes,
+                                                  const std::string& name);
   static Result<std::unique_ptr<Zone>> from_file(FileMap map, const std::string& name);
 
   [[nodiscard]] std::span<const uint8_t> bytes() const { return bytes_; }
@@ -73,18 +75,18 @@ struct ClassIndex {
 struct WorldData {
   struct Slot {
     format::ZoneEntry entry;
-    uint32_t first_level = 0;        // of the world
+    uint32_t first_level = 0;  // of the world
     mutable std::once_flag once;
     mutable std::unique_ptr<Zone> zone;
-    mutable std::string error;       // why the zone could not be used
+    mutable std::string error;  // why the zone could not be used
   };
 
   WorldSummary summary;
-  int32_t width = 0, depth = 0;      // cells
+  int32_t width = 0, depth = 0;  // cells
   uint32_t tiles_per_zone = 0;
   int32_t zones_x = 0, zones_z = 0;
-  std::string path;                  // empty: baked in memory
-  std::vector<int32_t> slot_of_zone; // zones_x * zones_z, -1: no levels there
+  std::string path;                   // empty: baked in memory
+  std::vector<int32_t> slot_of_zone;  // zones_x * zones_z, -1: no levels there
   std::vector<std::unique_ptr<Slot>> slots;
   uint32_t level_count = 0;
   std::vector<std::unique_ptr<ClassIndex>> class_index;  // per class
@@ -96,8 +98,8 @@ struct WorldData {
   /// Levels of the world over a tile: [first, last), and the zone; {0, 0} where there are none.
   struct TileLevels {
     const Zone* zone = nullptr;
-    uint32_t first = 0, last = 0;    // levels of the world
-    uint32_t zone_first = 0;         // first as a level of the zone
+    uint32_t first = 0, last = 0;  // levels of the world
+    uint32_t zone_first = 0;       // first as a level of the zone
   };
   [[nodiscard]] TileLevels tile_levels(int32_t tile_x, int32_t tile_z) const;
 };
@@ -105,7 +107,8 @@ struct WorldData {
 std::string zone_file_name(int32_t x, int32_t z);
 
 /// Fills everything but the zones from a manifest's bytes. Fails with kBadFile and `name`.
-Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes, const std::string& name);
+Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
+                                                 const std::string& name);
 std::vector<uint8_t> write_manifest(const WorldData& world);
 
 }  // namespace throng

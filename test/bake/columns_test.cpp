@@ -3,7 +3,6 @@
 #include "bake/columns.h"
 
 #include <gtest/gtest.h>
-
 #include <hwy/targets.h>
 
 #include <cmath>
@@ -28,7 +27,8 @@ void add(Scene& scene, Vec3d a, Vec3d b, Vec3d c) {
   scene.area.push_back(kAreaWalkable);
 }
 
-// Triangles of all shapes around one tile: big, small, needles, upright, degenerate, on cell borders.
+// Triangles of all shapes around one tile: big, small, needles, upright, degenerate, on cell
+// borders.
 Soup random_soup(uint64_t seed, double cell, int32_t count) {
   Soup soup;
   soup.grid = {.origin_x = -3 * cell, .origin_z = 5 * cell, .cell = cell, .width = 64, .depth = 64};
@@ -118,7 +118,8 @@ TEST(Columns, NoTriangleIsEverMissed) {
 TEST(Columns, NothingIsCoveredBeyondTheStatedMargins) {
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     const Soup soup = random_soup(seed, 0.1, 12);
-    // Upright edges shorter than 1e-3 cells count whole, so the bound is a little wider than kWiden.
+    // Upright edges shorter than 1e-3 cells count whole, so the bound is a little wider than
+    // kWiden.
     ASSERT_TRUE(naive::covers(grown(naive_columns(soup, 2e-3), 2), as_naive(fast_spans(soup, 0))))
         << "seed " << seed;
   }
@@ -200,7 +201,8 @@ TEST(Columns, SupportIsTheSurfaceUnderTheCentre) {
     auto columns = std::make_unique<TileColumns>();
     rasterise_tile(triangles, all_items(1), 0, 0, {}, 0, *columns);
     const CellTriangle& t = triangles[0];
-    const double area = (t.x[1] - t.x[0]) * (t.z[2] - t.z[0]) - (t.x[2] - t.x[0]) * (t.z[1] - t.z[0]);
+    const double area =
+        (t.x[1] - t.x[0]) * (t.z[2] - t.z[0]) - (t.x[2] - t.x[0]) * (t.z[1] - t.z[0]);
     if (std::fabs(area) < 1e-3) continue;
     for (int32_t z = 0; z < 64; ++z) {
       for (int32_t x = 0; x < 64; ++x) {

@@ -225,9 +225,10 @@ TEST(Polygon, TiltedPlanesInNationalCoordinatesKeepTheirArea) {
 }
 
 TEST(Polygon, AStraightKerbKeepsTheHeightsOfItsCorners) {
-  // A strip that is a rectangle from above and goes up and down along both long sides.
+  // A strip that is a rectangle from above and goes up and down along both long sides, gently: a
+  // face that doubles back under itself could not be cut in any plane.
   for (const int n : {2, 3, 10, 60}) {
-    const auto height = [](double x) { return 0.1 * x * x - x; };
+    const auto height = [](double x) { return 0.3 * std::cos(x); };
     Points ring;
     for (int i = 0; i <= n; ++i) ring.push_back({1.0 * i, 0});
     for (int i = n; i >= 0; --i) ring.push_back({1.0 * i, 3});
@@ -253,6 +254,50 @@ TEST(Polygon, AStraightKerbKeepsTheHeightsOfItsCorners) {
     EXPECT_NEAR(flat, 3 * n, 1e-9);
     EXPECT_EQ(out.triangles.size(), ring.size() - 2);
     for (const bool corner : used) EXPECT_TRUE(corner);
+  }
+}
+
+TEST(Polygon, AnyCornerThatBendsInSpaceIsUsed) {
+  // A rim with straight runs and square holes with a corner in the middle of each side, every
+  // corner at a height of its own: nothing is straight in space.
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    Dice dice(seed);
+    const int n = 2 + dice.below(4);
+    Rings rings(1);
+    const int side = 4 * n;
+    for (int i = 0; i < side; ++i) rings[0].push_back({1.0 * i, 0});
+    for (int i = 0; i < side; ++i) rings[0].push_back({1.0 * side, 1.0 * i});
+    for (int i = side; i > 0; --i) rings[0].push_back({1.0 * i, 1.0 * side});
+    for (int i = side; i > 0; --i) rings[0].push_back({0, 1.0 * i});
+    for (int x = 0; x < n; ++x) {
+      for (int y = 0; y < n; ++y) {
+        if (dice.below(2) == 0) continue;
+        const double a = 4 * x + 1;
+        const double b = 4 * y + 1;
+        rings.push_back({{a, b},
+                         {a + 1, b},
+                         {a + 2, b},
+                         {a + 2, b + 1},
+                         {a + 2, b + 2},
+                         {a + 1, b + 2},
+                         {a, b + 2},
+                         {a, b + 1}});
+      }
+    }
+    const Cut out = cut(rings, [&](Vec2d p) { return Vec3d{p.x, p.y, 0.1 * dice.unit()}; });
+    EXPECT_TRUE(out.exact) << seed;
+    std::vector<bool> used(out.points.size(), false);
+    double flat = 0;
+    for (const auto& [a, b, c] : out.triangles) {
+      const Vec3d normal = cross(out.points[b] - out.points[a], out.points[c] - out.points[a]);
+      EXPECT_GT(normal.z, 0) << seed;
+      flat += normal.z / 2;
+      for (const uint32_t corner : {a, b, c}) used[corner] = true;
+    }
+    const double holes = static_cast<double>(rings.size()) - 1;
+    EXPECT_NEAR(flat, 1.0 * side * side - 4 * holes, 1e-9) << seed;
+    EXPECT_EQ(out.triangles.size(), out.points.size() - 2 + 2 * (rings.size() - 1)) << seed;
+    for (const bool corner : used) EXPECT_TRUE(corner) << seed;
   }
 }
 

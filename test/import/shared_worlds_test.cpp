@@ -35,7 +35,8 @@ const Expected kWorlds[] = {
     {"cities/rotterdam_subset.city.json", 0, 646, {548.23, 18.29, 433.34}},
     {"cities/denhaag_01.obj", 'z', 41197, {787.36, 35.02, 671.85}},
     {"cities/lod3_railway.obj", 'z', 113537, {193.28, 24.38, 112.64}},
-    {"cities/parking_garage.gml", 0, 397, {113.04, 11.56, 76.57}},
+    // 132 polygons need 582 triangles for all corners; 177 corners are straight in space.
+    {"cities/parking_garage.gml", 0, 582 - 177, {113.04, 11.56, 76.57}},
     {"cities/road_over_bridge.gml", 0, 28, {1181.1, 51.18, 196.85}},
 };
 

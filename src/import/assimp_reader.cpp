@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -28,13 +30,14 @@ struct Message {
   Tag tag = Tag::kDone;
   uint32_t node_size = 0;      // Of kPart; the text's of kRefused.
   uint32_t material_size = 0;  // Of kPart; the up axis of kConvention.
-  uint32_t unused = 0;
-  uint64_t vertices = 0;  // Of kPart; the count of kThin.
+  int32_t area = -1;           // Of kPart; kNoArea if the file does not say.
+  uint64_t vertices = 0;       // Of kPart; the count of kThin.
   uint64_t triangles = 0;
   double metres_per_unit = 1;
 };
 
 constexpr uint32_t kLongestText = 1 << 16;
+constexpr int32_t kNoArea = -1;
 
 // --- In the child -------------------------------------------------------------------------------
 
@@ -45,16 +48,50 @@ bool is_helper(const std::string& name) {
          name.starts_with("$ColladaAutoName$");
 }
 
+// The area kind that write_glb puts into a node's extras; other programs call extras "custom
+// properties" and write numbers of any type. A kind that does not exist is passed on as it is.
+int32_t area_of(const aiNode& node, int32_t above) {
+  const aiMetadata* data = node.mMetaData;
+  if (data == nullptr) return above;
+  for (unsigned i = 0; i < data->mNumProperties; ++i) {
+    if (std::string_view(data->mKeys[i].C_Str()) != "area" || data->mValues[i].mData == nullptr) {
+      continue;
+    }
+    const auto number = [&]<class T>(T) {
+      T value{};
+      std::memcpy(&value, data->mValues[i].mData, sizeof value);
+      const auto kind = static_cast<double>(value);
+      return kind >= 0 && kind < 1e9 ? static_cast<int32_t>(kind) : INT32_MAX;
+    };
+    switch (data->mValues[i].mType) {
+      case AI_INT32:
+        return number(int32_t{});
+      case AI_UINT64:
+        return number(uint64_t{});
+      case AI_FLOAT:
+        return number(float{});
+      case AI_DOUBLE:
+        return number(double{});
+      default:
+        break;  // Words, say.
+    }
+  }
+  return above;
+}
+
 class Sender {
  public:
-  Sender(aiScene& scene, const PipeWriter& pipe) : scene_(scene), pipe_(pipe) {
+  Sender(aiScene& scene, const std::string& path, const PipeWriter& pipe)
+      : scene_(scene), pipe_(pipe), extension_(std::filesystem::path(path).extension().string()) {
+    for (char& c : extension_) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    has_areas_ = extension_ == ".glb" || extension_ == ".gltf";
     uses_.assign(scene.mNumMeshes, 0);
     if (scene.mRootNode != nullptr) count_uses(*scene.mRootNode);
   }
 
-  void send(bool fbx) {
+  void send() {
     Message convention{.tag = Tag::kConvention, .material_size = 'y'};
-    if (fbx && scene_.mMetaData != nullptr) {
+    if (extension_ == ".fbx" && scene_.mMetaData != nullptr) {
       double centimetres = 1;
       float single = 1;
       int32_t up = 1;
@@ -66,7 +103,9 @@ class Sender {
       if (scene_.mMetaData->Get("UpAxis", up) && up == 2) convention.material_size = 'z';
     }
     pipe_.write(&convention, sizeof convention);
-    if (scene_.mRootNode != nullptr) send_node(*scene_.mRootNode, {}, aiMatrix4x4t<double>());
+    if (scene_.mRootNode != nullptr) {
+      send_node(*scene_.mRootNode, {}, kNoArea, aiMatrix4x4t<double>());
+    }
     const Message thin{.tag = Tag::kThin, .vertices = thin_};
     pipe_.write(&thin, sizeof thin);
     const Message done{.tag = Tag::kDone};
@@ -79,15 +118,18 @@ class Sender {
     for (unsigned i = 0; i < node.mNumChildren; ++i) count_uses(*node.mChildren[i]);
   }
 
-  void send_node(const aiNode& node, const std::string& path, const aiMatrix4x4t<double>& above) {
+  void send_node(const aiNode& node, const std::string& path, int32_t area_above,
+                 const aiMatrix4x4t<double>& above) {
     const auto& m = node.mTransformation;
+    const int32_t area = has_areas_ ? area_of(node, area_above) : kNoArea;
     const aiMatrix4x4t<double> here =
         above * aiMatrix4x4t<double>(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2,
                                      m.c3, m.c4, m.d1, m.d2, m.d3, m.d4);
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const unsigned index = node.mMeshes[i];
       send_mesh(*scene_.mMeshes[index],
-                path.empty() && !is_helper(node.mName.C_Str()) ? node.mName.C_Str() : path, here);
+                path.empty() && !is_helper(node.mName.C_Str()) ? node.mName.C_Str() : path, area,
+                here);
       if (--uses_[index] == 0) free_mesh(*scene_.mMeshes[index]);
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i) {
@@ -96,11 +138,12 @@ class Sender {
       const bool helper = is_helper(name);
       std::string below = path;
       if (!helper) below += (path.empty() ? "" : "/") + name;
-      send_node(child, below, here);
+      send_node(child, below, area, here);
     }
   }
 
-  void send_mesh(const aiMesh& mesh, std::string node, const aiMatrix4x4t<double>& m) {
+  void send_mesh(const aiMesh& mesh, std::string node, int32_t area,
+                 const aiMatrix4x4t<double>& m) {
     if (node.empty()) node = mesh.mName.C_Str();
     std::string material;
     if (mesh.mMaterialIndex < scene_.mNumMaterials) {
@@ -108,7 +151,7 @@ class Sender {
     }
     node.resize(std::min<size_t>(node.size(), kLongestText));
     material.resize(std::min<size_t>(material.size(), kLongestText));
-    Message part{.tag = Tag::kPart};
+    Message part{.tag = Tag::kPart, .area = area};
     part.node_size = static_cast<uint32_t>(node.size());
     part.material_size = static_cast<uint32_t>(material.size());
     part.vertices = mesh.mVertices != nullptr ? mesh.mNumVertices : 0;
@@ -149,6 +192,8 @@ class Sender {
 
   aiScene& scene_;
   const PipeWriter& pipe_;
+  std::string extension_;
+  bool has_areas_ = false;  // In other formats "area" is somebody else's measure.
   std::vector<uint32_t> uses_;
   uint64_t thin_ = 0;
 };
@@ -176,7 +221,7 @@ void read_and_send(const std::string& path, const PipeWriter& pipe) {
       return;
     }
     aiScene* scene = importer->GetOrphanedScene();
-    Sender(*scene, pipe).send(path.ends_with(".fbx") || path.ends_with(".FBX"));
+    Sender(*scene, path, pipe).send();
   } catch (const std::bad_alloc&) {
     refuse(pipe, "not enough memory");
   } catch (const std::exception& error) {
@@ -190,7 +235,7 @@ void read_and_send(const std::string& path, const PipeWriter& pipe) {
 
 class Receiver {
  public:
-  explicit Receiver(const ReadOptions& options) : writer_(options) {}
+  explicit Receiver(const ReadOptions& options) : name_(options.name), writer_(options) {}
 
   // True once the child has sent everything, or has refused the file.
   bool receive(PipeReader& pipe) {
@@ -221,6 +266,10 @@ class Receiver {
   }
 
   Result<RawScene> finish() {
+    if (unknown_kinds_ > 0) {
+      writer_.warn(fmt::format("{}: {} meshes name an area kind outside 0 to {}; they are walkable",
+                               name_, unknown_kinds_, kAreaLast));
+    }
     auto scene = writer_.finish();
     if (!scene) return scene.error();
     raw_.scene = *std::move(scene);
@@ -270,11 +319,22 @@ class Receiver {
       }
       left -= count;
     }
+    set_area(part.area);
     return true;
   }
 
+  // Of all triangles that have no area kind yet.
+  void set_area(int32_t kind) {
+    if (kind > kAreaLast) ++unknown_kinds_;
+    const bool known = kind >= 0 && kind <= kAreaLast;
+    Scene& scene = writer_.scene();
+    scene.area.resize(scene.triangles.size(), known ? static_cast<AreaKind>(kind) : kAreaWalkable);
+  }
+
+  std::string name_;
   SceneWriter writer_;
   RawScene raw_;
+  uint64_t unknown_kinds_ = 0;
   std::vector<std::array<float, 3>> floats_{1 << 14};
   std::vector<std::array<uint32_t, 3>> corners_{1 << 14};
 };

@@ -55,7 +55,8 @@ std::string city(const std::string& version, const std::string& objects,
 TEST(CityJson, SurfacesWithHolesSemanticsAndTransform) {
   const auto raw = json(city("2.0", R"("b1":{"type":"Building","geometry":[{"type":"MultiSurface",
       "lod":"2.2","boundaries":[[[0,1,2,3],[4,5,6,7]],[[8,9,10,11]]],
-      "semantics":{"surfaces":[{"type":"GroundSurface"},{"type":"RoofSurface"}],"values":[0,1]}}]})"));
+      "semantics":{"surfaces":[{"type":"GroundSurface"},{"type":"RoofSurface"}],
+      "values":[0,1]}}]})"));
   ASSERT_TRUE(raw) << raw.error().message;
   EXPECT_EQ(areas(raw->scene), (std::map<std::string, double>{{"Building/b1 GroundSurface", 15},
                                                               {"Building/b1 RoofSurface", 16}}));

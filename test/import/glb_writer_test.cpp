@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "throng/bake.h"
 #include "throng/builtin_worlds.h"
 #include "throng/scene.h"
 
@@ -97,6 +98,83 @@ TEST_F(GlbWriter, BuiltinWorldsComeBackAsTheyWere) {
     expect_equal(read_with_assimp(path(name + ".glb")), triangles_of(*scene));
   }
   EXPECT_EQ(files(), builtin_worlds().size());  // And nothing else lies about.
+}
+
+Scene load(const std::string& path) {
+  Context context;
+  SceneConfig config;
+  config.sources.push_back({.path = path, .up = {}, .scale = {}, .transform = {}});
+  auto scene = load_scene(config, context);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? *std::move(scene) : Scene{};
+}
+
+TEST_F(GlbWriter, EveryTriangleKeepsItsAreaKind) {
+  for (const BuiltinWorldInfo& info : builtin_worlds()) {
+    const std::string name(info.name);
+    const auto scene = make_builtin_world({.name = name});
+    ASSERT_TRUE(scene);
+    ASSERT_TRUE(write_glb(*scene, path(name + ".glb")));
+    EXPECT_EQ(load(path(name + ".glb")).area, scene->area) << name;
+  }
+  // Every kind that there is; runs of one node that differ in nothing else.
+  Scene kinds;
+  for (int kind = 0; kind <= kAreaLast; ++kind) {
+    const double x = 2 * kind;
+    kinds.add_triangle({x, 0, 0}, {x, 0, 1}, {x + 1, 0, 0}, static_cast<AreaKind>(kind));
+  }
+  kinds.parts = {
+      {.file = {}, .node = "row", .material = "tile", .first_triangle = 0, .triangle_count = 64}};
+  ASSERT_TRUE(write_glb(kinds, path("kinds.glb")));
+  const Scene back = load(path("kinds.glb"));
+  EXPECT_EQ(back.area, kinds.area);
+  EXPECT_EQ(back.report.warnings, std::vector<std::string>{});
+}
+
+// The maker's area kinds decide where one may walk: cars, pillars, railings.
+TEST_F(GlbWriter, AWorldFromItsFileIsBakedLikeTheWorldItself) {
+  const auto garage = make_builtin_world({.name = "garage"});
+  ASSERT_TRUE(garage);
+  ASSERT_TRUE(write_glb(*garage, path("garage.glb")));
+  Context context;
+  BakeReport direct;
+  BakeReport file;
+  ASSERT_TRUE(bake_world(*garage, {}, context, &direct));
+  ASSERT_TRUE(bake_world(load(path("garage.glb")), {}, context, &file));
+  ASSERT_EQ(direct.walkable_area.size(), file.walkable_area.size());
+  for (size_t i = 0; i < direct.walkable_area.size(); ++i) {
+    EXPECT_GT(direct.walkable_area[i], 1000);
+    // Corners are floats in the file.
+    EXPECT_NEAR(direct.walkable_area[i], file.walkable_area[i], 1e-4 * direct.walkable_area[i]);
+  }
+}
+
+// Extras by other hands: kinds are inherited from the node above, and nonsense does no harm.
+TEST_F(GlbWriter, AreaKindsOfOtherProgramsAreInheritedOrTold) {
+  std::ifstream box(std::string(THRONG_TEST_DATA) + "/box.gltf");
+  const std::string text{std::istreambuf_iterator<char>(box), {}};
+  std::filesystem::copy_file(std::string(THRONG_TEST_DATA) + "/box.bin", path("box.bin"));
+  const auto with = [&](const std::string& extras, const char* before = "\"mesh\"") {
+    const size_t at = text.find(before);
+    EXPECT_NE(at, std::string::npos);
+    std::ofstream(path("box.gltf"))
+        << text.substr(0, at) + "\"extras\":" + extras + "," + text.substr(at);
+    return load(path("box.gltf"));
+  };
+  const auto all = [](const Scene& scene, AreaKind kind) {
+    return !scene.area.empty() && scene.area == std::vector<AreaKind>(scene.area.size(), kind);
+  };
+  EXPECT_TRUE(all(with(R"({"area":0})"), kAreaBlocked));
+  EXPECT_TRUE(all(with(R"({"area":9})", "\"children\""), 9));  // Of the node above.
+  EXPECT_TRUE(all(with(R"({"area":5.0,"note":"x"})"), 5));
+  EXPECT_TRUE(all(with(R"({"area":"large"})"), kAreaWalkable));
+  EXPECT_TRUE(all(with(R"({"area":{"of":7}})"), kAreaWalkable));
+  for (const char* bad : {"64", "255", "-1", "1e300"}) {
+    const Scene scene = with(std::string(R"({"area":)") + bad + "}");
+    EXPECT_TRUE(all(scene, kAreaWalkable)) << bad;
+    ASSERT_FALSE(scene.report.warnings.empty()) << bad;
+    EXPECT_NE(scene.report.warnings[0].find("area kind outside 0 to 63"), std::string::npos);
+  }
 }
 
 TEST_F(GlbWriter, PlacesFarFromTheOriginKeepTheirTenthOfAMillimetre) {

@@ -43,7 +43,7 @@ void rasterise(benchmark::State& state, const char* name) {
   for (auto _ : state) {
     for (size_t tile = 0; tile + 1 < tiles.bins.first.size(); ++tile) {
       tiles.rasterise(tile, columns);
-      benchmark::DoNotOptimize(columns.count.data());
+      benchmark::DoNotOptimize(columns.depth.data());
     }
   }
   state.SetItemsProcessed(state.iterations() * (static_cast<int64_t>(tiles.bins.first.size()) - 1) *

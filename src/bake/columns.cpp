@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-// A triangle is cut into the rows of cells that it touches. The cut of a row is a convex polygon of
-// at most five corners; over each cell of the row its lowest and highest point lie on the polygon's
-// edges, so a vector of cells takes them edge by edge. One rule serves border cells, inner cells
-// and vertical walls. Rows and cells are widened by kWiden, far more than the arithmetic can err,
-// so rounding only ever adds matter. After Hasselgren, Akenine-Moeller, Ohlsson. Conservative
+// A triangle is cut into the rows of cells that it touches. The cut of a row is a convex polygon, so
+// over a cell its heights are bounded by the lines of its edges, the same lines for all rows but
+// two: a vector of cells takes them in a few instructions, and one rule serves border cells, inner
+// cells and vertical walls. Rows and cells are widened by kWiden, far more than the arithmetic can
+// err, so rounding only ever adds matter. After Hasselgren, Akenine-Moeller, Ohlsson. Conservative
 // rasterization. GPU Gems 2, 2005.
 //
 // A span goes to the first layer of its column that it touches, or to a new one: no lists, no
@@ -30,6 +30,14 @@ using DI = hn::RebindToSigned<DF>;
 using VF = hn::Vec<DF>;
 using VI = hn::Vec<DI>;
 using MI = hn::Mask<DI>;
+
+// Highway 1.0 makes an Iota out of single stores and a load that waits for them all.
+alignas(64) constexpr int32_t kCounting[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                               8, 9, 10, 11, 12, 13, 14, 15};
+HWY_INLINE VI counting_from(int32_t first) {
+  const DI di;
+  return hn::Add(hn::Set(di, first), hn::Load(di, kCounting));
+}
 
 // Integer comparisons that Highway leaves out.
 HWY_INLINE MI at_least(VI a, VI b) { return hn::Not(hn::Lt(a, b)); }
@@ -64,63 +72,57 @@ HWY_INLINE void insert(TileColumns& columns, int32_t cell, MI mask, VI low, VI h
                        int32_t join) {
   const DI di;
   const size_t c = static_cast<size_t>(cell);
-  const VI count = hn::Load(di, &columns.count[c]);
   uint8_t& depth = columns.depth[c / hn::Lanes(di)];
   const VI reach_low = hn::Sub(low, hn::Set(di, join));
   const VI reach_high = hn::Add(high, hn::Set(di, join));
+  const VI none = hn::Set(di, kNoSpan);
+  // What touches no layer goes to the first in which all lanes that are left are free, so that
+  // nothing depends on the lanes one by one.
+  int32_t free = depth;
   for (int32_t k = 0; k < depth; ++k) {
     SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
     const VI other_low = hn::Load(di, &layer.low[c]);
     const VI other_high = hn::Load(di, &layer.high[c]);
     const MI touch =
-        hn::And(hn::And(mask, hn::Gt(count, hn::Set(di, k))),
-                hn::And(at_least(other_high, reach_low), at_least(reach_high, other_low)));
-    if (hn::AllFalse(di, touch)) continue;
-    hn::BlendedStore(hn::Min(low, other_low), touch, di, &layer.low[c]);
-    hn::BlendedStore(hn::Max(high, other_high), touch, di, &layer.high[c]);
-    hn::BlendedStore(hn::Max(support, hn::Load(di, &layer.support[c])), touch, di,
-                     &layer.support[c]);
-    mask = hn::AndNot(touch, mask);
-    if (hn::AllFalse(di, mask)) return;
+        hn::And(mask, hn::And(at_least(other_high, reach_low), at_least(reach_high, other_low)));
+    if (!hn::AllFalse(di, touch)) {
+      hn::BlendedStore(hn::Min(low, other_low), touch, di, &layer.low[c]);
+      hn::BlendedStore(hn::Max(high, other_high), touch, di, &layer.high[c]);
+      hn::BlendedStore(hn::Max(support, hn::Load(di, &layer.support[c])), touch, di,
+                       &layer.support[c]);
+      mask = hn::AndNot(touch, mask);
+      if (hn::AllFalse(di, mask)) return;
+    }
+    const bool is_free = hn::AllFalse(di, hn::And(mask, hn::Lt(other_low, none)));
+    free = is_free ? std::min(free, k) : free;
   }
-  // What touched nothing is appended: mostly all lanes to the same layer.
-  const int32_t last = std::min<int32_t>(depth, TileColumns::kMaxLayers - 1);
-  for (int32_t k = 0; k <= last; ++k) {
-    const MI here = hn::And(mask, hn::Eq(count, hn::Set(di, k)));
-    if (hn::AllFalse(di, here)) continue;
-    SpanLayer& layer = layer_at(columns, k);
-    hn::BlendedStore(low, here, di, &layer.low[c]);
-    hn::BlendedStore(high, here, di, &layer.high[c]);
-    hn::BlendedStore(support, here, di, &layer.support[c]);
-    if (k == depth) depth = static_cast<uint8_t>(k + 1);
+  if (free < depth) {
+    SpanLayer& layer = *columns.layers[static_cast<size_t>(free)];
+    hn::BlendedStore(low, mask, di, &layer.low[c]);
+    hn::BlendedStore(high, mask, di, &layer.high[c]);
+    hn::BlendedStore(support, mask, di, &layer.support[c]);
+    return;
   }
-  const MI fits = hn::And(mask, hn::Lt(count, hn::Set(di, TileColumns::kMaxLayers)));
-  hn::Store(hn::Add(count, hn::IfThenElseZero(fits, hn::Set(di, 1))), di, &columns.count[c]);
-  if (HWY_LIKELY(depth < TileColumns::kMaxLayers)) return;
-  const MI left = hn::AndNot(fits, mask);
-  if (!hn::AllFalse(di, left)) spill(columns, cell, left, low, high, support);
+  if (HWY_UNLIKELY(depth == TileColumns::kMaxLayers)) {
+    spill(columns, cell, mask, low, high, support);
+    return;
+  }
+  SpanLayer& layer = layer_at(columns, depth++);
+  hn::Store(hn::IfThenElse(mask, low, none), di, &layer.low[c]);
+  hn::Store(hn::IfThenElse(mask, high, hn::Set(di, INT32_MIN)), di, &layer.high[c]);
+  hn::Store(hn::IfThenElse(mask, support, hn::Set(di, kNoSupport)), di, &layer.support[c]);
 }
 
-// The edges of a row's cut: the triangle's three sides, and the two lines that cut it out.
-enum Edge : size_t { kLong, kFirst, kSecond, kFrom, kTo, kEdges };
-
 constexpr int32_t kBatch = 16;  // rows that are cut together
-constexpr float kAbsent = 1e9f;
 
-// Edges of a batch of rows, in the tile's frame: x in cells, y in mm from the base.
-struct EdgeBatch {
-  alignas(64) float x0[kBatch], x1[kBatch];  // x0 <= x1; kAbsent: the row has no such edge
-  alignas(64) float low[kBatch], high[kBatch];
-  alignas(64) float slope[kBatch];                  // mm per cell; 0 if too upright for one
-  alignas(64) float y_low[kBatch], y_high[kBatch];  // at x0; the whole height of an upright edge
-};
-
-// What a triangle does in a batch of rows.
+// What a triangle does in a batch of rows, in the tile's frame: x in cells, y in mm from the base.
 struct RowBatch {
-  EdgeBatch edges[kEdges];
   alignas(64) int32_t x0[kBatch], x1[kBatch];  // cells touched, inclusive, not yet cut to the tile
   alignas(64) int32_t c0[kBatch], c1[kBatch];  // cells whose centre is covered; none if c0 > c1
-  alignas(64) float centre_x[kBatch], centre_y[kBatch], centre_slope[kBatch];
+  alignas(64) float y_low[kBatch], y_high[kBatch];
+  // A point on each of the two lines that cut the row out: [0] at its lower z, [1] at its higher.
+  alignas(64) float cap_x[2][kBatch], cap_y[2][kBatch];
+  alignas(64) float centre_x[kBatch], centre_y[kBatch];  // a point on the line of centres
 };
 
 // One triangle in one tile.
@@ -128,6 +130,12 @@ struct TileTriangle {
   int32_t low, high;  // mm from the base
   int32_t code;
   bool flat;
+  bool upright;     // no gradient worth the name
+  bool rises_in_z;  // else it falls
+  float gradient;   // mm per cell along x
+  float margin;     // mm that the floats may err
+  // Over each cell of a row, bounds by the triangle's sides: they are the same in all rows.
+  alignas(64) float side_low[kTileSide], side_high[kTileSide];
 };
 
 // A triangle in the tile's frame, ready to be cut into rows. T is float where the triangle is near
@@ -163,7 +171,7 @@ class RowCutter {
   // Cuts rows [row, row + lanes), into the batch's entries from `at` on.
   HWY_INLINE void cut(int32_t row, size_t at, bool flat, RowBatch& out) const {
     const D d;
-    const V rows = hn::Iota(d, static_cast<T>(row));
+    const V rows = hn::Add(hn::Set(d, static_cast<T>(row)), hn::Load(d, counting()));
     const V from = hn::Max(hn::Sub(rows, set(kWiden)), set(t_.z[0]));
     const V to = hn::Min(hn::Add(rows, set(1 + kWiden)), set(t_.z[2]));
     const M has_first = hn::Le(from, set(t_.z[1]));
@@ -186,12 +194,16 @@ class RowCutter {
     store_int(hn::Floor(hn::Sub(x_low, set(kWiden))), out.x0 + at);
     store_int(hn::Floor(hn::Add(x_high, set(kWiden))), out.x1 + at);
     if (!flat) {
-      const M all = hn::Eq(rows, rows);
-      add_edge(all, l0, l1, out.edges[kLong], at);
-      add_edge(has_first, a0, a1, out.edges[kFirst], at);
-      add_edge(has_second, b0, b1, out.edges[kSecond], at);
-      add_edge(hn::Gt(from, set(t_.z[0])), l0, s0, out.edges[kFrom], at);
-      add_edge(hn::Lt(to, set(t_.z[2])), l1, s1, out.edges[kTo], at);
+      V y_low = hn::Min(hn::Min(l0.y, l1.y), hn::Min(s0.y, s1.y));
+      V y_high = hn::Max(hn::Max(l0.y, l1.y), hn::Max(s0.y, s1.y));
+      y_low = hn::IfThenElse(has_middle, hn::Min(y_low, set(t_.y[1])), y_low);
+      y_high = hn::IfThenElse(has_middle, hn::Max(y_high, set(t_.y[1])), y_high);
+      store(y_low, out.y_low + at);
+      store(y_high, out.y_high + at);
+      store(l0.x, out.cap_x[0] + at);
+      store(l0.y, out.cap_y[0] + at);
+      store(l1.x, out.cap_x[1] + at);
+      store(l1.y, out.cap_y[1] + at);
     }
     cut_centre(rows, at, out);
   }
@@ -200,6 +212,11 @@ class RowCutter {
   struct Point {
     V x, y;
   };
+  static HWY_INLINE const T* counting() {
+    alignas(64) static constexpr T kRows[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                8, 9, 10, 11, 12, 13, 14, 15};
+    return kRows;
+  }
   static HWY_INLINE V set(double value) { return hn::Set(D(), static_cast<T>(value)); }
   HWY_INLINE Point corner(size_t i) const { return {set(t_.x[i]), set(t_.y[i])}; }
   static HWY_INLINE Point choose(M mask, Point a, Point b) {
@@ -229,27 +246,6 @@ class RowCutter {
     }
   }
 
-  HWY_INLINE void add_edge(M here, Point a, Point b, EdgeBatch& out, size_t at) const {
-    const M swap = hn::Gt(a.x, b.x);
-    const V xa = hn::IfThenElse(swap, b.x, a.x), xb = hn::IfThenElse(swap, a.x, b.x);
-    const V ya = hn::IfThenElse(swap, b.y, a.y), yb = hn::IfThenElse(swap, a.y, b.y);
-    const V dx = hn::Sub(xb, xa);
-    const M upright = hn::Le(dx, set(1e-3));
-    const V slope =
-        hn::IfThenElse(upright, set(0), hn::Div(hn::Sub(yb, ya), hn::Max(dx, set(1e-3))));
-    const V low = hn::Min(ya, yb), high = hn::Max(ya, yb);
-    // Only the part over the tile: a far end would cost the float its precision.
-    const V x0 = hn::Max(xa, set(-1)), x1 = hn::Min(xb, set(65));
-    const V y0 = hn::Add(ya, hn::Mul(hn::Sub(x0, xa), slope));
-    store(hn::IfThenElse(here, x0, set(kAbsent)), out.x0 + at);
-    store(hn::IfThenElse(here, x1, set(-kAbsent)), out.x1 + at);
-    store(low, out.low + at);
-    store(high, out.high + at);
-    store(slope, out.slope + at);
-    store(hn::IfThenElse(upright, low, y0), out.y_low + at);
-    store(hn::IfThenElse(upright, high, y0), out.y_high + at);
-  }
-
   // Which centres of each row the triangle covers, and its surface there.
   HWY_INLINE void cut_centre(V rows, size_t at, RowBatch& out) const {
     const V centre = hn::Add(rows, set(0.5));
@@ -266,45 +262,103 @@ class RowCutter {
                              hn::Gt(dx, set(1e-6)));
     store_int(hn::IfThenElse(covers, first, set(1)), out.c0 + at);
     store_int(hn::IfThenElse(covers, last, set(0)), out.c1 + at);
-    const V slope = hn::Div(hn::Sub(b.y, a.y), hn::Max(dx, set(1e-6)));
-    const V x = hn::Max(a.x, set(-1));
-    store(x, out.centre_x + at);
-    store(hn::Add(a.y, hn::Mul(hn::Sub(x, a.x), slope)), out.centre_y + at);
-    store(slope, out.centre_slope + at);
+    store(l.x, out.centre_x + at);
+    store(l.y, out.centre_y + at);
   }
 
   const Corners<T>& t_;
 };
 
+// A row's cut is a convex polygon, so over a cell its highest point is the least of what the lines
+// above it reach there, or the row's highest point if that is less; likewise the lowest. The lines
+// are the triangle's sides and the two that cut the row out; a line reaches highest at the end of
+// the cell towards which it rises. A line that is left out only adds matter.
+HWY_INLINE void bound_by_sides(const Corners<double>& corners, TileTriangle& t, int32_t x_first,
+                               int32_t x_last) {
+  const DF df;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(df));
+  struct Side {
+    float x, y, slope;
+    bool above;
+  };
+  Side sides[6];
+  size_t count = 0;
+  constexpr size_t kEnds[3][3] = {{0, 2, 1}, {0, 1, 2}, {1, 2, 0}};
+  for (const auto& [i, j, k] : kEnds) {
+    const double dx = corners.x[j] - corners.x[i], dy = corners.y[j] - corners.y[i];
+    if (std::fabs(dx) < 1e-3) continue;
+    const double slope = dy / dx;
+    const double over = corners.y[i] + slope * (corners.x[k] - corners.x[i]) - corners.y[k];
+    // From a point near the tile on: a far one would cost the float its precision.
+    const double x = std::clamp(corners.x[i], -1.0, kTileSide + 1.0);
+    const double y = corners.y[i] + slope * (x - corners.x[i]);
+    const Side side{static_cast<float>(x), static_cast<float>(y), static_cast<float>(slope), true};
+    // Of a triangle seen edge-on, thinner than the floats tell, each side bounds both ways.
+    constexpr double kThin = 0.01;  // mm
+    if (over > -kThin) sides[count++] = side;
+    if (over < kThin) {
+      sides[count] = side;
+      sides[count++].above = false;
+    }
+  }
+  for (int32_t begin = x_first & ~(lanes - 1); begin <= x_last; begin += lanes) {
+    const VF x = hn::ConvertTo(df, counting_from(begin));
+    const VF cell_low = hn::Sub(x, hn::Set(df, static_cast<float>(kWiden)));
+    const VF cell_high = hn::Add(x, hn::Set(df, static_cast<float>(1 + kWiden)));
+    VF low = hn::Set(df, static_cast<float>(t.low));
+    VF high = hn::Set(df, static_cast<float>(t.high));
+    for (size_t i = 0; i < count; ++i) {
+      const Side& side = sides[i];
+      const VF at = side.above == (side.slope >= 0) ? cell_high : cell_low;
+      const VF y = hn::Add(hn::Set(df, side.y),
+                           hn::Mul(hn::Sub(at, hn::Set(df, side.x)), hn::Set(df, side.slope)));
+      if (side.above) {
+        high = hn::Min(high, y);
+      } else {
+        low = hn::Max(low, y);
+      }
+    }
+    hn::Store(low, df, t.side_low + begin);
+    hn::Store(high, df, t.side_high + begin);
+  }
+}
+
+HWY_INLINE void set_gradient(const Corners<double>& c, TileTriangle& t) {
+  constexpr double kSteepest = 1e6;  // mm per cell
+  const double ax = c.x[1] - c.x[0], ay = c.y[1] - c.y[0], az = c.z[1] - c.z[0];
+  const double bx = c.x[2] - c.x[0], by = c.y[2] - c.y[0], bz = c.z[2] - c.z[0];
+  const double normal_y = az * bx - ax * bz;
+  const double rise_x = az * by - ay * bz, rise_z = ay * bx - ax * by;
+  t.upright = !(std::fabs(rise_x) < kSteepest * std::fabs(normal_y));
+  t.gradient = t.upright ? 0 : static_cast<float>(rise_x / normal_y);
+  t.rises_in_z = (rise_z >= 0) == (normal_y > 0);
+  t.margin = 0.05f + static_cast<float>(t.high) * 0x1p-20f;
+}
+
 // The triangle's heights over one vector of cells of its row.
-HWY_INLINE void row_heights(const RowBatch& rows, size_t r, VF x, VI& low, VI& high) {
+HWY_INLINE void row_heights(const TileTriangle& t, const RowBatch& rows, size_t r, int32_t begin,
+                            VF x, VI& low, VI& high) {
   const DF df;
   const DI di;
-  const float widen = static_cast<float>(kWiden);
-  const VF cell_low = hn::Sub(x, hn::Set(df, widen));
-  const VF cell_high = hn::Add(x, hn::Set(df, 1.0f + widen));
-  VF y_low = hn::Set(df, 3e38f);
-  VF y_high = hn::Set(df, -3e38f);
-  for (const EdgeBatch& e : rows.edges) {
-    if (e.x0[r] > e.x1[r]) continue;
-    const VF x0 = hn::Set(df, e.x0[r]);
-    const VF slope = hn::Set(df, e.slope[r]);
-    const VF a = hn::Max(x0, cell_low);
-    const VF b = hn::Min(hn::Set(df, e.x1[r]), cell_high);
-    const auto meets = hn::Le(a, b);
-    const bool rises = e.slope[r] >= 0;
-    const VF at_low = hn::Mul(hn::Sub(rises ? a : b, x0), slope);
-    const VF at_high = hn::Mul(hn::Sub(rises ? b : a, x0), slope);
-    const VF lo = hn::Max(hn::Set(df, e.low[r]), hn::Add(hn::Set(df, e.y_low[r]), at_low));
-    const VF hi = hn::Min(hn::Set(df, e.high[r]), hn::Add(hn::Set(df, e.y_high[r]), at_high));
-    y_low = hn::IfThenElse(meets, hn::Min(y_low, lo), y_low);
-    y_high = hn::IfThenElse(meets, hn::Max(y_high, hi), y_high);
+  VF y_low = hn::Max(hn::Load(df, t.side_low + begin), hn::Set(df, rows.y_low[r]));
+  VF y_high = hn::Min(hn::Load(df, t.side_high + begin), hn::Set(df, rows.y_high[r]));
+  if (!t.upright) {
+    const VF cell_low = hn::Sub(x, hn::Set(df, static_cast<float>(kWiden)));
+    const VF cell_high = hn::Add(x, hn::Set(df, static_cast<float>(1 + kWiden)));
+    const bool rises = t.gradient >= 0;
+    const size_t above = t.rises_in_z ? 1 : 0, below = 1 - above;
+    const VF slope = hn::Set(df, t.gradient);
+    const VF to_high = hn::Sub(rises ? cell_high : cell_low, hn::Set(df, rows.cap_x[above][r]));
+    const VF to_low = hn::Sub(rises ? cell_low : cell_high, hn::Set(df, rows.cap_x[below][r]));
+    y_high = hn::Min(y_high, hn::Add(hn::Set(df, rows.cap_y[above][r]), hn::Mul(to_high, slope)));
+    y_low = hn::Max(y_low, hn::Add(hn::Set(df, rows.cap_y[below][r]), hn::Mul(to_low, slope)));
   }
-  // Float heights err by less than this many mm; the margin grows with the distance to the base.
-  const VF far = hn::Max(hn::Abs(y_low), hn::Abs(y_high));
-  const VF margin = hn::Add(hn::Set(df, 0.05f), hn::Mul(far, hn::Set(df, 0x1p-21f)));
-  low = hn::Max(low, hn::ConvertTo(di, hn::Floor(hn::Sub(y_low, margin))));
-  high = hn::Min(high, hn::ConvertTo(di, hn::Ceil(hn::Add(y_high, margin))));
+  // Where the cell is only touched for being widened, the bounds may have crossed.
+  const VF margin = hn::Set(df, t.margin);
+  const VF bottom = hn::Sub(hn::Min(y_low, y_high), margin);
+  const VF top = hn::Add(hn::Max(y_low, y_high), margin);
+  low = hn::Max(low, hn::ConvertTo(di, hn::Floor(bottom)));
+  high = hn::Min(high, hn::ConvertTo(di, hn::Ceil(top)));
 }
 
 HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowBatch& rows,
@@ -317,19 +371,19 @@ HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowB
   const VI tri_low = hn::Set(di, t.low);
   const VI tri_high = hn::Set(di, t.high);
   for (int32_t begin = x0 & ~(lanes - 1); begin <= x1; begin += lanes) {
-    const VI index = hn::Iota(di, begin);
+    const VI index = counting_from(begin);
     const VF x = hn::ConvertTo(df, index);
     const MI mask = within(index, x0, x1);
     VI low = tri_low;
     VI high = tri_high;
-    if (!t.flat) row_heights(rows, r, x, low, high);
+    if (!t.flat) row_heights(t, rows, r, begin, x, low, high);
     VI support = hn::Set(di, kNoSupport);
     if (c0 <= c1 && c1 >= begin && c0 < begin + lanes) {
       VI height = tri_low;
       if (!t.flat) {
         const VF along = hn::Sub(hn::Add(x, hn::Set(df, 0.5f)), hn::Set(df, rows.centre_x[r]));
-        const VF y = hn::Add(hn::Set(df, rows.centre_y[r]),
-                             hn::Mul(along, hn::Set(df, rows.centre_slope[r])));
+        const VF y =
+            hn::Add(hn::Set(df, rows.centre_y[r]), hn::Mul(along, hn::Set(df, t.gradient)));
         height = hn::Min(tri_high, hn::Max(tri_low, hn::NearestInt(y)));
       }
       // Over 8 km above the tile's lowest matter there is nothing to stand on.
@@ -366,7 +420,7 @@ HWY_INLINE void fill_triangle(const Corners<T>& corners, const TileTriangle& t,
 void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint32_t> items,
                    int32_t cell_x, int32_t cell_z, const TileRect& rect, int32_t join,
                    TileColumns& columns) {
-  columns.count.fill(0);
+  columns.lanes = static_cast<int32_t>(hn::Lanes(DI()));
   std::fill_n(columns.depth.begin(), kTileArea / hn::Lanes(DI()), uint8_t{0});
   columns.spills.clear();
   columns.base = items.empty() ? 0 : INT32_MAX;
@@ -392,6 +446,12 @@ void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint
     t.high = source.high - columns.base;
     t.code = source.code;
     t.flat = t.low == t.high;
+    set_gradient(corners, t);
+    if (!t.flat) {
+      const auto x_first = static_cast<int32_t>(std::max<double>(x_low - 1, rect.x0));
+      const auto x_last = static_cast<int32_t>(std::min<double>(x_high + 1, rect.x1 - 1));
+      bound_by_sides(corners, t, x_first, x_last);
+    }
     const bool near = x_low > -256 && x_high < 256 && corners.z[0] > -256 && corners.z[2] < 256;
     if (near) {
       Corners<float> small;
@@ -458,8 +518,9 @@ void gaps_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_g
                          std::vector<TileColumns::Spill>& spans) {
   const size_t c = static_cast<size_t>(cell);
   spans.clear();
-  for (int32_t k = 0; k < columns.count[c]; ++k) {
+  for (int32_t k = 0; k < columns.depth[c / static_cast<size_t>(columns.lanes)]; ++k) {
     const SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
+    if (layer.low[c] == kNoSpan) continue;
     spans.push_back({cell, layer.low[c], layer.high[c], layer.support[c]});
   }
   const auto spilled = columns.spills_of(cell);
@@ -467,6 +528,7 @@ void gaps_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_g
   std::sort(spans.begin(), spans.end(), [](const auto& a, const auto& b) {
     return a.low != b.low ? a.low < b.low : a.high < b.high;
   });
+  if (spans.empty()) return;
   int32_t found = 0;
   TileColumns::Spill run = spans.front();
   const auto emit = [&](int32_t ceiling) {
@@ -505,15 +567,15 @@ HWY_INLINE void emit(TileGaps& gaps, size_t c, MI mask, VI found, int32_t deepes
 }
 
 // Gaps of one vector of columns of at most kNetwork spans.
-HWY_INLINE VI find_vector(const TileColumns& columns, size_t c, size_t n, VI count, int32_t min_gap,
+HWY_INLINE VI find_vector(const TileColumns& columns, size_t c, size_t n, int32_t min_gap,
                           TileGaps& gaps) {
+  static_assert(kNoSpan == kOpenSkyMm);  // A span that is not there sorts last, as the sky.
   const DI di;
   const VI sky = hn::Set(di, kOpenSkyMm);
   SpanVectors spans;
   for (size_t k = 0; k < n; ++k) {
     const SpanLayer& layer = *columns.layers[k];
-    const MI has = hn::Gt(count, hn::Set(di, static_cast<int32_t>(k)));
-    spans.low[k] = hn::IfThenElse(has, hn::Load(di, &layer.low[c]), sky);
+    spans.low[k] = hn::Load(di, &layer.low[c]);
     spans.high[k] = hn::Load(di, &layer.high[c]);
     spans.support[k] = hn::Load(di, &layer.support[c]);
   }
@@ -535,7 +597,7 @@ HWY_INLINE VI find_vector(const TileColumns& columns, size_t c, size_t n, VI cou
     support = hn::IfThenElse(apart, spans.support[k],
                              hn::IfThenElse(joined, hn::Max(support, spans.support[k]), support));
   }
-  const MI any = hn::Gt(count, hn::Zero(di));
+  const MI any = hn::Lt(spans.low[0], sky);
   emit(gaps, c, any, found, deepest, top, sky, support);
   return hn::IfThenElseZero(any, hn::Add(found, hn::Set(di, 1)));
 }
@@ -551,19 +613,16 @@ void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
   VI most = hn::Zero(di);
   for (int32_t cell = 0; cell < kTileArea; cell += lanes) {
     const size_t c = static_cast<size_t>(cell);
-    const VI count = hn::Load(di, &columns.count[c]);
     const size_t n = columns.depth[c / hn::Lanes(di)];
     if (n > kNetwork) {
       for (int32_t i = cell; i < cell + lanes; ++i) {
         gaps.count[static_cast<size_t>(i)] = 0;
-        if (columns.count[static_cast<size_t>(i)] > 0) {
-          gaps_of_deep_column(columns, i, min_gap, gaps, scratch);
-        }
+        gaps_of_deep_column(columns, i, min_gap, gaps, scratch);
       }
       continue;
     }
     VI found = hn::Zero(di);
-    if (n > 0) found = find_vector(columns, c, n, count, min_gap, gaps);
+    if (n > 0) found = find_vector(columns, c, n, min_gap, gaps);
     hn::Store(found, di, &gaps.count[c]);
     total = hn::Add(total, found);
     most = hn::Max(most, found);
@@ -593,7 +652,7 @@ void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
 }
 
 std::span<const TileColumns::Spill> TileColumns::spills_of(int32_t cell) const {
-  if (count[static_cast<size_t>(cell)] < kMaxLayers) return {};
+  if (spills.empty()) return {};
   const auto less = [](const Spill& a, const Spill& b) { return a.cell < b.cell; };
   const auto range = std::equal_range(spills.begin(), spills.end(), Spill{cell, 0, 0, 0}, less);
   return {range.first, range.second};
@@ -607,8 +666,9 @@ void sort_spans(const TileColumns& columns, TileSpans& spans) {
   for (int32_t cell = 0; cell < kTileArea; ++cell) {
     const size_t c = static_cast<size_t>(cell);
     column.clear();
-    for (int32_t k = 0; k < columns.count[c]; ++k) {
+    for (int32_t k = 0; k < columns.depth[c / static_cast<size_t>(columns.lanes)]; ++k) {
       const SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
+      if (layer.low[c] == kNoSpan) continue;
       column.emplace_back(layer.low[c] + columns.base, layer.high[c] + columns.base);
     }
     for (const auto& spilled : columns.spills_of(cell)) {

@@ -15,7 +15,8 @@
 namespace throng {
 
 inline constexpr int32_t kNoSupport = INT32_MIN;
-inline constexpr double kWiden = 1e-4;  // cells
+inline constexpr int32_t kNoSpan = INT32_MAX;  // as the low end of one that is not there
+inline constexpr double kWiden = 1e-4;         // cells
 
 /// Up to one span per cell. Cell (x, z) of the tile is index z * 64 + x.
 struct SpanLayer {
@@ -32,13 +33,17 @@ struct TileColumns {
   };
   static constexpr int32_t kMaxLayers = 64;
 
-  int32_t base = 0;  // [mm]
-  alignas(64) std::array<int32_t, kTileArea> count;
-  std::array<uint8_t, kTileArea> depth;  // largest count in each vector of cells
-  std::vector<std::unique_ptr<SpanLayer>>
-      layers;                 // unsorted; layer k of cell c holds if k < count[c]
-  std::vector<Spill> spills;  // by cell
+  int32_t base = 0;                                // [mm]
+  int32_t lanes = 1;                               // cells that are filled together
+  std::array<uint8_t, kTileArea> depth;            // layers in use, per `lanes` cells
+  std::vector<std::unique_ptr<SpanLayer>> layers;  // unsorted
+  std::vector<Spill> spills;                       // by cell
 
+  /// Does layer k hold a span of this cell?
+  [[nodiscard]] bool holds(int32_t k, size_t cell) const {
+    return k < depth[cell / static_cast<size_t>(lanes)] &&
+           layers[static_cast<size_t>(k)]->low[cell] != kNoSpan;
+  }
   [[nodiscard]] std::span<const Spill> spills_of(int32_t cell) const;
 };
 

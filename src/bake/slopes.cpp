@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include <bit>
-#include <cmath>
+#include <algorithm>
 #include <cstdlib>
 
 #include "bake/legality.h"
-#include "world/surface.h"
 
 // Feet on a cell lie on a plane p with gradient g. For a body at P and matter at Q within its
 // radius r,
@@ -15,72 +13,179 @@
 // bottom. Whole cells are compared with the plane where they are, not with one height. At creases,
 // where the feet's slope is the gentler one, a plane between the two may prove what theirs
 // cannot; it then owes how far the feet can be from it on the cell.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bake/slopes.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace throng {
-namespace {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DI = hn::CappedTag<int32_t, 16>;
+using VI = hn::Vec<DI>;
 
 constexpr int32_t kRounding = 2;  // of feet and planes [mm]
 
-struct Plane {
-  int32_t height, gx, gz;  // at the middle of the cell [mm, mm per cell]
-};
-
-// All in half millimetres: centres of cells lie half a cell from their corners.
-bool clears(const SheetWindow& window, const BodyWindow& body, int32_t x, int32_t z,
-            const Plane& plane, int32_t owed, int32_t feet_tilt) {
-  const int32_t tilt = std::abs(plane.gx) + std::abs(plane.gz);  // of the plane over a cell [mm]
-  const auto lean =
-      static_cast<int32_t>(std::ceil(std::sqrt(static_cast<double>(plane.gx) * plane.gx +
-                                               static_cast<double>(plane.gz) * plane.gz) *
-                                     body.radius));
-  const int32_t budget = 2 * (body.bottom - lean - kRounding - owed);
-  if (budget < 0) return false;
-  // A column may also pass as in the window: its whole top against the lowest and highest feet.
-  const int32_t level_high = 2 * (plane.height - feet_tilt + body.bottom - 1);
-  const int32_t level_low = 2 * (plane.height + feet_tilt - body.bottom);
-  for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
-    const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
-    for (int32_t dx = -w; dx <= w; ++dx) {
-      const int32_t top = 2 * window.top[window.index(x + dx, z + dz)];
-      const int32_t middle = 2 * (plane.height + plane.gx * dx + plane.gz * dz);
-      if (top > level_high && top - (middle - tilt) > budget) return false;
-      if (top < level_low && (middle + tilt) - top > budget) return false;
-    }
+HWY_INLINE uint64_t bits_of(hn::Mask<DI> mask) {
+  const DI di;
+  alignas(8) uint8_t bytes[8] = {};
+  if constexpr (HWY_TARGET == HWY_SCALAR) {
+    bytes[0] = hn::AllTrue(di, mask) ? 1 : 0;
+  } else {
+    hn::StoreMaskBits(di, mask, bytes);
   }
-  return true;
+  uint64_t bits;
+  __builtin_memcpy(&bits, bytes, 8);
+  return bits & ((uint64_t{1} << hn::Lanes(di)) - 1);
 }
 
-}  // namespace
+HWY_INLINE VI load_feet(const uint16_t* feet) {
+  const DI di;
+  return hn::PromoteTo(di, hn::LoadU(hn::Rebind<uint16_t, DI>(), feet));
+}
+
+// As sheet_slope: the gentler of b - a and c - b, 0 if they disagree or a cell has no feet.
+HWY_INLINE VI slope_of(VI a, VI b, VI c) {
+  const DI di;
+  const VI none = hn::Set(di, kNone16), zero = hn::Zero(di);
+  const VI first = hn::Sub(b, a), second = hn::Sub(c, b);
+  const auto up = hn::And(hn::Gt(first, zero), hn::Gt(second, zero));
+  const auto down = hn::Not(hn::Or(hn::Gt(first, zero), hn::Gt(second, zero)));
+  const auto all = hn::And(hn::Ne(a, none), hn::And(hn::Ne(b, none), hn::Ne(c, none)));
+  const VI gentler =
+      hn::IfThenElse(up, hn::Min(first, second), hn::IfThenElseZero(down, hn::Max(first, second)));
+  return hn::IfThenElseZero(all, gentler);
+}
+
+// Half of a difference, rounded towards zero.
+HWY_INLINE VI half(VI difference) {
+  return hn::ShiftRight<1>(hn::Sub(difference, hn::ShiftRight<31>(difference)));
+}
+
+// The planes of one row of cells: the feet's own, and at creases the one between. [mm per cell]
+struct RowPlanes {
+  alignas(64) int32_t gx[kTileSide + 32], gz[kTileSide + 32];
+  alignas(64) int32_t between_x[kTileSide + 32], between_z[kTileSide + 32];
+  uint64_t creased;  // cells with feet on all four sides
+
+  void make(const Sheet& sheet, int32_t z) {
+    const DI di;
+    const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
+    const VI none = hn::Set(di, kNone16);
+    const uint16_t* row = &sheet.feet[static_cast<size_t>(z * kTileSide)];
+    const uint16_t* centre =
+        &sheet.feet[static_cast<size_t>(std::clamp(z, 1, kTileSide - 2) * kTileSide)];
+    uint64_t beside = 0, around = 0;
+    for (int32_t x = 0; x < kTileSide; x += lanes) {
+      // Written for x + 1: rows are read from their first cell on, never before the array.
+      const VI left = load_feet(row + x), right = load_feet(row + x + 2);
+      hn::StoreU(slope_of(left, load_feet(row + x + 1), right), di, gx + x + 1);
+      hn::StoreU(half(hn::Sub(right, left)), di, between_x + x + 1);
+      beside |= bits_of(hn::And(hn::Ne(left, none), hn::Ne(right, none))) << x;
+      const VI up = load_feet(centre + x - kTileSide), down = load_feet(centre + x + kTileSide);
+      hn::Store(slope_of(up, load_feet(centre + x), down), di, gz + x);
+      hn::Store(half(hn::Sub(down, up)), di, between_z + x);
+      around |= bits_of(hn::And(hn::Ne(up, none), hn::Ne(down, none))) << x;
+    }
+    gx[0] = gx[1];
+    gx[kTileSide - 1] = gx[kTileSide - 2];
+    between_x[0] = between_z[0] = 0;
+    constexpr uint64_t kInner = ~uint64_t{0} >> 1 & ~uint64_t{1};
+    creased = z == 0 || z == kTileSide - 1 ? 0 : beside << 1 & around & kInner;
+  }
+};
+
+// Of cells (x, z) and on, one vector: those whose body is free when judged by the given planes,
+// which may err by `owed`. All in half millimetres: centres of cells lie half a cell from their
+// corners.
+HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body, int32_t x,
+                               int32_t z, VI height, VI feet_tilt, VI gx, VI gz, VI owed) {
+  const DI di;
+  const hn::RebindToFloat<DI> df;
+  const hn::Rebind<uint16_t, DI> dh;
+  const auto fx = hn::ConvertTo(df, gx), fz = hn::ConvertTo(df, gz);
+  // Rounded up by more than the floats err.
+  const auto reach = hn::Mul(hn::Sqrt(hn::Add(hn::Mul(fx, fx), hn::Mul(fz, fz))),
+                             hn::Set(df, static_cast<float>(body.radius * (1 + 1e-6))));
+  const VI lean = hn::ConvertTo(di, hn::Ceil(reach));
+  const VI budget =
+      hn::ShiftLeft<1>(hn::Sub(hn::Sub(hn::Set(di, body.bottom - kRounding), lean), owed));
+  const VI tilt = hn::Add(hn::Abs(gx), hn::Abs(gz));  // of the plane over a cell [mm]
+  const VI bottom = hn::Set(di, body.bottom);
+  // A column may also pass as in the window: its whole top against the lowest and highest feet.
+  const VI level_high =
+      hn::ShiftLeft<1>(hn::Sub(hn::Add(hn::Sub(height, feet_tilt), bottom), hn::Set(di, 1)));
+  const VI level_low = hn::ShiftLeft<1>(hn::Sub(hn::Add(height, feet_tilt), bottom));
+  const VI most = hn::Sub(budget, tilt);  // by which a top may pass the plane, up or down
+  auto bad = hn::Lt(budget, hn::Zero(di));
+  for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
+    const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
+    VI middle = hn::Add(height, hn::Sub(hn::Mul(gz, hn::Set(di, dz)), hn::Mul(gx, hn::Set(di, w))));
+    const uint16_t* tops = &window.top[window.index(x - w, z + dz)];
+    for (int32_t dx = -w; dx <= w; ++dx, ++tops) {
+      const VI top = hn::ShiftLeft<1>(hn::PromoteTo(di, hn::LoadU(dh, tops)));
+      const VI above = hn::Sub(top, hn::ShiftLeft<1>(middle));
+      const auto high = hn::And(hn::Gt(top, level_high), hn::Gt(above, most));
+      const auto low = hn::And(hn::Lt(top, level_low), hn::Gt(hn::Neg(above), most));
+      bad = hn::Or(bad, hn::Or(high, low));
+      middle = hn::Add(middle, gx);
+    }
+    if (hn::AllTrue(di, bad)) return 0;
+  }
+  return bits_of(hn::Not(bad));
+}
+
+void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
+                   LegalCells& cells) {
+  const DI di;
+  const hn::Rebind<uint16_t, DI> dh;
+  const VI zero = hn::Zero(di);
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
+  RowPlanes planes;
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    const uint64_t row = cells.slanted[static_cast<size_t>(z)];
+    if (row == 0) continue;
+    planes.make(sheet, z);
+    for (int32_t x = 0; x < kTileSide; x += lanes) {
+      const uint64_t asked = (row >> x) & ((uint64_t{1} << lanes) - 1);
+      if (asked == 0) continue;
+      const size_t cell = static_cast<size_t>(z * kTileSide + x);
+      const VI height = load_feet(&sheet.feet[cell]);
+      const VI tilt = hn::PromoteTo(di, hn::LoadU(dh, &scratch.tilt[cell]));
+      const VI gx = hn::Load(di, planes.gx + x), gz = hn::Load(di, planes.gz + x);
+      const uint64_t sloped = asked & bits_of(hn::Ne(hn::Or(gx, gz), zero));
+      uint64_t free = 0;
+      if (sloped != 0) {
+        free = sloped & free_lanes(scratch.window, body, x, z, height, tilt, gx, gz, zero);
+      }
+      const VI mx = hn::Load(di, planes.between_x + x), mz = hn::Load(di, planes.between_z + x);
+      const VI apart = hn::Add(hn::Abs(hn::Sub(mx, gx)), hn::Abs(hn::Sub(mz, gz)));
+      const uint64_t creased = asked & ~free & (planes.creased >> x) & bits_of(hn::Ne(apart, zero));
+      if (creased != 0) {
+        const VI owed = hn::ShiftRight<1>(hn::Add(apart, hn::Set(di, 1)));
+        free |= creased & free_lanes(scratch.window, body, x, z, height, tilt, mx, mz, owed);
+      }
+      cells.legal[static_cast<size_t>(z)] |= free << x;
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace throng
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace throng {
+
+HWY_EXPORT(RecheckSlopes);
 
 void recheck_slopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
                     LegalCells& cells) {
-  for (int32_t z = 0; z < kTileSide; ++z) {
-    uint64_t row = cells.slanted[static_cast<size_t>(z)];
-    for (; row != 0; row &= row - 1) {
-      const int32_t x = std::countr_zero(row);
-      const auto feet = [&](int32_t cx, int32_t cz) {
-        return static_cast<int32_t>(sheet.feet[static_cast<size_t>(cz * kTileSide + cx)]);
-      };
-      const auto has = [&](int32_t cx, int32_t cz) { return feet(cx, cz) != kNone16; };
-      Plane plane{feet(x, z), 0, 0};
-      plane.gx = sheet_slope(
-          x, [&](int32_t i) { return feet(i, z); }, [&](int32_t i) { return has(i, z); });
-      plane.gz = sheet_slope(
-          z, [&](int32_t i) { return feet(x, i); }, [&](int32_t i) { return has(x, i); });
-      const auto try_plane = [&](const Plane& other) {
-        const int32_t apart = std::abs(other.gx - plane.gx) + std::abs(other.gz - plane.gz);
-        const int32_t tilt = scratch.tilt[static_cast<size_t>(z * kTileSide + x)];
-        return clears(scratch.window, body, x, z, other, (apart + 1) / 2, tilt);
-      };
-      bool free = (plane.gx | plane.gz) != 0 && try_plane(plane);
-      if (!free && x > 0 && z > 0 && x < kTileSide - 1 && z < kTileSide - 1 && has(x - 1, z) &&
-          has(x + 1, z) && has(x, z - 1) && has(x, z + 1)) {
-        const Plane between{plane.height, (feet(x + 1, z) - feet(x - 1, z)) / 2,
-                            (feet(x, z + 1) - feet(x, z - 1)) / 2};
-        free = (between.gx != plane.gx || between.gz != plane.gz) && try_plane(between);
-      }
-      if (free) cells.legal[static_cast<size_t>(z)] |= 1ULL << x;
-    }
-  }
+  HWY_DYNAMIC_DISPATCH(RecheckSlopes)(sheet, body, scratch, cells);
 }
 
 }  // namespace throng
+#endif  // HWY_ONCE

@@ -110,7 +110,8 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
 }
 
 // Receives each zone that has levels, in order of z, then x.
-using ZoneSink = std::function<Result<void>(int32_t x, int32_t z, std::vector<uint8_t> bytes)>;
+using ZoneSink =
+    std::function<Result<void>(int32_t x, int32_t z, flatbuffers::DetachedBuffer bytes)>;
 
 Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,
                                               Context& context, BakeReport& report,
@@ -174,7 +175,7 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
       report.seconds_columns += zone.seconds_columns;
       report.seconds_levels += zone.seconds_levels;
       report.seconds_clearance += zone.seconds_clearance;
-      if (zone.bytes.empty()) continue;
+      if (zone.bytes.size() == 0) continue;
       for (size_t c = 0; c < legal_cells.size(); ++c) legal_cells[c] += zone.legal_cells[c];
       report.tiles += zone.tiles;
       report.level_tiles += zone.levels;
@@ -224,13 +225,14 @@ Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& 
                          BakeReport* report) {
   BakeReport local;
   std::vector<std::unique_ptr<Zone>> zones;
-  auto world = bake_zones(scene, config, context, local,
-                          [&](int32_t x, int32_t z, std::vector<uint8_t> bytes) -> Result<void> {
-                            auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(x, z));
-                            if (!zone) return zone.error();
-                            zones.push_back(std::move(*zone));
-                            return {};
-                          });
+  auto world =
+      bake_zones(scene, config, context, local,
+                 [&](int32_t x, int32_t z, flatbuffers::DetachedBuffer bytes) -> Result<void> {
+                   auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(x, z));
+                   if (!zone) return zone.error();
+                   zones.push_back(std::move(*zone));
+                   return {};
+                 });
   if (!world) return world.error();
   for (size_t i = 0; i < zones.size(); ++i) (*world)->slots[i]->zone = std::move(zones[i]);
   if (report != nullptr) *report = local;
@@ -256,8 +258,9 @@ Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
   }
   BakeReport report;
   auto world = bake_zones(scene, config, context, report,
-                          [&](int32_t x, int32_t z, std::vector<uint8_t> bytes) {
-                            return write_file((part.path / zone_file_name(x, z)).string(), bytes);
+                          [&](int32_t x, int32_t z, const flatbuffers::DetachedBuffer& bytes) {
+                            return write_file((part.path / zone_file_name(x, z)).string(),
+                                              {bytes.data(), bytes.size()});
                           });
   if (!world) return world.error();
   if (auto ok = write_file((part.path / manifest).string(), write_manifest(**world)); !ok) {

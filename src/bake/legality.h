@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/sheet_kernels.h"
 #include "bake/sheets.h"
 
 /// Where a class may stand: one bit per cell of a sheet.
@@ -51,10 +52,14 @@ class SheetWindow {
  private:
   void copy_own(const Sheet& own);
   void fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach);
+  void fill_side(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
+  void fill_corner(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
   void fill_holes(const TileSheets& tile, size_t sheet, int32_t max_step, int32_t min_gap);
 
   int32_t pad_ = 0;
   int32_t stride_ = 0;
+  std::vector<GapLine> lines_;     // of one line of cells, per sheet
+  std::vector<uint16_t> columns_;  // of the sheets, where a line is one
 };
 
 /// Scratch of one worker for legal_cells.

@@ -295,6 +295,112 @@ void MakeTilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
   }
 }
 
+void PresentBits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16);
+  for (size_t z = 0; z < kTileSide; ++z) {
+    uint64_t row = 0;
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
+      row |= bits_of(du, hn::Ne(hn::Load(du, &sheet.feet[z * kTileSide + x]), none)) << x;
+    }
+    rows[z] = row;
+  }
+}
+
+HeightRange CeilingRange(const Sheet& sheet) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16);
+  auto low = none, high = hn::Zero(du);
+  for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
+    const auto stands = hn::Ne(hn::Load(du, &sheet.feet[c]), none);
+    const auto ceiling = hn::Load(du, &sheet.ceiling[c]);
+    low = hn::Min(low, hn::IfThenElse(stands, ceiling, none));
+    high = hn::Max(high, hn::IfThenElseZero(stands, ceiling));
+  }
+  return {hn::GetLane(hn::MinOfLanes(du, low)), hn::GetLane(hn::MaxOfLanes(du, high))};
+}
+
+void RelativeHeights(const std::array<uint16_t, kTileArea>& values, const Sheet& sheet,
+                     uint16_t low, uint16_t* out) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16), base = hn::Set(du, low);
+  for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
+    const auto value = hn::Load(du, &values[c]);
+    const auto held = hn::And(hn::Ne(hn::Load(du, &sheet.feet[c]), none), hn::Ne(value, none));
+    hn::StoreU(hn::IfThenElse(held, hn::Sub(value, base), none), du, out + c);
+  }
+}
+
+void ChooseGaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling) {
+  const DI di;
+  const DH dh;
+  const auto none = hn::Set(di, kNone16), zero = hn::Zero(di);
+  for (size_t i = 0; i < kTileSide; i += hn::Lanes(di)) {
+    const auto wanted = hn::LoadU(di, near + i);
+    auto least = hn::Set(di, INT32_MAX);
+    auto best_top = none, best_ceiling = zero;
+    for (const GapLine& line : lines) {
+      const auto shift = hn::Set(di, line.shift);
+      const auto own_top = hn::PromoteTo(di, hn::LoadU(dh, line.top + i));
+      const auto own_ceiling = hn::PromoteTo(di, hn::LoadU(dh, line.ceiling + i));
+      const auto height = hn::Min(hn::Max(hn::Add(own_top, shift), zero), none);
+      const auto room = hn::IfThenElse(hn::Eq(own_ceiling, none), none,
+                                       hn::Min(hn::Max(hn::Add(own_ceiling, shift), zero), none));
+      const auto distance = hn::Abs(hn::Sub(hn::Add(own_top, shift), wanted));
+      const auto better = hn::And(hn::Ne(own_top, none), hn::Lt(distance, least));
+      least = hn::IfThenElse(better, distance, least);
+      best_top = hn::IfThenElse(better, height, best_top);
+      best_ceiling = hn::IfThenElse(better, room, best_ceiling);
+    }
+    hn::StoreU(narrow(best_top), dh, top + i);
+    hn::StoreU(narrow(best_ceiling), dh, ceiling + i);
+    hn::StoreU(hn::IfThenElse(hn::Eq(best_top, none), wanted, best_top), di, near + i);
+  }
+}
+
+alignas(64) constexpr int32_t kCounting[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                               8, 9, 10, 11, 12, 13, 14, 15};
+
+// Heights of a plane over one vector of cells of row z.
+HWY_INLINE hn::Vec<DI> plane_heights(const LevelPlane& plane, int32_t x, int32_t z) {
+  const DI di;
+  const auto cells = hn::Add(hn::Set(di, x), hn::Load(di, kCounting));
+  const auto rise = hn::Add(hn::Set(di, plane.part + plane.slope_z * z + 512),
+                            hn::Mul(cells, hn::Set(di, plane.slope_x)));
+  return hn::Add(hn::Set(di, plane.base), hn::ShiftRight<10>(rise));
+}
+
+bool PlaneFits(const Sheet& sheet, const LevelPlane& plane) {
+  const DI di;
+  const DH dh;
+  const auto none = hn::Set(di, kNone16), one = hn::Set(di, 1);
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    auto off = hn::Lt(none, none);
+    for (int32_t x = 0; x < kTileSide; x += static_cast<int32_t>(hn::Lanes(di))) {
+      const auto feet =
+          hn::PromoteTo(di, hn::Load(dh, &sheet.feet[static_cast<size_t>(z * kTileSide + x)]));
+      const auto miss = hn::Abs(hn::Sub(plane_heights(plane, x, z), feet));
+      off = hn::Or(off, hn::And(hn::Ne(feet, none), hn::Gt(miss, one)));
+    }
+    if (!hn::AllFalse(di, off)) return false;
+  }
+  return true;
+}
+
+void PutOnPlane(const LevelPlane& plane, Sheet& sheet) {
+  const DI di;
+  const DH dh;
+  const auto none = hn::Set(di, kNone16);
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    for (int32_t x = 0; x < kTileSide; x += static_cast<int32_t>(hn::Lanes(di))) {
+      uint16_t* row = &sheet.feet[static_cast<size_t>(z * kTileSide + x)];
+      const auto feet = hn::PromoteTo(di, hn::Load(dh, row));
+      const auto height = plane_heights(plane, x, z);
+      hn::Store(narrow(hn::IfThenElse(hn::Eq(feet, none), none, height)), dh, row);
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace throng
 HWY_AFTER_NAMESPACE();
@@ -310,6 +416,12 @@ HWY_EXPORT(WriteGaps);
 HWY_EXPORT(Summarise);
 HWY_EXPORT(MayBePlane);
 HWY_EXPORT(MakeTilt);
+HWY_EXPORT(PresentBits);
+HWY_EXPORT(CeilingRange);
+HWY_EXPORT(RelativeHeights);
+HWY_EXPORT(ChooseGaps);
+HWY_EXPORT(PlaneFits);
+HWY_EXPORT(PutOnPlane);
 
 void link_layer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap,
                 LayerLinks& links) {
@@ -337,6 +449,29 @@ bool may_be_plane(const Sheet& sheet) { return HWY_DYNAMIC_DISPATCH(MayBePlane)(
 
 void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
   HWY_DYNAMIC_DISPATCH(MakeTilt)(sheet, tilt);
+}
+
+void present_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
+  HWY_DYNAMIC_DISPATCH(PresentBits)(sheet, rows);
+}
+
+HeightRange ceiling_range(const Sheet& sheet) { return HWY_DYNAMIC_DISPATCH(CeilingRange)(sheet); }
+
+void relative_heights(const std::array<uint16_t, kTileArea>& values, const Sheet& sheet,
+                      uint16_t low, uint16_t* out) {
+  HWY_DYNAMIC_DISPATCH(RelativeHeights)(values, sheet, low, out);
+}
+
+void choose_gaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling) {
+  HWY_DYNAMIC_DISPATCH(ChooseGaps)(lines, near, top, ceiling);
+}
+
+bool plane_fits(const Sheet& sheet, const LevelPlane& plane) {
+  return HWY_DYNAMIC_DISPATCH(PlaneFits)(sheet, plane);
+}
+
+void put_on_plane(const LevelPlane& plane, Sheet& sheet) {
+  HWY_DYNAMIC_DISPATCH(PutOnPlane)(plane, sheet);
 }
 
 }  // namespace throng

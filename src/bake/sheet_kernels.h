@@ -46,4 +46,39 @@ bool may_be_plane(const Sheet& sheet);
 /// Half of what the feet may rise or fall over each cell, see world/surface.h. [mm]
 void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt);
 
+/// Which cells have feet: 64 rows of 64 bits.
+void present_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows);
+
+/// Lowest and highest ceiling over the cells that have feet.
+struct HeightRange {
+  uint16_t low = kNone16, high = 0;
+};
+HeightRange ceiling_range(const Sheet& sheet);
+
+/// `values` above `low`; kNone16 where they are, and where there are no feet. `out` holds 4096.
+void relative_heights(const std::array<uint16_t, kTileArea>& values, const Sheet& sheet,
+                      uint16_t low, uint16_t* out);
+
+/// One sheet's gaps along a line of 64 cells.
+struct GapLine {
+  const uint16_t* top;
+  const uint16_t* ceiling;
+  int32_t shift;  // from the sheet's base to the one that is asked for [mm]
+};
+
+/// For each of 64 cells the gap whose top is nearest to `near`, which becomes that top; where no
+/// sheet has a gap, kNone16 under a ceiling of 0, and `near` stays. [mm]
+void choose_gaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling);
+
+/// True if the plane meets all feet to within 1 mm. Heights as LevelView::sample.
+struct LevelPlane {
+  int32_t base = 0;                  // at the centre of cell (0, 0), from the sheet's base [mm]
+  int32_t part = 0;                  // [1/1024 mm]
+  int32_t slope_x = 0, slope_z = 0;  // [1/1024 mm per cell]
+};
+bool plane_fits(const Sheet& sheet, const LevelPlane& plane);
+
+/// Puts all feet on the plane.
+void put_on_plane(const LevelPlane& plane, Sheet& sheet);
+
 }  // namespace throng

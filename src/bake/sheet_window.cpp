@@ -17,6 +17,14 @@ uint16_t rebased(uint16_t value, int32_t shift) {
   return static_cast<uint16_t>(std::clamp<int32_t>(value + shift, 0, kNone16));
 }
 
+void rebase_row(const uint16_t* from, int32_t count, int32_t shift, uint16_t* to) {
+  if (shift == 0) {
+    std::copy_n(from, count, to);
+    return;
+  }
+  for (int32_t i = 0; i < count; ++i) to[i] = rebased(from[i], shift);
+}
+
 // The sheet of a tile whose gap at `cell` is nearest to `near_top` (absolute), or null.
 const Sheet* nearest_sheet(const TileSheets& tile, size_t cell, int32_t near_top) {
   const Sheet* best = nullptr;
@@ -80,8 +88,9 @@ void SheetWindow::copy_own(const Sheet& own) {
 }
 
 void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach) {
-  for (int32_t side = 0; side < 9; ++side) {
-    if (side == 4 || tiles[static_cast<size_t>(side)] == nullptr) continue;
+  // Corners last: they look at the sides.
+  for (const int32_t side : {1, 3, 5, 7, 0, 2, 6, 8}) {
+    if (tiles[static_cast<size_t>(side)] == nullptr) continue;
     const TileSheets& tile = *tiles[static_cast<size_t>(side)];
     if (tile.empty()) continue;
     const int32_t dx = side % 3 - 1, dz = side / 3 - 1;
@@ -96,33 +105,84 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
       const Sheet& other = *tile[0];
       const int32_t shift = other.base - own.base;
       for (int32_t z = z0; z < z1; ++z) {
-        for (int32_t x = x0; x < x1; ++x) {
-          const size_t from =
-              static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
-          top[index(x, z)] = rebased(other.top[from], shift);
-          ceiling[index(x, z)] = rebased(other.ceiling[from], shift);
-        }
+        const auto from =
+            static_cast<size_t>((z - dz * kTileSide) * kTileSide + x0 - dx * kTileSide);
+        rebase_row(&other.top[from], x1 - x0, shift, &top[index(x0, z)]);
+        rebase_row(&other.ceiling[from], x1 - x0, shift, &ceiling[index(x0, z)]);
       }
       continue;
     }
-    // Several sheets: walk outward from the tile, each cell continuing the one before it.
-    int32_t last = own.low_top;
-    for (int32_t step_z = 0; step_z < z1 - z0; ++step_z) {
-      const int32_t z = dz < 0 ? z1 - 1 - step_z : z0 + step_z;
-      for (int32_t step_x = 0; step_x < x1 - x0; ++step_x) {
-        const int32_t x = dx < 0 ? x1 - 1 - step_x : x0 + step_x;
-        const uint16_t inward = top[index(x - dx, z - dz)];
-        const uint16_t beside = dx != 0 && dz != 0 ? top[index(x - dx, z)] : inward;
-        int32_t near_top = inward != kNone16 ? inward : (beside != kNone16 ? beside : last);
-        const size_t from =
-            static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
-        const Sheet* other = nearest_sheet(tile, from, near_top + own.base);
-        if (other == nullptr) continue;
-        const int32_t shift = other->base - own.base;
-        top[index(x, z)] = rebased(other->top[from], shift);
-        ceiling[index(x, z)] = rebased(other->ceiling[from], shift);
-        last = near_top;
+    if (dx != 0 && dz != 0) {
+      fill_corner(tile, own, dx, dz, reach);
+    } else {
+      fill_side(tile, own, dx, dz, reach);
+    }
+  }
+}
+
+// Several sheets beside the tile: lines of cells from the tile outward, each cell continuing the
+// one before it.
+void SheetWindow::fill_side(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz,
+                            int32_t reach) {
+  const bool is_row = dx == 0;  // lines along x
+  const bool outward_up = dx + dz > 0;
+  lines_.resize(tile.size());
+  columns_.resize(is_row ? 0 : tile.size() * 2 * kTileSide);
+  alignas(64) std::array<int32_t, kTileSide> near;
+  alignas(64) std::array<uint16_t, kTileSide> line_top, line_ceiling;
+  for (size_t i = 0; i < kTileSide; ++i) {
+    const size_t border = outward_up ? kTileSide - 1 : 0;
+    const uint16_t at = own.top[is_row ? border * kTileSide + i : i * kTileSide + border];
+    near[i] = at == kNone16 ? own.low_top : at;
+  }
+  for (int32_t step = 0; step < reach; ++step) {
+    const auto line = static_cast<size_t>(outward_up ? step : kTileSide - 1 - step);
+    for (size_t s = 0; s < tile.size(); ++s) {
+      const Sheet& other = *tile[s];
+      lines_[s].shift = other.base - own.base;
+      if (is_row) {
+        lines_[s].top = &other.top[line * kTileSide];
+        lines_[s].ceiling = &other.ceiling[line * kTileSide];
+        continue;
       }
+      uint16_t* tops = &columns_[s * 2 * kTileSide];
+      uint16_t* ceilings = tops + kTileSide;
+      for (size_t z = 0; z < kTileSide; ++z) {
+        tops[z] = other.top[z * kTileSide + line];
+        ceilings[z] = other.ceiling[z * kTileSide + line];
+      }
+      lines_[s].top = tops;
+      lines_[s].ceiling = ceilings;
+    }
+    choose_gaps(lines_, near.data(), line_top.data(), line_ceiling.data());
+    const int32_t out = outward_up ? kTileSide + step : -1 - step;
+    if (is_row) {
+      std::copy(line_top.begin(), line_top.end(), &top[index(0, out)]);
+      std::copy(line_ceiling.begin(), line_ceiling.end(), &ceiling[index(0, out)]);
+      continue;
+    }
+    for (int32_t z = 0; z < kTileSide; ++z) {
+      top[index(out, z)] = line_top[static_cast<size_t>(z)];
+      ceiling[index(out, z)] = line_ceiling[static_cast<size_t>(z)];
+    }
+  }
+}
+
+void SheetWindow::fill_corner(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz,
+                              int32_t reach) {
+  for (int32_t step_z = 0; step_z < reach; ++step_z) {
+    const int32_t z = dz < 0 ? -1 - step_z : kTileSide + step_z;
+    for (int32_t step_x = 0; step_x < reach; ++step_x) {
+      const int32_t x = dx < 0 ? -1 - step_x : kTileSide + step_x;
+      const uint16_t inward = top[index(x - dx, z - dz)], beside = top[index(x - dx, z)];
+      const int32_t near_top =
+          inward != kNone16 ? inward : (beside != kNone16 ? beside : own.low_top);
+      const auto from = static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
+      const Sheet* other = nearest_sheet(tile, from, near_top + own.base);
+      if (other == nullptr) continue;
+      const int32_t shift = other->base - own.base;
+      top[index(x, z)] = rebased(other->top[from], shift);
+      ceiling[index(x, z)] = rebased(other->ceiling[from], shift);
     }
   }
 }

@@ -31,8 +31,6 @@ struct TileState {
   TileSheets sheets;
   std::vector<FloorPlane> planes;
   TileLegality legality;
-  std::vector<std::vector<ClearancePlanes>>
-      clearance;  // per sheet and class; empty: drop the sheet
 };
 
 // Tiles of a zone and its ring, row by row; the ring is row and column 0 and n + 1.
@@ -44,7 +42,9 @@ class ZoneJob {
         first_x_(zone_x * plan.tiles_per_zone - 1),
         first_z_(zone_z * plan.tiles_per_zone - 1),
         side_(plan.tiles_per_zone + 2),
-        tiles_(static_cast<size_t>(side_) * static_cast<size_t>(side_)) {}
+        tiles_(static_cast<size_t>(side_) * static_cast<size_t>(side_)),
+        packs_(static_cast<size_t>(plan.tiles_per_zone) *
+               static_cast<size_t>(plan.tiles_per_zone)) {}
 
   bool run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t zone_z, Context& context,
            ZoneResult& result);
@@ -64,7 +64,6 @@ class ZoneJob {
   void make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void judge(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void clear(int32_t column, int32_t row, ZoneScratch::Worker& worker);
-  void emit(int32_t row, ZoneBuilder& builder);
   bool is_open(int32_t column, int32_t row, size_t avatar_class) const;
 
   const BakePlan& plan_;
@@ -72,6 +71,7 @@ class ZoneJob {
   int32_t first_x_, first_z_;  // of the ring, in tiles of the world
   int32_t side_;
   std::vector<TileState> tiles_;
+  std::vector<TilePack> packs_;  // of the zone's own tiles
   TriangleBins bins_;
 };
 
@@ -83,6 +83,9 @@ struct ZoneScratch::Worker {
   LegalityScratch legality;
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
   uint64_t spans = 0;
+  std::vector<ClearancePlanes> clearance;  // of one sheet, per class
+  std::vector<uint8_t> step_safe;
+  std::vector<uint64_t> legal_cells;  // of the zone, per class
 };
 
 ZoneScratch::ZoneScratch(int32_t count) {
@@ -214,38 +217,32 @@ void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
     const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
     if (in_world(x, z)) around[static_cast<size_t>(i)] = &at(x, z).legality;
   }
-  tile.clearance.resize(tile.sheets.size());
+  const auto index = static_cast<uint32_t>((row - 1) * plan_.tiles_per_zone + column - 1);
+  const size_t classes = plan_.bodies.size();
+  worker.clearance.resize(classes);
+  worker.step_safe.resize(classes);
   for (size_t s = 0; s < tile.sheets.size(); ++s) {
     const SheetLegality& legality = tile.legality[s];
     const bool used = std::any_of(legality.classes.begin(), legality.classes.end(),
                                   [](const auto& verdict) { return verdict.any; });
     if (!used) continue;
-    tile.clearance[s].resize(plan_.bodies.size());
-    for (size_t c = 0; c < plan_.bodies.size(); ++c) {
-      ClearancePlanes& planes = tile.clearance[s][c];
+    for (size_t c = 0; c < classes; ++c) {
+      ClearancePlanes& planes = worker.clearance[c];
+      planes.all = false;
+      planes.cells = 0;
+      worker.step_safe[c] = legality.classes[c].step_safe;
       if (is_open(column, row, c)) {
         planes.all = true;
         planes.cells = kTileArea;
       } else if (legality.classes[c].any) {
         erode(around, s, c, plan_.bodies[c].step, planes);
       }
+      worker.legal_cells[c] += static_cast<uint64_t>(planes.cells);
     }
+    pack_level(index, *tile.sheets[s], tile.planes[s], worker.clearance, worker.step_safe,
+               plan_.codes, packs_[index]);
   }
   worker.seconds_clearance += seconds_since(start);
-}
-
-void ZoneJob::emit(int32_t row, ZoneBuilder& builder) {
-  if (row <= 0 || row >= side_ - 1) return;
-  for (int32_t column = 1; column < side_ - 1; ++column) {
-    TileState& tile = at(column, row);
-    for (size_t s = 0; s < tile.clearance.size(); ++s) {
-      if (tile.clearance[s].empty()) continue;
-      std::vector<uint8_t> step_safe;
-      for (const auto& verdict : tile.legality[s].classes) step_safe.push_back(verdict.step_safe);
-      builder.add_level(static_cast<uint32_t>((row - 1) * plan_.tiles_per_zone + column - 1),
-                        *tile.sheets[s], tile.planes[s], tile.clearance[s], step_safe);
-    }
-  }
 }
 
 bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t zone_z,
@@ -253,6 +250,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
   for (auto& worker : scratch_.workers) {
     worker->seconds_columns = worker->seconds_levels = worker->seconds_clearance = 0;
     worker->spans = 0;
+    worker->legal_cells.assign(plan_.bodies.size(), 0);
   }
   const auto start = Clock::now();
   scratch_.triangles.resize(triangles.size());
@@ -266,8 +264,6 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
                         side_, kTileSide, 0);
   result.seconds_columns = seconds_since(start);
 
-  ZoneBuilder builder(static_cast<uint32_t>(plan_.tiles_per_zone), plan_.bodies.size(),
-                      plan_.codes);
   using Worker = ZoneScratch::Worker;
   for (int32_t row = 0; row < side_ + 2; row += kBand) {
     if (context.cancel) return false;
@@ -275,7 +271,6 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
     for_tiles(row, end, [&](int32_t x, int32_t z, Worker& w) { make_sheets(x, z, w); });
     for_tiles(row - 1, end - 1, [&](int32_t x, int32_t z, Worker& w) { judge(x, z, w); });
     for_tiles(row - 2, end - 2, [&](int32_t x, int32_t z, Worker& w) { clear(x, z, w); });
-    for (int32_t z = std::max(row - 2, 0); z < std::min(end - 2, side_); ++z) emit(z, builder);
     // Rows that nothing will look at again.
     for (int32_t z = std::max(row - 4, 0); z < std::min(end - 4, side_); ++z) {
       for (int32_t x = 0; x < side_; ++x) {
@@ -293,13 +288,22 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
     result.seconds_levels += worker->seconds_levels;
     result.seconds_clearance += worker->seconds_clearance;
     result.spans += worker->spans;
+    for (size_t c = 0; c < result.legal_cells.size(); ++c) {
+      result.legal_cells[c] += worker->legal_cells[c];
+    }
   }
-  result.levels = builder.level_count();
-  result.plain_levels = builder.plain_count();
-  result.tiles = builder.tile_count();
-  result.legal_cells.assign(builder.legal_cells().begin(), builder.legal_cells().end());
-  result.bytes.clear();
-  if (result.levels > 0) result.bytes = builder.finish(zone_x, zone_z);
+  for (const TilePack& pack : packs_) {
+    result.levels += static_cast<uint32_t>(pack.levels.size());
+    result.plain_levels += pack.plain;
+    result.tiles += pack.levels.empty() ? 0 : 1;
+  }
+  if (result.levels > 0) {
+    result.bytes = zone_bytes({.x = zone_x,
+                               .z = zone_z,
+                               .tiles_per_side = static_cast<uint32_t>(plan_.tiles_per_zone),
+                               .class_count = static_cast<uint32_t>(plan_.bodies.size())},
+                              packs_, plan_.config->workers);
+  }
   return true;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <flatbuffers/flatbuffers.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,7 +36,7 @@ struct BakePlan {
 };
 
 struct ZoneResult {
-  std::vector<uint8_t> bytes;  // empty: nobody can stand in this zone
+  flatbuffers::DetachedBuffer bytes;  // empty: nobody can stand in this zone
   uint32_t levels = 0;
   uint32_t plain_levels = 0;
   uint32_t tiles = 0;

@@ -23,39 +23,29 @@ struct FloorPlane {
 };
 FloorPlane fit_plane(Sheet& sheet);
 
-class ZoneBuilder {
- public:
-  ZoneBuilder(uint32_t tiles_per_side, size_t class_count, const SurfaceCodes& codes);
-
-  /// Adds one level of tile `tile`; tiles come in ascending order.
-  void add_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
-                 std::span<const ClearancePlanes> clearance, std::span<const uint8_t> step_safe);
-
-  [[nodiscard]] uint32_t level_count() const { return static_cast<uint32_t>(levels_.size()); }
-  [[nodiscard]] uint32_t plain_count() const { return plain_; }
-  [[nodiscard]] uint32_t tile_count() const { return tiles_with_levels_; }
-  [[nodiscard]] std::span<const uint64_t> legal_cells() const { return legal_cells_; }
-
-  /// The zone file's bytes.
-  [[nodiscard]] std::vector<uint8_t> finish(int32_t zone_x, int32_t zone_z) const;
-
- private:
-  uint32_t add_planes(const BitPlane& plane);
-  uint32_t add_heights(std::span<const uint16_t> values);
-
-  uint32_t tiles_per_side_;
-  size_t class_count_;
-  const SurfaceCodes& codes_;
-  std::vector<uint32_t> levels_of_tile_;
-  std::vector<format::Level> levels_;
-  std::vector<format::Clearance> clearance_;
-  std::vector<uint16_t> heights_;
-  std::vector<uint64_t> planes_;
-  std::vector<uint8_t> areas_;
-  std::vector<uint64_t> legal_cells_;
-  uint32_t plain_ = 0;
-  uint32_t tiles_with_levels_ = 0;
-  uint32_t last_tile_ = UINT32_MAX;
+/// The levels of one tile as they will stand in the file, with offsets into the tile's own arrays.
+struct TilePack {
+  std::vector<format::Level> levels;
+  std::vector<format::Clearance> clearance;  // per level and class
+  std::vector<uint16_t> heights;
+  std::vector<uint64_t> planes;
+  std::vector<uint8_t> areas;
+  uint32_t plain = 0;  // levels whose floor is a constant or a plane
 };
+
+/// Adds one level of tile `tile` to its pack.
+void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
+                std::span<const ClearancePlanes> clearance, std::span<const uint8_t> step_safe,
+                const SurfaceCodes& codes, TilePack& pack);
+
+struct ZoneShape {
+  int32_t x = 0, z = 0;  // of the zone
+  uint32_t tiles_per_side = 0;
+  uint32_t class_count = 0;
+};
+
+/// The zone file's bytes, from the packs of all its tiles, row by row. Packs are emptied.
+flatbuffers::DetachedBuffer zone_bytes(const ZoneShape& shape, std::span<TilePack> packs,
+                                       int32_t workers);
 
 }  // namespace throng

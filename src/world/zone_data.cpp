@@ -21,11 +21,11 @@ bool fits(uint64_t offset, uint64_t count, uint64_t size) { return offset + coun
 
 }  // namespace
 
-Result<std::unique_ptr<Zone>> Zone::from_bytes(std::vector<uint8_t> bytes,
+Result<std::unique_ptr<Zone>> Zone::from_bytes(flatbuffers::DetachedBuffer bytes,
                                                const std::string& name) {
   auto zone = std::make_unique<Zone>();
   zone->owned_ = std::move(bytes);
-  zone->bytes_ = zone->owned_;
+  zone->bytes_ = {zone->owned_.data(), zone->owned_.size()};
   if (auto attached = zone->attach(name); !attached) return attached.error();
   return zone;
 }

@@ -28,7 +28,7 @@ inline constexpr int32_t kMaxSlope =
 class Zone {
  public:
   /// Fails with kBadFile and `name` if the bytes are not a sound zone of this version.
-  static Result<std::unique_ptr<Zone>> from_bytes(std::vector<uint8_t> bytes,
+  static Result<std::unique_ptr<Zone>> from_bytes(flatbuffers::DetachedBuffer bytes,
                                                   const std::string& name);
   static Result<std::unique_ptr<Zone>> from_file(FileMap map, const std::string& name);
 
@@ -51,7 +51,7 @@ class Zone {
  private:
   Result<void> attach(const std::string& name);
 
-  std::vector<uint8_t> owned_;
+  flatbuffers::DetachedBuffer owned_;
   FileMap map_;
   std::span<const uint8_t> bytes_;
   const format::Zone* root_ = nullptr;

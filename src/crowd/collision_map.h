@@ -2,103 +2,138 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 
-#include "world/walk.h"
+#include "core/huge_array.h"
+#include "crowd/pixel_grid.h"
 
 /// The collision map: who is where, on a grid of its own. Source: [TC00] section 3; the bit per
 /// cell and level of [ML06] section 3.1.
 namespace throng {
 
-/// Pixels are at least two radii wide, so bodies whose pixels do not touch cannot touch. [TC00]
-/// adds 1 to nine pixels and asks for a 0; setting bits in one pixel and reading nine is the same,
-/// with a ninth of the writes. A pixel's bits are slices of kSlab height, so floors above each
-/// other do not see each other. Two bodies whose heights overlap share a slice. Not synchronised:
-/// see CrowdStep.
+/// [TC00] adds 1 to nine pixels and asks for a 0; setting bits in one pixel and reading nine is the
+/// same, with a ninth of the writes. A pixel's bits are slices of kSlab height, so floors above
+/// each other do not see each other. Two bodies whose heights overlap share a slice. Not
+/// synchronised: see CrowdBlocks.
 class CollisionMap {
  public:
   static constexpr int32_t kSlab = 250;  // height of a slice, more for bodies over 12 m [mm]
 
-  /// Where a body is: its pixel and its slices, in one word or in two on top of each other.
+  /// The slices that a body fills, in one plane of words or in two on top of each other.
+  struct Slices {
+    uint32_t plane = 0;
+    uint64_t low = 0, high = 0;  // in `plane` and in the next
+    friend bool operator==(const Slices&, const Slices&) = default;
+  };
+  /// Where a body is: its pixel and its slices.
   struct Mark {
     uint32_t pixel = 0;
-    uint32_t plane = 0;
-    uint64_t low = 0, high = 0;  // slices in `plane` and in the next
+    Slices slices;
     friend bool operator==(const Mark&, const Mark&) = default;
   };
 
-  /// A grid of width x depth cells with pixels of `pixel_cells` cells, for heights from `low` to
-  /// `high`. [mm] Memory is touched only where bodies go.
-  CollisionMap(int32_t width, int32_t depth, int32_t pixel_cells, int32_t low, int32_t high,
-               int32_t body_height);
+  /// A grid of width x depth cells for heights from `low` to `high`. [mm]
+  CollisionMap(int32_t width, int32_t depth, PixelGrid grid, int32_t low, int32_t high,
+               int32_t body_height, Pages pages = Pages::kSmall);
 
-  [[nodiscard]] uint32_t pixel_x(int64_t x) const {
-    return static_cast<uint32_t>((static_cast<uint64_t>(x) * magic_) >> 52) + 1;
-  }
   [[nodiscard]] Mark mark(GroundPoint p, int32_t feet) const {
-    Mark m;
-    m.pixel = pixel_x(p.z) * stride_ + pixel_x(p.x);
+    return {pixel(grid_.pixel(p.cell_x()), grid_.pixel(p.cell_z())), slices(feet)};
+  }
+  /// Number of pixel (x, z) of the grid.
+  [[nodiscard]] uint32_t pixel(int32_t x, int32_t z) const {
+    return static_cast<uint32_t>(z + 1) * stride_ + static_cast<uint32_t>(x + 1);
+  }
+  [[nodiscard]] Slices slices(int32_t feet) const {
     const uint32_t first = slice(static_cast<uint32_t>(feet - low_));
     const uint32_t last = slice(static_cast<uint32_t>(feet - low_ + body_height_));
-    m.plane = first / 64;
     const uint32_t begin = first % 64, count = last - first + 1;
     const uint64_t ones = ~uint64_t{0} >> (64 - count);
-    m.low = ones << begin;
-    m.high = begin + count > 64 ? ones >> (64 - begin) : 0;
-    return m;
+    return {first / 64, ones << begin, begin + count > 64 ? ones >> (64 - begin) : 0};
   }
   void set(const Mark& m) {
-    word(m.plane, m.pixel) |= m.low;
-    if (m.high != 0) word(m.plane + 1, m.pixel) |= m.high;
+    word(m.slices.plane, m.pixel) |= m.slices.low;
+    if (m.slices.high != 0) word(m.slices.plane + 1, m.pixel) |= m.slices.high;
   }
   void clear(const Mark& m) {
-    word(m.plane, m.pixel) &= ~m.low;
-    if (m.high != 0) word(m.plane + 1, m.pixel) &= ~m.high;
+    word(m.slices.plane, m.pixel) &= ~m.slices.low;
+    if (m.slices.high != 0) word(m.slices.plane + 1, m.pixel) &= ~m.slices.high;
   }
   /// True if nobody's slices overlap the mark's in its pixel and the eight around.
   [[nodiscard]] bool is_free(const Mark& m) const {
-    if ((around(m.plane, m.pixel) & m.low) != 0) return false;
-    return m.high == 0 || (around(m.plane + 1, m.pixel) & m.high) == 0;
+    if ((around(m.slices.plane, m.pixel) & m.slices.low) != 0) return false;
+    return m.slices.high == 0 || (around(m.slices.plane + 1, m.pixel) & m.slices.high) == 0;
   }
-  void prefetch(GroundPoint p) const {
-    const uint64_t* w = words_.get() + static_cast<uint64_t>(pixel_x(p.z)) * stride_ + pixel_x(p.x);
-    __builtin_prefetch(w - stride_);
+
+  /// One of the eight ways to a pixel beside: dx and dz are -1, 0 or 1, and not both 0.
+  [[nodiscard]] static constexpr uint32_t way(int32_t dx, int32_t dz) {
+    return static_cast<uint32_t>(dz * 3 + dx + 4);
+  }
+  /// Asks for the words that move_by_one will read.
+  void prefetch(const Slices& s, uint32_t from, uint32_t way) const {
+    const Ring& ring = rings_[way];
+    const uint64_t* w = &word(s.plane, from);
     __builtin_prefetch(w);
-    __builtin_prefetch(w + stride_);
+    __builtin_prefetch(w + ring.ahead[0]);
+    __builtin_prefetch(w + ring.ahead[2]);
+    __builtin_prefetch(w + ring.ahead[4]);
   }
-  [[nodiscard]] uint32_t stride() const { return stride_; }
-  [[nodiscard]] uint32_t rows() const { return rows_; }
-  [[nodiscard]] uint64_t bytes() const { return size_ * sizeof(uint64_t); }
+  /// Moves a body that is alone around `from` one pixel along `way`, if it is alone there too. Only
+  /// the pixels around the one and not around the other need a look.
+  bool move_by_one(const Slices& s, uint32_t from, uint32_t way) {
+    const Ring& ring = rings_[way];
+    uint64_t* w = &word(s.plane, from);
+    uint64_t taken = ahead(w, ring) & s.low;
+    if (s.high != 0) taken |= ahead(w + plane_size_, ring) & s.high;
+    const bool is_free = taken == 0;
+    // Without a branch: whether the way is free is what nobody can predict.
+    const uint64_t low = is_free ? s.low : 0;
+    w[0] ^= low;
+    w[ring.to] ^= low;
+    if (s.high != 0) {
+      const uint64_t high = is_free ? s.high : 0;
+      w[plane_size_] ^= high;
+      (w + plane_size_)[ring.to] ^= high;
+    }
+    return is_free;
+  }
+  [[nodiscard]] const PixelGrid& grid() const { return grid_; }
+  [[nodiscard]] uint64_t bytes() const { return words_.size() * sizeof(uint64_t); }
 
  private:
+  // The pixel that a way leads to, and where to look: as offsets from where it begins. A straight
+  // step has three new pixels and names some of them twice, so that all steps look alike.
+  struct Ring {
+    int64_t to = 0;
+    std::array<int64_t, 5> ahead{};
+  };
+
   // Rises with the height, which is all that matters: overlapping bodies share a slice.
   [[nodiscard]] uint32_t slice(uint32_t height) const {
     return static_cast<uint32_t>((height * slab_magic_) >> 32);
   }
   [[nodiscard]] uint64_t& word(uint32_t plane, uint32_t pixel) const {
-    return words_.get()[plane * plane_size_ + pixel];
+    return words_.data()[plane * plane_size_ + pixel];
+  }
+  [[nodiscard]] static uint64_t ahead(const uint64_t* w, const Ring& ring) {
+    const auto& at = ring.ahead;
+    return (w[at[0]] | w[at[1]]) | (w[at[2]] | w[at[3]]) | w[at[4]];
   }
   [[nodiscard]] uint64_t around(uint32_t plane, uint32_t pixel) const {
-    const uint64_t* w = words_.get() + plane * plane_size_ + pixel;
+    const uint64_t* w = &word(plane, pixel);
     const uint64_t* up = w - stride_;
     const uint64_t* down = w + stride_;
     return (up[-1] | up[0] | up[1]) | (w[-1] | w[0] | w[1]) | (down[-1] | down[0] | down[1]);
   }
 
-  struct Free {
-    void operator()(uint64_t* p) const { std::free(p); }
-  };
-  uint64_t magic_;       // 2^52 / units per pixel, rounded up: exact for 31-bit positions
+  PixelGrid grid_;
   uint64_t slab_magic_;  // 2^32 / slab
   uint32_t stride_;      // pixels a row, with a rim of one
-  uint32_t rows_;
   uint64_t plane_size_;
-  uint64_t size_;
   int32_t low_;
   int32_t body_height_;
-  std::unique_ptr<uint64_t, Free> words_;
+  std::array<Ring, 9> rings_{};
+  HugeArray<uint64_t> words_;
 };
 
 }  // namespace throng

@@ -11,6 +11,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "crowd/crowd_blocks.h"
 #include "crowd/crowd_check.h"
 #include "crowd/crowd_step.h"
 #include "crowd/placement.h"
@@ -24,7 +25,12 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-constexpr int32_t kBlockPixels = 16;
+constexpr int32_t kBlockPixels = 32;
+constexpr uint64_t kGrain = 512;  // avatars that are worth handing to another thread
+
+int32_t step_mm(const AvatarClass& body) {
+  return static_cast<int32_t>(std::floor(body.step * 1000 + 1e-6));
+}
 
 // A direction, uniform over the circle, without trigonometry: a point of the disc, put on its rim.
 std::pair<double, double> random_direction(uint64_t seed, uint64_t id) {
@@ -46,8 +52,8 @@ struct Crowd::State {
   CrowdGround ground;
   std::optional<CollisionMap> map;
   std::optional<CrowdBlocks> blocks;
-  std::vector<Avatar> avatars;  // by block
-  std::vector<Avatar> scratch;
+  HugeArray<Avatar> avatars;  // by block
+  HugeArray<Avatar> scratch;
   double unit = 0;  // metres
   int32_t sub_steps = 1;
   uint64_t step = 0;
@@ -83,7 +89,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   state->config = config;
   state->body = data.summary.classes[static_cast<size_t>(config.avatar_class)];
   const AvatarClass& body = state->body;
-  auto ground = CrowdGround::make(data, config.avatar_class);
+  auto ground = CrowdGround::make(data, config.avatar_class, step_mm(body));
   if (!ground) return ground.error();
   state->ground = std::move(*ground);
 
@@ -92,7 +98,8 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   const auto body_mm = static_cast<int32_t>(std::ceil(body.height * 1000 - 1e-6));
   const auto low = static_cast<int32_t>(std::floor(data.summary.bounds.min.y * 1000)) - 1000;
   const auto high = static_cast<int32_t>(std::ceil(data.summary.bounds.max.y * 1000)) + 1000;
-  state->map.emplace(data.width, data.depth, pixel_cells, low, high, body_mm);
+  const PixelGrid grid(pixel_cells);
+  state->map.emplace(data.width, data.depth, grid, low, high, body_mm, Pages::kHuge);
   state->unit = cell / kUnitsPerCell;
 
   // Nobody moves further than a radius at a time.
@@ -105,23 +112,25 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   state->stride = static_cast<int64_t>(std::ceil(units)) + 1;
   // A mover reads one pixel further than it goes; two movers of one colour keep a block between
   // them.
-  const int64_t pixel_units = int64_t{pixel_cells} << kUnitBits;
-  state->max_drift = (kBlockPixels / 2 - 2) * pixel_units;
-  state->blocks.emplace(data.width, data.depth, pixel_cells, kBlockPixels);
+  state->max_drift = (kBlockPixels / 2 - 2) * grid.units();
+  state->blocks.emplace(data.width, data.depth, grid, kBlockPixels);
 
-  state->avatars = place_avatars(state->ground, config.avatars, config.seed, *state->map);
-  if (state->avatars.size() < config.avatars) {
-    return Error{Errc::kLimit, "crowd: " + std::to_string(state->avatars.size()) +
-                                   " avatars of class " + body.name + " fit in this world, " +
+  const std::vector<Avatar> placed =
+      place_avatars(state->ground, config.avatars, config.seed, *state->map);
+  if (placed.size() < config.avatars) {
+    return Error{Errc::kLimit, "crowd: " + std::to_string(placed.size()) + " avatars of class " +
+                                   body.name + " fit in this world, " +
                                    std::to_string(config.avatars) +
                                    " were asked for; ask for fewer or take a larger world"};
   }
-  for (Avatar& avatar : state->avatars) {
+  state->avatars = HugeArray<Avatar>(placed.size());
+  state->scratch = HugeArray<Avatar>(placed.size());
+  std::copy(placed.begin(), placed.end(), state->avatars.data());
+  for (Avatar& avatar : state->avatars.span()) {
     const auto [dx, dz] = random_direction(config.seed ^ 0x68656164, avatar.id);
     avatar.vx = static_cast<int32_t>(std::lround(dx * units));
     avatar.vz = static_cast<int32_t>(std::lround(dz * units));
   }
-  state->scratch.resize(state->avatars.size());
   state->drift = state->max_drift + 1;  // sort first
   return Crowd(std::move(state));
 }
@@ -135,26 +144,29 @@ StepReport Crowd::step() {
   StepInput input{.ground = &s.ground,
                   .map = &*s.map,
                   .seed = s.config.seed,
-                  .step_mm = static_cast<int32_t>(std::floor(s.body.step * 1000 + 1e-6)),
+                  .step_mm = step_mm(s.body),
                   .units_x = s.world.data()->width << kUnitBits,
                   .units_z = s.world.data()->depth << kUnitBits};
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     if (s.drift + s.stride > s.max_drift) {
       const auto sort_start = Clock::now();
-      s.blocks->sort(s.avatars, s.scratch);
+      s.blocks->sort(s.avatars, s.scratch, s.config.workers);
       s.drift = 0;
       report.seconds_sort += seconds_since(sort_start);
     }
     const auto move_start = Clock::now();
     input.step = ++s.sub_step;
-    for (uint32_t turn = 0; turn < 4; ++turn) {
+    for (uint32_t turn = 0; turn < CrowdBlocks::kColours; ++turn) {
       // Colours take turns at being first.
       const auto& runs = s.blocks->runs((turn + static_cast<uint32_t>(input.step)) & 3);
-      parallel_ranges(runs.size(), 16, s.config.workers, [&](size_t begin, size_t end) {
+      const uint64_t avatars_here = runs.empty() ? 1 : runs.back().last - runs.front().first;
+      const size_t grain = std::max<size_t>(1, kGrain * runs.size() / avatars_here);
+      parallel_ranges(runs.size(), grain, s.config.workers, [&](size_t begin, size_t end) {
         StepCounts counts;
+        Avatar* avatars = s.avatars.data();
         for (size_t r = begin; r < end; ++r) {
-          move_run(input, s.avatars.data() + runs[r].first, s.avatars.data() + runs[r].last,
-                   counts);
+          move_run(input, avatars + runs[r].first, avatars + runs[r].last,
+                   avatars + runs[end - 1].last, counts);
         }
         moved.fetch_add(counts.moved, std::memory_order_relaxed);
         wall.fetch_add(counts.blocked_by_wall, std::memory_order_relaxed);
@@ -174,13 +186,13 @@ StepReport Crowd::step() {
 }
 
 CrowdCheck Crowd::check() const {
-  return check_avatars(state_->world, state_->config.avatar_class, state_->avatars,
+  return check_avatars(state_->world, state_->config.avatar_class, state_->avatars.span(),
                        state_->config.workers);
 }
 
 uint64_t Crowd::state_hash() const {
   std::vector<Avatar> by_id(state_->avatars.size());
-  for (const Avatar& avatar : state_->avatars) by_id[avatar.id] = avatar;
+  for (const Avatar& avatar : state_->avatars.span()) by_id[avatar.id] = avatar;
   return hash_span(std::span<const Avatar>(by_id));
 }
 
@@ -188,7 +200,7 @@ void Crowd::read(std::vector<AvatarState>& out) const {
   const State& s = *state_;
   out.resize(s.avatars.size());
   const Vec3d origin = s.world.data()->summary.origin;
-  for (const Avatar& avatar : s.avatars) {
+  for (const Avatar& avatar : s.avatars.span()) {
     AvatarState& state = out[avatar.id];
     state.id = avatar.id;
     state.avatar_class = s.config.avatar_class;
@@ -203,7 +215,7 @@ void Crowd::read(std::vector<AvatarState>& out) const {
 uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->avatars.size()); }
 
 uint64_t Crowd::bytes() const {
-  return (state_->avatars.capacity() + state_->scratch.capacity()) * sizeof(Avatar) +
+  return (state_->avatars.size() + state_->scratch.size()) * sizeof(Avatar) +
          state_->ground.bytes() + state_->map->bytes() + state_->blocks->bytes();
 }
 

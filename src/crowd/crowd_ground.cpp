@@ -2,20 +2,81 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/crowd_ground.h"
 
+#include <algorithm>
+#include <span>
+#include <utility>
+
 namespace throng {
 namespace {
 
-constexpr uint64_t kAllLegal = ~uint64_t{0};
-constexpr uint64_t kNoneLegal = 0;
+constexpr size_t kRows = 64;
+constexpr uint16_t kNoFloor = 65535;
+constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
+constexpr uint32_t kAllLegal = 1;
+
+// Heights between which all floors of a level lie. [mm]
+std::pair<int32_t, int32_t> heights_of(const LevelView& view) {
+  if (view.floor != nullptr) {
+    uint16_t low = kNoFloor, high = 0;
+    for (const uint16_t sample : std::span(view.floor, kRows * 64)) {
+      low = std::min(low, sample);
+      high = std::max(high, sample == kNoFloor ? uint16_t{0} : sample);
+    }
+    return {view.floor_base + low, view.floor_base + high};
+  }
+  const auto corners = {view.sample(0, 0), view.sample(63, 0), view.sample(0, 63),
+                        view.sample(63, 63)};
+  return std::minmax(corners);
+}
+
+// Bit x: samples x and x + 1 of a row are the same.
+uint64_t same_to_the_right(const uint16_t* row) {
+  uint64_t same = 0;
+  for (int32_t x = 0; x < 63; ++x) same |= uint64_t{row[x] == row[x + 1]} << x;
+  return same;
+}
+
+uint64_t same(const uint16_t* row, const uint16_t* other) {
+  uint64_t same = 0;
+  for (int32_t x = 0; x < 64; ++x) same |= uint64_t{row[x] == other[x]} << x;
+  return same;
+}
+
+// Legal cells that are as high as the four beside them, as far as those are on the tile. Slopes
+// there are 0 (surface.h). False if there are none.
+bool find_plain(const LevelView& view, const uint64_t* legal, uint64_t* plain) {
+  if (view.floor == nullptr) return false;
+  const uint64_t left_rim = 1, right_rim = uint64_t{1} << 63;
+  uint64_t any = 0, above = ~uint64_t{0};
+  for (size_t z = 0; z < kRows; ++z) {
+    const uint16_t* row = view.floor + z * 64;
+    const uint64_t right = same_to_the_right(row);
+    const uint64_t below = z + 1 < kRows ? same(row, row + 64) : ~uint64_t{0};
+    plain[z] = legal[z] & (right | right_rim) & (right << 1 | left_rim) & above & below;
+    any |= plain[z];
+    above = below;
+  }
+  return any != 0;
+}
 
 }  // namespace
 
-Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_class) {
+Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_class,
+                                      int32_t step_mm) {
   CrowdGround ground;
   ground.tiles_x_ = world.summary.tiles_x;
   ground.tiles_z_ = world.summary.tiles_z;
   ground.tiles_.resize(static_cast<size_t>(ground.tiles_x_) * static_cast<size_t>(ground.tiles_z_));
   ground.records_.resize(world.level_count);
+  ground.heights_.resize(world.level_count);
+  ground.plain_ = HugeArray<uint32_t>(world.level_count);
+  ground.views_ = HugeArray<LevelView>(world.level_count);
+  ground.walk_ = HugeArray<uint32_t>(world.level_count);
+  // Room for all levels; what is not written is never taken from the system.
+  ground.rows_ = HugeArray<uint64_t>((2 * size_t{world.level_count} + 2) * kRows);
+  std::fill_n(ground.rows_.data() + kAllLegal * kRows, kRows, ~uint64_t{0});
+  uint32_t& sets = ground.row_sets_;
+  sets = 2;
   const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
   for (size_t s = 0; s < world.slots.size(); ++s) {
     const Zone* zone = world.zone(s);
@@ -24,13 +85,21 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
     for (uint32_t i = 0; i < zone->level_count(); ++i) {
       const GroundLevel level = ground_level(*zone, i, base + i, avatar_class);
       Record& record = ground.records_[base + i];
-      record.view = level.view;
-      record.step_safe = level.step_safe;
+      ground.views_[base + i] = level.view;
+      const auto [low, high] = heights_of(level.view);
+      ground.heights_[base + i] = {low, high};
       record.legal_cells = zone->clearance(i, static_cast<uint32_t>(avatar_class)).legal_cells();
-      record.legal = level.legal;
-      if (level.kind != format::BitsKind::Planes) {
-        record.legal = level.kind == format::BitsKind::All ? &kAllLegal : &kNoneLegal;
-        record.row_mask = 0;
+      uint32_t set = level.kind == format::BitsKind::All ? kAllLegal : kNoneLegal;
+      if (level.kind == format::BitsKind::Planes) {
+        set = sets++;
+        std::copy_n(level.legal, kRows, ground.rows_.data() + size_t{set} * kRows);
+      }
+      ground.walk_[base + i] = set | (level.step_safe ? kStepSafe : 0);
+      ground.plain_[base + i] = set;
+      if (set != kNoneLegal && !level.view.is_constant()) {
+        const bool any = find_plain(level.view, ground.legal(base + i),
+                                    ground.rows_.data() + size_t{sets} * kRows);
+        ground.plain_[base + i] = any ? sets++ : kNoneLegal;
       }
       const int32_t tile = level.view.record->tile();
       record.tile_x = zone->root().x() * per_zone + tile % per_zone;
@@ -46,7 +115,21 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
       range.last = base + i + 1;
     }
   }
+  ground.find_alone(step_mm);
   return ground;
+}
+
+void CrowdGround::find_alone(int32_t step_mm) {
+  for (const Range& range : tiles_) {
+    for (uint32_t i = range.first; i < range.last; ++i) {
+      bool alone = step_safe(i);
+      for (uint32_t j = range.first; j < range.last; ++j) {
+        alone &= i == j || heights_[j].low > heights_[i].high + step_mm ||
+                 heights_[j].high < heights_[i].low - step_mm;
+      }
+      walk_[i] |= alone ? kAlone : 0;
+    }
+  }
 }
 
 }  // namespace throng

@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/huge_array.h"
 #include "throng/result.h"
 #include "world/ground.h"
 
-/// The ground as a step reads it: one small record a level, found by tile without a search.
+/// The ground as a step reads it: one word and 64 rows of legal cells a level.
 namespace throng {
 
 class CrowdGround {
@@ -16,61 +17,89 @@ class CrowdGround {
   using Level = uint32_t;  // of the world
 
   /// Opens every zone of the world. Fails with kBadFile.
-  static Result<CrowdGround> make(const WorldData& world, int32_t avatar_class);
+  static Result<CrowdGround> make(const WorldData& world, int32_t avatar_class, int32_t step_mm);
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
-    const Record& r = records_[level];
-    return ((r.legal[z & r.row_mask] >> x) & 1) != 0;
+    return ((rows(walk_[level])[z] >> x) & 1) != 0;
   }
   [[nodiscard]] int32_t sample(Level level, int32_t x, int32_t z) const {
-    return records_[level].view.sample(x, z);
+    return views_[level].sample(x, z);
   }
-  [[nodiscard]] bool step_safe(Level level) const { return records_[level].step_safe; }
+  [[nodiscard]] bool step_safe(Level level) const { return (walk_[level] & kStepSafe) != 0; }
   template <class Visit>
-  void for_tile(int32_t tile_x, int32_t tile_z, Visit visit) const {
-    if (tile_x < 0 || tile_z < 0 || tile_x >= tiles_x_ || tile_z >= tiles_z_) return;
-    const Range& range = tiles_[static_cast<size_t>(tile_z) * static_cast<size_t>(tiles_x_) +
-                                static_cast<size_t>(tile_x)];
-    for (uint32_t i = range.first; i < range.last; ++i) visit(i);
+  void for_tile(int32_t tile_x, int32_t tile_z, int32_t low, int32_t high, Visit visit) const {
+    const Range* range = tile(tile_x, tile_z);
+    if (range == nullptr) return;
+    for (uint32_t i = range->first; i < range->last; ++i) {
+      if (heights_[i].low <= high && heights_[i].high >= low) visit(i);
+    }
   }
 
-  void prefetch_record(Level level) const { __builtin_prefetch(&records_[level]); }
-  void prefetch_row(Level level, int32_t z_units) const {
-    const Record& r = records_[level];
-    __builtin_prefetch(&r.legal[((z_units >> kUnitBits) & 63) & r.row_mask]);
-  }
+  /// 64 rows of plain cells: legal, and level with the cells beside them. Whoever stands on one may
+  /// go wherever all cells between are plain, and stays on the level, at the height of his feet.
+  class Plain {
+   public:
+    [[nodiscard]] const uint64_t* operator[](Level level) const {
+      return rows_ + size_t{sets_[level]} * 64;
+    }
+    void prefetch(Level level) const { __builtin_prefetch(&sets_[level]); }
 
-  /// True if every cell of the box is legal on one level of one tile without a step in it: then any
-  /// walk inside the box is legal, and stays on the level. Cells of the tile, inclusive.
-  [[nodiscard]] bool box_is_free(Level level, int32_t x0, int32_t x1, int32_t z0,
-                                 int32_t z1) const {
-    const Record& r = records_[level];
-    if (!r.step_safe) return false;
-    uint64_t rows = ~uint64_t{0};
-    for (int32_t z = z0; z <= z1; ++z) rows &= r.legal[z & r.row_mask];
-    const uint64_t columns = (~uint64_t{0} >> (63 - (x1 - x0))) << x0;
-    return (rows & columns) == columns;
+   private:
+    friend CrowdGround;
+    Plain(const uint32_t* sets, const uint64_t* rows) : sets_(sets), rows_(rows) {}
+    const uint32_t* sets_;
+    const uint64_t* rows_;
+  };
+  [[nodiscard]] Plain plain() const { return {plain_.data(), rows_.data()}; }
+
+  /// What a level says about walking on it inside its tile.
+  struct Walk {
+    const uint64_t* legal;  // 64 rows
+    bool is_step_safe;      // no two legal neighbours differ by more than the step
+    bool is_alone;          // step safe, and no other level of the tile is within a step of it
+  };
+  [[nodiscard]] Walk walk(Level level) const {
+    const uint32_t word = walk_[level];
+    return {rows(word), (word & kStepSafe) != 0, (word & kAlone) != 0};
+  }
+  void prefetch_walk(Level level) const {
+    __builtin_prefetch(&walk_[level]);
+    __builtin_prefetch(&views_[level]);
+  }
+  /// Asks for what a step from a cell of a level reads of it, and for what is at hand around it.
+  void prefetch_cell(Level level, int32_t x, int32_t z) const {
+    __builtin_prefetch(&rows(walk_[level])[z & 63]);
+    const LevelView& view = views_[level];
+    if (view.floor == nullptr) return;
+    const uint16_t* sample = &view.floor[(z & 63) * 64 + (x & 63)];
+    __builtin_prefetch(sample - 64);
+    __builtin_prefetch(sample);
+    __builtin_prefetch(sample + 64);
+  }
+  void prefetch_tile(int32_t tile_x, int32_t tile_z) const {
+    if (const Range* range = tile(tile_x, tile_z)) __builtin_prefetch(&heights_[range->first]);
   }
   [[nodiscard]] int32_t feet(Level level, GroundPoint p) const {
-    const LevelView& view = records_[level].view;
+    const LevelView& view = views_[level];
     if (view.is_constant()) return view.floor_base;
     return view.feet(p.cell_x() & 63, p.cell_z() & 63,
                      static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
                      static_cast<int32_t>(p.z & (kUnitsPerCell - 1)));
   }
 
-  /// Legal rows of a level: 64 words; and the level's tile.
+  /// 64 rows of legal cells.
+  [[nodiscard]] const uint64_t* legal(Level level) const { return rows(walk_[level]); }
+
+  /// What only placing avatars needs.
   struct Record {
-    const uint64_t* legal = nullptr;  // rows; one shared row where all are alike
-    LevelView view;
-    int32_t row_mask = 63;  // 0 where legal holds one row for all
     uint32_t legal_cells = 0;
     int32_t tile_x = 0, tile_z = 0;
-    bool step_safe = false;
   };
   [[nodiscard]] const std::vector<Record>& records() const { return records_; }
   [[nodiscard]] uint64_t bytes() const {
-    return records_.size() * sizeof(Record) + tiles_.size() * sizeof(Range);
+    const uint64_t level = sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + 8;
+    return records_.size() * level + tiles_.size() * sizeof(Range) +
+           row_sets_ * 64 * sizeof(uint64_t);
   }
   [[nodiscard]] int32_t tiles_x() const { return tiles_x_; }
   [[nodiscard]] int32_t tiles_z() const { return tiles_z_; }
@@ -79,9 +108,33 @@ class CrowdGround {
   struct Range {
     uint32_t first = 0, last = 0;
   };
+  struct Heights {
+    int32_t low = 0, high = 0;
+  };
+  // Where a level's rows begin, in sets of 64, and flags.
+  static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
+  static constexpr uint32_t kAlone = uint32_t{1} << 30;
+
+  void find_alone(int32_t step_mm);
+  [[nodiscard]] const Range* tile(int32_t x, int32_t z) const {
+    if (x < 0 || z < 0 || x >= tiles_x_ || z >= tiles_z_) return nullptr;
+    return &tiles_[static_cast<size_t>(z) * static_cast<size_t>(tiles_x_) + static_cast<size_t>(x)];
+  }
+  [[nodiscard]] const uint64_t* rows(uint32_t word) const {
+    return rows_.data() + size_t{word & (kAlone - 1)} * 64;
+  }
+
   int32_t tiles_x_ = 0, tiles_z_ = 0;
   std::vector<Range> tiles_;
+  std::vector<Heights> heights_;  // between which a level's floors lie [mm]
   std::vector<Record> records_;
+  // Copied out of the zones, where one class's rows lie pages apart: here the levels of a tile are
+  // neighbours. Set 0 is empty, set 1 is full, for all levels that are.
+  HugeArray<uint32_t> plain_;
+  HugeArray<uint32_t> walk_;
+  HugeArray<LevelView> views_;
+  HugeArray<uint64_t> rows_;
+  uint32_t row_sets_ = 0;
 };
 
 }  // namespace throng

@@ -3,109 +3,243 @@
 #include "crowd/crowd_step.h"
 
 #include <algorithm>
-#include <numeric>
+#include <array>
+#include <cstdlib>
+#include <span>
 
 #include "core/random.h"
 
+// A run is moved in groups, and a group in passes, so that no pass waits for memory or guesses a
+// branch: what is asked of most avatars is answered without one, and those that need more are put
+// on a list for the next pass. The order in which claims commit (group, pass, place in the group)
+// depends on nothing but the run.
 namespace throng {
 namespace {
 
-constexpr int kAhead = 16;
+constexpr size_t kGroup = 128;
+constexpr int32_t kAheadLevel = 32;  // avatars between asking for a level's word and using it
+constexpr int32_t kAheadRow = 16;
+constexpr int32_t kShort = 2;  // longest plain step [cells]
 
-enum class Try { kMoved, kWall, kAvatar };
-
-// Moves one avatar by (vx, vz) if ground and map allow.
-inline Try try_move(const StepInput& in, Avatar& a, int32_t vx, int32_t vz) {
-  const GroundPoint from = a.point();
-  const GroundPoint to{int64_t{a.x} + vx, int64_t{a.z} + vz};
-  if (to.x < 0 || to.z < 0 || to.x >= in.units_x || to.z >= in.units_z) return Try::kWall;
-  uint32_t level = a.level;
-  const int32_t x0 = from.cell_x(), z0 = from.cell_z(), x1 = to.cell_x(), z1 = to.cell_z();
-  if (x0 != x1 || z0 != z1) {
-    const bool same_tile = (x0 >> 6) == (x1 >> 6) && (z0 >> 6) == (z1 >> 6);
-    const auto [low_x, high_x] = std::minmax(x0, x1);
-    const auto [low_z, high_z] = std::minmax(z0, z1);
-    if (!same_tile ||
-        !in.ground->box_is_free(level, low_x & 63, high_x & 63, low_z & 63, high_z & 63)) {
-      if (!walk(*in.ground, level, from, to, in.step_mm)) return Try::kWall;
-    }
+// Numbers of avatars of a group.
+class List {
+ public:
+  // Appends if `really`, without a branch. There is always room for one more.
+  void add_if(bool really, uint16_t n) {
+    at_[size_] = n;
+    size_ += really;
   }
-  const int32_t y = in.ground->feet(level, to);
-  const CollisionMap::Mark old_mark = in.map->mark(from, a.y);
-  const CollisionMap::Mark mark = in.map->mark(to, y);
+  [[nodiscard]] size_t size() const { return size_; }
+  [[nodiscard]] std::span<const uint16_t> span() const { return {at_.data(), size_}; }
+
+ private:
+  std::array<uint16_t, kGroup> at_;  // not zeroed: this is made twice a group
+  size_t size_ = 0;
+};
+
+// A plain step into another pixel.
+struct Claim {
+  uint32_t from;  // pixel
+  uint16_t way;
+  uint16_t n;
+};
+
+class Group {
+ public:
+  // Up to `readable`, avatars may be read ahead of their turn.
+  Group(const StepInput& in, Avatar* avatars, const Avatar* readable)
+      : in_(in), avatars_(avatars), last_readable_(readable - 1) {}
+
+  // Each avatar of the list makes one step, or goes on the other list.
+  void move(const List& todo, List& blocked) {
+    plan(todo);
+    claim(blocked);
+    walk_uneven(blocked);
+  }
+  [[nodiscard]] uint64_t walls() const { return walls_; }
+
+ private:
+  void plan(const List& todo);
+  void claim(List& blocked);
+  void walk_uneven(List& blocked);
+
+  const StepInput& in_;
+  Avatar* avatars_;
+  const Avatar* last_readable_;
+  std::array<Claim, kGroup> claims_;
+  size_t claims_size_ = 0;
+  List uneven_;
+  uint64_t walls_ = 0;  // met
+};
+
+// All ones if true.
+int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
+
+// True if all cells of a box between two cells are set and lie on one tile of 64 rows. Boxes longer
+// than kShort are not looked at.
+[[gnu::always_inline]] inline bool box_is_set(const uint64_t* rows, int32_t x0, int32_t z0,
+                                              int32_t x1, int32_t z1) {
+  const int32_t gone_x = x1 - x0, gone_z = z1 - z0;
+  const int32_t low_x = x0 + (gone_x & (gone_x >> 31)), low_z = z0 + (gone_z & (gone_z >> 31));
+  const int32_t wide = std::abs(gone_x), deep = std::abs(gone_z);
+  const bool near =
+      (static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64) & (wide <= kShort) & (deep <= kShort);
+  const uint64_t common = rows[z0 & 63] & rows[(low_z + (deep >> 1)) & 63] & rows[z1 & 63];
+  const uint64_t columns = ((uint64_t{2} << (wide & 63)) - 1) << (low_x & 63);
+  return near & ((~common & columns) == 0);
+}
+
+// Whoever stays in his pixel on plain cells moves at once: nobody can object. Arithmetic instead of
+// branches: which way an avatar goes is as good as random, and a wrong guess costs 20 cycles.
+void Group::plan(const List& todo) {
+  const PixelGrid grid = in_.map->grid();
+  const CrowdGround::Plain plain = in_.ground->plain();
+  size_t claimed = 0;
+  for (const uint16_t n : todo.span()) {
+    Avatar& a = avatars_[n];
+    plain.prefetch(std::min<const Avatar*>(&a + kAheadLevel, last_readable_)->level);
+    const Avatar& next = *std::min<const Avatar*>(&a + kAheadRow, last_readable_);
+    __builtin_prefetch(&plain[next.level][(next.z >> kUnitBits) & 63]);
+
+    const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
+    const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
+    const bool is_plain = box_is_set(plain[a.level], x0, z0, x1, z1);
+    const int32_t px = grid.pixel(x0), pz = grid.pixel(z0);
+    const int32_t dx = grid.pixel(x1) - px, dz = grid.pixel(z1) - pz;
+    const bool stays = (dx | dz) == 0;
+    claims_[claimed] = {in_.map->pixel(px, pz), static_cast<uint16_t>(CollisionMap::way(dx, dz)),
+                        n};
+    claimed += is_plain & !stays;
+    uneven_.add_if(!is_plain, n);
+    const int32_t go = mask(is_plain & stays);
+    a.x += a.vx & go;
+    a.z += a.vz & go;
+  }
+  claims_size_ = claimed;
+}
+
+void Group::claim(List& blocked) {
+  CollisionMap& map = *in_.map;
+  std::array<CollisionMap::Slices, kGroup> slices;
+  for (size_t i = 0; i < claims_size_; ++i) {
+    const Claim& c = claims_[i];
+    slices[i] = map.slices(avatars_[c.n].y);
+    map.prefetch(slices[i], c.from, c.way);
+  }
+  for (size_t i = 0; i < claims_size_; ++i) {
+    const Claim& c = claims_[i];
+    Avatar& a = avatars_[c.n];
+    const bool moved = map.move_by_one(slices[i], c.from, c.way);
+    a.x += a.vx & mask(moved);
+    a.z += a.vz & mask(moved);
+    blocked.add_if(!moved, c.n);
+  }
+}
+
+// A level of which nothing but its own cells can be reached inside the tile: as world/walk.h wants
+// it, for the compiler to forget all that cannot happen.
+struct LoneLevel {
+  using Level = uint32_t;
+  const uint64_t* legal;
+  [[nodiscard]] bool is_legal(Level, int32_t x, int32_t z) const {
+    return ((legal[z] >> x) & 1) != 0;
+  }
+  [[nodiscard]] int32_t sample(Level, int32_t, int32_t) const { return 0; }
+  [[nodiscard]] bool step_safe(Level) const { return true; }
+  template <class Visit>
+  void for_tile(int32_t, int32_t, int32_t, int32_t, Visit) const {}
+};
+
+// Puts the body at `to` if nobody is there.
+bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_t y) {
+  const CollisionMap::Mark old_mark = map.mark(a.point(), a.y);
+  const CollisionMap::Mark mark = map.mark(to, y);
   if (!(mark == old_mark)) {
-    in.map->clear(old_mark);
-    if (!in.map->is_free(mark)) {
-      in.map->set(old_mark);
-      return Try::kAvatar;
+    map.clear(old_mark);
+    if (!map.is_free(mark)) {
+      map.set(old_mark);
+      return false;
     }
-    in.map->set(mark);
+    map.set(mark);
   }
   a.x = static_cast<int32_t>(to.x);
   a.z = static_cast<int32_t>(to.z);
   a.y = y;
   a.level = level;
-  return Try::kMoved;
+  return true;
+}
+
+GroundPoint target(const Avatar& a) { return {int64_t{a.x} + a.vx, int64_t{a.z} + a.vz}; }
+
+// Up a ramp, along a wall, over the edge of a tile.
+void Group::walk_uneven(List& blocked) {
+  const CrowdGround& ground = *in_.ground;
+  for (const uint16_t n : uneven_.span()) ground.prefetch_walk(avatars_[n].level);
+  for (const uint16_t n : uneven_.span()) {
+    const Avatar& a = avatars_[n];
+    ground.prefetch_cell(a.level, (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
+  }
+  List slopes, walks;
+  for (const uint16_t n : uneven_.span()) {
+    const Avatar& a = avatars_[n];
+    const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
+    const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
+    const CrowdGround::Walk level = ground.walk(a.level);
+    const bool is_slope = level.is_step_safe & box_is_set(level.legal, x0, z0, x1, z1);
+    slopes.add_if(is_slope, n);
+    walks.add_if(!is_slope, n);
+  }
+  for (const uint16_t n : walks.span()) {
+    const Avatar& a = avatars_[n];
+    ground.prefetch_tile((a.x + a.vx) >> (kUnitBits + 6), (a.z + a.vz) >> (kUnitBits + 6));
+  }
+  for (const uint16_t n : slopes.span()) {
+    Avatar& a = avatars_[n];
+    const GroundPoint to = target(a);
+    blocked.add_if(!commit(*in_.map, a, to, a.level, ground.feet(a.level, to)), n);
+  }
+  for (const uint16_t n : walks.span()) {
+    Avatar& a = avatars_[n];
+    const GroundPoint from = a.point(), to = target(a);
+    uint32_t level = a.level;
+    const CrowdGround::Walk here = ground.walk(level);
+    const bool on_tile = ((from.x ^ to.x) | (from.z ^ to.z)) >> (kUnitBits + 6) == 0;
+    const bool is_open = here.is_alone && on_tile
+                             ? walk(LoneLevel{here.legal}, level, from, to, in_.step_mm)
+                             : to.x >= 0 && to.z >= 0 && to.x < in_.units_x && to.z < in_.units_z &&
+                                   walk(ground, level, from, to, in_.step_mm);
+    const bool moved = is_open && commit(*in_.map, a, to, level, ground.feet(level, to));
+    walls_ += !is_open;
+    blocked.add_if(!moved, n);
+  }
+}
+
+// To the left or to the right, by chance.
+void turn(const StepInput& in, Avatar& a) {
+  const bool left = (random_u64(in.seed, a.id, in.step) & 1) != 0;
+  const int32_t vx = left ? -a.vz : a.vz;
+  a.vz = left ? a.vx : -a.vx;
+  a.vx = vx;
 }
 
 }  // namespace
 
-CrowdBlocks::CrowdBlocks(int32_t width, int32_t depth, int32_t pixel_cells, int32_t block_pixels) {
-  const int32_t block_cells = pixel_cells * block_pixels;
-  block_units_ = block_cells << kUnitBits;
-  blocks_x_ = static_cast<uint32_t>(width / block_cells) + 1;
-  blocks_z_ = static_cast<uint32_t>(depth / block_cells) + 1;
-  first_.resize(static_cast<size_t>(blocks_x_) * blocks_z_ + 1);
-}
-
-void CrowdBlocks::sort(std::vector<Avatar>& avatars, std::vector<Avatar>& scratch) {
-  std::fill(first_.begin(), first_.end(), 0);
-  for (const Avatar& avatar : avatars) ++first_[block(avatar) + 1];
-  for (auto& runs : runs_) runs.clear();
-  std::inclusive_scan(first_.begin(), first_.end(), first_.begin());
-  for (uint32_t z = 0, b = 0; z < blocks_z_; ++z) {
-    for (uint32_t x = 0; x < blocks_x_; ++x, ++b) {
-      if (first_[b] != first_[b + 1])
-        runs_[(z & 1) * 2 + (x & 1)].push_back({first_[b], first_[b + 1]});
+void move_run(const StepInput& in, Avatar* first, Avatar* last, const Avatar* readable,
+              StepCounts& counts) {
+  for (Avatar* a = first; a < last; a += kGroup) {
+    List all, blocked, waits;
+    for (int64_t n = 0; n < std::min<int64_t>(kGroup, last - a); ++n) {
+      all.add_if(true, static_cast<uint16_t>(n));
     }
-  }
-  scratch.resize(avatars.size());
-  for (const Avatar& avatar : avatars) scratch[first_[block(avatar)]++] = avatar;
-  avatars.swap(scratch);
-  // Within a block, avatars of one level lie together: they read the same rows of it.
-  for (const auto& runs : runs_) {
-    for (const Run& run : runs) {
-      std::stable_sort(avatars.begin() + run.first, avatars.begin() + run.last,
-                       [](const Avatar& a, const Avatar& b) { return a.level < b.level; });
-    }
-  }
-}
-
-void move_run(const StepInput& in, Avatar* first, Avatar* last, StepCounts& counts) {
-  for (Avatar* a = first; a != last; ++a) {
-    // What the next avatars will read is on its way while this one moves.
-    if (last - a > kAhead) in.ground->prefetch_record(a[kAhead].level);
-    if (last - a > kAhead / 2) {
-      const Avatar& next = a[kAhead / 2];
-      in.ground->prefetch_row(next.level, next.z);
-      in.map->prefetch(next.point());
-    }
-    const Try straight = try_move(in, *a, a->vx, a->vz);
-    if (straight == Try::kMoved) {
-      ++counts.moved;
-      continue;
-    }
-    ++(straight == Try::kWall ? counts.blocked_by_wall : counts.blocked_by_avatar);
-    const bool left = (random_u64(in.seed, a->id, in.step) & 1) != 0;
-    const int32_t vx = left ? -a->vz : a->vz;
-    const int32_t vz = left ? a->vx : -a->vx;
-    a->vx = vx;
-    a->vz = vz;
-    if (try_move(in, *a, vx, vz) == Try::kMoved) {
-      ++counts.moved;
-    } else {
-      ++counts.waited;
-    }
+    Group straight(in, a, readable);
+    straight.move(all, blocked);
+    for (const uint16_t n : blocked.span()) turn(in, a[n]);
+    Group turned(in, a, a + all.size());
+    turned.move(blocked, waits);
+    counts.moved += all.size() - waits.size();
+    counts.waited += waits.size();
+    counts.blocked_by_wall += straight.walls();
+    counts.blocked_by_avatar += blocked.size() - straight.walls();
   }
 }
 

@@ -11,9 +11,9 @@ namespace throng {
 namespace {
 
 // The cell of a level that has `rank` legal cells before it.
-std::pair<int32_t, int32_t> nth_legal(const CrowdGround::Record& record, uint32_t rank) {
+std::pair<int32_t, int32_t> nth_legal(const uint64_t* legal, uint32_t rank) {
   for (int32_t z = 0;; ++z) {
-    uint64_t row = record.legal[z & record.row_mask];
+    uint64_t row = legal[z];
     const auto count = static_cast<uint32_t>(std::popcount(row));
     if (rank >= count) {
       rank -= count;
@@ -58,7 +58,7 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
     ++draw;
     const auto level = static_cast<uint32_t>(std::upper_bound(before.begin(), before.end(), pick) -
                                              before.begin() - 1);
-    const auto [x, z] = nth_legal(records[level], static_cast<uint32_t>(pick - before[level]));
+    const auto [x, z] = nth_legal(ground.legal(level), static_cast<uint32_t>(pick - before[level]));
     failed += !try_place(level, x, z, static_cast<int32_t>(within & (kUnitsPerCell - 1)),
                          static_cast<int32_t>((within >> 32) & (kUnitsPerCell - 1)));
     if (++drawn < 4096) continue;
@@ -68,7 +68,7 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
   // Cell by cell: what is still missing after this does not fit.
   for (uint32_t level = 0; level < records.size() && avatars.size() < count; ++level) {
     for (int32_t z = 0; z < 64 && avatars.size() < count; ++z) {
-      uint64_t row = records[level].legal[z & records[level].row_mask];
+      uint64_t row = ground.legal(level)[z];
       for (; row != 0 && avatars.size() < count; row &= row - 1) {
         try_place(level, std::countr_zero(row), z, kUnitsPerCell / 2, kUnitsPerCell / 2);
       }

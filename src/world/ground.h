@@ -43,7 +43,8 @@ struct WorldGround {
   }
   [[nodiscard]] bool step_safe(const Level& level) const { return level.step_safe; }
   template <class Visit>
-  void for_tile(int32_t tile_x, int32_t tile_z, Visit visit) const {
+  void for_tile(int32_t tile_x, int32_t tile_z, int32_t /*low*/, int32_t /*high*/,
+                Visit visit) const {
     const auto tile = world.tile_levels(tile_x, tile_z);
     for (uint32_t i = tile.first; i < tile.last; ++i) {
       visit(ground_level(*tile.zone, tile.zone_first + i - tile.first, i, avatar_class));

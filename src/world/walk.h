@@ -13,8 +13,8 @@
 ///   bool is_legal(Level, int32_t x, int32_t z)      may the body stand on cell (x, z) of the tile?
 ///   int32_t sample(Level, int32_t x, int32_t z)     floor under the middle of that cell [mm]
 ///   bool step_safe(Level)                           legal neighbours never differ by more than the
-///   step void for_tile(int32_t tile_x, int32_t tile_z, Visit)   visits the levels of a tile of the
-///   world
+///   step void for_tile(int32_t tile_x, int32_t tile_z, int32_t low, int32_t high, Visit)   visits
+///   the levels of a tile of the world; those without a floor from low to high may be left out
 namespace throng {
 
 /// Positions on the ground: 1/2048 cell from the corner of the world's grid.
@@ -47,7 +47,7 @@ std::optional<typename Ground::Level> step_to(const Ground& ground,
   if (same_tile && rise_to(from) <= step_mm) return from;
   std::optional<Level> best;
   int32_t best_rise = INT32_MAX;
-  ground.for_tile(nx >> 6, nz >> 6, [&](const Level& level) {
+  ground.for_tile(nx >> 6, nz >> 6, feet - step_mm, feet + step_mm, [&](const Level& level) {
     const int32_t rise = rise_to(level);
     if (rise > step_mm || rise >= best_rise) return;
     best_rise = rise;

@@ -5,10 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 
-#include "core/random.h"
-#include "crowd/collision_map.h"
 #include "throng/bake.h"
 
 namespace throng {
@@ -73,7 +70,7 @@ TEST(Crowd, SameStateForAnyNumberOfThreads) {
     auto crowd = Crowd::create(world, {.avatars = 300, .seed = 11, .workers = workers});
     ASSERT_TRUE(crowd);
     for (int step = 0; step < 300; ++step) crowd->step();
-    EXPECT_EQ(crowd->state_hash(), 2494023263461056009u) << "workers = " << workers;
+    EXPECT_EQ(crowd->state_hash(), 4827815352336614511u) << "workers = " << workers;
   }
 }
 
@@ -127,71 +124,47 @@ TEST(Crowd, BadSettingsAreRefusedWithASentence) {
   EXPECT_EQ(Crowd::create(World{}, {}).error().code, Errc::kBadConfig);
 }
 
-// [TC00]'s map as printed, on one floor: an integer per pixel, 1 added to nine of them.
-struct PrintedMap {
-  std::map<std::pair<int, int>, int> count;
-  void add(int x, int z, int n) {
-    for (int dz = -1; dz <= 1; ++dz) {
-      for (int dx = -1; dx <= 1; ++dx) count[{x + dx, z + dz}] += n;
+// Nobody is in the way, so what the crowd does in passes and by tricks is what the world allows.
+TEST(Crowd, AnAvatarAloneWalksAsTheWorldAllows) {
+  const World world = baked(small_garage());
+  int moved = 0, blocked = 0;
+  for (uint64_t seed = 0; seed < 120; ++seed) {
+    const double speed = seed % 3 == 0 ? 2.4 : 0;  // A long step is more than the short cuts take.
+    auto crowd = Crowd::create(world, {.avatars = 1, .speed = speed, .seed = seed});
+    ASSERT_TRUE(crowd);
+    std::vector<AvatarState> before, after;
+    crowd->read(before);
+    for (int step = 0; step < 120; ++step) {
+      const StepReport report = crowd->step();
+      crowd->read(after);
+      const AvatarState& a = before[0];
+      const AvatarState& b = after[0];
+      const Place from = world.find_place(0, a.position, 0.001);
+      ASSERT_TRUE(from);
+      // Half a unit is lost in rounding on the way out: the world gets what the crowd has.
+      const double length = std::hypot(b.position.x - a.position.x, b.position.z - a.position.z);
+      if (report.moved == 1) {
+        const MoveResult move =
+            world.move(0, from, b.position.x - a.position.x, b.position.z - a.position.z);
+        ASSERT_EQ(move.end, MoveEnd::kArrived) << "seed " << seed << " step " << step;
+        ASSERT_EQ(move.place.position.y, b.position.y) << "seed " << seed << " step " << step;
+        ASSERT_GT(length, 0.1);
+      } else {
+        ASSERT_EQ(length, 0);
+      }
+      if (report.blocked_by_wall == 1) {
+        const double reach = speed > 0 ? speed * 0.1 : 0.14;
+        const MoveResult move = world.move(0, from, a.heading_x * reach, a.heading_z * reach);
+        ASSERT_NE(move.end, MoveEnd::kArrived) << "seed " << seed << " step " << step;
+      }
+      moved += static_cast<int>(report.moved);
+      blocked += static_cast<int>(report.blocked_by_wall);
+      ASSERT_EQ(report.blocked_by_avatar, 0u);
+      before = after;
     }
   }
-  // May whoever stands on (x, z) enter (nx, nz)? His own share is removed first.
-  bool may_enter(int x, int z, int nx, int nz) {
-    add(x, z, -1);
-    const bool free = count[{nx, nz}] == 0;
-    add(x, z, 1);
-    return free;
-  }
-};
-
-TEST(CollisionMap, AnswersLikeThePrintedMap) {
-  constexpr int kSide = 20;
-  CollisionMap map(kSide, kSide, 1, 0, 3000, 1750);
-  PrintedMap printed;
-  const auto mark = [&](int x, int z) {
-    return map.mark({(int64_t{x} << kUnitBits) + 7, (int64_t{z} << kUnitBits) + 2000}, 120);
-  };
-  std::vector<std::pair<int, int>> bodies;
-  uint64_t n = 0;
-  int refused = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const int x = static_cast<int>(random_below(1, 1, n++, kSide));
-    const int z = static_cast<int>(random_below(1, 1, n++, kSide));
-    if (bodies.size() < 25) {
-      const bool free = printed.count[{x, z}] == 0;
-      ASSERT_EQ(map.is_free(mark(x, z)), free);
-      if (!free) continue;
-      map.set(mark(x, z));
-      printed.add(x, z, 1);
-      bodies.emplace_back(x, z);
-      continue;
-    }
-    auto& [bx, bz] = bodies[random_below(1, 1, n++, bodies.size())];
-    map.clear(mark(bx, bz));
-    const bool free = map.is_free(mark(x, z));
-    ASSERT_EQ(free, printed.may_enter(bx, bz, x, z));
-    if (free) {
-      printed.add(bx, bz, -1);
-      printed.add(x, z, 1);
-      bx = x;
-      bz = z;
-    }
-    refused += !free;
-    map.set(mark(bx, bz));
-  }
-  EXPECT_GT(refused, 1000);
-}
-
-TEST(CollisionMap, FloorsAboveEachOtherDoNotSeeEachOther) {
-  CollisionMap map(10, 10, 1, 0, 200000, 1750);
-  const GroundPoint p{5 << kUnitBits, 5 << kUnitBits};
-  for (int32_t y = 0; y < 200000; y += 2250) {  // words of 16 m are crossed many times
-    ASSERT_TRUE(map.is_free(map.mark(p, y))) << y;
-    map.set(map.mark(p, y));
-    ASSERT_FALSE(map.is_free(map.mark(p, y + 1749))) << y;
-    ASSERT_FALSE(map.is_free(map.mark({p.x + kUnitsPerCell, p.z}, y))) << y;
-    ASSERT_TRUE(map.is_free(map.mark({p.x + 2 * kUnitsPerCell, p.z}, y))) << y;
-  }
+  EXPECT_GT(moved, 10000);
+  EXPECT_GT(blocked, 300);
 }
 
 }  // namespace

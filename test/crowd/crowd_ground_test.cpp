@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/crowd_ground.h"
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "throng/bake.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+constexpr int32_t kStep = 400;  // mm
+
+World baked(const Scene& scene) {
+  Context context;
+  auto world = bake_world(scene, {}, context);
+  EXPECT_TRUE(world) << world.error().message;
+  return std::move(*world);
+}
+
+// The same ground, straight from the zones.
+WorldGround zones(const World& world) { return {*world.data(), 0}; }
+
+GroundLevel zone_level(const World& world, uint32_t level) {
+  return ground_level(*world.data(), level, 0);
+}
+
+TEST(CrowdGround, LegalCellsAreThoseOfTheZones) {
+  for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), worlds::ramp(20, 8)}) {
+    const World world = baked(scene);
+    const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+    ASSERT_TRUE(ground);
+    for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
+      const GroundLevel expected = zone_level(world, level);
+      for (int32_t cell = 0; cell < 4096; ++cell) {
+        ASSERT_EQ(ground->is_legal(level, cell % 64, cell / 64),
+                  expected.is_legal(cell % 64, cell / 64));
+      }
+    }
+  }
+}
+
+// Walks of up to two cells that stay on plain cells need no further look; that is, the world allows
+// them, and the feet stay as high as they are.
+TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
+  for (const Scene& scene : {worlds::two_floors(), worlds::steps(0.17, 0.3, 12),
+                             worlds::ramp(20, 8), worlds::doorway(1)}) {
+    const World world = baked(scene);
+    const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+    ASSERT_TRUE(ground);
+    uint64_t n = 0, plain_walks = 0;
+    const auto draw = [&](uint64_t below) {
+      return static_cast<int32_t>(random_below(5, 6, n++, below));
+    };
+    for (int32_t i = 0; i < 200000; ++i) {
+      const auto level = static_cast<uint32_t>(draw(world.level_tile_count()));
+      const int32_t x0 = draw(62), z0 = draw(62), x1 = x0 + draw(3), z1 = z0 + draw(3);
+      bool plain = true;
+      for (int32_t z = z0; z <= z1; ++z) {
+        for (int32_t x = x0; x <= x1; ++x) plain &= ((ground->plain()[level][z] >> x) & 1) != 0;
+      }
+      if (!plain) continue;
+      ++plain_walks;
+      const auto& record = ground->records()[level];
+      const auto point = [&](int32_t x, int32_t z) {
+        return GroundPoint{(int64_t{record.tile_x * 64 + x} << kUnitBits) + draw(kUnitsPerCell),
+                           (int64_t{record.tile_z * 64 + z} << kUnitBits) + draw(kUnitsPerCell)};
+      };
+      GroundPoint from = point(x0, z1), to = point(x1, z0);
+      if (i % 2 == 0) std::swap(from, to);
+      GroundLevel reached = zone_level(world, level);
+      ASSERT_TRUE(walk(zones(world), reached, from, to, kStep));
+      ASSERT_EQ(reached.world_level, level);
+      ASSERT_EQ(ground->feet(level, from), ground->feet(level, to));
+    }
+    EXPECT_GT(plain_walks, 1000u);
+  }
+}
+
+TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
+  const World world = baked(worlds::two_floors());
+  const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+  ASSERT_TRUE(ground);
+  int32_t lone = 0;
+  for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
+    if (!ground->walk(level).is_alone) continue;
+    ++lone;
+    const auto& record = ground->records()[level];
+    const GroundLevel here = zone_level(world, level);
+    ground->for_tile(record.tile_x, record.tile_z, INT32_MIN, INT32_MAX, [&](uint32_t other) {
+      if (other == level) return;
+      const GroundLevel there = zone_level(world, other);
+      for (int32_t a = 0; a < 4096; a += 7) {
+        for (int32_t b = 0; b < 4096; b += 13) {
+          if (!here.view.has(a % 64, a / 64) || !there.view.has(b % 64, b / 64)) continue;
+          const int32_t rise = here.view.sample(a % 64, a / 64) - there.view.sample(b % 64, b / 64);
+          ASSERT_GT(std::abs(rise), kStep);
+        }
+      }
+    });
+  }
+  EXPECT_GT(lone, 0);
+}
+
+TEST(CrowdGround, FloorsOutsideTheHeightsAskedForMayBeLeftOutButNoOther) {
+  const World world = baked(worlds::two_floors());
+  const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+  ASSERT_TRUE(ground);
+  for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
+    const auto& record = ground->records()[level];
+    const LevelView view = zone_level(world, level).view;
+    for (int32_t cell = 0; cell < 4096; cell += 5) {
+      if (!view.has(cell % 64, cell / 64)) continue;
+      const int32_t y = view.sample(cell % 64, cell / 64);
+      bool found = false;
+      ground->for_tile(record.tile_x, record.tile_z, y, y,
+                       [&](uint32_t other) { found |= other == level; });
+      ASSERT_TRUE(found);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace throng

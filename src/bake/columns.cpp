@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-// A triangle is cut into the rows of cells that it touches. The cut of a row is a convex polygon, so
-// over a cell its heights are bounded by the lines of its edges, the same lines for all rows but
+// A triangle is cut into the rows of cells that it touches. The cut of a row is a convex polygon,
+// so over a cell its heights are bounded by the lines of its edges, the same lines for all rows but
 // two: a vector of cells takes them in a few instructions, and one rule serves border cells, inner
 // cells and vertical walls. Rows and cells are widened by kWiden, far more than the arithmetic can
 // err, so rounding only ever adds matter. After Hasselgren, Akenine-Moeller, Ohlsson. Conservative

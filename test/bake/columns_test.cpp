@@ -212,8 +212,7 @@ TEST(Columns, SupportIsTheSurfaceUnderTheCentre) {
         };
         const double w2 = side(0, 1), w0 = side(1, 2), w1 = side(2, 0);
         const size_t c = static_cast<size_t>(z * 64 + x);
-        const bool supported =
-            columns->holds(0, c) && columns->layers[0]->support[c] != kNoSupport;
+        const bool supported = columns->holds(0, c) && columns->layers[0]->support[c] != kNoSupport;
         if (std::min({w0, w1, w2}) > 1e-4) {
           ASSERT_TRUE(supported) << "seed " << seed << " cell " << x << " " << z;
           const double y = w0 * t.y[0] + w1 * t.y[1] + w2 * t.y[2];

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "bake/legality.h"
+#include "bake/sheet_kernels.h"
 
 // Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its sheet
 // is cut, and near the cut a window may have followed the lower floor where the body walks on the
@@ -47,28 +48,32 @@ bool body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, in
 
 // Cells of a sheet whose neighbour is continued by another sheet of the tile.
 BitPlane seam_cells(const TileSheets& tile, const Sheet& own, int32_t max_step) {
-  BitPlane seams{};
-  const auto continues = [&](const Sheet& sheet, size_t cell, int32_t top) {
-    return sheet.top[cell] != kNone16 && std::abs(sheet.base + sheet.top[cell] - top) <= max_step;
-  };
-  for (int32_t z = 0; z < kTileSide; ++z) {
-    for (int32_t x = 0; x < kTileSide; ++x) {
-      const size_t cell = static_cast<size_t>(z * kTileSide + x);
-      if (own.top[cell] == kNone16) continue;
-      const int32_t top = own.base + own.top[cell];
-      const std::array<std::array<int32_t, 2>, 4> around{
-          {{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
-      for (const auto& [nx, nz] : around) {
-        if (nx < 0 || nz < 0 || nx > kLast || nz > kLast) continue;
-        const size_t next = static_cast<size_t>(nz * kTileSide + nx);
-        if (continues(own, next, top)) continue;
-        for (const auto& other : tile) {
-          if (other.get() != &own && continues(*other, next, top)) {
-            seams[static_cast<size_t>(z)] |= 1ULL << x;
-          }
-        }
+  TopLinks links;
+  link_tops(own, max_step, links);
+  BitPlane others{}, seams{};
+  for (const auto& other : tile) {
+    if (other.get() != &own) add_gap_bits(*other, others);
+  }
+  const auto look = [&](uint64_t cells, int32_t z, int32_t dx, int32_t dz) {
+    for (; cells != 0; cells &= cells - 1) {
+      const int32_t x = std::countr_zero(cells);
+      const int32_t top = own.base + own.top[static_cast<size_t>(z * kTileSide + x)];
+      const auto next = static_cast<size_t>((z + dz) * kTileSide + x + dx);
+      for (const auto& other : tile) {
+        if (other.get() == &own || other->top[next] == kNone16) continue;
+        if (std::abs(other->base + other->top[next] - top) > max_step) continue;
+        seams[static_cast<size_t>(z)] |= 1ULL << x;
+        break;
       }
     }
+  };
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    const auto r = static_cast<size_t>(z);
+    const uint64_t has = links.has[r];
+    look(has & ~links.right[r] & (others[r] >> 1), z, 1, 0);
+    look(has & ~(links.right[r] << 1) & (others[r] << 1), z, -1, 0);
+    if (z < kLast) look(has & ~links.down[r] & others[r + 1], z, 0, 1);
+    if (z > 0) look(has & ~links.down[r - 1] & others[r - 1], z, 0, -1);
   }
   return seams;
 }

@@ -401,6 +401,42 @@ void PutOnPlane(const LevelPlane& plane, Sheet& sheet) {
   }
 }
 
+void LinkTops(const Sheet& sheet, int32_t step, TopLinks& links) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16);
+  const auto most = hn::Set(du, static_cast<uint16_t>(std::min(step, 65535)));
+  const auto linked = [&](hn::Vec<DU> a, hn::Vec<DU> b) {
+    const auto apart = hn::Sub(hn::Max(a, b), hn::Min(a, b));
+    return bits_of(du, hn::Eq(hn::Min(apart, most), apart));
+  };
+  for (size_t z = 0; z < kTileSide; ++z) {
+    uint64_t has = 0, right = 0, down = 0;
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
+      const size_t c = z * kTileSide + x;
+      const auto top = hn::Load(du, &sheet.top[c]);
+      has |= bits_of(du, hn::Ne(top, none)) << x;
+      // Past the last row this reads the array that follows: masked below.
+      right |= linked(top, hn::LoadU(du, &sheet.top[0] + c + 1)) << x;
+      if (z + 1 < kTileSide) down |= linked(top, hn::Load(du, &sheet.top[c + kTileSide])) << x;
+    }
+    links.has[z] = has;
+    links.right[z] = right & has & (has >> 1);
+    links.down[z] = down & has;
+  }
+  for (size_t z = 0; z + 1 < kTileSide; ++z) links.down[z] &= links.has[z + 1];
+}
+
+void AddGapBits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16);
+  for (size_t z = 0; z < kTileSide; ++z) {
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
+      const auto top = hn::Load(du, &sheet.top[z * kTileSide + x]);
+      rows[z] |= bits_of(du, hn::Ne(top, none)) << x;
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace throng
 HWY_AFTER_NAMESPACE();
@@ -420,6 +456,8 @@ HWY_EXPORT(PresentBits);
 HWY_EXPORT(CeilingRange);
 HWY_EXPORT(RelativeHeights);
 HWY_EXPORT(ChooseGaps);
+HWY_EXPORT(LinkTops);
+HWY_EXPORT(AddGapBits);
 HWY_EXPORT(PlaneFits);
 HWY_EXPORT(PutOnPlane);
 
@@ -472,6 +510,14 @@ bool plane_fits(const Sheet& sheet, const LevelPlane& plane) {
 
 void put_on_plane(const LevelPlane& plane, Sheet& sheet) {
   HWY_DYNAMIC_DISPATCH(PutOnPlane)(plane, sheet);
+}
+
+void link_tops(const Sheet& sheet, int32_t step, TopLinks& links) {
+  HWY_DYNAMIC_DISPATCH(LinkTops)(sheet, step, links);
+}
+
+void add_gap_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
+  HWY_DYNAMIC_DISPATCH(AddGapBits)(sheet, rows);
 }
 
 }  // namespace throng

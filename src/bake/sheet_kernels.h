@@ -81,4 +81,14 @@ bool plane_fits(const Sheet& sheet, const LevelPlane& plane);
 /// Puts all feet on the plane.
 void put_on_plane(const LevelPlane& plane, Sheet& sheet);
 
+/// Which cells have a gap, and which of them continue their neighbour's on the same sheet: tops
+/// within `step` of the cell to the right, and of the one below.
+struct TopLinks {
+  std::array<uint64_t, kTileSide> has, right, down;
+};
+void link_tops(const Sheet& sheet, int32_t step, TopLinks& links);
+
+/// Adds the cells that have a gap to `rows`.
+void add_gap_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows);
+
 }  // namespace throng

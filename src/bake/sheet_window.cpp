@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "bake/legality.h"
@@ -192,9 +193,13 @@ void SheetWindow::fill_holes(const TileSheets& tile, size_t sheet, int32_t max_s
                              int32_t min_gap) {
   const Sheet& own = *tile[sheet];
   if (own.cells == kTileArea) return;
+  std::array<uint64_t, kTileSide> filled{}, others{};
+  add_gap_bits(own, filled);
+  for (const auto& other : tile) {
+    if (other.get() != &own) add_gap_bits(*other, others);
+  }
   const auto try_fill = [&](int32_t x, int32_t z) {
     const size_t at = index(x, z);
-    if (top[at] != kNone16) return;
     const size_t cell = static_cast<size_t>(z * kTileSide + x);
     const std::array<size_t, 4> around{index(x - 1, z), index(x + 1, z), index(x, z - 1),
                                        index(x, z + 1)};
@@ -211,15 +216,26 @@ void SheetWindow::fill_holes(const TileSheets& tile, size_t sheet, int32_t max_s
       }
       top[at] = other_top;
       ceiling[at] = other_ceiling;
-      return;
+      return true;
+    }
+    return false;
+  };
+  // Holes are filled from their rims inward, a row at a time: down the tile, then up.
+  const auto fill_row = [&](int32_t z) {
+    const auto r = static_cast<size_t>(z);
+    const uint64_t above = z > 0 ? filled[r - 1] : 0;
+    const uint64_t below = z + 1 < kTileSide ? filled[r + 1] : 0;
+    uint64_t open = others[r] & ~filled[r];
+    while (true) {
+      const uint64_t rim = open & (above | below | filled[r] << 1 | filled[r] >> 1);
+      if (rim == 0) return;
+      const uint64_t bit = rim & (~rim + 1);
+      open &= ~bit;
+      if (try_fill(std::countr_zero(bit), z)) filled[r] |= bit;
     }
   };
-  for (int32_t z = 0; z < kTileSide; ++z) {
-    for (int32_t x = 0; x < kTileSide; ++x) try_fill(x, z);
-  }
-  for (int32_t z = kTileSide - 1; z >= 0; --z) {
-    for (int32_t x = kTileSide - 1; x >= 0; --x) try_fill(x, z);
-  }
+  for (int32_t z = 0; z < kTileSide; ++z) fill_row(z);
+  for (int32_t z = kTileSide - 1; z >= 0; --z) fill_row(z);
 }
 
 bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,

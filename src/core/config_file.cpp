@@ -3,12 +3,24 @@
 #include "core/config_file.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
+#include <toml++/impl/preprocessor.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+
+// toml++ 3.3 asserts, and in release builds assumes, what a damaged file need not hold: that a
+// table header like "[.a]" begins with a key. Make each of these an exception.
+namespace throng {
+[[noreturn]] static void toml_fault() { throw std::logic_error("not TOML"); }
+}  // namespace throng
+#undef TOML_ASSERT
+#undef TOML_ASSERT_ASSUME
+#define TOML_ASSERT(condition) ((condition) ? void() : throng::toml_fault())
+#define TOML_ASSERT_ASSUME(condition) TOML_ASSERT(condition)
+#include <toml++/toml.h>
 
 namespace throng {
 namespace {
@@ -197,6 +209,8 @@ Result<ConfigNode> parse_toml(const std::string& text, const std::string& name) 
   } catch (const toml::parse_error& error) {
     return Error{Errc::kBadFile,
                  fmt::format("{}:{}: {}", name, error.source().begin.line, error.description())};
+  } catch (const std::logic_error& error) {
+    return Error{Errc::kBadFile, fmt::format("{}: {}", name, error.what())};
   }
 }
 

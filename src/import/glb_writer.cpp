@@ -242,6 +242,7 @@ class Output {
  private:
   static constexpr size_t kBuffer = 1 << 20;
   void flush() {
+    if (buffer_.empty()) return;
     if (good_ && std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size())
       good_ = false;
     buffer_.clear();

@@ -120,7 +120,7 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
   if (auto ok = check_config(config); !ok) return ok.error();
   if (auto ok = check_scene(scene); !ok) return ok.error();
   const Box3d bounds = triangle_bounds(scene);
-  const SurfaceCoder coder(scene, config.classes);
+  const SurfaceCoder coder(scene, config.classes, config.workers);
   auto planned = make_plan(scene, config, bounds, coder);
   if (!planned) return planned.error();
   const BakePlan& plan = *planned;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel.h"
+
 namespace throng {
 namespace {
 
@@ -25,11 +27,12 @@ std::vector<double> slope_limits(std::span<const AvatarClass> classes) {
 
 double snap_mm(double metres) {
   const double mm = metres * 1000;
-  const double whole = std::round(mm);
+  const double whole = static_cast<double>(std::lrint(mm));
   return std::fabs(mm - whole) < 1e-3 ? whole : mm;
 }
 
-SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes) {
+SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes,
+                           int32_t workers) {
   const std::vector<double> cosines = slope_limits(classes);
   std::vector<double> bins = cosines;
   std::sort(bins.begin(), bins.end());
@@ -40,7 +43,7 @@ SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> clas
   const size_t blocked_key = bin_count * 64;
   std::vector<uint16_t> key(scene.triangles.size());
   std::vector<uint8_t> used(blocked_key + 1, 0);
-  for (size_t t = 0; t < key.size(); ++t) {
+  const auto make_key = [&](size_t t) {
     const auto& corner = scene.triangles[t];
     const Vec3d a = scene.positions[corner[0]];
     const Vec3d normal = cross(scene.positions[corner[1]] - a, scene.positions[corner[2]] - a);
@@ -52,8 +55,12 @@ SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> clas
     const bool blocked = area == kAreaBlocked || exceeded == bin_count;
     key[t] =
         static_cast<uint16_t>(blocked ? blocked_key : exceeded * 64 + std::min(area, kAreaLast));
-    used[key[t]] = 1;
-  }
+  };
+  constexpr size_t kGrain = 4096;  // triangles
+  parallel_ranges(key.size(), kGrain, workers, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; ++t) make_key(t);
+  });
+  for (const uint16_t k : key) used[k] = 1;
 
   std::vector<uint8_t> code_of_key(used.size(), 255);
   used[blocked_key] = 1;
@@ -97,8 +104,11 @@ CellTriangle to_cell_triangle(const Scene& scene, uint32_t triangle, const Grid&
     out.y[i] = p[i].y;
     out.z[i] = p[i].z;
   }
-  out.low = static_cast<int32_t>(std::floor(std::min({p[0].y, p[1].y, p[2].y})));
-  out.high = static_cast<int32_t>(std::ceil(std::max({p[0].y, p[1].y, p[2].y})));
+  const double low = std::min({p[0].y, p[1].y, p[2].y}), high = std::max({p[0].y, p[1].y, p[2].y});
+  out.low = static_cast<int32_t>(low);
+  out.low -= out.low > low ? 1 : 0;
+  out.high = static_cast<int32_t>(high);
+  out.high += out.high < high ? 1 : 0;
   return out;
 }
 

@@ -42,7 +42,7 @@ struct SurfaceCodes {
 /// Steepness limits of the classes, and the codes in use by a scene.
 class SurfaceCoder {
  public:
-  SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes);
+  SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes, int32_t workers);
   [[nodiscard]] uint8_t code(uint32_t triangle) const { return triangle_code_[triangle]; }
   [[nodiscard]] const SurfaceCodes& codes() const { return codes_; }
 
@@ -86,7 +86,7 @@ TriangleBins bin_boxes(size_t count, Box box, int32_t cell_x, int32_t cell_z, in
   const double inverse = 1.0 / side;
   const double margin = apron + 1e-3;  // A box that close to a square touches it.
   const auto square_of = [&](double v, int32_t squares) {
-    return static_cast<int32_t>(std::floor(std::clamp(v * inverse, -1.0, squares + 1.0)));
+    return static_cast<int32_t>(std::clamp(v * inverse, -1.0, squares + 1.0) + 2) - 2;  // floor
   };
   const auto for_each_square = [&](size_t i, auto&& visit) {
     const CellBox b = box(i);

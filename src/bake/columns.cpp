@@ -130,10 +130,11 @@ struct TileTriangle {
   int32_t low, high;  // mm from the base
   int32_t code;
   bool flat;
-  bool upright;     // no gradient worth the name
-  bool rises_in_z;  // else it falls
-  float gradient;   // mm per cell along x
-  float margin;     // mm that the floats may err
+  bool upright;                   // no gradient worth the name
+  bool rises_in_z;                // else it falls
+  float gradient;                 // mm per cell along x
+  float highest_end, lowest_end;  // of a cell, along the gradient
+  float margin;                   // mm that the floats may err
   // Over each cell of a row, bounds by the triangle's sides: they are the same in all rows.
   alignas(64) float side_low[kTileSide], side_high[kTileSide];
 };
@@ -273,50 +274,52 @@ class RowCutter {
 // above it reach there, or the row's highest point if that is less; likewise the lowest. The lines
 // are the triangle's sides and the two that cut the row out; a line reaches highest at the end of
 // the cell towards which it rises. A line that is left out only adds matter.
+// Nothing here branches on a triangle's shape: shapes are as good as random.
+constexpr double kUnbound = 1e30;
+
+// How far beyond a cell's low end a line of this slope reaches highest; lowest for its negative.
+HWY_INLINE double highest_end(double slope) {
+  return static_cast<double>(slope >= 0) * (1 + 2 * kWiden) - kWiden;
+}
+
 HWY_INLINE void bound_by_sides(const Corners<double>& corners, TileTriangle& t, int32_t x_first,
                                int32_t x_last) {
   const DF df;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(df));
-  struct Side {
+  struct Line {
     float x, y, slope;
-    bool above;
   };
-  Side sides[6];
-  size_t count = 0;
+  Line above[3], below[3];
   constexpr size_t kEnds[3][3] = {{0, 2, 1}, {0, 1, 2}, {1, 2, 0}};
-  for (const auto& [i, j, k] : kEnds) {
+  for (size_t side = 0; side < 3; ++side) {
+    const auto& [i, j, k] = kEnds[side];
     const double dx = corners.x[j] - corners.x[i], dy = corners.y[j] - corners.y[i];
-    if (std::fabs(dx) < 1e-3) continue;
-    const double slope = dy / dx;
+    const auto sloped = static_cast<double>(std::fabs(dx) >= 1e-3);
+    const double slope = sloped * dy / (dx + (1 - sloped));
     const double over = corners.y[i] + slope * (corners.x[k] - corners.x[i]) - corners.y[k];
     // From a point near the tile on: a far one would cost the float its precision.
     const double x = std::clamp(corners.x[i], -1.0, kTileSide + 1.0);
     const double y = corners.y[i] + slope * (x - corners.x[i]);
-    const Side side{static_cast<float>(x), static_cast<float>(y), static_cast<float>(slope), true};
     // Of a triangle seen edge-on, thinner than the floats tell, each side bounds both ways.
     constexpr double kThin = 0.01;  // mm
-    if (over > -kThin) sides[count++] = side;
-    if (over < kThin) {
-      sides[count] = side;
-      sides[count++].above = false;
-    }
+    const double is_above = sloped * static_cast<double>(over > -kThin);
+    const double is_below = sloped * static_cast<double>(over < kThin);
+    above[side] = {static_cast<float>(x - highest_end(slope)),
+                   static_cast<float>(y + (1 - is_above) * kUnbound), static_cast<float>(slope)};
+    below[side] = {static_cast<float>(x - highest_end(-slope)),
+                   static_cast<float>(y - (1 - is_below) * kUnbound), static_cast<float>(slope)};
   }
   for (int32_t begin = x_first & ~(lanes - 1); begin <= x_last; begin += lanes) {
     const VF x = hn::ConvertTo(df, counting_from(begin));
-    const VF cell_low = hn::Sub(x, hn::Set(df, static_cast<float>(kWiden)));
-    const VF cell_high = hn::Add(x, hn::Set(df, static_cast<float>(1 + kWiden)));
     VF low = hn::Set(df, static_cast<float>(t.low));
     VF high = hn::Set(df, static_cast<float>(t.high));
-    for (size_t i = 0; i < count; ++i) {
-      const Side& side = sides[i];
-      const VF at = side.above == (side.slope >= 0) ? cell_high : cell_low;
-      const VF y = hn::Add(hn::Set(df, side.y),
-                           hn::Mul(hn::Sub(at, hn::Set(df, side.x)), hn::Set(df, side.slope)));
-      if (side.above) {
-        high = hn::Min(high, y);
-      } else {
-        low = hn::Max(low, y);
-      }
+    const auto reach = [&](const Line& line) {
+      return hn::Add(hn::Set(df, line.y),
+                     hn::Mul(hn::Sub(x, hn::Set(df, line.x)), hn::Set(df, line.slope)));
+    };
+    for (size_t side = 0; side < 3; ++side) {
+      high = hn::Min(high, reach(above[side]));
+      low = hn::Max(low, reach(below[side]));
     }
     hn::Store(low, df, t.side_low + begin);
     hn::Store(high, df, t.side_high + begin);
@@ -331,6 +334,8 @@ HWY_INLINE void set_gradient(const Corners<double>& c, TileTriangle& t) {
   const double rise_x = az * by - ay * bz, rise_z = ay * bx - ax * by;
   t.upright = !(std::fabs(rise_x) < kSteepest * std::fabs(normal_y));
   t.gradient = t.upright ? 0 : static_cast<float>(rise_x / normal_y);
+  t.highest_end = static_cast<float>(highest_end(t.gradient));
+  t.lowest_end = static_cast<float>(highest_end(-static_cast<double>(t.gradient)));
   t.rises_in_z = (rise_z >= 0) == (normal_y > 0);
   t.margin = 0.05f + static_cast<float>(t.high) * 0x1p-20f;
 }
@@ -343,13 +348,10 @@ HWY_INLINE void row_heights(const TileTriangle& t, const RowBatch& rows, size_t 
   VF y_low = hn::Max(hn::Load(df, t.side_low + begin), hn::Set(df, rows.y_low[r]));
   VF y_high = hn::Min(hn::Load(df, t.side_high + begin), hn::Set(df, rows.y_high[r]));
   if (!t.upright) {
-    const VF cell_low = hn::Sub(x, hn::Set(df, static_cast<float>(kWiden)));
-    const VF cell_high = hn::Add(x, hn::Set(df, static_cast<float>(1 + kWiden)));
-    const bool rises = t.gradient >= 0;
     const size_t above = t.rises_in_z ? 1 : 0, below = 1 - above;
     const VF slope = hn::Set(df, t.gradient);
-    const VF to_high = hn::Sub(rises ? cell_high : cell_low, hn::Set(df, rows.cap_x[above][r]));
-    const VF to_low = hn::Sub(rises ? cell_low : cell_high, hn::Set(df, rows.cap_x[below][r]));
+    const VF to_high = hn::Sub(x, hn::Set(df, rows.cap_x[above][r] - t.highest_end));
+    const VF to_low = hn::Sub(x, hn::Set(df, rows.cap_x[below][r] - t.lowest_end));
     y_high = hn::Min(y_high, hn::Add(hn::Set(df, rows.cap_y[above][r]), hn::Mul(to_high, slope)));
     y_low = hn::Max(y_low, hn::Add(hn::Set(df, rows.cap_y[below][r]), hn::Mul(to_low, slope)));
   }

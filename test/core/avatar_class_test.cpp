@@ -104,7 +104,8 @@ TEST(AvatarClass, BrokenTextIsRefusedWithItsLine) {
   EXPECT_NE(refusal("c.json", std::string(100000, '[')), "accepted");
   EXPECT_NE(refusal("c.toml", "class = " + std::string(100000, '[')), "accepted");
   EXPECT_NE(refusal("c.toml", ""), "accepted");
-  for (const char* text : {"[.a]", "[[=]]", "[]", "a.", "a.=1", "[a.]", "= 1", ". = 1"}) {
+  for (const char* text :
+       {"[.a]", "[[=]]", "[]", "a.", "a.=1", "[a.]", "= 1", ". = 1", "\xef\xbb\xb8{"}) {
     EXPECT_NE(refusal("c.toml", text), "accepted") << text;
   }
 }

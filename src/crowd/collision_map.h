@@ -78,6 +78,14 @@ class CollisionMap {
     __builtin_prefetch(w + ring.ahead[2]);
     __builtin_prefetch(w + ring.ahead[4]);
   }
+  /// Asks for the words that is_free will read around a point.
+  void prefetch(GroundPoint p, int32_t feet) const {
+    const Mark m = mark(p, feet);
+    const uint64_t* w = &word(m.slices.plane, m.pixel);
+    __builtin_prefetch(w - stride_);
+    __builtin_prefetch(w);
+    __builtin_prefetch(w + stride_);
+  }
   /// Moves a body that is alone around `from` one pixel along `way`, if it is alone there too. Only
   /// the pixels around the one and not around the other need a look.
   bool move_by_one(const Slices& s, uint32_t from, uint32_t way) {

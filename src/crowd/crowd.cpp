@@ -26,6 +26,9 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr int32_t kBlockPixels = 32;
+// Pixels of the map for each avatar above which small pages, taken only around him, save memory: he
+// touches up to three pages of 512.
+constexpr int64_t kSparse = 2048;
 constexpr uint64_t kGrain = 512;  // avatars that are worth handing to another thread
 
 int32_t step_mm(const AvatarClass& body) {
@@ -99,7 +102,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   const auto low = static_cast<int32_t>(std::floor(data.summary.bounds.min.y * 1000)) - 1000;
   const auto high = static_cast<int32_t>(std::ceil(data.summary.bounds.max.y * 1000)) + 1000;
   const PixelGrid grid(pixel_cells);
-  state->map.emplace(data.width, data.depth, grid, low, high, body_mm, Pages::kHuge);
+  const int64_t pixels = int64_t{data.width / pixel_cells + 1} * (data.depth / pixel_cells + 1);
+  const Pages pages = pixels / kSparse < config.avatars ? Pages::kHuge : Pages::kSmall;
+  state->map.emplace(data.width, data.depth, grid, low, high, body_mm, pages);
   state->unit = cell / kUnitsPerCell;
 
   // Nobody moves further than a radius at a time.

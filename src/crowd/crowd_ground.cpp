@@ -3,6 +3,7 @@
 #include "crowd/crowd_ground.h"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <utility>
 
@@ -10,23 +11,21 @@ namespace throng {
 namespace {
 
 constexpr size_t kRows = 64;
-constexpr uint16_t kNoFloor = 65535;
 constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
 constexpr uint32_t kAllLegal = 1;
 
-// Heights between which all floors of a level lie. [mm]
-std::pair<int32_t, int32_t> heights_of(const LevelView& view) {
-  if (view.floor != nullptr) {
-    uint16_t low = kNoFloor, high = 0;
-    for (const uint16_t sample : std::span(view.floor, kRows * 64)) {
+// Heights between which the floors of a level's legal cells lie. [mm]
+std::pair<int32_t, int32_t> heights_of(const LevelView& view, const uint64_t* legal) {
+  if (view.is_constant()) return {view.floor_base, view.floor_base};
+  int32_t low = INT32_MAX, high = INT32_MIN;
+  for (int32_t z = 0; z < static_cast<int32_t>(kRows); ++z) {
+    for (uint64_t row = legal[z]; row != 0; row &= row - 1) {
+      const int32_t sample = view.sample(std::countr_zero(row), z);
       low = std::min(low, sample);
-      high = std::max(high, sample == kNoFloor ? uint16_t{0} : sample);
+      high = std::max(high, sample);
     }
-    return {view.floor_base + low, view.floor_base + high};
   }
-  const auto corners = {view.sample(0, 0), view.sample(63, 0), view.sample(0, 63),
-                        view.sample(63, 63)};
-  return std::minmax(corners);
+  return {low, high};
 }
 
 // Bit x: samples x and x + 1 of a row are the same.
@@ -86,8 +85,6 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
       const GroundLevel level = ground_level(*zone, i, base + i, avatar_class);
       Record& record = ground.records_[base + i];
       ground.views_[base + i] = level.view;
-      const auto [low, high] = heights_of(level.view);
-      ground.heights_[base + i] = {low, high};
       record.legal_cells = zone->clearance(i, static_cast<uint32_t>(avatar_class)).legal_cells();
       uint32_t set = level.kind == format::BitsKind::All ? kAllLegal : kNoneLegal;
       if (level.kind == format::BitsKind::Planes) {
@@ -101,6 +98,8 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
                                     ground.rows_.data() + size_t{sets} * kRows);
         ground.plain_[base + i] = any ? sets++ : kNoneLegal;
       }
+      const auto [low, high] = heights_of(level.view, ground.legal(base + i));
+      ground.heights_[base + i] = {low, high};
       const int32_t tile = level.view.record->tile();
       record.tile_x = zone->root().x() * per_zone + tile % per_zone;
       record.tile_z = zone->root().z() * per_zone + tile / per_zone;

@@ -76,8 +76,15 @@ class CrowdGround {
     __builtin_prefetch(sample);
     __builtin_prefetch(sample + 64);
   }
+  /// What is known of a tile's levels, in two goes: the second reads what the first asks for.
   void prefetch_tile(int32_t tile_x, int32_t tile_z) const {
-    if (const Range* range = tile(tile_x, tile_z)) __builtin_prefetch(&heights_[range->first]);
+    __builtin_prefetch(tile(tile_x, tile_z));
+  }
+  void prefetch_levels(int32_t tile_x, int32_t tile_z) const {
+    const Range* range = tile(tile_x, tile_z);
+    if (range == nullptr) return;
+    __builtin_prefetch(&heights_[range->first]);
+    __builtin_prefetch(&walk_[range->first]);
   }
   [[nodiscard]] int32_t feet(Level level, GroundPoint p) const {
     const LevelView& view = views_[level];
@@ -126,7 +133,7 @@ class CrowdGround {
 
   int32_t tiles_x_ = 0, tiles_z_ = 0;
   std::vector<Range> tiles_;
-  std::vector<Heights> heights_;  // between which a level's floors lie [mm]
+  std::vector<Heights> heights_;  // between which a level's legal floors lie [mm]
   std::vector<Record> records_;
   // Copied out of the zones, where one class's rows lie pages apart: here the levels of a tile are
   // neighbours. Set 0 is empty, set 1 is full, for all levels that are.

@@ -50,25 +50,39 @@ class Group {
   Group(const StepInput& in, Avatar* avatars, const Avatar* readable)
       : in_(in), avatars_(avatars), last_readable_(readable - 1) {}
 
-  // Each avatar of the list makes one step, or goes on the other list.
+  // Each avatar of the list makes one step, or goes on the other list. What one pass asks for
+  // arrives during the next, which deals with others.
   void move(const List& todo, List& blocked) {
     plan(todo);
+    ask_for_levels();
+    ask_for_pixels();
+    ask_for_cells();
     claim(blocked);
-    walk_uneven(blocked);
+    sort_uneven();
+    climb(blocked);
+    walk_on(blocked);
   }
   [[nodiscard]] uint64_t walls() const { return walls_; }
 
  private:
   void plan(const List& todo);
+  void ask_for_levels() const;
+  void ask_for_pixels();
+  void ask_for_cells() const;
   void claim(List& blocked);
-  void walk_uneven(List& blocked);
+  void sort_uneven();
+  void climb(List& blocked);
+  void walk_on(List& blocked);
 
   const StepInput& in_;
   Avatar* avatars_;
   const Avatar* last_readable_;
   std::array<Claim, kGroup> claims_;
+  std::array<CollisionMap::Slices, kGroup> slices_;  // of the claims
   size_t claims_size_ = 0;
-  List uneven_;
+  List uneven_;  // not plain: these go on one of the next two
+  List slopes_;
+  List walks_;
   uint64_t walls_ = 0;  // met
 };
 
@@ -79,14 +93,14 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
 // than kShort are not looked at.
 [[gnu::always_inline]] inline bool box_is_set(const uint64_t* rows, int32_t x0, int32_t z0,
                                               int32_t x1, int32_t z1) {
-  const int32_t gone_x = x1 - x0, gone_z = z1 - z0;
-  const int32_t low_x = x0 + (gone_x & (gone_x >> 31)), low_z = z0 + (gone_z & (gone_z >> 31));
-  const int32_t wide = std::abs(gone_x), deep = std::abs(gone_z);
-  const bool near =
-      (static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64) & (wide <= kShort) & (deep <= kShort);
-  const uint64_t common = rows[z0 & 63] & rows[(low_z + (deep >> 1)) & 63] & rows[z1 & 63];
-  const uint64_t columns = ((uint64_t{2} << (wide & 63)) - 1) << (low_x & 63);
-  return near & ((~common & columns) == 0);
+  const bool near = (static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64) &
+                    (static_cast<uint32_t>(x1 - x0 + kShort) <= 2 * kShort) &
+                    (static_cast<uint32_t>(z1 - z0 + kShort) <= 2 * kShort);
+  // Of two cells that are at most two apart, the one between is all that lies between.
+  const uint64_t common = rows[z0 & 63] & rows[((z0 + z1) >> 1) & 63] & rows[z1 & 63];
+  const uint64_t all = (common >> (x0 & 63)) & (common >> (((x0 + x1) >> 1) & 63)) &
+                       (common >> (x1 & 63)) & static_cast<uint64_t>(near);
+  return all != 0;
 }
 
 // Whoever stays in his pixel on plain cells moves at once: nobody can object. Arithmetic instead of
@@ -118,18 +132,21 @@ void Group::plan(const List& todo) {
   claims_size_ = claimed;
 }
 
-void Group::claim(List& blocked) {
-  CollisionMap& map = *in_.map;
-  std::array<CollisionMap::Slices, kGroup> slices;
+void Group::ask_for_pixels() {
+  const CollisionMap& map = *in_.map;
   for (size_t i = 0; i < claims_size_; ++i) {
     const Claim& c = claims_[i];
-    slices[i] = map.slices(avatars_[c.n].y);
-    map.prefetch(slices[i], c.from, c.way);
+    slices_[i] = map.slices(avatars_[c.n].y);
+    map.prefetch(slices_[i], c.from, c.way);
   }
+}
+
+void Group::claim(List& blocked) {
+  CollisionMap& map = *in_.map;
   for (size_t i = 0; i < claims_size_; ++i) {
     const Claim& c = claims_[i];
     Avatar& a = avatars_[c.n];
-    const bool moved = map.move_by_one(slices[i], c.from, c.way);
+    const bool moved = map.move_by_one(slices_[i], c.from, c.way);
     a.x += a.vx & mask(moved);
     a.z += a.vz & mask(moved);
     blocked.add_if(!moved, c.n);
@@ -171,34 +188,56 @@ bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_
 
 GroundPoint target(const Avatar& a) { return {int64_t{a.x} + a.vx, int64_t{a.z} + a.vz}; }
 
-// Up a ramp, along a wall, over the edge of a tile.
-void Group::walk_uneven(List& blocked) {
-  const CrowdGround& ground = *in_.ground;
-  for (const uint16_t n : uneven_.span()) ground.prefetch_walk(avatars_[n].level);
+void Group::ask_for_levels() const {
   for (const uint16_t n : uneven_.span()) {
     const Avatar& a = avatars_[n];
-    ground.prefetch_cell(a.level, (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
+    in_.ground->prefetch_walk(a.level);
+    in_.ground->prefetch_tile((a.x + a.vx) >> (kUnitBits + 6), (a.z + a.vz) >> (kUnitBits + 6));
   }
-  List slopes, walks;
+}
+
+void Group::ask_for_cells() const {
+  for (const uint16_t n : uneven_.span()) {
+    const Avatar& a = avatars_[n];
+    const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
+    in_.ground->prefetch_cell(a.level, x, z);
+    in_.ground->prefetch_levels(x >> 6, z >> 6);
+    in_.map->prefetch(a.point(), a.y);
+  }
+}
+
+// Slopes, where every cell in reach is legal, from walls, steps and edges of tiles.
+void Group::sort_uneven() {
+  const CrowdGround& ground = *in_.ground;
   for (const uint16_t n : uneven_.span()) {
     const Avatar& a = avatars_[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
     const CrowdGround::Walk level = ground.walk(a.level);
     const bool is_slope = level.is_step_safe & box_is_set(level.legal, x0, z0, x1, z1);
-    slopes.add_if(is_slope, n);
-    walks.add_if(!is_slope, n);
+    slopes_.add_if(is_slope, n);
+    walks_.add_if(!is_slope, n);
   }
-  for (const uint16_t n : walks.span()) {
+  for (const uint16_t n : walks_.span()) {
     const Avatar& a = avatars_[n];
-    ground.prefetch_tile((a.x + a.vx) >> (kUnitBits + 6), (a.z + a.vz) >> (kUnitBits + 6));
+    const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
+    if ((x >> 6) == (a.x >> (kUnitBits + 6)) && (z >> 6) == (a.z >> (kUnitBits + 6))) continue;
+    ground.for_tile(x >> 6, z >> 6, a.y - in_.step_mm, a.y + in_.step_mm,
+                    [&](uint32_t level) { ground.prefetch_cell(level, x, z); });
   }
-  for (const uint16_t n : slopes.span()) {
+}
+
+void Group::climb(List& blocked) {
+  for (const uint16_t n : slopes_.span()) {
     Avatar& a = avatars_[n];
     const GroundPoint to = target(a);
-    blocked.add_if(!commit(*in_.map, a, to, a.level, ground.feet(a.level, to)), n);
+    blocked.add_if(!commit(*in_.map, a, to, a.level, in_.ground->feet(a.level, to)), n);
   }
-  for (const uint16_t n : walks.span()) {
+}
+
+void Group::walk_on(List& blocked) {
+  const CrowdGround& ground = *in_.ground;
+  for (const uint16_t n : walks_.span()) {
     Avatar& a = avatars_[n];
     const GroundPoint from = a.point(), to = target(a);
     uint32_t level = a.level;

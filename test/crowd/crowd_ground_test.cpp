@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/random.h"
 #include "throng/bake.h"
 #include "worlds.h"
@@ -42,11 +44,28 @@ TEST(CrowdGround, LegalCellsAreThoseOfTheZones) {
   }
 }
 
+// Level ground, then a slope over the edge of the tiles at 6.4 m, then level ground.
+Scene slope_over_the_edge(bool along_x) {
+  Scene scene;
+  const double at[] = {0, 5, 8, 13}, y[] = {0, 0, 0.8, 0.8};
+  for (int i = 0; i < 3; ++i) {
+    if (along_x) {
+      scene.add_quad({at[i], y[i], 0}, {at[i], y[i], 9}, {at[i + 1], y[i + 1], 9},
+                     {at[i + 1], y[i + 1], 0});
+    } else {
+      scene.add_quad({0, y[i], at[i]}, {0, y[i + 1], at[i + 1]}, {9, y[i + 1], at[i + 1]},
+                     {9, y[i], at[i]});
+    }
+  }
+  return scene;
+}
+
 // Walks of up to two cells that stay on plain cells need no further look; that is, the world allows
 // them, and the feet stay as high as they are.
 TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
-  for (const Scene& scene : {worlds::two_floors(), worlds::steps(0.17, 0.3, 12),
-                             worlds::ramp(20, 8), worlds::doorway(1)}) {
+  for (const Scene& scene :
+       {worlds::two_floors(), worlds::steps(0.17, 0.3, 12), worlds::ramp(20, 8), worlds::doorway(1),
+        slope_over_the_edge(true), slope_over_the_edge(false)}) {
     const World world = baked(scene);
     const auto ground = CrowdGround::make(*world.data(), 0, kStep);
     ASSERT_TRUE(ground);
@@ -56,7 +75,8 @@ TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
     };
     for (int32_t i = 0; i < 200000; ++i) {
       const auto level = static_cast<uint32_t>(draw(world.level_tile_count()));
-      const int32_t x0 = draw(62), z0 = draw(62), x1 = x0 + draw(3), z1 = z0 + draw(3);
+      const int32_t x0 = draw(64), z0 = draw(64);
+      const int32_t x1 = std::min(63, x0 + draw(3)), z1 = std::min(63, z0 + draw(3));
       bool plain = true;
       for (int32_t z = z0; z <= z1; ++z) {
         for (int32_t x = x0; x <= x1; ++x) plain &= ((ground->plain()[level][z] >> x) & 1) != 0;

@@ -11,10 +11,11 @@
 
 namespace {
 
-// Whole steps in a garage of four storeys with four square metres an avatar; items are avatars.
+// Whole steps in a garage of four storeys with about four square metres an avatar; items are
+// avatars.
 void crowd_step(benchmark::State& state) {
   const auto avatars = static_cast<uint32_t>(state.range(0));
-  const double size = std::max(60.0, std::ceil(std::sqrt(avatars)));
+  const double size = std::max(60.0, std::ceil(std::sqrt(avatars * 4 / 2.75)));
   const auto scene = throng::make_builtin_world({.name = "garage", .size = size, .levels = 4});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   throng::Context context;

@@ -126,7 +126,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       const VU feet_high = hn::SaturatedAdd(feet, tilt);
       const MU low_enough = at_most(high_top, hn::SaturatedAdd(feet_low, rise));
       const MU no_drop = at_most(feet_high, hn::SaturatedAdd(low_top, bottom));
-      // A saturated ceiling is at least 65.535 m over the base: no class is that tall.
+      // Saturated, a head passes under the open sky only.
       const MU room = at_most(hn::SaturatedAdd(feet_high, height), low_ceiling);
       const MU closed = hn::Ne(high_top, none);
       const MU open = hn::And(stands, hn::And(room, closed));

@@ -145,7 +145,7 @@ void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimit
   const DB db;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
   const auto base = hn::Set(di, sheet.base), none = hn::Set(di, kNone16);
-  const auto sky = hn::Set(di, kOpenSkyMm);
+  const auto sky = hn::Set(di, kOpenSkyMm), highest = hn::Set(di, kHighCeiling16);
   for (int32_t x = 0; x < kTileSide; x += lanes) {
     const uint64_t here = cells >> x & (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL);
     if (here == 0) continue;
@@ -154,8 +154,8 @@ void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimit
     const auto top = hn::Sub(hn::Load(di, &layer.top[c]), base);
     const auto raw_ceiling = hn::Load(di, &layer.ceiling[c]);
     // An open sky would overflow the difference: it is replaced after it.
-    const auto ceiling =
-        hn::IfThenElse(hn::Eq(raw_ceiling, sky), none, hn::Min(hn::Sub(raw_ceiling, base), none));
+    const auto ceiling = hn::IfThenElse(hn::Eq(raw_ceiling, sky), none,
+                                        hn::Min(hn::Sub(raw_ceiling, base), highest));
     const auto feet = hn::Sub(hn::ShiftRight<8>(support), base);
     const auto code = hn::And(support, hn::Set(di, 255));
     const auto bad =
@@ -335,6 +335,7 @@ void ChooseGaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, ui
   const DI di;
   const DH dh;
   const auto none = hn::Set(di, kNone16), zero = hn::Zero(di);
+  const auto highest = hn::Set(di, kHighCeiling16);
   for (size_t i = 0; i < kTileSide; i += hn::Lanes(di)) {
     const auto wanted = hn::LoadU(di, near + i);
     auto least = hn::Set(di, INT32_MAX);
@@ -343,10 +344,12 @@ void ChooseGaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, ui
       const auto shift = hn::Set(di, line.shift);
       const auto own_top = hn::PromoteTo(di, hn::LoadU(dh, line.top + i));
       const auto own_ceiling = hn::PromoteTo(di, hn::LoadU(dh, line.ceiling + i));
-      const auto height = hn::Min(hn::Max(hn::Add(own_top, shift), zero), none);
-      const auto room = hn::IfThenElse(hn::Eq(own_ceiling, none), none,
-                                       hn::Min(hn::Max(hn::Add(own_ceiling, shift), zero), none));
-      const auto distance = hn::Abs(hn::Sub(hn::Add(own_top, shift), wanted));
+      const auto moved = hn::Add(own_top, shift);
+      const auto height = hn::IfThenElse(hn::Lt(moved, zero), none, hn::Min(moved, none));
+      const auto room =
+          hn::IfThenElse(hn::Eq(own_ceiling, none), none,
+                         hn::Min(hn::Max(hn::Add(own_ceiling, shift), zero), highest));
+      const auto distance = hn::Abs(hn::Sub(moved, wanted));
       const auto better = hn::And(hn::Ne(own_top, none), hn::Lt(distance, least));
       least = hn::IfThenElse(better, distance, least);
       best_top = hn::IfThenElse(better, height, best_top);

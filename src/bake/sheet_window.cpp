@@ -12,18 +12,25 @@
 namespace throng {
 namespace {
 
-// A height of another sheet on this sheet's scale.
-uint16_t rebased(uint16_t value, int32_t shift) {
-  if (value == kNone16) return kNone16;
-  return static_cast<uint16_t>(std::clamp<int32_t>(value + shift, 0, kNone16));
+// The top of another sheet on this sheet's scale. Out of range is no gap: were it drawn to the
+// range's end, a class that may step far down would take a deep drop for a shallow one.
+uint16_t rebased_top(uint16_t value, int32_t shift) {
+  const int32_t moved = value + shift;
+  return value == kNone16 || moved < 0 || moved > kNone16 ? kNone16 : static_cast<uint16_t>(moved);
 }
 
-void rebase_row(const uint16_t* from, int32_t count, int32_t shift, uint16_t* to) {
+uint16_t rebased_ceiling(uint16_t value, int32_t shift) {
+  if (value == kNone16) return kNone16;
+  return static_cast<uint16_t>(std::clamp<int32_t>(value + shift, 0, kHighCeiling16));
+}
+
+template <class Rebase>
+void rebase_row(const uint16_t* from, int32_t count, int32_t shift, uint16_t* to, Rebase rebase) {
   if (shift == 0) {
     std::copy_n(from, count, to);
     return;
   }
-  for (int32_t i = 0; i < count; ++i) to[i] = rebased(from[i], shift);
+  for (int32_t i = 0; i < count; ++i) to[i] = rebase(from[i], shift);
 }
 
 // The sheet of a tile whose gap at `cell` is nearest to `near_top` (absolute), or null.
@@ -108,8 +115,8 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
       for (int32_t z = z0; z < z1; ++z) {
         const auto from =
             static_cast<size_t>((z - dz * kTileSide) * kTileSide + x0 - dx * kTileSide);
-        rebase_row(&other.top[from], x1 - x0, shift, &top[index(x0, z)]);
-        rebase_row(&other.ceiling[from], x1 - x0, shift, &ceiling[index(x0, z)]);
+        rebase_row(&other.top[from], x1 - x0, shift, &top[index(x0, z)], rebased_top);
+        rebase_row(&other.ceiling[from], x1 - x0, shift, &ceiling[index(x0, z)], rebased_ceiling);
       }
       continue;
     }
@@ -182,8 +189,8 @@ void SheetWindow::fill_corner(const TileSheets& tile, const Sheet& own, int32_t 
       const Sheet* other = nearest_sheet(tile, from, near_top + own.base);
       if (other == nullptr) continue;
       const int32_t shift = other->base - own.base;
-      top[index(x, z)] = rebased(other->top[from], shift);
-      ceiling[index(x, z)] = rebased(other->ceiling[from], shift);
+      top[index(x, z)] = rebased_top(other->top[from], shift);
+      ceiling[index(x, z)] = rebased_ceiling(other->ceiling[from], shift);
     }
   }
 }
@@ -208,8 +215,8 @@ void SheetWindow::fill_holes(const TileSheets& tile, size_t sheet, int32_t max_s
       const Sheet* other = nearest_sheet(tile, cell, own.base + top[next]);
       if (other == nullptr) continue;
       const int32_t shift = other->base - own.base;
-      const uint16_t other_top = rebased(other->top[cell], shift);
-      const uint16_t other_ceiling = rebased(other->ceiling[cell], shift);
+      const uint16_t other_top = rebased_top(other->top[cell], shift);
+      const uint16_t other_ceiling = rebased_ceiling(other->ceiling[cell], shift);
       if (std::abs(other_top - top[next]) > max_step ||
           std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]) < min_gap) {
         continue;

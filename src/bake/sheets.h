@@ -18,7 +18,8 @@
 /// one floor. They are level tiles in the making.
 namespace throng {
 
-inline constexpr uint16_t kNone16 = 65535;  // no gap, no feet; for ceilings: that high or more
+inline constexpr uint16_t kNone16 = 65535;         // no gap, no feet; for ceilings: open sky
+inline constexpr uint16_t kHighCeiling16 = 65534;  // a ceiling that high or more
 
 /// One gap per cell. Heights are [mm] from `base`, which lies kBelow under the lowest top so that
 /// lower neighbours can still be told apart.

@@ -40,6 +40,7 @@ struct Component {
   int32_t count = 0;
   TopRange tops;
   bool overlaps_itself = false;
+  bool is_piece = false;  // of one that was split
 };
 
 // What goes into a sheet: gaps of a layer in a row.
@@ -213,6 +214,7 @@ void Dealer::split(int32_t index) {
     if (label_of(seed.cell, seed.layer) != kPending) continue;
     const auto piece = static_cast<int32_t>(components_.size());
     Component component;
+    component.is_piece = true;
     for (Rows& r : rows) r.fill(0);
     queue.clear();
     const auto take = [&](int32_t cell, int32_t k) {
@@ -260,8 +262,9 @@ void Dealer::split(int32_t index) {
 }
 
 // True if no body of any class has room on the component: it is smaller than the smallest footprint
-// and ends inside the tile. Tops of pillars and rails go this way.
+// and ends inside the tile. Tops of pillars and rails go this way. A piece goes on in another one.
 bool Dealer::is_crumb(const Component& c) const {
+  if (c.is_piece) return false;
   if (c.count >= limits_.min_footprint || c.cells[0] != 0 || c.cells[kSide - 1] != 0) return false;
   uint64_t columns = 0;
   for (const uint64_t row : c.cells) columns |= row;

@@ -102,7 +102,6 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
 
   const VU none = hn::Set(du, kNone16);
   const VU bottom = hn::Set(du, static_cast<uint16_t>(std::min(body.bottom, 65535)));
-  const VU rise = hn::Set(du, static_cast<uint16_t>(std::max(0, body.bottom - 1)));
   const VU height = hn::Set(du, static_cast<uint16_t>(std::min(body.height, 65534)));
   const bool uniform = sheet.one_code;
   const bool uniform_ok = (limits.allowed[sheet.some_code] & body.class_bit) != 0;
@@ -124,7 +123,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       const VU tilt = hn::Load(du, &scratch.tilt[cell]);
       const VU feet_low = hn::SaturatedSub(feet, tilt);
       const VU feet_high = hn::SaturatedAdd(feet, tilt);
-      const MU low_enough = at_most(high_top, hn::SaturatedAdd(feet_low, rise));
+      const MU low_enough = at_most(high_top, hn::SaturatedAdd(feet_low, bottom));
       const MU no_drop = at_most(feet_high, hn::SaturatedAdd(low_top, bottom));
       // Saturated, a head passes under the open sky only.
       const MU room = at_most(hn::SaturatedAdd(feet_high, height), low_ceiling);

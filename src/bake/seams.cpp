@@ -121,7 +121,7 @@ void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& b
       const int32_t x = std::countr_zero(row);
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const int32_t feet = own.base + own.feet[cell], tilt = scratch.tilt[cell];
-      const Need need{feet + tilt - body.bottom, feet - tilt + body.bottom - 1,
+      const Need need{feet + tilt - body.bottom, feet - tilt + body.bottom,
                       feet + tilt + body.height};
       if (body_fits(tiles, body, x, z, need)) cells.legal[r] |= 1ULL << x;
     }

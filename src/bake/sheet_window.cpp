@@ -263,7 +263,7 @@ bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
     if (other.cells != kTileArea) return false;
     const int32_t ceiling =
         other.low_ceiling == kNone16 ? INT32_MAX : other.base + other.low_ceiling;
-    if (other.base + other.high_top > low_feet + body.bottom - 1 ||
+    if (other.base + other.high_top > low_feet + body.bottom ||
         other.base + other.low_top < high_feet - body.bottom || ceiling < high_feet + body.height) {
       return false;
     }

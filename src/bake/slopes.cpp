@@ -116,8 +116,7 @@ HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body
   const VI tilt = hn::Add(hn::Abs(gx), hn::Abs(gz));  // of the plane over a cell [mm]
   const VI bottom = hn::Set(di, body.bottom);
   // A column may also pass as in the window: its whole top against the lowest and highest feet.
-  const VI level_high =
-      hn::ShiftLeft<1>(hn::Sub(hn::Add(hn::Sub(height, feet_tilt), bottom), hn::Set(di, 1)));
+  const VI level_high = hn::ShiftLeft<1>(hn::Add(hn::Sub(height, feet_tilt), bottom));
   const VI level_low = hn::ShiftLeft<1>(hn::Sub(hn::Add(height, feet_tilt), bottom));
   const VI most = hn::Sub(budget, tilt);  // by which a top may pass the plane, up or down
   auto bad = hn::Lt(budget, hn::Zero(di));

@@ -115,7 +115,8 @@ HWY_INLINE void insert(TileColumns& columns, int32_t cell, MI mask, VI low, VI h
 
 constexpr int32_t kBatch = 16;  // rows that are cut together
 
-// What a triangle does in a batch of rows, in the tile's frame: x in cells, y in mm from the base.
+// What a triangle does in a batch of rows, in the tile's frame: x in cells, y in mm from the
+// triangle's lowest corner, so that the floats do not feel what else the tile holds.
 struct RowBatch {
   alignas(64) int32_t x0[kBatch], x1[kBatch];  // cells touched, inclusive, not yet cut to the tile
   alignas(64) int32_t c0[kBatch], c1[kBatch];  // cells whose centre is covered; none if c0 > c1
@@ -311,8 +312,8 @@ HWY_INLINE void bound_by_sides(const Corners<double>& corners, TileTriangle& t, 
   }
   for (int32_t begin = x_first & ~(lanes - 1); begin <= x_last; begin += lanes) {
     const VF x = hn::ConvertTo(df, counting_from(begin));
-    VF low = hn::Set(df, static_cast<float>(t.low));
-    VF high = hn::Set(df, static_cast<float>(t.high));
+    VF low = hn::Zero(df);
+    VF high = hn::Set(df, static_cast<float>(t.high - t.low));
     const auto reach = [&](const Line& line) {
       return hn::Add(hn::Set(df, line.y),
                      hn::Mul(hn::Sub(x, hn::Set(df, line.x)), hn::Set(df, line.slope)));
@@ -337,7 +338,7 @@ HWY_INLINE void set_gradient(const Corners<double>& c, TileTriangle& t) {
   t.highest_end = static_cast<float>(highest_end(t.gradient));
   t.lowest_end = static_cast<float>(highest_end(-static_cast<double>(t.gradient)));
   t.rises_in_z = (rise_z >= 0) == (normal_y > 0);
-  t.margin = 0.05f + static_cast<float>(t.high) * 0x1p-20f;
+  t.margin = 0.05f + static_cast<float>(t.high - t.low) * 0x1p-20f;
 }
 
 // The triangle's heights over one vector of cells of its row.
@@ -359,8 +360,9 @@ HWY_INLINE void row_heights(const TileTriangle& t, const RowBatch& rows, size_t 
   const VF margin = hn::Set(df, t.margin);
   const VF bottom = hn::Sub(hn::Min(y_low, y_high), margin);
   const VF top = hn::Add(hn::Max(y_low, y_high), margin);
-  low = hn::Max(low, hn::ConvertTo(di, hn::Floor(bottom)));
-  high = hn::Min(high, hn::ConvertTo(di, hn::Ceil(top)));
+  const VI tall = hn::Sub(high, low);
+  high = hn::Add(low, hn::Min(tall, hn::ConvertTo(di, hn::Ceil(top))));
+  low = hn::Add(low, hn::Max(hn::Zero(di), hn::ConvertTo(di, hn::Floor(bottom))));
 }
 
 HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowBatch& rows,
@@ -372,6 +374,7 @@ HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowB
   const int32_t c0 = rows.c0[r], c1 = rows.c1[r];
   const VI tri_low = hn::Set(di, t.low);
   const VI tri_high = hn::Set(di, t.high);
+  const VI tri_tall = hn::Set(di, t.high - t.low);
   for (int32_t begin = x0 & ~(lanes - 1); begin <= x1; begin += lanes) {
     const VI index = counting_from(begin);
     const VF x = hn::ConvertTo(df, index);
@@ -386,7 +389,8 @@ HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowB
         const VF along = hn::Sub(hn::Add(x, hn::Set(df, 0.5f)), hn::Set(df, rows.centre_x[r]));
         const VF y =
             hn::Add(hn::Set(df, rows.centre_y[r]), hn::Mul(along, hn::Set(df, t.gradient)));
-        height = hn::Min(tri_high, hn::Max(tri_low, hn::NearestInt(y)));
+        const VI above = hn::Min(tri_tall, hn::Max(hn::Zero(di), hn::NearestInt(y)));
+        height = hn::Add(tri_low, above);
       }
       // Over 8 km above the tile's lowest matter there is nothing to stand on.
       const MI near = hn::And(within(index, c0, c1), hn::Lt(height, hn::Set(di, 1 << 23)));
@@ -434,7 +438,7 @@ void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint
     double x_low = 1e300, x_high = -1e300;
     for (size_t i = 0; i < 3; ++i) {
       corners.x[i] = source.x[i] - cell_x;
-      corners.y[i] = source.y[i] - columns.base;
+      corners.y[i] = source.y[i] - source.low;
       corners.z[i] = source.z[i] - cell_z;
       x_low = std::min(x_low, corners.x[i]);
       x_high = std::max(x_high, corners.x[i]);

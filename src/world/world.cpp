@@ -18,8 +18,11 @@ constexpr int32_t kArea = kTileCells * kTileCells;
 
 GroundPoint to_point(const WorldData& world, double x, double z) {
   const double scale = kUnitsPerCell / world.summary.cell;
-  return {static_cast<int64_t>(std::floor((x - world.summary.origin.x) * scale)),
-          static_cast<int64_t>(std::floor((z - world.summary.origin.z) * scale))};
+  // Far off the grid is off the grid, whether or not it fits an integer.
+  const auto to_unit = [&](double distance) {
+    return static_cast<int64_t>(std::floor(std::clamp(distance * scale, -1e15, 1e15)));
+  };
+  return {to_unit(x - world.summary.origin.x), to_unit(z - world.summary.origin.z)};
 }
 
 bool in_grid(const WorldData& world, GroundPoint p) {

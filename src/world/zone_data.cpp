@@ -3,6 +3,7 @@
 #include "world/zone_data.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/hash.h"
@@ -11,6 +12,8 @@ namespace throng {
 namespace {
 
 constexpr uint32_t kArea = 4096;
+constexpr int32_t kHighest = 2'050'000'000;  // [mm]: more than is baked, and sums fit 32 bits
+constexpr int32_t kMostCells = 1 << 20;      // along a side
 
 Error bad_file(const std::string& name, const std::string& what) {
   return {Errc::kBadFile, name + ": " + what + "; bake the world again"};
@@ -39,7 +42,7 @@ Result<std::unique_ptr<Zone>> Zone::from_file(FileMap map, const std::string& na
 }
 
 // The verifier proves that every vector lies within the file; the rest proves that every offset in
-// the records lies within its vector, so that look-ups need no checks.
+// the records lies within its vector and that counts are true, so that look-ups need no checks.
 Result<void> Zone::attach(const std::string& name) {
   flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
   if (bytes_.size() < 8 || !format::ZoneBufferHasIdentifier(bytes_.data()) ||
@@ -74,6 +77,7 @@ Result<void> Zone::attach(const std::string& name) {
     for (uint32_t i = begin; i < end; ++i) {
       const format::Level& level = *levels->Get(i);
       const auto gentle = [](int32_t slope) { return slope > -kMaxSlope && slope < kMaxSlope; };
+      const auto in_world = [](int32_t height) { return height > -kHighest && height < kHighest; };
       const bool floor_ok = level.floor_kind() == format::HeightKind::Constant ||
                             (level.floor_kind() == format::HeightKind::Plane &&
                              gentle(level.slope_x()) && gentle(level.slope_z())) ||
@@ -89,6 +93,9 @@ Result<void> Zone::attach(const std::string& name) {
       const bool area_ok = level.area_kind() == format::BitsKind::All ||
                            (level.area_kind() == format::BitsKind::Planes &&
                             fits(level.area_offset(), kArea, areas->size()));
+      if (!in_world(level.floor_base()) || !in_world(level.ceiling_base())) {
+        return bad_file(name, "level " + std::to_string(i) + " lies out of this world");
+      }
       if (level.tile() != tile || !floor_ok || !ceiling_ok || !present_ok || !area_ok) {
         return bad_file(name, "level " + std::to_string(i) + " points outside the file");
       }
@@ -99,6 +106,15 @@ Result<void> Zone::attach(const std::string& name) {
     if (entry.kind() > format::BitsKind::Planes ||
         (entry.kind() == format::BitsKind::Planes && !fits(entry.offset(), 256, planes->size()))) {
       return bad_file(name, "clearance " + std::to_string(i) + " points outside the file");
+    }
+    uint32_t cells = entry.kind() == format::BitsKind::All ? kArea : 0;
+    if (entry.kind() == format::BitsKind::Planes) {
+      for (uint32_t row = 0; row < 64; ++row) {
+        cells += static_cast<uint32_t>(std::popcount(planes->Get(entry.offset() + row)));
+      }
+    }
+    if (entry.legal_cells() != cells) {
+      return bad_file(name, "clearance " + std::to_string(i) + " miscounts its cells");
     }
   }
   tile_first_ = first->data();
@@ -202,8 +218,11 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
   const auto* bounds = root.bounds();
   const bool sound = root.zones() && root.classes() && bounds && bounds->size() == 6 &&
                      root.classes()->size() >= 1 && root.classes()->size() <= kMaxAvatarClasses &&
-                     root.cell() > 0 && std::isfinite(root.cell()) && root.width() > 0 &&
-                     root.depth() > 0 && root.tiles_per_zone() > 0 && root.tiles_per_zone() < 256;
+                     root.cell() >= 0.02 && root.cell() <= 5 && std::isfinite(root.resolution()) &&
+                     std::fabs(root.origin_x()) < 1e12 && std::fabs(root.origin_z()) < 1e12 &&
+                     root.width() > 0 && root.depth() > 0 && root.width() <= kMostCells &&
+                     root.depth() <= kMostCells && root.tiles_per_zone() > 0 &&
+                     root.tiles_per_zone() < 256;
   if (!sound) return bad_file(name, "its numbers make no sense");
 
   auto world = std::make_shared<WorldData>();
@@ -246,6 +265,9 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
     const int32_t x = slot->entry.x(), z = slot->entry.z();
     if (x < 0 || z < 0 || x >= world->zones_x || z >= world->zones_z) {
       return bad_file(name, "zone " + std::to_string(i) + " lies outside the grid");
+    }
+    if (slot->entry.levels() * sizeof(format::Level) > slot->entry.bytes()) {
+      return bad_file(name, "zone " + std::to_string(i) + " has more levels than bytes");
     }
     slot->first_level = static_cast<uint32_t>(level_count);
     level_count += slot->entry.levels();

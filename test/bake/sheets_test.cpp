@@ -1,0 +1,344 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/sheets.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/hash.h"
+#include "core/random.h"
+#include "gap_worlds.h"
+
+namespace throng {
+namespace {
+
+SurfaceCodes three_codes(size_t classes) {
+  const uint32_t all = (1u << classes) - 1;
+  return {.codes = {{0, kAreaWalkable}, {1, kAreaWalkable}, {2, kAreaBlocked}},
+          .allowed = {all, all & ~1u, 0}};
+}
+
+BodyLimits limits_of(const std::vector<AvatarClass>& classes, double cell = 0.1) {
+  return body_limits(classes, three_codes(classes.size()), cell);
+}
+
+constexpr int32_t kBlockedCode = 2;
+
+// The gaps of one tile with what the definitions say of them.
+struct Node {
+  int32_t cell;
+  naive::Gap gap;
+  bool usable;         // some class may stand here
+  int32_t group = -1;  // of gaps that a step joins
+};
+
+struct Group {
+  int32_t count = 0;
+  bool reaches_border = false;
+};
+
+struct Expected {
+  std::vector<Node> nodes;
+  std::vector<Group> groups;
+};
+
+bool joined(const naive::Gap& a, const naive::Gap& b, const BodyLimits& limits) {
+  const int64_t step = std::abs(int64_t{a.top} - b.top);
+  const int64_t room = int64_t{std::min(a.ceiling, b.ceiling)} - std::max(a.top, b.top);
+  return step <= limits.max_bottom && room >= limits.min_gap;
+}
+
+// Every gap of the middle tile, and which of them hang together: a flood fill over all pairs of
+// gaps in neighbouring columns.
+Expected expect(const naive::GapBlock& block, const BodyLimits& limits) {
+  Expected out;
+  std::vector<std::vector<size_t>> of_cell(kTileArea);
+  for (int32_t c = 0; c < kTileArea; ++c) {
+    for (const naive::Gap& gap : block.at(c % 64, c / 64)) {
+      const bool surface = gap.support != kNoSupport && gap.code != kBlockedCode;
+      const bool usable = surface && int64_t{gap.top} - gap.support <= limits.max_bottom &&
+                          int64_t{gap.ceiling} - gap.support >= limits.min_height;
+      of_cell[static_cast<size_t>(c)].push_back(out.nodes.size());
+      out.nodes.push_back({c, gap, usable});
+    }
+  }
+  for (size_t seed = 0; seed < out.nodes.size(); ++seed) {
+    if (out.nodes[seed].group >= 0) continue;
+    const auto group = static_cast<int32_t>(out.groups.size());
+    out.groups.emplace_back();
+    std::vector<size_t> open{seed};
+    out.nodes[seed].group = group;
+    while (!open.empty()) {
+      const Node node = out.nodes[open.back()];
+      open.pop_back();
+      const int32_t x = node.cell % 64, z = node.cell / 64;
+      ++out.groups.back().count;
+      out.groups.back().reaches_border |= x == 0 || z == 0 || x == 63 || z == 63;
+      for (const auto& [nx, nz] : {std::pair{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}) {
+        if (nx < 0 || nz < 0 || nx > 63 || nz > 63) continue;
+        for (const size_t other : of_cell[static_cast<size_t>(nz * 64 + nx)]) {
+          if (out.nodes[other].group >= 0 || !joined(node.gap, out.nodes[other].gap, limits))
+            continue;
+          out.nodes[other].group = group;
+          open.push_back(other);
+        }
+      }
+    }
+  }
+  return out;
+}
+
+// What a deal must be, whatever its choices.
+void expect_good_deal(const naive::GapBlock& block, const BodyLimits& limits,
+                      const std::string& what) {
+  auto tile = std::make_unique<TileGaps>();
+  naive::fill_tile(block, 0, 0, *tile);
+  SheetPool pool;
+  TileSheets sheets;
+  deal_gaps(*tile, limits, pool, sheets);
+  const Expected expected = expect(block, limits);
+
+  std::map<std::pair<int32_t, int32_t>, int32_t> dealt;  // cell and top: how often
+  for (size_t s = 0; s < sheets.size(); ++s) {
+    const Sheet& sheet = *sheets[s];
+    int32_t cells = 0, present = 0, low_feet = INT32_MAX, high_feet = INT32_MIN;
+    for (int32_t c = 0; c < kTileArea; ++c) {
+      const auto cell = static_cast<size_t>(c);
+      if (sheet.top[cell] == kNone16) {
+        ASSERT_EQ(sheet.feet[cell], kNone16) << what;
+        ASSERT_EQ(sheet.ceiling[cell], 0) << what << ": room where there is no gap";
+        continue;
+      }
+      ++cells;
+      const int32_t top = sheet.base + sheet.top[cell];
+      ++dealt[{c, top}];
+      const auto& column = block.at(c % 64, c / 64);
+      const auto gap = std::find_if(column.begin(), column.end(),
+                                    [&](const naive::Gap& g) { return g.top == top; });
+      ASSERT_NE(gap, column.end()) << what << ": sheet " << s << " invents a top";
+      ASSERT_GE(sheet.top[cell], Sheet::kBelow) << what;
+      ASSERT_LE(sheet.top[cell], Sheet::kHighest) << what;
+      if (gap->ceiling == kOpenSkyMm) {
+        ASSERT_EQ(sheet.ceiling[cell], kNone16) << what;
+      } else {  // exact, or as high as 16 bits tell
+        ASSERT_EQ(sheet.ceiling[cell], std::min(gap->ceiling - sheet.base, 65534)) << what;
+      }
+      const bool surface = gap->support != kNoSupport && gap->code != kBlockedCode;
+      const bool deep = surface && int64_t{gap->top} - gap->support > limits.max_bottom;
+      const bool low = surface && int64_t{gap->ceiling} - gap->support < limits.min_height;
+      if (!surface || deep || low) {
+        ASSERT_EQ(sheet.feet[cell], kNone16) << what;
+        continue;
+      }
+      ++present;
+      ASSERT_EQ(sheet.base + sheet.feet[cell], gap->support) << what;
+      ASSERT_EQ(sheet.code[cell], gap->code) << what;
+      low_feet = std::min(low_feet, gap->support);
+      high_feet = std::max(high_feet, gap->support);
+    }
+    ASSERT_EQ(sheet.cells, cells) << what;
+    ASSERT_EQ(sheet.present, present) << what;
+    ASSERT_GT(present, 0) << what << ": a sheet for nobody";
+    ASSERT_EQ(sheet.base + sheet.low_feet, low_feet) << what;
+    ASSERT_EQ(sheet.base + sheet.high_feet, high_feet) << what;
+    if (s > 0) {
+      ASSERT_LE(sheets[s - 1]->base + sheets[s - 1]->low_feet, low_feet) << what << ": order";
+    }
+  }
+  for (const Node& node : expected.nodes) {
+    const auto found = dealt.find({node.cell, node.gap.top});
+    const int32_t times = found == dealt.end() ? 0 : found->second;
+    ASSERT_LE(times, 1) << what << ": a gap in two sheets";
+    const Group& group = expected.groups[static_cast<size_t>(node.group)];
+    const bool crumb = group.count < limits.min_footprint && !group.reaches_border;
+    if (node.usable && !crumb) {
+      ASSERT_EQ(times, 1) << what << ": a gap is lost at " << node.cell % 64 << " "
+                          << node.cell / 64 << " top " << node.gap.top;
+    }
+  }
+}
+
+naive::RandomBlock random_block(uint64_t seed) {
+  return {.seed = seed,
+          .ground = static_cast<int32_t>(seed % 5),
+          .decks = seed % 3 != 0,
+          .ceilings = seed % 2 == 0,
+          .holes = seed % 4 < 2,
+          .codes = seed % 5 == 0 ? 1 : 3};
+}
+
+TEST(Sheets, EveryGapThatSomebodyCanUseIsInExactlyOneSheetButCrumbs) {
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    const auto classes = default_classes();
+    const BodyLimits limits = limits_of(classes, seed % 2 == 0 ? 0.1 : 0.3);
+    const naive::GapBlock block =
+        naive::gaps_of(naive::random_solids(random_block(seed)), limits.min_gap);
+    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, "seed " + std::to_string(seed)));
+  }
+}
+
+// Gaps at random heights, as many as there is room for: no floor goes on anywhere for long.
+naive::GapBlock noise(uint64_t seed, const BodyLimits& limits, int32_t layers, double spread) {
+  naive::GapBlock block;
+  for (int32_t c = 0; c < kTileArea; ++c) {
+    uint64_t n = 0;
+    const auto unit = [&] { return random_unit(seed, static_cast<uint64_t>(c), n++); };
+    auto& column = block.at(c % 64, c / 64);
+    int64_t top = -static_cast<int64_t>(1000 * unit());
+    const auto count = static_cast<int32_t>(unit() * (layers + 1));
+    for (int32_t k = 0; k < count; ++k) {
+      const auto room = limits.min_gap + static_cast<int32_t>(unit() * spread);
+      naive::Gap gap{static_cast<int32_t>(top), static_cast<int32_t>(top + room)};
+      if (k + 1 == count) gap.ceiling = kOpenSkyMm;
+      if (unit() < 0.8) gap.support = gap.top - static_cast<int32_t>(unit() * unit() * 1000);
+      gap.code = static_cast<int32_t>(unit() * 3);
+      column.push_back(gap);
+      top += room + 1 + static_cast<int64_t>(unit() * spread * 0.3);
+    }
+  }
+  return block;
+}
+
+TEST(Sheets, NoiseOfManyLayersIsDealtWithoutLoss) {
+  const BodyLimits limits = limits_of(default_classes());
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    const double spread = seed % 2 == 0 ? 300 : 3000;
+    const naive::GapBlock block = noise(seed, limits, 2 + static_cast<int32_t>(seed), spread);
+    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, std::to_string(seed)));
+  }
+}
+
+TEST(Sheets, HeightsKilometresApartAreExactAndTakeMoreSheets) {
+  const BodyLimits limits = limits_of(default_classes());
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    naive::GapBlock block;
+    for (int32_t c = 0; c < kTileArea; ++c) {
+      const int32_t x = c % 64, z = c / 64;
+      auto& column = block.at(x, z);
+      // Floors at -1 km, 1 km and 2 km; a cliff of 90 m across the lowest.
+      const int32_t rough =
+          static_cast<int32_t>(random_below(seed, 1, static_cast<uint64_t>(c), 40));
+      const int32_t low = -1'000'000 + rough + (x > 30 ? 90'000 : 0);
+      column.push_back({low, 999'000, low, 0});
+      column.push_back({1'000'000 + rough, 1'999'000, 1'000'000, 0});
+      column.push_back({2'000'000 + rough, kOpenSkyMm, 2'000'000, 1});
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, std::to_string(seed)));
+    auto tile = std::make_unique<TileGaps>();
+    naive::fill_tile(block, 0, 0, *tile);
+    SheetPool pool;
+    TileSheets sheets;
+    deal_gaps(*tile, limits, pool, sheets);
+    EXPECT_EQ(sheets.size(), 4u);
+  }
+}
+
+TEST(Sheets, AStairOfMoreHeightThanSixteenBitsHoldIsCutNotBent) {
+  // 4096 cells along a line that winds through the tile, a step up at each: one component, 120 m.
+  const BodyLimits limits = limits_of({AvatarClass{}});
+  for (const int32_t rise : {13, 14, 15, 30, 90, 390}) {
+    naive::GapBlock block;
+    for (int32_t z = 0; z < 64; ++z) {
+      for (int32_t i = 0; i < 64; ++i) {
+        const int32_t top = (z * 64 + i) * rise;
+        block.at(z % 2 == 0 ? i : 63 - i, z).push_back({top, kOpenSkyMm, top, 0});
+      }
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, std::to_string(rise)));
+  }
+}
+
+TEST(Sheets, ALevelFloorUnderALevelFloorIsTwoSheetsLowestFirst) {
+  const BodyLimits limits = limits_of(default_classes());
+  naive::GapBlock block;
+  for (int32_t c = 0; c < kTileArea; ++c) {
+    block.at(c % 64, c / 64) = {{0, 2800, 0, 0}, {3000, kOpenSkyMm, 3000, 1}};
+  }
+  auto tile = std::make_unique<TileGaps>();
+  naive::fill_tile(block, 0, 0, *tile);
+  SheetPool pool;
+  TileSheets sheets;
+  deal_gaps(*tile, limits, pool, sheets);
+  ASSERT_EQ(sheets.size(), 2u);
+  for (size_t s = 0; s < 2; ++s) {
+    EXPECT_EQ(sheets[s]->present, kTileArea);
+    EXPECT_EQ(sheets[s]->base + sheets[s]->low_feet, s == 0 ? 0 : 3000);
+    EXPECT_FALSE(sheets[s]->seams);
+    EXPECT_TRUE(sheets[s]->one_code);
+  }
+}
+
+TEST(Sheets, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
+  const BodyLimits limits = limits_of({AvatarClass{}});
+  naive::GapBlock block;
+  for (int32_t c = 0; c < kTileArea; ++c) block.at(c % 64, c / 64) = {{0, kOpenSkyMm, 0, 0}};
+  block.at(20, 20) = {{1500, kOpenSkyMm, 1500, 0}};
+  block.at(63, 40) = {{1500, kOpenSkyMm, 1500, 0}};
+  for (const auto& [x, z] : {std::pair{20, 20}, {63, 40}})
+    block.at(x, z).insert(block.at(x, z).begin(), {-9000, -7000, kNoSupport, 0});
+  auto tile = std::make_unique<TileGaps>();
+  naive::fill_tile(block, 0, 0, *tile);
+  SheetPool pool;
+  TileSheets sheets;
+  deal_gaps(*tile, limits, pool, sheets);
+  int32_t inside = 0, border = 0;
+  for (const auto& sheet : sheets) {
+    inside += sheet->top[20 * 64 + 20] != kNone16 ? 1 : 0;
+    border += sheet->top[40 * 64 + 63] != kNone16 ? 1 : 0;
+  }
+  EXPECT_EQ(inside, 0);
+  EXPECT_EQ(border, 1);
+}
+
+TEST(Sheets, AnEmptyTileHasNone) {
+  auto tile = std::make_unique<TileGaps>();
+  naive::fill_tile({}, 0, 0, *tile);
+  SheetPool pool;
+  TileSheets sheets;
+  deal_gaps(*tile, limits_of(default_classes()), pool, sheets);
+  EXPECT_TRUE(sheets.empty());
+}
+
+TEST(Sheets, SameSheetsForEverySimdWidth) {
+  const auto hash_all = [] {
+    uint64_t hash = 0;
+    const BodyLimits limits = limits_of(default_classes());
+    SheetPool pool;
+    auto tile = std::make_unique<TileGaps>();
+    for (uint64_t seed = 1; seed <= 12; ++seed) {
+      naive::fill_tile(
+          seed % 3 == 0 ? noise(seed, limits, 5, 1000)
+                        : naive::gaps_of(naive::random_solids(random_block(seed)), limits.min_gap),
+          0, 0, *tile);
+      TileSheets sheets;
+      deal_gaps(*tile, limits, pool, sheets);
+      for (auto& sheet : sheets) {
+        hash = hash_span(std::span<const uint16_t>(sheet->top), hash);
+        hash = hash_span(std::span<const uint16_t>(sheet->ceiling), hash);
+        hash = hash_span(std::span<const uint16_t>(sheet->feet), hash);
+        const int32_t numbers[] = {sheet->base, sheet->cells, sheet->present, sheet->some_code,
+                                   sheet->one_code};
+        hash = hash_bytes(numbers, sizeof numbers, hash);
+        for (size_t c = 0; c < kTileArea; ++c) {
+          if (sheet->feet[c] != kNone16) hash = hash_bytes(&sheet->code[c], 1, hash);
+        }
+        pool.give(std::move(sheet));
+      }
+    }
+    return hash;
+  };
+  const uint64_t expected = hash_all();
+  for (int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    hwy::SetSupportedTargetsForTest(targets & -targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    EXPECT_EQ(hash_all(), expected) << hwy::TargetName(targets & -targets);
+    hwy::SetSupportedTargetsForTest(0);
+  }
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace
+}  // namespace throng

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "gap_worlds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "core/random.h"
+
+namespace throng::naive {
+namespace {
+
+using Height = std::function<double(double, double)>;  // of cells, in mm
+
+class Dice {
+ public:
+  explicit Dice(uint64_t seed) : seed_(seed) {}
+  double unit() { return random_unit(seed_, 77, n_++); }
+  double from(double low, double high) { return low + unit() * (high - low); }
+  int32_t below(int32_t n) { return static_cast<int32_t>(unit() * n); }
+
+ private:
+  uint64_t seed_, n_ = 0;
+};
+
+Height make_ground(int32_t kind, Dice& dice) {
+  const double wave_x = dice.from(5, 60), wave_z = dice.from(5, 60), tall = dice.from(20, 900);
+  const double gx = dice.from(-150, 150), gz = dice.from(-150, 150);
+  const Height rolling = [=](double x, double z) {
+    return tall * (std::sin(x / wave_x) + std::cos(z / wave_z));
+  };
+  if (kind == 0) return rolling;
+  if (kind == 1) {
+    const double rise = dice.from(15, 700);
+    return [=](double x, double z) {
+      // Constant over each cell, so that a terrace ends where a cell does.
+      return std::floor(rolling(std::floor(x), std::floor(z)) / rise) * rise;
+    };
+  }
+  if (kind == 2) {
+    const double fold_x = dice.from(-60, 120), fold_z = dice.from(-60, 120);
+    const double gentle = dice.unit() < 0.5 ? 0.3 : 1;
+    return [=](double x, double z) {
+      return gentle * (gx * std::fabs(x - fold_x) + gz * std::fabs(z - fold_z));
+    };
+  }
+  if (kind == 3) {
+    const uint64_t seed = static_cast<uint64_t>(dice.below(1 << 30));
+    const double rough = dice.from(1, 300);
+    return [=](double x, double z) {
+      const auto cx = static_cast<uint64_t>(std::floor(x) + 1000);
+      const auto cz = static_cast<uint64_t>(std::floor(z) + 1000);
+      return rough * random_unit(seed, cx, cz);
+    };
+  }
+  return [](double, double) { return 0.0; };
+}
+
+// Adds a slab whose upper side is `height`; what it covers of a cell is as high as its highest
+// corner.
+void add_slab(SolidBlock& block, std::array<int32_t, 4> rect, const Height& height, double thick,
+              int32_t code) {
+  const double in = 1e-9;  // corners seen from inside the cell
+  for (int32_t z = std::max(rect[1], block.kFirst); z < std::min(rect[3], block.kEnd); ++z) {
+    for (int32_t x = std::max(rect[0], block.kFirst); x < std::min(rect[2], block.kEnd); ++x) {
+      const std::array<double, 4> corners{height(x + in, z + in), height(x + 1 - in, z + in),
+                                          height(x + in, z + 1 - in),
+                                          height(x + 1 - in, z + 1 - in)};
+      const double low = *std::min_element(corners.begin(), corners.end());
+      const double high = *std::max_element(corners.begin(), corners.end());
+      const double middle = std::clamp(height(x + 0.5, z + 0.5), low, high);
+      block.at(x, z).push_back({static_cast<int32_t>(std::floor(low - thick + 1e-3)),
+                                static_cast<int32_t>(std::ceil(high - 1e-3)),
+                                static_cast<int32_t>(std::lround(middle)), code});
+    }
+  }
+}
+
+std::array<int32_t, 4> random_rect(Dice& dice, int32_t least, int32_t most) {
+  const int32_t x = dice.below(150) - 50, z = dice.below(150) - 50;
+  return {x, z, x + least + dice.below(most - least), z + least + dice.below(most - least)};
+}
+
+}  // namespace
+
+GapBlock gaps_of(const SolidBlock& solids, int32_t min_gap) {
+  GapBlock gaps;
+  for (size_t c = 0; c < solids.cells.size(); ++c) {
+    std::vector<Solid> column = solids.cells[c];
+    std::sort(column.begin(), column.end(),
+              [](const Solid& a, const Solid& b) { return a.low < b.low; });
+    std::vector<Gap>& out = gaps.cells[c];
+    for (size_t i = 0; i < column.size();) {
+      Gap gap{column[i].high, kOpenSkyMm, column[i].support, column[i].code};
+      for (++i; i < column.size(); ++i) {
+        if (column[i].low - gap.top >= min_gap) {
+          gap.ceiling = column[i].low;
+          break;
+        }
+        gap.top = std::max(gap.top, column[i].high);
+        const bool higher = column[i].support > gap.support;
+        const bool same = column[i].support == gap.support && column[i].code > gap.code;
+        if (higher || same) {
+          gap.support = column[i].support;
+          gap.code = column[i].code;
+        }
+      }
+      out.push_back(gap);
+    }
+  }
+  return gaps;
+}
+
+void fill_tile(const GapBlock& block, int32_t tile_x, int32_t tile_z, TileGaps& out) {
+  const auto column = [&](int32_t cell) -> const std::vector<Gap>& {
+    return block.at(tile_x * kTileSide + cell % kTileSide, tile_z * kTileSide + cell / kTileSide);
+  };
+  out.base = INT32_MAX;
+  out.max_count = 0;
+  for (int32_t c = 0; c < kTileArea; ++c) {
+    for (const Gap& gap : column(c)) out.base = std::min(out.base, gap.top - 1000);
+    out.count[static_cast<size_t>(c)] = static_cast<int32_t>(column(c).size());
+    out.max_count = std::max(out.max_count, out.count[static_cast<size_t>(c)]);
+  }
+  if (out.max_count == 0) out.base = 0;
+  while (out.layers.size() < static_cast<size_t>(out.max_count)) {
+    out.layers.push_back(std::make_unique<GapLayer>());
+  }
+  for (int32_t c = 0; c < kTileArea; ++c) {
+    const auto cell = static_cast<size_t>(c);
+    for (size_t k = 0; k < column(c).size(); ++k) {
+      const Gap& gap = column(c)[k];
+      GapLayer& layer = *out.layers[k];
+      layer.top[cell] = gap.top - out.base;
+      layer.ceiling[cell] = gap.ceiling == kOpenSkyMm ? kOpenSkyMm : gap.ceiling - out.base;
+      layer.support[cell] =
+          gap.support == kNoSupport ? kNoSupport : (gap.support - out.base) * 256 + gap.code;
+    }
+  }
+}
+
+SolidBlock random_solids(const RandomBlock& config) {
+  Dice dice(config.seed);
+  SolidBlock block;
+  const Height ground = make_ground(config.ground, dice);
+  constexpr std::array<int32_t, 4> kAll{-64, -64, 128, 128};
+  add_slab(block, kAll, ground, 3000, 0);
+  if (config.codes > 1) {
+    for (int32_t i = 0; i < 6; ++i) {
+      add_slab(block, random_rect(dice, 2, 60), ground, 10, dice.below(config.codes));
+    }
+  }
+  if (config.decks) {
+    for (int32_t i = 0; i < 4; ++i) {
+      // A deck, and a ramp down to the ground beside or under it.
+      const std::array<int32_t, 4> deck = random_rect(dice, 12, 90);
+      const double foot = ground(deck[0], deck[1]), level = foot + dice.from(1500, 3600);
+      const double thick = dice.from(50, 300);
+      add_slab(
+          block, deck, [=](double, double) { return level; }, thick, 0);
+      const bool under = dice.unit() < 0.3;  // a spiral's way: the deck lies over its own ramp
+      const int32_t length = 8 + dice.below(60), wide = 6 + dice.below(20);
+      const int32_t start = under ? deck[0] + length : deck[0];
+      const auto slope = [=](double x, double) {
+        return foot + (level - foot) * std::clamp(1 - (start - x) / length, 0.0, 1.0);
+      };
+      add_slab(block, {start - length, deck[1], start, deck[1] + wide}, slope, thick, 0);
+      if (dice.unit() < 0.5) {  // low over a part of it
+        const double room = dice.from(1000, 2600);
+        const int32_t from = start - dice.below(length);
+        const auto roof = [=](double x, double z) { return slope(x, z) + room + 100; };
+        add_slab(block, {from, deck[1], from + 10, deck[1] + wide}, roof, 100, 0);
+      }
+    }
+  }
+  if (config.ceilings) {
+    for (int32_t i = 0; i < 5; ++i) {
+      const std::array<int32_t, 4> rect = random_rect(dice, 1, 50);
+      const double room = dice.from(900, 3600);
+      const Height over = [=](double x, double z) { return ground(x, z) + room + 200; };
+      add_slab(block, rect, over, 200, 0);
+    }
+  }
+  for (int32_t i = 0; i < 25; ++i) {  // crates, kerbs, walls, rails
+    const double tall = dice.from(10, dice.unit() < 0.5 ? 500 : 2500);
+    const double base = ground(dice.below(64), dice.below(64));
+    add_slab(
+        block, random_rect(dice, 1, dice.unit() < 0.7 ? 4 : 20),
+        [=](double, double) { return base + tall; }, tall + 500, dice.below(config.codes));
+  }
+  if (config.holes) {
+    for (int32_t i = 0; i < 12; ++i) {
+      const std::array<int32_t, 4> rect = random_rect(dice, 1, 8);
+      for (int32_t z = rect[1]; z < std::min(rect[3], block.kEnd); ++z) {
+        for (int32_t x = rect[0]; x < std::min(rect[2], block.kEnd); ++x) block.at(x, z).clear();
+      }
+    }
+    for (auto& column : block.cells) {  // cracks: matter without a surface under the centre
+      if (!column.empty() && dice.unit() < 0.001) column.front().support = kNoSupport;
+    }
+  }
+  return block;
+}
+
+}  // namespace throng::naive

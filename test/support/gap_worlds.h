@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bake/columns.h"
+#include "bake/sheets.h"
+
+/// Columns made by hand, for the stages between the rasteriser and the baked world: 3 x 3 tiles of
+/// solids, and the gaps above them by the rule of docs/algorithms.md, written out plainly.
+namespace throng::naive {
+
+/// Matter of one cell. Absolute heights. [mm]
+struct Solid {
+  int32_t low = 0, high = 0;
+  int32_t support = kNoSupport;  // highest surface under the cell's centre
+  int32_t code = 0;
+};
+
+/// Room of one cell. Absolute heights; ceiling kOpenSkyMm where nothing is above. [mm]
+struct Gap {
+  int32_t top = 0, ceiling = kOpenSkyMm;
+  int32_t support = kNoSupport;
+  int32_t code = 0;
+};
+
+/// Cells [-64, 128) in x and in z: the tile that is looked at, and its neighbours.
+template <class T>
+struct Block {
+  static constexpr int32_t kFirst = -kTileSide, kEnd = 2 * kTileSide, kSide = kEnd - kFirst;
+  std::vector<std::vector<T>> cells = std::vector<std::vector<T>>(size_t{kSide} * kSide);
+
+  [[nodiscard]] bool inside(int32_t x, int32_t z) const {
+    return x >= kFirst && z >= kFirst && x < kEnd && z < kEnd;
+  }
+  std::vector<T>& at(int32_t x, int32_t z) {
+    return cells[static_cast<size_t>((z - kFirst) * kSide + x - kFirst)];
+  }
+  const std::vector<T>& at(int32_t x, int32_t z) const {
+    return cells[static_cast<size_t>((z - kFirst) * kSide + x - kFirst)];
+  }
+};
+
+using SolidBlock = Block<Solid>;
+using GapBlock = Block<Gap>;
+
+/// What is free above the solids, once those less than `min_gap` apart are joined.
+GapBlock gaps_of(const SolidBlock& solids, int32_t min_gap);
+
+/// One tile of a block as the bake keeps it. Tile (0, 0) is the middle one.
+void fill_tile(const GapBlock& block, int32_t tile_x, int32_t tile_z, TileGaps& out);
+
+struct RandomBlock {
+  uint64_t seed = 1;
+  int32_t ground = 0;  // 0 rolling, 1 terraces, 2 folded planes, 3 rough, 4 level
+  bool decks = false;  // floors over floors, with ramps that join them
+  bool ceilings = false;
+  bool holes = false;
+  int32_t codes = 1;  // surfaces take codes 0 to codes - 1
+};
+
+/// Ground, and what else is asked for, over all nine tiles. [cells of 0.1 m]
+SolidBlock random_solids(const RandomBlock& config);
+
+}  // namespace throng::naive

@@ -219,7 +219,12 @@ flatbuffers::DetachedBuffer zone_bytes(const ZoneShape& shape, std::span<TilePac
   format::Level* levels = nullptr;
   format::Clearance* clearance = nullptr;
   const auto first_at = builder.CreateVector(first);
-  const auto levels_at = builder.CreateUninitializedVectorOfStructs(total.levels, &levels);
+  // Not CreateUninitializedVectorOfStructs: it takes a struct's size for its alignment, and 44 is
+  // no power of two, which leaves the 64-bit words behind it between two words.
+  const auto levels_at = builder.CreateVectorOfStructs<format::Level>(
+      total.levels, [&](size_t i, format::Level* level) {
+        if (i == 0) levels = level;
+      });
   const auto clearance_at = builder.CreateUninitializedVectorOfStructs(clearances, &clearance);
   const auto heights_at = builder.CreateUninitializedVector(total.heights, &heights);
   const auto planes_at = builder.CreateUninitializedVector(total.planes, &planes);

@@ -22,6 +22,12 @@ Error bad_file(const std::string& name, const std::string& what) {
 // True if [offset, offset + count) lies within `size`.
 bool fits(uint64_t offset, uint64_t count, uint64_t size) { return offset + count <= size; }
 
+// The verifier sees to the alignment of a vector's length, 4 bytes, but not of larger elements.
+template <class T>
+bool is_aligned(const flatbuffers::Vector<T>& words) {
+  return words.size() == 0 || reinterpret_cast<uintptr_t>(words.Data()) % 8 == 0;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Zone>> Zone::from_bytes(flatbuffers::DetachedBuffer bytes,
@@ -66,8 +72,8 @@ Result<void> Zone::attach(const std::string& name) {
   const uint64_t side = root_->tiles_per_side();
   class_count_ = root_->class_count();
   level_count_ = levels->size();
-  if (side == 0 || side > 255 || first->size() != side * side + 1 || first->Get(0) != 0 ||
-      first->Get(first->size() - 1) != level_count_ || class_count_ == 0 ||
+  if (!is_aligned(*planes) || side == 0 || side > 255 || first->size() != side * side + 1 ||
+      first->Get(0) != 0 || first->Get(first->size() - 1) != level_count_ || class_count_ == 0 ||
       clearance->size() != uint64_t{level_count_} * class_count_) {
     return bad_file(name, "its arrays do not fit together");
   }
@@ -217,6 +223,7 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
   }
   const auto* bounds = root.bounds();
   const bool sound = root.zones() && root.classes() && bounds && bounds->size() == 6 &&
+                     is_aligned(*root.zones()) && is_aligned(*bounds) &&
                      root.classes()->size() >= 1 && root.classes()->size() <= kMaxAvatarClasses &&
                      root.cell() >= 0.02 && root.cell() <= 5 && std::isfinite(root.resolution()) &&
                      std::fabs(root.origin_x()) < 1e12 && std::fabs(root.origin_z()) < 1e12 &&

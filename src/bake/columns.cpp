@@ -20,6 +20,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "bake/vector_bits-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -30,14 +32,6 @@ using DI = hn::RebindToSigned<DF>;
 using VF = hn::Vec<DF>;
 using VI = hn::Vec<DI>;
 using MI = hn::Mask<DI>;
-
-// Highway 1.0 makes an Iota out of single stores and a load that waits for them all.
-alignas(64) constexpr int32_t kCounting[16] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                               8, 9, 10, 11, 12, 13, 14, 15};
-HWY_INLINE VI counting_from(int32_t first) {
-  const DI di;
-  return hn::Add(hn::Set(di, first), hn::Load(di, kCounting));
-}
 
 // Integer comparisons that Highway leaves out.
 HWY_INLINE MI at_least(VI a, VI b) { return hn::Not(hn::Lt(a, b)); }
@@ -173,7 +167,7 @@ class RowCutter {
   // Cuts rows [row, row + lanes), into the batch's entries from `at` on.
   HWY_INLINE void cut(int32_t row, size_t at, bool flat, RowBatch& out) const {
     const D d;
-    const V rows = hn::Add(hn::Set(d, static_cast<T>(row)), hn::Load(d, counting()));
+    const V rows = counting_from(d, static_cast<T>(row));
     const V from = hn::Max(hn::Sub(rows, set(kWiden)), set(t_.z[0]));
     const V to = hn::Min(hn::Add(rows, set(1 + kWiden)), set(t_.z[2]));
     const M has_first = hn::Le(from, set(t_.z[1]));
@@ -214,11 +208,6 @@ class RowCutter {
   struct Point {
     V x, y;
   };
-  static HWY_INLINE const T* counting() {
-    alignas(64) static constexpr T kRows[16] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                8, 9, 10, 11, 12, 13, 14, 15};
-    return kRows;
-  }
   static HWY_INLINE V set(double value) { return hn::Set(D(), static_cast<T>(value)); }
   HWY_INLINE Point corner(size_t i) const { return {set(t_.x[i]), set(t_.y[i])}; }
   static HWY_INLINE Point choose(M mask, Point a, Point b) {
@@ -311,7 +300,7 @@ HWY_INLINE void bound_by_sides(const Corners<double>& corners, TileTriangle& t, 
                    static_cast<float>(y - (1 - is_below) * kUnbound), static_cast<float>(slope)};
   }
   for (int32_t begin = x_first & ~(lanes - 1); begin <= x_last; begin += lanes) {
-    const VF x = hn::ConvertTo(df, counting_from(begin));
+    const VF x = hn::ConvertTo(df, counting_from(DI(), begin));
     VF low = hn::Zero(df);
     VF high = hn::Set(df, static_cast<float>(t.high - t.low));
     const auto reach = [&](const Line& line) {
@@ -376,7 +365,7 @@ HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowB
   const VI tri_high = hn::Set(di, t.high);
   const VI tri_tall = hn::Set(di, t.high - t.low);
   for (int32_t begin = x0 & ~(lanes - 1); begin <= x1; begin += lanes) {
-    const VI index = counting_from(begin);
+    const VI index = counting_from(di, begin);
     const VF x = hn::ConvertTo(df, index);
     const MI mask = within(index, x0, x1);
     VI low = tri_low;

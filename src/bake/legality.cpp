@@ -14,6 +14,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "bake/vector_bits-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -24,22 +26,6 @@ using VU = hn::Vec<DU>;
 using MU = hn::Mask<DU>;
 
 HWY_INLINE MU at_most(VU a, VU b) { return hn::Eq(hn::Min(a, b), a); }
-
-// Sets bits [x, x + lanes) of a row.
-HWY_INLINE void store_bits(MU mask, int32_t x, uint64_t& row) {
-  const DU du;
-  alignas(8) uint8_t bytes[8] = {};
-  if constexpr (HWY_TARGET == HWY_SCALAR) {
-    bytes[0] = hn::AllTrue(du, mask) ? 1 : 0;
-  } else {
-    hn::StoreMaskBits(du, mask, bytes);
-  }
-  uint64_t bits = 0;
-  for (int i = 7; i >= 0; --i) bits = bits << 8 | bytes[i];
-  const size_t lanes = hn::Lanes(du);
-  if (lanes < 64) bits &= (1ULL << lanes) - 1;
-  row |= bits << x;
-}
 
 struct Highest {
   HWY_INLINE VU operator()(VU a, VU b) const { return hn::Max(a, b); }
@@ -130,9 +116,9 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       const MU closed = hn::Ne(high_top, none);
       const MU open = hn::And(stands, hn::And(room, closed));
       const MU even = hn::And(low_enough, no_drop);
-      store_bits(stands, x, stand);
-      store_bits(hn::And(open, even), x, legal);
-      store_bits(hn::AndNot(even, open), x, slanted);
+      stand |= bits_of(du, stands) << x;
+      legal |= bits_of(du, hn::And(open, even)) << x;
+      slanted |= bits_of(du, hn::AndNot(even, open)) << x;
     }
     if (uniform) {
       if (!uniform_ok) legal = stand = slanted = 0;
@@ -166,11 +152,11 @@ bool StepSafe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
       // masked.
       const VU right = hn::LoadU(du, &sheet.feet[0] + cell + 1);
       const VU dx = hn::Sub(hn::Max(feet, right), hn::Min(feet, right));
-      store_bits(hn::Not(at_most(dx, limit)), x, across);
+      across |= bits_of(du, hn::Not(at_most(dx, limit))) << x;
       if (z + 1 == kTileSide) continue;
       const VU below = hn::Load(du, &sheet.feet[cell + kTileSide]);
       const VU dz = hn::Sub(hn::Max(feet, below), hn::Min(feet, below));
-      store_bits(hn::Not(at_most(dz, limit)), x, along);
+      along |= bits_of(du, hn::Not(at_most(dz, limit))) << x;
     }
     const uint64_t row = legal[static_cast<size_t>(z)];
     if ((row & (row >> 1) & across) != 0) return false;

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "bake/vector_bits-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -19,19 +21,6 @@ using DH = hn::Rebind<uint16_t, DI>;  // 16-bit halves of a vector of heights
 using DB = hn::Rebind<uint8_t, DI>;
 using DU = hn::CappedTag<uint16_t, 32>;
 using DC = hn::Rebind<uint8_t, DU>;
-
-template <class D>
-HWY_INLINE uint64_t bits_of(D d, hn::Mask<D> mask) {
-  if constexpr (HWY_TARGET == HWY_SCALAR) {
-    return hn::AllTrue(d, mask) ? 1 : 0;
-  } else {
-    alignas(8) uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    uint64_t bits;
-    __builtin_memcpy(&bits, bytes, 8);
-    return hn::Lanes(d) < 64 ? bits & ((1ULL << hn::Lanes(d)) - 1) : bits;
-  }
-}
 
 template <class D>
 HWY_INLINE hn::Mask<D> mask_of(D d, uint64_t bits) {
@@ -361,13 +350,10 @@ void ChooseGaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, ui
   }
 }
 
-alignas(64) constexpr int32_t kCounting[16] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                               8, 9, 10, 11, 12, 13, 14, 15};
-
 // Heights of a plane over one vector of cells of row z.
 HWY_INLINE hn::Vec<DI> plane_heights(const LevelPlane& plane, int32_t x, int32_t z) {
   const DI di;
-  const auto cells = hn::Add(hn::Set(di, x), hn::Load(di, kCounting));
+  const auto cells = counting_from(di, x);
   const auto rise = hn::Add(hn::Set(di, plane.part + plane.slope_z * z + 512),
                             hn::Mul(cells, hn::Set(di, plane.slope_x)));
   return hn::Add(hn::Set(di, plane.base), hn::ShiftRight<10>(rise));

@@ -19,6 +19,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "bake/vector_bits-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -28,19 +30,6 @@ using DI = hn::CappedTag<int32_t, 16>;
 using VI = hn::Vec<DI>;
 
 constexpr int32_t kRounding = 2;  // of feet and planes [mm]
-
-HWY_INLINE uint64_t bits_of(hn::Mask<DI> mask) {
-  const DI di;
-  alignas(8) uint8_t bytes[8] = {};
-  if constexpr (HWY_TARGET == HWY_SCALAR) {
-    bytes[0] = hn::AllTrue(di, mask) ? 1 : 0;
-  } else {
-    hn::StoreMaskBits(di, mask, bytes);
-  }
-  uint64_t bits;
-  __builtin_memcpy(&bits, bytes, 8);
-  return bits & ((uint64_t{1} << hn::Lanes(di)) - 1);
-}
 
 HWY_INLINE VI load_feet(const uint16_t* feet) {
   const DI di;
@@ -84,11 +73,11 @@ struct RowPlanes {
       const VI left = load_feet(row + x), right = load_feet(row + x + 2);
       hn::StoreU(slope_of(left, load_feet(row + x + 1), right), di, gx + x + 1);
       hn::StoreU(half(hn::Sub(right, left)), di, between_x + x + 1);
-      beside |= bits_of(hn::And(hn::Ne(left, none), hn::Ne(right, none))) << x;
+      beside |= bits_of(di, hn::And(hn::Ne(left, none), hn::Ne(right, none))) << x;
       const VI up = load_feet(centre + x - kTileSide), down = load_feet(centre + x + kTileSide);
       hn::Store(slope_of(up, load_feet(centre + x), down), di, gz + x);
       hn::Store(half(hn::Sub(down, up)), di, between_z + x);
-      around |= bits_of(hn::And(hn::Ne(up, none), hn::Ne(down, none))) << x;
+      around |= bits_of(di, hn::And(hn::Ne(up, none), hn::Ne(down, none))) << x;
     }
     gx[0] = gx[1];
     gx[kTileSide - 1] = gx[kTileSide - 2];
@@ -134,7 +123,7 @@ HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body
     }
     if (hn::AllTrue(di, bad)) return 0;
   }
-  return bits_of(hn::Not(bad));
+  return bits_of(di, hn::Not(bad));
 }
 
 void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
@@ -155,14 +144,15 @@ void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScr
       const VI height = load_feet(&sheet.feet[cell]);
       const VI tilt = hn::PromoteTo(di, hn::LoadU(dh, &scratch.tilt[cell]));
       const VI gx = hn::Load(di, planes.gx + x), gz = hn::Load(di, planes.gz + x);
-      const uint64_t sloped = asked & bits_of(hn::Ne(hn::Or(gx, gz), zero));
+      const uint64_t sloped = asked & bits_of(di, hn::Ne(hn::Or(gx, gz), zero));
       uint64_t free = 0;
       if (sloped != 0) {
         free = sloped & free_lanes(scratch.window, body, x, z, height, tilt, gx, gz, zero);
       }
       const VI mx = hn::Load(di, planes.between_x + x), mz = hn::Load(di, planes.between_z + x);
       const VI apart = hn::Add(hn::Abs(hn::Sub(mx, gx)), hn::Abs(hn::Sub(mz, gz)));
-      const uint64_t creased = asked & ~free & (planes.creased >> x) & bits_of(hn::Ne(apart, zero));
+      const uint64_t creased =
+          asked & ~free & (planes.creased >> x) & bits_of(di, hn::Ne(apart, zero));
       if (creased != 0) {
         const VI owed = hn::ShiftRight<1>(hn::Add(apart, hn::Set(di, 1)));
         free |= creased & free_lanes(scratch.window, body, x, z, height, tilt, mx, mz, owed);

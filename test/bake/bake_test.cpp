@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "core/hash.h"
 #include "flood.h"
 #include "scratch_folder.h"
+#include "simd_targets.h"
 #include "throng/builtin_worlds.h"
 #include "world/zone_data.h"
 #include "worlds.h"
@@ -111,14 +111,10 @@ TEST(Bake, SameBytesForAnyNumberOfThreadsAndEverySimdWidth) {
       const uint64_t hash = hash_of(bake(scene, {.cell = 0.2, .zone = 51.2, .workers = workers}));
       EXPECT_EQ(hash, golden) << name << ", " << workers << " workers: 0x" << std::hex << hash;
     }
-    for (int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-      hwy::SetSupportedTargetsForTest(targets & -targets);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    test::for_every_simd_target([&, name = name, golden = golden](const char* target) {
       EXPECT_EQ(hash_of(bake(scene, {.cell = 0.2, .zone = 51.2})), golden)
-          << name << ", " << hwy::TargetName(targets & -targets);
-      hwy::SetSupportedTargetsForTest(0);
-    }
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+          << name << ", " << target;
+    });
   }
 }
 

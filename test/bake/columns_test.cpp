@@ -3,13 +3,13 @@
 #include "bake/columns.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 
 #include "core/hash.h"
 #include "core/random.h"
 #include "naive_columns.h"
+#include "simd_targets.h"
 #include "throng/scene.h"
 
 namespace throng {
@@ -249,18 +249,9 @@ uint64_t hash_columns() {
 }
 
 TEST(Columns, SameBytesForEverySimdWidth) {
-  const int64_t all = hwy::SupportedTargets();
   const uint64_t expected = hash_columns();
-  int32_t tried = 0;
-  for (int64_t targets = all; targets != 0; targets &= targets - 1) {
-    hwy::SetSupportedTargetsForTest(targets & -targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_EQ(hash_columns(), expected) << hwy::TargetName(targets & -targets);
-    ++tried;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(tried, 1);
+  test::for_every_simd_target(
+      [&](const char* target) { EXPECT_EQ(hash_columns(), expected) << target; });
   EXPECT_EQ(expected, 15705882385212781359u) << std::hex << expected;
 }
 

@@ -3,7 +3,6 @@
 #include "bake/legality.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "gap_worlds.h"
+#include "simd_targets.h"
 
 // What a legal cell promises is said in docs/algorithms.md. The oracle looks at columns, never at
 // sheets: a body at a point P of the cell, feet on the plane that the floor's samples suggest,
@@ -516,13 +516,8 @@ TEST(Legality, SameBitsForEverySimdWidth) {
     return hash;
   };
   const uint64_t expected = hash_all();
-  for (int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    hwy::SetSupportedTargetsForTest(targets & -targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_EQ(hash_all(), expected) << hwy::TargetName(targets & -targets);
-    hwy::SetSupportedTargetsForTest(0);
-  }
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  test::for_every_simd_target(
+      [&](const char* target) { EXPECT_EQ(hash_all(), expected) << target; });
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "bake/sheets.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <map>
@@ -11,6 +10,7 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "gap_worlds.h"
+#include "simd_targets.h"
 
 namespace throng {
 namespace {
@@ -331,13 +331,8 @@ TEST(Sheets, SameSheetsForEverySimdWidth) {
     return hash;
   };
   const uint64_t expected = hash_all();
-  for (int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    hwy::SetSupportedTargetsForTest(targets & -targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_EQ(hash_all(), expected) << hwy::TargetName(targets & -targets);
-    hwy::SetSupportedTargetsForTest(0);
-  }
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  test::for_every_simd_target(
+      [&](const char* target) { EXPECT_EQ(hash_all(), expected) << target; });
 }
 
 }  // namespace

@@ -98,14 +98,7 @@ class ObjReader {
       writer_.begin_part(node + group_, material_);
       changed_ = false;
     }
-    if (corners_.size() == 3) {
-      writer_.add_triangle(corners_[0], corners_[1], corners_[2]);
-      return;
-    }
-    points_.clear();
-    for (const uint32_t corner : corners_) points_.push_back(writer_.scene().positions[corner]);
-    const uint32_t rings[2] = {0, static_cast<uint32_t>(corners_.size())};
-    writer_.add_polygon(points_, rings, corners_);
+    writer_.add_face(corners_);
   }
 
   SceneWriter writer_;
@@ -113,7 +106,6 @@ class ObjReader {
   std::string object_, group_, material_;
   bool changed_ = true;
   std::vector<uint32_t> corners_;
-  std::vector<Vec3d> points_;
 };
 
 }  // namespace

@@ -202,7 +202,7 @@ class PlyReader {
           const bool wanted =
               face && (property.name == "vertex_indices" || property.name == "vertex_index");
           if (!(value >= 0) || !read_list(property.type, value, wanted)) return truncated();
-          if (wanted) add_face();
+          if (wanted) writer_.add_face(corners_);
         } else if (vertex && property.name.size() == 1) {
           if (property.name[0] == 'x') p.x = value;
           if (property.name[0] == 'y') p.y = value;
@@ -226,22 +226,6 @@ class PlyReader {
     return true;
   }
 
-  void add_face() {
-    const bool bad = std::find(corners_.begin(), corners_.end(), kNoVertex) != corners_.end();
-    if (corners_.size() < 3 || bad) {
-      writer_.count_bad(corners_.size() > 3 ? corners_.size() - 2 : 1);
-      return;
-    }
-    if (corners_.size() == 3) {
-      writer_.add_triangle(corners_[0], corners_[1], corners_[2]);
-      return;
-    }
-    points_.clear();
-    for (const uint32_t corner : corners_) points_.push_back(writer_.scene().positions[corner]);
-    const uint32_t rings[2] = {0, static_cast<uint32_t>(corners_.size())};
-    writer_.add_polygon(points_, rings, corners_);
-  }
-
   std::string_view text_;
   std::string name_;
   Context& context_;
@@ -252,7 +236,6 @@ class PlyReader {
   bool swapped_ = false;
   std::vector<Element> elements_;
   std::vector<uint32_t> corners_;
-  std::vector<Vec3d> points_;
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace throng {
 
 void SceneWriter::begin_part(std::string_view node, std::string_view material) {
@@ -44,11 +46,22 @@ void SceneWriter::add_polygon(std::span<const Vec3d> points, std::span<const uin
   for (const auto& [a, b, c] : cut_) add_triangle(base + a, base + b, base + c);
 }
 
-void SceneWriter::add_polygon(std::span<const Vec3d> points, std::span<const uint32_t> ring_first,
-                              std::span<const uint32_t> vertices) {
+void SceneWriter::add_face(std::span<const uint32_t> corners) {
+  const bool bad = std::find(corners.begin(), corners.end(), kNoVertex) != corners.end();
+  if (corners.size() < 3 || bad) {
+    count_bad(corners.size() > 3 ? corners.size() - 2 : 1);
+    return;
+  }
+  if (corners.size() == 3) {
+    add_triangle(corners[0], corners[1], corners[2]);
+    return;
+  }
+  points_.clear();
+  for (const uint32_t corner : corners) points_.push_back(scene_.positions[corner]);
+  const uint32_t rings[2] = {0, static_cast<uint32_t>(corners.size())};
   cut_.clear();
-  if (!cutter_.cut(points, ring_first, cut_)) ++inexact_;
-  for (const auto& [a, b, c] : cut_) add_triangle(vertices[a], vertices[b], vertices[c]);
+  if (!cutter_.cut(points_, rings, cut_)) ++inexact_;
+  for (const auto& [a, b, c] : cut_) add_triangle(corners[a], corners[b], corners[c]);
 }
 
 bool SceneWriter::full() const { return scene_.positions.size() >= kNoVertex - 65536; }

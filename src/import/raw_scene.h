@@ -44,9 +44,11 @@ class SceneWriter {
   void add_triangle(uint32_t a, uint32_t b, uint32_t c);
   /// A polygon by its corners; rings as in PolygonCutter::cut. Too short rings are counted.
   void add_polygon(std::span<const Vec3d> points, std::span<const uint32_t> ring_first);
-  /// The same over vertices that were added before: `vertices[i]` is the index of points[i].
-  void add_polygon(std::span<const Vec3d> points, std::span<const uint32_t> ring_first,
-                   std::span<const uint32_t> vertices);
+
+  /// One face over vertices that were added before: a triangle as it is, anything longer as a
+  /// polygon. Fewer than three corners, or kNoVertex among them, are counted as bad. Linear, but
+  /// for polygons as PolygonCutter::cut.
+  void add_face(std::span<const uint32_t> corners);
 
   void count_bad(uint64_t triangles) { bad_ += triangles; }
   void count_points_and_lines(uint64_t count) { thin_ += count; }
@@ -62,6 +64,7 @@ class SceneWriter {
   Scene scene_;
   PolygonCutter cutter_;
   std::vector<std::array<uint32_t, 3>> cut_;
+  std::vector<Vec3d> points_;  // of a face
   uint64_t bad_ = 0;
   uint64_t thin_ = 0;
   uint64_t inexact_ = 0;

@@ -188,7 +188,7 @@ void add_verify(CLI::App& parser, Session& session) {
   CLI::App* command =
       add_command(parser, session, "verify", "Test a baked world against its source triangles",
                   "throng bake builtin:garage -o garage.throng\n"
-                  "throng verify garage.throng --source builtin:garage --samples 2000");
+                  "throng verify garage.throng --source builtin:garage --samples 20000");
   const auto options = std::make_shared<VerifyOptions>();
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
   add_source_options(command, options->sources, "--source");

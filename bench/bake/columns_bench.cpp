@@ -17,7 +17,7 @@ struct Tiles {
   std::vector<CellTriangle> triangles;
   TriangleBins bins;
 
-  explicit Tiles(const Scene& scene) : grid(make_grid(scene.bounds(), 0.1)) {
+  explicit Tiles(const Scene& scene) : grid(make_grid(scene.bounds(), 0.1, kGridPhase)) {
     const std::vector<AvatarClass> classes = default_classes();
     const SurfaceCoder coder(scene, classes, 1);
     for (uint32_t t = 0; t < scene.triangles.size(); ++t) {

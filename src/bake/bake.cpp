@@ -93,7 +93,7 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   BakePlan plan;
   plan.scene = &scene;
   plan.config = &config;
-  plan.grid = make_grid(bounds, config.cell);
+  plan.grid = make_grid(bounds, config.cell, kGridPhase);
   plan.tiles_per_zone = static_cast<int32_t>(
       std::clamp(std::round(config.zone / (config.cell * kTileSide)), 1.0, 255.0));
   plan.zones_x = (plan.grid.tiles_x() + plan.tiles_per_zone - 1) / plan.tiles_per_zone;

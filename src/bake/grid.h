@@ -10,6 +10,10 @@ namespace throng {
 inline constexpr int32_t kTileSide = 64;  // cells
 inline constexpr int32_t kTileArea = kTileSide * kTileSide;
 
+/// A wall on the border of two cells fills both. What people build stands on round coordinates, so
+/// borders keep off them: whole cells lie near the middle of one, half cells just inside.
+inline constexpr double kGridPhase = 15.0 / 32;  // cells
+
 struct Grid {
   double origin_x = 0;  // [m]
   double origin_z = 0;  // [m]

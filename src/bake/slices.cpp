@@ -159,7 +159,7 @@ Result<SliceSet> slice_scene(const Scene& scene, const SliceConfig& config, Cont
   if (!box) return box.error();
   if (auto error = check_size(*box, config.cell)) return *std::move(error);
 
-  const Grid grid = make_grid(*box, config.cell);
+  const Grid grid = make_grid(*box, config.cell, 0);
   SweepConfig sweep{.width = grid.width,
                     .depth = grid.depth,
                     .avatar_height = to_mm(config.avatar_height),

@@ -112,11 +112,14 @@ CellTriangle to_cell_triangle(const Scene& scene, uint32_t triangle, const Grid&
   return out;
 }
 
-Grid make_grid(const Box3d& bounds, double cell) {
+Grid make_grid(const Box3d& bounds, double cell, double phase) {
+  const auto border_below = [&](double at) {
+    return (std::floor(at / cell - phase + 1e-6) + phase) * cell;
+  };
   Grid grid;
   grid.cell = cell;
-  grid.origin_x = std::floor(bounds.min.x / cell + 1e-6) * cell;
-  grid.origin_z = std::floor(bounds.min.z / cell + 1e-6) * cell;
+  grid.origin_x = border_below(bounds.min.x);
+  grid.origin_z = border_below(bounds.min.z);
   grid.width = std::max(1, static_cast<int32_t>(std::ceil(grid.to_cell_x(bounds.max.x) - 1e-6)));
   grid.depth = std::max(1, static_cast<int32_t>(std::ceil(grid.to_cell_z(bounds.max.z) - 1e-6)));
   return grid;

@@ -57,8 +57,8 @@ double snap_mm(double metres);
 CellTriangle to_cell_triangle(const Scene& scene, uint32_t triangle, const Grid& grid,
                               uint8_t code);
 
-/// The grid that covers a scene: origin on a whole multiple of the cell.
-Grid make_grid(const Box3d& bounds, double cell);
+/// The grid that covers a scene; cells begin at (n + phase) cells, n whole. [0 <= phase < 1]
+Grid make_grid(const Box3d& bounds, double cell, double phase);
 
 /// Triangles by square of `side` cells, conservatively by their boxes: square s = z * squares_x + x
 /// owns items[first[s]] to items[first[s + 1]], in order of triangles.

@@ -64,7 +64,7 @@ Ints kept_heights(const SliceSet& set) {
 naive::Columns rasterised(const Scene& scene, double cell) {
   Box3d box;
   for (const Vec3d& p : scene.positions) box.add(p);
-  const Grid grid = make_grid(box, cell);
+  const Grid grid = make_grid(box, cell, 0);
   std::vector<CellTriangle> triangles;
   for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
     triangles.push_back(to_cell_triangle(scene, t, grid, 0));

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/huge_array.h"
+#include "core/prefetch.h"
 #include "crowd/pixel_grid.h"
 
 /// The collision map: who is where, on a grid of its own. Source: [TC00] section 3; the bit per
@@ -73,18 +74,18 @@ class CollisionMap {
   void prefetch(const Slices& s, uint32_t from, uint32_t way) const {
     const Ring& ring = rings_[way];
     const uint64_t* w = &word(s.plane, from);
-    __builtin_prefetch(w);
-    __builtin_prefetch(w + ring.ahead[0]);
-    __builtin_prefetch(w + ring.ahead[2]);
-    __builtin_prefetch(w + ring.ahead[4]);
+    throng::prefetch(w);
+    throng::prefetch(w + ring.ahead[0]);
+    throng::prefetch(w + ring.ahead[2]);
+    throng::prefetch(w + ring.ahead[4]);
   }
   /// Asks for the words that is_free will read around a point.
   void prefetch(GroundPoint p, int32_t feet) const {
     const Mark m = mark(p, feet);
     const uint64_t* w = &word(m.slices.plane, m.pixel);
-    __builtin_prefetch(w - stride_);
-    __builtin_prefetch(w);
-    __builtin_prefetch(w + stride_);
+    throng::prefetch(w - stride_);
+    throng::prefetch(w);
+    throng::prefetch(w + stride_);
   }
   /// Moves a body that is alone around `from` one pixel along `way`, if it is alone there too. Only
   /// the pixels around the one and not around the other need a look.

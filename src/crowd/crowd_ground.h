@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/huge_array.h"
+#include "core/prefetch.h"
 #include "throng/result.h"
 #include "world/ground.h"
 
@@ -42,7 +43,7 @@ class CrowdGround {
     [[nodiscard]] const uint64_t* operator[](Level level) const {
       return rows_ + size_t{sets_[level]} * 64;
     }
-    void prefetch(Level level) const { __builtin_prefetch(&sets_[level]); }
+    void prefetch(Level level) const { throng::prefetch(&sets_[level]); }
 
    private:
     friend CrowdGround;
@@ -63,28 +64,28 @@ class CrowdGround {
     return {rows(word), (word & kStepSafe) != 0, (word & kAlone) != 0};
   }
   void prefetch_walk(Level level) const {
-    __builtin_prefetch(&walk_[level]);
-    __builtin_prefetch(&views_[level]);
+    throng::prefetch(&walk_[level]);
+    throng::prefetch(&views_[level]);
   }
   /// Asks for what a step from a cell of a level reads of it, and for what is at hand around it.
   void prefetch_cell(Level level, int32_t x, int32_t z) const {
-    __builtin_prefetch(&rows(walk_[level])[z & 63]);
+    throng::prefetch(&rows(walk_[level])[z & 63]);
     const LevelView& view = views_[level];
     if (view.floor == nullptr) return;
     const uint16_t* sample = &view.floor[(z & 63) * 64 + (x & 63)];
-    __builtin_prefetch(sample - 64);
-    __builtin_prefetch(sample);
-    __builtin_prefetch(sample + 64);
+    throng::prefetch(sample - 64);
+    throng::prefetch(sample);
+    throng::prefetch(sample + 64);
   }
   /// What is known of a tile's levels, in two goes: the second reads what the first asks for.
   void prefetch_tile(int32_t tile_x, int32_t tile_z) const {
-    __builtin_prefetch(tile(tile_x, tile_z));
+    throng::prefetch(tile(tile_x, tile_z));
   }
   void prefetch_levels(int32_t tile_x, int32_t tile_z) const {
     const Range* range = tile(tile_x, tile_z);
     if (range == nullptr) return;
-    __builtin_prefetch(&heights_[range->first]);
-    __builtin_prefetch(&walk_[range->first]);
+    throng::prefetch(&heights_[range->first]);
+    throng::prefetch(&walk_[range->first]);
   }
   [[nodiscard]] int32_t feet(Level level, GroundPoint p) const {
     const LevelView& view = views_[level];

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <span>
 
+#include "core/prefetch.h"
 #include "core/random.h"
 
 // A run is moved in groups, and a group in passes, so that no pass waits for memory or guesses a
@@ -113,7 +114,7 @@ void Group::plan(const List& todo) {
     Avatar& a = avatars_[n];
     plain.prefetch(std::min<const Avatar*>(&a + kAheadLevel, last_readable_)->level);
     const Avatar& next = *std::min<const Avatar*>(&a + kAheadRow, last_readable_);
-    __builtin_prefetch(&plain[next.level][(next.z >> kUnitBits) & 63]);
+    throng::prefetch(&plain[next.level][(next.z >> kUnitBits) & 63]);
 
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;

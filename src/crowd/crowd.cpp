@@ -150,6 +150,7 @@ StepReport Crowd::step() {
                   .map = &*s.map,
                   .seed = s.config.seed,
                   .step_mm = step_mm(s.body),
+                  .is_short = s.stride <= LevelLine::kBlock << kUnitBits,
                   .units_x = s.world.data()->width << kUnitBits,
                   .units_z = s.world.data()->depth << kUnitBits};
   for (int32_t i = 0; i < s.sub_steps; ++i) {
@@ -168,11 +169,7 @@ StepReport Crowd::step() {
       const size_t grain = std::max<size_t>(1, kGrain * runs.size() / avatars_here);
       parallel_ranges(runs.size(), grain, s.config.workers, [&](size_t begin, size_t end) {
         StepCounts counts;
-        Avatar* avatars = s.avatars.data();
-        for (size_t r = begin; r < end; ++r) {
-          move_run(input, avatars + runs[r].first, avatars + runs[r].last,
-                   avatars + runs[end - 1].last, counts);
-        }
+        move_runs(input, s.avatars.data(), std::span(runs).subspan(begin, end - begin), counts);
         moved.fetch_add(counts.moved, std::memory_order_relaxed);
         wall.fetch_add(counts.blocked_by_wall, std::memory_order_relaxed);
         avatar.fetch_add(counts.blocked_by_avatar, std::memory_order_relaxed);

@@ -68,9 +68,8 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   ground.tiles_.resize(static_cast<size_t>(ground.tiles_x_) * static_cast<size_t>(ground.tiles_z_));
   ground.records_.resize(world.level_count);
   ground.heights_.resize(world.level_count);
-  ground.plain_ = HugeArray<uint32_t>(world.level_count);
   ground.views_ = HugeArray<LevelView>(world.level_count);
-  ground.walk_ = HugeArray<uint32_t>(world.level_count);
+  ground.lines_ = HugeArray<LevelLine>(world.level_count);
   // Room for all levels; what is not written is never taken from the system.
   ground.rows_ = HugeArray<uint64_t>((2 * size_t{world.level_count} + 2) * kRows);
   std::fill_n(ground.rows_.data() + kAllLegal * kRows, kRows, ~uint64_t{0});
@@ -91,13 +90,16 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
         set = sets++;
         std::copy_n(level.legal, kRows, ground.rows_.data() + size_t{set} * kRows);
       }
-      ground.walk_[base + i] = set | (level.step_safe ? kStepSafe : 0);
-      ground.plain_[base + i] = set;
+      LevelLine& line = ground.lines_[base + i];
+      line = {};
+      line.legal_set = set | (level.step_safe ? kStepSafe : 0);
+      line.plain_set = set;
       if (set != kNoneLegal && !level.view.is_constant()) {
         const bool any = find_plain(level.view, ground.legal(base + i),
                                     ground.rows_.data() + size_t{sets} * kRows);
-        ground.plain_[base + i] = any ? sets++ : kNoneLegal;
+        line.plain_set = any ? sets++ : kNoneLegal;
       }
+      line.plain = full_blocks(ground.plain(base + i));
       const auto [low, high] = heights_of(level.view, ground.legal(base + i));
       ground.heights_[base + i] = {low, high};
       const int32_t tile = level.view.record->tile();
@@ -115,6 +117,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
     }
   }
   ground.find_alone(step_mm);
+  ground.join_blocks();
   return ground;
 }
 
@@ -126,7 +129,7 @@ void CrowdGround::find_alone(int32_t step_mm) {
         alone &= i == j || heights_[j].low > heights_[i].high + step_mm ||
                  heights_[j].high < heights_[i].low - step_mm;
       }
-      walk_[i] |= alone ? kAlone : 0;
+      lines_[i].legal_set |= alone ? kAlone : 0;
     }
   }
 }

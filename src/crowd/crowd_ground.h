@@ -7,10 +7,11 @@
 
 #include "core/huge_array.h"
 #include "core/prefetch.h"
+#include "crowd/level_line.h"
 #include "throng/result.h"
 #include "world/ground.h"
 
-/// The ground as a step reads it: one word and 64 rows of legal cells a level.
+/// The ground as a step reads it: a line and 64 rows of legal cells a level.
 namespace throng {
 
 class CrowdGround {
@@ -21,12 +22,14 @@ class CrowdGround {
   static Result<CrowdGround> make(const WorldData& world, int32_t avatar_class, int32_t step_mm);
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
-    return ((rows(walk_[level])[z] >> x) & 1) != 0;
+    return ((rows(lines_[level].legal_set)[z] >> x) & 1) != 0;
   }
   [[nodiscard]] int32_t sample(Level level, int32_t x, int32_t z) const {
     return views_[level].sample(x, z);
   }
-  [[nodiscard]] bool step_safe(Level level) const { return (walk_[level] & kStepSafe) != 0; }
+  [[nodiscard]] bool step_safe(Level level) const {
+    return (lines_[level].legal_set & kStepSafe) != 0;
+  }
   template <class Visit>
   void for_tile(int32_t tile_x, int32_t tile_z, int32_t low, int32_t high, Visit visit) const {
     const Range* range = tile(tile_x, tile_z);
@@ -36,22 +39,12 @@ class CrowdGround {
     }
   }
 
+  [[nodiscard]] const LevelLine& line(Level level) const { return lines_[level]; }
+  [[nodiscard]] const LevelLine* lines() const { return lines_.data(); }
+
   /// 64 rows of plain cells: legal, and level with the cells beside them. Whoever stands on one may
   /// go wherever all cells between are plain, and stays on the level, at the height of his feet.
-  class Plain {
-   public:
-    [[nodiscard]] const uint64_t* operator[](Level level) const {
-      return rows_ + size_t{sets_[level]} * 64;
-    }
-    void prefetch(Level level) const { throng::prefetch(&sets_[level]); }
-
-   private:
-    friend CrowdGround;
-    Plain(const uint32_t* sets, const uint64_t* rows) : sets_(sets), rows_(rows) {}
-    const uint32_t* sets_;
-    const uint64_t* rows_;
-  };
-  [[nodiscard]] Plain plain() const { return {plain_.data(), rows_.data()}; }
+  [[nodiscard]] const uint64_t* plain(Level level) const { return rows(lines_[level].plain_set); }
 
   /// What a level says about walking on it inside its tile.
   struct Walk {
@@ -60,22 +53,24 @@ class CrowdGround {
     bool is_alone;          // step safe, and no other level of the tile is within a step of it
   };
   [[nodiscard]] Walk walk(Level level) const {
-    const uint32_t word = walk_[level];
+    const uint32_t word = lines_[level].legal_set;
     return {rows(word), (word & kStepSafe) != 0, (word & kAlone) != 0};
   }
-  void prefetch_walk(Level level) const {
-    throng::prefetch(&walk_[level]);
+  /// Asks for what is read of a level by those whom its line does not answer.
+  void prefetch_level(Level level, int32_t z) const {
+    throng::prefetch(&plain(level)[z & 63]);
     throng::prefetch(&views_[level]);
   }
   /// Asks for what a step from a cell of a level reads of it, and for what is at hand around it.
   void prefetch_cell(Level level, int32_t x, int32_t z) const {
-    throng::prefetch(&rows(walk_[level])[z & 63]);
+    throng::prefetch(&rows(lines_[level].legal_set)[z & 63]);
     const LevelView& view = views_[level];
     if (view.floor == nullptr) return;
     const uint16_t* sample = &view.floor[(z & 63) * 64 + (x & 63)];
     throng::prefetch(sample - 64);
     throng::prefetch(sample);
     throng::prefetch(sample + 64);
+    if (view.present != nullptr) throng::prefetch(&view.present[z & 63]);
   }
   /// What is known of a tile's levels, in two goes: the second reads what the first asks for.
   void prefetch_tile(int32_t tile_x, int32_t tile_z) const {
@@ -85,7 +80,7 @@ class CrowdGround {
     const Range* range = tile(tile_x, tile_z);
     if (range == nullptr) return;
     throng::prefetch(&heights_[range->first]);
-    throng::prefetch(&walk_[range->first]);
+    throng::prefetch(&lines_[range->first]);
   }
   [[nodiscard]] int32_t feet(Level level, GroundPoint p) const {
     const LevelView& view = views_[level];
@@ -96,7 +91,7 @@ class CrowdGround {
   }
 
   /// 64 rows of legal cells.
-  [[nodiscard]] const uint64_t* legal(Level level) const { return rows(walk_[level]); }
+  [[nodiscard]] const uint64_t* legal(Level level) const { return rows(lines_[level].legal_set); }
 
   /// What only placing avatars needs.
   struct Record {
@@ -105,7 +100,7 @@ class CrowdGround {
   };
   [[nodiscard]] const std::vector<Record>& records() const { return records_; }
   [[nodiscard]] uint64_t bytes() const {
-    const uint64_t level = sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + 8;
+    const uint64_t level = sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + sizeof(LevelLine);
     return records_.size() * level + tiles_.size() * sizeof(Range) +
            row_sets_ * 64 * sizeof(uint64_t);
   }
@@ -119,11 +114,13 @@ class CrowdGround {
   struct Heights {
     int32_t low = 0, high = 0;
   };
-  // Where a level's rows begin, in sets of 64, and flags.
+  // Flags beside the number of the legal set.
   static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
   static constexpr uint32_t kAlone = uint32_t{1} << 30;
 
   void find_alone(int32_t step_mm);
+  void join_blocks();
+  void join_side(Level level, LevelLine::Side side);
   [[nodiscard]] const Range* tile(int32_t x, int32_t z) const {
     if (x < 0 || z < 0 || x >= tiles_x_ || z >= tiles_z_) return nullptr;
     return &tiles_[static_cast<size_t>(z) * static_cast<size_t>(tiles_x_) + static_cast<size_t>(x)];
@@ -138,8 +135,7 @@ class CrowdGround {
   std::vector<Record> records_;
   // Copied out of the zones, where one class's rows lie pages apart: here the levels of a tile are
   // neighbours. Set 0 is empty, set 1 is full, for all levels that are.
-  HugeArray<uint32_t> plain_;
-  HugeArray<uint32_t> walk_;
+  HugeArray<LevelLine> lines_;
   HugeArray<LevelView> views_;
   HugeArray<uint64_t> rows_;
   uint32_t row_sets_ = 0;

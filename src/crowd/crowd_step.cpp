@@ -12,15 +12,17 @@
 
 // A run is moved in groups, and a group in passes, so that no pass waits for memory or guesses a
 // branch: what is asked of most avatars is answered without one, and those that need more are put
-// on a list for the next pass. The order in which claims commit (group, pass, place in the group)
-// depends on nothing but the run.
+// on a list for the next pass. The passes are three stages; while one group is in its last, the
+// next is in its second and the one after that in its first, and what a stage asks of the memory
+// arrives before the next. The order in which claims commit (group, pass, place in the group)
+// depends on nothing but the run, because only the last stage reads or writes what groups share.
 namespace throng {
 namespace {
 
-constexpr size_t kGroup = 128;
-constexpr int32_t kAheadLevel = 32;  // avatars between asking for a level's word and using it
-constexpr int32_t kAheadRow = 16;
-constexpr int32_t kShort = 2;  // longest plain step [cells]
+constexpr size_t kGroup = 64;
+constexpr int32_t kAheadAvatar = 128;  // avatars between asking for one and using it
+constexpr int32_t kAheadLevel = 48;    // the same for the line of a level
+constexpr int32_t kShort = 2;          // longest plain step [cells]
 
 // Numbers of avatars of a group.
 class List {
@@ -30,6 +32,7 @@ class List {
     at_[size_] = n;
     size_ += really;
   }
+  void clear() { size_ = 0; }
   [[nodiscard]] size_t size() const { return size_; }
   [[nodiscard]] std::span<const uint16_t> span() const { return {at_.data(), size_}; }
 
@@ -40,34 +43,46 @@ class List {
 
 // A plain step into another pixel.
 struct Claim {
-  uint32_t from;  // pixel
+  uint32_t from;   // pixel
+  uint32_t level;  // on which it ends
   uint16_t way;
   uint16_t n;
 };
 
 class Group {
  public:
-  // Up to `readable`, avatars may be read ahead of their turn.
-  Group(const StepInput& in, Avatar* avatars, const Avatar* readable)
-      : in_(in), avatars_(avatars), last_readable_(readable - 1) {}
+  explicit Group(const StepInput& in) : in_(in) {}
 
-  // Each avatar of the list makes one step, or goes on the other list. What one pass asks for
-  // arrives during the next, which deals with others.
-  void move(const List& todo, List& blocked) {
+  // The three stages: each avatar of the list makes one step, or goes on the other list. Up to
+  // `readable`, avatars may be read ahead of their turn.
+  void start(Avatar* avatars, const List& todo, const Avatar* readable) {
+    avatars_ = avatars;
+    last_readable_ = readable - 1;
+    claims_size_ = asked_ = walls_ = 0;
+    for (List* list : {&unsure_, &uneven_, &slopes_, &walks_}) list->clear();
     plan(todo);
     ask_for_levels();
     ask_for_pixels();
+  }
+  void look() {
+    look_closer();
+    ask_for_pixels();
     ask_for_cells();
+  }
+  void finish(List& blocked) {
     claim(blocked);
     sort_uneven();
     climb(blocked);
     walk_on(blocked);
   }
+  [[nodiscard]] Avatar* avatars() const { return avatars_; }
   [[nodiscard]] uint64_t walls() const { return walls_; }
 
  private:
   void plan(const List& todo);
   void ask_for_levels() const;
+  void look_closer();
+  void go_or_claim(bool really, uint32_t level, uint16_t n);
   void ask_for_pixels();
   void ask_for_cells() const;
   void claim(List& blocked);
@@ -76,12 +91,14 @@ class Group {
   void walk_on(List& blocked);
 
   const StepInput& in_;
-  Avatar* avatars_;
-  const Avatar* last_readable_;
+  Avatar* avatars_ = nullptr;
+  const Avatar* last_readable_ = nullptr;
   std::array<Claim, kGroup> claims_;
   std::array<CollisionMap::Slices, kGroup> slices_;  // of the claims
   size_t claims_size_ = 0;
-  List uneven_;  // not plain: these go on one of the next two
+  size_t asked_ = 0;  // claims whose pixels were asked for
+  List unsure_;       // not within plain blocks
+  List uneven_;       // not plain: these go on one of the next two
   List slopes_;
   List walks_;
   uint64_t walls_ = 0;  // met
@@ -104,41 +121,70 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
   return all != 0;
 }
 
-// Whoever stays in his pixel on plain cells moves at once: nobody can object. Arithmetic instead of
-// branches: which way an avatar goes is as good as random, and a wrong guess costs 20 cycles.
-void Group::plan(const List& todo) {
+// A plain step that `really` is one. Whoever stays in his pixel moves at once: nobody can object.
+// Arithmetic instead of branches: which way an avatar goes is as good as random, and a wrong guess
+// costs 20 cycles.
+[[gnu::always_inline]] inline void Group::go_or_claim(bool really, uint32_t level, uint16_t n) {
   const PixelGrid grid = in_.map->grid();
-  const CrowdGround::Plain plain = in_.ground->plain();
-  size_t claimed = 0;
-  for (const uint16_t n : todo.span()) {
-    Avatar& a = avatars_[n];
-    plain.prefetch(std::min<const Avatar*>(&a + kAheadLevel, last_readable_)->level);
-    const Avatar& next = *std::min<const Avatar*>(&a + kAheadRow, last_readable_);
-    throng::prefetch(&plain[next.level][(next.z >> kUnitBits) & 63]);
+  Avatar& a = avatars_[n];
+  const int32_t px = grid.pixel(a.x >> kUnitBits), pz = grid.pixel(a.z >> kUnitBits);
+  const int32_t dx = grid.pixel((a.x + a.vx) >> kUnitBits) - px;
+  const int32_t dz = grid.pixel((a.z + a.vz) >> kUnitBits) - pz;
+  const bool stays = (dx | dz) == 0;
+  claims_[claims_size_] = {in_.map->pixel(px, pz), level,
+                           static_cast<uint16_t>(CollisionMap::way(dx, dz)), n};
+  claims_size_ += really & !stays;
+  const int32_t go = mask(really & stays);
+  a.x += a.vx & go;
+  a.z += a.vz & go;
+  a.level = really & stays ? level : a.level;
+}
 
+// Most are answered by the line of their level alone.
+void Group::plan(const List& todo) {
+  const LevelLine* lines = in_.ground->lines();
+  for (const uint16_t n : todo.span()) {
+    const Avatar& a = avatars_[n];
+    throng::prefetch(&a + kAheadAvatar);
+    throng::prefetch(&lines[std::min<const Avatar*>(&a + kAheadLevel, last_readable_)->level]);
+    const bool is_plain = in_.is_short & lines[a.level].box_is_plain(
+                                             a.x >> kUnitBits, a.z >> kUnitBits,
+                                             (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
+    unsure_.add_if(!is_plain, n);
+    go_or_claim(is_plain, a.level, n);
+  }
+}
+
+void Group::ask_for_levels() const {
+  for (const uint16_t n : unsure_.span()) {
+    const Avatar& a = avatars_[n];
+    const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
+    in_.ground->prefetch_level(a.level, z);
+    in_.ground->prefetch_tile(x >> 6, z >> 6);
+  }
+}
+
+// Plain blocks over the edge of the tile, and plain cells that do not fill a block.
+void Group::look_closer() {
+  for (const uint16_t n : unsure_.span()) {
+    const Avatar& a = avatars_[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
-    const bool is_plain = box_is_set(plain[a.level], x0, z0, x1, z1);
-    const int32_t px = grid.pixel(x0), pz = grid.pixel(z0);
-    const int32_t dx = grid.pixel(x1) - px, dz = grid.pixel(z1) - pz;
-    const bool stays = (dx | dz) == 0;
-    claims_[claimed] = {in_.map->pixel(px, pz), static_cast<uint16_t>(CollisionMap::way(dx, dz)),
-                        n};
-    claimed += is_plain & !stays;
+    const uint32_t beyond =
+        in_.is_short ? in_.ground->line(a.level).cross(x0, z0, x1, z1) : LevelLine::kNone;
+    const bool crosses = beyond != LevelLine::kNone;
+    const bool is_plain = crosses | box_is_set(in_.ground->plain(a.level), x0, z0, x1, z1);
     uneven_.add_if(!is_plain, n);
-    const int32_t go = mask(is_plain & stays);
-    a.x += a.vx & go;
-    a.z += a.vz & go;
+    go_or_claim(is_plain, crosses ? beyond : a.level, n);
   }
-  claims_size_ = claimed;
 }
 
 void Group::ask_for_pixels() {
   const CollisionMap& map = *in_.map;
-  for (size_t i = 0; i < claims_size_; ++i) {
-    const Claim& c = claims_[i];
-    slices_[i] = map.slices(avatars_[c.n].y);
-    map.prefetch(slices_[i], c.from, c.way);
+  for (; asked_ < claims_size_; ++asked_) {
+    const Claim& c = claims_[asked_];
+    slices_[asked_] = map.slices(avatars_[c.n].y);
+    map.prefetch(slices_[asked_], c.from, c.way);
   }
 }
 
@@ -150,6 +196,7 @@ void Group::claim(List& blocked) {
     const bool moved = map.move_by_one(slices_[i], c.from, c.way);
     a.x += a.vx & mask(moved);
     a.z += a.vz & mask(moved);
+    a.level = moved ? c.level : a.level;
     blocked.add_if(!moved, c.n);
   }
 }
@@ -188,14 +235,6 @@ bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_
 }
 
 GroundPoint target(const Avatar& a) { return {int64_t{a.x} + a.vx, int64_t{a.z} + a.vz}; }
-
-void Group::ask_for_levels() const {
-  for (const uint16_t n : uneven_.span()) {
-    const Avatar& a = avatars_[n];
-    in_.ground->prefetch_walk(a.level);
-    in_.ground->prefetch_tile((a.x + a.vx) >> (kUnitBits + 6), (a.z + a.vz) >> (kUnitBits + 6));
-  }
-}
 
 void Group::ask_for_cells() const {
   for (const uint16_t n : uneven_.span()) {
@@ -262,25 +301,54 @@ void turn(const StepInput& in, Avatar& a) {
   a.vx = vx;
 }
 
+// All of a group.
+List everyone(size_t size) {
+  List all;
+  for (size_t n = 0; n < size; ++n) all.add_if(true, static_cast<uint16_t>(n));
+  return all;
+}
+
+// The last stage of a group, and all three for those that turn.
+void finish(const StepInput& in, Group& straight, size_t size, StepCounts& counts) {
+  List blocked, waits;
+  straight.finish(blocked);
+  Avatar* a = straight.avatars();
+  for (const uint16_t n : blocked.span()) turn(in, a[n]);
+  Group turned(in);
+  turned.start(a, blocked, a + size);
+  turned.look();
+  turned.finish(waits);
+  counts.moved += size - waits.size();
+  counts.waited += waits.size();
+  counts.blocked_by_wall += straight.walls();
+  counts.blocked_by_avatar += blocked.size() - straight.walls();
+}
+
 }  // namespace
 
-void move_run(const StepInput& in, Avatar* first, Avatar* last, const Avatar* readable,
-              StepCounts& counts) {
-  for (Avatar* a = first; a < last; a += kGroup) {
-    List all, blocked, waits;
-    for (int64_t n = 0; n < std::min<int64_t>(kGroup, last - a); ++n) {
-      all.add_if(true, static_cast<uint16_t>(n));
+void move_runs(const StepInput& in, Avatar* avatars, std::span<const CrowdBlocks::Run> runs,
+               StepCounts& counts) {
+  if (runs.empty()) return;
+  const Avatar* readable = avatars + runs.back().last;
+  std::array<Group, 3> groups = {Group(in), Group(in), Group(in)};
+  std::array<size_t, 3> sizes{};
+  size_t begun = 0, looked = 0, finished = 0;
+  const auto drain_to = [&](size_t under_way) {
+    if (looked + 1 < begun + (under_way == 0)) groups[looked++ % 3].look();
+    for (; begun - finished > under_way; ++finished) {
+      if (looked == finished) groups[looked++ % 3].look();
+      finish(in, groups[finished % 3], sizes[finished % 3], counts);
     }
-    Group straight(in, a, readable);
-    straight.move(all, blocked);
-    for (const uint16_t n : blocked.span()) turn(in, a[n]);
-    Group turned(in, a, a + all.size());
-    turned.move(blocked, waits);
-    counts.moved += all.size() - waits.size();
-    counts.waited += waits.size();
-    counts.blocked_by_wall += straight.walls();
-    counts.blocked_by_avatar += blocked.size() - straight.walls();
+  };
+  for (const CrowdBlocks::Run& run : runs) {
+    for (uint32_t first = run.first; first < run.last; first += kGroup) {
+      const size_t size = std::min<size_t>(kGroup, run.last - first);
+      sizes[begun % 3] = size;
+      groups[begun++ % 3].start(avatars + first, everyone(size), readable);
+      drain_to(2);
+    }
   }
+  drain_to(0);
 }
 
 }  // namespace throng

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "crowd/avatars.h"
 #include "crowd/collision_map.h"
+#include "crowd/crowd_blocks.h"
 #include "crowd/crowd_ground.h"
 
 /// One sub-step of all wanderers: claims commit in a fixed order.
@@ -21,13 +23,14 @@ struct StepInput {
   uint64_t seed = 0;
   uint64_t step = 0;  // number of the sub-step: with seed and id, the random stream
   int32_t step_mm = 0;
+  bool is_short = false;             // no sub-step is longer than a block of LevelLine
   int32_t units_x = 0, units_z = 0;  // extent of the world
 };
 
-/// Moves the avatars of one run. Straight on; if that is blocked, one random turn to the left or
-/// right is tried; if that is blocked too, the avatar waits, turned. Source: [ML06] section 4.
-/// Up to `readable` avatars may be read ahead of their turn.
-void move_run(const StepInput& input, Avatar* first, Avatar* last, const Avatar* readable,
-              StepCounts& counts);
+/// Moves the avatars of some runs of one colour, run by run. Straight on; if that is blocked, one
+/// random turn to the left or right is tried; if that is blocked too, the avatar waits, turned.
+/// Source: [ML06] section 4.
+void move_runs(const StepInput& input, Avatar* avatars, std::span<const CrowdBlocks::Run> runs,
+               StepCounts& counts);
 
 }  // namespace throng

@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "throng/bake.h"
+#include "throng/builtin_worlds.h"
 #include "worlds.h"
 
 namespace throng {
@@ -79,7 +80,7 @@ TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
       const int32_t x1 = std::min(63, x0 + draw(3)), z1 = std::min(63, z0 + draw(3));
       bool plain = true;
       for (int32_t z = z0; z <= z1; ++z) {
-        for (int32_t x = x0; x <= x1; ++x) plain &= ((ground->plain()[level][z] >> x) & 1) != 0;
+        for (int32_t x = x0; x <= x1; ++x) plain &= ((ground->plain(level)[z] >> x) & 1) != 0;
       }
       if (!plain) continue;
       ++plain_walks;
@@ -96,6 +97,46 @@ TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
       ASSERT_EQ(ground->feet(level, from), ground->feet(level, to));
     }
     EXPECT_GT(plain_walks, 1000u);
+  }
+}
+
+Scene garage() {
+  auto scene = make_builtin_world({.name = "garage", .size = 60, .levels = 2});
+  EXPECT_TRUE(scene);
+  return std::move(*scene);
+}
+
+// The same for steps of up to a block over the edge of a tile, which may change the level.
+TEST(CrowdGround, WhoCrossesAJoinArrivesWhereAWalkDoesAtTheSameHeight) {
+  for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), slope_over_the_edge(true),
+                             slope_over_the_edge(false), garage()}) {
+    const World world = baked(scene);
+    const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+    ASSERT_TRUE(ground);
+    uint64_t n = 0, crossed = 0;
+    const auto draw = [&](uint64_t below) {
+      return static_cast<int32_t>(random_below(7, 8, n++, below));
+    };
+    for (int32_t i = 0; i < 400000; ++i) {
+      const auto level = static_cast<uint32_t>(draw(world.level_tile_count()));
+      const auto& record = ground->records()[level];
+      const int32_t along = draw(64), rim = draw(2) * 63, dx = draw(9) - 4, dz = draw(9) - 4;
+      const int32_t x = record.tile_x * 64 + (i % 2 == 0 ? rim : along);
+      const int32_t z = record.tile_z * 64 + (i % 2 == 0 ? along : rim);
+      const uint32_t beyond = ground->line(level).cross(x, z, x + dx, z + dz);
+      if (beyond == LevelLine::kNone) continue;
+      ++crossed;
+      const auto point = [&](int32_t cell_x, int32_t cell_z) {
+        return GroundPoint{(int64_t{cell_x} << kUnitBits) + draw(kUnitsPerCell),
+                           (int64_t{cell_z} << kUnitBits) + draw(kUnitsPerCell)};
+      };
+      const GroundPoint from = point(x, z), to = point(x + dx, z + dz);
+      GroundLevel reached = zone_level(world, level);
+      ASSERT_TRUE(walk(zones(world), reached, from, to, kStep));
+      ASSERT_EQ(reached.world_level, beyond);
+      ASSERT_EQ(ground->feet(level, from), ground->feet(beyond, to));
+    }
+    EXPECT_GT(crossed, 1000u);
   }
 }
 

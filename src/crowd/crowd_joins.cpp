@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/crowd_ground.h"
+
+// Which plain blocks go on, level, beyond the edge of their tile: found once, so that a step over
+// the edge need not search. A step from a plain cell to an equally high one rises by 0, which no
+// other level of the tile can better; world/walk.h takes the first of those that rise least. So a
+// join is right if no earlier level of the tile is legal at that height in a cell of the block.
+namespace throng {
+namespace {
+
+constexpr int32_t kLast = 15;  // block of a row or column
+
+// Cell of the tile in the corner of a block of the rim: the i-th along a side.
+struct Cell {
+  int32_t x, z;
+};
+Cell rim(LevelLine::Side side, int32_t i) {
+  switch (side) {
+    case LevelLine::kLeft:
+      return {0, i * 4};
+    case LevelLine::kRight:
+      return {kLast * 4, i * 4};
+    case LevelLine::kAbove:
+      return {i * 4, 0};
+    default:
+      return {i * 4, kLast * 4};
+  }
+}
+
+bool is_plain(const LevelLine& line, Cell c) { return (line.plain[c.z / 4] >> (c.x / 4) & 1) != 0; }
+
+}  // namespace
+
+void CrowdGround::join_blocks() {
+  for (Level level = 0; level < records_.size(); ++level) {
+    for (const auto side :
+         {LevelLine::kLeft, LevelLine::kRight, LevelLine::kAbove, LevelLine::kBelow}) {
+      join_side(level, side);
+    }
+  }
+}
+
+void CrowdGround::join_side(Level level, LevelLine::Side side) {
+  const bool along_x = side == LevelLine::kLeft || side == LevelLine::kRight;
+  const bool back = side == LevelLine::kLeft || side == LevelLine::kAbove;
+  const LevelLine::Side opposite = along_x ? (back ? LevelLine::kRight : LevelLine::kLeft)
+                                           : (back ? LevelLine::kBelow : LevelLine::kAbove);
+  const Record& record = records_[level];
+  const Range* range = tile(record.tile_x + (along_x ? (back ? -1 : 1) : 0),
+                            record.tile_z + (along_x ? 0 : (back ? -1 : 1)));
+  if (range == nullptr) return;
+  LevelLine& line = lines_[level];
+  const auto taken_before = [&](Level other, Cell c, int32_t y) {
+    for (Level j = range->first; j < other; ++j) {
+      if (heights_[j].low > y || heights_[j].high < y) continue;
+      for (int32_t cell = 0; cell < 16; ++cell) {
+        const int32_t x = c.x + cell % 4, z = c.z + cell / 4;
+        if (is_legal(j, x, z) && sample(j, x, z) == y) return true;
+      }
+    }
+    return false;
+  };
+  for (int32_t i = 0; i <= kLast; ++i) {
+    const Cell here = rim(side, i), there = rim(opposite, i);
+    if (!is_plain(line, here)) continue;
+    const int32_t y = sample(level, here.x, here.z);
+    for (Level other = range->first; other < range->last; ++other) {
+      if (!is_plain(lines_[other], there) || sample(other, there.x, there.z) != y) continue;
+      const bool fits = line.beyond[side] == LevelLine::kNone || line.beyond[side] == other;
+      if (!fits || taken_before(other, there, y)) break;
+      line.beyond[side] = other;
+      line.joined[side] = static_cast<uint16_t>(line.joined[side] | 1u << i);
+      break;
+    }
+  }
+}
+
+}  // namespace throng

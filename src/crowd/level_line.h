@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+/// What a step asks of a level first.
+namespace throng {
+
+/// One cache line a level tile, instead of the eight that its 64 rows fill. A block is 4 x 4 cells;
+/// it is plain if all its cells are (see CrowdGround::plain), and then they are all equally high.
+struct alignas(64) LevelLine {
+  static constexpr int32_t kBlock = 4;  // cells; who makes longer steps cannot ask blocks
+  static constexpr uint32_t kNone = UINT32_MAX;
+  enum Side : uint8_t { kLeft, kRight, kAbove, kBelow };  // -x, +x, -z, +z
+
+  std::array<uint16_t, 16> plain{};  // bit x of word z: block (x, z)
+  // Where a plain block at the rim and the one beyond are equally high: the level beyond, the same
+  // for a whole side, and a bit for each such block along it.
+  std::array<uint32_t, 4> beyond = {kNone, kNone, kNone, kNone};
+  std::array<uint16_t, 4> joined{};
+  uint32_t plain_set = 0;  // of 64 rows, cell by cell
+  uint32_t legal_set = 0;  // of 64 rows, and flags
+
+  /// True if all cells of a box of up to kBlock + 1 x kBlock + 1 cells of the world lie in plain
+  /// blocks of one tile. The box between two blocks has cells of no more than four.
+  [[nodiscard]] bool box_is_plain(int32_t x0, int32_t z0, int32_t x1, int32_t z1) const {
+    const uint32_t common = uint32_t{plain[(z0 >> 2) & 15]} & plain[(z1 >> 2) & 15];
+    const bool on_tile = static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64;
+    return ((common >> ((x0 >> 2) & 15)) & (common >> ((x1 >> 2) & 15)) &
+            static_cast<uint32_t>(on_tile)) != 0;
+  }
+
+  /// The level beyond one side of the tile on which a step over plain blocks arrives, or kNone.
+  [[nodiscard]] uint32_t cross(int32_t x0, int32_t z0, int32_t x1, int32_t z1) const {
+    const int32_t tiles_x = (x1 >> 6) - (x0 >> 6), tiles_z = (z1 >> 6) - (z0 >> 6);
+    if ((tiles_x != 0) == (tiles_z != 0)) return kNone;
+    const uint32_t side =
+        tiles_x != 0 ? (tiles_x < 0 ? kLeft : kRight) : (tiles_z < 0 ? kAbove : kBelow);
+    const int32_t from = tiles_x != 0 ? z0 : x0, to = tiles_x != 0 ? z1 : x1;
+    const uint32_t open = joined[side];
+    return (open >> ((from >> 2) & 15) & open >> ((to >> 2) & 15) & 1) != 0 ? beyond[side] : kNone;
+  }
+};
+static_assert(sizeof(LevelLine) == 64);
+
+/// The blocks of which all cells are set in 64 rows.
+std::array<uint16_t, 16> full_blocks(const uint64_t* rows);
+
+}  // namespace throng

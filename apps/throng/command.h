@@ -57,6 +57,7 @@ std::string human_bytes(uint64_t bytes);
 void add_bake(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
 void add_picture(CLI::App& parser, Session& session);
+void add_region(CLI::App& parser, Session& session);
 void add_run(CLI::App& parser, Session& session);
 void add_slices(CLI::App& parser, Session& session);
 void add_verify(CLI::App& parser, Session& session);

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
     add_bake(parser, session);
     add_info(parser, session);
     add_picture(parser, session);
+    add_region(parser, session);
     add_run(parser, session);
     add_slices(parser, session);
     add_verify(parser, session);

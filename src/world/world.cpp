@@ -9,26 +9,13 @@
 
 #include "core/random.h"
 #include "world/ground.h"
+#include "world/place.h"
 #include "world/zone_data.h"
 
 namespace throng {
 namespace {
 
 constexpr int32_t kArea = kTileCells * kTileCells;
-
-GroundPoint to_point(const WorldData& world, double x, double z) {
-  const double scale = kUnitsPerCell / world.summary.cell;
-  // Far off the grid is off the grid, whether or not it fits an integer.
-  const auto to_unit = [&](double distance) {
-    return static_cast<int64_t>(std::floor(std::clamp(distance * scale, -1e15, 1e15)));
-  };
-  return {to_unit(x - world.summary.origin.x), to_unit(z - world.summary.origin.z)};
-}
-
-bool in_grid(const WorldData& world, GroundPoint p) {
-  return p.x >= 0 && p.z >= 0 && p.x < (int64_t{world.width} << kUnitBits) &&
-         p.z < (int64_t{world.depth} << kUnitBits);
-}
 
 double feet_at(const GroundLevel& level, GroundPoint p) {
   return level.view.feet(p.cell_x() & 63, p.cell_z() & 63,
@@ -161,7 +148,7 @@ LevelTileContent World::level_tile(uint32_t index) const {
 Place World::find_place(int32_t avatar_class, Vec3d position, double reach) const {
   if (!good_class(*data_, avatar_class) || !std::isfinite(position.x + position.y + position.z))
     return {};
-  const GroundPoint p = to_point(*data_, position.x, position.z);
+  const GroundPoint p = to_ground(*data_, position.x, position.z);
   if (!in_grid(*data_, p)) return {};
   const auto tile = data_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
   Place best;
@@ -219,8 +206,8 @@ MoveResult World::move(int32_t avatar_class, const Place& from, double dx, doubl
     return result;
   }
   const Vec3d goal{from.position.x + dx, 0, from.position.z + dz};
-  const GroundPoint start = to_point(*data_, from.position.x, from.position.z);
-  const GroundPoint end = to_point(*data_, goal.x, goal.z);
+  const GroundPoint start = to_ground(*data_, from.position.x, from.position.z);
+  const GroundPoint end = to_ground(*data_, goal.x, goal.z);
   if (!in_grid(*data_, start) || !in_grid(*data_, end)) return result;
   GroundLevel level = ground_level(*data_, from.level1 - 1, avatar_class);
   if (level.zone == nullptr || !level.is_legal(start.cell_x() & 63, start.cell_z() & 63))
@@ -235,7 +222,7 @@ MoveResult World::move(int32_t avatar_class, const Place& from, double dx, doubl
 double World::feet(const Place& place) const {
   if (!place || place.level1 > data_->level_count) return place.position.y;
   const GroundLevel level = ground_level(*data_, place.level1 - 1, 0);
-  const GroundPoint p = to_point(*data_, place.position.x, place.position.z);
+  const GroundPoint p = to_ground(*data_, place.position.x, place.position.z);
   if (level.zone == nullptr || !in_grid(*data_, p)) return place.position.y;
   return feet_at(level, p);
 }

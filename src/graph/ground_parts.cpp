@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "graph/ground_parts.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+namespace throng {
+
+CellRows legal_rows(const GroundLevel& level) {
+  CellRows rows{};
+  if (level.kind == format::BitsKind::All) rows.fill(~uint64_t{0});
+  if (level.legal != nullptr) std::copy_n(level.legal, 64, rows.begin());
+  return rows;
+}
+
+std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& legal, int32_t step) {
+  if (level.step_safe || level.kind == format::BitsKind::None) return std::nullopt;
+  StepCuts cuts;
+  const auto is_high = [&](int32_t x, int32_t z, int32_t nx, int32_t nz) {
+    return std::abs(level.view.sample(x, z) - level.view.sample(nx, nz)) > step;
+  };
+  for (int32_t z = 0; z < 64; ++z) {
+    const auto row = static_cast<size_t>(z);
+    for (uint64_t pairs = legal[row] & (legal[row] >> 1); pairs != 0; pairs &= pairs - 1) {
+      const int32_t x = std::countr_zero(pairs);
+      if (is_high(x, z, x + 1, z)) cuts.across[row] |= uint64_t{1} << x;
+    }
+    if (z == 63) break;
+    for (uint64_t pairs = legal[row] & legal[row + 1]; pairs != 0; pairs &= pairs - 1) {
+      const int32_t x = std::countr_zero(pairs);
+      if (is_high(x, z, x, z + 1)) cuts.along[row] |= uint64_t{1} << x;
+    }
+  }
+  return cuts;
+}
+
+int32_t step_of(const AvatarClass& avatar) {
+  return static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
+}
+
+}  // namespace throng

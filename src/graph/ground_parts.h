@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "graph/flood.h"
+#include "world/ground.h"
+
+/// Ground of one class as rows of bits.
+namespace throng {
+
+/// Where the class may stand on a level.
+CellRows legal_rows(const GroundLevel& level);
+
+/// Steps between neighbouring legal cells that are too high for the class; none where the bake has
+/// proved that there are none. [mm]
+std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& legal, int32_t step);
+
+/// A class's step as the moves count it. [mm]
+int32_t step_of(const AvatarClass& avatar);
+
+}  // namespace throng

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <queue>
+
+#include "core/random.h"
+#include "graph/flood.h"
+
+namespace throng {
+namespace {
+
+bool has(const CellRows& rows, int32_t x, int32_t z) {
+  return ((rows[static_cast<size_t>(z)] >> x) & 1) != 0;
+}
+void set(CellRows& rows, int32_t x, int32_t z) { rows[static_cast<size_t>(z)] |= uint64_t{1} << x; }
+
+// Cell by cell.
+CellRows naive_flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z) {
+  CellRows filled{};
+  std::queue<std::pair<int32_t, int32_t>> queue;
+  set(filled, x, z);
+  queue.push({x, z});
+  const auto visit = [&](int32_t nx, int32_t nz, bool is_cut) {
+    if (nx < 0 || nz < 0 || nx > 63 || nz > 63 || is_cut) return;
+    if (!has(open, nx, nz) || has(filled, nx, nz)) return;
+    set(filled, nx, nz);
+    queue.push({nx, nz});
+  };
+  const auto across = [&](int32_t cx, int32_t cz) {
+    return cuts != nullptr && cx >= 0 && has(cuts->across, cx, cz);
+  };
+  const auto along = [&](int32_t cx, int32_t cz) {
+    return cuts != nullptr && cz >= 0 && has(cuts->along, cx, cz);
+  };
+  while (!queue.empty()) {
+    const auto [cx, cz] = queue.front();
+    queue.pop();
+    visit(cx + 1, cz, across(cx, cz));
+    visit(cx - 1, cz, across(cx - 1, cz));
+    visit(cx, cz + 1, along(cx, cz));
+    visit(cx, cz - 1, along(cx, cz - 1));
+  }
+  return filled;
+}
+
+// About `share` of 256 bits set.
+CellRows random_rows(uint64_t seed, uint64_t n, uint32_t share) {
+  CellRows rows{};
+  for (uint64_t cell = 0; cell < 4096; ++cell) {
+    if (random_below(seed, n * 4096 + cell, 0, 256) < share)
+      set(rows, static_cast<int32_t>(cell % 64), static_cast<int32_t>(cell / 64));
+  }
+  return rows;
+}
+
+void expect_parts_as_naive(const CellRows& open, const StepCuts* cuts) {
+  const auto parts = connected_parts(open, cuts);
+  CellRows together{};
+  for (const CellRows& part : parts) {
+    int32_t x = 0, z = 0;
+    while (!has(part, x, z)) {
+      x = (x + 1) % 64;
+      z += x == 0 ? 1 : 0;
+    }
+    ASSERT_EQ(part, naive_flood(open, cuts, x, z));
+    for (size_t i = 0; i < 64; ++i) {
+      ASSERT_EQ(together[i] & part[i], 0u);
+      together[i] |= part[i];
+    }
+  }
+  ASSERT_EQ(together, open);
+}
+
+TEST(CellFlood, FindsTheSamePartsAsCellByCell) {
+  for (uint64_t n = 0; n < 60; ++n) {
+    for (const uint32_t share : {20u, 110u, 150u, 170u, 200u, 250u}) {
+      const CellRows open = random_rows(share, n, share);
+      expect_parts_as_naive(open, nullptr);
+      const StepCuts cuts{random_rows(share + 1, n, share / 3), random_rows(share + 2, n, 40)};
+      expect_parts_as_naive(open, &cuts);
+    }
+  }
+}
+
+TEST(CellFlood, FollowsSpiralsAndFullAndEmptyTiles) {
+  CellRows full;
+  full.fill(~uint64_t{0});
+  EXPECT_EQ(connected_parts(full, nullptr), std::vector<CellRows>{full});
+  EXPECT_TRUE(connected_parts(CellRows{}, nullptr).empty());
+  // A corridor one cell wide that winds from the rim to the middle.
+  CellRows spiral{};
+  int32_t x = 0, z = 0, dx = 1, dz = 0;
+  for (int32_t turn = 0, length = 63; length > 0; ++turn) {
+    for (int32_t i = 0; i < length; ++i) {
+      set(spiral, x, z);
+      x += dx;
+      z += dz;
+    }
+    const int32_t old = dx;
+    dx = -dz;
+    dz = old;
+    if (turn >= 2 && turn % 2 == 0) length -= 2;
+  }
+  set(spiral, x, z);
+  EXPECT_EQ(connected_parts(spiral, nullptr).size(), 1u);
+  expect_parts_as_naive(spiral, nullptr);
+  // Cuts between all rows: each row is a part.
+  StepCuts cuts;
+  cuts.along.fill(~uint64_t{0});
+  EXPECT_EQ(connected_parts(full, &cuts).size(), 64u);
+}
+
+}  // namespace
+}  // namespace throng

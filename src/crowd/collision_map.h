@@ -39,12 +39,17 @@ class CollisionMap {
                int32_t body_height, Pages pages = Pages::kSmall);
 
   [[nodiscard]] Mark mark(GroundPoint p, int32_t feet) const {
-    return {pixel(grid_.pixel(p.cell_x()), grid_.pixel(p.cell_z())), slices(feet)};
+    return {pixels().number(grid_.pixel(p.cell_x()), grid_.pixel(p.cell_z())), slices(feet)};
   }
-  /// Number of pixel (x, z) of the grid.
-  [[nodiscard]] uint32_t pixel(int32_t x, int32_t z) const {
-    return static_cast<uint32_t>(z + 1) * stride_ + static_cast<uint32_t>(x + 1);
-  }
+  /// How the pixels of the map are numbered, as a value, for loops to keep at hand.
+  struct Pixels {
+    PixelGrid grid;
+    uint32_t stride;  // pixels a row, with a rim of one
+    [[nodiscard]] uint32_t number(int32_t x, int32_t z) const {
+      return static_cast<uint32_t>(z + 1) * stride + static_cast<uint32_t>(x + 1);
+    }
+  };
+  [[nodiscard]] Pixels pixels() const { return {grid_, stride_}; }
   [[nodiscard]] Slices slices(int32_t feet) const {
     const uint32_t first = slice(static_cast<uint32_t>(feet - low_));
     const uint32_t last = slice(static_cast<uint32_t>(feet - low_ + body_height_));

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <span>
 
 #include "core/prefetch.h"
 #include "core/random.h"
+#include "crowd/plan_steps.h"
 
 // A run is moved in groups, and a group in passes, so that no pass waits for memory or guesses a
 // branch: what is asked of most avatars is answered without one, and those that need more are put
@@ -49,18 +51,26 @@ struct Claim {
   uint16_t n;
 };
 
+using Pixels = CollisionMap::Pixels;
+
 class Group {
  public:
   explicit Group(const StepInput& in) : in_(in) {}
 
-  // The three stages: each avatar of the list makes one step, or goes on the other list. Up to
-  // `readable`, avatars may be read ahead of their turn.
-  void start(Avatar* avatars, const List& todo, const Avatar* readable) {
+  // The three stages: each avatar, or each of a list, makes one step, or goes on another list. Up
+  // to `readable`, avatars may be read ahead of their turn.
+  void start_all(Avatar* avatars, size_t size, const Avatar* readable) {
     avatars_ = avatars;
-    last_readable_ = readable - 1;
     claims_size_ = asked_ = walls_ = 0;
     for (List* list : {&unsure_, &uneven_, &slopes_, &walks_}) list->clear();
-    plan(todo);
+    ask_ahead(size, readable - 1);
+    plan_all(size);
+    ask_for_levels();
+    ask_for_pixels();
+  }
+  void start(Avatar* avatars, const List& todo) {
+    avatars_ = avatars;
+    plan(todo.span());
     ask_for_levels();
     ask_for_pixels();
   }
@@ -79,10 +89,13 @@ class Group {
   [[nodiscard]] uint64_t walls() const { return walls_; }
 
  private:
-  void plan(const List& todo);
+  void ask_ahead(size_t size, const Avatar* last_readable) const;
+  void plan_all(size_t size);
+  void plan(std::span<const uint16_t> todo);
   void ask_for_levels() const;
   void look_closer();
-  void go_or_claim(bool really, uint32_t level, uint16_t n);
+  bool go_or_claim(const Pixels& pixels, Avatar& a, bool really, uint32_t level, uint16_t n,
+                   size_t& claimed);
   void ask_for_pixels();
   void ask_for_cells() const;
   void claim(List& blocked);
@@ -92,7 +105,6 @@ class Group {
 
   const StepInput& in_;
   Avatar* avatars_ = nullptr;
-  const Avatar* last_readable_ = nullptr;
   std::array<Claim, kGroup> claims_;
   std::array<CollisionMap::Slices, kGroup> slices_;  // of the claims
   size_t claims_size_ = 0;
@@ -103,6 +115,16 @@ class Group {
   List walks_;
   uint64_t walls_ = 0;  // met
 };
+
+// All of a group.
+std::span<const uint16_t> everyone() {
+  static constexpr auto kAll = [] {
+    std::array<uint16_t, kGroup> all{};
+    for (size_t n = 0; n < kGroup; ++n) all[n] = static_cast<uint16_t>(n);
+    return all;
+  }();
+  return kAll;
+}
 
 // All ones if true.
 int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
@@ -121,38 +143,64 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
   return all != 0;
 }
 
-// A plain step that `really` is one. Whoever stays in his pixel moves at once: nobody can object.
-// Arithmetic instead of branches: which way an avatar goes is as good as random, and a wrong guess
-// costs 20 cycles.
-[[gnu::always_inline]] inline void Group::go_or_claim(bool really, uint32_t level, uint16_t n) {
-  const PixelGrid grid = in_.map->grid();
-  Avatar& a = avatars_[n];
-  const int32_t px = grid.pixel(a.x >> kUnitBits), pz = grid.pixel(a.z >> kUnitBits);
-  const int32_t dx = grid.pixel((a.x + a.vx) >> kUnitBits) - px;
-  const int32_t dz = grid.pixel((a.z + a.vz) >> kUnitBits) - pz;
+// A plain step that `really` is one: whoever stays in his pixel moves at once, for nobody can
+// object; the others claim. Returns whether he moved. Arithmetic instead of branches: which way an
+// avatar goes is as good as random, and a wrong guess costs 20 cycles.
+[[gnu::always_inline]] inline bool Group::go_or_claim(const Pixels& pixels, Avatar& a, bool really,
+                                                      uint32_t level, uint16_t n, size_t& claimed) {
+  const int32_t x = a.x, z = a.z, vx = a.vx, vz = a.vz;
+  const int32_t px = pixels.grid.pixel(x >> kUnitBits), pz = pixels.grid.pixel(z >> kUnitBits);
+  const int32_t dx = pixels.grid.pixel((x + vx) >> kUnitBits) - px;
+  const int32_t dz = pixels.grid.pixel((z + vz) >> kUnitBits) - pz;
   const bool stays = (dx | dz) == 0;
-  claims_[claims_size_] = {in_.map->pixel(px, pz), level,
-                           static_cast<uint16_t>(CollisionMap::way(dx, dz)), n};
-  claims_size_ += really & !stays;
-  const int32_t go = mask(really & stays);
-  a.x += a.vx & go;
-  a.z += a.vz & go;
-  a.level = really & stays ? level : a.level;
+  claims_[claimed] = {pixels.number(px, pz), level,
+                      static_cast<uint16_t>(CollisionMap::way(dx, dz)), n};
+  claimed += really & !stays;
+  const bool goes = really & stays;
+  a.x = x + (vx & mask(goes));
+  a.z = z + (vz & mask(goes));
+  return goes;
+}
+
+void Group::ask_ahead(size_t size, const Avatar* last_readable) const {
+  const LevelLine* lines = in_.ground->lines();
+  for (const Avatar* a = avatars_; a < avatars_ + size; ++a) {
+    throng::prefetch(a + kAheadAvatar);
+    throng::prefetch(&lines[std::min(a + kAheadLevel, last_readable)->level]);
+  }
 }
 
 // Most are answered by the line of their level alone.
-void Group::plan(const List& todo) {
+void Group::plan_all(size_t size) {
+  const Pixels pixels = in_.map->pixels();
+  if (!in_.is_short || !can_plan(pixels.grid, in_.ground->records().size()))
+    return plan(everyone().first(size));
+  const PlannedSteps planned = plan_steps(in_.ground->lines(), pixels.grid, avatars_, size);
+  const uint64_t here = ~uint64_t{0} >> (kGroup - size);
+  for (uint64_t bits = here & ~(planned.stays | planned.leaves); bits != 0; bits &= bits - 1) {
+    unsure_.add_if(true, static_cast<uint16_t>(std::countr_zero(bits)));
+  }
+  size_t claimed = 0;
+  for (uint64_t bits = planned.leaves; bits != 0; bits &= bits - 1) {
+    const auto n = static_cast<uint16_t>(std::countr_zero(bits));
+    go_or_claim(pixels, avatars_[n], true, avatars_[n].level, n, claimed);
+  }
+  claims_size_ = claimed;
+}
+
+void Group::plan(std::span<const uint16_t> todo) {
   const LevelLine* lines = in_.ground->lines();
-  for (const uint16_t n : todo.span()) {
-    const Avatar& a = avatars_[n];
-    throng::prefetch(&a + kAheadAvatar);
-    throng::prefetch(&lines[std::min<const Avatar*>(&a + kAheadLevel, last_readable_)->level]);
+  const Pixels pixels = in_.map->pixels();
+  size_t claimed = 0;
+  for (const uint16_t n : todo) {
+    Avatar& a = avatars_[n];
     const bool is_plain = in_.is_short & lines[a.level].box_is_plain(
                                              a.x >> kUnitBits, a.z >> kUnitBits,
                                              (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
     unsure_.add_if(!is_plain, n);
-    go_or_claim(is_plain, a.level, n);
+    go_or_claim(pixels, a, is_plain, a.level, n, claimed);
   }
+  claims_size_ = claimed;
 }
 
 void Group::ask_for_levels() const {
@@ -166,8 +214,10 @@ void Group::ask_for_levels() const {
 
 // Plain blocks over the edge of the tile, and plain cells that do not fill a block.
 void Group::look_closer() {
+  const Pixels pixels = in_.map->pixels();
+  size_t claimed = claims_size_;
   for (const uint16_t n : unsure_.span()) {
-    const Avatar& a = avatars_[n];
+    Avatar& a = avatars_[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
     const uint32_t beyond =
@@ -175,8 +225,11 @@ void Group::look_closer() {
     const bool crosses = beyond != LevelLine::kNone;
     const bool is_plain = crosses | box_is_set(in_.ground->plain(a.level), x0, z0, x1, z1);
     uneven_.add_if(!is_plain, n);
-    go_or_claim(is_plain, crosses ? beyond : a.level, n);
+    const uint32_t level = crosses ? beyond : a.level;
+    const bool goes = go_or_claim(pixels, a, is_plain, level, n, claimed);
+    a.level = goes ? level : a.level;
   }
+  claims_size_ = claimed;
 }
 
 void Group::ask_for_pixels() {
@@ -301,13 +354,6 @@ void turn(const StepInput& in, Avatar& a) {
   a.vx = vx;
 }
 
-// All of a group.
-List everyone(size_t size) {
-  List all;
-  for (size_t n = 0; n < size; ++n) all.add_if(true, static_cast<uint16_t>(n));
-  return all;
-}
-
 // The last stage of a group, and all three for those that turn.
 void finish(const StepInput& in, Group& straight, size_t size, StepCounts& counts) {
   List blocked, waits;
@@ -315,7 +361,7 @@ void finish(const StepInput& in, Group& straight, size_t size, StepCounts& count
   Avatar* a = straight.avatars();
   for (const uint16_t n : blocked.span()) turn(in, a[n]);
   Group turned(in);
-  turned.start(a, blocked, a + size);
+  turned.start(a, blocked);
   turned.look();
   turned.finish(waits);
   counts.moved += size - waits.size();
@@ -332,23 +378,22 @@ void move_runs(const StepInput& in, Avatar* avatars, std::span<const CrowdBlocks
   const Avatar* readable = avatars + runs.back().last;
   std::array<Group, 3> groups = {Group(in), Group(in), Group(in)};
   std::array<size_t, 3> sizes{};
-  size_t begun = 0, looked = 0, finished = 0;
-  const auto drain_to = [&](size_t under_way) {
-    if (looked + 1 < begun + (under_way == 0)) groups[looked++ % 3].look();
-    for (; begun - finished > under_way; ++finished) {
-      if (looked == finished) groups[looked++ % 3].look();
-      finish(in, groups[finished % 3], sizes[finished % 3], counts);
-    }
+  size_t begun = 0;
+  // What is due when group g has started, or would have if there were one.
+  const auto follow = [&](size_t g) {
+    if (g >= 1 && g - 1 < begun) groups[(g - 1) % 3].look();
+    if (g >= 2) finish(in, groups[(g - 2) % 3], sizes[(g - 2) % 3], counts);
   };
   for (const CrowdBlocks::Run& run : runs) {
     for (uint32_t first = run.first; first < run.last; first += kGroup) {
       const size_t size = std::min<size_t>(kGroup, run.last - first);
       sizes[begun % 3] = size;
-      groups[begun++ % 3].start(avatars + first, everyone(size), readable);
-      drain_to(2);
+      groups[begun % 3].start_all(avatars + first, size, readable);
+      follow(begun++);
     }
   }
-  drain_to(0);
+  follow(begun);
+  follow(begun + 1);
 }
 
 }  // namespace throng

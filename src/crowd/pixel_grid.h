@@ -25,6 +25,7 @@ class PixelGrid {
                                 32);
   }
   [[nodiscard]] int32_t cells() const { return cells_; }
+  [[nodiscard]] uint64_t magic() const { return magic_; }
   [[nodiscard]] int64_t units() const { return int64_t{cells_} << kUnitBits; }
 
  private:

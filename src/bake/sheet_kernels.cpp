@@ -309,17 +309,6 @@ HeightRange CeilingRange(const Sheet& sheet) {
   return {hn::GetLane(hn::MinOfLanes(du, low)), hn::GetLane(hn::MaxOfLanes(du, high))};
 }
 
-void RelativeHeights(const std::array<uint16_t, kTileArea>& values, const Sheet& sheet,
-                     uint16_t low, uint16_t* out) {
-  const DU du;
-  const auto none = hn::Set(du, kNone16), base = hn::Set(du, low);
-  for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
-    const auto value = hn::Load(du, &values[c]);
-    const auto held = hn::And(hn::Ne(hn::Load(du, &sheet.feet[c]), none), hn::Ne(value, none));
-    hn::StoreU(hn::IfThenElse(held, hn::Sub(value, base), none), du, out + c);
-  }
-}
-
 void ChooseGaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling) {
   const DI di;
   const DH dh;
@@ -443,7 +432,6 @@ HWY_EXPORT(MayBePlane);
 HWY_EXPORT(MakeTilt);
 HWY_EXPORT(PresentBits);
 HWY_EXPORT(CeilingRange);
-HWY_EXPORT(RelativeHeights);
 HWY_EXPORT(ChooseGaps);
 HWY_EXPORT(LinkTops);
 HWY_EXPORT(AddGapBits);
@@ -483,11 +471,6 @@ void present_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
 }
 
 HeightRange ceiling_range(const Sheet& sheet) { return HWY_DYNAMIC_DISPATCH(CeilingRange)(sheet); }
-
-void relative_heights(const std::array<uint16_t, kTileArea>& values, const Sheet& sheet,
-                      uint16_t low, uint16_t* out) {
-  HWY_DYNAMIC_DISPATCH(RelativeHeights)(values, sheet, low, out);
-}
 
 void choose_gaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling) {
   HWY_DYNAMIC_DISPATCH(ChooseGaps)(lines, near, top, ceiling);

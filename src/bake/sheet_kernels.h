@@ -55,10 +55,6 @@ struct HeightRange {
 };
 HeightRange ceiling_range(const Sheet& sheet);
 
-/// `values` above `low`; kNone16 where they are, and where there are no feet. `out` holds 4096.
-void relative_heights(const std::array<uint16_t, kTileArea>& values, const Sheet& sheet,
-                      uint16_t low, uint16_t* out);
-
 /// One sheet's gaps along a line of 64 cells.
 struct GapLine {
   const uint16_t* top;

@@ -3,9 +3,13 @@
 #include "bake/zone_builder.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
+#include "bake/cell_packer.h"
 #include "bake/sheet_kernels.h"
+#include "core/hash.h"
 #include "core/parallel.h"
 #include "world/zone_data.h"
 
@@ -73,19 +77,26 @@ FloorPlane fit_plane(Sheet& sheet) {
 
 namespace {
 
-uint32_t add_plane(const BitPlane& plane, TilePack& pack) {
-  const auto offset = static_cast<uint32_t>(pack.planes.size());
-  pack.planes.insert(pack.planes.end(), plane.begin(), plane.end());
-  return offset;
+// Makes a run of the words from `first` on. Returns its number.
+uint32_t close_run(size_t first, TilePack& pack) {
+  const size_t count = pack.words.size() - first;
+  pack.runs.push_back({.first = static_cast<uint32_t>(first),
+                       .count = static_cast<uint32_t>(count),
+                       .hash = hash_bytes(&pack.words[first], count * sizeof(uint64_t))});
+  return static_cast<uint32_t>(pack.runs.size() - 1);
 }
 
-// Heights of the cells that have feet, above `low`.
-uint32_t add_heights(const std::array<uint16_t, kTileArea>& values, const Sheet& sheet,
-                     uint16_t low, TilePack& pack) {
-  const size_t offset = pack.heights.size();
-  pack.heights.resize(offset + kTileArea);
-  relative_heights(values, sheet, low, &pack.heights[offset]);
-  return static_cast<uint32_t>(offset);
+uint32_t add_bits(const BitPlane& bits, TilePack& pack) {
+  const size_t first = pack.words.size();
+  pack_bits(bits, pack.words);
+  return close_run(first, pack);
+}
+
+uint32_t add_values(const uint16_t* values, const Sheet& sheet, const CellRows* has, uint16_t low,
+                    TilePack& pack) {
+  const size_t first = pack.words.size();
+  pack_values(values, sheet.feet.data(), has, low, pack.words);
+  return close_run(first, pack);
 }
 
 bool has_one_area(const Sheet& sheet, const SurfaceCodes& codes) {
@@ -99,11 +110,12 @@ bool has_one_area(const Sheet& sheet, const SurfaceCodes& codes) {
 
 format::Clearance pack_clearance(const ClearancePlanes& planes, uint8_t step_safe, TilePack& pack) {
   const auto cells = static_cast<uint16_t>(planes.cells);
-  if (cells == 0) return {format::BitsKind::None, step_safe, cells, 0};
-  if (planes.all) return {format::BitsKind::All, step_safe, cells, 0};
-  const uint32_t offset = add_plane(planes.legal, pack);
-  for (const BitPlane& bits : planes.margin) add_plane(bits, pack);
-  return {format::BitsKind::Planes, step_safe, cells, offset};
+  if (cells == 0) return {format::CellsKind::None, step_safe, cells, 0};
+  if (planes.all) return {format::CellsKind::All, step_safe, cells, 0};
+  const size_t first = pack.words.size();
+  pack_bits(planes.legal, pack.words);
+  for (const BitPlane& bits : planes.margin) pack_bits(bits, pack.words);
+  return {format::CellsKind::Blocks, step_safe, cells, close_run(first, pack)};
 }
 
 }  // namespace
@@ -113,13 +125,14 @@ void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
                 const SurfaceCodes& codes, TilePack& pack) {
   const bool all_present = sheet.present == kTileArea;
   uint32_t present_offset = 0;
+  BitPlane present;
+  const CellRows* has = all_present ? nullptr : &present;
   if (!all_present) {
-    BitPlane present;
     present_bits(sheet, present);
-    present_offset = add_plane(present, pack);
+    present_offset = add_bits(present, pack);
   }
 
-  format::HeightKind floor_kind = format::HeightKind::Samples;
+  format::HeightKind floor_kind = format::HeightKind::Blocks;
   uint32_t floor_offset = 0;
   int32_t floor_base = sheet.base + sheet.low_feet;
   if (plane.found) {
@@ -128,11 +141,11 @@ void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
     floor_base = plane.base;
     ++pack.plain;
   } else {
-    floor_offset = add_heights(sheet.feet, sheet, sheet.low_feet, pack);
+    floor_offset = add_values(sheet.feet.data(), sheet, has, sheet.low_feet, pack);
   }
 
   const HeightRange ceiling = ceiling_range(sheet);
-  format::HeightKind ceiling_kind = format::HeightKind::Samples;
+  format::HeightKind ceiling_kind = format::HeightKind::Blocks;
   uint32_t ceiling_offset = 0;
   int32_t ceiling_base = sheet.base + ceiling.low;
   if (ceiling.low == kNone16) {
@@ -141,24 +154,25 @@ void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
   } else if (ceiling.low == ceiling.high) {
     ceiling_kind = format::HeightKind::Constant;
   } else {
-    ceiling_offset = add_heights(sheet.ceiling, sheet, ceiling.low, pack);
+    ceiling_offset = add_values(sheet.ceiling.data(), sheet, has, ceiling.low, pack);
   }
 
   const bool one_area = has_one_area(sheet, codes);
-  const auto area_offset = static_cast<uint32_t>(one_area ? 0 : pack.areas.size());
+  uint32_t area_offset = 0;
   if (!one_area) {
+    std::array<uint16_t, kTileArea + 32> areas{};
     for (size_t c = 0; c < kTileArea; ++c) {
-      const bool stands = sheet.feet[c] != kNone16;
-      pack.areas.push_back(stands ? codes.codes[sheet.code[c]].area : kAreaBlocked);
+      if (sheet.feet[c] != kNone16) areas[c] = codes.codes[sheet.code[c]].area;
     }
+    area_offset = add_values(areas.data(), sheet, has, 0, pack);
   }
 
   pack.levels.emplace_back(static_cast<uint16_t>(tile), floor_kind, ceiling_kind, floor_base,
                            ceiling_base, plane.found ? plane.slope_x : 0,
                            plane.found ? plane.slope_z : 0, floor_offset, ceiling_offset,
                            static_cast<int16_t>(plane.found ? plane.part : 0),
-                           all_present ? format::BitsKind::All : format::BitsKind::Planes,
-                           one_area ? format::BitsKind::All : format::BitsKind::Planes,
+                           all_present ? format::CellsKind::All : format::CellsKind::Blocks,
+                           one_area ? format::CellsKind::All : format::CellsKind::Blocks,
                            codes.codes[sheet.some_code].area, present_offset, area_offset);
   for (size_t c = 0; c < clearance.size(); ++c) {
     pack.clearance.push_back(pack_clearance(clearance[c], step_safe[c], pack));
@@ -167,15 +181,64 @@ void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
 
 namespace {
 
-// Where a tile's arrays begin in the zone's.
-struct PackOffsets {
-  size_t levels = 0, heights = 0, planes = 0, areas = 0;
+// The distinct runs of all tiles, in order of their first use, and where the zone keeps them.
+class SharedRuns {
+ public:
+  explicit SharedRuns(std::span<const TilePack> packs) : packs_(packs), place_(packs.size()) {
+    size_t runs = 0;
+    for (const TilePack& pack : packs) runs += pack.runs.size();
+    table_.resize(std::bit_ceil(2 * runs + 1));
+    for (size_t t = 0; t < packs.size(); ++t) {
+      place_[t].reserve(packs[t].runs.size());
+      for (uint32_t r = 0; r < packs[t].runs.size(); ++r) place_[t].push_back(keep(t, r));
+    }
+  }
+  /// Where run `run` of a tile begins in the zone's words.
+  [[nodiscard]] uint32_t place(size_t tile, uint32_t run) const { return place_[tile][run].first; }
+  /// True for the tile whose words are the ones that are kept.
+  [[nodiscard]] bool is_first(size_t tile, uint32_t run) const {
+    return place_[tile][run].is_first;
+  }
+  [[nodiscard]] size_t words() const { return words_; }
+
+ private:
+  struct Entry {
+    uint64_t hash = 0;
+    uint32_t tile1 = 0, run = 0;  // tile plus one: 0 is free
+  };
+  struct Place {
+    uint32_t first = 0;
+    bool is_first = false;
+  };
+  [[nodiscard]] std::span<const uint64_t> content(size_t tile, uint32_t run) const {
+    const TilePack::Run& at = packs_[tile].runs[run];
+    return {&packs_[tile].words[at.first], at.count};
+  }
+  Place keep(size_t tile, uint32_t run) {
+    const uint64_t hash = packs_[tile].runs[run].hash;
+    const std::span<const uint64_t> words = content(tile, run);
+    for (size_t i = hash & (table_.size() - 1);; i = (i + 1) & (table_.size() - 1)) {
+      Entry& entry = table_[i];
+      if (entry.tile1 == 0) {
+        entry = {.hash = hash, .tile1 = static_cast<uint32_t>(tile + 1), .run = run};
+        const auto first = static_cast<uint32_t>(words_);
+        words_ += words.size();
+        return {.first = first, .is_first = true};
+      }
+      if (entry.hash == hash && std::ranges::equal(words, content(entry.tile1 - 1, entry.run))) {
+        return {.first = place_[entry.tile1 - 1][entry.run].first, .is_first = false};
+      }
+    }
+  }
+
+  std::span<const TilePack> packs_;
+  std::vector<std::vector<Place>> place_;  // per tile and run
+  std::vector<Entry> table_;               // open addressing
+  size_t words_ = 0;
 };
 
-format::Level moved(const format::Level& l, const PackOffsets& by) {
-  const auto shift = [](bool used, uint32_t offset, size_t distance) {
-    return used ? offset + static_cast<uint32_t>(distance) : 0;
-  };
+format::Level placed(const format::Level& l, size_t tile, const SharedRuns& runs) {
+  const auto at = [&](bool used, uint32_t run) { return used ? runs.place(tile, run) : 0; };
   return {l.tile(),
           l.floor_kind(),
           l.ceiling_kind(),
@@ -183,71 +246,60 @@ format::Level moved(const format::Level& l, const PackOffsets& by) {
           l.ceiling_base(),
           l.slope_x(),
           l.slope_z(),
-          shift(l.floor_kind() == format::HeightKind::Samples, l.floor_offset(), by.heights),
-          shift(l.ceiling_kind() == format::HeightKind::Samples, l.ceiling_offset(), by.heights),
+          at(l.floor_kind() == format::HeightKind::Blocks, l.floor_offset()),
+          at(l.ceiling_kind() == format::HeightKind::Blocks, l.ceiling_offset()),
           l.floor_part(),
           l.present_kind(),
           l.area_kind(),
           l.area_value(),
-          shift(l.present_kind() == format::BitsKind::Planes, l.present_offset(), by.planes),
-          shift(l.area_kind() == format::BitsKind::Planes, l.area_offset(), by.areas)};
+          at(l.present_kind() == format::CellsKind::Blocks, l.present_offset()),
+          at(l.area_kind() == format::CellsKind::Blocks, l.area_offset())};
 }
 
 }  // namespace
 
 flatbuffers::DetachedBuffer zone_bytes(const ZoneShape& shape, std::span<TilePack> packs,
                                        int32_t workers) {
-  std::vector<PackOffsets> at(packs.size() + 1);
   std::vector<uint32_t> first(packs.size() + 1, 0);
   for (size_t t = 0; t < packs.size(); ++t) {
-    const TilePack& pack = packs[t];
-    at[t + 1] = {at[t].levels + pack.levels.size(), at[t].heights + pack.heights.size(),
-                 at[t].planes + pack.planes.size(), at[t].areas + pack.areas.size()};
-    first[t + 1] = static_cast<uint32_t>(at[t + 1].levels);
+    first[t + 1] = first[t] + static_cast<uint32_t>(packs[t].levels.size());
   }
-  const PackOffsets& total = at.back();
-  const size_t clearances = total.levels * shape.class_count;
+  const SharedRuns runs(packs);
+  const size_t level_count = first.back(), clearances = level_count * shape.class_count;
   // Room for all, so that the arrays stay where they are while they are filled.
   constexpr size_t kTables = 4096;
-  flatbuffers::FlatBufferBuilder builder(first.size() * 4 + total.levels * sizeof(format::Level) +
+  flatbuffers::FlatBufferBuilder builder(first.size() * 4 + level_count * sizeof(format::Level) +
                                          clearances * sizeof(format::Clearance) +
-                                         total.heights * 2 + total.planes * 8 + total.areas +
-                                         kTables);
-  uint16_t* heights = nullptr;
-  uint64_t* planes = nullptr;
-  uint8_t* areas = nullptr;
+                                         runs.words() * sizeof(uint64_t) + kTables);
+  uint64_t* words = nullptr;
   format::Level* levels = nullptr;
   format::Clearance* clearance = nullptr;
   const auto first_at = builder.CreateVector(first);
   // Not CreateUninitializedVectorOfStructs: it takes a struct's size for its alignment, and 44 is
   // no power of two, which leaves the 64-bit words behind it between two words.
   const auto levels_at = builder.CreateVectorOfStructs<format::Level>(
-      total.levels, [&](size_t i, format::Level* level) {
+      level_count, [&](size_t i, format::Level* level) {
         if (i == 0) levels = level;
       });
   const auto clearance_at = builder.CreateUninitializedVectorOfStructs(clearances, &clearance);
-  const auto heights_at = builder.CreateUninitializedVector(total.heights, &heights);
-  const auto planes_at = builder.CreateUninitializedVector(total.planes, &planes);
-  const auto areas_at = builder.CreateUninitializedVector(total.areas, &areas);
+  const auto words_at = builder.CreateUninitializedVector(runs.words(), &words);
   parallel_for(packs.size(), workers, [&](size_t t) {
     TilePack& pack = packs[t];
-    const PackOffsets& by = at[t];
-    format::Level* level = levels + by.levels;
-    for (const auto& l : pack.levels) *level++ = moved(l, by);
-    format::Clearance* entry = clearance + by.levels * shape.class_count;
+    format::Level* level = levels + first[t];
+    for (const auto& l : pack.levels) *level++ = placed(l, t, runs);
+    format::Clearance* entry = clearance + size_t{first[t]} * shape.class_count;
     for (const auto& c : pack.clearance) {
-      const bool moves = c.kind() == format::BitsKind::Planes;
-      *entry++ = {c.kind(), c.step_safe(), c.legal_cells(),
-                  moves ? c.offset() + static_cast<uint32_t>(by.planes) : 0};
+      const bool stored = c.kind() == format::CellsKind::Blocks;
+      *entry++ = {c.kind(), c.step_safe(), c.legal_cells(), stored ? runs.place(t, c.offset()) : 0};
     }
-    std::copy(pack.heights.begin(), pack.heights.end(), heights + by.heights);
-    std::copy(pack.planes.begin(), pack.planes.end(), planes + by.planes);
-    std::copy(pack.areas.begin(), pack.areas.end(), areas + by.areas);
+    for (uint32_t r = 0; r < pack.runs.size(); ++r) {
+      if (!runs.is_first(t, r)) continue;
+      std::copy_n(&pack.words[pack.runs[r].first], pack.runs[r].count, words + runs.place(t, r));
+    }
     pack = {};
   });
   builder.Finish(format::CreateZone(builder, kZoneVersion, shape.x, shape.z, shape.tiles_per_side,
-                                    shape.class_count, first_at, levels_at, clearance_at,
-                                    heights_at, planes_at, areas_at),
+                                    shape.class_count, first_at, levels_at, clearance_at, words_at),
                  format::ZoneIdentifier());
   return builder.Release();
 }

@@ -10,7 +10,8 @@
 #include "bake/sheets.h"
 #include "world/zone_generated.h"
 
-/// Packs the sheets of a zone into a zone file's arrays: constants and planes where they serve.
+/// Packs the sheets of a zone into a zone file's arrays: constants and planes where they serve, and
+/// blocks of cells (world/cell_blocks.h), of which the zone holds each only once.
 namespace throng {
 
 /// Replaces a sheet's feet by a plane if that changes no height by more than 1 mm. Run before
@@ -23,13 +24,17 @@ struct FloorPlane {
 };
 FloorPlane fit_plane(Sheet& sheet);
 
-/// The levels of one tile as they will stand in the file, with offsets into the tile's own arrays.
+/// The levels of one tile. Their offsets count the tile's runs until the zone's words are laid out.
 struct TilePack {
+  /// Words that something is stored in: a set, a level's values, or a class's clearance.
+  struct Run {
+    uint32_t first = 0, count = 0;  // of `words`
+    uint64_t hash = 0;              // of them
+  };
   std::vector<format::Level> levels;
   std::vector<format::Clearance> clearance;  // per level and class
-  std::vector<uint16_t> heights;
-  std::vector<uint64_t> planes;
-  std::vector<uint8_t> areas;
+  std::vector<uint64_t> words;
+  std::vector<Run> runs;
   uint32_t plain = 0;  // levels whose floor is a constant or a plane
 };
 

@@ -44,11 +44,11 @@ uint64_t same(const uint16_t* row, const uint16_t* other) {
 // Legal cells that are as high as the four beside them, as far as those are on the tile. Slopes
 // there are 0 (surface.h). False if there are none.
 bool find_plain(const LevelView& view, const uint64_t* legal, uint64_t* plain) {
-  if (view.floor == nullptr) return false;
+  if (view.samples == nullptr) return false;
   const uint64_t left_rim = 1, right_rim = uint64_t{1} << 63;
   uint64_t any = 0, above = ~uint64_t{0};
   for (size_t z = 0; z < kRows; ++z) {
-    const uint16_t* row = view.floor + z * 64;
+    const uint16_t* row = view.samples + z * 64;
     const uint64_t right = same_to_the_right(row);
     const uint64_t below = z + 1 < kRows ? same(row, row + 64) : ~uint64_t{0};
     plain[z] = legal[z] & (right | right_rim) & (right << 1 | left_rim) & above & below;
@@ -56,6 +56,19 @@ bool find_plain(const LevelView& view, const uint64_t* legal, uint64_t* plain) {
     above = below;
   }
   return any != 0;
+}
+
+// True for levels with something to stand on whose floor is stored cell by cell.
+bool is_rough(const Zone& zone, uint32_t level, int32_t avatar_class) {
+  return zone.level(level).floor_kind() == format::HeightKind::Blocks &&
+         zone.clearance(level, static_cast<uint32_t>(avatar_class)).kind() !=
+             format::CellsKind::None;
+}
+size_t count_rough(const Zone& zone, int32_t avatar_class) {
+  size_t count = 0;
+  for (uint32_t i = 0; i < zone.level_count(); ++i)
+    count += is_rough(zone, i, avatar_class) ? 1 : 0;
+  return count;
 }
 
 }  // namespace
@@ -76,31 +89,45 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   uint32_t& sets = ground.row_sets_;
   sets = 2;
   const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
+  size_t rough = 0;
   for (size_t s = 0; s < world.slots.size(); ++s) {
     const Zone* zone = world.zone(s);
     if (zone == nullptr) return Error{Errc::kBadFile, world.slots[s]->error};
+    rough += count_rough(*zone, avatar_class);
+  }
+  ground.samples_ = HugeArray<uint16_t>(rough * kBlocks * 64);
+  for (size_t s = 0; s < world.slots.size(); ++s) {
+    const Zone* zone = world.zone(s);
     const uint32_t base = world.slots[s]->first_level;
     for (uint32_t i = 0; i < zone->level_count(); ++i) {
       const GroundLevel level = ground_level(*zone, i, base + i, avatar_class);
       Record& record = ground.records_[base + i];
-      ground.views_[base + i] = level.view;
       record.legal_cells = zone->clearance(i, static_cast<uint32_t>(avatar_class)).legal_cells();
-      uint32_t set = level.kind == format::BitsKind::All ? kAllLegal : kNoneLegal;
-      if (level.kind == format::BitsKind::Planes) {
+      uint32_t set = level.kind == format::CellsKind::All ? kAllLegal : kNoneLegal;
+      if (level.kind == format::CellsKind::Blocks) {
         set = sets++;
-        std::copy_n(level.legal, kRows, ground.rows_.data() + size_t{set} * kRows);
+        CellRows legal;
+        unpack_bits(level.legal, legal);
+        std::copy_n(legal.data(), kRows, ground.rows_.data() + size_t{set} * kRows);
+      }
+      LevelView& view = ground.views_[base + i];
+      view = level.view;
+      if (is_rough(*zone, i, avatar_class)) {
+        uint16_t* samples = ground.samples_.data() + ground.sample_sets_++ * kBlocks * 64;
+        unpack_floor(view, samples);
+        view.samples = samples;
       }
       LevelLine& line = ground.lines_[base + i];
       line = {};
       line.legal_set = set | (level.step_safe ? kStepSafe : 0);
       line.plain_set = set;
-      if (set != kNoneLegal && !level.view.is_constant()) {
-        const bool any = find_plain(level.view, ground.legal(base + i),
-                                    ground.rows_.data() + size_t{sets} * kRows);
+      if (set != kNoneLegal && !view.is_constant()) {
+        const bool any =
+            find_plain(view, ground.legal(base + i), ground.rows_.data() + size_t{sets} * kRows);
         line.plain_set = any ? sets++ : kNoneLegal;
       }
       line.plain = full_blocks(ground.plain(base + i));
-      const auto [low, high] = heights_of(level.view, ground.legal(base + i));
+      const auto [low, high] = heights_of(view, ground.legal(base + i));
       ground.heights_[base + i] = {low, high};
       const int32_t tile = level.view.record->tile();
       record.tile_x = zone->root().x() * per_zone + tile % per_zone;

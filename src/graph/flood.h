@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "world/cell_blocks.h"
+
 /// Connected parts of one level tile, whole rows of cells at a time.
 namespace throng {
-
-/// 64 rows of 64 cells; bit x of row z is cell (x, z).
-using CellRows = std::array<uint64_t, 64>;
 
 /// Where no step leads from a cell to the next: bit x of `across` row z between (x, z) and
 /// (x + 1, z), of `along` row z between (x, z) and (x, z + 1).

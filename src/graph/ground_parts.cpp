@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "graph/ground_parts.h"
 
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -11,16 +11,20 @@ namespace throng {
 
 CellRows legal_rows(const GroundLevel& level) {
   CellRows rows{};
-  if (level.kind == format::BitsKind::All) rows.fill(~uint64_t{0});
-  if (level.legal != nullptr) std::copy_n(level.legal, 64, rows.begin());
+  if (level.kind == format::CellsKind::All) rows.fill(~uint64_t{0});
+  if (level.legal != nullptr) unpack_bits(level.legal, rows);
   return rows;
 }
 
 std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& legal, int32_t step) {
-  if (level.step_safe || level.kind == format::BitsKind::None) return std::nullopt;
+  if (level.step_safe || level.kind == format::CellsKind::None) return std::nullopt;
   StepCuts cuts;
+  std::array<uint16_t, kBlocks * 64> samples;
+  LevelView view = level.view;
+  if (view.floor != nullptr) unpack_floor(view, samples.data());
+  if (view.floor != nullptr) view.samples = samples.data();
   const auto is_high = [&](int32_t x, int32_t z, int32_t nx, int32_t nz) {
-    return std::abs(level.view.sample(x, z) - level.view.sample(nx, nz)) > step;
+    return std::abs(view.sample(x, z) - view.sample(nx, nz)) > step;
   };
   for (int32_t z = 0; z < 64; ++z) {
     const auto row = static_cast<size_t>(z);

@@ -181,7 +181,7 @@ class Builder {
       const GroundLevel ground = ground_level(*levels.zone, levels.zone_first + l, levels.first + l,
                                               static_cast<int32_t>(c));
       const CellRows legal = legal_rows(ground);
-      if (ground.kind == format::BitsKind::All && ground.step_safe) {
+      if (ground.kind == format::CellsKind::All && ground.step_safe) {
         shapes[at] = {legal};
       } else {
         const auto cuts = step_cuts(ground, legal, steps_[c]);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "world/ground.h"
 
+#include <bit>
+
 namespace throng {
 
 GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_level,
@@ -14,7 +16,7 @@ GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_l
       zone.clearance(zone_level, static_cast<uint32_t>(avatar_class));
   level.kind = clearance.kind();
   level.step_safe = clearance.step_safe() != 0;
-  if (level.kind == format::BitsKind::Planes) level.legal = zone.planes(clearance.offset());
+  if (level.kind == format::CellsKind::Blocks) level.legal = zone.words(clearance.offset());
   return level;
 }
 
@@ -23,6 +25,18 @@ GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_
   const Zone* zone = world.zone(slot);
   if (zone == nullptr) return {};
   return ground_level(*zone, level - world.slots[slot]->first_level, level, avatar_class);
+}
+
+void unpack_floor(const LevelView& view, uint16_t* samples) {
+  unpack_values(view.floor, samples);
+  if (view.present == nullptr) return;
+  CellRows has;
+  unpack_bits(view.present, has);
+  for (size_t z = 0; z < has.size(); ++z) {
+    for (uint64_t none = ~has[z]; none != 0; none &= none - 1) {
+      samples[z * 64 + static_cast<size_t>(std::countr_zero(none))] = kNoValue;
+    }
+  }
 }
 
 }  // namespace throng

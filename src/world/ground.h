@@ -15,13 +15,13 @@ struct GroundLevel {
   const Zone* zone = nullptr;
   uint32_t world_level = 0;
   LevelView view;
-  const uint64_t* legal = nullptr;  // 64 rows, or null: see `kind`
-  format::BitsKind kind = format::BitsKind::None;
+  const uint64_t* legal = nullptr;  // a set in blocks, or null: see `kind`
+  format::CellsKind kind = format::CellsKind::None;
   bool step_safe = false;
 
   [[nodiscard]] bool is_legal(int32_t x, int32_t z) const {
-    if (kind == format::BitsKind::All) return true;
-    return legal != nullptr && ((legal[z] >> x) & 1) != 0;
+    if (kind == format::CellsKind::All) return true;
+    return legal != nullptr && bit_at(legal, x, z);
   }
 };
 
@@ -29,6 +29,10 @@ GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_l
                          int32_t avatar_class);
 /// By the world's number; null zone if its zone cannot be used.
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class);
+
+/// The floor of a level row by row, kNoValue where there is none: for LevelView::samples of whoever
+/// reads many of its cells. `samples` holds 4096. [view.floor != nullptr]
+void unpack_floor(const LevelView& view, uint16_t* samples);
 
 struct WorldGround {
   using Level = GroundLevel;

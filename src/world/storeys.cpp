@@ -17,8 +17,6 @@
 namespace throng {
 namespace {
 
-using Rows = std::array<uint64_t, 64>;
-
 struct LevelInfo {
   int32_t tile_x = 0, tile_z = 0;
   LevelView view;
@@ -26,18 +24,18 @@ struct LevelInfo {
   double mean = 0;  // [mm]
 };
 
-Rows rows_of(const LevelView& view) {
-  Rows rows;
+CellRows rows_of(const LevelView& view) {
+  CellRows rows;
   if (view.present == nullptr) {
     rows.fill(~uint64_t{0});
   } else {
-    std::copy_n(view.present, 64, rows.begin());
+    unpack_bits(view.present, rows);
   }
   return rows;
 }
 
 bool overlap(const LevelView& a, const LevelView& b) {
-  const Rows p = rows_of(a), q = rows_of(b);
+  const CellRows p = rows_of(a), q = rows_of(b);
   for (size_t z = 0; z < 64; ++z) {
     if ((p[z] & q[z]) != 0) return true;
   }
@@ -178,7 +176,7 @@ std::vector<int32_t> World::storeys() const {
       level.tile_x = zone->root().x() * per_zone + tile % per_zone;
       level.tile_z = zone->root().z() * per_zone + tile / per_zone;
       double sum = 0;
-      const Rows rows = rows_of(level.view);
+      const CellRows rows = rows_of(level.view);
       for (int32_t z = 0; z < 64; z += 4) {
         for (int32_t x = 0; x < 64; x += 4) {
           if (((rows[static_cast<size_t>(z)] >> x) & 1) == 0) continue;

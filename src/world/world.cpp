@@ -3,11 +3,12 @@
 #include "throng/world.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
 #include <cstring>
 
 #include "core/random.h"
+#include "world/cell_blocks.h"
 #include "world/ground.h"
 #include "world/place.h"
 #include "world/zone_data.h"
@@ -30,12 +31,6 @@ int32_t step_mm(const AvatarClass& avatar) {
 
 bool good_class(const WorldData& world, int32_t avatar_class) {
   return avatar_class >= 0 && static_cast<size_t>(avatar_class) < world.summary.classes.size();
-}
-
-// Position of the n-th set bit of a word. [n < popcount]
-int32_t nth_bit(uint64_t word, uint32_t n) {
-  for (; n > 0; --n) word &= word - 1;
-  return std::countr_zero(word);
 }
 
 // Legal cells of a class before each level, and in all at the end.
@@ -112,30 +107,36 @@ LevelTileContent World::level_tile(uint32_t index) const {
   out.tile_x = zone->root().x() * per_zone + level.tile() % per_zone;
   out.tile_z = zone->root().z() * per_zone + level.tile() / per_zone;
   const LevelView view = zone->view(local);
-  const uint16_t* ceilings = level.ceiling_kind() == format::HeightKind::Samples
-                                 ? zone->heights(level.ceiling_offset())
+  const uint64_t* ceilings = level.ceiling_kind() == format::HeightKind::Blocks
+                                 ? zone->words(level.ceiling_offset())
                                  : nullptr;
-  const uint8_t* areas =
-      level.area_kind() == format::BitsKind::Planes ? zone->areas(level.area_offset()) : nullptr;
+  const uint64_t* areas =
+      level.area_kind() == format::CellsKind::Blocks ? zone->words(level.area_offset()) : nullptr;
   for (int32_t c = 0; c < kArea; ++c) {
     const int32_t x = c % 64, z = c / 64;
     const size_t i = static_cast<size_t>(c);
     if (!view.has(x, z)) continue;
     out.floor[i] = view.sample(x, z);
-    out.area[i] = areas != nullptr ? areas[c] : level.area_value();
+    out.area[i] =
+        areas != nullptr ? static_cast<uint8_t>(value_at(areas, x, z)) : level.area_value();
     if (level.ceiling_kind() == format::HeightKind::Constant) out.ceiling[i] = level.ceiling_base();
-    if (ceilings != nullptr && ceilings[c] != 65535)
-      out.ceiling[i] = level.ceiling_base() + ceilings[c];
+    if (ceilings == nullptr) continue;
+    const uint16_t ceiling = value_at(ceilings, x, z);
+    if (ceiling != kNoValue) out.ceiling[i] = level.ceiling_base() + ceiling;
   }
   for (size_t k = 0; k < out.clearance.size(); ++k) {
     const format::Clearance& clearance = zone->clearance(local, static_cast<uint32_t>(k));
-    if (clearance.kind() == format::BitsKind::All) out.clearance[k].assign(kArea, 8);
-    if (clearance.kind() != format::BitsKind::Planes) continue;
-    const uint64_t* planes = zone->planes(clearance.offset());
+    if (clearance.kind() == format::CellsKind::All) out.clearance[k].assign(kArea, 8);
+    if (clearance.kind() != format::CellsKind::Blocks) continue;
+    std::array<CellRows, 4> sets;  // legal, and the three bits of the margin
+    const uint64_t* words = zone->words(clearance.offset());
+    for (CellRows& rows : sets) {
+      unpack_bits(words, rows);
+      words += bit_words(words);
+    }
     for (size_t c = 0; c < kArea; ++c) {
-      const size_t row = c / 64;
-      const auto bit = [&](size_t plane) {
-        return static_cast<uint8_t>((planes[plane * 64 + row] >> (c % 64)) & 1);
+      const auto bit = [&](size_t set) {
+        return static_cast<uint8_t>((sets[set][c / 64] >> (c % 64)) & 1);
       };
       if (bit(0) != 0) {
         out.clearance[k][c] = static_cast<uint8_t>(1 + bit(1) + 2 * bit(2) + 4 * bit(3));
@@ -175,15 +176,8 @@ Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const
       std::upper_bound(before.begin(), before.end(), pick) - before.begin() - 1);
   auto rank = static_cast<uint32_t>(pick - before[level_index]);
   const GroundLevel level = ground_level(*data_, level_index, avatar_class);
-  int32_t x = static_cast<int32_t>(rank % 64), z = static_cast<int32_t>(rank / 64);
-  if (level.legal != nullptr) {
-    for (z = 0;; ++z) {
-      const auto count = static_cast<uint32_t>(std::popcount(level.legal[z]));
-      if (rank < count) break;
-      rank -= count;
-    }
-    x = nth_bit(level.legal[z], rank);
-  }
+  if (level.legal != nullptr) rank = nth_bit(level.legal, rank);
+  const int32_t x = static_cast<int32_t>(rank % 64), z = static_cast<int32_t>(rank / 64);
   const auto per_zone = static_cast<int32_t>(data_->tiles_per_zone);
   const format::Zone& zone = level.zone->root();
   const int32_t tile = level.view.record->tile();

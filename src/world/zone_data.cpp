@@ -3,10 +3,11 @@
 #include "world/zone_data.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <optional>
 
 #include "core/hash.h"
+#include "world/cell_blocks.h"
 
 namespace throng {
 namespace {
@@ -19,8 +20,20 @@ Error bad_file(const std::string& name, const std::string& what) {
   return {Errc::kBadFile, name + ": " + what + "; bake the world again"};
 }
 
-// True if [offset, offset + count) lies within `size`.
-bool fits(uint64_t offset, uint64_t count, uint64_t size) { return offset + count <= size; }
+// Legal cells of a class on a level, or none if its sets do not lie within `words`.
+std::optional<uint32_t> legal_cells(const format::Clearance& entry,
+                                    std::span<const uint64_t> words) {
+  if (entry.kind() == format::CellsKind::None) return 0;
+  if (entry.kind() == format::CellsKind::All) return kArea;
+  if (entry.kind() != format::CellsKind::Blocks) return std::nullopt;
+  uint64_t at = entry.offset();
+  for (int32_t set = 0; set < 4; ++set) {
+    const auto end = end_of_bits(words, at);
+    if (!end) return std::nullopt;
+    at = *end;
+  }
+  return count_bits(&words[entry.offset()]);
+}
 
 // The verifier sees to the alignment of a vector's length, 4 bytes, but not of larger elements.
 template <class T>
@@ -63,20 +76,18 @@ Result<void> Zone::attach(const std::string& name) {
   const auto* first = root_->tile_first();
   const auto* levels = root_->levels();
   const auto* clearance = root_->clearance();
-  const auto* heights = root_->heights();
-  const auto* planes = root_->planes();
-  const auto* areas = root_->areas();
-  if (!first || !levels || !clearance || !heights || !planes || !areas) {
+  if (!first || !levels || !clearance || !root_->words()) {
     return bad_file(name, "an array is missing");
   }
   const uint64_t side = root_->tiles_per_side();
   class_count_ = root_->class_count();
   level_count_ = levels->size();
-  if (!is_aligned(*planes) || side == 0 || side > 255 || first->size() != side * side + 1 ||
+  if (!is_aligned(*root_->words()) || side == 0 || side > 255 || first->size() != side * side + 1 ||
       first->Get(0) != 0 || first->Get(first->size() - 1) != level_count_ || class_count_ == 0 ||
       clearance->size() != uint64_t{level_count_} * class_count_) {
     return bad_file(name, "its arrays do not fit together");
   }
+  const std::span<const uint64_t> words(root_->words()->data(), root_->words()->size());
   for (uint32_t tile = 0; tile + 1 < first->size(); ++tile) {
     const uint32_t begin = first->Get(tile), end = first->Get(tile + 1);
     if (begin > end || end > level_count_) return bad_file(name, "its tiles are out of order");
@@ -87,18 +98,18 @@ Result<void> Zone::attach(const std::string& name) {
       const bool floor_ok = level.floor_kind() == format::HeightKind::Constant ||
                             (level.floor_kind() == format::HeightKind::Plane &&
                              gentle(level.slope_x()) && gentle(level.slope_z())) ||
-                            (level.floor_kind() == format::HeightKind::Samples &&
-                             fits(level.floor_offset(), kArea, heights->size()));
+                            (level.floor_kind() == format::HeightKind::Blocks &&
+                             values_fit(words, level.floor_offset()));
       const bool ceiling_ok = level.ceiling_kind() == format::HeightKind::None ||
                               level.ceiling_kind() == format::HeightKind::Constant ||
-                              (level.ceiling_kind() == format::HeightKind::Samples &&
-                               fits(level.ceiling_offset(), kArea, heights->size()));
-      const bool present_ok = level.present_kind() == format::BitsKind::All ||
-                              (level.present_kind() == format::BitsKind::Planes &&
-                               fits(level.present_offset(), 64, planes->size()));
-      const bool area_ok = level.area_kind() == format::BitsKind::All ||
-                           (level.area_kind() == format::BitsKind::Planes &&
-                            fits(level.area_offset(), kArea, areas->size()));
+                              (level.ceiling_kind() == format::HeightKind::Blocks &&
+                               values_fit(words, level.ceiling_offset()));
+      const bool present_ok = level.present_kind() == format::CellsKind::All ||
+                              (level.present_kind() == format::CellsKind::Blocks &&
+                               end_of_bits(words, level.present_offset()));
+      const bool area_ok = level.area_kind() == format::CellsKind::All ||
+                           (level.area_kind() == format::CellsKind::Blocks &&
+                            values_fit(words, level.area_offset()));
       if (!in_world(level.floor_base()) || !in_world(level.ceiling_base())) {
         return bad_file(name, "level " + std::to_string(i) + " lies out of this world");
       }
@@ -109,26 +120,18 @@ Result<void> Zone::attach(const std::string& name) {
   }
   for (uint32_t i = 0; i < clearance->size(); ++i) {
     const format::Clearance& entry = *clearance->Get(i);
-    if (entry.kind() > format::BitsKind::Planes ||
-        (entry.kind() == format::BitsKind::Planes && !fits(entry.offset(), 256, planes->size()))) {
+    const auto cells = legal_cells(entry, words);
+    if (!cells) {
       return bad_file(name, "clearance " + std::to_string(i) + " points outside the file");
     }
-    uint32_t cells = entry.kind() == format::BitsKind::All ? kArea : 0;
-    if (entry.kind() == format::BitsKind::Planes) {
-      for (uint32_t row = 0; row < 64; ++row) {
-        cells += static_cast<uint32_t>(std::popcount(planes->Get(entry.offset() + row)));
-      }
-    }
-    if (entry.legal_cells() != cells) {
+    if (entry.legal_cells() != *cells) {
       return bad_file(name, "clearance " + std::to_string(i) + " miscounts its cells");
     }
   }
   tile_first_ = first->data();
   levels_ = reinterpret_cast<const format::Level*>(levels->Data());
   clearance_ = reinterpret_cast<const format::Clearance*>(clearance->Data());
-  heights_ = heights->data();
-  planes_ = planes->data();
-  areas_ = areas->data();
+  words_ = words.data();
   return {};
 }
 
@@ -137,14 +140,15 @@ LevelView Zone::view(uint32_t index) const {
   LevelView view;
   view.record = &level;
   view.floor_base = level.floor_base();
-  if (level.floor_kind() == format::HeightKind::Samples) view.floor = heights(level.floor_offset());
+  if (level.floor_kind() == format::HeightKind::Blocks) view.floor = words(level.floor_offset());
   if (level.floor_kind() == format::HeightKind::Plane) {
     view.floor_part = level.floor_part();
     view.slope_x = level.slope_x();
     view.slope_z = level.slope_z();
   }
-  if (level.present_kind() == format::BitsKind::Planes)
-    view.present = planes(level.present_offset());
+  if (level.present_kind() == format::CellsKind::Blocks) {
+    view.present = words(level.present_offset());
+  }
   return view;
 }
 

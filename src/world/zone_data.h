@@ -19,7 +19,7 @@
 /// Zones in memory: mapped from files, or owned by a world that was baked in memory.
 namespace throng {
 
-inline constexpr uint32_t kZoneVersion = 1;
+inline constexpr uint32_t kZoneVersion = 2;
 inline constexpr uint32_t kManifestVersion = 1;
 inline constexpr int32_t kMaxSlope =
     1 << 23;  // of a plane [1/1024 mm per cell]: no overflow in 64 cells
@@ -44,9 +44,8 @@ class Zone {
   [[nodiscard]] const format::Clearance& clearance(uint32_t level, uint32_t avatar_class) const {
     return clearance_[static_cast<size_t>(level) * class_count_ + avatar_class];
   }
-  [[nodiscard]] const uint64_t* planes(uint32_t offset) const { return planes_ + offset; }
-  [[nodiscard]] const uint16_t* heights(uint32_t offset) const { return heights_ + offset; }
-  [[nodiscard]] const uint8_t* areas(uint32_t offset) const { return areas_ + offset; }
+  /// Sets and values in blocks, for the functions of world/cell_blocks.h.
+  [[nodiscard]] const uint64_t* words(uint32_t offset) const { return words_ + offset; }
 
  private:
   Result<void> attach(const std::string& name);
@@ -58,9 +57,7 @@ class Zone {
   const uint32_t* tile_first_ = nullptr;
   const format::Level* levels_ = nullptr;
   const format::Clearance* clearance_ = nullptr;
-  const uint16_t* heights_ = nullptr;
-  const uint64_t* planes_ = nullptr;
-  const uint8_t* areas_ = nullptr;
+  const uint64_t* words_ = nullptr;
   uint32_t level_count_ = 0;
   uint32_t class_count_ = 0;
 };

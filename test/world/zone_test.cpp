@@ -149,26 +149,23 @@ TEST_F(ZoneFiles, AFlippedByteOfAZoneIsSeenByItsChecksum) {
   }
 }
 
+// scripts/fuzz begins with this file. After a change of the format, write it anew: bake small_scene
+// with small_config and take its zone.
+TEST(FuzzSeeds, TheZoneIsOfThisVersion) {
+  const Bytes bytes = read_bytes(THRONG_TEST_DATA "/../fuzz/seeds/zone/small.thz");
+  const auto zone = as_zone(bytes);
+  ASSERT_TRUE(zone) << zone.error().message;
+  EXPECT_GT((*zone)->root().words()->size(), 400u);
+}
+
 // A zone that lies about its content but carries the right checksum, as an attacker would make it.
 TEST_F(ZoneFiles, AFlippedByteBehindTheChecksumIsRefusedOrHarmless) {
   const auto whole = as_zone(zone_);
   ASSERT_TRUE(whole) << whole.error().message;
   const format::Zone& root = (*whole)->root();
-  const uint8_t* begin = (*whole)->bytes().data();
-  // Bulk data may be anything; everything else is tried byte for byte.
-  std::vector<bool> bulk(zone_.size());
-  const auto mark = [&](const void* data, size_t size) {
-    const auto first = static_cast<size_t>(static_cast<const uint8_t*>(data) - begin);
-    for (size_t i = first; i < first + size; ++i) bulk[i] = true;
-  };
-  ASSERT_GT(root.heights()->size(), 0u);
-  ASSERT_GT(root.areas()->size(), 0u);
-  mark(root.heights()->Data(), root.heights()->size() * 2);
-  mark(root.planes()->Data(), root.planes()->size() * 8);
-  mark(root.areas()->Data(), root.areas()->size());
+  ASSERT_GT(root.words()->size(), 400u);
   int32_t refused = 0, harmless = 0;
   for (size_t at = 0; at < zone_.size(); ++at) {
-    if (bulk[at] && at % 97 != 0) continue;
     for (const int mask : {0x01, 0x80, 0xff}) {
       Bytes bytes = zone_;
       bytes[at] = static_cast<uint8_t>(bytes[at] ^ mask);
@@ -258,7 +255,6 @@ TEST(OpenWorld, WhatIsNotAWorldIsRefusedByName) {
 }
 
 TEST_F(ZoneFiles, VersionsFromTheFutureAreRefusedByNumber) {
-  // The version is the tables' own number 1: it is found by changing it.
   const auto bump = [](Bytes bytes, uint32_t version, size_t field) {
     auto* table = flatbuffers::GetMutableRoot<flatbuffers::Table>(bytes.data());
     const bool set =
@@ -266,10 +262,10 @@ TEST_F(ZoneFiles, VersionsFromTheFutureAreRefusedByNumber) {
     EXPECT_TRUE(set);
     return bytes;
   };
-  const auto zone = as_zone(bump(zone_, 2, format::Zone::VT_VERSION));
+  const auto zone = as_zone(bump(zone_, 77, format::Zone::VT_VERSION));
   ASSERT_FALSE(zone);
   EXPECT_EQ(zone.error().code, Errc::kBadFile);
-  EXPECT_NE(zone.error().message.find("version 2, this program reads 1"), std::string::npos);
+  EXPECT_NE(zone.error().message.find("version 77, this program reads 2"), std::string::npos);
   write_bytes(manifest_path(), bump(manifest_, 77, format::Manifest::VT_VERSION));
   const auto world = World::open(path());
   ASSERT_FALSE(world);

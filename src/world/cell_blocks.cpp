@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "world/cell_blocks.h"
+
+#include <algorithm>
+
+namespace throng {
+
+uint32_t count_bits(const uint64_t* words) {
+  auto cells = count_ones(words[1] & ~words[0]) * 64;
+  for (size_t i = kBitHead; i < bit_words(words); ++i) {
+    cells += count_ones(words[i]);
+  }
+  return cells;
+}
+
+uint32_t nth_bit(const uint64_t* words, uint32_t n) {
+  for (uint32_t block = 0;; block += 8) {  // a row of blocks at a time
+    std::array<uint64_t, 8> cells;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < 8; ++i) {
+      cells[i] = block_cells(words, block + i);
+      count += count_ones(cells[i]);
+    }
+    if (n >= count && block + 8 < kBlocks) {
+      n -= count;
+      continue;
+    }
+    for (uint32_t z = 0; z < 8; ++z) {
+      uint64_t row = 0;
+      for (uint32_t i = 0; i < 8; ++i) row |= (cells[i] >> (8 * z) & 0xff) << (8 * i);
+      const uint32_t in_row = count_ones(row);
+      if (n >= in_row && z < 7) {
+        n -= in_row;
+        continue;
+      }
+      for (; n > 0; --n) row &= row - 1;
+      return (block + z) * 64 + static_cast<uint32_t>(std::countr_zero(row));
+    }
+  }
+}
+
+void unpack_bits(const uint64_t* words, CellRows& rows) {
+  rows.fill(0);
+  const uint64_t* next = words + kBitHead;
+  for (size_t block = 0; block < kBlocks; ++block) {
+    const bool mixed = (words[0] >> block & 1) != 0;
+    const uint64_t full = (words[1] >> block & 1) != 0 ? ~uint64_t{0} : 0;
+    const uint64_t cells = mixed ? *next++ : full;
+    if (cells == 0) continue;
+    uint64_t* row = &rows[block / 8 * 8];
+    for (size_t z = 0; z < 8; ++z) row[z] |= (cells >> (8 * z) & 0xff) << (block % 8 * 8);
+  }
+}
+
+void unpack_values(const uint64_t* words, uint16_t* values) {
+  for (size_t b = 0; b < kBlocks; ++b) {
+    const ValueBlock block = unpack_head(words[b]);
+    const uint64_t* payload = words + kValueHead + block.first;
+    const uint32_t mask = (1u << block.width) - 1;
+    uint16_t* corner = values + b / 8 * 8 * 64 + b % 8 * 8;
+    for (uint32_t z = 0; z < 8; ++z) {
+      for (uint32_t x = 0; x < 8; ++x) {
+        const uint32_t rest = block.width == 0 ? 0 : rest_at(block, payload, x, z);
+        const bool hole = block.holes && block.width != 0 && rest == mask;
+        const uint32_t value = block.base + static_cast<uint32_t>(slope_part(block, x, z)) + rest;
+        corner[z * 64 + x] = hole ? kNoValue : static_cast<uint16_t>(value);
+      }
+    }
+  }
+}
+
+std::optional<size_t> end_of_bits(std::span<const uint64_t> words, uint64_t offset) {
+  if (offset > words.size() || words.size() - offset < kBitHead) return std::nullopt;
+  const uint64_t end = offset + bit_words(words.data() + offset);
+  if (end > words.size()) return std::nullopt;
+  return end;
+}
+
+bool values_fit(std::span<const uint64_t> words, uint64_t offset) {
+  if (offset > words.size() || words.size() - offset < kValueHead) return false;
+  const size_t room = words.size() - offset - kValueHead;
+  return std::all_of(&words[offset], &words[offset] + kValueHead, [&](uint64_t head) {
+    const ValueBlock block = unpack_head(head);
+    return block.width <= 16 && (block.width == 0 || block.first + size_t{block.width} <= room);
+  });
+}
+
+}  // namespace throng

@@ -27,6 +27,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
   }
   return {{"world", options.output},
           {"triangles", scene.triangles.size()},
+          {"patches", scene.patches.size()},
           {"import", report_json(scene.report)},
           {"cell", options.config.cell},
           {"resolution", options.config.resolution},

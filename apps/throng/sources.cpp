@@ -81,7 +81,15 @@ void append_scene(Scene& scene, const Scene& other) {
     part.first_triangle += first_triangle;
     scene.parts.push_back(std::move(part));
   }
-  scene.patches.insert(scene.patches.end(), other.patches.begin(), other.patches.end());
+  if (!scene.patches.empty() || !other.patches.empty()) {
+    const auto first_patch = static_cast<uint32_t>(scene.patches.size());
+    scene.patch_of_triangle.resize(first_triangle, kNoPatch);
+    for (const uint32_t patch : other.patch_of_triangle) {
+      scene.patch_of_triangle.push_back(patch == kNoPatch ? kNoPatch : first_patch + patch);
+    }
+    scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
+    scene.patches.append(other.patches);
+  }
   scene.report.triangles_read += other.report.triangles_read;
   scene.report.non_finite += other.report.non_finite;
   scene.report.bad_index += other.report.bad_index;

@@ -13,6 +13,7 @@
 #include "throng/base.h"
 #include "throng/context.h"
 #include "throng/math.h"
+#include "throng/patch.h"
 #include "throng/result.h"
 
 /// A Scene is a triangle soup with an area kind per triangle: the only thing that a bake reads.
@@ -35,14 +36,6 @@ struct ScenePart {
   uint32_t triangle_count = 0;
 };
 
-/// A curved patch kept beside its triangles for the accessibility graph: a grid of
-/// columns x rows control points, row by row. [m]
-struct ControlGrid {
-  int32_t columns = 0;
-  int32_t rows = 0;
-  std::vector<Vec3d> points;
-};
-
 /// What an import met and did. All zero for a clean model.
 struct SceneReport {
   uint64_t triangles_read = 0;
@@ -61,7 +54,9 @@ struct THRONG_API Scene {
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<AreaKind> area;    ///< One per triangle.
   std::vector<ScenePart> parts;  ///< In order of triangles; may be empty.
-  std::vector<ControlGrid> patches;
+  PatchSet patches;              ///< Curved ground; its triangles are among the above.
+  /// One per triangle, kNoPatch for those of no patch; empty where there are no patches.
+  std::vector<uint32_t> patch_of_triangle;
   SceneReport report;
 
   void add_triangle(Vec3d a, Vec3d b, Vec3d c, AreaKind kind = kAreaWalkable);
@@ -99,7 +94,8 @@ struct SceneConfig {
 /// Reads all sources into one Scene. Bad triangles are dropped and counted; a file that cannot be
 /// used is refused with kBadFile or kBadInput and a sentence. Never crashes on any bytes.
 /// Formats by extension: obj gltf glb fbx ply stl dae ifc 3ds (assimp), city.json/json (CityJSON
-/// 1-2), gml (CityGML 2-3), bsp (Quake 3), wkt, geojson (2D plans).
+/// 1-2), gml (CityGML 2-3), bsp (Quake 3), wkt, geojson (2D plans), bpt, zonel, patches.json
+/// (curved patches). A folder stands for all its .zonel files; zones that meet are joined.
 [[nodiscard]] THRONG_API Result<Scene> load_scene(const SceneConfig& config, Context& context);
 
 /// Reads a scene file (TOML or JSON). Paths inside are relative to the file. Fails with kBadFile,

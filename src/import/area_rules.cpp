@@ -92,6 +92,9 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
       const size_t from = size_t{part.first_triangle} + i;
       scene.triangles[kept] = scene.triangles[from];
       scene.area[kept] = kind.value_or(scene.area[from]);  // A plan's walls are blocked already.
+      if (!scene.patch_of_triangle.empty()) {
+        scene.patch_of_triangle[kept] = scene.patch_of_triangle[from];
+      }
     }
     part.first_triangle = first;
     kept_parts.push_back(std::move(part));
@@ -99,6 +102,7 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
   scene.parts = std::move(kept_parts);
   scene.triangles.resize(kept);
   scene.area.resize(kept);
+  if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
 }
 
 }  // namespace throng

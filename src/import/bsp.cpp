@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "import/bezier.h"
+#include "import/patch_edges.h"
 
 // Format: 17 lumps after a header of 8 bytes; little-endian 32-bit numbers throughout.
 // Source: K. Proudfoot. Unofficial Quake 3 map specs. 2000; flags after the game's surfaceflags.h.
@@ -23,6 +23,7 @@ constexpr double kMetresPerUnit = 0.0254;
 constexpr int32_t kVersion = 46;
 // A damaged file can make a thousand faces share the same corners; no level has a million.
 constexpr size_t kMostVertices = 20'000'000;
+constexpr size_t kMostPatches = 500'000;
 
 enum Lump {
   kEntities = 0,
@@ -78,9 +79,7 @@ bool is_matter(const Texture& texture) {
 class BspReader {
  public:
   BspReader(std::string_view bytes, const ReadOptions& options, Context& context)
-      : bytes_(bytes), options_(options), context_(context), writer_(options) {
-    tolerance_ = options.curve_tolerance / options.metres_per_unit.value_or(kMetresPerUnit);
-  }
+      : bytes_(bytes), options_(options), context_(context), writer_(options) {}
 
   Result<RawScene> read() {
     if (!read_lumps()) return Error{Errc::kBadFile, options_.name + ": " + message_};
@@ -97,10 +96,12 @@ class BspReader {
         if (faces_read_[static_cast<size_t>(f)]) continue;  // Models of a sound file share no face.
         faces_read_[static_cast<size_t>(f)] = true;
         read_face(faces_[static_cast<size_t>(f)], node);
-        if (writer_.scene().positions.size() > kMostVertices) {
+        if (writer_.scene().positions.size() > kMostVertices ||
+            writer_.scene().patches.size() > kMostPatches) {
           return Error{Errc::kLimit,
-                       fmt::format("{}: gives more than {} vertices; raise curve_tolerance",
-                                   options_.name, kMostVertices)};
+                       fmt::format("{}: gives more than {} vertices or {} patches; no level does, "
+                                   "so the file is damaged",
+                                   options_.name, kMostVertices, kMostPatches)};
         }
       }
     }
@@ -110,6 +111,7 @@ class BspReader {
     }
     auto scene = writer_.finish();
     if (!scene) return scene.error();
+    bind_equal_edges(scene->patches, 0);
     return RawScene{.scene = *std::move(scene), .up = 'z', .metres_per_unit = kMetresPerUnit};
   }
 
@@ -215,8 +217,7 @@ class BspReader {
     }
     const size_t name_size = strnlen(texture.name, sizeof texture.name);
     if (face.type == kPatch) {
-      writer_.begin_part(node, {texture.name, name_size});
-      read_patch(face);
+      read_patch(face, node, {texture.name, name_size});
     } else if (face.type == kPolygon || face.type == kMesh) {
       writer_.begin_part(node, {texture.name, name_size});
       read_mesh(face);
@@ -253,7 +254,7 @@ class BspReader {
     }
   }
 
-  void read_patch(const Face& face) {
+  void read_patch(const Face& face, std::string_view node, std::string_view material) {
     const int64_t columns = face.size[0];
     const int64_t rows = face.size[1];
     if (columns < 3 || rows < 3 || columns % 2 == 0 || rows % 2 == 0 || columns > 1024 ||
@@ -261,33 +262,33 @@ class BspReader {
       writer_.count_bad(1);
       return;
     }
-    ControlGrid grid{static_cast<int32_t>(columns), static_cast<int32_t>(rows), {}};
+    std::vector<Vec3d> grid;
     for (int64_t i = 0; i < columns * rows; ++i) {
-      grid.points.push_back(point(static_cast<size_t>(face.vertex + i)));
-      const Vec3d& p = grid.points.back();
+      grid.push_back(point(static_cast<size_t>(face.vertex + i)));
+      const Vec3d& p = grid.back();
       if (std::fabs(p.x) < 1e9 && std::fabs(p.y) < 1e9 && std::fabs(p.z) < 1e9) continue;
       writer_.count_bad(1);  // Also NaN.
       return;
     }
-    const PatchMesh mesh = tessellate_biquadratic(grid.columns, grid.rows, grid.points, tolerance_);
-    const uint32_t base = static_cast<uint32_t>(writer_.scene().positions.size());
-    for (const Vec3d& p : mesh.points) writer_.add_vertex(p);
-    for (int32_t j = 0; j + 1 < mesh.rows; ++j) {
-      for (int32_t i = 0; i + 1 < mesh.columns; ++i) {
-        const uint32_t a = base + static_cast<uint32_t>(j * mesh.columns + i);
-        const uint32_t b = a + static_cast<uint32_t>(mesh.columns);
-        writer_.add_triangle(a, b, a + 1);
-        writer_.add_triangle(a + 1, b, b + 1);
+    // Each 3 x 3 piece is a patch; neighbouring pieces share their border, and so do many faces.
+    PatchSet& patches = writer_.scene().patches;
+    patches.begin_run(options_.name, node, material);
+    for (int64_t j = 0; j + 2 < rows; j += 2) {
+      for (int64_t i = 0; i + 2 < columns; i += 2) {
+        std::array<Vec3d, 9> piece;
+        for (int64_t k = 0; k < 9; ++k) {
+          piece[static_cast<size_t>(k)] =
+              grid[static_cast<size_t>((j + k / 3) * columns + i + k % 3)];
+        }
+        patches.add(raise_degree(2, 2, piece));
       }
     }
-    writer_.scene().patches.push_back(std::move(grid));
   }
 
   std::string_view bytes_;
   const ReadOptions& options_;
   Context& context_;
   SceneWriter writer_;
-  double tolerance_ = 1;
   std::string message_;
   int32_t lumps_[kLumps][2] = {};
   std::vector<Texture> textures_;

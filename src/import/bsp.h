@@ -9,11 +9,11 @@
 /// Quake 3 levels (IBSP, version 46), curved patches included.
 namespace throng {
 
-/// Reads the drawn faces that are solid: polygons, meshes, and patches cut to the curve tolerance,
-/// with their control grids in Scene::patches. Water, sky, fog, triggers and what the map calls
-/// non-solid are no matter and are left out; billboards are counted. The node is the class of the
-/// entity that owns the face ("worldspawn", "func_door" ...), the material its texture. Fails with
-/// kBadFile and the lump.
+/// Reads the drawn faces that are solid: polygons and meshes as triangles, curved pieces as patches
+/// of raised degree that are neighbours where their borders are the same numbers. Water, sky, fog,
+/// triggers and what the map calls non-solid are no matter and are left out; billboards are
+/// counted. The node is the class of the entity that owns the face ("worldspawn", "func_door" ...),
+/// the material its texture. Fails with kBadFile and the lump.
 [[nodiscard]] Result<RawScene> read_bsp(std::string_view bytes, const ReadOptions& options,
                                         Context& context);
 

@@ -38,6 +38,9 @@ void filter_triangles(Scene& scene, Keep keep) {
       if (!keep(done)) continue;
       scene.triangles[kept] = scene.triangles[done];
       scene.area[kept] = scene.area[done];
+      if (!scene.patch_of_triangle.empty()) {
+        scene.patch_of_triangle[kept] = scene.patch_of_triangle[done];
+      }
       ++kept;
     }
   };
@@ -54,6 +57,7 @@ void filter_triangles(Scene& scene, Keep keep) {
   scene.parts = std::move(parts);
   scene.triangles.resize(kept);
   scene.area.resize(kept);
+  if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
 }
 
 void drop_broken(Scene& scene) {

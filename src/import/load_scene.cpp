@@ -10,13 +10,17 @@
 #include "core/read_file.h"
 #include "import/area_rules.h"
 #include "import/assimp_reader.h"
+#include "import/bpt.h"
 #include "import/bsp.h"
 #include "import/city.h"
 #include "import/clean.h"
 #include "import/obj.h"
+#include "import/patch_json.h"
+#include "import/patch_scene.h"
 #include "import/plan.h"
 #include "import/ply.h"
 #include "import/raw_scene.h"
+#include "import/zonel.h"
 
 // Every way in ends here: read each file as it is, place it in metres with Y up, name its areas,
 // join, clean.
@@ -32,8 +36,9 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// A .json file may be a city or a plan; the city says so in one of its first keys, or in its last.
+// A .json file may be patches, a city or a plan; each but the plan says so in one of its keys.
 Reader json_reader(std::string_view bytes) {
+  if (bytes.find("\"throng-patches\"") != std::string_view::npos) return &read_patch_json;
   return bytes.find("\"CityJSON\"") != std::string_view::npos ? &read_cityjson : &read_geojson;
 }
 
@@ -49,13 +54,13 @@ Result<RawScene> read_source(const SceneSource& source, const ReadOptions& optio
   }
   const bool known = extension == ".obj" || extension == ".ply" || extension == ".json" ||
                      extension == ".gml" || extension == ".bsp" || extension == ".wkt" ||
-                     extension == ".geojson";
+                     extension == ".geojson" || extension == ".bpt" || extension == ".zonel";
   const auto bytes = read_file(source.path);
   if (!bytes) return bytes.error();
   if (!known) {
     return Error{Errc::kBadFile,
                  fmt::format("{}: unknown kind of file '{}'; readable are obj gltf glb fbx ply stl "
-                             "dae ifc 3ds city.json gml bsp wkt geojson",
+                             "dae ifc 3ds city.json gml bsp wkt geojson bpt zonel patches.json",
                              source.path, extension)};
   }
   Reader reader = nullptr;
@@ -71,6 +76,10 @@ Result<RawScene> read_source(const SceneSource& source, const ReadOptions& optio
     reader = &read_bsp;
   else if (extension == ".wkt")
     reader = &read_wkt;
+  else if (extension == ".bpt")
+    reader = &read_bpt;
+  else if (extension == ".zonel")
+    reader = &read_zonel;
   else
     reader = &read_geojson;
   return reader(*bytes, options, context);
@@ -90,7 +99,7 @@ Transform placement(const SceneSource& source, const RawScene& raw) {
 }
 
 void append(Scene& all, Scene&& one) {
-  if (all.triangles.empty() && all.positions.empty()) {
+  if (all.triangles.empty() && all.positions.empty() && all.patches.empty()) {
     const SceneReport report = std::move(all.report);
     all = std::move(one);
     all.report.triangles_read += report.triangles_read;
@@ -113,12 +122,41 @@ void append(Scene& all, Scene&& one) {
     part.first_triangle += first_triangle;
     all.parts.push_back(std::move(part));
   }
-  std::move(one.patches.begin(), one.patches.end(), std::back_inserter(all.patches));
+  all.patches.append(one.patches);
   all.report.triangles_read += one.report.triangles_read;
   all.report.bad_index += one.report.bad_index;
   all.report.ignored += one.report.ignored;
   std::move(one.report.warnings.begin(), one.report.warnings.end(),
             std::back_inserter(all.report.warnings));
+}
+
+// A folder stands for the landscape zones in it, in order of their names.
+Result<std::vector<SceneSource>> open_folders(const std::vector<SceneSource>& sources) {
+  std::vector<SceneSource> files;
+  for (const SceneSource& source : sources) {
+    std::error_code failure;
+    if (!std::filesystem::is_directory(source.path, failure)) {
+      files.push_back(source);
+      continue;
+    }
+    std::vector<std::string> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(source.path, failure)) {
+      if (lower_case(entry.path().extension().string()) == ".zonel") {
+        paths.push_back(entry.path().string());
+      }
+    }
+    if (failure) return Error{Errc::kIo, source.path + ": cannot be listed; check its permissions"};
+    if (paths.empty()) {
+      return Error{Errc::kBadFile,
+                   source.path + ": is a folder without .zonel files; name a file inside it"};
+    }
+    std::sort(paths.begin(), paths.end());
+    for (std::string& path : paths) {
+      files.push_back(source);
+      files.back().path = std::move(path);
+    }
+  }
+  return files;
 }
 
 Result<void> check(const SceneConfig& config) {
@@ -148,10 +186,13 @@ Result<void> check(const SceneConfig& config) {
 
 Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   if (const auto checked = check(config); !checked) return checked.error();
+  const auto sources = open_folders(config.sources);
+  if (!sources) return sources.error();
   Scene all;
-  for (size_t i = 0; i < config.sources.size(); ++i) {
-    const SceneSource& source = config.sources[i];
-    if (context.on_progress) context.on_progress({"read", i, config.sources.size()});
+  std::vector<Zone> zones;
+  for (size_t i = 0; i < sources->size(); ++i) {
+    const SceneSource& source = (*sources)[i];
+    if (context.on_progress) context.on_progress({"read", i, sources->size()});
     if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
     ReadOptions options;
     options.name = source.path;
@@ -162,10 +203,18 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
     if (!raw) return raw.error();
     const Transform place = placement(source, *raw);
     for (Vec3d& p : raw->scene.positions) p = place(p);
-    for (ControlGrid& patch : raw->scene.patches) {
+    for (BezierPatch& patch : raw->scene.patches.patches) {
       for (Vec3d& p : patch.points) p = place(p);
     }
+    if (raw->zone) {
+      raw->zone->first_patch = static_cast<uint32_t>(all.patches.size());
+      zones.push_back(*std::move(raw->zone));
+    }
     apply_rules(raw->scene, config.rules);
+    if (raw->scene.patches.size() + all.patches.size() >= kNoPatch / 4) {
+      return Error{Errc::kLimit,
+                   "scene: more than 1.07 thousand million patches; bake it in parts"};
+    }
     const uint64_t vertices = uint64_t{all.positions.size()} + raw->scene.positions.size();
     const uint64_t triangles = uint64_t{all.triangles.size()} + raw->scene.triangles.size();
     if (vertices >= kNoVertex || triangles >= kNoVertex) {
@@ -174,12 +223,14 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
     }
     append(all, std::move(raw->scene));
   }
-  const std::string name = config.sources.size() == 1
-                               ? config.sources.front().path
-                               : fmt::format("scene of {} files", config.sources.size());
+  if (const auto joined = join_zones(all.patches, zones, all.report); !joined)
+    return joined.error();
+  if (const auto cut = cut_patches(all, config, context); !cut) return cut.error();
+  const std::string name = sources->size() == 1 ? sources->front().path
+                                                : fmt::format("scene of {} files", sources->size());
   if (auto cleaned = clean_scene(all, name, context); !cleaned) return cleaned.error();
   if (context.on_progress) {
-    context.on_progress({"read", config.sources.size(), config.sources.size()});
+    context.on_progress({"read", sources->size(), sources->size()});
   }
   return all;
 }

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "import/polygon.h"
 #include "throng/context.h"
@@ -17,13 +19,39 @@
 /// file: its units, its axes, nothing cleaned. load_scene does the rest.
 namespace throng {
 
+/// A corner of a landscape zone that a corner of another zone meets.
+struct ZoneCorner {
+  uint16_t corner = 0;
+  uint16_t other_zone = 0;
+  uint16_t other_corner = 0;
+};
+
+/// An edge whose neighbours lie in another zone, as the file numbers them.
+struct ZoneBind {
+  PatchSide side;  ///< Counted within this zone.
+  EdgeBind bind = EdgeBind::kOpen;
+  uint16_t other_zone = 0;
+  std::array<PatchSide, 4> next{};  ///< Counted within the other zone.
+};
+
+/// One zone of a landscape, until it is joined with its neighbours.
+struct Zone {
+  uint16_t id = 0;
+  std::string file;
+  uint32_t first_patch = 0;
+  std::vector<std::array<uint16_t, 4>> corners;  ///< Of each patch, as the file numbers them.
+  std::vector<ZoneCorner> border;                ///< Sorted.
+  std::vector<ZoneBind> far;
+};
+
 /// A corner of a triangle that names no vertex; clean_scene drops and counts the triangle.
 inline constexpr uint32_t kNoVertex = UINT32_MAX;
 
 struct RawScene {
-  Scene scene;    ///< In the file's units and axes.
+  Scene scene;    ///< In the file's units and axes; patches without their triangles.
   char up = 'y';  ///< Which axis of these numbers points up.
   double metres_per_unit = 1;
+  std::optional<Zone> zone = std::nullopt;  ///< Where the file is one zone of many.
 };
 
 struct ReadOptions {

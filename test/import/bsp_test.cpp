@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "core/random.h"
-#include "import/bezier.h"
 #include "scratch_folder.h"
 #include "tiny_bsp.h"
 
@@ -22,100 +21,19 @@ Result<RawScene> read(const std::string& bytes) {
   return read_bsp(bytes, options, context);
 }
 
-Vec3d surface_point(int columns, const std::vector<Vec3d>& control, int i, int j, double u,
-                    double v) {
-  const double bu[3] = {(1 - u) * (1 - u), 2 * u * (1 - u), u * u};
-  const double bv[3] = {(1 - v) * (1 - v), 2 * v * (1 - v), v * v};
-  Vec3d p;
-  for (int b = 0; b < 3; ++b) {
-    for (int a = 0; a < 3; ++a) {
-      p = p + control[static_cast<size_t>((2 * j + b) * columns + 2 * i + a)] * (bu[a] * bv[b]);
-    }
-  }
-  return p;
-}
-
-// Closest point of a triangle, by its three regions of edges and the inside.
-double distance_to_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
-  const auto to_segment = [](Vec3d q, Vec3d s, Vec3d t) {
-    const Vec3d d = t - s;
-    const double length2 = dot(d, d);
-    const double k = length2 > 0 ? std::fmin(1, std::fmax(0, dot(q - s, d) / length2)) : 0;
-    return length(q - (s + d * k));
-  };
-  const Vec3d n = cross(b - a, c - a);
-  if (dot(n, n) > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
-      dot(cross(a - c, p - c), n) >= 0) {
-    return std::fabs(dot(p - a, n)) / length(n);
-  }
-  return std::fmin(to_segment(p, a, b), std::fmin(to_segment(p, b, c), to_segment(p, c, a)));
-}
-
-TEST(Bezier, TrianglesStayWithinTheToleranceOfTheSurface) {
-  for (uint64_t seed = 0; seed < 20; ++seed) {
-    uint64_t counter = 0;
-    const auto roll = [&] { return random_unit(seed, 0, counter++); };
-    const int columns = 3 + 2 * static_cast<int>(seed % 2);
-    const int rows = 3 + 2 * static_cast<int>(seed % 3);
-    std::vector<Vec3d> control;
-    for (int j = 0; j < rows; ++j) {
-      for (int i = 0; i < columns; ++i) {
-        control.push_back({i + roll(), 2 * roll(), j + roll()});
-      }
-    }
-    const double tolerance = 0.02;
-    const PatchMesh mesh = tessellate_biquadratic(columns, rows, control, tolerance);
-    ASSERT_EQ(mesh.points.size(), static_cast<size_t>(mesh.columns) * mesh.rows);
-    double worst = 0;
-    for (int j = 0; j < rows / 2; ++j) {
-      for (int i = 0; i < columns / 2; ++i) {
-        for (int k = 0; k < 60; ++k) {
-          const Vec3d p = surface_point(columns, control, i, j, roll(), roll());
-          double nearest = INFINITY;
-          for (int32_t y = 0; y + 1 < mesh.rows; ++y) {
-            for (int32_t x = 0; x + 1 < mesh.columns; ++x) {
-              const size_t a = static_cast<size_t>(y) * mesh.columns + x;
-              const size_t b = a + static_cast<size_t>(mesh.columns);
-              nearest = std::fmin(nearest, distance_to_triangle(p, mesh.points[a], mesh.points[b],
-                                                                mesh.points[a + 1]));
-              nearest = std::fmin(
-                  nearest,
-                  distance_to_triangle(p, mesh.points[a + 1], mesh.points[b], mesh.points[b + 1]));
-            }
-          }
-          worst = std::fmax(worst, nearest);
-        }
-      }
-    }
-    EXPECT_LE(worst, tolerance);
-    EXPECT_GT(worst, tolerance / 100);  // Not simply cut as fine as can be.
-  }
-}
-
-TEST(Bezier, AFlatPatchIsOneQuadAPiece) {
-  std::vector<Vec3d> control;
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 5; ++i) control.push_back({1.0 * i, 0, 1.0 * j});
-  }
-  const PatchMesh mesh = tessellate_biquadratic(5, 3, control, 0.01);
-  EXPECT_EQ(mesh.columns, 3);
-  EXPECT_EQ(mesh.rows, 2);
-}
-
 TEST(Bsp, FloorPatchAndDoorAreReadAndWaterIsNot) {
   const auto raw = read(test::tiny_level());
   ASSERT_TRUE(raw) << raw.error().message;
   const Scene& scene = raw->scene;
-  ASSERT_EQ(scene.parts.size(), 3u);
+  ASSERT_EQ(scene.parts.size(), 2u);
   EXPECT_EQ(scene.parts[0].material, "textures/base/floor");
   EXPECT_EQ(scene.parts[0].triangle_count, 2u);
-  EXPECT_EQ(scene.parts[1].material, "textures/base/arch");
-  EXPECT_GT(scene.parts[1].triangle_count, 20u);
-  EXPECT_EQ(scene.parts[2].node, "func_door");
-  EXPECT_EQ(scene.parts[2].triangle_count, 2u);
+  EXPECT_EQ(scene.parts[1].node, "func_door");
+  EXPECT_EQ(scene.parts[1].triangle_count, 2u);
   ASSERT_EQ(scene.patches.size(), 1u);
-  EXPECT_EQ(scene.patches[0].columns, 3);
-  EXPECT_EQ(scene.patches[0].points.size(), 9u);
+  ASSERT_EQ(scene.patches.runs.size(), 1u);
+  EXPECT_EQ(scene.patches.runs[0].material, "textures/base/arch");
+  EXPECT_EQ(scene.patches.patches[0].at(0.5, 0.5), (Vec3d{100, 100, 100}));
   ASSERT_EQ(scene.report.warnings.size(), 1u);
   EXPECT_NE(scene.report.warnings[0].find("1 faces that are not solid"), std::string::npos);
   EXPECT_EQ(raw->up, 'z');
@@ -135,12 +53,41 @@ TEST(Bsp, ALevelBecomesMetresWithYUp) {
   EXPECT_NEAR(box.max.x, 400 * 0.0254, 1e-6);
   EXPECT_NEAR(box.min.z, -400 * 0.0254, 1e-6);
   EXPECT_NEAR(box.max.y, 100 * 0.0254, 0.02);  // The arch's crown: half of its control height.
-  EXPECT_NEAR(scene->patches[0].points[1].y, 200 * 0.0254, 1e-6);
+  EXPECT_NEAR(scene->patches.patches[0].at(0.5, 0).y, 100 * 0.0254, 1e-9);
+  // Two triangles each for the floor and the door, then those of the arch, which know their patch.
+  ASSERT_EQ(scene->parts.size(), 3u);
+  EXPECT_EQ(scene->parts[2].material, "textures/base/arch");
+  ASSERT_EQ(scene->patch_of_triangle.size(), scene->triangles.size());
+  for (size_t t = 0; t < scene->triangles.size(); ++t) {
+    EXPECT_EQ(scene->patch_of_triangle[t], t < 4 ? kNoPatch : 0u);
+  }
   SceneConfig rough = config;
   rough.curve_tolerance = 0.5;
   const auto coarse = load_scene(rough, context);
   ASSERT_TRUE(coarse) << coarse.error().message;
   EXPECT_LT(coarse->triangles.size(), scene->triangles.size() / 2);
+}
+
+// A 5 x 3 grid is two pieces; a second face continues it, and meets it with the same numbers.
+TEST(Bsp, PiecesOfAGridAndEqualBordersOfFacesAreNeighbours) {
+  const auto grid = [](float from, int32_t columns) {
+    test::TinyFace face{0, 2, {}, {}, columns, 3};
+    for (int32_t row = 0; row < 3; ++row) {
+      for (int32_t column = 0; column < columns; ++column) {
+        const float x = from + 70.3f * static_cast<float>(column);
+        face.points.push_back({x, 33.1f * static_cast<float>(row), 0.1f * x * x / 70.3f});
+      }
+    }
+    return face;
+  };
+  const auto raw = read(test::make_bsp({{"stone", 0, 1}}, {grid(0, 5), grid(4 * 70.3f, 3)}, 2, ""));
+  ASSERT_TRUE(raw) << raw.error().message;
+  const PatchSet& set = raw->scene.patches;
+  ASSERT_EQ(set.size(), 3u);
+  EXPECT_TRUE(check_patches(set));
+  EXPECT_EQ(set.edges[0][2].next[0], (PatchSide{1, 0}));
+  EXPECT_EQ(set.edges[1][2].next[0], (PatchSide{2, 0}));
+  EXPECT_EQ(set.edges[2][2].bind, EdgeBind::kOpen);
 }
 
 TEST(Bsp, OtherKindsOfFileAreToldApart) {

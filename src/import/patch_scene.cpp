@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/patch_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "import/area_rules.h"
+
+namespace throng {
+
+Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& context) {
+  if (scene.patches.empty()) return {};
+  auto mesh = tessellate_patches(scene.patches, {.tolerance = config.curve_tolerance}, context);
+  if (!mesh) return mesh.error();
+  if (uint64_t{scene.positions.size()} + mesh->positions.size() >= UINT32_MAX ||
+      uint64_t{scene.triangles.size()} + mesh->triangles.size() >= UINT32_MAX) {
+    return Error{Errc::kLimit, "scene: more than 4.29 thousand million vertices; bake it in parts"};
+  }
+
+  // As a scene of its own first, so that rules see these parts alone.
+  Scene cut;
+  cut.triangles = std::move(mesh->triangles);
+  cut.area.reserve(cut.triangles.size());
+  cut.patch_of_triangle.reserve(cut.triangles.size());
+  for (const PatchRun& run : scene.patches.runs) {
+    const uint32_t first = mesh->first[run.first_patch];
+    const uint32_t last = mesh->first[run.first_patch + run.patch_count];
+    cut.parts.push_back({.file = run.file,
+                         .node = run.node,
+                         .material = run.material,
+                         .first_triangle = first,
+                         .triangle_count = last - first});
+    cut.area.insert(cut.area.end(), last - first, run.kind);
+    for (uint32_t p = run.first_patch; p < run.first_patch + run.patch_count; ++p) {
+      cut.patch_of_triangle.insert(cut.patch_of_triangle.end(), mesh->first[p + 1] - mesh->first[p],
+                                   p);
+    }
+  }
+  scene.report.triangles_read += cut.triangles.size();
+  apply_rules(cut, config.rules);
+  scene.report.ignored += cut.report.ignored;
+
+  const auto first_vertex = static_cast<uint32_t>(scene.positions.size());
+  const auto first_triangle = static_cast<uint32_t>(scene.triangles.size());
+  if (first_vertex == 0 && first_triangle == 0) {  // Moved: a large landscape fits in memory once.
+    scene.positions = std::move(mesh->positions);
+    scene.triangles = std::move(cut.triangles);
+  } else {
+    scene.positions.insert(scene.positions.end(), mesh->positions.begin(), mesh->positions.end());
+    scene.triangles.reserve(scene.triangles.size() + cut.triangles.size());
+    for (const auto& [a, b, c] : cut.triangles) {
+      scene.triangles.push_back({first_vertex + a, first_vertex + b, first_vertex + c});
+    }
+  }
+  scene.area.insert(scene.area.end(), cut.area.begin(), cut.area.end());
+  scene.patch_of_triangle.resize(first_triangle, kNoPatch);
+  scene.patch_of_triangle.insert(scene.patch_of_triangle.end(), cut.patch_of_triangle.begin(),
+                                 cut.patch_of_triangle.end());
+  for (ScenePart& part : cut.parts) {
+    part.first_triangle += first_triangle;
+    scene.parts.push_back(std::move(part));
+  }
+  return {};
+}
+
+}  // namespace throng

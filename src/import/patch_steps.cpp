@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/patch_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+// Over a triangle whose parameters span a x b, a surface f leaves the plane through the three
+// corners by at most (a^2 |f_ss| + 2 a b |f_st| + b^2 |f_tt|) / 8. Source: D. Filip, R. Magedson,
+// R. Markot. Surface algorithms using bounds on derivatives. 1986. It holds for any triangle: the
+// error is a mean, weighted like the corners, of half the second derivative along the ways to them,
+// and the weighted mean square of ways within an interval of length a is at most a^2 / 4.
+//
+// That is the error at equal parameters. What counts is the gap, and a surface that slides within
+// itself leaves none: seen as a height over a plane with slopes of at most g, the gap is at most
+// the error's height and g times the rest of it. A patch is looked at in pieces as small as its
+// steps (down to a quarter), because over a small piece g is small.
+namespace throng {
+namespace {
+
+// Bounds of second derivatives over a piece, by how much each opens a gap. [m]
+struct Bend {
+  double ss = 0, st = 0, tt = 0;
+  [[nodiscard]] double gap(double a, double b) const {
+    return (a * a * ss + 2 * a * b * st + b * b * tt) / 8;
+  }
+};
+
+// Heights and components in the plane of some vectors, as intervals.
+struct Extent {
+  double low_x = 0, high_x = 0, low_y = 0, high_y = 0, height = 0;
+  bool empty = true;
+  void add(double x, double y, double h) {
+    low_x = empty ? x : std::min(low_x, x);
+    high_x = empty ? x : std::max(high_x, x);
+    low_y = empty ? y : std::min(low_y, y);
+    high_y = empty ? y : std::max(high_y, y);
+    height = std::max(height, std::fabs(h));
+    empty = false;
+  }
+  [[nodiscard]] double far_x() const { return std::max(std::fabs(low_x), std::fabs(high_x)); }
+  [[nodiscard]] double far_y() const { return std::max(std::fabs(low_y), std::fabs(high_y)); }
+};
+
+// The steepest slope of a piece over the plane across `up`, or 1 if it may fold over it: then the
+// whole error counts, as it always may.
+double steepest(const BezierPatch& piece, Vec3d up) {
+  const auto& c = piece.points;
+  const Vec3d forward = piece.along_t(0.5, 0.5);
+  const Vec3d flat = forward - up * dot(forward, up);
+  const double size = length(flat);
+  if (!(size > 0)) return 1;
+  const Vec3d x = flat * (1 / size);
+  const Vec3d y = cross(up, x);
+  Extent ds;
+  Extent dt;
+  for (size_t k = 0; k < 4; ++k) {
+    for (size_t i = 0; i < 3; ++i) {
+      const Vec3d s = c[4 * k + i + 1] - c[4 * k + i];
+      const Vec3d t = c[4 * (i + 1) + k] - c[4 * i + k];
+      ds.add(dot(s, x), dot(s, y), dot(s, up));
+      dt.add(dot(t, x), dot(t, y), dot(t, up));
+    }
+  }
+  // A slope g satisfies g . ds = height of ds and g . dt = height of dt, hence
+  // |g| <= |heights| |(ds, dt)| / |ds x dt|.
+  const double area = dt.low_x * ds.low_y - dt.far_y() * ds.far_x();
+  if (!(dt.low_x > 0 && ds.low_y > 0 && area > 0)) return 1;
+  const double heights = std::sqrt(ds.height * ds.height + dt.height * dt.height);
+  const double sizes = std::sqrt(ds.far_x() * ds.far_x() + ds.far_y() * ds.far_y() +
+                                 dt.far_x() * dt.far_x() + dt.far_y() * dt.far_y());
+  return std::min(1.0, heights * sizes / area);
+}
+
+// `span_s` and `span_t` are the parts of the patch's parameters that the piece covers.
+Bend bend_of(const BezierPatch& piece, double span_s, double span_t) {
+  const auto& c = piece.points;
+  const Vec3d up = piece.normal(0.5, 0.5);
+  const double slope = steepest(piece, up);
+  const auto opens = [&](Vec3d v) {
+    const double height = dot(v, up);
+    return std::min(length(v), std::fabs(height) + slope * length(v - up * height));
+  };
+  Bend bend;
+  for (size_t k = 0; k < 4; ++k) {
+    for (size_t i = 0; i < 2; ++i) {
+      const size_t row = 4 * k + i;
+      const size_t column = 4 * i + k;
+      bend.ss = std::max(bend.ss, opens(c[row] - c[row + 1] * 2 + c[row + 2]));
+      bend.tt = std::max(bend.tt, opens(c[column] - c[column + 4] * 2 + c[column + 8]));
+    }
+  }
+  for (size_t j = 0; j < 3; ++j) {
+    for (size_t i = 0; i < 3; ++i) {
+      const size_t a = 4 * j + i;
+      bend.st = std::max(bend.st, opens(c[a] - c[a + 1] - c[a + 4] + c[a + 5]));
+    }
+  }
+  bend.ss *= 6 / (span_s * span_s);
+  bend.st *= 9 / (span_s * span_t);
+  bend.tt *= 6 / (span_t * span_t);
+  return bend;
+}
+
+constexpr int32_t kMostPieces = 2;  // Halvings.
+
+std::vector<Bend> bends_of(const BezierPatch& patch, Halvings pieces) {
+  std::vector<BezierPatch> parts{patch};
+  const auto halve = [&](auto split) {
+    std::vector<BezierPatch> halves;
+    halves.reserve(2 * parts.size());
+    for (const BezierPatch& part : parts) {
+      for (const BezierPatch& half : split(part, 0.5)) halves.push_back(half);
+    }
+    parts = std::move(halves);
+  };
+  for (int32_t k = 0; k < pieces.s; ++k) halve(split_s);
+  for (int32_t k = 0; k < pieces.t; ++k) halve(split_t);
+  std::vector<Bend> bends;
+  bends.reserve(parts.size());
+  for (const BezierPatch& part : parts) {
+    bends.push_back(bend_of(part, 1.0 / (1 << pieces.s), 1.0 / (1 << pieces.t)));
+  }
+  return bends;
+}
+
+}  // namespace
+
+Halvings steps_within(const BezierPatch& patch, double tolerance) {
+  Halvings h;
+  Halvings seen;
+  std::vector<Bend> bends = bends_of(patch, seen);
+  for (;;) {
+    const Halvings pieces{std::min(h.s, kMostPieces), std::min(h.t, kMostPieces)};
+    if (pieces != seen) bends = bends_of(patch, pieces);
+    seen = pieces;
+    const double a = 1.0 / (1 << h.s);
+    const double b = 1.0 / (1 << h.t);
+    Bend worst;
+    for (const Bend& bend : bends) {
+      if (!(bend.gap(a, b) <= worst.gap(a, b))) worst = bend;  // Also a NaN of wild coordinates.
+    }
+    if (worst.gap(a, b) <= tolerance) return h;
+    const bool more_s = h.s < kMostHalvings;
+    const bool more_t = h.t < kMostHalvings;
+    if (!more_s && !more_t) return h;
+    // Halve the direction that gives more.
+    const double by_s = a * (a * worst.ss + b * worst.st);
+    const double by_t = b * (b * worst.tt + a * worst.st);
+    ++(more_s && (!more_t || by_s >= by_t) ? h.s : h.t);
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/hash.h"
+#include "patch_nets.h"
+#include "throng/patch.h"
+
+namespace throng {
+namespace {
+
+PatchMesh cut(const PatchSet& set, double tolerance, int32_t workers = 0) {
+  Context context;
+  auto mesh = tessellate_patches(set, {.tolerance = tolerance, .workers = workers}, context);
+  EXPECT_TRUE(mesh) << mesh.error().message;
+  return mesh ? *std::move(mesh) : PatchMesh{};
+}
+
+uint64_t hash_of(const PatchMesh& mesh) {
+  std::vector<int64_t> numbers;
+  for (const Vec3d& p : mesh.positions) {
+    for (const double c : {p.x, p.y, p.z}) {
+      numbers.push_back(static_cast<int64_t>(std::floor(c * 1000 + 0.5)));
+    }
+  }
+  for (const auto& t : mesh.triangles) numbers.insert(numbers.end(), t.begin(), t.end());
+  numbers.insert(numbers.end(), mesh.first.begin(), mesh.first.end());
+  return hash_span(std::span<const int64_t>(numbers));
+}
+
+size_t count_kind(const PatchSet& set, EdgeBind bind) {
+  size_t count = 0;
+  for (const auto& four : set.edges) {
+    for (const PatchEdge& edge : four) count += edge.bind == bind ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(PatchMesh, RandomNetsWithOneTwoAndFourNeighboursHaveNoCrack) {
+  size_t two = 0;
+  size_t four = 0;
+  for (uint64_t seed = 0; seed < 24; ++seed) {
+    const PatchSet set = test::make_net({.side = 3, .seed = seed});
+    two += count_kind(set, EdgeBind::kTwo);
+    four += count_kind(set, EdgeBind::kFour);
+    const double tolerance = seed % 3 == 0 ? 0.05 : seed % 3 == 1 ? 0.3 : 5;
+    const PatchMesh mesh = cut(set, tolerance);
+    EXPECT_GT(test::expect_watertight(set, mesh), 0u);
+    if (HasFailure()) FAIL() << "seed " << seed << ", tolerance " << tolerance;
+  }
+  EXPECT_GT(two, 50u);
+  EXPECT_GT(four, 10u);
+}
+
+TEST(PatchMesh, AClosedNetHasNoOpenEdgeAtAll) {
+  for (uint64_t seed = 0; seed < 12; ++seed) {
+    const PatchSet set = test::make_net({.side = 4, .relief = 2, .closed = true, .seed = seed});
+    const PatchMesh mesh = cut(set, seed % 2 == 0 ? 0.05 : 1);
+    EXPECT_EQ(test::expect_watertight(set, mesh), 0u);
+    // Euler: a torus has as many vertices and faces as edges.
+    EXPECT_EQ(2 * mesh.positions.size(), mesh.triangles.size());
+    if (HasFailure()) FAIL() << "seed " << seed;
+  }
+}
+
+TEST(PatchMesh, NeighboursWhoseCurvesDifferALittleStillShareTheirVertices) {
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    const PatchSet set = test::make_net({.side = 3, .jitter = 0.09, .closed = true, .seed = seed});
+    EXPECT_EQ(test::expect_watertight(set, cut(set, 0.2)), 0u);
+    if (HasFailure()) FAIL() << "seed " << seed;
+  }
+}
+
+TEST(PatchMesh, TrianglesStayWithinTheToleranceOfTheirPatch) {
+  double worst = 0;
+  for (const double tolerance : {0.005, 0.02, 0.3}) {
+    const PatchSet set = test::make_net({.side = 2, .cell = 8, .relief = 3, .seed = 4});
+    const PatchMesh mesh = cut(set, tolerance);
+    for (uint32_t p = 0; p < set.size(); ++p) {
+      const double distance = test::worst_distance(set, mesh, p, 40);
+      EXPECT_LE(distance, tolerance);
+      worst = std::fmax(worst, distance / tolerance);
+    }
+  }
+  EXPECT_GT(worst, 0.2);  // Not simply cut as fine as can be.
+}
+
+TEST(PatchMesh, TrianglesShowTheirFaceWhereTheNormalPointsTo) {
+  const PatchSet set = test::make_net({.side = 3, .relief = 3, .seed = 9});
+  const PatchMesh mesh = cut(set, 0.05);
+  for (uint32_t p = 0; p < set.size(); ++p) {
+    Vec3d sum;
+    for (uint32_t t = mesh.first[p]; t < mesh.first[p + 1]; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      sum =
+          sum + cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+    }
+    EXPECT_GT(dot(sum, set.patches[p].normal(0.5, 0.5)), 0);
+  }
+}
+
+TEST(PatchMesh, AFlatPatchIsTwoTriangles) {
+  const PatchSet set = test::make_net({.side = 1, .relief = 0, .sideways = 0, .split_some = false});
+  PatchSet flat = set;
+  for (Vec3d& p : flat.patches[0].points) p.y = 0;
+  const double third = 16.0 / 3;
+  for (size_t i = 0; i < 16; ++i) {
+    flat.patches[0].points[i] = {third * static_cast<double>(i % 4), 0,
+                                 third * static_cast<double>(i / 4)};
+  }
+  EXPECT_EQ(cut(flat, 0.02).triangles.size(), 2u);
+}
+
+TEST(PatchMesh, VerticesLieOnWholeMillimetres) {
+  for (const Vec3d& p : cut(test::make_net({}), 0.1).positions) {
+    for (const double c : {p.x, p.y, p.z}) {
+      EXPECT_EQ(c, std::floor(c * 1000 + 0.5) / 1000);
+    }
+  }
+}
+
+// A dome: four sides around a tip that is an edge of each, on an open ring.
+TEST(PatchMesh, ACollapsedEdgeIsOneVertex) {
+  PatchSet set;
+  const double k = 0.5522847498;
+  for (int32_t q = 0; q < 4; ++q) {
+    BezierPatch patch;
+    for (size_t j = 0; j < 4; ++j) {
+      const std::array<std::array<double, 2>, 4> arc{{{1, 0}, {1, k}, {k, 1}, {0, 1}}};
+      const double x = arc[j][0];
+      const double z = arc[j][1];
+      const std::array<std::array<double, 2>, 4> meridian{{{5, 0}, {5, 3}, {3, 5}, {0, 5}}};
+      for (size_t i = 0; i < 4; ++i) {
+        Vec3d p{meridian[i][0] * x, meridian[i][1], -meridian[i][0] * z};
+        for (int32_t r = 0; r < q; ++r) p = {p.z, p.y, -p.x};  // A quarter turn.
+        patch.points[4 * j + i] = {p.x + 0.0, p.y, p.z + 0.0};
+      }
+    }
+    set.add(patch);
+  }
+  for (uint32_t q = 0; q < 4; ++q) set.bind({q, 1}, {(q + 1) % 4, 3});
+  const PatchMesh mesh = cut(set, 0.02);
+  const size_t open = test::expect_watertight(set, mesh);
+  EXPECT_GT(open, 8u);
+  // Euler for a disc: V - E + F = 1, with 3 F = 2 E - open.
+  EXPECT_EQ(2 * mesh.positions.size(), mesh.triangles.size() + open + 2);
+}
+
+// One patch bent to a ring, its own neighbour.
+TEST(PatchMesh, APatchMayBeItsOwnNeighbour) {
+  PatchSet set;
+  BezierPatch patch;
+  const std::array<std::array<double, 2>, 4> loop{{{0, -3}, {9, 3}, {-9, 3}, {0, -3}}};
+  for (size_t j = 0; j < 4; ++j) {
+    for (size_t i = 0; i < 4; ++i) {
+      patch.points[4 * j + i] = {loop[j][0], static_cast<double>(i), loop[j][1]};
+    }
+  }
+  set.add(patch);
+  set.bind({0, 1}, {0, 3});
+  for (const double tolerance : {0.01, 100.0}) {
+    const PatchMesh mesh = cut(set, tolerance);
+    const size_t open = test::expect_watertight(set, mesh);
+    EXPECT_GE(open, 8u);
+    EXPECT_EQ(2 * mesh.positions.size(), mesh.triangles.size() + open);  // A ring: V - E + F = 0.
+  }
+}
+
+TEST(PatchMesh, SameBytesForAnyNumberOfWorkers) {
+  const PatchSet set = test::make_net({.side = 12, .jitter = 0.02, .seed = 7});
+  for (const int32_t workers : {1, 2, 3, 8, 0}) {
+    EXPECT_EQ(hash_of(cut(set, 0.02, workers)), 0x8ff7f3e6205537e5) << "workers = " << workers;
+  }
+}
+
+TEST(PatchMesh, WhatCannotBeCutIsRefusedWithASentence) {
+  const PatchSet set = test::make_net({});
+  Context context;
+  for (const TessellationConfig& config :
+       {TessellationConfig{.tolerance = 0}, TessellationConfig{.tolerance = NAN},
+        TessellationConfig{.workers = -1}}) {
+    const auto mesh = tessellate_patches(set, config, context);
+    ASSERT_FALSE(mesh);
+    EXPECT_EQ(mesh.error().code, Errc::kBadConfig);
+  }
+  const auto many = tessellate_patches(set, {.tolerance = 0.001, .most_triangles = 1000}, context);
+  ASSERT_FALSE(many);
+  EXPECT_EQ(many.error().code, Errc::kLimit);
+  EXPECT_NE(many.error().message.find("give more than 1000 triangles at a tolerance of 0.001 m"),
+            std::string::npos);
+  PatchSet wrong = set;
+  wrong.patches[0].points[0].x = INFINITY;
+  const auto bad = tessellate_patches(wrong, {}, context);
+  ASSERT_FALSE(bad);
+  EXPECT_EQ(bad.error().code, Errc::kBadInput);
+  context.cancel = true;
+  const auto stopped = tessellate_patches(set, {}, context);
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, Errc::kCancelled);
+}
+
+}  // namespace
+}  // namespace throng

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "throng/patch.h"
+#include "throng/scene.h"
+
+/// Patches to test with, and what must be true of their triangles.
+namespace throng::test {
+
+/// How a net is made.
+struct NetConfig {
+  int32_t side = 4;        ///< Cells along x and z.
+  double cell = 16;        ///< [m]
+  double relief = 6;       ///< How far vertices go up and down. [m]
+  double sideways = 3;     ///< How far inner vertices go sideways. [m]
+  double jitter = 0;       ///< Control points of inner borders differ by this between patches. [m]
+  bool closed = false;     ///< Closed to a torus, without a border.
+  bool split_some = true;  ///< Cells are split into 2 x 2 or 4 x 4 at random.
+  uint64_t seed = 1;
+};
+
+/// A net of cells with neighbours of all kinds (1, 2, 4), each patch turned at random. Open nets
+/// have their border in the planes x, z = 0 and side * cell.
+PatchSet make_net(const NetConfig& config);
+
+/// The same surface with vertex k as vertex k + 1, `turns` times.
+BezierPatch turn(BezierPatch patch, uint32_t turns);
+
+/// Expects that each triangle's edge is met by exactly one in the opposite direction, by index and
+/// by place, save on open edges of the triangle's own patch; and that no vertex lies inside an
+/// edge. Returns how many edges have no partner.
+size_t expect_watertight(const PatchSet& set, const PatchMesh& mesh);
+
+/// The largest distance from points of patch p to its triangles, over `samples` points.
+double worst_distance(const PatchSet& set, const PatchMesh& mesh, uint32_t p, int32_t samples);
+
+double distance_to_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c);
+
+}  // namespace throng::test

@@ -31,6 +31,14 @@ int list_worlds(const Session& session) {
   return kDone;
 }
 
+// Patches keep their neighbours in a file of their own kind; everything else is a GLB.
+Result<void> write_world(const Scene& scene, const std::string& path) {
+  if (!path.ends_with(".patches.json")) return write_glb(scene, path);
+  if (!scene.patches.empty()) return write_patches(scene.patches, path);
+  return Error{Errc::kBadConfig,
+               path + ": this world has no patches; name a .glb file, or make a landscape"};
+}
+
 int make_world(const Session& session, const WorldOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
@@ -41,7 +49,7 @@ int make_world(const Session& session, const WorldOptions& options) {
   const double made = seconds();
   if (session.context.cancel)
     return fail({Errc::kCancelled, "world: stopped; nothing was written"});
-  const Result<void> written = write_glb(*scene, options.output);
+  const Result<void> written = write_world(*scene, options.output);
   if (!written) return fail(written.error());
 
   const Box3d box = scene->bounds();
@@ -51,6 +59,7 @@ int make_world(const Session& session, const WorldOptions& options) {
                      {"triangles", scene->triangles.size()},
                      {"vertices", scene->positions.size()},
                      {"parts", scene->parts.size()},
+                     {"patches", scene->patches.size()},
                      {"min", {box.min.x, box.min.y, box.min.z}},
                      {"max", {box.max.x, box.max.y, box.max.z}},
                      {"extent", {size.x, size.y, size.z}},
@@ -70,7 +79,8 @@ int make_world(const Session& session, const WorldOptions& options) {
 void add_world(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(parser, session, "world", "Write a built-in world as a GLB file",
                                   "throng world --list\n"
-                                  "throng world garage --size 120 --levels 4 -o garage.glb");
+                                  "throng world garage --size 120 --levels 4 -o garage.glb\n"
+                                  "throng world landscape --seed 3 -o hills.patches.json");
   const auto options = std::make_shared<WorldOptions>();
   BuiltinWorldConfig& config = options->config;
   config.name.clear();
@@ -85,8 +95,10 @@ void add_world(CLI::App& parser, Session& session) {
                    "Grow the world to about this many (powerplant, city)")
       ->type_name("N");
   command->add_option("--seed", config.seed, "Another seed, another world")->type_name("S");
-  auto* output =
-      command->add_option("-o,--output", options->output, "File to write")->type_name("GLB");
+  auto* output = command
+                     ->add_option("-o,--output", options->output,
+                                  "File to write; .patches.json keeps a landscape curved")
+                     ->type_name("GLB");
   list->excludes(output);
   command->callback([&session, options] {
     if (options->list) {

@@ -16,7 +16,7 @@ namespace throng {
 
 /// What to build. Zero means the world's own default.
 struct BuiltinWorldConfig {
-  std::string name = "garage";  ///< cube stairs garage bridge church powerplant city maze
+  std::string name = "garage";  ///< cube stairs garage bridge church powerplant city maze landscape
   double size = 0;              ///< Side of the footprint. [m, >= 0]
   uint64_t triangles = 0;       ///< Grow the world until it has about this many (powerplant, city).
   int32_t levels = 0;           ///< Storeys, where the world has storeys. [>= 0]

@@ -15,6 +15,10 @@ void build_bridge(WorldBuilder& b, const BuiltinWorldConfig& config);
 void build_church(WorldBuilder& b, const BuiltinWorldConfig& config);
 void build_powerplant(WorldBuilder& b, const BuiltinWorldConfig& config);
 void build_city(WorldBuilder& b, const BuiltinWorldConfig& config);
+/// The only world of patches: cut into triangles when it is made.
+PatchSet build_landscape(const BuiltinWorldConfig& config);
+/// The curve tolerance at which a landscape of this size still fits. [m]
+double landscape_tolerance(double size);
 void build_maze(WorldBuilder& b, const BuiltinWorldConfig& config);
 
 /// The footprint that holds about `triangles`, for the worlds that grow with them. [m]

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "import/builtin_table.h"
+#include "import/patch_scene.h"
 
 namespace throng {
 namespace {
@@ -20,11 +21,12 @@ struct Entry {
   double (*size_for)(uint64_t triangles, int32_t levels) = nullptr;  // Null: does not grow.
   uint64_t max_triangles = 0;
   void (*build)(WorldBuilder&, const BuiltinWorldConfig&) = nullptr;
+  PatchSet (*build_patches)(const BuiltinWorldConfig&) = nullptr;  // Instead of `build`.
 };
 
 constexpr uint64_t kMostTriangles = 100'000'000;  // Corners must stay below 2^32 with room.
 
-const std::array<Entry, 8> kWorlds = {{
+const std::array<Entry, 9> kWorlds = {{
     {{"cube", "a hollow cube: floor, roof and four walls without thickness", 5.8},
      0.5,
      10000,
@@ -89,6 +91,16 @@ const std::array<Entry, 8> kWorlds = {{
      nullptr,
      0,
      builtin::build_maze},
+    {{"landscape", "curved hills, cliffs, overhangs, sunken rocks and arches, as Bezier patches",
+      320},
+     64,
+     12000,
+     0,
+     0,
+     nullptr,
+     0,
+     nullptr,
+     builtin::build_landscape},
 }};
 
 const Entry* find_entry(const std::string& name) {
@@ -156,6 +168,17 @@ Result<Scene> make_builtin_world(const BuiltinWorldConfig& config) {
   if (!(full.size >= entry->min_size && full.size <= entry->max_size)) {
     return refuse(
         fmt::format("size is {} m, use {} to {}", full.size, entry->min_size, entry->max_size));
+  }
+  if (entry->build_patches != nullptr) {
+    Scene scene;
+    scene.patches = entry->build_patches(full);
+    Context context;
+    SceneConfig how;
+    how.curve_tolerance = builtin::landscape_tolerance(full.size);
+    if (const auto cut = cut_patches(scene, how, context); !cut) {
+      return refuse(cut.error().message);
+    }
+    return scene;
   }
   WorldBuilder builder;
   entry->build(builder, full);

@@ -70,6 +70,24 @@ class Program(unittest.TestCase):
         self.assert_refused(self.run_throng("run", self.world, "--class", "horse"), "horse", "adult")
         self.assertEqual(list(self.path.iterdir()), [])
 
+    def test_landscapes_are_written_curved_read_back_and_refused_when_damaged(self):
+        hills = self.path / "hills.patches.json"
+        self.assertEqual(self.run_throng("world", "landscape", "--size", 64, "-o", hills).returncode, 0)
+        baked = []
+        for source in ("builtin:landscape,size=64", hills):
+            done = self.run_throng("bake", source, "-o", "x.throng", "--cell", 0.5, "--json")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertGreater(json.loads(done.stdout)["patches"], 30)
+            baked.append([(p.name, p.read_bytes()) for p in sorted((self.path / "x.throng").iterdir())])
+        self.assertEqual(baked[0], baked[1])
+        self.assert_refused(self.run_throng("world", "cube", "-o", "cube.patches.json"), "no patches", ".glb")
+        hills.write_text(hills.read_text().replace("[1,0]", "[1,1]", 1))
+        self.assert_refused(self.run_throng("bake", hills, "-o", "y.throng"), "hills.patches.json", "edge")
+        for name, content in (("a.zonel", b"\x03ZONE\x02"), ("a.bpt", b"2\n3 3\n1 2"), ("a.patches.json", b"{")):
+            (self.path / name).write_bytes(content)
+            self.assert_refused(self.run_throng("bake", name, "-o", "y.throng"), name)
+        self.assertFalse((self.path / "y.throng").exists())
+
     def test_asking_for_more_avatars_than_fit_says_how_many_fit(self):
         done = self.run_throng("run", self.world, "--avatars", 10_000_000, "--steps", 1)
         self.assert_refused(done, "fit")

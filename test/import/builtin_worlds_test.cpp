@@ -61,9 +61,9 @@ void expect_sound(const Scene& scene, const std::string& name) {
 }
 
 TEST(BuiltinWorlds, EveryWorldIsASoundMeshAtItsDefaultAndAnotherSize) {
-  const std::map<std::string, double> other = {{"cube", 3},     {"stairs", 100}, {"garage", 130},
-                                               {"bridge", 300}, {"church", 60},  {"powerplant", 48},
-                                               {"city", 730},   {"maze", 71}};
+  const std::map<std::string, double> other = {
+      {"cube", 3},        {"stairs", 100}, {"garage", 130}, {"bridge", 300},   {"church", 60},
+      {"powerplant", 48}, {"city", 730},   {"maze", 71},    {"landscape", 140}};
   for (const BuiltinWorldInfo& info : builtin_worlds()) {
     const std::string name(info.name);
     expect_sound(make({.name = name}), name);
@@ -73,10 +73,11 @@ TEST(BuiltinWorlds, EveryWorldIsASoundMeshAtItsDefaultAndAnotherSize) {
 
 TEST(BuiltinWorlds, SameNameSizeAndSeedGiveTheSameBytesOnEveryMachine) {
   const std::map<std::string, uint64_t> golden = {
-      {"cube", 0xa0538b85755696c5},   {"stairs", 0x3970f7f303cc7892},
-      {"garage", 0x300ad0962c4477cc}, {"bridge", 0x7cd053ff056e2b41},
-      {"church", 0xdbc7e7e137d0053},  {"powerplant", 0xa304e56f53c60dad},
-      {"city", 0xc77e908054dab80a},   {"maze", 0xbcea4911f4a653bb}};
+      {"cube", 0xa0538b85755696c5},     {"stairs", 0x3970f7f303cc7892},
+      {"garage", 0x300ad0962c4477cc},   {"bridge", 0x7cd053ff056e2b41},
+      {"church", 0xdbc7e7e137d0053},    {"powerplant", 0xa304e56f53c60dad},
+      {"city", 0xc77e908054dab80a},     {"maze", 0xbcea4911f4a653bb},
+      {"landscape", 0xa3fd48da1b9e229c}};
   for (const BuiltinWorldInfo& info : builtin_worlds()) {
     const std::string name(info.name);
     const uint64_t hash = hash_of(make({.name = name}));
@@ -85,7 +86,8 @@ TEST(BuiltinWorlds, SameNameSizeAndSeedGiveTheSameBytesOnEveryMachine) {
 }
 
 TEST(BuiltinWorlds, AnotherSeedGivesAnotherWorldWhereChanceHasASay) {
-  for (const std::string name : {"garage", "bridge", "church", "powerplant", "city", "maze"}) {
+  for (const std::string name :
+       {"garage", "bridge", "church", "powerplant", "city", "maze", "landscape"}) {
     EXPECT_NE(hash_of(make({.name = name})), hash_of(make({.name = name, .seed = 2}))) << name;
   }
 }
@@ -209,7 +211,7 @@ TEST(BuiltinWorlds, WhatCannotBeBuiltIsRefusedWithASentence) {
   EXPECT_EQ(
       unknown.message,
       "world: there is no built-in world \"castle\"; use one of cube, stairs, garage, bridge, "
-      "church, powerplant, city, maze");
+      "church, powerplant, city, maze, landscape");
   EXPECT_EQ(refusal({.name = "garage", .size = 5}).message,
             "world garage: size is 5 m, use 45 to 2000");
   EXPECT_EQ(refusal({.name = "maze", .size = NAN}).code, Errc::kBadConfig);

@@ -123,6 +123,7 @@ format::Clearance pack_clearance(const ClearancePlanes& planes, uint8_t step_saf
 void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
                 std::span<const ClearancePlanes> clearance, std::span<const uint8_t> step_safe,
                 const SurfaceCodes& codes, TilePack& pack) {
+  pack.words.reserve(2048);  // Most tiles take less; growing to it by halves copies it all again.
   const bool all_present = sheet.present == kTileArea;
   uint32_t present_offset = 0;
   BitPlane present;

@@ -56,6 +56,7 @@ std::string human_bytes(uint64_t bytes);
 
 void add_bake(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
+void add_path(CLI::App& parser, Session& session);
 void add_picture(CLI::App& parser, Session& session);
 void add_region(CLI::App& parser, Session& session);
 void add_run(CLI::App& parser, Session& session);

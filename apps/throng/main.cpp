@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
     // One line a command, in the order of --help.
     add_bake(parser, session);
     add_info(parser, session);
+    add_path(parser, session);
     add_picture(parser, session);
     add_region(parser, session);
     add_run(parser, session);

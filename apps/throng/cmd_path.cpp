@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "throng/path.h"
+#include "throng/world.h"
+
+// throng path: the shortest way for an avatar class between two places.
+namespace throng::app {
+namespace {
+
+struct PathOptions {
+  std::string world;
+  std::string avatar_class = "adult";
+  std::vector<double> from, to;
+  double reach = 1.0;
+  int32_t threads = 0;
+};
+
+const char* word_for(PathEnd end) {
+  switch (end) {
+    case PathEnd::kReached:
+      return "reached";
+    case PathEnd::kUnreachable:
+      return "unreachable";
+    case PathEnd::kNoPlace:
+      return "no place";
+    case PathEnd::kGaveUp:
+      return "gave up";
+  }
+  return "";
+}
+
+std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }
+
+// One end of the way; fails with a sentence if the class cannot stand there.
+Result<Place> place_of(const World& world, const PathOptions& options, int32_t avatar_class,
+                       const std::vector<double>& at, const char* option) {
+  const Vec3d position{at[0], at[1], at[2]};
+  const auto bad = [&](const std::string& what) {
+    return Error{Errc::kBadInput,
+                 fmt::format("{}: {} ({}) {}", options.world, option, where(position), what)};
+  };
+  if (!std::isfinite(position.x + position.y + position.z)) return bad("is not a finite position");
+  const Box3d bounds = world.summary().bounds;
+  if (position.x < bounds.min.x || position.x > bounds.max.x || position.z < bounds.min.z ||
+      position.z > bounds.max.z) {
+    return bad(fmt::format("lies outside the world, which reaches from ({}) to ({})",
+                           where(bounds.min), where(bounds.max)));
+  }
+  const Place place = world.find_place(avatar_class, position, options.reach);
+  if (!place) {
+    return bad(
+        fmt::format("is no place where class {} can stand, within {} m up or down; see "
+                    "`throng picture`, or give a wider --reach",
+                    options.avatar_class, options.reach));
+  }
+  return place;
+}
+
+Json path_json(const PathOptions& options, const Path& path, const PathSummary& summary,
+               double seconds) {
+  Json points = Json::array();
+  for (const Place& p : path.points) points.push_back({p.position.x, p.position.y, p.position.z});
+  return {{"world", options.world},
+          {"class", options.avatar_class},
+          {"end", word_for(path.end)},
+          {"length", path.length},
+          {"points", points},
+          {"nodes", path.nodes},
+          {"seconds", seconds},
+          {"mesh",
+           {{"rectangles", summary.rectangles},
+            {"portals", summary.portals},
+            {"corners", summary.corners},
+            {"bytes", summary.bytes},
+            {"seconds", summary.seconds}}}};
+}
+
+std::string path_text(const PathOptions& options, const Path& path, double seconds) {
+  if (path.end != PathEnd::kReached) {
+    return fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+  }
+  std::string text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
+                                 options.avatar_class, path.points.size() - 1, seconds * 1e3);
+  for (const Place& p : path.points) text += "  " + where(p.position) + "\n";
+  return text;
+}
+
+int path(Session& session, const PathOptions& options) {
+  const Result<World> world = World::open(options.world);
+  if (!world) return fail(world.error());
+  const auto avatar_class = world->find_class(options.avatar_class);
+  if (!avatar_class) {
+    return fail(
+        {Errc::kBadConfig, fmt::format("{}: no class {} in this world; `throng info {}` lists them",
+                                       options.world, options.avatar_class, options.world)});
+  }
+  const auto from = place_of(*world, options, *avatar_class, options.from, "--from");
+  if (!from) return fail(from.error());
+  const auto to = place_of(*world, options, *avatar_class, options.to, "--to");
+  if (!to) return fail(to.error());
+  Result<PathFinder> finder = PathFinder::make(
+      *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
+  if (!finder) return fail(finder.error());
+  Path found;
+  const auto start = std::chrono::steady_clock::now();
+  finder->find(*from, *to, found);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  print_result(session, path_json(options, found, finder->summary(), seconds),
+               path_text(options, found, seconds));
+  return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+void add_path(CLI::App& parser, Session& session) {
+  CLI::App* command =
+      add_command(parser, session, "path", "Find the shortest way between two places",
+                  "throng bake builtin:garage -o garage.throng\n"
+                  "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult");
+  const auto options = std::make_shared<PathOptions>();
+  const auto add_place = [&](const char* name, std::vector<double>& at, const char* what) {
+    command->add_option(name, at, what)
+        ->delimiter(',')
+        ->expected(3)
+        ->required()
+        ->type_name("X,Y,Z");
+  };
+  command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
+  add_place("--from", options->from, "Where it begins [m]");
+  add_place("--to", options->to, "Where it ends [m]");
+  command->add_option("--class", options->avatar_class, "Avatar class by name")
+      ->capture_default_str();
+  command->add_option("--reach", options->reach, "How far up or down the feet may be [m]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Threads for making the mesh, 0 for all cores")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->callback([&session, options] { session.exit_code = path(session, *options); });
+}
+
+}  // namespace throng::app

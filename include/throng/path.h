@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/context.h"
+#include "throng/result.h"
+#include "throng/world.h"
+
+/// Shortest ways for a class over the ground of a baked world.
+namespace throng {
+
+struct PathConfig {
+  int32_t avatar_class = 0;
+  int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
+};
+
+/// How a search ended.
+enum class PathEnd {
+  kReached,
+  kUnreachable,  ///< No way on foot leads there.
+  kNoPlace,      ///< `from` or `to` is no place of the class.
+  kGaveUp,       ///< The budget was spent.
+};
+
+struct Path {
+  PathEnd end = PathEnd::kNoPlace;
+  std::vector<Place> points;  ///< From the start to the goal; each leg is a legal move.
+  double length = 0;          ///< Along the ground's plane. [m]
+  uint64_t nodes = 0;         ///< Intervals that the search looked at.
+};
+
+struct PathSummary {
+  uint64_t rectangles = 0;
+  uint64_t portals = 0;
+  uint64_t corners = 0;
+  uint64_t bytes = 0;
+  double seconds = 0;  ///< To make them.
+};
+
+/// Finds paths for one class. The ground is shared by all copies; each copy has its own memory for
+/// searching: give every thread one. No allocation once it is warm.
+class THRONG_API PathFinder {
+ public:
+  /// Reads every zone once. Fails with kBadConfig (no such class), kBadFile (a zone cannot be used)
+  /// or kCancelled.
+  [[nodiscard]] static Result<PathFinder> make(const World& world, const PathConfig& config,
+                                               Context& context);
+  PathFinder(const PathFinder& other);
+  PathFinder& operator=(const PathFinder& other);
+  PathFinder(PathFinder&&) noexcept;
+  PathFinder& operator=(PathFinder&&) noexcept;
+  ~PathFinder();
+
+  /// The shortest way from one place to another over all legal cells, any angle: no legal way is
+  /// shorter by more than 1/1000 of a cell a corner. `path` is reused: its memory stays. After
+  /// `max_nodes` nodes the search gives up.
+  void find(const Place& from, const Place& to, Path& path, uint64_t max_nodes = UINT64_MAX);
+
+  [[nodiscard]] PathSummary summary() const;
+
+ private:
+  struct Shared;
+  struct Scratch;
+  explicit PathFinder(std::shared_ptr<const Shared> shared);
+
+  std::shared_ptr<const Shared> shared_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace throng

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "throng/context.h"
+#include "throng/result.h"
+#include "world/walk.h"
+#include "world/zone_data.h"
+
+/// The walkable ground of one class as rectangles of cells joined by portals: what path search runs
+/// on.
+namespace throng {
+
+inline constexpr uint32_t kNoRect = UINT32_MAX;
+inline constexpr uint32_t kNoCorner = UINT32_MAX;
+
+/// A point of the ground's plane. [cells]
+struct CellPoint {
+  double x = 0, z = 0;
+};
+
+/// Cells [x, x + width) x [z, z + depth) of the world's grid on one level.
+struct MeshRect {
+  uint32_t level = 0;  // of the world
+  int32_t x = 0, z = 0;
+  int32_t width = 0, depth = 0;
+  uint32_t first_portal = 0;  // its portals end where the next rectangle's begin
+};
+
+/// A stretch of a rectangle's border over which a step leads to another, and back. Portals of a
+/// rectangle go around it with its inside on the left: south (z), east (x + width), north, west.
+/// `from` and `to` count cells along that way.
+struct MeshPortal {
+  uint32_t rect = 0;  // behind it
+  int32_t from = 0, to = 0;
+  uint32_t from_corner = kNoCorner, to_corner = kNoCorner;
+};
+
+/// Where three of four cells hold together and the fourth stands in the way: shortest paths bend
+/// only here.
+struct MeshCorner {
+  int32_t x = 0, z = 0;           // the point that the four cells share
+  int8_t away_x = 0, away_z = 0;  // from the missing cell: 1 or -1
+};
+
+struct PathMesh {
+  int32_t avatar_class = 0;
+  int32_t step = 0;             // [mm]
+  std::vector<uint32_t> first;  // per level of the world: its first rectangle; one more
+  std::vector<MeshRect> rects;  // one more at the end, for its first_portal
+  std::vector<MeshPortal> portals;
+  std::vector<MeshCorner> corners;
+
+  [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const;  // cell of the grid
+  [[nodiscard]] uint64_t bytes() const;
+};
+
+/// Fails with kBadFile (a zone cannot be used) or kCancelled. The same for any number of workers.
+Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
+                            Context& context);
+
+}  // namespace throng

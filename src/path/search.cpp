@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/search.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Distances around a rectangle run from its south-west corner with the inside on the left, as its
+// portals do. Of a node that looks in through [right, left], what lies from `right` on comes first,
+// then what the root sees, then what lies beyond `left`.
+namespace throng {
+namespace {
+
+constexpr double kSame = 1e-9;  // cells
+
+double distance(CellPoint a, CellPoint b) {
+  const double dx = a.x - b.x, dz = a.z - b.z;
+  return std::sqrt(dx * dx + dz * dz);
+}
+
+// Twice the area of (a, b, c): positive if c lies to the left of a -> b.
+double cross(CellPoint a, CellPoint b, CellPoint c) {
+  return (b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x);
+}
+
+double perimeter(const MeshRect& rect) { return 2.0 * (rect.width + rect.depth); }
+
+CellPoint point_around(const MeshRect& rect, double at) {
+  const double w = rect.width, d = rect.depth;
+  if (at <= w) return {rect.x + at, double(rect.z)};
+  if (at <= w + d) return {rect.x + w, rect.z + (at - w)};
+  if (at <= 2 * w + d) return {rect.x + w - (at - w - d), rect.z + d};
+  return {double(rect.x), rect.z + d - (at - 2 * w - d)};
+}
+
+// How far around a point of the border is.
+double around(const MeshRect& rect, CellPoint p) {
+  const double w = rect.width, d = rect.depth;
+  if (p.z <= rect.z) return p.x - rect.x;
+  if (p.x >= rect.x + w) return w + (p.z - rect.z);
+  if (p.z >= rect.z + d) return w + d + (rect.x + w - p.x);
+  return 2 * w + d + (rect.z + d - p.z);
+}
+
+// How far around the ray from `root` through the border point `through` leaves the rectangle.
+double exit_around(const MeshRect& rect, CellPoint root, CellPoint through) {
+  const double dx = through.x - root.x, dz = through.z - root.z;
+  double best = 1e300;
+  CellPoint exit = through;
+  const auto consider = [&](double t, double x, double z) {
+    if (t < best) {
+      best = t;
+      exit = {x, z};
+    }
+  };
+  const double x0 = rect.x, x1 = rect.x + rect.width, z0 = rect.z, z1 = rect.z + rect.depth;
+  if (dx != 0) {
+    const double x = dx > 0 ? x1 : x0, t = (x - through.x) / dx;
+    consider(t, x, std::clamp(through.z + t * dz, z0, z1));
+  }
+  if (dz != 0) {
+    const double z = dz > 0 ? z1 : z0, t = (z - through.z) / dz;
+    consider(t, std::clamp(through.x + t * dx, x0, x1), z);
+  }
+  return around(rect, exit);
+}
+
+// True if the ray from `root` through the border point `through` runs along the border.
+bool runs_along(const MeshRect& rect, CellPoint root, CellPoint through) {
+  if (root.z == through.z) return through.z == rect.z || through.z == rect.z + rect.depth;
+  if (root.x == through.x) return through.x == rect.x || through.x == rect.x + rect.width;
+  return false;
+}
+
+}  // namespace
+
+SearchResult PathSearch::find(const PathMesh& mesh, const SearchEnd& from, const SearchEnd& to,
+                              uint64_t max_nodes, std::vector<uint32_t>& corners, double& length) {
+  mesh_ = &mesh;
+  goal_ = to;
+  expanded_ = 0;
+  corners.clear();
+  if (from.rect == to.rect) {
+    length = distance(from.point, to.point);
+    return SearchResult::kFound;
+  }
+  if (best_.size() != mesh.corners.size()) best_.assign(mesh.corners.size(), {});
+  if (++search_ == 0) {
+    best_.assign(mesh.corners.size(), {});
+    search_ = 1;
+  }
+  roots_.clear();
+  nodes_.clear();
+  open_.clear();
+  found_length_ = 1e300;
+  start(from);
+  while (!open_.empty()) {
+    std::pop_heap(open_.begin(), open_.end());
+    const Entry entry = open_.back();
+    open_.pop_back();
+    if (entry.estimate >= found_length_) break;
+    const Node node = nodes_[entry.node];
+    if (is_stale(node.root)) continue;
+    if (++expanded_ > max_nodes) return SearchResult::kBudget;
+    expand(node);
+  }
+  if (found_length_ == 1e300) return SearchResult::kNone;
+  length = found_length_;
+  for (uint32_t r = found_root_; roots_[r].corner != kNoCorner; r = roots_[r].before)
+    corners.push_back(roots_[r].corner);
+  std::reverse(corners.begin(), corners.end());
+  return SearchResult::kFound;
+}
+
+void PathSearch::start(const SearchEnd& from) {
+  roots_.push_back({from.point, 0, kNoCorner, 0});
+  const MeshRect& rect = mesh_->rects[from.rect];
+  const uint32_t end = mesh_->rects[from.rect + 1].first_portal;
+  for (uint32_t p = rect.first_portal; p < end; ++p) {
+    const MeshPortal& portal = mesh_->portals[p];
+    add_piece(rect, portal, portal.from, portal.to, 0);
+  }
+}
+
+// A better way to the root's corner has been found since.
+bool PathSearch::is_stale(uint32_t root) const {
+  const Root& r = roots_[root];
+  return r.corner != kNoCorner && best_[r.corner].length < r.length - kSame;
+}
+
+// The root of ways that bend at a corner after `root`; UINT32_MAX if there was a better way there.
+uint32_t PathSearch::turn(uint32_t root, CellPoint at, uint32_t corner) {
+  const double length = roots_[root].length + distance(roots_[root].point, at);
+  Best& best = best_[corner];
+  if (best.search == search_ && best.length < length - kSame) return UINT32_MAX;
+  best = {search_, length};
+  roots_.push_back({at, length, corner, root});
+  return static_cast<uint32_t>(roots_.size() - 1);
+}
+
+double PathSearch::estimate(const Node& node) const {
+  const Root& root = roots_[node.root];
+  CellPoint goal = goal_.point;
+  const double side_root = cross(node.right, node.left, root.point);
+  const double side_goal = cross(node.right, node.left, goal);
+  // A goal on the root's side is reached over the interval all the same: mirrored, it is as far.
+  if (side_root * side_goal > 0) {
+    const bool upright = node.left.x == node.right.x;
+    if (upright) {
+      goal.x = 2 * node.left.x - goal.x;
+    } else {
+      goal.z = 2 * node.left.z - goal.z;
+    }
+  }
+  if (cross(root.point, node.left, goal) > 0)
+    return root.length + distance(root.point, node.left) + distance(node.left, goal);
+  if (cross(root.point, node.right, goal) < 0)
+    return root.length + distance(root.point, node.right) + distance(node.right, goal);
+  return root.length + distance(root.point, goal);
+}
+
+void PathSearch::push(const Node& node) {
+  nodes_.push_back(node);
+  open_.push_back({estimate(node), static_cast<uint32_t>(nodes_.size() - 1)});
+  std::push_heap(open_.begin(), open_.end());
+}
+
+// The stretch [from, to] of a portal of `rect`, seen from the root.
+void PathSearch::add_piece(const MeshRect& rect, const MeshPortal& portal, double from, double to,
+                           uint32_t root) {
+  const bool whole_from = from <= portal.from + kSame, whole_to = to >= portal.to - kSame;
+  if (!(to - from > kSame)) return;
+  Node node;
+  node.right = point_around(rect, whole_from ? portal.from : from);
+  node.left = point_around(rect, whole_to ? portal.to : to);
+  if (whole_from) node.right_corner = portal.from_corner;
+  if (whole_to) node.left_corner = portal.to_corner;
+  node.rect = portal.rect;
+  node.root = root;
+  push(node);
+}
+
+void PathSearch::expand(const Node& node) {
+  const CellPoint root = roots_[node.root].point;
+  const MeshRect& rect = mesh_->rects[node.rect];
+  const double base = around(rect, node.right);
+  const double whole = perimeter(rect);
+  const double width = distance(node.left, node.right);
+  const double last = whole - width;  // of the left end, from the right one on
+  const auto from_base = [&](double at) {
+    const double rest = at - base;
+    return rest < -kSame ? rest + whole : std::max(rest, 0.0);
+  };
+
+  // Between these the root sees the border.
+  double seen_first = 0, seen_last = last;
+  uint32_t seen_root = node.root;
+  const double side = cross(node.right, node.left, root);
+  if (std::fabs(side) <= kSame * width) {
+    // The root lies on the interval's line: unless it is an end of it, the way goes to the nearer
+    // end and turns there.
+    const double to_right = distance(root, node.right), to_left = distance(root, node.left);
+    if (std::min(to_right, to_left) > kSame) {
+      const bool right = to_right < to_left;
+      const uint32_t corner = right ? node.right_corner : node.left_corner;
+      if (corner == kNoCorner) return;
+      seen_root = turn(node.root, right ? node.right : node.left, corner);
+      if (seen_root == UINT32_MAX) return;
+    }
+  } else {
+    // Along the border, all that the ray passes is seen, edge on.
+    if (!runs_along(rect, root, node.right))
+      seen_first = from_base(exit_around(rect, root, node.right));
+    if (!runs_along(rect, root, node.left))
+      seen_last = from_base(exit_around(rect, root, node.left));
+    if (seen_last < seen_first) seen_last = seen_first;  // by rounding only
+  }
+
+  uint32_t right_root = UINT32_MAX, left_root = UINT32_MAX;
+  if (node.rect == goal_.rect) {
+    // The goal is seen, or lies behind one of the ends.
+    const bool on_line = std::fabs(side) <= kSame * width;
+    double length = 0;
+    uint32_t via = seen_root;
+    const CellPoint from = roots_[seen_root].point;
+    if (!on_line && cross(from, node.right, goal_.point) < -kSame) {
+      if (node.right_corner == kNoCorner)
+        via = UINT32_MAX;
+      else
+        via = right_root = turn(node.root, node.right, node.right_corner);
+    } else if (!on_line && cross(from, node.left, goal_.point) > kSame) {
+      if (node.left_corner == kNoCorner)
+        via = UINT32_MAX;
+      else
+        via = left_root = turn(node.root, node.left, node.left_corner);
+    }
+    if (via != UINT32_MAX) {
+      length = roots_[via].length + distance(roots_[via].point, goal_.point);
+      if (length < found_length_) {
+        found_length_ = length;
+        found_root_ = via;
+      }
+    }
+  }
+  bool right_asked = right_root != UINT32_MAX, left_asked = left_root != UINT32_MAX;
+  const auto behind = [&](bool right) {
+    uint32_t& made = right ? right_root : left_root;
+    bool& asked = right ? right_asked : left_asked;
+    const uint32_t corner = right ? node.right_corner : node.left_corner;
+    if (!asked && corner != kNoCorner)
+      made = turn(node.root, right ? node.right : node.left, corner);
+    asked = true;
+    return made;
+  };
+
+  const uint32_t end = mesh_->rects[node.rect + 1].first_portal;
+  for (uint32_t p = rect.first_portal; p < end; ++p) {
+    const MeshPortal& portal = mesh_->portals[p];
+    double first = from_base(portal.from), stop = first + (portal.to - portal.from);
+    // A portal may hold the interval itself: what lies on either side of it counts apart.
+    const auto add = [&](double a, double b) {
+      a = std::max(a, 0.0);
+      b = std::min(b, last);
+      const double offset = portal.from - first;  // back to distances around
+      const auto piece = [&](double i, double j, uint32_t root_of) {
+        if (j - i > kSame && root_of != UINT32_MAX)
+          add_piece(rect, portal, i + offset, j + offset, root_of);
+      };
+      if (a < seen_first - kSame) piece(a, std::min(b, seen_first), behind(true));
+      piece(std::max(a, seen_first), std::min(b, seen_last), seen_root);
+      if (b > seen_last + kSame) piece(std::max(a, seen_last), b, behind(false));
+    };
+    if (stop <= whole + kSame) {
+      add(first, stop);
+    } else {
+      const double over = stop - whole;  // it goes on past the right end
+      add(first, whole);
+      first -= whole;
+      add(0, over);
+    }
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "path/mesh.h"
+
+/// The shortest way over a mesh, by search over intervals.
+namespace throng {
+
+struct SearchEnd {
+  uint32_t rect = kNoRect;
+  CellPoint point;  // in the rectangle
+};
+
+enum class SearchResult { kFound, kNone, kBudget };
+
+/// Polyanya (Cui, Harabor, Grastien. Compromise-free Pathfinding on a Navigation Mesh. IJCAI 2017)
+/// over rectangles: a node is an interval of a portal that is seen from a root; the way bends at
+/// corners only, and the first one to arrive is the shortest over the mesh. Owns its memory: one
+/// per thread, no allocation once it has grown.
+class PathSearch {
+ public:
+  /// Corners of the shortest way from `from` to `to`, in order, ends left out; `length` in cells.
+  /// Gives up after `max_nodes` nodes.
+  SearchResult find(const PathMesh& mesh, const SearchEnd& from, const SearchEnd& to,
+                    uint64_t max_nodes, std::vector<uint32_t>& corners, double& length);
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
+
+ private:
+  // Where a way bends, and what it took to get there.
+  struct Root {
+    CellPoint point;
+    double length = 0;
+    uint32_t corner = kNoCorner;  // none: the start
+    uint32_t before = 0;          // index of the root before it
+  };
+  // An interval of a portal, seen from the root; the way goes on into `rect`. Looking that way,
+  // left is on the left.
+  struct Node {
+    CellPoint left, right;
+    uint32_t left_corner = kNoCorner, right_corner = kNoCorner;
+    uint32_t rect = kNoRect;
+    uint32_t root = 0;
+  };
+  struct Entry {
+    double estimate;
+    uint32_t node;
+    bool operator<(const Entry& other) const {
+      return estimate != other.estimate ? estimate > other.estimate : node > other.node;
+    }
+  };
+  struct Best {
+    uint32_t search = 0;  // that set it
+    double length = 0;
+  };
+
+  void start(const SearchEnd& from);
+  void expand(const Node& node);
+  void visit(const Node& node, const CellPoint& root, double first, double last, double base,
+             uint32_t root_index);
+  void add_piece(const MeshRect& rect, const MeshPortal& portal, double from, double to,
+                 uint32_t root);
+  uint32_t turn(uint32_t root, CellPoint at, uint32_t corner);
+  void push(const Node& node);
+  [[nodiscard]] double estimate(const Node& node) const;
+  [[nodiscard]] bool is_stale(uint32_t root) const;
+
+  const PathMesh* mesh_ = nullptr;
+  SearchEnd goal_;
+  uint32_t search_ = 0;
+  uint64_t expanded_ = 0;
+  uint32_t found_root_ = 0;
+  double found_length_ = 0;
+  std::vector<Root> roots_;
+  std::vector<Node> nodes_;
+  std::vector<Entry> open_;
+  std::vector<Best> best_;  // per corner
+};
+
+}  // namespace throng

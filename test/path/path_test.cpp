@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/random.h"
+#include "throng/bake.h"
+#include "throng/builtin_worlds.h"
+#include "throng/graph.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes) {
+  Context context;
+  const auto world =
+      bake_world(scene, {.cell = cell, .zone = 25.6, .classes = std::move(classes)}, context);
+  EXPECT_TRUE(world) << world.error().message;
+  return world ? *world : World{};
+}
+
+World builtin(const BuiltinWorldConfig& config, double cell) {
+  const auto scene = make_builtin_world(config);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? bake(*scene, cell, default_classes()) : World{};
+}
+
+PathFinder finder(const World& world, int32_t avatar_class) {
+  Context context;
+  auto made = PathFinder::make(world, {.avatar_class = avatar_class}, context);
+  EXPECT_TRUE(made) << made.error().message;
+  return *std::move(made);
+}
+
+double plan_distance(const Vec3d& a, const Vec3d& b) { return std::hypot(a.x - b.x, a.z - b.z); }
+
+// The path can be gone from its first place to its last, and is as long as it says.
+void expect_walkable(const World& world, int32_t avatar_class, const Place& from, const Place& to,
+                     const Path& path) {
+  ASSERT_GE(path.points.size(), 2u);
+  EXPECT_LT(plan_distance(path.points.front().position, from.position), 1e-3);
+  EXPECT_LT(plan_distance(path.points.back().position, to.position), 1e-3);
+  EXPECT_EQ(path.points.front().level1, from.level1);
+  EXPECT_EQ(path.points.back().level1, to.level1);
+  double length = 0;
+  Place at = path.points.front();
+  for (size_t i = 1; i < path.points.size(); ++i) {
+    const Vec3d step = path.points[i].position - at.position;
+    length += std::hypot(step.x, step.z);
+    const MoveResult move = world.move(avatar_class, at, step.x, step.z);
+    ASSERT_EQ(move.end, MoveEnd::kArrived) << "leg " << i;
+    ASSERT_EQ(move.place.level1, path.points[i].level1);
+    EXPECT_NEAR(move.place.position.y, path.points[i].position.y, 1e-9);
+    at = path.points[i];
+  }
+  EXPECT_NEAR(length, path.length, 1e-3 * static_cast<double>(path.points.size()));
+}
+
+// A floor with boxes at random, of any size and some turned.
+Scene boxes(uint64_t seed) {
+  constexpr double kSide = 9;
+  Scene scene = worlds::flat(kSide);
+  const auto real = [&](uint64_t n, double low, double high) {
+    return low + (high - low) * static_cast<double>(random_below(seed, n, 0, 1 << 20)) / (1 << 20);
+  };
+  for (uint64_t b = 0; b < 9; ++b) {
+    const double x = real(b * 5, 0, kSide), z = real(b * 5 + 1, 0, kSide);
+    const double w = real(b * 5 + 2, 0.1, 2.5), d = real(b * 5 + 3, 0.1, 2.5);
+    const double angle = b % 3 == 0 ? real(b * 5 + 4, 0, 3) : 0;
+    const auto corner = [&](double u, double v, double y) {
+      return Vec3d{x + u * w * std::cos(angle) - v * d * std::sin(angle), y,
+                   z + u * w * std::sin(angle) + v * d * std::cos(angle)};
+    };
+    constexpr double kUV[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+    for (size_t i = 0; i < 4; ++i) {
+      const auto& p = kUV[i];
+      const auto& q = kUV[(i + 1) % 4];
+      scene.add_quad(corner(p[0], p[1], 0), corner(q[0], q[1], 0), corner(q[0], q[1], 2.5),
+                     corner(p[0], p[1], 2.5));
+    }
+    // The room inside is nobody's.
+    scene.add_quad(corner(-0.5, -0.5, 0.6), corner(0.5, -0.5, 0.6), corner(0.5, 0.5, 0.6),
+                   corner(-0.5, 0.5, 0.6), kAreaBlocked);
+  }
+  return scene;
+}
+
+// The shortest way over all points beside convex corners of the legal cells that moves can join: a
+// visibility graph, by trying every pair. Of one level tile after the other, so for flat worlds.
+class Visibility {
+ public:
+  Visibility(const World& world, int32_t avatar_class) : world_(world), class_(avatar_class) {
+    const WorldSummary summary = world.summary();
+    const int32_t width = summary.tiles_x * kTileCells, depth = summary.tiles_z * kTileCells;
+    std::vector<uint8_t> legal(static_cast<size_t>(width) * static_cast<size_t>(depth), 0);
+    const auto at = [&](int32_t x, int32_t z) {
+      return x >= 0 && z >= 0 && x < width && z < depth &&
+             legal[static_cast<size_t>(z) * static_cast<size_t>(width) + static_cast<size_t>(x)] !=
+                 0;
+    };
+    for (uint32_t l = 0; l < world.level_tile_count(); ++l) {
+      const LevelTileContent tile = world.level_tile(l);
+      for (int32_t c = 0; c < kTileCells * kTileCells; ++c) {
+        if (tile.clearance[static_cast<size_t>(avatar_class)][static_cast<size_t>(c)] == 0)
+          continue;
+        const int32_t x = tile.tile_x * kTileCells + c % kTileCells;
+        const int32_t z = tile.tile_z * kTileCells + c / kTileCells;
+        legal[static_cast<size_t>(z) * static_cast<size_t>(width) + static_cast<size_t>(x)] = 1;
+      }
+    }
+    const double nudge = summary.cell / 1024;
+    for (int32_t z = 1; z < depth; ++z) {
+      for (int32_t x = 1; x < width; ++x) {
+        const int count = at(x, z) + at(x - 1, z) + at(x, z - 1) + at(x - 1, z - 1);
+        if (count != 3) continue;
+        const double away_x = at(x, z) && at(x, z - 1) ? 1 : -1;
+        const double away_z = at(x, z) && at(x - 1, z) ? 1 : -1;
+        const Vec3d point{summary.origin.x + x * summary.cell + away_x * nudge, 0,
+                          summary.origin.z + z * summary.cell + away_z * nudge};
+        corners_.push_back(world.find_place(avatar_class, point, 0.5));
+      }
+    }
+  }
+
+  // Infinite if there is no way.
+  [[nodiscard]] double length(const Place& from, const Place& to) const {
+    std::vector<Place> points = corners_;
+    points.push_back(from);
+    points.push_back(to);
+    const size_t start = points.size() - 2, goal = points.size() - 1;
+    std::vector<double> best(points.size(), std::numeric_limits<double>::infinity());
+    std::vector<bool> done(points.size(), false);
+    best[start] = 0;
+    for (;;) {
+      size_t next = points.size();
+      for (size_t i = 0; i < points.size(); ++i) {
+        if (!done[i] && std::isfinite(best[i]) && (next == points.size() || best[i] < best[next]))
+          next = i;
+      }
+      if (next == points.size() || next == goal) return best[goal];
+      done[next] = true;
+      for (size_t i = 0; i < points.size(); ++i) {
+        const double through =
+            best[next] + plan_distance(points[next].position, points[i].position);
+        if (done[i] || through >= best[i] || !points[i]) continue;
+        const Vec3d d = points[i].position - points[next].position;
+        if (world_.move(class_, points[next], d.x, d.z).end == MoveEnd::kArrived) best[i] = through;
+      }
+    }
+  }
+
+ private:
+  const World& world_;
+  int32_t class_;
+  std::vector<Place> corners_;
+};
+
+TEST(Path, NoLegalWayIsShorterOnRandomFloors) {
+  int reached = 0, bent = 0;
+  for (uint64_t seed = 0; seed < 24; ++seed) {
+    const World world = bake(boxes(seed), seed % 2 == 0 ? 0.15 : 0.1, {AvatarClass{}});
+    PathFinder paths = finder(world, 0);
+    const Visibility oracle(world, 0);
+    Path path;
+    for (uint64_t n = 0; n < 12; ++n) {
+      const Place from = world.random_place(0, seed, 2 * n);
+      const Place to = world.random_place(0, seed, 2 * n + 1);
+      ASSERT_TRUE(from && to);
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", pair " << n);
+      const double shortest = oracle.length(from, to);
+      paths.find(from, to, path);
+      ASSERT_EQ(path.end == PathEnd::kReached, std::isfinite(shortest));
+      if (path.end != PathEnd::kReached) continue;
+      ++reached;
+      bent += path.points.size() > 2;
+      expect_walkable(world, 0, from, to, path);
+      EXPECT_LE(path.length, shortest + 1e-4);
+      // The oracle goes two units further around each corner.
+      EXPECT_GE(path.length, shortest * (1 - 1e-3) - 1e-3);
+    }
+  }
+  EXPECT_GT(reached, 150);
+  EXPECT_GT(bent, 60);
+}
+
+// Ways exist within components and nowhere else, and can be gone.
+void expect_as_graph(const World& world, uint64_t pairs) {
+  Context context;
+  const auto graph = Graph::make(world, {}, context);
+  ASSERT_TRUE(graph);
+  const auto classes = static_cast<int32_t>(world.summary().classes.size());
+  for (int32_t c = 0; c < classes; ++c) {
+    SCOPED_TRACE(world.summary().classes[static_cast<size_t>(c)].name);
+    PathFinder paths = finder(world, c);
+    Path path;
+    for (uint64_t n = 0; n < pairs; ++n) {
+      const Place from = world.random_place(c, 3, 2 * n), to = world.random_place(c, 3, 2 * n + 1);
+      if (!from || !to) break;
+      SCOPED_TRACE(testing::Message() << "pair " << n);
+      paths.find(from, to, path);
+      const bool together = graph->component_at(c, from) == graph->component_at(c, to);
+      ASSERT_EQ(path.end, together ? PathEnd::kReached : PathEnd::kUnreachable);
+      if (together) expect_walkable(world, c, from, to, path);
+    }
+  }
+}
+
+TEST(Path, LeadsUpStairsRampsAndSpirals) {
+  expect_as_graph(bake(worlds::two_floors(), 0.1, default_classes()), 60);
+  expect_as_graph(builtin({.name = "stairs"}, 0.15), 60);
+  expect_as_graph(builtin({.name = "church"}, 0.15), 60);
+  expect_as_graph(builtin({.name = "garage", .size = 45, .levels = 3}, 0.2), 60);
+  expect_as_graph(builtin({.name = "maze", .size = 30, .levels = 2}, 0.1), 40);
+}
+
+TEST(Path, SaysWhyThereIsNone) {
+  const World world = bake(worlds::doorway(0.45), 0.1, {AvatarClass{}});
+  PathFinder paths = finder(world, 0);
+  Path path;
+  const Place left = world.find_place(0, {1, 0, 3}, 0.5);
+  ASSERT_TRUE(left);
+  paths.find(left, left, path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.length, 0);
+  paths.find(Place{}, left, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace);
+  paths.find(left, {{1e9, 0, 1}, 1}, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace);
+  paths.find(left, {{std::nan(""), 0, 1}, 1}, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace);
+  paths.find({left.position, 4000000000u}, left, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace);
+  const World maze = builtin({.name = "maze", .size = 30, .levels = 1}, 0.1);
+  PathFinder through = finder(maze, 0);
+  const Place from = maze.random_place(0, 1, 1), to = maze.random_place(0, 1, 2);
+  ASSERT_TRUE(from && to);
+  through.find(from, to, path, 3);
+  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  through.find(from, to, path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+  PathFinder copy = through;
+  Path again;
+  copy.find(from, to, again);
+  EXPECT_EQ(again.length, path.length);
+  Context context;
+  EXPECT_FALSE(PathFinder::make(world, {.avatar_class = 1}, context));
+  EXPECT_FALSE(PathFinder::make(World{}, {}, context));
+  context.cancel = true;
+  EXPECT_FALSE(PathFinder::make(world, {}, context));
+}
+
+}  // namespace
+}  // namespace throng

@@ -197,10 +197,10 @@ void PathSearch::expand(const Node& node) {
   uint32_t seen_root = node.root;
   const double side = cross(node.right, node.left, root);
   if (std::fabs(side) <= kSame * width) {
-    // The root lies on the interval's line: unless it is an end of it, the way goes to the nearer
-    // end and turns there.
+    // The root lies on the interval's line: unless it lies on the interval, the way goes to the
+    // nearer end and turns there.
     const double to_right = distance(root, node.right), to_left = distance(root, node.left);
-    if (std::min(to_right, to_left) > kSame) {
+    if (std::max(to_right, to_left) > width + kSame) {
       const bool right = to_right < to_left;
       const uint32_t corner = right ? node.right_corner : node.left_corner;
       if (corner == kNoCorner) return;

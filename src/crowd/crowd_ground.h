@@ -57,8 +57,9 @@ class CrowdGround {
     return {rows(word), (word & kStepSafe) != 0, (word & kAlone) != 0};
   }
   /// Asks for what is read of a level by those whom its line does not answer.
-  void prefetch_level(Level level, int32_t z) const {
-    throng::prefetch(&plain(level)[z & 63]);
+  void prefetch_level(Level level, int32_t z0, int32_t z1) const {
+    throng::prefetch(&plain(level)[z0 & 63]);
+    throng::prefetch(&plain(level)[z1 & 63]);
     throng::prefetch(&views_[level]);
   }
   /// Asks for what a step from a cell of a level reads of it, and for what is at hand around it.

@@ -207,7 +207,7 @@ void Group::ask_for_levels() const {
   for (const uint16_t n : unsure_.span()) {
     const Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
-    in_.ground->prefetch_level(a.level, z);
+    in_.ground->prefetch_level(a.level, a.z >> kUnitBits, z);
     in_.ground->prefetch_tile(x >> 6, z >> 6);
   }
 }

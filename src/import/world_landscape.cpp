@@ -123,7 +123,7 @@ class Ground {
   }
 
   // Above and below a cliff vertices move towards it, those above more: it gets steep, or leans
-  // out.
+  // out. Not across the first cells, whose curves would swing over the border of the world.
   [[nodiscard]] Vec3d vertex(int64_t i, int64_t j) const {
     Vec3d p{static_cast<double>(i) * cell_, height(i, j), static_cast<double>(j) * cell_};
     if (i <= 0 || j <= 0 || i >= n_ || j >= n_) return p;
@@ -136,8 +136,8 @@ class Ground {
     if ((plateau(i, j - 1) > 0) != above) z -= 1;
     const double lean = 0.45 + 0.3 * random_unit(seed_, kOverhangs, lattice_counter(i, j));
     const double by = cell_ * (1 - ramp(i, j)) * (above ? lean : 0.38) * (x * z == 0 ? 1 : 0.7);
-    p.x += x * by;
-    p.z += z * by;
+    if (i > 1 && i < n_ - 1) p.x += x * by;
+    if (j > 1 && j < n_ - 1) p.z += z * by;
     return p;
   }
 
@@ -222,7 +222,8 @@ void add_relief(std::vector<Vec3d>& lattice, const Ground& ground, int64_t i, in
     }
   }
   Numbers knoll(ground.seed(), kKnolls, i, j);
-  if (n != 4 || knoll(0, 1) > 0.3) return;
+  const bool outermost = i == 0 || j == 0 || i == ground.cells() - 1 || j == ground.cells() - 1;
+  if (n != 4 || outermost || knoll(0, 1) > 0.3) return;
   // A table of rock: the ring of inner vertices goes up and out beyond the control points beside
   // the border, which stay, so that the side folds under the top.
   const double up = knoll(5, 9);
@@ -397,8 +398,10 @@ void scatter(const PatchSet& set, const std::vector<Cell>& cells, const Ground& 
       const bool here = roll(0, 1) < share || (i == n / 2 && j == n / 2);
       if (!here) continue;
       const Cell& cell = cells[static_cast<size_t>(j * n + i)];
-      const double s = roll(0.3, 0.7) * cell.n;
-      const double t = roll(0.3, 0.7) * cell.n;
+      // Nothing reaches over the border of the world.
+      const double margin = i == 0 || j == 0 || i == n - 1 || j == n - 1 ? 0.45 : 0.3;
+      const double s = roll(margin, 1 - margin) * cell.n;
+      const double t = roll(margin, 1 - margin) * cell.n;
       const auto column = static_cast<uint32_t>(s);
       const auto row = static_cast<uint32_t>(t);
       place(roll, set.patches[cell.patch(column, row)].at(s - column, t - row));
@@ -410,7 +413,7 @@ void scatter(const PatchSet& set, const std::vector<Cell>& cells, const Ground& 
 
 double landscape_tolerance(double size) {
   constexpr double kUsual = 0.02;
-  constexpr double kTriangles = 5.4;  // On a square metre at that tolerance; nearly inverse to it.
+  constexpr double kTriangles = 7;  // On a square metre at that tolerance; nearly inverse to it.
   constexpr double kMost = 90e6;
   return std::max(kUsual, kUsual * kTriangles * size * size / kMost);
 }

@@ -78,6 +78,7 @@ TEST(Landscape, RocksAreClosedAndSunkAndArchesStandOnBothFeet) {
   EXPECT_EQ(components[0].node, "ground");
   size_t rocks = 0;
   size_t arches = 0;
+  size_t buried = 0;
   for (size_t c = 1; c < components.size(); ++c) {
     const Component& component = components[c];
     const Vec3d middle = (component.box.min + component.box.max) * 0.5;
@@ -109,9 +110,10 @@ TEST(Landscape, RocksAreClosedAndSunkAndArchesStandOnBothFeet) {
         }
       }
     }
-    EXPECT_LT(component.box.min.y, height + 1);
-    EXPECT_GT(component.box.max.y, height - 1);
+    EXPECT_LT(component.box.min.y, height);
+    buried += component.box.max.y < height ? 1 : 0;
   }
+  EXPECT_LE(buried, (rocks + arches) / 20);  // The smaller one of two on a slope may be.
   EXPECT_GT(rocks, 20u);
   EXPECT_GE(arches, 2u);
 }
@@ -132,7 +134,7 @@ TEST(Landscape, TheGroundHasFlatsSteepsAndOverhangs) {
     }
   }
   EXPECT_GT(flat, 5000u);
-  EXPECT_GT(steep, 1000u);
+  EXPECT_GT(steep, 800u);
   EXPECT_GT(overhanging, 200u);
 }
 
@@ -141,9 +143,13 @@ TEST(Landscape, ItGrowsInProportionToItsArea) {
     return static_cast<double>(make(size, 1).patches.size()) / (size * size);
   };
   EXPECT_NEAR(density(1000) / density(500), 1, 0.1);
-  const Box3d box = make(333, 1).bounds();
-  EXPECT_EQ(box.min.x, 0);
-  EXPECT_EQ(box.max.z, 333);
+  for (const double size : {64.0, 333.0, 600.0}) {
+    for (const uint64_t seed : {1, 2, 3}) {
+      const Box3d box = make(size, seed).bounds();
+      for (const double low : {box.min.x, box.min.z}) EXPECT_EQ(low, 0);
+      for (const double high : {box.max.x, box.max.z}) EXPECT_EQ(high, size);
+    }
+  }
 }
 
 TEST(Landscape, ItsPatchFileGivesTheSameScene) {

@@ -7,7 +7,7 @@
 #include "import/clean.h"
 #include "import/raw_scene.h"
 
-/// What all targets for readers do: read, clean, check the result's order.
+/// What all targets for readers do: read, cut patches, clean, check the result's order.
 namespace throng {
 
 inline int fuzz_reader(Result<RawScene> (*read)(std::string_view, const ReadOptions&, Context&),
@@ -16,7 +16,14 @@ inline int fuzz_reader(Result<RawScene> (*read)(std::string_view, const ReadOpti
   ReadOptions options;
   options.name = "fuzz";
   auto raw = read({reinterpret_cast<const char*>(bytes), size}, options, context);
-  if (!raw || !clean_scene(raw->scene, "fuzz", context)) return 0;
+  if (!raw) return 0;
+  if (const PatchSet& patches = raw->scene.patches; !patches.empty()) {
+    const TessellationConfig config{.tolerance = 10, .workers = 1, .most_triangles = 1'000'000};
+    const auto mesh = tessellate_patches(patches, config, context);
+    if (mesh && mesh->first.size() != patches.size() + 1) std::abort();
+    if (!mesh && mesh.error().message.empty()) std::abort();
+  }
+  if (!clean_scene(raw->scene, "fuzz", context)) return 0;
   const Scene& scene = raw->scene;
   if (scene.area.size() != scene.triangles.size()) std::abort();
   for (const auto& corners : scene.triangles) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/hash.h"
+#include "core/random.h"
 #include "patch_nets.h"
 #include "throng/patch.h"
 
@@ -85,6 +86,43 @@ TEST(PatchMesh, TrianglesStayWithinTheToleranceOfTheirPatch) {
     }
   }
   EXPECT_GT(worst, 0.2);  // Not simply cut as fine as can be.
+}
+
+// Bent by its corners alone: all of its gap comes from the mixed derivative.
+TEST(PatchMesh, ATwistedPatchIsCutByItsTwist) {
+  PatchSet set;
+  BezierPatch patch;
+  for (size_t i = 0; i < 16; ++i) {
+    const double x = static_cast<double>(i % 4) * 3;
+    const double z = static_cast<double>(i / 4) * 3;
+    patch.points[i] = {x, x * z / 9, z};
+  }
+  set.add(patch);
+  for (const double tolerance : {0.02, 0.3}) {
+    const double distance = test::worst_distance(set, cut(set, tolerance), 0, 2000);
+    EXPECT_LE(distance, tolerance);
+    EXPECT_GT(distance, tolerance / 5);
+  }
+}
+
+// Patches that roll up, fold and slide within themselves, at steps as coarse as a tolerance allows.
+TEST(PatchMesh, WildPatchesStayWithinACoarseTolerance) {
+  double worst = 0;
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    PatchSet set;
+    BezierPatch patch;
+    const double wild = 1 + 8 * random_unit(seed, 1, 0);
+    for (uint64_t i = 0; i < 16; ++i) {
+      patch.points[i] = {static_cast<double>(i % 4) * 3 + wild * random_unit(seed, 2, i),
+                         wild * random_unit(seed, 3, i),
+                         static_cast<double>(i / 4) * 3 + wild * random_unit(seed, 4, i)};
+    }
+    set.add(patch);
+    const double tolerance = seed % 2 == 0 ? 0.3 : 1.5;
+    worst = std::fmax(worst, test::worst_distance(set, cut(set, tolerance), 0, 60) / tolerance);
+  }
+  EXPECT_LE(worst, 1);
+  EXPECT_GT(worst, 0.3);
 }
 
 TEST(PatchMesh, TrianglesShowTheirFaceWhereTheNormalPointsTo) {

@@ -17,6 +17,9 @@ namespace throng {
 struct PathConfig {
   int32_t avatar_class = 0;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
+  /// Also label all corners, so that a query looks the way up instead of searching for it: for
+  /// many queries. Takes time and memory when the finder is made.
+  bool labels = false;
 };
 
 /// How a search ended.
@@ -31,15 +34,16 @@ struct Path {
   PathEnd end = PathEnd::kNoPlace;
   std::vector<Place> points;  ///< From the start to the goal; each leg is a legal move.
   double length = 0;          ///< Along the ground's plane. [m]
-  uint64_t nodes = 0;         ///< Intervals that the search looked at.
+  uint64_t nodes = 0;         ///< Intervals that the search looked at; 0 with labels.
 };
 
 struct PathSummary {
   uint64_t rectangles = 0;
   uint64_t portals = 0;
   uint64_t corners = 0;
-  uint64_t bytes = 0;
-  double seconds = 0;  ///< To make them.
+  uint64_t labels = 0;  ///< 0 without them.
+  uint64_t bytes = 0;   ///< Of all.
+  double seconds = 0;   ///< To make them.
 };
 
 /// Finds paths for one class. The ground is shared by all copies; each copy has its own memory for
@@ -58,7 +62,7 @@ class THRONG_API PathFinder {
 
   /// The shortest way from one place to another over all legal cells, any angle: no legal way is
   /// shorter by more than 1/1000 of a cell a corner. `path` is reused: its memory stays. After
-  /// `max_nodes` nodes the search gives up.
+  /// `max_nodes` nodes the search gives up; with labels there is none.
   void find(const Place& from, const Place& to, Path& path, uint64_t max_nodes = UINT64_MAX);
 
   [[nodiscard]] PathSummary summary() const;

@@ -168,6 +168,30 @@ class Builder {
   int32_t step_;
 };
 
+// The rectangles around each corner: every two of them share a portal that ends there.
+void gather_corner_rects(PathMesh& mesh) {
+  std::vector<std::pair<uint32_t, uint32_t>> around;  // corner, rectangle
+  for (uint32_t r = 0; r + 1 < mesh.rects.size(); ++r) {
+    for (uint32_t p = mesh.rects[r].first_portal; p < mesh.rects[r + 1].first_portal; ++p) {
+      const MeshPortal& portal = mesh.portals[p];
+      for (const uint32_t corner : {portal.from_corner, portal.to_corner}) {
+        if (corner == kNoCorner) continue;
+        around.push_back({corner, r});
+        around.push_back({corner, portal.rect});
+      }
+    }
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  mesh.corners.emplace_back();
+  for (const auto& [corner, rect] : around) {
+    ++mesh.corners[corner + 1].first_rect;
+    mesh.corner_rects.push_back(rect);
+  }
+  for (size_t c = 1; c < mesh.corners.size(); ++c)
+    mesh.corners[c].first_rect += mesh.corners[c - 1].first_rect;
+}
+
 }  // namespace
 
 uint32_t PathMesh::rect_at(uint32_t level, int32_t x, int32_t z) const {
@@ -180,7 +204,8 @@ uint32_t PathMesh::rect_at(uint32_t level, int32_t x, int32_t z) const {
 
 uint64_t PathMesh::bytes() const {
   return first.size() * sizeof(first[0]) + rects.size() * sizeof(MeshRect) +
-         portals.size() * sizeof(MeshPortal) + corners.size() * sizeof(MeshCorner);
+         portals.size() * sizeof(MeshPortal) + corners.size() * sizeof(MeshCorner) +
+         corner_rects.size() * sizeof(uint32_t);
 }
 
 Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
@@ -246,6 +271,7 @@ Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_
       mesh.portals.push_back(portal);
     }
   }
+  gather_corner_rects(mesh);
   return mesh;
 }
 

@@ -44,6 +44,7 @@ struct MeshPortal {
 struct MeshCorner {
   int32_t x = 0, z = 0;           // the point that the four cells share
   int8_t away_x = 0, away_z = 0;  // from the missing cell: 1 or -1
+  uint32_t first_rect = 0;        // of corner_rects; they end where the next corner's begin
 };
 
 struct PathMesh {
@@ -52,9 +53,11 @@ struct PathMesh {
   std::vector<uint32_t> first;  // per level of the world: its first rectangle; one more
   std::vector<MeshRect> rects;  // one more at the end, for its first_portal
   std::vector<MeshPortal> portals;
-  std::vector<MeshCorner> corners;
+  std::vector<MeshCorner> corners;     // one more at the end, for its first_rect
+  std::vector<uint32_t> corner_rects;  // rectangles around each corner
 
   [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const;  // cell of the grid
+  [[nodiscard]] size_t corner_count() const { return corners.size() - 1; }
   [[nodiscard]] uint64_t bytes() const;
 };
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "path/hub_labels.h"
 #include "path/legs.h"
 #include "path/mesh.h"
 #include "path/search.h"
@@ -16,11 +18,13 @@ namespace throng {
 struct PathFinder::Shared {
   World world;
   PathMesh mesh;
+  std::optional<HubLabels> labels;
   PathSummary summary;
 };
 
 struct PathFinder::Scratch {
   PathSearch search;
+  LabelSearch look_up;
   std::vector<uint32_t> corners;
   std::vector<Stop> stops;
 };
@@ -52,10 +56,18 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
   auto shared = std::make_shared<Shared>();
   shared->world = world;
   shared->mesh = std::move(*mesh);
-  shared->summary = {
-      shared->mesh.rects.size() - 1, shared->mesh.portals.size(), shared->mesh.corners.size(),
-      shared->mesh.bytes(),
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  PathSummary& summary = shared->summary;
+  summary = {shared->mesh.rects.size() - 1, shared->mesh.portals.size(),
+             shared->mesh.corner_count(),   0,
+             shared->mesh.bytes(),          0};
+  if (config.labels) {
+    auto labels = build_labels(shared->mesh, config.workers, context);
+    if (!labels) return labels.error();
+    shared->labels = std::move(*labels);
+    summary.labels = shared->labels->labels.size();
+    summary.bytes += shared->labels->bytes();
+  }
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return PathFinder(std::move(shared));
 }
 
@@ -84,9 +96,16 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
   if (!locate(from, start, start_end) || !locate(to, goal, goal_end)) return;
 
   double length = 0;
-  const SearchResult result =
-      scratch_->search.find(mesh, start_end, goal_end, max_nodes, scratch_->corners, length);
-  path.nodes = scratch_->search.expanded();
+  SearchResult result = SearchResult::kNone;
+  if (shared_->labels) {
+    if (scratch_->look_up.find(mesh, *shared_->labels, start_end.rect, start_end.point,
+                               goal_end.rect, goal_end.point, scratch_->corners, length)) {
+      result = SearchResult::kFound;
+    }
+  } else {
+    result = scratch_->search.find(mesh, start_end, goal_end, max_nodes, scratch_->corners, length);
+    path.nodes = scratch_->search.expanded();
+  }
   path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kGaveUp;
   if (result != SearchResult::kFound) return;
   LegWalker walker(world, mesh);

@@ -5,74 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "path/border.h"
+
 // Distances around a rectangle run from its south-west corner with the inside on the left, as its
 // portals do. Of a node that looks in through [right, left], what lies from `right` on comes first,
 // then what the root sees, then what lies beyond `left`.
 namespace throng {
-namespace {
-
-constexpr double kSame = 1e-9;  // cells
-
-double distance(CellPoint a, CellPoint b) {
-  const double dx = a.x - b.x, dz = a.z - b.z;
-  return std::sqrt(dx * dx + dz * dz);
-}
-
-// Twice the area of (a, b, c): positive if c lies to the left of a -> b.
-double cross(CellPoint a, CellPoint b, CellPoint c) {
-  return (b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x);
-}
-
-double perimeter(const MeshRect& rect) { return 2.0 * (rect.width + rect.depth); }
-
-CellPoint point_around(const MeshRect& rect, double at) {
-  const double w = rect.width, d = rect.depth;
-  if (at <= w) return {rect.x + at, double(rect.z)};
-  if (at <= w + d) return {rect.x + w, rect.z + (at - w)};
-  if (at <= 2 * w + d) return {rect.x + w - (at - w - d), rect.z + d};
-  return {double(rect.x), rect.z + d - (at - 2 * w - d)};
-}
-
-// How far around a point of the border is.
-double around(const MeshRect& rect, CellPoint p) {
-  const double w = rect.width, d = rect.depth;
-  if (p.z <= rect.z) return p.x - rect.x;
-  if (p.x >= rect.x + w) return w + (p.z - rect.z);
-  if (p.z >= rect.z + d) return w + d + (rect.x + w - p.x);
-  return 2 * w + d + (rect.z + d - p.z);
-}
-
-// How far around the ray from `root` through the border point `through` leaves the rectangle.
-double exit_around(const MeshRect& rect, CellPoint root, CellPoint through) {
-  const double dx = through.x - root.x, dz = through.z - root.z;
-  double best = 1e300;
-  CellPoint exit = through;
-  const auto consider = [&](double t, double x, double z) {
-    if (t < best) {
-      best = t;
-      exit = {x, z};
-    }
-  };
-  const double x0 = rect.x, x1 = rect.x + rect.width, z0 = rect.z, z1 = rect.z + rect.depth;
-  if (dx != 0) {
-    const double x = dx > 0 ? x1 : x0, t = (x - through.x) / dx;
-    consider(t, x, std::clamp(through.z + t * dz, z0, z1));
-  }
-  if (dz != 0) {
-    const double z = dz > 0 ? z1 : z0, t = (z - through.z) / dz;
-    consider(t, std::clamp(through.x + t * dx, x0, x1), z);
-  }
-  return around(rect, exit);
-}
-
-// True if the ray from `root` through the border point `through` runs along the border.
-bool runs_along(const MeshRect& rect, CellPoint root, CellPoint through) {
-  if (root.z == through.z) return through.z == rect.z || through.z == rect.z + rect.depth;
-  if (root.x == through.x) return through.x == rect.x || through.x == rect.x + rect.width;
-  return false;
-}
-
-}  // namespace
 
 SearchResult PathSearch::find(const PathMesh& mesh, const SearchEnd& from, const SearchEnd& to,
                               uint64_t max_nodes, std::vector<uint32_t>& corners, double& length) {
@@ -114,11 +52,18 @@ SearchResult PathSearch::find(const PathMesh& mesh, const SearchEnd& from, const
 
 void PathSearch::start(const SearchEnd& from) {
   roots_.push_back({from.point, 0, kNoCorner, 0});
-  const MeshRect& rect = mesh_->rects[from.rect];
-  const uint32_t end = mesh_->rects[from.rect + 1].first_portal;
-  for (uint32_t p = rect.first_portal; p < end; ++p) {
-    const MeshPortal& portal = mesh_->portals[p];
-    add_piece(rect, portal, portal.from, portal.to, 0);
+  rects_around(*mesh_, from.rect, from.point, around_);
+  for (const uint32_t r : around_) {
+    if (r == goal_.rect) {
+      found_length_ = distance(from.point, goal_.point);
+      found_root_ = 0;
+    }
+    const MeshRect& rect = mesh_->rects[r];
+    const uint32_t end = mesh_->rects[r + 1].first_portal;
+    for (uint32_t p = rect.first_portal; p < end; ++p) {
+      const MeshPortal& portal = mesh_->portals[p];
+      add_piece(rect, portal, portal.from, portal.to, 0);
+    }
   }
 }
 
@@ -143,6 +88,16 @@ double PathSearch::estimate(const Node& node) const {
   CellPoint goal = goal_.point;
   const double side_root = cross(node.right, node.left, root.point);
   const double side_goal = cross(node.right, node.left, goal);
+  const double width = distance(node.left, node.right);
+  if (std::fabs(side_root) <= kSame * width) {
+    // Edge on: by the nearer end, or from where the root lies on the interval.
+    const double to_right = distance(root.point, node.right);
+    const double to_left = distance(root.point, node.left);
+    if (std::max(to_right, to_left) <= width + kSame)
+      return root.length + distance(root.point, goal);
+    const CellPoint end = to_right < to_left ? node.right : node.left;
+    return root.length + std::min(to_right, to_left) + distance(end, goal);
+  }
   // A goal on the root's side is reached over the interval all the same: mirrored, it is as far.
   if (side_root * side_goal > 0) {
     const bool upright = node.left.x == node.right.x;
@@ -200,7 +155,9 @@ void PathSearch::expand(const Node& node) {
     // The root lies on the interval's line: unless it lies on the interval, the way goes to the
     // nearer end and turns there.
     const double to_right = distance(root, node.right), to_left = distance(root, node.left);
-    if (std::max(to_right, to_left) > width + kSame) {
+    const bool touches = std::max(to_right, to_left) <= width + kSame;
+    if (touches && roots_[node.root].corner == kNoCorner) return;  // start() looked out there
+    if (!touches) {
       const bool right = to_right < to_left;
       const uint32_t corner = right ? node.right_corner : node.left_corner;
       if (corner == kNoCorner) return;

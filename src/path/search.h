@@ -77,7 +77,8 @@ class PathSearch {
   std::vector<Root> roots_;
   std::vector<Node> nodes_;
   std::vector<Entry> open_;
-  std::vector<Best> best_;  // per corner
+  std::vector<Best> best_;        // per corner
+  std::vector<uint32_t> around_;  // rectangles around the start
 };
 
 }  // namespace throng

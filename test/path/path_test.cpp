@@ -31,9 +31,9 @@ World builtin(const BuiltinWorldConfig& config, double cell) {
   return scene ? bake(*scene, cell, default_classes()) : World{};
 }
 
-PathFinder finder(const World& world, int32_t avatar_class) {
+PathFinder finder(const World& world, int32_t avatar_class, bool labels = false) {
   Context context;
-  auto made = PathFinder::make(world, {.avatar_class = avatar_class}, context);
+  auto made = PathFinder::make(world, {.avatar_class = avatar_class, .labels = labels}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -165,9 +165,9 @@ TEST(Path, NoLegalWayIsShorterOnRandomFloors) {
   int reached = 0, bent = 0;
   for (uint64_t seed = 0; seed < 24; ++seed) {
     const World world = bake(boxes(seed), seed % 2 == 0 ? 0.15 : 0.1, {AvatarClass{}});
-    PathFinder paths = finder(world, 0);
+    PathFinder paths = finder(world, 0), looked_up = finder(world, 0, true);
     const Visibility oracle(world, 0);
-    Path path;
+    Path path, label_path;
     for (uint64_t n = 0; n < 12; ++n) {
       const Place from = world.random_place(0, seed, 2 * n);
       const Place to = world.random_place(0, seed, 2 * n + 1);
@@ -183,6 +183,10 @@ TEST(Path, NoLegalWayIsShorterOnRandomFloors) {
       EXPECT_LE(path.length, shortest + 1e-4);
       // The oracle goes two units further around each corner.
       EXPECT_GE(path.length, shortest * (1 - 1e-3) - 1e-3);
+      looked_up.find(from, to, label_path);
+      ASSERT_EQ(label_path.end, PathEnd::kReached);
+      expect_walkable(world, 0, from, to, label_path);
+      EXPECT_NEAR(label_path.length, path.length, 1e-6);
     }
   }
   EXPECT_GT(reached, 150);
@@ -210,8 +214,9 @@ void expect_as_graph(const World& world, uint64_t pairs) {
   const auto classes = static_cast<int32_t>(world.summary().classes.size());
   for (int32_t c = 0; c < classes; ++c) {
     SCOPED_TRACE(world.summary().classes[static_cast<size_t>(c)].name);
-    PathFinder paths = finder(world, c);
-    Path path;
+    PathFinder paths = finder(world, c), looked_up = finder(world, c, true);
+    EXPECT_EQ(looked_up.summary().corners == 0, looked_up.summary().labels == 0);
+    Path path, label_path;
     for (uint64_t n = 0; n < pairs; ++n) {
       Place from = world.random_place(c, 3, 2 * n), to = world.random_place(c, 3, 2 * n + 1);
       if (!from || !to) break;
@@ -221,7 +226,12 @@ void expect_as_graph(const World& world, uint64_t pairs) {
       paths.find(from, to, path);
       const bool together = graph->component_at(c, from) == graph->component_at(c, to);
       ASSERT_EQ(path.end, together ? PathEnd::kReached : PathEnd::kUnreachable);
-      if (together) expect_walkable(world, c, from, to, path);
+      looked_up.find(from, to, label_path);
+      ASSERT_EQ(label_path.end, path.end);
+      if (!together) continue;
+      expect_walkable(world, c, from, to, path);
+      expect_walkable(world, c, from, to, label_path);
+      EXPECT_NEAR(label_path.length, path.length, 1e-6);
     }
   }
 }

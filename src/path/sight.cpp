@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/sight.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "path/border.h"
+
+// The search of path/search.cpp without its turns: intervals of portals are pushed on as long as
+// something is seen through them.
+namespace throng {
+
+void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint goal_point) {
+  mesh_ = &mesh;
+  from_ = from;
+  own_ = kNoCorner;
+  goal_ = goal;
+  goal_point_ = goal_point;
+  sees_goal_ = false;
+  views_.clear();
+  seen_.clear();
+}
+
+void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
+                 CellPoint goal_point) {
+  begin(mesh, from, goal, goal_point);
+  rects_around(mesh, rect, from, around_);
+  for (const uint32_t r : around_) start(r);
+  run();
+  finish();
+}
+
+void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner) {
+  const MeshCorner& at = mesh.corners[corner];
+  begin(mesh, {double(at.x), double(at.z)}, kNoRect, {});
+  own_ = corner;
+  for (uint32_t r = at.first_rect; r < mesh.corners[corner + 1].first_rect; ++r)
+    start(mesh.corner_rects[r]);
+  run();
+  finish();
+}
+
+void Sight::start(uint32_t rect_index) {
+  const MeshRect& rect = mesh_->rects[rect_index];
+  if (rect_index == goal_) sees_goal_ = true;
+  const uint32_t end = mesh_->rects[rect_index + 1].first_portal;
+  for (uint32_t p = rect.first_portal; p < end; ++p)
+    add(rect, mesh_->portals[p], mesh_->portals[p].from, mesh_->portals[p].to);
+}
+
+void Sight::run() {
+  while (!views_.empty()) {
+    const View view = views_.back();
+    views_.pop_back();
+    expand(view);
+  }
+}
+
+void Sight::note(uint32_t corner) {
+  if (corner == kNoCorner || corner == own_) return;
+  const MeshCorner& at = mesh_->corners[corner];
+  const double dx = at.x - from_.x, dz = at.z - from_.z;
+  if (!is_taut(at, dx, dz)) return;
+  if (own_ != kNoCorner && !is_taut(mesh_->corners[own_], dx, dz)) return;
+  seen_.push_back({corner, std::sqrt(dx * dx + dz * dz)});
+}
+
+void Sight::finish() {
+  std::sort(seen_.begin(), seen_.end(),
+            [](const SeenCorner& a, const SeenCorner& b) { return a.corner < b.corner; });
+  seen_.erase(
+      std::unique(seen_.begin(), seen_.end(),
+                  [](const SeenCorner& a, const SeenCorner& b) { return a.corner == b.corner; }),
+      seen_.end());
+}
+
+void Sight::add(const MeshRect& rect, const MeshPortal& portal, double from, double to) {
+  const bool whole_from = from <= portal.from + kSame, whole_to = to >= portal.to - kSame;
+  if (to - from < -kSame) return;
+  if (whole_from) note(portal.from_corner);
+  if (whole_to) note(portal.to_corner);
+  if (!(to - from > kSame)) return;
+  View view;
+  view.right = point_around(rect, whole_from ? portal.from : from);
+  view.left = point_around(rect, whole_to ? portal.to : to);
+  view.rect = portal.rect;
+  if (own_ != kNoCorner) {
+    // No shortest way leaves a corner into the quarter across from its missing cell.
+    const MeshCorner& own = mesh_->corners[own_];
+    const auto is_across = [&](CellPoint p) {
+      return (p.x - from_.x) * own.away_x > kSame && (p.z - from_.z) * own.away_z > kSame;
+    };
+    if (is_across(view.left) && is_across(view.right)) return;
+  }
+  views_.push_back(view);
+}
+
+void Sight::expand(const View& view) {
+  const MeshRect& rect = mesh_->rects[view.rect];
+  const double whole = perimeter(rect);
+  const double width = distance(view.left, view.right);
+  const double base = around(rect, view.right);
+  const double last = whole - width;
+  const auto from_base = [&](double at) {
+    const double rest = at - base;
+    return rest < -kSame ? rest + whole : std::max(rest, 0.0);
+  };
+  double first_seen = 0, last_seen = last;
+  // Edge on there is nothing to see, and around the eye itself start() has looked.
+  if (std::fabs(cross(view.right, view.left, from_)) <= kSame * width) return;
+  if (!runs_along(rect, from_, view.right))
+    first_seen = from_base(exit_around(rect, from_, view.right));
+  if (!runs_along(rect, from_, view.left))
+    last_seen = from_base(exit_around(rect, from_, view.left));
+  last_seen = std::max(last_seen, first_seen);
+  if (view.rect == goal_ && !sees_goal_) {
+    sees_goal_ = cross(from_, view.right, goal_point_) >= -kSame &&
+                 cross(from_, view.left, goal_point_) <= kSame;
+  }
+  const uint32_t end = mesh_->rects[view.rect + 1].first_portal;
+  for (uint32_t p = rect.first_portal; p < end; ++p) {
+    const MeshPortal& portal = mesh_->portals[p];
+    const double first = from_base(portal.from), stop = first + (portal.to - portal.from);
+    const auto piece = [&](double a, double b, double offset) {
+      a = std::max({a, 0.0, first_seen});
+      b = std::min({b, last, last_seen});
+      add(rect, portal, a + offset, b + offset);
+    };
+    piece(first, std::min(stop, whole), portal.from - first);
+    if (stop > whole + kSame) piece(0, stop - whole, portal.from - first + whole);
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "path/mesh.h"
+
+/// What is seen from a point of the ground.
+namespace throng {
+
+struct SeenCorner {
+  uint32_t corner = kNoCorner;
+  double distance = 0;  // cells
+};
+
+/// True if a shortest way may come to the corner along (dx, dz) or leave it that way: the line
+/// through the corner passes the missing cell by.
+inline bool is_taut(const MeshCorner& corner, double dx, double dz) {
+  return dx * corner.away_x * (dz * corner.away_z) <= 0;
+}
+
+/// Looks over a mesh along straight lines. Owns its memory: one per thread.
+class Sight {
+ public:
+  /// The corners that are seen from a point of a rectangle and that a way may bend at; each once,
+  /// by number. If `goal` is a rectangle, also whether `goal_point` in it is seen.
+  void look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
+            CellPoint goal_point);
+  /// The corners that are seen from a corner, along lines that may bend at both.
+  void look_from_corner(const PathMesh& mesh, uint32_t corner);
+
+  [[nodiscard]] const std::vector<SeenCorner>& corners() const { return seen_; }
+  [[nodiscard]] bool sees_goal() const { return sees_goal_; }
+
+ private:
+  struct View {
+    CellPoint left, right;
+    uint32_t rect = kNoRect;
+  };
+
+  void begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint goal_point);
+  void start(uint32_t rect);
+  void run();
+  void expand(const View& view);
+  void add(const MeshRect& rect, const MeshPortal& portal, double from, double to);
+  void note(uint32_t corner);
+  void finish();
+
+  const PathMesh* mesh_ = nullptr;
+  CellPoint from_;
+  uint32_t own_ = kNoCorner;  // the corner that is looked from
+  uint32_t goal_ = kNoRect;
+  CellPoint goal_point_;
+  bool sees_goal_ = false;
+  std::vector<uint32_t> around_;
+  std::vector<View> views_;
+  std::vector<SeenCorner> seen_;
+};
+
+}  // namespace throng

@@ -112,11 +112,14 @@ uint64_t count_degenerate(const Scene& scene) {
 
 // Triangles with the same three corners in whatever order, beyond the first of each: one 64-bit
 // hash a triangle, sorted. Two different triangles out of ten million share one with a chance of
-// 3e-6.
+// 3e-6. Triangles of patches are left out: a patch is cut once, and comparing them took three
+// quarters of the time in which a landscape is read.
 uint64_t count_duplicates(const Scene& scene) {
   std::vector<uint64_t> hashes;
-  hashes.reserve(scene.triangles.size());
-  for (const auto& corners : scene.triangles) {
+  if (scene.patches.empty()) hashes.reserve(scene.triangles.size());
+  for (size_t t = 0; t < scene.triangles.size(); ++t) {
+    if (!scene.patch_of_triangle.empty() && scene.patch_of_triangle[t] != kNoPatch) continue;
+    const auto& corners = scene.triangles[t];
     std::array<std::array<uint64_t, 3>, 3> bits;
     for (int k = 0; k < 3; ++k) {
       const Vec3d p = scene.positions[corners[k]];

@@ -168,6 +168,27 @@ class Builder {
   int32_t step_;
 };
 
+// Numbers what portals hold together by its first rectangle.
+void find_components(PathMesh& mesh) {
+  const auto count = static_cast<uint32_t>(mesh.rects.size() - 1);
+  std::vector<uint32_t> queue;
+  for (uint32_t r = 0; r < count; ++r) mesh.rects[r].component = kNoRect;
+  for (uint32_t r = 0; r < count; ++r) {
+    if (mesh.rects[r].component != kNoRect) continue;
+    queue.assign(1, r);
+    mesh.rects[r].component = r;
+    for (size_t i = 0; i < queue.size(); ++i) {
+      const uint32_t end = mesh.rects[queue[i] + 1].first_portal;
+      for (uint32_t p = mesh.rects[queue[i]].first_portal; p < end; ++p) {
+        const uint32_t beyond = mesh.portals[p].rect;
+        if (mesh.rects[beyond].component != kNoRect) continue;
+        mesh.rects[beyond].component = r;
+        queue.push_back(beyond);
+      }
+    }
+  }
+}
+
 // The rectangles around each corner: every two of them share a portal that ends there.
 void gather_corner_rects(PathMesh& mesh) {
   std::vector<std::pair<uint32_t, uint32_t>> around;  // corner, rectangle
@@ -272,6 +293,7 @@ Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_
     }
   }
   gather_corner_rects(mesh);
+  find_components(mesh);
   return mesh;
 }
 

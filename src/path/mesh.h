@@ -28,6 +28,7 @@ struct MeshRect {
   int32_t x = 0, z = 0;
   int32_t width = 0, depth = 0;
   uint32_t first_portal = 0;  // its portals end where the next rectangle's begin
+  uint32_t component = 0;     // rectangles that portals hold together share it
 };
 
 /// A stretch of a rectangle's border over which a step leads to another, and back. Portals of a

@@ -95,6 +95,10 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
   SearchEnd start_end, goal_end;
   if (!locate(from, start, start_end) || !locate(to, goal, goal_end)) return;
 
+  if (mesh.rects[start_end.rect].component != mesh.rects[goal_end.rect].component) {
+    path.end = PathEnd::kUnreachable;
+    return;
+  }
   double length = 0;
   SearchResult result = SearchResult::kNone;
   if (shared_->labels) {

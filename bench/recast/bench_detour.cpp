@@ -124,8 +124,8 @@ Json compare(const Scene& scene, const Options& options) {
   Detour detour(*mesh);
 
   Context context;
-  auto world = bake_world(scene, {.cell = options.cell, .resolution = 0.1, .classes = {AvatarClass{}}},
-                          context);
+  auto world = bake_world(
+      scene, {.cell = options.cell, .resolution = 0.1, .classes = {AvatarClass{}}}, context);
   if (!world) stop(world.error().message);
   auto finder = PathFinder::make(*world, {.labels = options.labels}, context);
   if (!finder) stop(finder.error().message);
@@ -138,8 +138,7 @@ Json compare(const Scene& scene, const Options& options) {
     for (End& end : pair) {
       for (;;) {
         if (!detour.random_end(*mesh, next_random, end)) stop("Detour's mesh is empty");
-        end.place = world->find_place(
-            0, {end.position[0], end.position[1], end.position[2]}, 0.5);
+        end.place = world->find_place(0, {end.position[0], end.position[1], end.position[2]}, 0.5);
         if (end.place) break;
         if (++not_ours > 100 * static_cast<uint64_t>(options.pairs))
           stop("the two meshes have too little in common");

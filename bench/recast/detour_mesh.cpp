@@ -113,7 +113,8 @@ NavMesh make_detour_mesh(const RecastInput& input, const RecastConfig& config,
                          const TileTriangles& tiles, DetourSummary& summary) {
   NavMesh mesh(dtAllocNavMesh());
   const float side = static_cast<float>(config.tile) * config.cell;
-  const int tiles_x = std::max(1, static_cast<int>(std::ceil((input.max[0] - input.min[0]) / side)));
+  const int tiles_x =
+      std::max(1, static_cast<int>(std::ceil((input.max[0] - input.min[0]) / side)));
   dtNavMeshParams params{};
   std::copy(input.min, input.min + 3, params.orig);
   params.tileWidth = params.tileHeight = side;

@@ -23,8 +23,8 @@ struct DetourSummary {
   uint64_t bytes = 0;
 };
 
-/// Tiles of `config.tile` cells, watershed regions, contours within 1.3 cells, polygons of up to six
-/// corners, detail heights. Null if a tile cannot be made.
+/// Tiles of `config.tile` cells, watershed regions, contours within 1.3 cells, polygons of up to
+/// six corners, detail heights. Null if a tile cannot be made.
 NavMesh make_detour_mesh(const RecastInput& input, const RecastConfig& config,
                          const TileTriangles& tiles, DetourSummary& summary);
 

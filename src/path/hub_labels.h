@@ -13,8 +13,7 @@
 namespace throng {
 
 /// Two-hop labels: for every two corners that hold together, some hub on a shortest way between
-/// them is in both their lists. Source: Akiba, Iwata, Yoshida. Fast Exact Shortest-Path Distance
-/// Queries on Large Networks by Pruned Landmark Labeling. SIGMOD 2013.
+/// them is in both their lists. Source: [AIY13].
 struct HubLabels {
   struct Label {
     uint32_t hub = 0;   // rank: 0 is the hub of most ways

@@ -17,10 +17,9 @@ struct SearchEnd {
 
 enum class SearchResult { kFound, kNone, kBudget };
 
-/// Polyanya (Cui, Harabor, Grastien. Compromise-free Pathfinding on a Navigation Mesh. IJCAI 2017)
-/// over rectangles: a node is an interval of a portal that is seen from a root; the way bends at
-/// corners only, and the first one to arrive is the shortest over the mesh. Owns its memory: one
-/// per thread, no allocation once it has grown.
+/// Polyanya over rectangles (source: [CHG17]): a node is an interval of a portal that is seen from
+/// a root; the way bends at corners only, and the first one to arrive is the shortest over the
+/// mesh. Owns its memory: one per thread, no allocation once it has grown.
 class PathSearch {
  public:
   /// Corners of the shortest way from `from` to `to`, in order, ends left out; `length` in cells.

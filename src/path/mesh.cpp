@@ -44,7 +44,7 @@ class Builder {
     const auto cuts = step_cuts(ground, legal, step_);
     const auto [tile_x, tile_z] = tile_of(ground);
     std::vector<MeshRect> rects;
-    for (const TileRect& r : tile_with_rects(legal, cuts ? &*cuts : nullptr)) {
+    for (const CellRect& r : tile_with_rects(legal, cuts ? &*cuts : nullptr)) {
       rects.push_back({level, tile_x * 64 + r.x0, tile_z * 64 + r.z0, r.x1 - r.x0, r.z1 - r.z0, 0});
     }
     return rects;

@@ -38,8 +38,8 @@ bool continues(const CellRows& open, const StepCuts* cuts, size_t z, uint64_t ru
   return !joined && run_from(open, cuts, z, x) == run;
 }
 
-std::vector<TileRect> stack_rows(const CellRows& open, const StepCuts* cuts) {
-  std::vector<TileRect> rects;
+std::vector<CellRect> stack_rows(const CellRows& open, const StepCuts* cuts) {
+  std::vector<CellRect> rects;
   CellRows left = open;
   for (size_t z = 0; z < 64; ++z) {
     while (left[z] != 0) {
@@ -60,15 +60,15 @@ std::vector<TileRect> stack_rows(const CellRows& open, const StepCuts* cuts) {
 
 }  // namespace
 
-std::vector<TileRect> tile_with_rects(const CellRows& open, const StepCuts* cuts) {
-  std::vector<TileRect> rects = stack_rows(open, cuts);
+std::vector<CellRect> tile_with_rects(const CellRows& open, const StepCuts* cuts) {
+  std::vector<CellRect> rects = stack_rows(open, cuts);
   if (rects.size() < 2) return rects;
   StepCuts turned;
   if (cuts != nullptr) turned = {transposed(cuts->along), transposed(cuts->across)};
-  std::vector<TileRect> columns = stack_rows(transposed(open), cuts != nullptr ? &turned : nullptr);
+  std::vector<CellRect> columns = stack_rows(transposed(open), cuts != nullptr ? &turned : nullptr);
   if (columns.size() >= rects.size()) return rects;
-  for (TileRect& rect : columns) rect = {rect.z0, rect.x0, rect.z1, rect.x1};
-  std::sort(columns.begin(), columns.end(), [](const TileRect& a, const TileRect& b) {
+  for (CellRect& rect : columns) rect = {rect.z0, rect.x0, rect.z1, rect.x1};
+  std::sort(columns.begin(), columns.end(), [](const CellRect& a, const CellRect& b) {
     return a.z0 != b.z0 ? a.z0 < b.z0 : a.x0 < b.x0;
   });
   return columns;

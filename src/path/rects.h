@@ -10,12 +10,12 @@
 namespace throng {
 
 /// Cells [x0, x1) x [z0, z1) of a tile.
-struct TileRect {
+struct CellRect {
   int32_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
 };
 
 /// Tiles `open` with rectangles that no cut crosses, in the order of their first cells: stacks of
 /// equal runs of rows, or of columns where that takes fewer. `cuts` may be null.
-std::vector<TileRect> tile_with_rects(const CellRows& open, const StepCuts* cuts);
+std::vector<CellRect> tile_with_rects(const CellRows& open, const StepCuts* cuts);
 
 }  // namespace throng

@@ -189,7 +189,7 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   const auto sources = open_folders(config.sources);
   if (!sources) return sources.error();
   Scene all;
-  std::vector<Zone> zones;
+  std::vector<PatchZone> zones;
   for (size_t i = 0; i < sources->size(); ++i) {
     const SceneSource& source = (*sources)[i];
     if (context.on_progress) context.on_progress({"read", i, sources->size()});

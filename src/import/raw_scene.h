@@ -35,7 +35,7 @@ struct ZoneBind {
 };
 
 /// One zone of a landscape, until it is joined with its neighbours.
-struct Zone {
+struct PatchZone {
   uint16_t id = 0;
   std::string file;
   uint32_t first_patch = 0;
@@ -51,7 +51,7 @@ struct RawScene {
   Scene scene;    ///< In the file's units and axes; patches without their triangles.
   char up = 'y';  ///< Which axis of these numbers points up.
   double metres_per_unit = 1;
-  std::optional<Zone> zone = std::nullopt;  ///< Where the file is one zone of many.
+  std::optional<PatchZone> zone = std::nullopt;  ///< Where the file is one zone of many.
 };
 
 struct ReadOptions {

@@ -229,7 +229,7 @@ class ZoneReader {
   const ReadOptions& options_;
   Context& context_;
   SceneWriter writer_;
-  Zone zone_;
+  PatchZone zone_;
   std::string message_;
   size_t at_ = 0;
   uint32_t version_ = 0;
@@ -243,7 +243,8 @@ bool before(const ZoneCorner& a, const ZoneCorner& b) { return as_tuple(a) < as_
 
 // Do both tables of border vertices pair the corners of two whole edges? Corners of halves and
 // quarters lie within an edge and are in no table.
-bool corners_are_paired(const Zone& mine, PatchSide side, const Zone& other, PatchSide next) {
+bool corners_are_paired(const PatchZone& mine, PatchSide side, const PatchZone& other,
+                        PatchSide next) {
   const auto& a = mine.corners[side.patch];
   const auto& b = other.corners[next.patch];
   for (uint32_t end = 0; end < 2; ++end) {
@@ -269,31 +270,31 @@ Result<RawScene> read_zonel(std::string_view bytes, const ReadOptions& options, 
   return ZoneReader(bytes, options, context).read();
 }
 
-Result<void> join_zones(PatchSet& set, std::span<Zone> zones, SceneReport& report) {
-  std::vector<Zone*> by_id;
-  for (Zone& zone : zones) {
+Result<void> join_zones(PatchSet& set, std::span<PatchZone> zones, SceneReport& report) {
+  std::vector<PatchZone*> by_id;
+  for (PatchZone& zone : zones) {
     std::sort(zone.border.begin(), zone.border.end(), before);
     by_id.push_back(&zone);
   }
   std::stable_sort(by_id.begin(), by_id.end(),
-                   [](const Zone* a, const Zone* b) { return a->id < b->id; });
+                   [](const PatchZone* a, const PatchZone* b) { return a->id < b->id; });
   for (size_t i = 1; i < by_id.size(); ++i) {
     if (by_id[i]->id != by_id[i - 1]->id) continue;
     return Error{Errc::kBadInput,
                  fmt::format("{}: zone {} was already read from {}; name it once", by_id[i]->file,
                              zone_name(by_id[i]->id), by_id[i - 1]->file)};
   }
-  const auto find = [&](uint16_t id) -> const Zone* {
+  const auto find = [&](uint16_t id) -> const PatchZone* {
     const auto found =
         std::lower_bound(by_id.begin(), by_id.end(), id,
-                         [](const Zone* zone, uint16_t wanted) { return zone->id < wanted; });
+                         [](const PatchZone* zone, uint16_t wanted) { return zone->id < wanted; });
     return found != by_id.end() && (*found)->id == id ? *found : nullptr;
   };
 
   uint64_t left_open = 0;
-  for (const Zone& zone : zones) {
+  for (const PatchZone& zone : zones) {
     for (const ZoneBind& bind : zone.far) {
-      const Zone* other = find(bind.other_zone);
+      const PatchZone* other = find(bind.other_zone);
       if (other == nullptr) {
         ++left_open;
         continue;

@@ -307,7 +307,7 @@ TEST_F(NelLandscape, SurvivesDamageToARealFile) {
     }
     PatchSet set = raw->scene.patches;
     SceneReport report;
-    std::vector<Zone> zones{*raw->zone};
+    std::vector<PatchZone> zones{*raw->zone};
     EXPECT_TRUE(join_zones(set, zones, report));
     Context context;
     const auto mesh = tessellate_patches(set, {.tolerance = 1}, context);

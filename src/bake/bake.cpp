@@ -22,8 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kMaxCells = 1 << 20;     // along a side: positions are 1/2048 cell in 31 bits
-constexpr double kMaxHeight = 2'000'000;  // [m]: heights are whole mm in 32 bits
+constexpr double kMaxCells = 1 << 20;  // along a side: positions are 1/2048 cell in 31 bits
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -88,7 +87,7 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
                      " cells across, at most 1048512 fit; use a larger cell or check the units"};
   }
   if (std::max(std::fabs(bounds.min.y), std::fabs(bounds.max.y)) > kMaxHeight) {
-    return Error{Errc::kLimit, "bake: heights reach beyond 2000 km; check the units"};
+    return Error{Errc::kLimit, "bake: heights reach beyond 1000 km; check the units"};
   }
   BakePlan plan;
   plan.scene = &scene;

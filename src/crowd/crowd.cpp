@@ -29,6 +29,8 @@ constexpr int32_t kBlockPixels = 32;
 // Pixels of the map for each avatar above which small pages, taken only around him, save memory: he
 // touches up to three pages of 512.
 constexpr int64_t kSparse = 2048;
+constexpr double kMostPixels =
+    1e12;                         // 8 TB of addresses, of which only what is touched takes memory
 constexpr uint64_t kGrain = 512;  // avatars that are worth handing to another thread
 
 int32_t step_mm(const AvatarClass& body) {
@@ -99,11 +101,15 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   const double cell = data.summary.cell;
   const auto pixel_cells = static_cast<int32_t>(std::ceil(2 * body.radius / cell - 1e-9));
   const auto body_mm = static_cast<int32_t>(std::ceil(body.height * 1000 - 1e-6));
-  const auto low = static_cast<int32_t>(std::floor(data.summary.bounds.min.y * 1000)) - 1000;
-  const auto high = static_cast<int32_t>(std::ceil(data.summary.bounds.max.y * 1000)) + 1000;
+  const auto [low, high] = state->ground.feet_range();
   const PixelGrid grid(pixel_cells);
   const int64_t pixels = int64_t{data.width / pixel_cells + 1} * (data.depth / pixel_cells + 1);
   const Pages pages = pixels / kSparse < config.avatars ? Pages::kHuge : Pages::kSmall;
+  const double planes = (static_cast<double>(high) - low) / (64 * CollisionMap::kSlab) + 2;
+  if (static_cast<double>(pixels) * planes > kMostPixels) {
+    return Error{Errc::kLimit, "crowd: the world is too large and too high for a crowd of class " +
+                                   body.name + "; bake it in parts"};
+  }
   state->map.emplace(data.width, data.depth, grid, low, high, body_mm, pages);
   state->unit = cell / kUnitsPerCell;
 

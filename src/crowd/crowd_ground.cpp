@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstdlib>
 #include <span>
-#include <utility>
 
 namespace throng {
 namespace {
@@ -14,8 +15,10 @@ constexpr size_t kRows = 64;
 constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
 constexpr uint32_t kAllLegal = 1;
 
+using Heights = CrowdGround::Heights;
+
 // Heights between which the floors of a level's legal cells lie. [mm]
-std::pair<int32_t, int32_t> heights_of(const LevelView& view, const uint64_t* legal) {
+Heights heights_of(const LevelView& view, const uint64_t* legal) {
   if (view.is_constant()) return {view.floor_base, view.floor_base};
   int32_t low = INT32_MAX, high = INT32_MIN;
   for (int32_t z = 0; z < static_cast<int32_t>(kRows); ++z) {
@@ -26,6 +29,42 @@ std::pair<int32_t, int32_t> heights_of(const LevelView& view, const uint64_t* le
     }
   }
   return {low, high};
+}
+
+// How far feet can be above or below the sample of their cell, by all that the level holds. [mm]
+int32_t max_rise(const LevelView& view) {
+  if (view.is_constant()) return 0;
+  if (view.samples == nullptr) return (std::abs(view.slope_x) + std::abs(view.slope_z)) / 1024 + 2;
+  int32_t low = kNoValue, high = 0;
+  for (size_t i = 0; i < kRows * 64; ++i) {
+    const int32_t sample = view.samples[i];
+    low = std::min(low, sample);
+    high = std::max(high, sample == kNoValue ? 0 : sample);
+  }
+  return std::max(0, high - low) + 1;
+}
+
+// Heights between which the feet on a level's legal cells lie. [mm]
+Heights feet_of(const LevelView& view, const uint64_t* legal) {
+  Heights feet{INT32_MAX, INT32_MIN};
+  for (int32_t z = 0; z < static_cast<int32_t>(kRows); ++z) {
+    for (uint64_t row = legal[z]; row != 0; row &= row - 1) {
+      const int32_t x = std::countr_zero(row);
+      for (const int32_t u : {0, kUnitsPerCell}) {  // They are highest and lowest at the corners.
+        for (const int32_t v : {0, kUnitsPerCell}) {
+          const int32_t height = view.feet(x, z, u, v);
+          feet = {std::min(feet.low, height), std::max(feet.high, height)};
+        }
+      }
+    }
+  }
+  return feet;
+}
+
+// Heights between which the floors of a world lie, with a metre to spare. [mm]
+Heights heights_of(const Box3d& bounds) {
+  return {static_cast<int32_t>(std::floor(bounds.min.y * 1000)) - 1000,
+          static_cast<int32_t>(std::ceil(bounds.max.y * 1000)) + 1000};
 }
 
 // Bit x: samples x and x + 1 of a row are the same.
@@ -88,6 +127,8 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   std::fill_n(ground.rows_.data() + kAllLegal * kRows, kRows, ~uint64_t{0});
   uint32_t& sets = ground.row_sets_;
   sets = 2;
+  const Heights bounds = heights_of(world.summary.bounds);
+  ground.feet_range_ = bounds;
   const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
   size_t rough = 0;
   for (size_t s = 0; s < world.slots.size(); ++s) {
@@ -127,8 +168,21 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
         line.plain_set = any ? sets++ : kNoneLegal;
       }
       line.plain = full_blocks(ground.plain(base + i));
-      const auto [low, high] = heights_of(view, ground.legal(base + i));
-      ground.heights_[base + i] = {low, high};
+      const Heights heights = heights_of(view, ground.legal(base + i));
+      ground.heights_[base + i] = heights;
+      if (set != kNoneLegal && heights.low <= heights.high) {
+        if (heights.low < bounds.low || heights.high > bounds.high) {
+          return Error{Errc::kBadFile, zone_file_name(zone->root().x(), zone->root().z()) +
+                                           ": has floors where the world has no triangles; bake "
+                                           "the world again"};
+        }
+        const int32_t rise = max_rise(view);
+        if (heights.low - rise < bounds.low || heights.high + rise > bounds.high) {
+          const Heights feet = feet_of(view, ground.legal(base + i));
+          ground.feet_range_ = {std::min(ground.feet_range_.low, feet.low),
+                                std::max(ground.feet_range_.high, feet.high)};
+        }
+      }
       const int32_t tile = level.view.record->tile();
       record.tile_x = zone->root().x() * per_zone + tile % per_zone;
       record.tile_z = zone->root().z() * per_zone + tile / per_zone;

@@ -18,7 +18,8 @@ class CrowdGround {
  public:
   using Level = uint32_t;  // of the world
 
-  /// Opens every zone of the world. Fails with kBadFile.
+  /// Opens every zone of the world. Fails with kBadFile, also where floors are not between the
+  /// world's lowest and highest triangle.
   static Result<CrowdGround> make(const WorldData& world, int32_t avatar_class, int32_t step_mm);
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
@@ -107,12 +108,15 @@ class CrowdGround {
   [[nodiscard]] int32_t tiles_x() const { return tiles_x_; }
   [[nodiscard]] int32_t tiles_z() const { return tiles_z_; }
 
+  /// Between these are all feet. [mm]
+  struct Heights {
+    int32_t low = 0, high = 0;
+  };
+  [[nodiscard]] Heights feet_range() const { return feet_range_; }
+
  private:
   struct Range {
     uint32_t first = 0, last = 0;
-  };
-  struct Heights {
-    int32_t low = 0, high = 0;
   };
   // Flags beside the number of the legal set.
   static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
@@ -131,6 +135,7 @@ class CrowdGround {
 
   int32_t tiles_x_ = 0, tiles_z_ = 0;
   std::vector<Range> tiles_;
+  Heights feet_range_;
   std::vector<Heights> heights_;  // between which a level's legal floors lie [mm]
   std::vector<Record> records_;
   // Copied out of the zones, where one class's rows lie pages apart: here the levels of a tile are

@@ -13,7 +13,7 @@ namespace throng {
 namespace {
 
 constexpr uint32_t kArea = 4096;
-constexpr int32_t kHighest = 2'050'000'000;  // [mm]: more than is baked, and sums fit 32 bits
+constexpr int32_t kHighest = 1'050'000'000;  // [mm]: more than is baked, differences fit 32 bits
 constexpr int32_t kMostCells = 1 << 20;      // along a side
 
 Error bad_file(const std::string& name, const std::string& what) {
@@ -235,6 +235,12 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
                      root.depth() <= kMostCells && root.tiles_per_zone() > 0 &&
                      root.tiles_per_zone() < 256;
   if (!sound) return bad_file(name, "its numbers make no sense");
+  for (uint32_t i = 0; i < 6; ++i) {
+    const double limit = i % 3 == 1 ? kMaxHeight : 1e12;
+    if (!(std::fabs(bounds->Get(i)) <= limit) || bounds->Get(i) < bounds->Get(i % 3)) {
+      return bad_file(name, "its bounds make no sense");
+    }
+  }
 
   auto world = std::make_shared<WorldData>();
   WorldSummary& summary = world->summary;
@@ -270,6 +276,7 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
   }
   if (auto ok = check_classes(summary.classes); !ok) return bad_file(name, ok.error().message);
   uint64_t level_count = 0;
+  int64_t last_place = -1;
   for (uint32_t i = 0; i < root.zones()->size(); ++i) {
     auto slot = std::make_unique<WorldData::Slot>();
     slot->entry = *root.zones()->Get(i);
@@ -277,6 +284,9 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
     if (x < 0 || z < 0 || x >= world->zones_x || z >= world->zones_z) {
       return bad_file(name, "zone " + std::to_string(i) + " lies outside the grid");
     }
+    const auto place = int64_t{z} * world->zones_x + x;
+    if (place <= last_place) return bad_file(name, "its zones are out of order");
+    last_place = place;
     if (slot->entry.levels() * sizeof(format::Level) > slot->entry.bytes()) {
       return bad_file(name, "zone " + std::to_string(i) + " has more levels than bytes");
     }

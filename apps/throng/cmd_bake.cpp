@@ -16,6 +16,7 @@ struct BakeOptions {
   SourceOptions sources;
   std::string output;
   std::string classes;
+  bool fresh = false;
   BakeConfig config;
 };
 
@@ -32,6 +33,8 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"cell", options.config.cell},
           {"resolution", options.config.resolution},
           {"zones", report.zones},
+          {"zones_baked", report.zones_baked},
+          {"zones_kept", report.zones_kept},
           {"tiles", report.tiles},
           {"level_tiles", report.level_tiles},
           {"constant_level_tiles", report.constant_level_tiles},
@@ -48,10 +51,10 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
 }
 
 std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
-  std::string text =
-      fmt::format("{}: {} triangles in {:.2f} s, {} zones, {} level tiles ({} of them flat), {}\n",
-                  options.output, scene.triangles.size(), report.seconds_total, report.zones,
-                  report.level_tiles, report.constant_level_tiles, human_bytes(report.bytes));
+  std::string text = fmt::format(
+      "{}: {} triangles in {:.2f} s, {} zones ({} kept), {} level tiles ({} of them flat), {}\n",
+      options.output, scene.triangles.size(), report.seconds_total, report.zones, report.zones_kept,
+      report.level_tiles, report.constant_level_tiles, human_bytes(report.bytes));
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
@@ -65,6 +68,7 @@ int bake(Session& session, BakeOptions& options) {
     if (!classes) return fail(classes.error());
     options.config.classes = *std::move(classes);
   }
+  if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
   const uint64_t peak_read = peak_memory();
@@ -93,6 +97,7 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
   command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)");
   command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->callback([&session, options] { session.exit_code = bake(session, *options); });
 }
 

@@ -16,21 +16,27 @@
 /// From triangles to a world that one can walk in: columns of spans, level tiles, clearance, zones.
 namespace throng {
 
+/// What a bake into a folder does with zones that were baked from the same input before.
+enum class OldZones : uint8_t { kKeep, kBakeAgain };
+
 struct BakeConfig {
   double cell = 0.1;        ///< Side of a cell. [m, 0.02 to 5]
   double resolution = 0.1;  ///< Headroom that may be lost. [m, 0.001 to 1]
   double zone = 160;        ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
   std::vector<AvatarClass> classes = default_classes();
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  OldZones old_zones = OldZones::kKeep;  ///< Of the world or the killed bake that is in the way.
 };
 
 /// What a bake did. Seconds are summed over threads where several work.
 struct BakeReport {
-  uint64_t zones = 0;
-  uint64_t tiles = 0;  ///< Tiles with at least one level.
+  uint64_t zones = 0;        ///< In which anybody can stand.
+  uint64_t zones_baked = 0;  ///< Zones with triangles, whether or not anybody can stand there.
+  uint64_t zones_kept = 0;   ///< The rest of them: their input has not changed.
+  uint64_t tiles = 0;        ///< Tiles with at least one level.
   uint64_t level_tiles = 0;
   uint64_t constant_level_tiles = 0;  ///< Whose floor is stored as a constant or a plane.
-  uint64_t spans = 0;                 ///< Solid spans after merging.
+  uint64_t spans = 0;                 ///< Solid spans after merging, of the zones baked.
   uint64_t bytes = 0;                 ///< Of all zone files.
   std::vector<double> walkable_area;  ///< Per class. [m^2]
   double seconds_columns = 0;
@@ -45,8 +51,10 @@ struct BakeReport {
                                                   Context& context, BakeReport* report = nullptr);
 
 /// Bakes into a folder: one file a zone and a manifest, written beside `path` and renamed at the
-/// end, so that a failed or cancelled bake leaves what was there before. Memory: the scene and a
-/// few zones, whatever the size of the world.
+/// end, so that a failed or cancelled bake leaves what was there before. Where a world is there,
+/// only the zones whose input has changed are baked, on its grid if the scene still begins on it;
+/// where a bake was killed, its zones are taken over. Memory: the scene and a few zones, whatever
+/// the size of the world.
 [[nodiscard]] THRONG_API Result<BakeReport> bake_world_to(const std::string& path,
                                                           const Scene& scene,
                                                           const BakeConfig& config,

@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <functional>
-#include <system_error>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <tuple>
 
 #include "bake/clearance.h"
+#include "bake/world_folder.h"
 #include "bake/zone_bake.h"
-#include "core/file_map.h"
+#include "bake/zone_input.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "world/zone_data.h"
@@ -19,7 +22,6 @@
 namespace throng {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kMaxCells = 1 << 20;  // along a side: positions are 1/2048 cell in 31 bits
@@ -92,11 +94,9 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   BakePlan plan;
   plan.scene = &scene;
   plan.config = &config;
-  plan.grid = make_grid(bounds, config.cell, kGridPhase);
   plan.tiles_per_zone = static_cast<int32_t>(
       std::clamp(std::round(config.zone / (config.cell * kTileSide)), 1.0, 255.0));
-  plan.zones_x = (plan.grid.tiles_x() + plan.tiles_per_zone - 1) / plan.tiles_per_zone;
-  plan.zones_z = (plan.grid.tiles_z() + plan.tiles_per_zone - 1) / plan.tiles_per_zone;
+  plan.put_on(make_grid(bounds, config.cell, kGridPhase));
   plan.coder = &coder;
   plan.codes = coder.codes();
   plan.limits = body_limits(config.classes, plan.codes, config.cell);
@@ -108,34 +108,122 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   return plan;
 }
 
-// Receives each zone that has levels, in order of z, then x.
-using ZoneSink =
-    std::function<Result<void>(int32_t x, int32_t z, flatbuffers::DetachedBuffer bytes)>;
+// Where zones go, in order of z, then x, and where some of them come from.
+struct ZoneStore {
+  // Receives each baked zone; `bytes` are empty where nobody can stand.
+  std::function<Result<void>(const format::ZoneEntry&, uint64_t input, flatbuffers::DetachedBuffer)>
+      write;
+  // A zone that need not be baked, or null: then none is kept.
+  std::function<std::optional<WorldFolder::Kept>(int32_t x, int32_t z, uint64_t input)> keep;
+  const WorldData* old_world = nullptr;
+};
 
-Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,
-                                              Context& context, BakeReport& report,
-                                              const ZoneSink& sink) {
-  const auto start = Clock::now();
-  if (auto ok = check_config(config); !ok) return ok.error();
-  if (auto ok = check_scene(scene); !ok) return ok.error();
-  const Box3d bounds = triangle_bounds(scene);
-  const SurfaceCoder coder(scene, config.classes, config.workers);
-  auto planned = make_plan(scene, config, bounds, coder);
-  if (!planned) return planned.error();
-  const BakePlan& plan = *planned;
+// A kept zone as if it had just been baked.
+ZoneResult result_of(const WorldFolder::Kept& kept, size_t classes) {
+  ZoneResult result;
+  result.levels = kept.entry.levels();
+  result.tiles = kept.entry.tiles();
+  result.legal_cells.assign(classes, 0);
+  for (uint32_t i = 0; i < result.levels; ++i) {
+    result.plain_levels += kept.zone->level(i).floor_kind() != format::HeightKind::Blocks ? 1 : 0;
+    for (size_t c = 0; c < classes; ++c) {
+      result.legal_cells[c] += kept.zone->clearance(i, static_cast<uint32_t>(c)).legal_cells();
+    }
+  }
+  return result;
+}
 
-  const int32_t side = plan.tiles_per_zone * kTileSide;
+TriangleBins bin_zones(const BakePlan& plan) {
+  const Scene& scene = *plan.scene;
   TriangleBins bins;
   if (plan.zones_x == 1 && plan.zones_z == 1) {
     bins.first = {0, static_cast<uint32_t>(scene.triangles.size())};
     bins.items.resize(scene.triangles.size());
     std::iota(bins.items.begin(), bins.items.end(), 0u);
-  } else {
-    bins = bin_boxes(
-        scene.triangles.size(),
-        [&](size_t i) { return scene_box(scene, static_cast<uint32_t>(i), plan.grid); }, 0, 0,
-        plan.zones_x, plan.zones_z, side, plan.apron());
+    return bins;
   }
+  return bin_boxes(
+      scene.triangles.size(),
+      [&](size_t i) { return scene_box(scene, static_cast<uint32_t>(i), plan.grid); }, 0, 0,
+      plan.zones_x, plan.zones_z, plan.tiles_per_zone * kTileSide, plan.apron());
+}
+
+// Triangles by zone, and the inputs of the zones that have any.
+struct ZoneInputs {
+  TriangleBins bins;
+  std::vector<format::ZoneInput> inputs;  // by z, then x
+
+  [[nodiscard]] std::span<const uint32_t> triangles(size_t zone) const {
+    return {bins.items.data() + bins.first[zone], bins.first[zone + 1] - bins.first[zone]};
+  }
+};
+
+ZoneInputs find_inputs(const BakePlan& plan) {
+  ZoneInputs found{.bins = bin_zones(plan), .inputs = {}};
+  for (int32_t z = 0; z < plan.zones_z; ++z) {
+    for (int32_t x = 0; x < plan.zones_x; ++x) {
+      const auto items = found.triangles(static_cast<size_t>(z * plan.zones_x + x));
+      if (!items.empty()) found.inputs.emplace_back(x, z, zone_input(plan, x, z, items));
+    }
+  }
+  return found;
+}
+
+bool have_a_zone_in_common(std::span<const format::ZoneInput> a,
+                           std::span<const format::ZoneInput> b) {
+  std::set<std::tuple<int32_t, int32_t, uint64_t>> known;
+  for (const format::ZoneInput& i : a) known.emplace(i.x(), i.z(), i.hash());
+  return std::any_of(b.begin(), b.end(), [&](const format::ZoneInput& i) {
+    return known.contains({i.x(), i.z(), i.hash()});
+  });
+}
+
+// The grid of the world that is there, if the scene begins on it: else every zone would be another
+// once a triangle at the rim moves.
+std::optional<Grid> old_grid(const BakePlan& plan, const Box3d& bounds, const WorldData* old) {
+  if (old == nullptr || old->summary.cell != plan.config->cell) return std::nullopt;
+  Grid grid = plan.grid;
+  grid.origin_x = old->summary.origin.x;
+  grid.origin_z = old->summary.origin.z;
+  const auto in_phase = [&](double origin) {
+    const double cells = origin / grid.cell - kGridPhase;
+    return std::fabs(cells - std::round(cells)) < 1e-3;
+  };
+  const double first_x = grid.to_cell_x(bounds.min.x), first_z = grid.to_cell_z(bounds.min.z);
+  if (!in_phase(grid.origin_x) || !in_phase(grid.origin_z) || first_x < -1e-6 || first_z < -1e-6 ||
+      first_x >= old->width || first_z >= old->depth) {
+    return std::nullopt;
+  }
+  if (grid.origin_x == plan.grid.origin_x && grid.origin_z == plan.grid.origin_z) {
+    return std::nullopt;
+  }
+  fit_grid(grid, bounds);
+  if (std::max(grid.width, grid.depth) > static_cast<int32_t>(kMaxCells) - 64) return std::nullopt;
+  return grid;
+}
+
+// Puts the plan on the old world's grid if that spares a zone.
+ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const WorldData* old) {
+  if (const auto grid = old_grid(plan, bounds, old)) {
+    const Grid own = plan.grid;
+    plan.put_on(*grid);
+    ZoneInputs inputs = find_inputs(plan);
+    if (have_a_zone_in_common(inputs.inputs, old->inputs)) return inputs;
+    plan.put_on(own);
+  }
+  return find_inputs(plan);
+}
+
+Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,
+                                              Context& context, BakeReport& report,
+                                              const ZoneStore& store) {
+  const auto start = Clock::now();
+  const Box3d bounds = triangle_bounds(scene);
+  const SurfaceCoder coder(scene, config.classes, config.workers);
+  auto planned = make_plan(scene, config, bounds, coder);
+  if (!planned) return planned.error();
+  const ZoneInputs inputs = choose_grid(*planned, bounds, store.old_world);
+  const BakePlan& plan = *planned;
 
   auto world = std::make_shared<WorldData>();
   WorldSummary& summary = world->summary;
@@ -158,44 +246,54 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
   ZoneScratch scratch(worker_count(config.workers));
   std::vector<uint64_t> legal_cells(config.classes.size(), 0);
   const uint64_t total = static_cast<uint64_t>(plan.zones_x) * static_cast<uint64_t>(plan.zones_z);
-  uint64_t done = 0;
-  for (int32_t z = 0; z < plan.zones_z; ++z) {
-    for (int32_t x = 0; x < plan.zones_x; ++x) {
-      if (context.on_progress) context.on_progress({"bake", done, total});
-      const size_t bin = static_cast<size_t>(z * plan.zones_x + x);
-      ZoneResult zone;
-      const std::span<const uint32_t> items(bins.items.data() + bins.first[bin],
-                                            bins.first[bin + 1] - bins.first[bin]);
-      if (!bake_zone(plan, x, z, items, scratch, context, zone) || context.cancel) {
-        return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
+  const Error cancelled{Errc::kCancelled, "bake: cancelled; nothing was written"};
+  for (const format::ZoneInput& input : inputs.inputs) {
+    const int32_t x = input.x(), z = input.z();
+    const auto place = static_cast<size_t>(z * plan.zones_x + x);
+    if (context.on_progress) context.on_progress({"bake", place, total});
+    if (context.cancel) return cancelled;
+    ZoneResult zone;
+    format::ZoneEntry entry;
+    auto kept = store.keep ? store.keep(x, z, input.hash()) : std::nullopt;
+    if (kept) {
+      zone = result_of(*kept, legal_cells.size());
+      entry = kept->entry;
+      ++report.zones_kept;
+    } else {
+      if (!bake_zone(plan, x, z, inputs.triangles(place), scratch, context, zone) ||
+          context.cancel) {
+        return cancelled;
       }
-      ++done;
-      report.spans += zone.spans;
-      report.seconds_columns += zone.seconds_columns;
-      report.seconds_levels += zone.seconds_levels;
-      report.seconds_clearance += zone.seconds_clearance;
-      if (zone.bytes.size() == 0) continue;
-      for (size_t c = 0; c < legal_cells.size(); ++c) legal_cells[c] += zone.legal_cells[c];
-      report.tiles += zone.tiles;
-      report.level_tiles += zone.levels;
-      report.constant_level_tiles += zone.plain_levels;
-      report.bytes += zone.bytes.size();
-      ++report.zones;
-      auto slot = std::make_unique<WorldData::Slot>();
-      slot->entry = format::ZoneEntry(x, z, zone.levels, zone.tiles, zone.bytes.size(),
-                                      hash_bytes(zone.bytes.data(), zone.bytes.size()));
-      slot->first_level = world->level_count;
-      if (uint64_t{world->level_count} + zone.levels >= UINT32_MAX) {
-        return Error{Errc::kLimit, "bake: more than 2^32 level tiles; use a larger cell"};
-      }
-      world->level_count += zone.levels;
-      world->slot_of_zone[bin] = static_cast<int32_t>(world->slots.size());
-      world->slots.push_back(std::move(slot));
+      entry =
+          format::ZoneEntry(x, z, zone.levels, zone.tiles, zone.bytes.size(),
+                            zone.levels > 0 ? hash_bytes(zone.bytes.data(), zone.bytes.size()) : 0);
       const auto write_start = Clock::now();
-      if (auto ok = sink(x, z, std::move(zone.bytes)); !ok) return ok.error();
+      if (auto ok = store.write(entry, input.hash(), std::move(zone.bytes)); !ok) return ok.error();
       report.seconds_write += seconds_since(write_start);
+      ++report.zones_baked;
     }
+    report.spans += zone.spans;
+    report.seconds_columns += zone.seconds_columns;
+    report.seconds_levels += zone.seconds_levels;
+    report.seconds_clearance += zone.seconds_clearance;
+    if (zone.levels == 0) continue;
+    for (size_t c = 0; c < legal_cells.size(); ++c) legal_cells[c] += zone.legal_cells[c];
+    report.tiles += zone.tiles;
+    report.level_tiles += zone.levels;
+    report.constant_level_tiles += zone.plain_levels;
+    report.bytes += entry.bytes();
+    ++report.zones;
+    auto slot = std::make_unique<WorldData::Slot>();
+    slot->entry = entry;
+    slot->first_level = world->level_count;
+    if (uint64_t{world->level_count} + zone.levels >= UINT32_MAX) {
+      return Error{Errc::kLimit, "bake: more than 2^32 level tiles; use a larger cell"};
+    }
+    world->level_count += zone.levels;
+    world->slot_of_zone[place] = static_cast<int32_t>(world->slots.size());
+    world->slots.push_back(std::move(slot));
   }
+  world->inputs = inputs.inputs;
   for (const uint64_t cells : legal_cells) {
     summary.walkable_area.push_back(static_cast<double>(cells) * config.cell * config.cell);
     world->class_index.push_back(std::make_unique<ClassIndex>());
@@ -209,29 +307,28 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
   return world;
 }
 
-// Removes a half-written folder unless it was renamed away.
-struct Partial {
-  fs::path path;
-  ~Partial() {
-    std::error_code ignored;
-    if (!path.empty()) fs::remove_all(path, ignored);
-  }
-};
+Result<void> check(const Scene& scene, const BakeConfig& config) {
+  if (auto ok = check_config(config); !ok) return ok.error();
+  return check_scene(scene);
+}
 
 }  // namespace
 
 Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& context,
                          BakeReport* report) {
+  if (auto ok = check(scene, config); !ok) return ok.error();
   BakeReport local;
   std::vector<std::unique_ptr<Zone>> zones;
-  auto world =
-      bake_zones(scene, config, context, local,
-                 [&](int32_t x, int32_t z, flatbuffers::DetachedBuffer bytes) -> Result<void> {
-                   auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(x, z));
-                   if (!zone) return zone.error();
-                   zones.push_back(std::move(*zone));
-                   return {};
-                 });
+  ZoneStore store;
+  store.write = [&](const format::ZoneEntry& entry, uint64_t /*input*/,
+                    flatbuffers::DetachedBuffer bytes) -> Result<void> {
+    if (entry.levels() == 0) return {};
+    auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(entry.x(), entry.z()));
+    if (!zone) return zone.error();
+    zones.push_back(std::move(*zone));
+    return {};
+  };
+  auto world = bake_zones(scene, config, context, local, store);
   if (!world) return world.error();
   for (size_t i = 0; i < zones.size(); ++i) (*world)->slots[i]->zone = std::move(zones[i]);
   if (report != nullptr) *report = local;
@@ -240,38 +337,20 @@ Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& 
 
 Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
                                  const BakeConfig& config, Context& context) {
-  const fs::path target(path);
-  const fs::path manifest = "manifest.thm";
-  std::error_code error;
-  if (fs::exists(target, error)) {
-    const bool ours = fs::is_directory(target, error) &&
-                      (fs::exists(target / manifest, error) || fs::is_empty(target, error));
-    if (!ours) {
-      return Error{Errc::kIo, path + ": exists and is not a baked world; choose another name"};
-    }
-  }
-  Partial part{fs::path(path + ".part")};
-  fs::remove_all(part.path, error);
-  if (!fs::create_directories(part.path, error)) {
-    return Error{Errc::kIo, part.path.string() + ": cannot be created: " + error.message()};
-  }
+  if (auto ok = check(scene, config); !ok) return ok.error();
+  auto folder = WorldFolder::begin(path, config.old_zones);
+  if (!folder) return folder.error();
+  ZoneStore store;
+  store.old_world = folder->old_world();
+  store.keep = [&](int32_t x, int32_t z, uint64_t input) { return folder->keep(x, z, input); };
+  store.write = [&](const format::ZoneEntry& entry, uint64_t input,
+                    const flatbuffers::DetachedBuffer& bytes) {
+    return folder->write(entry, input, {bytes.data(), bytes.size()});
+  };
   BakeReport report;
-  auto world = bake_zones(scene, config, context, report,
-                          [&](int32_t x, int32_t z, const flatbuffers::DetachedBuffer& bytes) {
-                            return write_file((part.path / zone_file_name(x, z)).string(),
-                                              {bytes.data(), bytes.size()});
-                          });
+  auto world = bake_zones(scene, config, context, report, store);
   if (!world) return world.error();
-  if (auto ok = write_file((part.path / manifest).string(), write_manifest(**world)); !ok) {
-    return ok.error();
-  }
-  const fs::path old(path + ".old");
-  fs::remove_all(old, error);
-  if (fs::exists(target, error)) fs::rename(target, old, error);
-  fs::rename(part.path, target, error);
-  if (error) return Error{Errc::kIo, path + ": cannot be written: " + error.message()};
-  part.path.clear();
-  fs::remove_all(old, error);
+  if (auto ok = folder->finish(**world); !ok) return ok.error();
   return report;
 }
 

@@ -120,9 +120,13 @@ Grid make_grid(const Box3d& bounds, double cell, double phase) {
   grid.cell = cell;
   grid.origin_x = border_below(bounds.min.x);
   grid.origin_z = border_below(bounds.min.z);
+  fit_grid(grid, bounds);
+  return grid;
+}
+
+void fit_grid(Grid& grid, const Box3d& bounds) {
   grid.width = std::max(1, static_cast<int32_t>(std::ceil(grid.to_cell_x(bounds.max.x) - 1e-6)));
   grid.depth = std::max(1, static_cast<int32_t>(std::ceil(grid.to_cell_z(bounds.max.z) - 1e-6)));
-  return grid;
 }
 
 TriangleBins bin_triangles(std::span<const CellTriangle> triangles, int32_t cell_x, int32_t cell_z,

@@ -60,6 +60,9 @@ CellTriangle to_cell_triangle(const Scene& scene, uint32_t triangle, const Grid&
 /// The grid that covers a scene; cells begin at (n + phase) cells, n whole. [0 <= phase < 1]
 Grid make_grid(const Box3d& bounds, double cell, double phase);
 
+/// Gives a grid the width and depth that a scene takes from its origin on.
+void fit_grid(Grid& grid, const Box3d& bounds);
+
 /// Triangles by square of `side` cells, conservatively by their boxes: square s = z * squares_x + x
 /// owns items[first[s]] to items[first[s + 1]], in order of triangles.
 struct TriangleBins {

@@ -94,6 +94,12 @@ ZoneScratch::ZoneScratch(int32_t count) {
 
 ZoneScratch::~ZoneScratch() = default;
 
+void BakePlan::put_on(const Grid& to) {
+  grid = to;
+  zones_x = (grid.tiles_x() + tiles_per_zone - 1) / tiles_per_zone;
+  zones_z = (grid.tiles_z() + tiles_per_zone - 1) / tiles_per_zone;
+}
+
 int32_t BakePlan::apron() const { return reach + kApronBits + 1; }
 
 namespace {

@@ -33,6 +33,8 @@ struct BakePlan {
 
   /// How far beyond a zone its bake looks. [cells]
   [[nodiscard]] int32_t apron() const;
+  /// Sets the grid and the zones on it.
+  void put_on(const Grid& to);
 };
 
 struct ZoneResult {

@@ -297,6 +297,9 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
     world->slots.push_back(std::move(slot));
   }
   if (level_count >= UINT32_MAX) return bad_file(name, "more than 2^32 levels");
+  if (root.inputs() != nullptr && is_aligned(*root.inputs())) {
+    for (const format::ZoneInput* input : *root.inputs()) world->inputs.push_back(*input);
+  }
   world->level_count = static_cast<uint32_t>(level_count);
   summary.zones = world->slots.size();
   summary.level_tiles = level_count;
@@ -320,7 +323,7 @@ std::vector<uint8_t> write_manifest(const WorldData& world) {
   builder.Finish(
       format::CreateManifestDirect(builder, kManifestVersion, s.cell, s.resolution, s.origin.x,
                                    s.origin.z, world.width, world.depth, world.tiles_per_zone,
-                                   &bounds, s.source_triangles, &zones, &classes),
+                                   &bounds, s.source_triangles, &zones, &classes, &world.inputs),
       format::ManifestIdentifier());
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }

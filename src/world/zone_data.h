@@ -20,7 +20,7 @@
 namespace throng {
 
 inline constexpr uint32_t kZoneVersion = 2;
-inline constexpr uint32_t kManifestVersion = 1;
+inline constexpr uint32_t kManifestVersion = 2;
 inline constexpr int32_t kMaxSlope =
     1 << 23;  // of a plane [1/1024 mm per cell]: no overflow in 64 cells
 
@@ -87,6 +87,7 @@ struct WorldData {
   std::string path;                   // empty: baked in memory
   std::vector<int32_t> slot_of_zone;  // zones_x * zones_z, -1: no levels there
   std::vector<std::unique_ptr<Slot>> slots;
+  std::vector<format::ZoneInput> inputs;  // of the zones that were baked
   uint32_t level_count = 0;
   std::vector<std::unique_ptr<ClassIndex>> class_index;  // per class
 

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/world_folder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
+#include <set>
+#include <system_error>
+
+#ifdef __linux__
+#include <fcntl.h>
+#endif
+
+#include "core/file_map.h"
+#include "core/hash.h"
+
+// NAME.part is a whole world in the making: baked zones are written there and those that are kept
+// are linked there, so the world NAME stays as it is until both change names. What has been
+// baked is told by a journal in NAME.part, one record a zone, written after the zone's file. A
+// record that was cut short or a file that is not what its record says is as good as none.
+namespace throng {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kManifest = "manifest.thm";
+constexpr const char* kJournal = "journal";
+
+// NAME.part becomes NAME and the other way round, or, where that cannot be done in one go,
+// NAME.old.
+bool exchange(const fs::path& part, const fs::path& target, const fs::path& old) {
+  std::error_code error;
+  if (!fs::exists(target, error)) {
+    fs::rename(part, target, error);
+    return !error;
+  }
+#ifdef RENAME_EXCHANGE
+  if (renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) {
+    fs::remove_all(part, error);
+    return true;
+  }
+#endif
+  fs::remove_all(old, error);
+  fs::rename(target, old, error);
+  if (!error) fs::rename(part, target, error);
+  if (error) return false;
+  fs::remove_all(old, error);
+  return true;
+}
+
+}  // namespace
+
+// A record of the journal.
+struct WorldFolder::Done {
+  int32_t x = 0, z = 0;
+  uint32_t levels = 0, tiles = 0;
+  uint64_t input = 0;
+  uint64_t bytes = 0;
+  uint64_t hash = 0;
+  uint64_t check = 0;  // XXH3 of what stands before it
+
+  [[nodiscard]] uint64_t sum() const { return hash_bytes(this, offsetof(Done, check)); }
+};
+
+WorldFolder::WorldFolder(std::string path) : path_(std::move(path)), part_(path_ + ".part") {}
+
+WorldFolder::WorldFolder(WorldFolder&& other) noexcept
+    : path_(std::move(other.path_)),
+      part_(std::exchange(other.part_, {})),
+      old_(std::move(other.old_)),
+      sources_(std::move(other.sources_)) {}
+
+WorldFolder::~WorldFolder() {
+  std::error_code ignored;
+  if (!part_.empty()) fs::remove_all(part_, ignored);
+}
+
+Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  const fs::path target(path), old(path + ".old");
+  std::error_code error;
+  if (fs::exists(target, error)) {
+    const bool ours = fs::is_directory(target, error) &&
+                      (fs::exists(target / kManifest, error) || fs::is_empty(target, error));
+    if (!ours) {
+      return Error{Errc::kIo, path + ": exists and is not a baked world; choose another name"};
+    }
+  } else if (fs::exists(old / kManifest, error)) {
+    fs::rename(old, target, error);  // Killed between two names.
+  }
+  if (old_zones == OldZones::kBakeAgain) fs::remove_all(path + ".part", error);
+  fs::create_directories(path + ".part", error);
+  if (error) return Error{Errc::kIo, path + ".part: cannot be created: " + error.message()};
+  WorldFolder folder(path);
+  if (old_zones == OldZones::kKeep) folder.read_old();
+  if (auto ok = folder.read_part(); !ok) return ok.error();
+  return folder;
+}
+
+void WorldFolder::read_old() {
+  const std::string name = (fs::path(path_) / kManifest).string();
+  const auto map = FileMap::open(name);
+  if (!map) return;
+  auto world = read_manifest(map->bytes(), name);
+  if (!world) return;
+  old_ = std::move(*world);
+  std::map<std::pair<int32_t, int32_t>, format::ZoneEntry> entries;
+  for (const auto& slot : old_->slots) entries[{slot->entry.z(), slot->entry.x()}] = slot->entry;
+  for (const format::ZoneInput& input : old_->inputs) {
+    const auto found = entries.find({input.z(), input.x()});
+    const bool empty = found == entries.end();
+    sources_.insert(
+        {{input.z(), input.x()},
+         {.input = input.hash(),
+          .entry = empty ? format::ZoneEntry(input.x(), input.z(), 0, 0, 0, 0) : found->second}});
+  }
+}
+
+// The journal is written anew with what is whole of it, so that records are appended in step.
+Result<void> WorldFolder::read_part() {
+  const std::string name = (part_ / kJournal).string();
+  std::vector<Done> records;
+  if (const auto map = FileMap::open(name)) {
+    const auto bytes = map->bytes();
+    for (size_t at = 0; at + sizeof(Done) <= bytes.size(); at += sizeof(Done)) {
+      Done done;
+      std::memcpy(&done, bytes.data() + at, sizeof done);
+      if (done.check != done.sum()) break;
+      records.push_back(done);
+      sources_.insert(
+          {{done.z, done.x},
+           {.is_part = true,
+            .input = done.input,
+            .entry = {done.x, done.z, done.levels, done.tiles, done.bytes, done.hash}}});
+    }
+  }
+  return write_file(
+      name, {reinterpret_cast<const uint8_t*>(records.data()), records.size() * sizeof(Done)});
+}
+
+std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_t input) {
+  const auto [first, last] = sources_.equal_range({z, x});
+  for (auto source = last; source != first;) {
+    --source;
+    const format::ZoneEntry& entry = source->second.entry;
+    if (source->second.input != input) continue;
+    if (entry.bytes() == 0) return Kept{nullptr, entry};
+    const std::string file = zone_file_name(x, z);
+    const fs::path from = (source->second.is_part ? part_ : fs::path(path_)) / file;
+    auto map = FileMap::open(from.string());
+    if (!map || map->bytes().size() != entry.bytes() ||
+        hash_bytes(map->bytes().data(), map->bytes().size()) != entry.hash()) {
+      continue;
+    }
+    auto zone = Zone::from_file(std::move(*map), from.string());
+    if (!zone) continue;
+    if (!source->second.is_part) {
+      std::error_code error;
+      fs::remove(part_ / file, error);
+      fs::create_hard_link(from, part_ / file, error);
+      if (error && !write_file((part_ / file).string(), (*zone)->bytes())) continue;
+    }
+    return Kept{std::move(*zone), entry};
+  }
+  return std::nullopt;
+}
+
+Result<void> WorldFolder::write(const format::ZoneEntry& entry, uint64_t input,
+                                std::span<const uint8_t> bytes) {
+  if (!bytes.empty()) {
+    const std::string file = (part_ / zone_file_name(entry.x(), entry.z())).string();
+    if (auto ok = write_file(file, bytes); !ok) return ok.error();
+  }
+  Done done{.x = entry.x(),
+            .z = entry.z(),
+            .levels = entry.levels(),
+            .tiles = entry.tiles(),
+            .input = input,
+            .bytes = entry.bytes(),
+            .hash = entry.hash()};
+  done.check = done.sum();
+  const std::string name = (part_ / kJournal).string();
+  std::FILE* journal = std::fopen(name.c_str(), "ab");
+  const bool written = journal != nullptr && std::fwrite(&done, sizeof done, 1, journal) == 1;
+  const bool closed = journal != nullptr && std::fclose(journal) == 0;
+  if (!written || !closed) {
+    return Error{Errc::kIo, name + ": cannot be written: " + std::strerror(errno)};
+  }
+  return {};
+}
+
+Result<void> WorldFolder::finish(const WorldData& world) {
+  std::set<std::string> names;
+  for (const auto& slot : world.slots) {
+    names.insert(zone_file_name(slot->entry.x(), slot->entry.z()));
+  }
+  std::error_code error;
+  std::vector<fs::path> stale;  // Of killed bakes of other scenes, and what they left half written.
+  for (const auto& file : fs::directory_iterator(part_, error)) {
+    const std::string name = file.path().filename().string();
+    if (name != kJournal && !names.contains(name)) stale.push_back(file.path());
+  }
+  for (const fs::path& file : stale) fs::remove_all(file, error);
+  if (auto ok = write_file((part_ / kManifest).string(), write_manifest(world)); !ok) {
+    return ok.error();
+  }
+  if (!exchange(part_, path_, path_ + ".old")) {
+    return Error{Errc::kIo, path_ + ": cannot be written: " + std::strerror(errno)};
+  }
+  part_.clear();
+  fs::remove(fs::path(path_) / kJournal, error);
+  return {};
+}
+
+}  // namespace throng

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "throng/bake.h"
+#include "throng/result.h"
+#include "world/zone_data.h"
+
+/// The folder of a world while it is baked: zones are taken over from the world that is there and
+/// from a bake that was killed, and the new world replaces the old one in one go.
+namespace throng {
+
+class WorldFolder {
+ public:
+  /// Begins NAME.part beside the world `path`. Fails with kIo, also if `path` is something else.
+  static Result<WorldFolder> begin(std::string path, OldZones old_zones);
+  WorldFolder(WorldFolder&& other) noexcept;
+  WorldFolder& operator=(WorldFolder&&) = delete;
+  /// Removes what was begun and not finished.
+  ~WorldFolder();
+
+  /// The world that is there, without its zones; null if there is none that can be read.
+  [[nodiscard]] const WorldData* old_world() const { return old_.get(); }
+
+  /// A zone that need not be baked; it is then in the new world. `zone` is null where nobody
+  /// stands.
+  struct Kept {
+    std::unique_ptr<Zone> zone;
+    format::ZoneEntry entry;
+  };
+  std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input);
+
+  /// Adds a baked zone, or, with `bytes` empty, one in which nobody stands. Fails with kIo.
+  Result<void> write(const format::ZoneEntry& entry, uint64_t input,
+                     std::span<const uint8_t> bytes);
+
+  /// Writes the manifest and puts the world in its place. Fails with kIo.
+  Result<void> finish(const WorldData& world);
+
+ private:
+  struct Done;
+  struct Source {
+    bool is_part = false;  // the killed bake's folder, not the old world's
+    uint64_t input = 0;
+    format::ZoneEntry entry;
+  };
+
+  explicit WorldFolder(std::string path);
+  void read_old();
+  Result<void> read_part();
+
+  std::string path_;
+  std::filesystem::path part_;  // empty: finished or moved from
+  std::shared_ptr<WorldData> old_;
+  std::multimap<std::pair<int32_t, int32_t>, Source> sources_;  // by zone, the newest last
+};
+
+}  // namespace throng

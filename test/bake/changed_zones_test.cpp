@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "scratch_folder.h"
+#include "throng/bake.h"
+#include "throng/builtin_worlds.h"
+
+// A bake into the folder of a world: what has changed is baked, the rest is kept, and nobody can
+// tell from the bytes.
+namespace throng {
+namespace {
+
+namespace fs = std::filesystem;
+using Folder = std::map<std::string, std::string>;  // files and their bytes
+
+constexpr double kZone = 12.8;  // [m]
+const BakeConfig kConfig{.cell = 0.2, .zone = kZone};
+
+// Five by four zones of ground in patches of 3.2 m, with a wall here and there. The ground begins
+// at a corner of a cell (15/32 of one), so that zone (x, z) begins at (x, z) * kZone + corner.
+constexpr double kCorner = 0.2 * 15 / 32;
+Scene field() {
+  Scene scene;
+  for (int z = 0; z < 16; ++z) {
+    for (int x = 0; x < 20; ++x) {
+      const double x0 = kCorner + 3.2 * x, z0 = kCorner + 3.2 * z;
+      scene.add_quad({x0, 0, z0}, {x0, 0, z0 + 3.2}, {x0 + 3.2, 0, z0 + 3.2}, {x0 + 3.2, 0, z0});
+      if ((x * 7 + z * 3) % 11 == 0) scene.add_box({x0 + 1, 0, z0 + 1}, {x0 + 1.4, 2, z0 + 2.5});
+    }
+  }
+  return scene;
+}
+
+Folder read(const std::string& path) {
+  Folder folder;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    folder[entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
+  }
+  return folder;
+}
+
+class ChangedZones : public testing::Test {
+ protected:
+  BakeReport bake(const std::string& name, const Scene& scene, const BakeConfig& config = kConfig) {
+    Context context;
+    const auto report = bake_world_to(at(name), scene, config, context);
+    EXPECT_TRUE(report) << report.error().message;
+    const auto world = World::open(at(name));
+    EXPECT_TRUE(world && world->check_all());
+    EXPECT_FALSE(fs::exists(at(name) + ".part"));
+    EXPECT_FALSE(fs::exists(at(name) + "/journal"));
+    return report ? *report : BakeReport{};
+  }
+  [[nodiscard]] std::string at(const std::string& name) const {
+    return folder_.path() + "/" + name;
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(ChangedZones, NothingChangedNothingIsBaked) {
+  const BakeReport first = bake("w", field());
+  EXPECT_EQ(first.zones_baked, 20u);
+  EXPECT_EQ(first.zones_kept, 0u);
+  const Folder before = read(at("w"));
+  const BakeReport second = bake("w", field());
+  EXPECT_EQ(second.zones_baked, 0u);
+  EXPECT_EQ(second.zones_kept, 20u);
+  EXPECT_EQ(read(at("w")), before);
+  EXPECT_EQ(second.walkable_area, first.walkable_area);
+  EXPECT_EQ(second.constant_level_tiles, first.constant_level_tiles);
+  EXPECT_EQ(second.tiles, first.tiles);
+  EXPECT_EQ(second.bytes, first.bytes);
+}
+
+// Zones whose area, widened by `apron`, meets the box. [m]
+uint64_t zones_near(const Box3d& box, double apron) {
+  uint64_t count = 0;
+  for (int z = 0; z < 4; ++z) {
+    for (int x = 0; x < 5; ++x) {
+      const double x0 = kCorner + x * kZone, z0 = kCorner + z * kZone;
+      count += box.max.x >= x0 - apron && box.min.x <= x0 + kZone + apron &&
+                       box.max.z >= z0 - apron && box.min.z <= z0 + kZone + apron
+                   ? 1
+                   : 0;
+    }
+  }
+  return count;
+}
+
+TEST_F(ChangedZones, ATouchedTriangleIsBakedWhereItIsSeenAndNowhereElse) {
+  struct Touch {
+    double x, z, wide, deep;
+    uint64_t zones;  // by hand
+  };
+  for (const Touch& touch :
+       {Touch{6, 6, 0.5, 0.5, 1}, Touch{12.4, 6, 0.2, 0.2, 2}, Touch{12.5, 12.5, 0.3, 0.3, 4},
+        Touch{20, 20, 0.5, 12, 2}, Touch{3, 30, 58, 0.5, 5}, Touch{30, 45, 1, 1, 1}}) {
+    Scene scene = field();
+    bake("w", scene);
+    const double x1 = touch.x + touch.wide, z1 = touch.z + touch.deep;
+    Box3d box;
+    box.add({touch.x, 0, touch.z});
+    box.add({x1, 0, z1});
+    // Whoever looks half a metre far and whoever looks two metres far sees the same zones.
+    ASSERT_EQ(zones_near(box, 0.5), touch.zones);
+    ASSERT_EQ(zones_near(box, 2.5), touch.zones);
+    scene.add_triangle({touch.x, 1, touch.z}, {touch.x, 1, z1}, {x1, 1, touch.z});
+    const BakeReport report = bake("w", scene);
+    EXPECT_EQ(report.zones_baked, touch.zones) << touch.x << ", " << touch.z;
+    EXPECT_EQ(report.zones_kept, 20 - touch.zones);
+    bake("new", scene, {.cell = 0.2, .zone = kZone, .old_zones = OldZones::kBakeAgain});
+    EXPECT_EQ(read(at("w")), read(at("new")));
+  }
+}
+
+TEST_F(ChangedZones, AnotherClassCellOrResolutionBakesAll) {
+  bake("w", field());
+  BakeConfig config = kConfig;
+  config.classes[0].step += 0.01;
+  EXPECT_EQ(bake("w", field(), config).zones_baked, 20u);
+  EXPECT_EQ(bake("w", field(), config).zones_baked, 0u);
+  config.classes[0].speed += 1;  // Of no zone's business.
+  EXPECT_EQ(bake("w", field(), config).zones_baked, 0u);
+  config.classes.pop_back();
+  EXPECT_EQ(bake("w", field(), config).zones_baked, 20u);
+  config.resolution = 0.05;
+  EXPECT_EQ(bake("w", field(), config).zones_baked, 20u);
+  config.cell = 0.25;
+  EXPECT_EQ(bake("w", field(), config).zones_kept, 0u);
+  config.old_zones = OldZones::kBakeAgain;
+  EXPECT_EQ(bake("w", field(), config).zones_kept, 0u);
+}
+
+TEST_F(ChangedZones, AnotherAreaKindIsBaked) {
+  Scene scene = field();
+  bake("w", scene);
+  scene.area.assign(scene.triangles.size(), kAreaWalkable);
+  EXPECT_EQ(bake("w", scene).zones_baked, 0u);
+  scene.area[0] = 9;  // A new kind numbers the surfaces of the whole scene anew.
+  EXPECT_EQ(bake("w", scene).zones_baked, 1u);
+  bake("new", scene);
+  EXPECT_EQ(read(at("w")), read(at("new")));
+}
+
+TEST_F(ChangedZones, TheGridStaysWhereItWasIfTheRimMovesInOrTheFarSideOut) {
+  Scene scene = field();
+  bake("w", scene);
+  scene.add_quad({-20, 0, -20}, {-20, 0, -19}, {-19, 0, -19}, {-19, 0, -20});
+  EXPECT_EQ(bake("w", scene).zones_kept, 0u);  // It begins before the grid: another grid.
+  const Folder wide = read(at("w"));
+  const BakeReport back = bake("w", field());  // The scene still begins on that grid.
+  EXPECT_EQ(back.zones_kept, back.zones_baked + back.zones_kept);
+  EXPECT_GT(back.zones_kept, 20u);
+  EXPECT_LT(read(at("w")).size(), wide.size());  // The island's zone is gone.
+
+  Scene far = field();
+  far.add_quad({90, 0, 6}, {90, 0, 7}, {91, 0, 7}, {91, 0, 6});
+  const BakeReport more = bake("w", far);
+  EXPECT_GT(more.zones_kept, 10u);
+  EXPECT_GT(more.zones_baked, 0u);
+
+  // Grown on the far side only, it is the world of an empty folder.
+  bake("v", field());
+  far.add_quad({64, 0, 0.5}, {64, 0, 51}, {80, 0, 51}, {80, 0, 0.5});
+  EXPECT_GT(bake("v", far).zones_kept, 10u);
+  bake("new", far);
+  EXPECT_EQ(read(at("v")), read(at("new")));
+  fs::remove_all(at("new"));
+
+  // A scene that shares no zone gets the grid that it would get in an empty folder.
+  Scene other;
+  other.add_quad({1.3, 0, 1.3}, {1.3, 0, 9}, {9, 0, 9}, {9, 0, 1.3});
+  EXPECT_EQ(bake("w", other).zones_kept, 0u);
+  bake("new", other);
+  EXPECT_EQ(read(at("w")), read(at("new")));
+}
+
+TEST_F(ChangedZones, DamagedZonesAndManifestsAreBakedAgain) {
+  bake("w", field());
+  const Folder whole = read(at("w"));
+  std::ofstream(at("w") + "/zone_1_1.thz", std::ios::binary) << "no zone";
+  fs::remove(at("w") + "/zone_2_1.thz");
+  EXPECT_EQ(bake("w", field()).zones_baked, 2u);
+  EXPECT_EQ(read(at("w")), whole);
+  Scene other = field();
+  other.add_box({20, 0, 20}, {21, 1, 21});
+  bake("other", other);
+  fs::copy_file(at("other") + "/zone_1_1.thz", at("w") + "/zone_1_1.thz",
+                fs::copy_options::overwrite_existing);  // Sound, but of another bake.
+  EXPECT_EQ(bake("w", field()).zones_baked, 1u);
+  EXPECT_EQ(read(at("w")), whole);
+  std::ofstream(at("w") + "/manifest.thm", std::ios::binary) << "no manifest";
+  EXPECT_EQ(bake("w", field()).zones_baked, 20u);
+  EXPECT_EQ(read(at("w")), whole);
+}
+
+TEST_F(ChangedZones, AJournalIsBelievedAsFarAsItsFilesAre) {
+  bake("w", field());
+  const Folder whole = read(at("w"));
+  for (const std::string& name :
+       {std::string("junk"), std::string(47, '\0'), std::string(4800, 7)}) {
+    fs::rename(at("w"), at("v"));
+    fs::create_directories(at("w.part"));
+    std::ofstream(at("w.part/journal"), std::ios::binary) << name;
+    std::ofstream(at("w.part/zone_0_0.thz"), std::ios::binary) << name;
+    std::ofstream(at("w.part/zone_9_9.thz"), std::ios::binary) << name;
+    EXPECT_EQ(bake("w", field()).zones_baked, 20u);
+    EXPECT_EQ(read(at("w")), whole);
+    fs::remove_all(at("v"));
+  }
+}
+
+}  // namespace
+}  // namespace throng

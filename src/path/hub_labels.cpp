@@ -10,11 +10,17 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "path/border.h"
+#include "path/mesh_ray.h"
 
 namespace throng {
 namespace {
 
 constexpr double kFar = 1e300;
+constexpr float kFarthest = 3e38f;
+
+CellPoint in_cells(GroundPoint p) {
+  return {static_cast<double>(p.x) / kUnitsPerCell, static_cast<double>(p.z) / kUnitsPerCell};
+}
 
 struct Edge {
   uint32_t to = 0;
@@ -31,8 +37,26 @@ struct CornerGraph {
   }
 };
 
-CornerGraph look_around(const PathMesh& mesh, int32_t workers, const Context& context) {
+// Turns "what each corner sees" into "by which corners each rectangle is seen".
+void list_candidates(const PathMesh& mesh, const std::vector<std::vector<SeenRect>>& rects,
+                     HubLabels& out) {
+  out.first_candidate.assign(mesh.rects.size(), 0);
+  for (const auto& of_corner : rects) {
+    for (const SeenRect& r : of_corner) ++out.first_candidate[r.rect + 1];
+  }
+  for (size_t r = 1; r < out.first_candidate.size(); ++r)
+    out.first_candidate[r] += out.first_candidate[r - 1];
+  out.candidates.resize(out.first_candidate.back());
+  std::vector<uint32_t> at(out.first_candidate.begin(), out.first_candidate.end() - 1);
+  for (uint32_t c = 0; c < rects.size(); ++c) {
+    for (const SeenRect& r : rects[c]) out.candidates[at[r.rect]++] = {c & 0x7fffffff, r.whole};
+  }
+}
+
+CornerGraph look_around(const PathMesh& mesh, int32_t workers, const Context& context,
+                        HubLabels& out) {
   const size_t count = mesh.corner_count();
+  std::vector<std::vector<SeenRect>> rects(count);  // of each corner
   std::vector<std::vector<SeenCorner>> seen(count);
   constexpr size_t kGrain = 64;
   parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
@@ -40,8 +64,10 @@ CornerGraph look_around(const PathMesh& mesh, int32_t workers, const Context& co
     for (size_t c = begin; c < end && !context.cancel; ++c) {
       sight.look_from_corner(mesh, static_cast<uint32_t>(c));
       seen[c] = sight.corners();
+      rects[c] = sight.rects();
     }
   });
+  list_candidates(mesh, rects, out);
   // What one sees the other does, even where rounding hid it from one of them.
   struct Pair {
     uint32_t from, to;
@@ -113,7 +139,7 @@ class Spread {
 // Corners by how many shortest ways from a sample of corners lead over them: the more, the better a
 // hub.
 std::vector<uint32_t> order_hubs(const CornerGraph& graph, size_t count) {
-  constexpr uint64_t kSamples = 96;
+  constexpr uint64_t kSamples = 256;
   std::vector<uint64_t> ways(count, 0), below(count, 0);
   Spread spread(count);
   std::vector<std::pair<uint32_t, uint32_t>> tree;  // corner, before it
@@ -145,10 +171,15 @@ std::vector<uint32_t> order_hubs(const CornerGraph& graph, size_t count) {
 
 Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& context) {
   const size_t count = mesh.corner_count();
-  const CornerGraph graph = look_around(mesh, workers, context);
+  HubLabels out;
+  const CornerGraph graph = look_around(mesh, workers, context, out);
   if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
   const std::vector<uint32_t> order = order_hubs(graph, count);
-  std::vector<std::vector<HubLabels::Label>> labels(count);
+  struct Made {
+    uint32_t hub, next;
+    double length;
+  };
+  std::vector<std::vector<Made>> labels(count);
   std::vector<double> to_root(count, kFar);  // per hub that the root has
   Spread spread(count);
   for (uint32_t rank = 0; rank < count; ++rank) {
@@ -165,71 +196,118 @@ Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& c
     });
     for (const auto& label : labels[root]) to_root[label.hub] = kFar;
   }
-  HubLabels out;
   out.edges = graph.edges.size() / 2;
   out.first.push_back(0);
   for (auto& of_corner : labels) {
-    out.labels.insert(out.labels.end(), of_corner.begin(), of_corner.end());
+    for (const Made& label : of_corner) {
+      out.labels.push_back({label.hub, static_cast<float>(label.length)});
+      out.next.push_back(label.next);
+    }
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_corner = {};
   }
   return out;
 }
 
-bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, uint32_t from_rect,
-                       CellPoint from, uint32_t to_rect, CellPoint to,
-                       std::vector<uint32_t>& corners, double& length) {
-  corners.clear();
-  sight_.look(mesh, from_rect, from, to_rect, to);
-  if (sight_.sees_goal()) {
-    length = distance(from, to);
-    return true;
+// The corners that a way may bend at first from an end; false if the cells would have to tell
+// which.
+bool LabelSearch::gather(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
+                         std::vector<SeenCorner>& seen) {
+  seen.clear();
+  const CellPoint from = in_cells(end.at);
+  const uint32_t last = labels.first_candidate[end.rect + 1];
+  for (uint32_t i = labels.first_candidate[end.rect]; i < last; ++i) {
+    const uint32_t c = labels.candidates[i].corner;
+    const MeshCorner& corner = mesh.corners[c];
+    const double dx = corner.x - from.x, dz = corner.z - from.z;
+    if (!is_taut(corner, dx, dz)) continue;
+    if (labels.candidates[i].from_all != 0) {
+      seen.push_back({c, std::sqrt(dx * dx + dz * dz)});
+      continue;
+    }
+    const uint32_t rect = mesh_ray(mesh, end.rect, end.at, beside(corner));
+    if (rect == kUnsure) return false;
+    // Not the same point of another storey.
+    const uint32_t* first = mesh.corner_rects.data() + corner.first_rect;
+    const uint32_t* stop = mesh.corner_rects.data() + mesh.corners[c + 1].first_rect;
+    if (std::find(first, stop, rect) != stop) seen.push_back({c, std::sqrt(dx * dx + dz * dz)});
   }
+  return true;
+}
+
+// The shortest way over the gathered corners; false if there is none.
+bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best) {
   if (reach_.size() != mesh.corner_count()) reach_.assign(mesh.corner_count(), {});
   if (++search_ == 0) {
     reach_.assign(mesh.corner_count(), {});
     search_ = 1;
   }
-  start_ = sight_.corners();
   for (const SeenCorner& s : start_) {
     for (const HubLabels::Label& label : labels.of(s.corner)) {
       Reach& reach = reach_[label.hub];
-      const double here = s.distance + label.length;
+      const float here = static_cast<float>(s.distance) + label.length;
       if (reach.search != search_ || here < reach.length) reach = {search_, s.corner, here};
     }
   }
-  sight_.look(mesh, to_rect, to, kNoRect, {});
-  length = kFar;
-  uint32_t hub = 0, last = 0;
-  for (const SeenCorner& s : sight_.corners()) {
+  best.length = kFarthest;
+  for (const SeenCorner& s : goal_) {
     for (const HubLabels::Label& label : labels.of(s.corner)) {
       const Reach& reach = reach_[label.hub];
-      if (reach.search != search_) continue;
-      const double here = reach.length + label.length + s.distance;
-      if (here >= length) continue;
-      length = here;
-      hub = label.hub;
-      last = s.corner;
+      const float here = reach.length + label.length + static_cast<float>(s.distance);
+      if (reach.search != search_ || here >= best.length) continue;
+      best = {here, label.hub, reach.corner, s.corner};
     }
   }
-  if (length == kFar) return false;
-  // From each end to the hub.
+  return best.length < kFarthest;
+}
+
+// The corners from each end to the hub.
+void LabelSearch::trace(const HubLabels& labels, const Best& best,
+                        std::vector<uint32_t>& corners) const {
   const auto walk = [&](uint32_t corner) {
     for (;;) {
       corners.push_back(corner);
       const auto list = labels.of(corner);
       const auto at = std::lower_bound(
-          list.begin(), list.end(), hub,
+          list.begin(), list.end(), best.hub,
           [](const HubLabels::Label& label, uint32_t wanted) { return label.hub < wanted; });
-      if (at->next == corner) return;
-      corner = at->next;
+      const uint32_t next = labels.next[static_cast<size_t>(&*at - labels.labels.data())];
+      if (next == corner) return;
+      corner = next;
     }
   };
-  walk(reach_[hub].corner);
+  walk(best.first);
   const size_t middle = corners.size() - 1;
-  walk(last);
+  walk(best.last);
   corners.pop_back();  // the hub, which is there already
   std::reverse(corners.begin() + static_cast<ptrdiff_t>(middle) + 1, corners.end());
+}
+
+bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
+                       const Stop& to, std::vector<uint32_t>& corners, double& length) {
+  corners.clear();
+  const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
+  bool is_straight = mesh_ray(mesh, from.rect, from.at, to.at) == to.rect;
+  if (!is_straight && !(gather(mesh, labels, from, start_) && gather(mesh, labels, to, goal_))) {
+    sight_.look(mesh, from.rect, start, to.rect, goal);
+    is_straight = sight_.sees_goal();
+    start_ = sight_.corners();
+    sight_.look(mesh, to.rect, goal, kNoRect, {});
+    goal_ = sight_.corners();
+  }
+  length = distance(start, goal);
+  if (is_straight) return true;
+  Best best;
+  if (!join(mesh, labels, best)) return false;
+  trace(labels, best, corners);
+  length = 0;
+  CellPoint at = start;
+  for (const uint32_t c : corners) {
+    const CellPoint next{double(mesh.corners[c].x), double(mesh.corners[c].z)};
+    length += distance(at, next);
+    at = next;
+  }
+  length += distance(at, goal);
   return true;
 }
 

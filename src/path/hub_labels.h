@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "path/legs.h"
 #include "path/mesh.h"
 #include "path/sight.h"
 
@@ -16,19 +17,28 @@ namespace throng {
 /// them is in both their lists. Source: [AIY13].
 struct HubLabels {
   struct Label {
-    uint32_t hub = 0;   // rank: 0 is the hub of most ways
-    uint32_t next = 0;  // corner after this one on the way to the hub; the corner itself at the hub
-    double length = 0;  // to the hub [cells]
+    uint32_t hub = 0;  // rank: 0 is the hub of most ways
+    float length = 0;  // to the hub [cells]
   };
   std::vector<uint32_t> first;  // per corner, one more at the end
   std::vector<Label> labels;    // of a corner, by rising hub
-  uint64_t edges = 0;           // pairs of corners that see each other and may bend at both
+  std::vector<uint32_t> next;  // per label: the corner after this one on the way; at the hub itself
+  // Per rectangle the corners that are seen from some point of it: a way from there that bends
+  // bends first at one of them.
+  struct Candidate {
+    uint32_t corner : 31;
+    uint32_t from_all : 1;  // it is seen from all of the rectangle
+  };
+  std::vector<uint32_t> first_candidate;  // one more at the end
+  std::vector<Candidate> candidates;
+  uint64_t edges = 0;  // pairs of corners that see each other and may bend at both
 
   [[nodiscard]] std::span<const Label> of(uint32_t corner) const {
     return {labels.data() + first[corner], labels.data() + first[corner + 1]};
   }
   [[nodiscard]] uint64_t bytes() const {
-    return first.size() * sizeof(uint32_t) + labels.size() * sizeof(Label);
+    return (first.size() + first_candidate.size() + candidates.size()) * sizeof(uint32_t) +
+           labels.size() * (sizeof(Label) + sizeof(uint32_t));
   }
 };
 
@@ -41,17 +51,27 @@ class LabelSearch {
  public:
   /// As PathSearch::find, without a budget: the length of what it finds is the same but for
   /// rounding.
-  bool find(const PathMesh& mesh, const HubLabels& labels, uint32_t from_rect, CellPoint from,
-            uint32_t to_rect, CellPoint to, std::vector<uint32_t>& corners, double& length);
+  bool find(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+            std::vector<uint32_t>& corners, double& length);
 
  private:
   struct Reach {
     uint32_t search = 0;  // that set it
     uint32_t corner = 0;  // by which the hub is reached
-    double length = 0;
+    float length = 0;
   };
+  struct Best {
+    float length = 0;
+    uint32_t hub = 0, first = 0, last = 0;
+  };
+
+  static bool gather(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
+                     std::vector<SeenCorner>& seen);
+  bool join(const PathMesh& mesh, const HubLabels& labels, Best& best);
+  void trace(const HubLabels& labels, const Best& best, std::vector<uint32_t>& corners) const;
+
   Sight sight_;
-  std::vector<SeenCorner> start_;
+  std::vector<SeenCorner> start_, goal_;
   std::vector<Reach> reach_;  // per hub
   uint32_t search_ = 0;
 };

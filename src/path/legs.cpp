@@ -7,14 +7,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "path/mesh_ray.h"
+
 namespace throng {
 namespace {
 
 constexpr int32_t kMostGrazed = 64;  // corners past which one leg is led
-
-GroundPoint beside(int32_t x, int32_t z, int32_t away_x, int32_t away_z) {
-  return {(int64_t{x} << kUnitBits) + away_x, (int64_t{z} << kUnitBits) + away_z};
-}
 
 }  // namespace
 
@@ -22,30 +20,34 @@ bool LegWalker::walk(const Stop& from, const std::vector<uint32_t>& corners, Gro
                      std::vector<Stop>& stops) {
   stops.clear();
   stops.push_back(from);
-  GroundLevel level = ground_level(ground_.world, from.level, ground_.avatar_class);
   for (const uint32_t c : corners) {
-    const MeshCorner& corner = mesh_->corners[c];
-    const GroundPoint at = beside(corner.x, corner.z, corner.away_x, corner.away_z);
-    if (!leg(level, stops.back().at, at, kMostGrazed, stops)) return false;
+    if (!leg(beside(mesh_->corners[c]), kMostGrazed, stops)) return false;
   }
-  return leg(level, stops.back().at, to, kMostGrazed, stops);
+  return leg(to, kMostGrazed, stops);
 }
 
-// Adds the stops after `from` up to `to`.
-bool LegWalker::leg(GroundLevel& level, GroundPoint from, GroundPoint to, int32_t depth,
-                    std::vector<Stop>& stops) {
-  GroundLevel end = level;
-  if (throng::walk(ground_, end, from, to, mesh_->step)) {
-    level = end;
-    stops.push_back({to, level.world_level});
+// Adds the stops after the last one up to `to`.
+bool LegWalker::leg(GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
+  const Stop from = stops.back();
+  const uint32_t rect = mesh_ray(*mesh_, from.rect, from.at, to);
+  if (rect != kNoRect && rect != kUnsure) {
+    stops.push_back({to, rect});
     return true;
   }
+  // Only the cells can tell.
+  const GroundLevel level =
+      ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
+  GroundLevel end = level;
+  if (throng::walk(ground_, end, from.at, to, mesh_->step)) {
+    stops.push_back({to, mesh_->rect_at(end.world_level, to.cell_x(), to.cell_z())});
+    return stops.back().rect != kNoRect;
+  }
   if (depth == 0) return false;
-  const auto past = grazed(level, from, to);
-  if (!past || (past->x == from.x && past->z == from.z) || (past->x == to.x && past->z == to.z))
+  const auto past = grazed(level, from.at, to);
+  if (!past || (past->x == from.at.x && past->z == from.at.z) ||
+      (past->x == to.x && past->z == to.z))
     return false;
-  return leg(level, from, *past, depth / 2, stops) &&
-         leg(level, stops.back().at, to, depth - 1, stops);
+  return leg(*past, depth / 2, stops) && leg(to, depth - 1, stops);
 }
 
 // The point beside the corner of the first cell in the way, if the leg just grazes it.
@@ -87,7 +89,8 @@ std::optional<GroundPoint> LegWalker::grazed(GroundLevel level, GroundPoint from
             const double off = std::fabs((px - fx) * dz - (pz - fz) * dx) / length;
             if (off >= nearest || along < -0.01 || along > length + 0.01) continue;
             nearest = off;
-            best = beside(px, pz, px > cx ? 1 : -1, pz > cz ? 1 : -1);
+            best = beside({px, pz, static_cast<int8_t>(px > cx ? 1 : -1),
+                           static_cast<int8_t>(pz > cz ? 1 : -1), 0});
           }
         }
       }

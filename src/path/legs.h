@@ -14,8 +14,14 @@ namespace throng {
 /// A stop of a way, on a level.
 struct Stop {
   GroundPoint at;
-  uint32_t level = 0;  // of the world
+  uint32_t rect = kNoRect;
 };
+
+/// A unit beside a corner, away from what is missing there.
+inline GroundPoint beside(const MeshCorner& corner) {
+  return {(int64_t{corner.x} << kUnitBits) + corner.away_x,
+          (int64_t{corner.z} << kUnitBits) + corner.away_z};
+}
 
 /// Walks from `from` by way of the corners to `to`, a unit beside each corner, and past every other
 /// corner that a leg would graze. False if a leg is blocked for another reason.
@@ -28,8 +34,7 @@ class LegWalker {
             std::vector<Stop>& stops);
 
  private:
-  bool leg(GroundLevel& level, GroundPoint from, GroundPoint to, int32_t depth,
-           std::vector<Stop>& stops);
+  bool leg(GroundPoint to, int32_t depth, std::vector<Stop>& stops);
   std::optional<GroundPoint> grazed(GroundLevel level, GroundPoint from, GroundPoint to) const;
 
   WorldGround ground_;

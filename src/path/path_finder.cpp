@@ -102,8 +102,8 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
   double length = 0;
   SearchResult result = SearchResult::kNone;
   if (shared_->labels) {
-    if (scratch_->look_up.find(mesh, *shared_->labels, start_end.rect, start_end.point,
-                               goal_end.rect, goal_end.point, scratch_->corners, length)) {
+    if (scratch_->look_up.find(mesh, *shared_->labels, {start, start_end.rect},
+                               {goal, goal_end.rect}, scratch_->corners, length)) {
       result = SearchResult::kFound;
     }
   } else {
@@ -114,8 +114,8 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
   if (result != SearchResult::kFound) return;
   LegWalker walker(world, mesh);
   const bool walked =
-      walker.walk({start, from.level1 - 1}, scratch_->corners, goal, scratch_->stops);
-  if (!walked || scratch_->stops.back().level != to.level1 - 1) {
+      walker.walk({start, start_end.rect}, scratch_->corners, goal, scratch_->stops);
+  if (!walked || scratch_->stops.back().rect != goal_end.rect) {
     path.end = PathEnd::kUnreachable;
     return;
   }
@@ -123,14 +123,15 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
   path.length = length * world.summary.cell;
   const double unit = world.summary.cell / kUnitsPerCell;
   for (const Stop& stop : scratch_->stops) {
-    const GroundLevel level = ground_level(world, stop.level, mesh.avatar_class);
+    const uint32_t on = mesh.rects[stop.rect].level;
+    const GroundLevel level = ground_level(world, on, mesh.avatar_class);
     const int32_t feet = level.view.feet(stop.at.cell_x() & 63, stop.at.cell_z() & 63,
                                          static_cast<int32_t>(stop.at.x & (kUnitsPerCell - 1)),
                                          static_cast<int32_t>(stop.at.z & (kUnitsPerCell - 1)));
     path.points.push_back(
         {{world.summary.origin.x + (static_cast<double>(stop.at.x) + 0.5) * unit, feet * 1e-3,
           world.summary.origin.z + (static_cast<double>(stop.at.z) + 0.5) * unit},
-         stop.level + 1});
+         on + 1});
   }
 }
 

@@ -20,6 +20,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   sees_goal_ = false;
   views_.clear();
   seen_.clear();
+  rects_.clear();
 }
 
 void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
@@ -44,6 +45,7 @@ void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner) {
 void Sight::start(uint32_t rect_index) {
   const MeshRect& rect = mesh_->rects[rect_index];
   if (rect_index == goal_) sees_goal_ = true;
+  rects_.push_back({rect_index, true});
   const uint32_t end = mesh_->rects[rect_index + 1].first_portal;
   for (uint32_t p = rect.first_portal; p < end; ++p)
     add(rect, mesh_->portals[p], mesh_->portals[p].from, mesh_->portals[p].to);
@@ -67,6 +69,12 @@ void Sight::note(uint32_t corner) {
 }
 
 void Sight::finish() {
+  std::sort(rects_.begin(), rects_.end(), [](const SeenRect& a, const SeenRect& b) {
+    return a.rect != b.rect ? a.rect < b.rect : a.whole > b.whole;
+  });
+  rects_.erase(std::unique(rects_.begin(), rects_.end(),
+                           [](const SeenRect& a, const SeenRect& b) { return a.rect == b.rect; }),
+               rects_.end());
   std::sort(seen_.begin(), seen_.end(),
             [](const SeenCorner& a, const SeenCorner& b) { return a.corner < b.corner; });
   seen_.erase(
@@ -114,6 +122,12 @@ void Sight::expand(const View& view) {
   if (!runs_along(rect, from_, view.left))
     last_seen = from_base(exit_around(rect, from_, view.left));
   last_seen = std::max(last_seen, first_seen);
+  const auto is_seen = [&](double x, double z) {
+    return cross(from_, view.right, {x, z}) >= 0 && cross(from_, view.left, {x, z}) <= 0;
+  };
+  const double x0 = rect.x, x1 = rect.x + rect.width, z0 = rect.z, z1 = rect.z + rect.depth;
+  rects_.push_back(
+      {view.rect, is_seen(x0, z0) && is_seen(x1, z0) && is_seen(x0, z1) && is_seen(x1, z1)});
   if (view.rect == goal_ && !sees_goal_) {
     sees_goal_ = cross(from_, view.right, goal_point_) >= -kSame &&
                  cross(from_, view.left, goal_point_) <= kSame;

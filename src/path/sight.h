@@ -10,6 +10,12 @@
 /// What is seen from a point of the ground.
 namespace throng {
 
+/// A rectangle of which something is seen; `whole` if all of it surely is.
+struct SeenRect {
+  uint32_t rect = kNoRect;
+  bool whole = false;
+};
+
 struct SeenCorner {
   uint32_t corner = kNoCorner;
   double distance = 0;  // cells
@@ -33,6 +39,8 @@ class Sight {
 
   [[nodiscard]] const std::vector<SeenCorner>& corners() const { return seen_; }
   [[nodiscard]] bool sees_goal() const { return sees_goal_; }
+  /// Rectangles of which something is seen, by number.
+  [[nodiscard]] const std::vector<SeenRect>& rects() const { return rects_; }
 
  private:
   struct View {
@@ -57,6 +65,7 @@ class Sight {
   std::vector<uint32_t> around_;
   std::vector<View> views_;
   std::vector<SeenCorner> seen_;
+  std::vector<SeenRect> rects_;
 };
 
 }  // namespace throng

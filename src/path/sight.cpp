@@ -21,6 +21,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   views_.clear();
   seen_.clear();
   rects_.clear();
+  entered_.clear();
 }
 
 void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
@@ -68,7 +69,36 @@ void Sight::note(uint32_t corner) {
   seen_.push_back({corner, std::sqrt(dx * dx + dz * dz)});
 }
 
+// A ray enters a rectangle once. So all of it is seen if the views that lead into it cover, side by
+// side, all directions in which it lies.
+void Sight::find_whole() {
+  std::sort(entered_.begin(), entered_.end(), [&](const View& a, const View& b) {
+    if (a.rect != b.rect) return a.rect < b.rect;
+    return cross(from_, a.right, b.right) > 0;
+  });
+  for (size_t i = 0; i < entered_.size();) {
+    const uint32_t r = entered_[i].rect;
+    const MeshRect& rect = mesh_->rects[r];
+    const double x0 = rect.x, x1 = rect.x + rect.width, z0 = rect.z, z1 = rect.z + rect.depth;
+    CellPoint right{x0, z0}, left{x0, z0};
+    for (const CellPoint p : {CellPoint{x1, z0}, CellPoint{x1, z1}, CellPoint{x0, z1}}) {
+      if (cross(from_, right, p) < 0) right = p;
+      if (cross(from_, left, p) > 0) left = p;
+    }
+    bool whole = true;
+    CellPoint covered = right;
+    for (; i < entered_.size() && entered_[i].rect == r; ++i) {
+      const View& view = entered_[i];
+      whole = whole && cross(from_, covered, view.right) <= kSame;
+      if (cross(from_, covered, view.left) > 0) covered = view.left;
+    }
+    whole = whole && cross(from_, covered, left) <= kSame;
+    rects_.push_back({r, whole});
+  }
+}
+
 void Sight::finish() {
+  find_whole();
   std::sort(rects_.begin(), rects_.end(), [](const SeenRect& a, const SeenRect& b) {
     return a.rect != b.rect ? a.rect < b.rect : a.whole > b.whole;
   });
@@ -122,12 +152,7 @@ void Sight::expand(const View& view) {
   if (!runs_along(rect, from_, view.left))
     last_seen = from_base(exit_around(rect, from_, view.left));
   last_seen = std::max(last_seen, first_seen);
-  const auto is_seen = [&](double x, double z) {
-    return cross(from_, view.right, {x, z}) >= 0 && cross(from_, view.left, {x, z}) <= 0;
-  };
-  const double x0 = rect.x, x1 = rect.x + rect.width, z0 = rect.z, z1 = rect.z + rect.depth;
-  rects_.push_back(
-      {view.rect, is_seen(x0, z0) && is_seen(x1, z0) && is_seen(x0, z1) && is_seen(x1, z1)});
+  if (own_ != kNoCorner) entered_.push_back(view);
   if (view.rect == goal_ && !sees_goal_) {
     sees_goal_ = cross(from_, view.right, goal_point_) >= -kSame &&
                  cross(from_, view.left, goal_point_) <= kSame;

@@ -10,7 +10,7 @@
 /// What is seen from a point of the ground.
 namespace throng {
 
-/// A rectangle of which something is seen; `whole` if all of it surely is.
+/// A rectangle of which something is seen; `whole` if all of it is.
 struct SeenRect {
   uint32_t rect = kNoRect;
   bool whole = false;
@@ -55,6 +55,7 @@ class Sight {
   void add(const MeshRect& rect, const MeshPortal& portal, double from, double to);
   void note(uint32_t corner);
   void finish();
+  void find_whole();
 
   const PathMesh* mesh_ = nullptr;
   CellPoint from_;
@@ -66,6 +67,7 @@ class Sight {
   std::vector<View> views_;
   std::vector<SeenCorner> seen_;
   std::vector<SeenRect> rects_;
+  std::vector<View> entered_;  // views that have led into a rectangle
 };
 
 }  // namespace throng

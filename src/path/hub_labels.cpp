@@ -22,6 +22,10 @@ CellPoint in_cells(GroundPoint p) {
   return {static_cast<double>(p.x) / kUnitsPerCell, static_cast<double>(p.z) / kUnitsPerCell};
 }
 
+uint32_t block_of(const PathMesh& mesh, const Stop& end) {
+  return mesh.block_at(end.rect, end.at.cell_x(), end.at.cell_z());
+}
+
 struct Edge {
   uint32_t to = 0;
   double length = 0;
@@ -37,26 +41,26 @@ struct CornerGraph {
   }
 };
 
-// Turns "what each corner sees" into "by which corners each rectangle is seen".
-void list_candidates(const PathMesh& mesh, const std::vector<std::vector<SeenRect>>& rects,
+// Turns "what each corner sees" into "by which corners each block is seen".
+void list_candidates(const PathMesh& mesh, const std::vector<std::vector<SeenBlock>>& blocks,
                      HubLabels& out) {
-  out.first_candidate.assign(mesh.rects.size(), 0);
-  for (const auto& of_corner : rects) {
-    for (const SeenRect& r : of_corner) ++out.first_candidate[r.rect + 1];
+  out.first_candidate.assign(mesh.block_count() + 1, 0);
+  for (const auto& of_corner : blocks) {
+    for (const SeenBlock& b : of_corner) ++out.first_candidate[b.block + 1];
   }
   for (size_t r = 1; r < out.first_candidate.size(); ++r)
     out.first_candidate[r] += out.first_candidate[r - 1];
   out.candidates.resize(out.first_candidate.back());
   std::vector<uint32_t> at(out.first_candidate.begin(), out.first_candidate.end() - 1);
-  for (uint32_t c = 0; c < rects.size(); ++c) {
-    for (const SeenRect& r : rects[c]) out.candidates[at[r.rect]++] = {c & 0x7fffffff, r.whole};
+  for (uint32_t c = 0; c < blocks.size(); ++c) {
+    for (const SeenBlock& b : blocks[c]) out.candidates[at[b.block]++] = {c & 0x7fffffff, b.whole};
   }
 }
 
 CornerGraph look_around(const PathMesh& mesh, int32_t workers, const Context& context,
                         HubLabels& out) {
   const size_t count = mesh.corner_count();
-  std::vector<std::vector<SeenRect>> rects(count);  // of each corner
+  std::vector<std::vector<SeenBlock>> blocks(count);  // of each corner
   std::vector<std::vector<SeenCorner>> seen(count);
   constexpr size_t kGrain = 64;
   parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
@@ -64,10 +68,10 @@ CornerGraph look_around(const PathMesh& mesh, int32_t workers, const Context& co
     for (size_t c = begin; c < end && !context.cancel; ++c) {
       sight.look_from_corner(mesh, static_cast<uint32_t>(c));
       seen[c] = sight.corners();
-      rects[c] = sight.rects();
+      blocks[c] = sight.blocks();
     }
   });
-  list_candidates(mesh, rects, out);
+  list_candidates(mesh, blocks, out);
   // What one sees the other does, even where rounding hid it from one of them.
   struct Pair {
     uint32_t from, to;
@@ -196,6 +200,7 @@ Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& c
     });
     for (const auto& label : labels[root]) to_root[label.hub] = kFar;
   }
+  out.hubs = order;
   out.edges = graph.edges.size() / 2;
   out.first.push_back(0);
   for (auto& of_corner : labels) {
@@ -206,6 +211,8 @@ Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& c
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_corner = {};
   }
+  constexpr uint64_t kMostEntries = uint64_t{1} << 25;  // 320 MiB
+  out.by_block = build_block_labels(mesh, out, workers, kMostEntries);
   return out;
 }
 
@@ -215,8 +222,8 @@ bool LabelSearch::gather(const PathMesh& mesh, const HubLabels& labels, const St
                          std::vector<SeenCorner>& seen) {
   seen.clear();
   const CellPoint from = in_cells(end.at);
-  const uint32_t last = labels.first_candidate[end.rect + 1];
-  for (uint32_t i = labels.first_candidate[end.rect]; i < last; ++i) {
+  const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
+  for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
     const uint32_t c = labels.candidates[i].corner;
     const MeshCorner& corner = mesh.corners[c];
     const double dx = corner.x - from.x, dz = corner.z - from.z;
@@ -283,22 +290,109 @@ void LabelSearch::trace(const HubLabels& labels, const Best& best,
   std::reverse(corners.begin() + static_cast<ptrdiff_t>(middle) + 1, corners.end());
 }
 
+namespace {
+
+void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
+               std::vector<float>& out) {
+  const CellPoint from = in_cells(end.at);
+  out.clear();
+  const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
+  for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
+    const MeshCorner& corner = mesh.corners[labels.candidates[i].corner];
+    const double dx = corner.x - from.x, dz = corner.z - from.z;
+    out.push_back(static_cast<float>(std::sqrt(dx * dx + dz * dz)));
+  }
+}
+
+// The next run of entries of one hub, and its shortest by the distances.
+struct HubRun {
+  float length = kFarthest;
+  uint32_t candidate = 0;
+
+  HubRun(const BlockLabels& labels, uint32_t& at, uint32_t end, const std::vector<float>& to) {
+    const uint32_t hub = labels.hub[at];
+    for (; at < end && labels.hub[at] == hub; ++at) {
+      const float here = to[labels.candidate[at]] + labels.length[at];
+      if (here >= length) continue;
+      length = here;
+      candidate = labels.candidate[at];
+    }
+  }
+};
+
+}  // namespace
+
+// Joins the lists of the ends' rectangles. Where a ray does not reach the best way's first or last
+// corner, the best without it.
+LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels,
+                                      const Stop& from, const Stop& to, Best& best) {
+  const BlockLabels& by_block = labels.by_block;
+  const uint32_t from_block = block_of(mesh, from), to_block = block_of(mesh, to);
+  distances(mesh, labels, from, from_);
+  distances(mesh, labels, to, to_);
+  const auto is_seen = [&](const Stop& end, uint32_t candidate, float& length, bool& unsure) {
+    const HubLabels::Candidate& c =
+        labels.candidates[labels.first_candidate[block_of(mesh, end)] + candidate];
+    if (c.from_all != 0) return true;
+    const uint32_t rect = mesh_ray(mesh, end.rect, end.at, beside(mesh.corners[c.corner]));
+    unsure = unsure || rect == kUnsure;
+    const uint32_t* first = mesh.corner_rects.data() + mesh.corners[c.corner].first_rect;
+    const uint32_t* stop = mesh.corner_rects.data() + mesh.corners[c.corner + 1].first_rect;
+    if (std::find(first, stop, rect) != stop) return true;
+    length = kFarthest;
+    return false;
+  };
+  for (;;) {
+    best.length = kFarthest;
+    uint32_t first = 0, last = 0;  // candidates
+    uint32_t i = by_block.first[from_block], j = by_block.first[to_block];
+    const uint32_t i_end = by_block.first[from_block + 1], j_end = by_block.first[to_block + 1];
+    while (i < i_end && j < j_end) {
+      if (by_block.hub[i] < by_block.hub[j]) {
+        ++i;
+      } else if (by_block.hub[j] < by_block.hub[i]) {
+        ++j;
+      } else {
+        const uint32_t hub = by_block.hub[i];
+        const HubRun a(by_block, i, i_end, from_), b(by_block, j, j_end, to_);
+        if (a.length + b.length >= best.length) continue;
+        best.length = a.length + b.length;
+        best.hub = hub;
+        first = a.candidate;
+        last = b.candidate;
+      }
+    }
+    if (!(best.length < kFarthest)) return Merge::kNone;
+    bool unsure = false;
+    const bool seen = is_seen(from, first, from_[first], unsure);
+    const bool both = is_seen(to, last, to_[last], unsure) && seen;
+    if (unsure) return Merge::kUnsure;
+    if (!both) continue;
+    best.first = labels.candidates[labels.first_candidate[from_block] + first].corner;
+    best.last = labels.candidates[labels.first_candidate[to_block] + last].corner;
+    return Merge::kFound;
+  }
+}
+
 bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                        const Stop& to, std::vector<uint32_t>& corners, double& length) {
   corners.clear();
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
-  bool is_straight = mesh_ray(mesh, from.rect, from.at, to.at) == to.rect;
-  if (!is_straight && !(gather(mesh, labels, from, start_) && gather(mesh, labels, to, goal_))) {
-    sight_.look(mesh, from.rect, start, to.rect, goal);
-    is_straight = sight_.sees_goal();
-    start_ = sight_.corners();
-    sight_.look(mesh, to.rect, goal, kNoRect, {});
-    goal_ = sight_.corners();
-  }
   length = distance(start, goal);
-  if (is_straight) return true;
+  if (mesh_ray(mesh, from.rect, from.at, to.at) == to.rect) return true;
   Best best;
-  if (!join(mesh, labels, best)) return false;
+  Merge merged = Merge::kUnsure;
+  if (!labels.by_block.first.empty()) merged = merge(mesh, labels, from, to, best);
+  if (merged != Merge::kFound) {
+    if (!(gather(mesh, labels, from, start_) && gather(mesh, labels, to, goal_))) {
+      sight_.look(mesh, from.rect, start, to.rect, goal);
+      if (sight_.sees_goal()) return true;
+      start_ = sight_.corners();
+      sight_.look(mesh, to.rect, goal, kNoRect, {});
+      goal_ = sight_.corners();
+    }
+    if (!join(mesh, labels, best)) return false;
+  }
   trace(labels, best, corners);
   length = 0;
   CellPoint at = start;

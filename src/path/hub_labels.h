@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "path/block_labels.h"
 #include "path/legs.h"
 #include "path/mesh.h"
 #include "path/sight.h"
@@ -23,22 +24,25 @@ struct HubLabels {
   std::vector<uint32_t> first;  // per corner, one more at the end
   std::vector<Label> labels;    // of a corner, by rising hub
   std::vector<uint32_t> next;  // per label: the corner after this one on the way; at the hub itself
-  // Per rectangle the corners that are seen from some point of it: a way from there that bends
-  // bends first at one of them.
+  // Per block the corners that may be seen from some point of it: a way from there that bends bends
+  // first at one of them.
   struct Candidate {
     uint32_t corner : 31;
-    uint32_t from_all : 1;  // it is seen from all of the rectangle
+    uint32_t from_all : 1;  // it is seen from all of the block
   };
   std::vector<uint32_t> first_candidate;  // one more at the end
   std::vector<Candidate> candidates;
-  uint64_t edges = 0;  // pairs of corners that see each other and may bend at both
+  BlockLabels by_block;
+  std::vector<uint32_t> hubs;  // by rank: the corner
+  uint64_t edges = 0;          // pairs of corners that see each other and may bend at both
 
   [[nodiscard]] std::span<const Label> of(uint32_t corner) const {
     return {labels.data() + first[corner], labels.data() + first[corner + 1]};
   }
   [[nodiscard]] uint64_t bytes() const {
-    return (first.size() + first_candidate.size() + candidates.size()) * sizeof(uint32_t) +
-           labels.size() * (sizeof(Label) + sizeof(uint32_t));
+    return (first.size() + hubs.size() + first_candidate.size() + candidates.size()) *
+               sizeof(uint32_t) +
+           labels.size() * (sizeof(Label) + sizeof(uint32_t)) + by_block.bytes();
   }
 };
 
@@ -68,11 +72,15 @@ class LabelSearch {
   static bool gather(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
                      std::vector<SeenCorner>& seen);
   bool join(const PathMesh& mesh, const HubLabels& labels, Best& best);
+  enum class Merge { kFound, kNone, kUnsure };
+  Merge merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+              Best& best);
   void trace(const HubLabels& labels, const Best& best, std::vector<uint32_t>& corners) const;
 
   Sight sight_;
   std::vector<SeenCorner> start_, goal_;
-  std::vector<Reach> reach_;  // per hub
+  std::vector<Reach> reach_;      // per hub
+  std::vector<float> from_, to_;  // to each candidate of the ends' blocks
   uint32_t search_ = 0;
 };
 

@@ -223,6 +223,18 @@ uint32_t PathMesh::rect_at(uint32_t level, int32_t x, int32_t z) const {
   return kNoRect;
 }
 
+MeshRect PathMesh::block(uint32_t rect, uint32_t n) const {
+  MeshRect block = rects[rect];
+  const int32_t across = (block.width + kBlockSide - 1) / kBlockSide;
+  const int32_t x = static_cast<int32_t>(n) % across * kBlockSide;
+  const int32_t z = static_cast<int32_t>(n) / across * kBlockSide;
+  block.x += x;
+  block.z += z;
+  block.width = std::min(kBlockSide, block.width - x);
+  block.depth = std::min(kBlockSide, block.depth - z);
+  return block;
+}
+
 uint64_t PathMesh::bytes() const {
   return first.size() * sizeof(first[0]) + rects.size() * sizeof(MeshRect) +
          portals.size() * sizeof(MeshPortal) + corners.size() * sizeof(MeshCorner) +
@@ -294,6 +306,13 @@ Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_
   }
   gather_corner_rects(mesh);
   find_components(mesh);
+  uint32_t blocks = 0;
+  for (MeshRect& rect : mesh.rects) {
+    constexpr int32_t kSide = PathMesh::kBlockSide;
+    rect.first_block = blocks;
+    blocks += static_cast<uint32_t>((rect.width + kSide - 1) / kSide *
+                                    ((rect.depth + kSide - 1) / kSide));
+  }
   return mesh;
 }
 

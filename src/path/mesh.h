@@ -29,6 +29,7 @@ struct MeshRect {
   int32_t width = 0, depth = 0;
   uint32_t first_portal = 0;  // its portals end where the next rectangle's begin
   uint32_t component = 0;     // rectangles that portals hold together share it
+  uint32_t first_block = 0;   // of its blocks, in rows
 };
 
 /// A stretch of a rectangle's border over which a step leads to another, and back. Portals of a
@@ -52,12 +53,24 @@ struct PathMesh {
   int32_t avatar_class = 0;
   int32_t step = 0;             // [mm]
   std::vector<uint32_t> first;  // per level of the world: its first rectangle; one more
-  std::vector<MeshRect> rects;  // one more at the end, for its first_portal
+  std::vector<MeshRect> rects;  // one more at the end, for its first_portal and first_block
   std::vector<MeshPortal> portals;
   std::vector<MeshCorner> corners;     // one more at the end, for its first_rect
   std::vector<uint32_t> corner_rects;  // rectangles around each corner
 
   [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const;  // cell of the grid
+  /// Rectangles are cut into blocks of up to 16 x 16 cells, small enough for lists of what may
+  /// matter to any of their points.
+  static constexpr int32_t kBlockSide = 8;
+  [[nodiscard]] uint32_t block_count() const { return rects.back().first_block; }
+  [[nodiscard]] uint32_t block_at(uint32_t rect, int32_t x, int32_t z) const {  // cell of the grid
+    const MeshRect& r = rects[rect];
+    const int32_t across = (r.width + kBlockSide - 1) / kBlockSide;
+    return r.first_block +
+           static_cast<uint32_t>((z - r.z) / kBlockSide * across + (x - r.x) / kBlockSide);
+  }
+  /// The cells of the n-th block of a rectangle.
+  [[nodiscard]] MeshRect block(uint32_t rect, uint32_t n) const;
   [[nodiscard]] size_t corner_count() const { return corners.size() - 1; }
   [[nodiscard]] uint64_t bytes() const;
 };

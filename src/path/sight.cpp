@@ -20,7 +20,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   sees_goal_ = false;
   views_.clear();
   seen_.clear();
-  rects_.clear();
+  blocks_.clear();
   entered_.clear();
 }
 
@@ -46,7 +46,10 @@ void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner) {
 void Sight::start(uint32_t rect_index) {
   const MeshRect& rect = mesh_->rects[rect_index];
   if (rect_index == goal_) sees_goal_ = true;
-  rects_.push_back({rect_index, true});
+  if (own_ != kNoCorner) {
+    for (uint32_t b = rect.first_block; b < mesh_->rects[rect_index + 1].first_block; ++b)
+      blocks_.push_back({b, true});
+  }
   const uint32_t end = mesh_->rects[rect_index + 1].first_portal;
   for (uint32_t p = rect.first_portal; p < end; ++p)
     add(rect, mesh_->portals[p], mesh_->portals[p].from, mesh_->portals[p].to);
@@ -69,42 +72,56 @@ void Sight::note(uint32_t corner) {
   seen_.push_back({corner, std::sqrt(dx * dx + dz * dz)});
 }
 
-// A ray enters a rectangle once. So all of it is seen if the views that lead into it cover, side by
-// side, all directions in which it lies.
-void Sight::find_whole() {
+void Sight::find_blocks() {
   std::sort(entered_.begin(), entered_.end(), [&](const View& a, const View& b) {
     if (a.rect != b.rect) return a.rect < b.rect;
     return cross(from_, a.right, b.right) > 0;
   });
   for (size_t i = 0; i < entered_.size();) {
-    const uint32_t r = entered_[i].rect;
-    const MeshRect& rect = mesh_->rects[r];
-    const double x0 = rect.x, x1 = rect.x + rect.width, z0 = rect.z, z1 = rect.z + rect.depth;
+    size_t end = i;
+    while (end < entered_.size() && entered_[end].rect == entered_[i].rect) ++end;
+    judge_blocks({entered_.data() + i, end - i});
+    i = end;
+  }
+  std::sort(blocks_.begin(), blocks_.end(), [](const SeenBlock& a, const SeenBlock& b) {
+    return a.block != b.block ? a.block < b.block : a.whole > b.whole;
+  });
+  const auto last =
+      std::unique(blocks_.begin(), blocks_.end(),
+                  [](const SeenBlock& a, const SeenBlock& b) { return a.block == b.block; });
+  blocks_.erase(last, blocks_.end());
+}
+
+// A ray enters a rectangle once. So all of a block of it is seen if the views that lead into the
+// rectangle, from right to left, cover side by side all directions in which the block lies.
+void Sight::judge_blocks(std::span<const View> views) {
+  const uint32_t r = views.front().rect;
+  const uint32_t count = mesh_->rects[r + 1].first_block - mesh_->rects[r].first_block;
+  for (uint32_t n = 0; n < count; ++n) {
+    const MeshRect block = mesh_->block(r, n);
+    const double x0 = block.x, x1 = block.x + block.width;
+    const double z0 = block.z, z1 = block.z + block.depth;
     CellPoint right{x0, z0}, left{x0, z0};
     for (const CellPoint p : {CellPoint{x1, z0}, CellPoint{x1, z1}, CellPoint{x0, z1}}) {
       if (cross(from_, right, p) < 0) right = p;
       if (cross(from_, left, p) > 0) left = p;
     }
-    bool whole = true;
+    bool whole = true, some = false;
     CellPoint covered = right;
-    for (; i < entered_.size() && entered_[i].rect == r; ++i) {
-      const View& view = entered_[i];
+    for (const View& view : views) {
+      if (cross(from_, right, view.left) < -kSame || cross(from_, left, view.right) > kSame)
+        continue;
+      some = true;
       whole = whole && cross(from_, covered, view.right) <= kSame;
       if (cross(from_, covered, view.left) > 0) covered = view.left;
     }
     whole = whole && cross(from_, covered, left) <= kSame;
-    rects_.push_back({r, whole});
+    if (some) blocks_.push_back({mesh_->rects[r].first_block + n, whole});
   }
 }
 
 void Sight::finish() {
-  find_whole();
-  std::sort(rects_.begin(), rects_.end(), [](const SeenRect& a, const SeenRect& b) {
-    return a.rect != b.rect ? a.rect < b.rect : a.whole > b.whole;
-  });
-  rects_.erase(std::unique(rects_.begin(), rects_.end(),
-                           [](const SeenRect& a, const SeenRect& b) { return a.rect == b.rect; }),
-               rects_.end());
+  if (own_ != kNoCorner) find_blocks();
   std::sort(seen_.begin(), seen_.end(),
             [](const SeenCorner& a, const SeenCorner& b) { return a.corner < b.corner; });
   seen_.erase(

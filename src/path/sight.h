@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "path/mesh.h"
@@ -10,9 +11,9 @@
 /// What is seen from a point of the ground.
 namespace throng {
 
-/// A rectangle of which something is seen; `whole` if all of it is.
-struct SeenRect {
-  uint32_t rect = kNoRect;
+/// A block of which something may be seen; `whole` if all of it is.
+struct SeenBlock {
+  uint32_t block = 0;
   bool whole = false;
 };
 
@@ -39,8 +40,8 @@ class Sight {
 
   [[nodiscard]] const std::vector<SeenCorner>& corners() const { return seen_; }
   [[nodiscard]] bool sees_goal() const { return sees_goal_; }
-  /// Rectangles of which something is seen, by number.
-  [[nodiscard]] const std::vector<SeenRect>& rects() const { return rects_; }
+  /// Blocks of which something may be seen from the corner, by number.
+  [[nodiscard]] const std::vector<SeenBlock>& blocks() const { return blocks_; }
 
  private:
   struct View {
@@ -55,7 +56,8 @@ class Sight {
   void add(const MeshRect& rect, const MeshPortal& portal, double from, double to);
   void note(uint32_t corner);
   void finish();
-  void find_whole();
+  void find_blocks();
+  void judge_blocks(std::span<const View> views);
 
   const PathMesh* mesh_ = nullptr;
   CellPoint from_;
@@ -66,7 +68,7 @@ class Sight {
   std::vector<uint32_t> around_;
   std::vector<View> views_;
   std::vector<SeenCorner> seen_;
-  std::vector<SeenRect> rects_;
+  std::vector<SeenBlock> blocks_;
   std::vector<View> entered_;  // views that have led into a rectangle
 };
 

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "path/mesh.h"
+
+/// Labels of blocks: what hub labels say of the points of each, worked out before.
+namespace throng {
+
+struct HubLabels;
+
+/// For each block of a mesh, by rising hub, the corners by which some point of it may reach the hub
+/// shortest. Source: Du, Shen, Cheema. Ultrafast Euclidean Shortest Path Computation using Hub
+/// Labeling. AAAI 2023, [DSC23].
+struct BlockLabels {
+  std::vector<uint32_t> first;      // per block, one more at the end; empty: there are none
+  std::vector<uint32_t> hub;        // per entry
+  std::vector<float> length;        // from the corner to the hub [cells]
+  std::vector<uint16_t> candidate;  // the corner: its place in HubLabels' list of the block
+
+  [[nodiscard]] uint64_t bytes() const { return first.size() * 4 + hub.size() * (4 + 4 + 2); }
+};
+
+/// An entry is left out if from nowhere in the block its corner can be on a shortest way to the
+/// hub, judged by the hub's distance from the middle. None at all if they would be more than
+/// `most`.
+BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
+                               uint64_t most);
+
+}  // namespace throng

@@ -158,12 +158,14 @@ struct ZoneInputs {
   }
 };
 
-ZoneInputs find_inputs(const BakePlan& plan) {
+// In memory, where no zone is ever kept, nobody asks for the hashes: they are left 0.
+ZoneInputs find_inputs(const BakePlan& plan, bool hashed) {
   ZoneInputs found{.bins = bin_zones(plan), .inputs = {}};
   for (int32_t z = 0; z < plan.zones_z; ++z) {
     for (int32_t x = 0; x < plan.zones_x; ++x) {
       const auto items = found.triangles(static_cast<size_t>(z * plan.zones_x + x));
-      if (!items.empty()) found.inputs.emplace_back(x, z, zone_input(plan, x, z, items));
+      if (items.empty()) continue;
+      found.inputs.emplace_back(x, z, hashed ? zone_input(plan, x, z, items) : 0);
     }
   }
   return found;
@@ -203,15 +205,17 @@ std::optional<Grid> old_grid(const BakePlan& plan, const Box3d& bounds, const Wo
 }
 
 // Puts the plan on the old world's grid if that spares a zone.
-ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const WorldData* old) {
+ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const ZoneStore& store) {
+  const WorldData* old = store.old_world;
+  const bool hashed = static_cast<bool>(store.keep);
   if (const auto grid = old_grid(plan, bounds, old)) {
     const Grid own = plan.grid;
     plan.put_on(*grid);
-    ZoneInputs inputs = find_inputs(plan);
+    ZoneInputs inputs = find_inputs(plan, hashed);
     if (have_a_zone_in_common(inputs.inputs, old->inputs)) return inputs;
     plan.put_on(own);
   }
-  return find_inputs(plan);
+  return find_inputs(plan, hashed);
 }
 
 Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,
@@ -222,7 +226,7 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
   const SurfaceCoder coder(scene, config.classes, config.workers);
   auto planned = make_plan(scene, config, bounds, coder);
   if (!planned) return planned.error();
-  const ZoneInputs inputs = choose_grid(*planned, bounds, store.old_world);
+  const ZoneInputs inputs = choose_grid(*planned, bounds, store);
   const BakePlan& plan = *planned;
 
   auto world = std::make_shared<WorldData>();
@@ -293,7 +297,7 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
     world->slot_of_zone[place] = static_cast<int32_t>(world->slots.size());
     world->slots.push_back(std::move(slot));
   }
-  world->inputs = inputs.inputs;
+  if (store.keep) world->inputs = inputs.inputs;
   for (const uint64_t cells : legal_cells) {
     summary.walkable_area.push_back(static_cast<double>(cells) * config.cell * config.cell);
     world->class_index.push_back(std::make_unique<ClassIndex>());

@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "core/hash.h"
 #include "flood.h"
@@ -37,13 +39,18 @@ Scene builtin(const std::string& name) {
   return scene ? std::move(*scene) : Scene{};
 }
 
-// Every byte that would be written.
+// Every byte that would be written, but for the hashes of the zones' inputs: a world in memory does
+// not know them.
 uint64_t hash_of(const World& world) {
+  const auto data = std::const_pointer_cast<WorldData>(world.data());
+  const auto inputs = std::exchange(data->inputs, {});
   uint64_t hash = 0;
   for (size_t s = 0; s < world.data()->slots.size(); ++s) {
     hash = hash_span(world.data()->zone(s)->bytes(), hash);
   }
-  return hash_span(std::span<const uint8_t>(write_manifest(*world.data())), hash);
+  hash = hash_span(std::span<const uint8_t>(write_manifest(*data)), hash);
+  data->inputs = inputs;
+  return hash;
 }
 
 // All that a world says, however its files say it.
@@ -122,8 +129,8 @@ TEST(Bake, SameBytesForAnyNumberOfThreadsAndEverySimdWidth) {
     uint64_t hash;
   };
   for (const auto& [name, golden] :
-       {Golden{"cube", 0x242449ee9f56f6da}, Golden{"stairs", 0x8b156bf0d11960b6},
-        Golden{"garage", 0x4e477092735b9c36}, Golden{"bridge", 0x2ced740eacce0745}}) {
+       {Golden{"cube", 0x2030c64c17fbc6b5}, Golden{"stairs", 0x40746eb27f782a33},
+        Golden{"garage", 0xa596965d417dd2ce}, Golden{"bridge", 0x81a0c060f01445d4}}) {
     const Scene scene = builtin(name);
     for (const int32_t workers : {1, 2, 3, 8}) {
       const uint64_t hash = hash_of(bake(scene, {.cell = 0.2, .zone = 51.2, .workers = workers}));

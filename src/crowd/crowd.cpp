@@ -15,6 +15,7 @@
 #include "crowd/crowd_check.h"
 #include "crowd/crowd_step.h"
 #include "crowd/placement.h"
+#include "world/place.h"
 
 namespace throng {
 namespace {
@@ -32,10 +33,6 @@ constexpr int64_t kSparse = 2048;
 constexpr double kMostPixels =
     1e12;                         // 8 TB of addresses, of which only what is touched takes memory
 constexpr uint64_t kGrain = 512;  // avatars that are worth handing to another thread
-
-int32_t step_mm(const AvatarClass& body) {
-  return static_cast<int32_t>(std::floor(body.step * 1000 + 1e-6));
-}
 
 // A direction, uniform over the circle, without trigonometry: a point of the disc, put on its rim.
 std::pair<double, double> random_direction(uint64_t seed, uint64_t id) {

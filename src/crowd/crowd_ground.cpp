@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <span>
+#include <tuple>
+
+#include "world/place.h"
 
 namespace throng {
 namespace {
@@ -129,7 +132,6 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   sets = 2;
   const Heights bounds = heights_of(world.summary.bounds);
   ground.feet_range_ = bounds;
-  const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
   size_t rough = 0;
   for (size_t s = 0; s < world.slots.size(); ++s) {
     const Zone* zone = world.zone(s);
@@ -183,9 +185,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
                                 std::max(ground.feet_range_.high, feet.high)};
         }
       }
-      const int32_t tile = level.view.record->tile();
-      record.tile_x = zone->root().x() * per_zone + tile % per_zone;
-      record.tile_z = zone->root().z() * per_zone + tile / per_zone;
+      std::tie(record.tile_x, record.tile_z) = tile_of(world, *zone, *level.view.record);
       if (record.tile_x >= ground.tiles_x_ || record.tile_z >= ground.tiles_z_) {
         return Error{Errc::kBadFile, zone_file_name(zone->root().x(), zone->root().z()) +
                                          ": has levels outside the world; bake the world again"};

@@ -23,20 +23,12 @@ namespace {
 
 // The middle of the region's key cell.
 Place place_in(const WorldData& world, const Region& region) {
-  const size_t slot = world.slot_of_level(region.level);
-  const Zone& zone = *world.zone(slot);
-  const LevelView view = zone.view(region.level - world.slots[slot]->first_level);
-  const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
-  const int32_t tile = view.record->tile();
-  const auto x = static_cast<int32_t>(region.key % 64), z = static_cast<int32_t>(region.key / 64);
-  const auto middle = [&](int32_t zone_at, int32_t tile_at, int32_t cell_at, double origin) {
-    const int64_t cell = (int64_t{zone_at} * per_zone + tile_at) * 64 + cell_at;
-    return origin + (static_cast<double>(cell) + 0.5) * world.summary.cell;
+  const GroundLevel level = ground_level(world, region.level, 0);
+  const auto [tile_x, tile_z] = tile_of(world, *level.zone, *level.view.record);
+  const auto middle = [](int32_t tile, uint32_t cell) {
+    return ((int64_t{tile} * 64 + cell) << kUnitBits) + kUnitsPerCell / 2;
   };
-  return {{middle(zone.root().x(), tile % per_zone, x, world.summary.origin.x),
-           view.sample(x, z) * 1e-3,
-           middle(zone.root().z(), tile / per_zone, z, world.summary.origin.z)},
-          region.level + 1};
+  return place_at(world, level, {middle(tile_x, region.key % 64), middle(tile_z, region.key / 64)});
 }
 
 }  // namespace

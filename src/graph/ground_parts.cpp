@@ -4,7 +4,6 @@
 
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdlib>
 
 namespace throng {
@@ -39,10 +38,6 @@ std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& lega
     }
   }
   return cuts;
-}
-
-int32_t step_of(const AvatarClass& avatar) {
-  return static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
 }
 
 }  // namespace throng

@@ -17,7 +17,4 @@ CellRows legal_rows(const GroundLevel& level);
 /// proved that there are none. [mm]
 std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& legal, int32_t step);
 
-/// A class's step as the moves count it. [mm]
-int32_t step_of(const AvatarClass& avatar);
-
 }  // namespace throng

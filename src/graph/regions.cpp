@@ -11,7 +11,7 @@
 
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
-#include "world/ground.h"
+#include "world/place.h"
 
 // Tile by tile: the parts of every level for every class are found, parts of several classes that
 // are the same place share a region, and parts of different levels of the tile are linked where
@@ -124,7 +124,7 @@ class LevelRegions {
 class Builder {
  public:
   Builder(const WorldData& world) : world_(world) {
-    for (const AvatarClass& avatar : world.summary.classes) steps_.push_back(step_of(avatar));
+    for (const AvatarClass& avatar : world.summary.classes) steps_.push_back(step_mm(avatar));
   }
 
   void find_parts(int32_t tile_x, int32_t tile_z, TileParts& tile) const {
@@ -385,7 +385,7 @@ uint32_t region_at(const WorldData& world, const RegionGraph& graph, uint32_t le
   if (count <= 1) return only;
   const CellRows legal = legal_rows(ground);
   const auto cuts =
-      step_cuts(ground, legal, step_of(world.summary.classes[static_cast<size_t>(avatar_class)]));
+      step_cuts(ground, legal, step_mm(world.summary.classes[static_cast<size_t>(avatar_class)]));
   const CellRows part = flood(legal, cuts ? &*cuts : nullptr, x, z);
   for (uint32_t r = graph.first[level]; r < graph.first[level + 1]; ++r) {
     const Region& region = graph.regions[r];

@@ -48,10 +48,7 @@ class Lister {
     for (uint32_t i = begin; i < end; ++i) {
       const uint32_t corner = labels_.candidates[i].corner;
       const MeshCorner& c = mesh_.corners[corner];
-      const uint32_t arrived = mesh_ray(mesh_, rect, middle, beside(c));
-      const uint32_t* first = mesh_.corner_rects.data() + c.first_rect;
-      const uint32_t* stop = mesh_.corner_rects.data() + mesh_.corners[corner + 1].first_rect;
-      if (std::find(first, stop, arrived) == stop) continue;
+      if (ray_to_corner(mesh_, {middle, rect}, corner) != RayEnd::kArrived) continue;
       const float here = from_middle(c);
       for (const HubLabels::Label& label : labels_.of(corner)) {
         const float length = here + label.length;

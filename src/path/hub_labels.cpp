@@ -18,10 +18,6 @@ namespace {
 constexpr double kFar = 1e300;
 constexpr float kFarthest = 3e38f;
 
-CellPoint in_cells(GroundPoint p) {
-  return {static_cast<double>(p.x) / kUnitsPerCell, static_cast<double>(p.z) / kUnitsPerCell};
-}
-
 uint32_t block_of(const PathMesh& mesh, const Stop& end) {
   return mesh.block_at(end.rect, end.at.cell_x(), end.at.cell_z());
 }
@@ -232,12 +228,9 @@ bool LabelSearch::gather(const PathMesh& mesh, const HubLabels& labels, const St
       seen.push_back({c, std::sqrt(dx * dx + dz * dz)});
       continue;
     }
-    const uint32_t rect = mesh_ray(mesh, end.rect, end.at, beside(corner));
-    if (rect == kUnsure) return false;
-    // Not the same point of another storey.
-    const uint32_t* first = mesh.corner_rects.data() + corner.first_rect;
-    const uint32_t* stop = mesh.corner_rects.data() + mesh.corners[c + 1].first_rect;
-    if (std::find(first, stop, rect) != stop) seen.push_back({c, std::sqrt(dx * dx + dz * dz)});
+    const RayEnd ray = ray_to_corner(mesh, end, c);
+    if (ray == RayEnd::kTouches) return false;
+    if (ray == RayEnd::kArrived) seen.push_back({c, std::sqrt(dx * dx + dz * dz)});
   }
   return true;
 }
@@ -322,7 +315,7 @@ struct HubRun {
 
 }  // namespace
 
-// Joins the lists of the ends' rectangles. Where a ray does not reach the best way's first or last
+// Joins the lists of the ends' blocks. Where a ray does not reach the best way's first or last
 // corner, the best without it.
 LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels,
                                       const Stop& from, const Stop& to, Best& best) {
@@ -334,11 +327,9 @@ LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& lab
     const HubLabels::Candidate& c =
         labels.candidates[labels.first_candidate[block_of(mesh, end)] + candidate];
     if (c.from_all != 0) return true;
-    const uint32_t rect = mesh_ray(mesh, end.rect, end.at, beside(mesh.corners[c.corner]));
-    unsure = unsure || rect == kUnsure;
-    const uint32_t* first = mesh.corner_rects.data() + mesh.corners[c.corner].first_rect;
-    const uint32_t* stop = mesh.corner_rects.data() + mesh.corners[c.corner + 1].first_rect;
-    if (std::find(first, stop, rect) != stop) return true;
+    const RayEnd ray = ray_to_corner(mesh, end, c.corner);
+    unsure = unsure || ray == RayEnd::kTouches;
+    if (ray == RayEnd::kArrived) return true;
     length = kFarthest;
     return false;
   };

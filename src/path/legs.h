@@ -11,18 +11,6 @@
 /// From the corners of a way to legs that a body can walk.
 namespace throng {
 
-/// A stop of a way, on a level.
-struct Stop {
-  GroundPoint at;
-  uint32_t rect = kNoRect;
-};
-
-/// A unit beside a corner, away from what is missing there.
-inline GroundPoint beside(const MeshCorner& corner) {
-  return {(int64_t{corner.x} << kUnitBits) + corner.away_x,
-          (int64_t{corner.z} << kUnitBits) + corner.away_z};
-}
-
 /// Walks from `from` by way of the corners to `to`, a unit beside each corner, and past every other
 /// corner that a leg would graze. False if a leg is blocked for another reason.
 class LegWalker {

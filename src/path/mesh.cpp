@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
 #include "path/rects.h"
-#include "world/ground.h"
+#include "world/place.h"
 
 namespace throng {
 namespace {
@@ -34,7 +34,7 @@ class Builder {
  public:
   Builder(const WorldData& world, int32_t avatar_class)
       : ground_{world, avatar_class},
-        step_(step_of(world.summary.classes[static_cast<size_t>(avatar_class)])) {}
+        step_(step_mm(world.summary.classes[static_cast<size_t>(avatar_class)])) {}
 
   [[nodiscard]] int32_t step() const { return step_; }
 
@@ -42,7 +42,7 @@ class Builder {
     const GroundLevel ground = level_of(level);
     const CellRows legal = legal_rows(ground);
     const auto cuts = step_cuts(ground, legal, step_);
-    const auto [tile_x, tile_z] = tile_of(ground);
+    const auto [tile_x, tile_z] = tile_of(ground_.world, *ground.zone, *ground.view.record);
     std::vector<MeshRect> rects;
     for (const CellRect& r : tile_with_rects(legal, cuts ? &*cuts : nullptr)) {
       rects.push_back({level, tile_x * 64 + r.x0, tile_z * 64 + r.z0, r.x1 - r.x0, r.z1 - r.z0, 0});
@@ -105,13 +105,6 @@ class Builder {
  private:
   [[nodiscard]] GroundLevel level_of(uint32_t level) const {
     return ground_level(ground_.world, level, ground_.avatar_class);
-  }
-
-  [[nodiscard]] std::pair<int32_t, int32_t> tile_of(const GroundLevel& level) const {
-    const auto per_zone = static_cast<int32_t>(ground_.world.tiles_per_zone);
-    const int32_t tile = level.view.record->tile();
-    return {level.zone->root().x() * per_zone + tile % per_zone,
-            level.zone->root().z() * per_zone + tile / per_zone};
   }
 
   // The level on the other side of a step that leads there and back.

@@ -49,6 +49,23 @@ struct MeshCorner {
   uint32_t first_rect = 0;        // of corner_rects; they end where the next corner's begin
 };
 
+/// A point of a way, in a rectangle.
+struct Stop {
+  GroundPoint at;
+  uint32_t rect = kNoRect;
+};
+
+/// A unit beside a corner, away from what is missing there.
+inline GroundPoint beside(const MeshCorner& corner) {
+  return {(int64_t{corner.x} << kUnitBits) + corner.away_x,
+          (int64_t{corner.z} << kUnitBits) + corner.away_z};
+}
+
+/// Where the search sees a point.
+inline CellPoint in_cells(GroundPoint p) {
+  return {static_cast<double>(p.x) / kUnitsPerCell, static_cast<double>(p.z) / kUnitsPerCell};
+}
+
 struct PathMesh {
   int32_t avatar_class = 0;
   int32_t step = 0;             // [mm]

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "path/mesh_ray.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace throng {
@@ -60,6 +61,15 @@ uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, GroundPoint from, GroundP
     rect = beyond(mesh, rect, cell, at_point);
     if (rect == kNoRect || rect == kUnsure) return rect;
   }
+}
+
+RayEnd ray_to_corner(const PathMesh& mesh, const Stop& from, uint32_t corner) {
+  const MeshCorner& at = mesh.corners[corner];
+  const uint32_t rect = mesh_ray(mesh, from.rect, from.at, beside(at));
+  if (rect == kUnsure) return RayEnd::kTouches;
+  const uint32_t* first = mesh.corner_rects.data() + at.first_rect;
+  const uint32_t* stop = mesh.corner_rects.data() + mesh.corners[corner + 1].first_rect;
+  return std::find(first, stop, rect) != stop ? RayEnd::kArrived : RayEnd::kBlocked;
 }
 
 }  // namespace throng

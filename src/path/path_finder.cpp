@@ -10,7 +10,6 @@
 #include "path/mesh.h"
 #include "path/search.h"
 #include "throng/path.h"
-#include "world/ground.h"
 #include "world/place.h"
 
 namespace throng {
@@ -80,58 +79,45 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
   path.points.clear();
   path.length = 0;
   path.nodes = 0;
-  const auto locate = [&](const Place& place, GroundPoint& at, SearchEnd& end) {
+  const auto locate = [&](const Place& place, Stop& end) {
     if (!place || place.level1 > world.level_count ||
         !std::isfinite(place.position.x + place.position.z))
       return false;
-    at = to_ground(world, place.position.x, place.position.z);
-    if (!in_grid(world, at)) return false;
-    end.rect = mesh.rect_at(place.level1 - 1, at.cell_x(), at.cell_z());
-    end.point = {static_cast<double>(at.x) / kUnitsPerCell,
-                 static_cast<double>(at.z) / kUnitsPerCell};
+    end.at = to_ground(world, place.position.x, place.position.z);
+    if (!in_grid(world, end.at)) return false;
+    end.rect = mesh.rect_at(place.level1 - 1, end.at.cell_x(), end.at.cell_z());
     return end.rect != kNoRect;
   };
-  GroundPoint start, goal;
-  SearchEnd start_end, goal_end;
-  if (!locate(from, start, start_end) || !locate(to, goal, goal_end)) return;
+  Stop start, goal;
+  if (!locate(from, start) || !locate(to, goal)) return;
 
-  if (mesh.rects[start_end.rect].component != mesh.rects[goal_end.rect].component) {
+  if (mesh.rects[start.rect].component != mesh.rects[goal.rect].component) {
     path.end = PathEnd::kUnreachable;
     return;
   }
   double length = 0;
   SearchResult result = SearchResult::kNone;
   if (shared_->labels) {
-    if (scratch_->look_up.find(mesh, *shared_->labels, {start, start_end.rect},
-                               {goal, goal_end.rect}, scratch_->corners, length)) {
+    if (scratch_->look_up.find(mesh, *shared_->labels, start, goal, scratch_->corners, length)) {
       result = SearchResult::kFound;
     }
   } else {
-    result = scratch_->search.find(mesh, start_end, goal_end, max_nodes, scratch_->corners, length);
+    result = scratch_->search.find(mesh, start, goal, max_nodes, scratch_->corners, length);
     path.nodes = scratch_->search.expanded();
   }
   path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kGaveUp;
   if (result != SearchResult::kFound) return;
   LegWalker walker(world, mesh);
-  const bool walked =
-      walker.walk({start, start_end.rect}, scratch_->corners, goal, scratch_->stops);
-  if (!walked || scratch_->stops.back().rect != goal_end.rect) {
+  const bool walked = walker.walk(start, scratch_->corners, goal.at, scratch_->stops);
+  if (!walked || scratch_->stops.back().rect != goal.rect) {
     path.end = PathEnd::kUnreachable;
     return;
   }
   path.end = PathEnd::kReached;
   path.length = length * world.summary.cell;
-  const double unit = world.summary.cell / kUnitsPerCell;
   for (const Stop& stop : scratch_->stops) {
-    const uint32_t on = mesh.rects[stop.rect].level;
-    const GroundLevel level = ground_level(world, on, mesh.avatar_class);
-    const int32_t feet = level.view.feet(stop.at.cell_x() & 63, stop.at.cell_z() & 63,
-                                         static_cast<int32_t>(stop.at.x & (kUnitsPerCell - 1)),
-                                         static_cast<int32_t>(stop.at.z & (kUnitsPerCell - 1)));
-    path.points.push_back(
-        {{world.summary.origin.x + (static_cast<double>(stop.at.x) + 0.5) * unit, feet * 1e-3,
-          world.summary.origin.z + (static_cast<double>(stop.at.z) + 0.5) * unit},
-         on + 1});
+    const uint32_t level = mesh.rects[stop.rect].level;
+    path.points.push_back(place_at(world, ground_level(world, level, mesh.avatar_class), stop.at));
   }
 }
 

@@ -12,14 +12,15 @@
 // then what the root sees, then what lies beyond `left`.
 namespace throng {
 
-SearchResult PathSearch::find(const PathMesh& mesh, const SearchEnd& from, const SearchEnd& to,
+SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop& to,
                               uint64_t max_nodes, std::vector<uint32_t>& corners, double& length) {
   mesh_ = &mesh;
-  goal_ = to;
+  goal_rect_ = to.rect;
+  goal_ = in_cells(to.at);
   expanded_ = 0;
   corners.clear();
   if (from.rect == to.rect) {
-    length = distance(from.point, to.point);
+    length = distance(in_cells(from.at), goal_);
     return SearchResult::kFound;
   }
   if (best_.size() != mesh.corners.size()) best_.assign(mesh.corners.size(), {});
@@ -31,7 +32,7 @@ SearchResult PathSearch::find(const PathMesh& mesh, const SearchEnd& from, const
   nodes_.clear();
   open_.clear();
   found_length_ = 1e300;
-  start(from);
+  start(from.rect, in_cells(from.at));
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end());
     const Entry entry = open_.back();
@@ -50,12 +51,12 @@ SearchResult PathSearch::find(const PathMesh& mesh, const SearchEnd& from, const
   return SearchResult::kFound;
 }
 
-void PathSearch::start(const SearchEnd& from) {
-  roots_.push_back({from.point, 0, kNoCorner, 0});
-  rects_around(*mesh_, from.rect, from.point, around_);
+void PathSearch::start(uint32_t start_rect, CellPoint from) {
+  roots_.push_back({from, 0, kNoCorner, 0});
+  rects_around(*mesh_, start_rect, from, around_);
   for (const uint32_t r : around_) {
-    if (r == goal_.rect) {
-      found_length_ = distance(from.point, goal_.point);
+    if (r == goal_rect_) {
+      found_length_ = distance(from, goal_);
       found_root_ = 0;
     }
     const MeshRect& rect = mesh_->rects[r];
@@ -85,7 +86,7 @@ uint32_t PathSearch::turn(uint32_t root, CellPoint at, uint32_t corner) {
 
 double PathSearch::estimate(const Node& node) const {
   const Root& root = roots_[node.root];
-  CellPoint goal = goal_.point;
+  CellPoint goal = goal_;
   const double side_root = cross(node.right, node.left, root.point);
   const double side_goal = cross(node.right, node.left, goal);
   const double width = distance(node.left, node.right);
@@ -174,25 +175,25 @@ void PathSearch::expand(const Node& node) {
   }
 
   uint32_t right_root = UINT32_MAX, left_root = UINT32_MAX;
-  if (node.rect == goal_.rect) {
+  if (node.rect == goal_rect_) {
     // The goal is seen, or lies behind one of the ends.
     const bool on_line = std::fabs(side) <= kSame * width;
     double length = 0;
     uint32_t via = seen_root;
     const CellPoint from = roots_[seen_root].point;
-    if (!on_line && cross(from, node.right, goal_.point) < -kSame) {
+    if (!on_line && cross(from, node.right, goal_) < -kSame) {
       if (node.right_corner == kNoCorner)
         via = UINT32_MAX;
       else
         via = right_root = turn(node.root, node.right, node.right_corner);
-    } else if (!on_line && cross(from, node.left, goal_.point) > kSame) {
+    } else if (!on_line && cross(from, node.left, goal_) > kSame) {
       if (node.left_corner == kNoCorner)
         via = UINT32_MAX;
       else
         via = left_root = turn(node.root, node.left, node.left_corner);
     }
     if (via != UINT32_MAX) {
-      length = roots_[via].length + distance(roots_[via].point, goal_.point);
+      length = roots_[via].length + distance(roots_[via].point, goal_);
       if (length < found_length_) {
         found_length_ = length;
         found_root_ = via;

@@ -10,11 +10,6 @@
 /// The shortest way over a mesh, by search over intervals.
 namespace throng {
 
-struct SearchEnd {
-  uint32_t rect = kNoRect;
-  CellPoint point;  // in the rectangle
-};
-
 enum class SearchResult { kFound, kNone, kBudget };
 
 /// Polyanya over rectangles (source: [CHG17]): a node is an interval of a portal that is seen from
@@ -24,8 +19,8 @@ class PathSearch {
  public:
   /// Corners of the shortest way from `from` to `to`, in order, ends left out; `length` in cells.
   /// Gives up after `max_nodes` nodes.
-  SearchResult find(const PathMesh& mesh, const SearchEnd& from, const SearchEnd& to,
-                    uint64_t max_nodes, std::vector<uint32_t>& corners, double& length);
+  SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to, uint64_t max_nodes,
+                    std::vector<uint32_t>& corners, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
@@ -56,10 +51,8 @@ class PathSearch {
     double length = 0;
   };
 
-  void start(const SearchEnd& from);
+  void start(uint32_t rect, CellPoint from);
   void expand(const Node& node);
-  void visit(const Node& node, const CellPoint& root, double first, double last, double base,
-             uint32_t root_index);
   void add_piece(const MeshRect& rect, const MeshPortal& portal, double from, double to,
                  uint32_t root);
   uint32_t turn(uint32_t root, CellPoint at, uint32_t corner);
@@ -68,7 +61,8 @@ class PathSearch {
   [[nodiscard]] bool is_stale(uint32_t root) const;
 
   const PathMesh* mesh_ = nullptr;
-  SearchEnd goal_;
+  uint32_t goal_rect_ = kNoRect;
+  CellPoint goal_;
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   uint32_t found_root_ = 0;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "world/walk.h"
-#include "world/zone_data.h"
+#include "world/ground.h"
 
-/// Metres to points of the grid.
+/// Between metres and points of the grid, levels and places.
 namespace throng {
 
 /// Far off the grid is off the grid, whether or not it fits an integer. [m, finite]
@@ -23,6 +23,36 @@ inline GroundPoint to_ground(const WorldData& world, double x, double z) {
 inline bool in_grid(const WorldData& world, GroundPoint p) {
   return p.x >= 0 && p.z >= 0 && p.x < (int64_t{world.width} << kUnitBits) &&
          p.z < (int64_t{world.depth} << kUnitBits);
+}
+
+/// Tile of the grid over which a level of a zone lies.
+inline std::pair<int32_t, int32_t> tile_of(const WorldData& world, const Zone& zone,
+                                           const format::Level& level) {
+  const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
+  return {zone.root().x() * per_zone + level.tile() % per_zone,
+          zone.root().z() * per_zone + level.tile() / per_zone};
+}
+
+/// Height of the feet on a level. [m]
+inline double feet_at(const GroundLevel& level, GroundPoint p) {
+  return level.view.feet(p.cell_x() & 63, p.cell_z() & 63,
+                         static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
+                         static_cast<int32_t>(p.z & (kUnitsPerCell - 1))) *
+         1e-3;
+}
+
+/// The place of a point on a level: the middle of its unit, so that its coordinates lead back to
+/// it.
+inline Place place_at(const WorldData& world, const GroundLevel& level, GroundPoint p) {
+  const double unit = world.summary.cell / kUnitsPerCell;
+  return {{world.summary.origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet_at(level, p),
+           world.summary.origin.z + (static_cast<double>(p.z) + 0.5) * unit},
+          level.world_level + 1};
+}
+
+/// A class's step in the whole millimetres of the moves.
+inline int32_t step_mm(const AvatarClass& avatar) {
+  return static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
 }
 
 }  // namespace throng

@@ -7,8 +7,10 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "world/place.h"
 #include "world/zone_data.h"
 
 // Storeys: sheets of neighbouring tiles that continue each other are joined into groups, the surest
@@ -165,16 +167,13 @@ std::vector<int32_t> World::storeys() const {
   for (const AvatarClass& avatar : world.summary.classes)
     max_step = std::max(max_step, avatar.step);
   const auto step = static_cast<int32_t>(max_step * 1000);
-  const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
   for (size_t s = 0; s < world.slots.size(); ++s) {
     const Zone* zone = world.zone(s);
     if (zone == nullptr) continue;
     for (uint32_t i = 0; i < zone->level_count(); ++i) {
       LevelInfo& level = levels[world.slots[s]->first_level + i];
       level.view = zone->view(i);
-      const int32_t tile = level.view.record->tile();
-      level.tile_x = zone->root().x() * per_zone + tile % per_zone;
-      level.tile_z = zone->root().z() * per_zone + tile / per_zone;
+      std::tie(level.tile_x, level.tile_z) = tile_of(world, *zone, *level.view.record);
       double sum = 0;
       const CellRows rows = rows_of(level.view);
       for (int32_t z = 0; z < 64; z += 4) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include "core/random.h"
 #include "world/cell_blocks.h"
@@ -17,17 +18,6 @@ namespace throng {
 namespace {
 
 constexpr int32_t kArea = kTileCells * kTileCells;
-
-double feet_at(const GroundLevel& level, GroundPoint p) {
-  return level.view.feet(p.cell_x() & 63, p.cell_z() & 63,
-                         static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
-                         static_cast<int32_t>(p.z & (kUnitsPerCell - 1))) *
-         1e-3;
-}
-
-int32_t step_mm(const AvatarClass& avatar) {
-  return static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
-}
 
 bool good_class(const WorldData& world, int32_t avatar_class) {
   return avatar_class >= 0 && static_cast<size_t>(avatar_class) < world.summary.classes.size();
@@ -103,9 +93,7 @@ LevelTileContent World::level_tile(uint32_t index) const {
   if (zone == nullptr) return out;
   const uint32_t local = index - data_->slots[slot]->first_level;
   const format::Level& level = zone->level(local);
-  const auto per_zone = static_cast<int32_t>(data_->tiles_per_zone);
-  out.tile_x = zone->root().x() * per_zone + level.tile() % per_zone;
-  out.tile_z = zone->root().z() * per_zone + level.tile() / per_zone;
+  std::tie(out.tile_x, out.tile_z) = tile_of(*data_, *zone, level);
   const LevelView view = zone->view(local);
   const uint64_t* ceilings = level.ceiling_kind() == format::HeightKind::Blocks
                                  ? zone->words(level.ceiling_offset())
@@ -178,19 +166,12 @@ Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const
   const GroundLevel level = ground_level(*data_, level_index, avatar_class);
   if (level.legal != nullptr) rank = nth_bit(level.legal, rank);
   const int32_t x = static_cast<int32_t>(rank % 64), z = static_cast<int32_t>(rank / 64);
-  const auto per_zone = static_cast<int32_t>(data_->tiles_per_zone);
-  const format::Zone& zone = level.zone->root();
-  const int32_t tile = level.view.record->tile();
-  const int64_t cell_x = int64_t{(zone.x() * per_zone + tile % per_zone)} * 64 + x;
-  const int64_t cell_z = int64_t{(zone.z() * per_zone + tile / per_zone)} * 64 + z;
+  const auto [tile_x, tile_z] = tile_of(*data_, *level.zone, *level.view.record);
+  const int64_t cell_x = int64_t{tile_x} * 64 + x, cell_z = int64_t{tile_z} * 64 + z;
   const GroundPoint p{
       (cell_x << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 1, kUnitsPerCell)),
       (cell_z << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 2, kUnitsPerCell))};
-  // The middle of the unit, so that the place's own coordinates lead back to it.
-  const double unit = data_->summary.cell / kUnitsPerCell;
-  return {{data_->summary.origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet_at(level, p),
-           data_->summary.origin.z + (static_cast<double>(p.z) + 0.5) * unit},
-          level_index + 1};
+  return place_at(*data_, level, p);
 }
 
 MoveResult World::move(int32_t avatar_class, const Place& from, double dx, double dz) const {

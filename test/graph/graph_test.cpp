@@ -8,27 +8,15 @@
 #include <numeric>
 #include <vector>
 
-#include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "baked.h"
 #include "worlds.h"
 
 // The graph against a flood over World::move, cell by cell, that knows no regions.
 namespace throng {
 namespace {
 
-World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes) {
-  Context context;
-  const auto world =
-      bake_world(scene, {.cell = cell, .zone = 25.6, .classes = std::move(classes)}, context);
-  EXPECT_TRUE(world) << world.error().message;
-  return world ? *world : World{};
-}
-
-Scene builtin(const BuiltinWorldConfig& config) {
-  auto scene = make_builtin_world(config);
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? *std::move(scene) : Scene{};
-}
+using test::bake;
+using test::builtin;
 
 Graph make(const World& world, int32_t workers = 0) {
   Context context;

@@ -6,28 +6,15 @@
 
 #include <filesystem>
 
-#include "core/random.h"
 #include "core/read_file.h"
 #include "import/patch_edges.h"
+#include "patch_bytes.h"
 #include "patch_nets.h"
 
 namespace throng {
 namespace {
 
-Result<RawScene> read(const std::string& bytes) {
-  Context context;
-  ReadOptions options;
-  options.name = "pot.bpt";
-  return read_bpt(bytes, options, context);
-}
-
-std::string fault_of(const std::string& bytes) {
-  const auto raw = read(bytes);
-  EXPECT_FALSE(raw);
-  if (raw) return "";
-  EXPECT_EQ(raw.error().code, Errc::kBadFile);
-  return raw.error().message;
-}
+constexpr test::PatchReader kReader{read_bpt, "pot.bpt"};
 
 // A bilinear square beside a quadratic one; the second direction is t.
 const char* const kTwo =
@@ -35,7 +22,7 @@ const char* const kTwo =
     "\n# the other\n2 1\n3 0 0\n3 3 0\n4.5 0 2\n4.5 3 2\n6 0 0\n6 3 0\n";
 
 TEST(Bpt, LowerDegreesAreRaisedAndEqualBordersAreNeighbours) {
-  const auto raw = read(kTwo);
+  const auto raw = kReader.read(kTwo);
   ASSERT_TRUE(raw) << raw.error().message;
   const PatchSet& set = raw->scene.patches;
   ASSERT_EQ(set.size(), 2u);
@@ -48,23 +35,24 @@ TEST(Bpt, LowerDegreesAreRaisedAndEqualBordersAreNeighbours) {
 
 TEST(Bpt, DamageIsNamedByItsLine) {
   const std::string two = kTwo;
-  EXPECT_EQ(fault_of(""),
+  EXPECT_EQ(kReader.fault_of(""),
             "pot.bpt:0: does not begin with the number of patches; write it on a line of its own");
-  EXPECT_EQ(fault_of("0\n").substr(0, 10), "pot.bpt:1:");
-  EXPECT_EQ(fault_of("many\n").substr(0, 10), "pot.bpt:1:");
-  EXPECT_EQ(fault_of("1\n4 1\n"), "pot.bpt:2: patch 1 needs its two degrees here, each 1 to 3");
-  EXPECT_EQ(fault_of("1\n1 1\n0 0 0\n0 x 0\n"),
+  EXPECT_EQ(kReader.fault_of("0\n").substr(0, 10), "pot.bpt:1:");
+  EXPECT_EQ(kReader.fault_of("many\n").substr(0, 10), "pot.bpt:1:");
+  EXPECT_EQ(kReader.fault_of("1\n4 1\n"),
+            "pot.bpt:2: patch 1 needs its two degrees here, each 1 to 3");
+  EXPECT_EQ(kReader.fault_of("1\n1 1\n0 0 0\n0 x 0\n"),
             "pot.bpt:4: control point 2 of patch 1 needs three numbers below 1e9 here");
-  EXPECT_EQ(fault_of("1\n1 1\n0 0 0\n0 nan 0\n"),
+  EXPECT_EQ(kReader.fault_of("1\n1 1\n0 0 0\n0 nan 0\n"),
             "pot.bpt:4: control point 2 of patch 1 needs three numbers below 1e9 here");
-  EXPECT_EQ(fault_of("1\n1 1\n0 0 0\n0 1e300 0\n").substr(0, 10), "pot.bpt:4:");
-  EXPECT_EQ(fault_of("1\n1 1\n0 0 0 7\n").substr(0, 10), "pot.bpt:3:");
-  EXPECT_EQ(fault_of(two.substr(0, two.size() - 7)),
+  EXPECT_EQ(kReader.fault_of("1\n1 1\n0 0 0\n0 1e300 0\n").substr(0, 10), "pot.bpt:4:");
+  EXPECT_EQ(kReader.fault_of("1\n1 1\n0 0 0 7\n").substr(0, 10), "pot.bpt:3:");
+  EXPECT_EQ(kReader.fault_of(two.substr(0, two.size() - 7)),
             "pot.bpt:15: ends before the control points of patch 2 of 2; the file is truncated, or "
             "the number of patches is wrong");
-  EXPECT_EQ(fault_of("99999999999\n1 1\n0 0 0\n0 3 0\n3 0 0\n3 3 0\n").substr(0, 46),
+  EXPECT_EQ(kReader.fault_of("99999999999\n1 1\n0 0 0\n0 3 0\n3 0 0\n3 3 0\n").substr(0, 46),
             "pot.bpt:6: ends before the degrees of patch 2 ");
-  EXPECT_EQ(fault_of(two + "1 1\n"),
+  EXPECT_EQ(kReader.fault_of(two + "1 1\n"),
             "pot.bpt:17: more follows after the last of 2 patches; correct the number");
 }
 
@@ -123,26 +111,7 @@ TEST_F(Teapot, IsABodyAHandleASpoutAndALidWithPoles) {
 TEST_F(Teapot, SurvivesDamage) {
   const auto whole = read_file(path());
   ASSERT_TRUE(whole) << whole.error().message;
-  uint64_t kept = 0;
-  const auto use = [&](const std::string& bytes) {
-    const auto raw = read(bytes);
-    if (!raw) {
-      EXPECT_EQ(raw.error().message.rfind("pot.bpt:", 0), 0u) << raw.error().message;
-      return;
-    }
-    Context context;
-    const auto mesh = tessellate_patches(raw->scene.patches, {.tolerance = 1}, context);
-    EXPECT_TRUE(mesh || !mesh.error().message.empty());
-    ++kept;
-  };
-  for (size_t size = 0; size + 1 < whole->size(); size += 7) use(whole->substr(0, size));
-  for (uint64_t i = 0; i < 1000; ++i) {
-    std::string bytes = *whole;
-    bytes[random_below(5, i, 0, bytes.size())] = static_cast<char>(
-        i % 2 == 0 ? random_below(5, i, 1, 256) : '0' + random_below(5, i, 1, 10));
-    use(bytes);
-  }
-  EXPECT_GT(kept, 300u);
+  EXPECT_GT(kReader.survive(*whole, "pot.bpt:", 7, 5, 1000), 300u);
 }
 
 }  // namespace

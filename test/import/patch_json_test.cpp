@@ -2,30 +2,18 @@
 // SPDX-License-Identifier: MIT
 #include "import/patch_json.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/random.h"
 #include "core/read_file.h"
+#include "patch_bytes.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 
 namespace throng {
 namespace {
 
-Result<RawScene> read(const std::string& bytes) {
-  Context context;
-  ReadOptions options;
-  options.name = "hills.patches.json";
-  return read_patch_json(bytes, options, context);
-}
-
-std::string fault_of(const std::string& bytes) {
-  const auto raw = read(bytes);
-  EXPECT_FALSE(raw);
-  if (raw) return "";
-  EXPECT_EQ(raw.error().code, Errc::kBadFile);
-  return raw.error().message;
-}
+constexpr test::PatchReader kReader{read_patch_json, "hills.patches.json"};
 
 PatchSet sample() {
   PatchSet set = test::make_net({.side = 3, .jitter = 0.01, .seed = 3});
@@ -70,7 +58,7 @@ TEST(PatchJson, WhatIsWrittenIsReadBackBitForBit) {
   ASSERT_TRUE(written) << written.error().message;
   const auto bytes = read_file(path);
   ASSERT_TRUE(bytes);
-  const auto raw = read(*bytes);
+  const auto raw = kReader.read(*bytes);
   ASSERT_TRUE(raw) << raw.error().message;
   expect_equal(set, raw->scene.patches);
 
@@ -101,11 +89,8 @@ TEST(PatchJson, WritingRefusesWhatReadingWould) {
 
 std::string point_list() {
   std::string list;
-  for (int i = 0; i < 16; ++i) {
-    list += (i > 0 ? "," : "") + std::string("[") + std::to_string(i % 4) + ",0," +
-            std::to_string(i / 4) + "]";
-  }
-  return "[" + list + "]";
+  for (int i = 0; i < 16; ++i) list += fmt::format("{}[{},0,{}]", i > 0 ? "," : "", i % 4, i / 4);
+  return fmt::format("[{}]", list);
 }
 
 std::string file_with(const std::string& patch) {
@@ -114,28 +99,28 @@ std::string file_with(const std::string& patch) {
 }
 
 TEST(PatchJson, DamageIsNamedByItsPlace) {
-  EXPECT_TRUE(read(file_with("\"points\":" + point_list())));
+  EXPECT_TRUE(kReader.read(file_with("\"points\":" + point_list())));
   const std::string at = "hills.patches.json: ";
-  EXPECT_EQ(fault_of("[1]"), at + "must be an object");
-  EXPECT_EQ(fault_of("{").substr(0, 30), at + "not JSON: ");
-  EXPECT_EQ(fault_of(R"({"format":"other"})"),
+  EXPECT_EQ(kReader.fault_of("[1]"), at + "must be an object");
+  EXPECT_EQ(kReader.fault_of("{").substr(0, 30), at + "not JSON: ");
+  EXPECT_EQ(kReader.fault_of(R"({"format":"other"})"),
             at + "not a patch file: \"format\" must be \"throng-patches\"");
-  EXPECT_EQ(fault_of(R"({"format":"throng-patches","version":2,"groups":[]})"),
+  EXPECT_EQ(kReader.fault_of(R"({"format":"throng-patches","version":2,"groups":[]})"),
             at + "patch file of version 2; only 1 is read");
-  EXPECT_EQ(fault_of(R"({"format":"throng-patches","version":1,"groups":[]})"),
+  EXPECT_EQ(kReader.fault_of(R"({"format":"throng-patches","version":1,"groups":[]})"),
             at + "has no patches");
-  EXPECT_EQ(fault_of(R"({"format":"throng-patches","version":1,"groups":[],"unit":"m"})"),
+  EXPECT_EQ(kReader.fault_of(R"({"format":"throng-patches","version":1,"groups":[],"unit":"m"})"),
             at + "does not know the key \"unit\"; remove it");
-  EXPECT_EQ(fault_of(R"({"format":"throng-patches","version":1,"groups":[{"kind":64}]})"),
+  EXPECT_EQ(kReader.fault_of(R"({"format":"throng-patches","version":1,"groups":[{"kind":64}]})"),
             at + "group 0: \"kind\" must be a whole number, 0 to 63");
   const std::string second = at + "group 0, patch 1: ";
-  EXPECT_EQ(fault_of(file_with("\"points\":[]")),
+  EXPECT_EQ(kReader.fault_of(file_with("\"points\":[]")),
             second + "\"points\" must be a list of 16 points");
   std::string points = point_list();
-  EXPECT_EQ(fault_of(file_with("\"points\":" + points.replace(1, 7, "[0,0,1e9]"))),
+  EXPECT_EQ(kReader.fault_of(file_with("\"points\":" + points.replace(1, 7, "[0,0,1e9]"))),
             second + "point 0 must be three numbers below 1e9");
   const auto edges = [&](const std::string& list) {
-    return fault_of(file_with("\"points\":" + point_list() + ",\"edges\":" + list));
+    return kReader.fault_of(file_with("\"points\":" + point_list() + ",\"edges\":" + list));
   };
   EXPECT_EQ(edges("[null]"), second + "\"edges\" must be a list of 4");
   EXPECT_EQ(edges("[null,null,null,7]"),
@@ -162,26 +147,7 @@ TEST(PatchJson, SurvivesDamage) {
   ASSERT_TRUE(write_patches(test::make_net({.side = 2, .seed = 3}), path));
   const auto whole = read_file(path);
   ASSERT_TRUE(whole);
-  uint64_t kept = 0;
-  const auto use = [&](const std::string& bytes) {
-    const auto raw = read(bytes);
-    if (!raw) {
-      EXPECT_EQ(raw.error().message.rfind("hills.patches.json: ", 0), 0u) << raw.error().message;
-      return;
-    }
-    Context context;
-    const auto mesh = tessellate_patches(raw->scene.patches, {.tolerance = 1}, context);
-    EXPECT_TRUE(mesh || !mesh.error().message.empty());
-    ++kept;
-  };
-  for (size_t size = 0; size + 2 < whole->size(); size += 11) use(whole->substr(0, size));
-  for (uint64_t i = 0; i < 3000; ++i) {
-    std::string bytes = *whole;
-    bytes[random_below(6, i, 0, bytes.size())] = static_cast<char>(
-        i % 2 == 0 ? random_below(6, i, 1, 256) : '0' + random_below(6, i, 1, 10));
-    use(bytes);
-  }
-  EXPECT_GT(kept, 300u);
+  EXPECT_GT(kReader.survive(*whole, "hills.patches.json: ", 11, 6, 3000), 300u);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "core/random.h"
 #include "core/read_file.h"
 #include "import/patch_edges.h"
+#include "patch_bytes.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "tiny_zonel.h"
@@ -20,20 +21,7 @@
 namespace throng {
 namespace {
 
-Result<RawScene> read(const std::string& bytes) {
-  Context context;
-  ReadOptions options;
-  options.name = "3_AC.zonel";
-  return read_zonel(bytes, options, context);
-}
-
-std::string fault_of(const std::string& bytes) {
-  const auto raw = read(bytes);
-  EXPECT_FALSE(raw);
-  if (raw) return "";
-  EXPECT_EQ(raw.error().code, Errc::kBadFile);
-  return raw.error().message;
-}
+constexpr test::PatchReader kReader{read_zonel, "3_AC.zonel"};
 
 Result<Scene> load(const std::vector<std::string>& paths, double tolerance = 0.02) {
   Context context;
@@ -126,7 +114,7 @@ TEST(Zonel, EdgesToAbsentZonesStayOpenAndAreCounted) {
 
 TEST(Zonel, AllVersionsAreReadAlike) {
   const auto tiny = test::tiny_landscape()[0];
-  const auto plain = read(test::make_zonel(tiny));
+  const auto plain = kReader.read(test::make_zonel(tiny));
   ASSERT_TRUE(plain) << plain.error().message;
   for (const int version : {3, 4, 5}) {
     for (const int patch_version : {2, 3, 4, 5, 6, 7}) {
@@ -135,7 +123,7 @@ TEST(Zonel, AllVersionsAreReadAlike) {
         zone.version = static_cast<uint8_t>(version);
         zone.patch_version = static_cast<uint8_t>(patch_version);
         zone.connect_version = static_cast<uint8_t>(connect_version);
-        const auto raw = read(test::make_zonel(zone));
+        const auto raw = kReader.read(test::make_zonel(zone));
         ASSERT_TRUE(raw) << raw.error().message;
         for (size_t p = 0; p < 6; ++p) {
           EXPECT_EQ(raw->scene.patches.patches[p].points, plain->scene.patches.patches[p].points);
@@ -150,7 +138,7 @@ TEST(Zonel, ControlPointsLandWhereTheyBelong) {
   for (size_t i = 0; i < 16; ++i) {
     zone.patches[0].points[i] = {static_cast<double>(i), static_cast<double>(i * i), -5};
   }
-  const auto raw = read(test::make_zonel(zone));
+  const auto raw = kReader.read(test::make_zonel(zone));
   ASSERT_TRUE(raw) << raw.error().message;
   EXPECT_EQ(raw->scene.patches.patches[0].points, zone.patches[0].points);
 }
@@ -158,18 +146,19 @@ TEST(Zonel, ControlPointsLandWhereTheyBelong) {
 TEST(Zonel, DamageIsNamedByItsPlace) {
   const auto tiny = test::tiny_landscape();
   const std::string whole = test::make_zonel(tiny[0]);
-  EXPECT_EQ(fault_of(""),
+  EXPECT_EQ(kReader.fault_of(""),
             "3_AC.zonel: ends in its head (byte 0); the file is truncated or damaged, "
             "get it again");
   std::string bytes = whole;
   bytes[1] = 'B';
-  EXPECT_EQ(fault_of(bytes), "3_AC.zonel: not a landscape zone: ZONE is missing from its head");
+  EXPECT_EQ(kReader.fault_of(bytes),
+            "3_AC.zonel: not a landscape zone: ZONE is missing from its head");
   bytes = whole;
   bytes[0] = 6;
-  EXPECT_EQ(fault_of(bytes), "3_AC.zonel: zone of version 6; 3 to 5 are read");
-  EXPECT_EQ(fault_of(whole + "x"),
+  EXPECT_EQ(kReader.fault_of(bytes), "3_AC.zonel: zone of version 6; 3 to 5 are read");
+  EXPECT_EQ(kReader.fault_of(whole + "x"),
             "3_AC.zonel: 1 bytes follow the last patch; the file is damaged");
-  EXPECT_EQ(fault_of(whole.substr(0, whole.size() - 1)),
+  EXPECT_EQ(kReader.fault_of(whole.substr(0, whole.size() - 1)),
             "3_AC.zonel: ends in the neighbours of patch 5 of 6 (byte " +
                 std::to_string(whole.size() - 1) +
                 "); the file is truncated or damaged, get it again");
@@ -177,29 +166,30 @@ TEST(Zonel, DamageIsNamedByItsPlace) {
   bytes = whole;
   const int32_t many = 0x7fffffff;
   std::memcpy(bytes.data() + 52, &many, 4);
-  EXPECT_NE(fault_of(bytes).find("ends in the border vertices"), std::string::npos);
+  EXPECT_NE(kReader.fault_of(bytes).find("ends in the border vertices"), std::string::npos);
   auto zone = tiny[0];
   zone.patch_version = 8;
-  EXPECT_NE(fault_of(test::make_zonel(zone)).find("patch 0 of 6 (byte 75) has version 8; 2 to 7"),
-            std::string::npos);
+  EXPECT_NE(
+      kReader.fault_of(test::make_zonel(zone)).find("patch 0 of 6 (byte 75) has version 8; 2 to 7"),
+      std::string::npos);
   zone = tiny[0];
   zone.binds[3][0].kind = 3;
-  EXPECT_EQ(fault_of(test::make_zonel(zone)),
+  EXPECT_EQ(kReader.fault_of(test::make_zonel(zone)),
             "3_AC.zonel: edge 0 in the neighbours of patch 3 of 6 "
             "is of kind 3; kinds are 0, 1, 2, 4 and 5");
   zone = tiny[0];
   zone.binds[3][0].next[0] = 6;
-  EXPECT_EQ(fault_of(test::make_zonel(zone)),
+  EXPECT_EQ(kReader.fault_of(test::make_zonel(zone)),
             "3_AC.zonel: edge 0 in the neighbours of patch 3 of 6 "
             "meets patch 6, and there are only 6");
   zone = tiny[0];
   zone.binds[3][2].edge[0] = 4;
-  EXPECT_EQ(fault_of(test::make_zonel(zone)),
+  EXPECT_EQ(kReader.fault_of(test::make_zonel(zone)),
             "3_AC.zonel: edge 2 in the neighbours of patch 3 of 6 "
             "meets edge 4 of patch 0; edges are 0 to 3");
   zone = tiny[0];
   zone.scale = NAN;
-  EXPECT_EQ(fault_of(test::make_zonel(zone)),
+  EXPECT_EQ(kReader.fault_of(test::make_zonel(zone)),
             "3_AC.zonel: its scale or bias is not a usable number");
 }
 
@@ -300,7 +290,7 @@ TEST_F(NelLandscape, SurvivesDamageToARealFile) {
   ASSERT_TRUE(whole) << whole.error().message;
   uint64_t kept = 0;
   const auto use = [&](const std::string& bytes) {
-    const auto raw = read(bytes);
+    const auto raw = kReader.read(bytes);
     if (!raw) {
       EXPECT_EQ(raw.error().message.rfind("3_AC.zonel: ", 0), 0u) << raw.error().message;
       return;

@@ -8,27 +8,18 @@
 #include <limits>
 #include <vector>
 
+#include "baked.h"
 #include "core/random.h"
-#include "throng/bake.h"
-#include "throng/builtin_worlds.h"
 #include "throng/graph.h"
 #include "worlds.h"
 
 namespace throng {
 namespace {
 
-World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes) {
-  Context context;
-  const auto world =
-      bake_world(scene, {.cell = cell, .zone = 25.6, .classes = std::move(classes)}, context);
-  EXPECT_TRUE(world) << world.error().message;
-  return world ? *world : World{};
-}
+using test::bake;
 
 World builtin(const BuiltinWorldConfig& config, double cell) {
-  const auto scene = make_builtin_world(config);
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? bake(*scene, cell, default_classes()) : World{};
+  return bake(test::builtin(config), cell);
 }
 
 PathFinder finder(const World& world, int32_t avatar_class, bool labels = false) {

@@ -97,12 +97,8 @@ std::string path_text(const PathOptions& options, const Path& path, double secon
 int path(Session& session, const PathOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
-  const auto avatar_class = world->find_class(options.avatar_class);
-  if (!avatar_class) {
-    return fail(
-        {Errc::kBadConfig, fmt::format("{}: no class {} in this world; `throng info {}` lists them",
-                                       options.world, options.avatar_class, options.world)});
-  }
+  const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
+  if (!avatar_class) return fail(avatar_class.error());
   const auto from = place_of(*world, options, *avatar_class, options.from, "--from");
   if (!from) return fail(from.error());
   const auto to = place_of(*world, options, *avatar_class, options.to, "--to");

@@ -38,13 +38,8 @@ int picture(Session& session, PictureOptions& options) {
                  fmt::format("--storey {}: write a number from 0 up, or all", options.storey)});
   }
   if (!options.avatar_class.empty()) {
-    const auto index = world->find_class(options.avatar_class);
-    if (!index) {
-      std::string names;
-      for (const AvatarClass& known : world->summary().classes) names += " " + known.name;
-      return fail({Errc::kNotFound, fmt::format("--class {}: {} has no such class; it has{}",
-                                                options.avatar_class, options.world, names)});
-    }
+    const Result<int32_t> index = class_named(*world, options.avatar_class);
+    if (!index) return fail(index.error());
     options.config.avatar_class = *index;
   }
   std::vector<PictureAvatar> avatars;

@@ -81,12 +81,9 @@ int region(Session& session, const RegionOptions& options) {
   if (!world) return fail(world.error());
   std::optional<int32_t> only;
   if (options.avatar_class != "all") {
-    only = world->find_class(options.avatar_class);
-    if (!only) {
-      return fail({Errc::kBadConfig,
-                   fmt::format("{}: no class {} in this world; `throng info {}` lists them",
-                               options.world, options.avatar_class, options.world)});
-    }
+    const Result<int32_t> named = class_named(*world, options.avatar_class);
+    if (!named) return fail(named.error());
+    only = *named;
   }
   const Result<Graph> graph = Graph::make(*world, {.workers = options.threads}, session.context);
   if (!graph) return fail(graph.error());

@@ -141,13 +141,8 @@ std::string run_text(const RunOptions& options, const Crowd& crowd, const RunTot
 
 // The class's index, by name or the first; fills in the name.
 Result<int32_t> pick_class(const World& world, std::string& name) {
-  const std::vector<AvatarClass> classes = world.summary().classes;
-  if (name.empty()) name = classes.front().name;
-  if (const auto index = world.find_class(name)) return *index;
-  std::string known;
-  for (const AvatarClass& avatar : classes) known += (known.empty() ? "" : ", ") + avatar.name;
-  return Error{Errc::kNotFound,
-               fmt::format("--class {}: the world has no such class; choose from {}", name, known)};
+  if (name.empty()) name = world.summary().classes.front().name;
+  return class_named(world, name);
 }
 
 int run(Session& session, RunOptions& options) {

@@ -11,6 +11,7 @@
 
 #include "throng/context.h"
 #include "throng/result.h"
+#include "throng/world.h"
 
 /// What every command of the program shares. One file a command: it adds its options to the parser
 /// and a callback that sets the exit code.
@@ -47,6 +48,9 @@ void note(const std::string& sentence);
 /// command a line, run one after the other in an empty folder by scripts/test_examples.
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
+
+/// Index of the class that --class names. Fails with kNotFound and the names to choose from.
+Result<int32_t> class_named(const World& world, const std::string& name);
 
 /// Most memory that this process has held so far. [bytes]
 uint64_t peak_memory();

@@ -176,6 +176,15 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   return command;
 }
 
+Result<int32_t> class_named(const World& world, const std::string& name) {
+  if (const auto index = world.find_class(name)) return *index;
+  std::string known;
+  for (const AvatarClass& avatar : world.summary().classes)
+    known += (known.empty() ? "" : ", ") + avatar.name;
+  return Error{Errc::kNotFound,
+               fmt::format("--class {}: the world has no such class; choose from {}", name, known)};
+}
+
 uint64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -340,9 +340,6 @@ uint64_t RegionGraph::bytes() const {
 }
 
 Result<RegionGraph> build_regions(const WorldData& world, int32_t workers, Context& context) {
-  for (size_t s = 0; s < world.slots.size(); ++s) {
-    if (world.zone(s) == nullptr) return Error{Errc::kBadFile, world.slots[s]->error};
-  }
   const int32_t tiles_x = world.summary.tiles_x, tiles_z = world.summary.tiles_z;
   std::vector<TileParts> tiles(static_cast<size_t>(tiles_x) * static_cast<size_t>(tiles_z));
   const Builder builder(world);

@@ -44,8 +44,8 @@ struct RegionGraph {
 
 inline constexpr uint32_t kNoRegion = UINT32_MAX;
 
-/// Regions and links of a whole world. Opens every zone; fails with kBadFile if one cannot be used,
-/// or kCancelled. The same for any number of workers.
+/// Regions and links of a whole world whose zones can all be used. Fails with kCancelled. The same
+/// for any number of workers.
 Result<RegionGraph> build_regions(const WorldData& world, int32_t workers, Context& context);
 
 /// Region of a legal cell of a level for a class; kNoRegion if the cell is not legal. Floods the

@@ -236,9 +236,6 @@ uint64_t PathMesh::bytes() const {
 
 Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
                             Context& context) {
-  for (size_t s = 0; s < world.slots.size(); ++s) {
-    if (world.zone(s) == nullptr) return Error{Errc::kBadFile, world.slots[s]->error};
-  }
   const Builder builder(world, avatar_class);
   PathMesh mesh;
   mesh.avatar_class = avatar_class;

@@ -92,7 +92,8 @@ struct PathMesh {
   [[nodiscard]] uint64_t bytes() const;
 };
 
-/// Fails with kBadFile (a zone cannot be used) or kCancelled. The same for any number of workers.
+/// Of a world whose zones can all be used. Fails with kCancelled. The same for any number of
+/// workers.
 Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
                             Context& context);
 

@@ -59,9 +59,11 @@ uint64_t peak_memory();
 std::string human_bytes(uint64_t bytes);
 
 void add_bake(CLI::App& parser, Session& session);
+void add_export(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
 void add_path(CLI::App& parser, Session& session);
 void add_picture(CLI::App& parser, Session& session);
+void add_place(CLI::App& parser, Session& session);
 void add_region(CLI::App& parser, Session& session);
 void add_run(CLI::App& parser, Session& session);
 void add_slices(CLI::App& parser, Session& session);

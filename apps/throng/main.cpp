@@ -7,9 +7,11 @@ int main(int argc, char** argv) {
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {
     // One line a command, in the order of --help.
     add_bake(parser, session);
+    add_export(parser, session);
     add_info(parser, session);
     add_path(parser, session);
     add_picture(parser, session);
+    add_place(parser, session);
     add_region(parser, session);
     add_run(parser, session);
     add_slices(parser, session);

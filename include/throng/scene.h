@@ -125,4 +125,8 @@ struct PlaneConfig {
 /// Writes a binary glTF, one mesh per part. Nothing is left behind when it fails.
 [[nodiscard]] THRONG_API Result<void> write_glb(const Scene& scene, const std::string& path);
 
+/// Writes a Wavefront OBJ: corners to a tenth of a millimetre at 100 km, a name and a material name
+/// a part, no material file. Nothing is left behind when it fails.
+[[nodiscard]] THRONG_API Result<void> write_obj(const Scene& scene, const std::string& path);
+
 }  // namespace throng

@@ -6,11 +6,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "import/scene_output.h"
 #include "throng/scene.h"
 
 // Writes binary glTF 2.0 (Khronos, 2017). Three walks over each run of triangles: one measures, so
@@ -213,71 +213,10 @@ std::string make_header(const std::vector<Run>& runs, uint64_t corners, uint64_t
   return json;
 }
 
-// A file that gathers what it writes and remembers the first failure.
-class Output {
- public:
-  explicit Output(const std::string& path) : file_(std::fopen(path.c_str(), "wb")) {
-    good_ = file_ != nullptr;
-    buffer_.reserve(kBuffer);
-  }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-  ~Output() { close(); }
-  template <class T>
-  void put(const T& value) {
-    put_bytes(&value, sizeof value);
-  }
-  void put_bytes(const void* data, size_t size) {
-    if (buffer_.size() + size > kBuffer) flush();
-    const auto* bytes = static_cast<const char*>(data);
-    buffer_.insert(buffer_.end(), bytes, bytes + size);
-  }
-  bool close() {
-    flush();
-    if (file_ != nullptr && std::fclose(file_) != 0) good_ = false;
-    file_ = nullptr;
-    return good_;
-  }
-
- private:
-  static constexpr size_t kBuffer = 1 << 20;
-  void flush() {
-    if (buffer_.empty()) return;
-    if (good_ && std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size())
-      good_ = false;
-    buffer_.clear();
-  }
-  std::FILE* file_;
-  bool good_ = false;
-  std::vector<char> buffer_;
-};
-
-Result<void> check(const Scene& scene, const std::string& path) {
-  if (scene.triangles.empty()) {
-    return Error{Errc::kBadInput, fmt::format("{}: the scene has no triangles to write", path)};
-  }
-  for (size_t t = 0; t < scene.triangles.size(); ++t) {
-    for (const uint32_t corner : scene.triangles[t]) {
-      if (corner >= scene.positions.size()) {
-        return Error{Errc::kBadInput,
-                     fmt::format("{}: triangle {} uses corner {} of {}; give it corners that exist",
-                                 path, t, corner, scene.positions.size())};
-      }
-      const Vec3d& p = scene.positions[corner];
-      if (!(std::fabs(p.x) < 1e30 && std::fabs(p.y) < 1e30 && std::fabs(p.z) < 1e30)) {
-        return Error{
-            Errc::kBadInput,
-            fmt::format("{}: corner {} is not a finite place; drop triangle {}", path, corner, t)};
-      }
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<void> write_glb(const Scene& scene, const std::string& path) {
-  if (const auto fine = check(scene, path); !fine) return fine;
+  if (const auto fine = check_scene(scene, path); !fine) return fine;
   std::vector<Run> runs = split_into_runs(scene);
   Renumbering order(scene);
   uint64_t corners = 0;
@@ -297,8 +236,7 @@ Result<void> write_glb(const Scene& scene, const std::string& path) {
                     path, triangles, size)};
   }
 
-  const std::string part = path + ".part";
-  Output out(part);
+  SceneOutput out(path);
   const auto put_chunk = [&](const char* type, uint64_t length) {
     out.put(static_cast<uint32_t>(length));
     out.put_bytes(type, 4);
@@ -320,12 +258,7 @@ Result<void> write_glb(const Scene& scene, const std::string& path) {
       out.put(std::array<uint32_t, 3>{order[corner[0]], order[corner[1]], order[corner[2]]});
     }
   }
-  if (!out.close() || std::rename(part.c_str(), path.c_str()) != 0) {
-    std::remove(part.c_str());
-    return Error{Errc::kIo,
-                 fmt::format("{}: cannot be written; check the folder and the free space", path)};
-  }
-  return {};
+  return out.close();
 }
 
 }  // namespace throng

@@ -56,16 +56,23 @@ std::optional<typename Ground::Level> step_to(const Ground& ground,
   return best;
 }
 
-/// Walks from `from` to `to` in a straight line, cell by cell; through a corner only if both cells
-/// beside it let the body pass. False leaves `level` as it was.
+/// Where a straight walk ended: in a cell, and over which of its borders it could not go: x, z, or
+/// both at a corner. [-1, 0, 1]
+struct WalkStop {
+  bool arrived = false;
+  int32_t x = 0, z = 0;
+  int32_t toward_x = 0, toward_z = 0;
+};
+
+/// Walks from `from` to `to` in a straight line, cell by cell, as far as it goes; through a corner
+/// only if both cells beside it let the body pass. `level` is then the one of the last cell.
 template <class Ground>
-bool walk(const Ground& ground, typename Ground::Level& level, GroundPoint from, GroundPoint to,
-          int32_t step_mm) {
+WalkStop walk_far(const Ground& ground, typename Ground::Level& level, GroundPoint from,
+                  GroundPoint to, int32_t step_mm) {
   int32_t x = from.cell_x(), z = from.cell_z();
   const int32_t end_x = to.cell_x(), end_z = to.cell_z();
   const int64_t dx = std::llabs(to.x - from.x), dz = std::llabs(to.z - from.z);
   const int32_t sx = to.x > from.x ? 1 : -1, sz = to.z > from.z ? 1 : -1;
-  typename Ground::Level current = level;
   while (x != end_x || z != end_z) {
     // Distance along each axis to the next line of the grid; the sooner of the two is crossed.
     const int64_t line_x = int64_t{sx > 0 ? x + 1 : x} << kUnitBits;
@@ -74,22 +81,30 @@ bool walk(const Ground& ground, typename Ground::Level& level, GroundPoint from,
     const bool cross_x = x != end_x && (z == end_z || ax <= az);
     const bool cross_z = z != end_z && (x == end_x || az <= ax);
     const int32_t nx = cross_x ? x + sx : x, nz = cross_z ? z + sz : z;
+    std::optional<typename Ground::Level> next;
     if (cross_x && cross_z) {
-      const auto beside_x = step_to(ground, current, x, z, nx, z, step_mm);
-      const auto beside_z = step_to(ground, current, x, z, x, nz, step_mm);
-      if (!beside_x || !beside_z) return false;
-      if (!step_to(ground, *beside_z, x, nz, nx, nz, step_mm)) return false;
-      const auto corner = step_to(ground, *beside_x, nx, z, nx, nz, step_mm);
-      if (!corner) return false;
-      current = *corner;
+      const auto beside_x = step_to(ground, level, x, z, nx, z, step_mm);
+      const auto beside_z = step_to(ground, level, x, z, x, nz, step_mm);
+      if (beside_x && beside_z && step_to(ground, *beside_z, x, nz, nx, nz, step_mm)) {
+        next = step_to(ground, *beside_x, nx, z, nx, nz, step_mm);
+      }
     } else {
-      const auto next = step_to(ground, current, x, z, nx, nz, step_mm);
-      if (!next) return false;
-      current = *next;
+      next = step_to(ground, level, x, z, nx, nz, step_mm);
     }
+    if (!next) return {false, x, z, nx - x, nz - z};
+    level = *next;
     x = nx;
     z = nz;
   }
+  return {true, x, z, 0, 0};
+}
+
+/// As walk_far, all the way or not at all: false leaves `level` as it was.
+template <class Ground>
+bool walk(const Ground& ground, typename Ground::Level& level, GroundPoint from, GroundPoint to,
+          int32_t step_mm) {
+  typename Ground::Level current = level;
+  if (!walk_far(ground, current, from, to, step_mm).arrived) return false;
   level = current;
   return true;
 }

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "throng/ground_query.h"
+#include "throng/world.h"
+
+// throng place: where a class can stand near a position, and what is around it there.
+namespace throng::app {
+namespace {
+
+struct PlaceOptions {
+  std::string world;
+  std::string avatar_class = "adult";
+  std::vector<double> at;
+  std::vector<double> toward;
+  double radius = 5;
+  uint64_t random = 0;
+  uint64_t seed = 1;
+};
+
+const char* word_for(Obstacle obstacle) {
+  switch (obstacle) {
+    case Obstacle::kNone:
+      return "nothing";
+    case Obstacle::kGap:
+      return "a gap";
+    case Obstacle::kStep:
+      return "too high a step";
+    case Obstacle::kLow:
+      return "too low";
+    case Obstacle::kSteep:
+      return "too steep";
+    case Obstacle::kNarrow:
+      return "a wall, or too narrow";
+  }
+  return "";
+}
+
+Json numbers(const Vec3d& p) { return {p.x, p.y, p.z}; }
+std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }
+
+void describe_wall(GroundQuery& query, const Place& place, double radius, Json& json,
+                   std::string& text) {
+  const NearestWall wall = query.nearest_wall(place, radius);
+  if (!wall.found) {
+    json["wall"] = nullptr;
+    text += fmt::format("  no wall within {} m\n", radius);
+    return;
+  }
+  json["wall"] = {{"distance", wall.distance},
+                  {"at", {wall.x, wall.z}},
+                  {"normal", {wall.normal_x, wall.normal_z}}};
+  text += fmt::format("  nearest wall: {:.3f} m away, at {:.3f}, {:.3f}\n", wall.distance, wall.x,
+                      wall.z);
+}
+
+void describe_ray(GroundQuery& query, const Place& place, const std::vector<double>& toward,
+                  Json& json, std::string& text) {
+  const GroundRay ray = query.ray(place, toward[0], toward[1]);
+  const Place slid = query.slide(place, toward[0], toward[1]);
+  json["toward"] = {{"arrived", ray.arrived},
+                    {"place", numbers(ray.place.position)},
+                    {"obstacle", ray.arrived ? Json(nullptr) : Json(word_for(ray.obstacle))},
+                    {"slides_to", numbers(slid.position)}};
+  text += fmt::format("  straight on by {}, {}: to ({})", toward[0], toward[1],
+                      where(ray.place.position));
+  if (!ray.arrived) {
+    text +=
+        fmt::format(", then {}; sliding, to ({})", word_for(ray.obstacle), where(slid.position));
+  }
+  text += "\n";
+}
+
+int place(Session& session, const PlaceOptions& options) {
+  const Result<World> world = World::open(options.world);
+  if (!world) return fail(world.error());
+  const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
+  if (!avatar_class) return fail(avatar_class.error());
+  Result<GroundQuery> query = GroundQuery::make(*world, *avatar_class);
+  if (!query) return fail(query.error());
+  if (auto ok = world->check_all(); !ok) return fail(ok.error());
+  const Vec3d at{options.at[0], options.at[1], options.at[2]};
+  if (!std::isfinite(at.x + at.y + at.z)) {
+    return fail({Errc::kBadInput, options.world + ": --at is not a finite position"});
+  }
+  const Place found = query->nearest_place(at, options.radius);
+  Json json = {{"world", options.world}, {"class", options.avatar_class}};
+  if (!found) {
+    json["place"] = nullptr;
+    print_result(session, json,
+                 fmt::format("no place for {} within {} m of ({})\n", options.avatar_class,
+                             options.radius, where(at)));
+    return kAnswerIsNo;
+  }
+  const double area = query->area_near(found, options.radius);
+  json["place"] = numbers(found.position);
+  json["distance"] = length(found.position - at);
+  json["area"] = area;
+  std::string text = fmt::format(
+      "{} can stand at ({}), {:.3f} m away\n  {:.2f} m2 hold together with it within {} m\n",
+      options.avatar_class, where(found.position), length(found.position - at), area,
+      options.radius);
+  describe_wall(*query, found, options.radius, json, text);
+  if (!options.toward.empty()) describe_ray(*query, found, options.toward, json, text);
+  Json random = Json::array();
+  for (uint64_t n = 0; n < options.random; ++n) {
+    const Place p = query->random_place_near(found, options.radius, options.seed, n);
+    random.push_back(numbers(p.position));
+    text += fmt::format("  at random: {}\n", where(p.position));
+  }
+  if (options.random > 0) json["random"] = random;
+  print_result(session, json, text);
+  return kDone;
+}
+
+}  // namespace
+
+void add_place(CLI::App& parser, Session& session) {
+  CLI::App* command = add_command(
+      parser, session, "place", "Find the nearest place to stand, and what is around it",
+      "throng bake builtin:garage -o garage.throng\n"
+      "throng place garage.throng --at 14,0,8 --toward 30,0 --random 3");
+  const auto options = std::make_shared<PlaceOptions>();
+  command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
+  command->add_option("--at", options->at, "Near where [m]")
+      ->delimiter(',')
+      ->expected(3)
+      ->required()
+      ->type_name("X,Y,Z");
+  command->add_option("--class", options->avatar_class, "Avatar class by name")
+      ->capture_default_str();
+  command->add_option("--radius", options->radius, "How far around to look [m]")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  command->add_option("--toward", options->toward, "Also: how far does a straight line go? [m]")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("DX,DZ");
+  command->add_option("--random", options->random, "Also this many random places around it")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the random places")->capture_default_str();
+  command->callback([&session, options] { session.exit_code = place(session, *options); });
+}
+
+}  // namespace throng::app

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "world/ground.h"
+#include "world/place.h"
+
+/// The cells around a place that hold together with it.
+namespace throng {
+
+/// Cells that steps join to a first one, over cells that touch a circle, each once, nearest first
+/// in steps. Owns its memory: no allocation once it has grown.
+class CircleFlood {
+ public:
+  struct Cell {
+    GroundLevel level;
+    int32_t x = 0, z = 0;  // of the grid
+  };
+
+  /// Starts anew at a cell that is legal for the ground's class. The circle may shrink on the way.
+  void start(const GroundLevel& level, int32_t x, int32_t z);
+  /// Calls visit(cell) for every cell, then blocked(cell, toward_x, toward_z) for each side of it
+  /// over which no step leads. within(x, z): is that cell of the grid still wanted?
+  template <class Within, class Visit, class Blocked>
+  void run(const WorldGround& ground, int32_t step, Within within, Visit visit, Blocked blocked) {
+    constexpr int32_t kSides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    for (size_t i = 0; i < cells_.size(); ++i) {
+      const Cell cell = cells_[i];
+      if (!within(cell.x, cell.z)) continue;
+      visit(cell);
+      for (const auto& side : kSides) {
+        const int32_t x = cell.x + side[0], z = cell.z + side[1];
+        const auto next = step_to(ground, cell.level, cell.x, cell.z, x, z, step);
+        if (!next) {
+          blocked(cell, side[0], side[1]);
+        } else if (within(x, z) && add_once(next->world_level, x, z)) {
+          cells_.push_back({*next, x, z});
+        }
+      }
+    }
+  }
+
+ private:
+  bool add_once(uint32_t level, int32_t x, int32_t z);
+  void grow();
+
+  std::vector<Cell> cells_;
+  std::vector<uint64_t> seen_;  // open addressing; 0 is free
+};
+
+}  // namespace throng

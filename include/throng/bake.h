@@ -8,6 +8,7 @@
 
 #include "throng/avatar_class.h"
 #include "throng/base.h"
+#include "throng/cells.h"
 #include "throng/context.h"
 #include "throng/result.h"
 #include "throng/scene.h"
@@ -59,5 +60,10 @@ struct BakeReport {
                                                           const Scene& scene,
                                                           const BakeConfig& config,
                                                           Context& context);
+
+/// Takes flat cells as they are: a world in memory with one class, "point", that is legal on every
+/// passable cell; its feet are at height 0. Fails with kBadConfig (cell, workers) or kBadInput.
+[[nodiscard]] THRONG_API Result<World> bake_flat_cells(const FlatCells& cells, double cell,
+                                                       int32_t workers = 0);
 
 }  // namespace throng

@@ -78,7 +78,9 @@ std::optional<GroundPoint> LegWalker::grazed(GroundLevel level, GroundPoint from
       // Of the cells that may be in the way, the corner that the leg passes closest.
       double nearest = 0.02;  // cells
       std::optional<GroundPoint> best;
-      const std::array<std::array<int32_t, 2>, 3> cells{{{nx, nz}, {nx, z}, {x, nz}}};
+      // The cells beside the leg first: a diagonal one that can be stood on shares their corner,
+      // but it is not what is missing there.
+      const std::array<std::array<int32_t, 2>, 3> cells{{{nx, z}, {x, nz}, {nx, nz}}};
       for (const auto& [cx, cz] : cells) {
         if (cx == x && cz == z) continue;
         const auto stands = step_to(ground_, level, x, z, cx, cz, mesh_->step);

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/result.h"
+
+/// Worlds that are given cell by cell, as the benchmarks of path search do, not as triangles.
+namespace throng {
+
+/// Level ground, row by row. A cell is where a point may be, not matter that keeps a body off.
+struct FlatCells {
+  int32_t width = 0;              ///< Along x. [1 to 16000]
+  int32_t depth = 0;              ///< Along z. [1 to 16000]
+  std::vector<uint8_t> passable;  ///< width * depth: 1 where the point may be, else 0.
+};
+
+/// Reads a map of Moving AI's grid benchmarks (`type octile`): `.`, `G` and `S` are passable; the
+/// file's x is x, its y is z. Fails with kBadFile and the line, or kIo. Source: [Stu12].
+[[nodiscard]] THRONG_API Result<FlatCells> load_grid_map(const std::string& path);
+
+}  // namespace throng

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/movingai.h"
+
+#include "core/read_file.h"
+#include "import/text_cursor.h"
+
+namespace throng {
+namespace {
+
+constexpr long long kMostCells = 16000;  // along a side
+
+Error bad_map(const std::string& name, const std::string& what) {
+  return {Errc::kBadFile, name + ": " + what};
+}
+
+// "NAME N": one line of the head.
+bool take_size(TextCursor& at, std::string_view name, int32_t& size) {
+  long long value = 0;
+  if (at.take_word() != name || !at.take(value) || value < 1 || value > kMostCells) return false;
+  size = static_cast<int32_t>(value);
+  return true;
+}
+
+}  // namespace
+
+Result<FlatCells> read_grid_map(std::string_view text, const std::string& name) {
+  TextCursor at(text);
+  FlatCells cells;
+  if (at.take_word() != "type" || at.take_word() != "octile") {
+    return bad_map(name, "not a grid map; its first line must be `type octile`");
+  }
+  if (!take_size(at, "height", cells.depth) || !take_size(at, "width", cells.width)) {
+    return bad_map(name, "lines 2 and 3 must be `height N` and `width N`, N from 1 to 16000");
+  }
+  if (at.take_word() != "map") return bad_map(name, "line 4 must be `map`");
+
+  for (int32_t z = 0; z < cells.depth; ++z) {
+    const std::string_view row = at.take_word();
+    if (row.size() != static_cast<size_t>(cells.width)) {
+      return bad_map(name, "line " + std::to_string(z + 5) + " has " + std::to_string(row.size()) +
+                               " cells, `width` says " + std::to_string(cells.width));
+    }
+    for (const char c : row) cells.passable.push_back(c == '.' || c == 'G' || c == 'S' ? 1 : 0);
+  }
+  return cells;
+}
+
+Result<FlatCells> load_grid_map(const std::string& path) {
+  const auto text = read_file(path);
+  if (!text) return text.error();
+  return read_grid_map(*text, path);
+}
+
+}  // namespace throng

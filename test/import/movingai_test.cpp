@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/movingai.h"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+TEST(GridMap, DotsGrassAndSwampArePassable) {
+  const auto cells = read_grid_map("type octile\nheight 2\nwidth 4\nmap\n.G@T\nSWO.\n", "a.map");
+  ASSERT_TRUE(cells) << cells.error().message;
+  EXPECT_EQ(cells->width, 4);
+  EXPECT_EQ(cells->depth, 2);
+  EXPECT_EQ(cells->passable, (std::vector<uint8_t>{1, 1, 0, 0, 1, 0, 0, 1}));
+}
+
+TEST(GridMap, WindowsLinesAreRead) {
+  const auto cells = read_grid_map("type octile\r\nheight 1\r\nwidth 2\r\nmap\r\n.@\r\n", "a.map");
+  ASSERT_TRUE(cells) << cells.error().message;
+  EXPECT_EQ(cells->passable, (std::vector<uint8_t>{1, 0}));
+}
+
+TEST(GridMap, BadMapsAreRefusedAndTheLineIsNamed) {
+  const auto message = [](std::string_view text) {
+    const auto cells = read_grid_map(text, "a.map");
+    EXPECT_FALSE(cells);
+    EXPECT_EQ(cells.error().code, Errc::kBadFile);
+    return cells.error().message;
+  };
+  EXPECT_EQ(message(""), "a.map: not a grid map; its first line must be `type octile`");
+  EXPECT_NE(message("type octile\nheight 0\nwidth 2\nmap\n").find("lines 2 and 3"),
+            std::string::npos);
+  EXPECT_NE(message("type octile\nheight 2\nwidth 99999\nmap\n").find("16000"), std::string::npos);
+  EXPECT_NE(message("type octile\nheight 1\nwidth 2\nmop\n..\n").find("line 4"), std::string::npos);
+  EXPECT_EQ(message("type octile\nheight 2\nwidth 2\nmap\n..\n.\n"),
+            "a.map: line 6 has 1 cells, `width` says 2");
+  EXPECT_EQ(message("type octile\nheight 2\nwidth 2\nmap\n..\n"),
+            "a.map: line 6 has 0 cells, `width` says 2");
+}
+
+}  // namespace
+}  // namespace throng

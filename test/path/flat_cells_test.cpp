@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "grid_oracle.h"
+#include "throng/bake.h"
+#include "throng/path.h"
+
+namespace throng {
+namespace {
+
+FlatCells random_cells(int32_t width, int32_t depth, uint64_t blocked_percent, uint64_t seed) {
+  FlatCells cells{.width = width, .depth = depth, .passable = {}};
+  for (uint64_t i = 0; i < static_cast<uint64_t>(width) * static_cast<uint64_t>(depth); ++i) {
+    cells.passable.push_back(random_below(seed, 0, i, 100) < blocked_percent ? 0 : 1);
+  }
+  return cells;
+}
+
+World bake(const FlatCells& cells, int32_t workers = 0) {
+  auto world = bake_flat_cells(cells, 1, workers);
+  EXPECT_TRUE(world) << world.error().message;
+  return *world;
+}
+
+TEST(FlatCells, ThePointIsLegalOnPassableCellsAndNowhereElse) {
+  const FlatCells cells = random_cells(100, 70, 40, 1);
+  const World world = bake(cells);
+  uint64_t open = 0;
+  for (int32_t z = 0; z < cells.depth; ++z) {
+    for (int32_t x = 0; x < cells.width; ++x) {
+      const bool passable = cells.passable[static_cast<size_t>(z * cells.width + x)] != 0;
+      open += passable ? 1 : 0;
+      ASSERT_EQ(static_cast<bool>(world.find_place(0, {x + 0.5, 0, z + 0.5}, 0.1)), passable)
+          << x << ", " << z;
+    }
+  }
+  EXPECT_EQ(world.summary().walkable_area[0], static_cast<double>(open));
+}
+
+// Random maps of any density: the same length as brute force, and unreachable only if nothing leads
+// there.
+TEST(FlatCells, WaysAreAsShortAsBruteForceFinds) {
+  Context context;
+  uint64_t compared = 0, unreachable = 0;
+  for (uint64_t seed = 0; seed < 24; ++seed) {
+    const FlatCells cells = random_cells(24, 24, 5 + 2 * seed, seed);
+    const World world = bake(cells);
+    auto finder = PathFinder::make(world, {}, context);
+    ASSERT_TRUE(finder) << finder.error().message;
+    const test::GridOracle oracle(cells);
+    Path path;
+    for (uint64_t n = 0; n < 40; ++n) {
+      int32_t at[4];
+      for (uint64_t i = 0; i < 4; ++i)
+        at[i] = static_cast<int32_t>(random_below(seed, n + 1, i, 24));
+      const Place from = world.find_place(0, {at[0] + 0.5, 0, at[1] + 0.5}, 0.1);
+      const Place to = world.find_place(0, {at[2] + 0.5, 0, at[3] + 0.5}, 0.1);
+      if (!from || !to) continue;
+      finder->find(from, to, path);
+      const auto best =
+          oracle.shortest(test::middle(at[0], at[1]), test::middle(at[2], at[3]), 1e9);
+      ASSERT_EQ(path.end == PathEnd::kReached, best.has_value())
+          << "seed " << seed << ", " << at[0] << "," << at[1] << " to " << at[2] << "," << at[3]
+          << ": " << static_cast<int>(path.end);
+      if (!best) {
+        ++unreachable;
+        continue;
+      }
+      ++compared;
+      ASSERT_NEAR(path.length, *best, 1e-9) << seed << ", " << n;
+    }
+  }
+  EXPECT_GT(compared, 300u);
+  EXPECT_GT(unreachable, 30u);
+}
+
+TEST(FlatCells, MapsThatDoNotFitAreRefused) {
+  for (const FlatCells& cells : {FlatCells{}, FlatCells{.width = 2, .depth = 2, .passable = {1}},
+                                 FlatCells{.width = 16001, .depth = 1, .passable = {}}}) {
+    const auto world = bake_flat_cells(cells, 1);
+    ASSERT_FALSE(world);
+    EXPECT_EQ(world.error().code, Errc::kBadInput);
+  }
+  const FlatCells cells = random_cells(4, 4, 0, 1);
+  EXPECT_EQ(bake_flat_cells(cells, 0).error().code, Errc::kBadConfig);
+  EXPECT_EQ(bake_flat_cells(cells, 1, -1).error().code, Errc::kBadConfig);
+}
+
+TEST(FlatCells, SameWorldForAnyNumberOfWorkers) {
+  const FlatCells cells = random_cells(300, 200, 30, 9);
+  const World one = bake(cells, 1);
+  for (const int32_t workers : {2, 3, 8}) {
+    const World other = bake(cells, workers);
+    ASSERT_EQ(other.level_tile_count(), one.level_tile_count());
+    for (uint32_t i = 0; i < one.level_tile_count(); ++i) {
+      const LevelTileContent a = one.level_tile(i), b = other.level_tile(i);
+      ASSERT_EQ(a.floor, b.floor);
+      ASSERT_EQ(a.clearance, b.clearance);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace throng

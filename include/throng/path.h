@@ -19,7 +19,9 @@ struct PathConfig {
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
   /// Also label all corners, so that a query looks the way up instead of searching for it: for
   /// many queries. Takes time and memory when the finder is made: of the order of 10 kB for each
-  /// square metre of small worlds, 1 kB of large ones.
+  /// square metre of small worlds, 1 kB of large ones (over some 2^23 cells). In large ones a way
+  /// may pass something on the wrong side; it is proved to be no more than 2 % longer than the
+  /// shortest, and hardly ever is (0.02 % on average over a city).
   bool labels = false;
 };
 

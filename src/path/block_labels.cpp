@@ -31,43 +31,11 @@ class Lister {
         set_(mesh.corner_count(), 0),
         known_(mesh.corner_count()) {}
 
-  // `r` is the n-th block of rectangle `rect`.
+  // Of the n-th block of rectangle `rect`.
   std::vector<Entry> list(uint32_t rect, uint32_t n) {
-    ++now_;
-    const MeshRect r = mesh_.block(rect, n);
-    const uint32_t block = r.first_block + n;
-    const uint32_t begin = labels_.first_candidate[block], end = labels_.first_candidate[block + 1];
-    const GroundPoint middle{
-        ((int64_t{r.x} << kUnitBits) * 2 + (int64_t{r.width} << kUnitBits)) / 2,
-        ((int64_t{r.z} << kUnitBits) * 2 + (int64_t{r.depth} << kUnitBits)) / 2};
-    const auto from_middle = [&](const MeshCorner& c) {
-      return static_cast<float>(
-          std::hypot(c.x - (r.x + r.width * 0.5), c.z - (r.z + r.depth * 0.5)));
-    };
-    // How far each hub is from the middle, over the corners that it sees.
-    for (uint32_t i = begin; i < end; ++i) {
-      const uint32_t corner = labels_.candidates[i].corner;
-      const MeshCorner& c = mesh_.corners[corner];
-      if (ray_to_corner(mesh_, {middle, rect}, corner) != RayEnd::kArrived) continue;
-      const float here = from_middle(c);
-      for (const HubLabels::Label& label : labels_.of(corner)) {
-        const float length = here + label.length;
-        if (set_[label.hub] == now_ && best_[label.hub] <= length) continue;
-        set_[label.hub] = now_;
-        best_[label.hub] = length;
-      }
-    }
-    // A hub may be nearer by another one than by all corners that have it in their lists: then no
-    // way from here needs it.
-    const auto true_length = [&](uint32_t hub) {
-      if (known_[hub].rect == now_) return known_[hub].length;
-      float length = set_[hub] == now_ ? best_[hub] : std::numeric_limits<float>::max();
-      for (const HubLabels::Label& label : labels_.of(labels_.hubs[hub])) {
-        if (set_[label.hub] == now_) length = std::min(length, best_[label.hub] + label.length);
-      }
-      known_[hub] = {now_, length};
-      return length;
-    };
+    const MeshRect r = look(rect, n);
+    const uint32_t begin = labels_.first_candidate[r.first_block + n];
+    const uint32_t end = labels_.first_candidate[r.first_block + n + 1];
     // From any other point p the way by the middle m is at most |p m| longer than from m, and a way
     // by corner c at most |p m| shorter.
     const auto half = static_cast<float>(std::hypot(r.width * 0.5, r.depth * 0.5));
@@ -75,7 +43,7 @@ class Lister {
     for (uint32_t i = begin; i < end; ++i) {
       const uint32_t corner = labels_.candidates[i].corner;
       const float near =
-          std::max(from_middle(mesh_.corners[corner]) - half, nearest(r, mesh_.corners[corner]));
+          std::max(from_middle(r, mesh_.corners[corner]) - half, nearest(r, mesh_.corners[corner]));
       for (const HubLabels::Label& label : labels_.of(corner)) {
         // What is as long within a float's error stays.
         constexpr float kSlack = 1e-2f;  // cells
@@ -89,7 +57,62 @@ class Lister {
     return entries;
   }
 
+  // Of the middle alone.
+  std::vector<Entry> list_middle(uint32_t rect, uint32_t n) {
+    look(rect, n);
+    std::vector<Entry> entries;
+    for (const uint32_t hub : hubs_) {
+      constexpr float kSlack =
+          1e-3f;  // cells: the hub itself is one of those that it is reached by
+      if (best_[hub].length > true_length(hub) + kSlack) continue;
+      entries.push_back({hub, best_[hub].candidate, best_[hub].length});
+    }
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry& a, const Entry& b) { return a.hub < b.hub; });
+    return entries;
+  }
+
  private:
+  // Finds how far each hub is from the middle of the block, over the corners that it sees.
+  MeshRect look(uint32_t rect, uint32_t n) {
+    ++now_;
+    hubs_.clear();
+    const MeshRect r = mesh_.block(rect, n);
+    const uint32_t block = r.first_block + n;
+    const uint32_t begin = labels_.first_candidate[block], end = labels_.first_candidate[block + 1];
+    const Stop middle{middle_of(r), rect};
+    for (uint32_t i = begin; i < end; ++i) {
+      const uint32_t corner = labels_.candidates[i].corner;
+      if (ray_to_corner(mesh_, middle, corner) != RayEnd::kArrived) continue;
+      const float here = from_middle(r, mesh_.corners[corner]);
+      for (const HubLabels::Label& label : labels_.of(corner)) {
+        const float length = here + label.length;
+        if (set_[label.hub] == now_ && best_[label.hub].length <= length) continue;
+        if (set_[label.hub] != now_) hubs_.push_back(label.hub);
+        set_[label.hub] = now_;
+        best_[label.hub] = {length, static_cast<uint16_t>(i - begin)};
+      }
+    }
+    return r;
+  }
+
+  // A hub may be nearer by another one than by all corners that have it in their lists: then no
+  // way from here needs it.
+  float true_length(uint32_t hub) {
+    if (known_[hub].block == now_) return known_[hub].length;
+    float length = set_[hub] == now_ ? best_[hub].length : std::numeric_limits<float>::max();
+    for (const HubLabels::Label& label : labels_.of(labels_.hubs[hub])) {
+      if (set_[label.hub] == now_)
+        length = std::min(length, best_[label.hub].length + label.length);
+    }
+    known_[hub] = {now_, length};
+    return length;
+  }
+
+  static float from_middle(const MeshRect& r, const MeshCorner& c) {
+    return static_cast<float>(std::hypot(c.x - (r.x + r.width * 0.5), c.z - (r.z + r.depth * 0.5)));
+  }
+
   // Distance of a corner from the rectangle.
   [[nodiscard]] static float nearest(const MeshRect& r, const MeshCorner& c) {
     const double dx = std::max({r.x - c.x, c.x - (r.x + r.width), 0});
@@ -99,31 +122,55 @@ class Lister {
 
   const PathMesh& mesh_;
   const HubLabels& labels_;
-  std::vector<float> best_;    // per hub
-  std::vector<uint32_t> set_;  // per hub: for which rectangle
+  struct Best {
+    float length = 0;
+    uint16_t candidate = 0;
+  };
+  std::vector<Best> best_;      // per hub
+  std::vector<uint32_t> set_;   // per hub: for which block
+  std::vector<uint32_t> hubs_;  // that are set
   struct Known {
-    uint32_t rect = 0;
+    uint32_t block = 0;
     float length = 0;
   };
   std::vector<Known> known_;  // per hub
   uint32_t now_ = 0;
 };
 
-}  // namespace
+struct Block {
+  uint32_t rect, n;  // which of its blocks
+};
 
-BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
-                               uint64_t most) {
-  BlockLabels out;
-  std::vector<std::pair<uint32_t, uint32_t>> blocks;  // rectangle, which of its blocks
+std::vector<Block> all_blocks(const PathMesh& mesh) {
+  std::vector<Block> blocks;
   for (uint32_t r = 0; r + 1 < mesh.rects.size(); ++r) {
     const uint32_t count = mesh.rects[r + 1].first_block - mesh.rects[r].first_block;
     for (uint32_t n = 0; n < count; ++n) blocks.push_back({r, n});
   }
-  for (size_t b = 0; b < blocks.size(); ++b) {
-    // Longer lists than a candidate's number can tell: none.
+  return blocks;
+}
+
+// More candidates of a block than an entry's number can tell.
+bool are_too_many(const HubLabels& labels) {
+  for (size_t b = 0; b + 1 < labels.first_candidate.size(); ++b) {
     constexpr uint32_t kMost = std::numeric_limits<uint16_t>::max();
-    if (labels.first_candidate[b + 1] - labels.first_candidate[b] > kMost) return {};
+    if (labels.first_candidate[b + 1] - labels.first_candidate[b] > kMost) return true;
   }
+  return false;
+}
+
+}  // namespace
+
+GroundPoint middle_of(const MeshRect& block) {
+  return {((int64_t{block.x} << kUnitBits) * 2 + (int64_t{block.width} << kUnitBits)) / 2,
+          ((int64_t{block.z} << kUnitBits) * 2 + (int64_t{block.depth} << kUnitBits)) / 2};
+}
+
+BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
+                               uint64_t most) {
+  BlockLabels out;
+  const std::vector<Block> blocks = all_blocks(mesh);
+  if (are_too_many(labels)) return {};
   std::vector<std::vector<Entry>> entries(blocks.size());
   std::atomic<uint64_t> total{0};
   constexpr size_t kGrain = 64;
@@ -131,7 +178,7 @@ BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, in
     if (total > most) return;
     Lister lister(mesh, labels);
     for (size_t b = begin; b < end && total <= most; ++b) {
-      entries[b] = lister.list(blocks[b].first, blocks[b].second);
+      entries[b] = lister.list(blocks[b].rect, blocks[b].n);
       total += entries[b].size();
     }
   });
@@ -147,6 +194,29 @@ BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, in
       out.candidate.push_back(entry.candidate);
     }
     out.first.push_back(static_cast<uint32_t>(out.hub.size()));
+  }
+  return out;
+}
+
+MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers) {
+  MiddleLabels out;
+  if (are_too_many(labels)) return out;
+  const std::vector<Block> blocks = all_blocks(mesh);
+  std::vector<std::vector<Entry>> entries(blocks.size());
+  constexpr size_t kGrain = 64;
+  parallel_ranges(blocks.size(), kGrain, workers, [&](size_t begin, size_t end) {
+    Lister lister(mesh, labels);
+    for (size_t b = begin; b < end; ++b)
+      entries[b] = lister.list_middle(blocks[b].rect, blocks[b].n);
+  });
+  out.first.push_back(0);
+  for (auto& of_block : entries) {
+    for (const Entry& entry : of_block) {
+      out.labels.push_back({entry.hub, entry.length});
+      out.turn.push_back(entry.candidate);
+    }
+    out.first.push_back(static_cast<uint32_t>(out.labels.size()));
+    of_block = {};
   }
   return out;
 }

@@ -24,10 +24,32 @@ struct BlockLabels {
   [[nodiscard]] uint64_t bytes() const { return first.size() * 4 + hub.size() * (4 + 4 + 2); }
 };
 
+/// For the middle of each block, labels as if it were a corner: the shortest way to each of its
+/// hubs and the corner at which that bends first.
+struct MiddleLabels {
+  struct Label {
+    uint32_t hub = 0;
+    float length = 0;  // [cells]
+  };
+  std::vector<uint32_t> first;  // per block, one more at the end; empty: there are none
+  std::vector<Label> labels;    // by rising hub
+  std::vector<uint16_t> turn;   // per label: the corner's place in HubLabels' list of the block
+
+  [[nodiscard]] uint64_t bytes() const {
+    return first.size() * sizeof(uint32_t) + labels.size() * (sizeof(Label) + sizeof(uint16_t));
+  }
+};
+
+/// The middle of a block.
+GroundPoint middle_of(const MeshRect& block);
+
 /// An entry is left out if from nowhere in the block its corner can be on a shortest way to the
 /// hub, judged by the hub's distance from the middle. None at all if they would be more than
 /// `most`.
 BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
                                uint64_t most);
+
+/// A label is left out if the way over another hub is as short.
+MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers);
 
 }  // namespace throng

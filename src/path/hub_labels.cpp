@@ -16,11 +16,6 @@ namespace throng {
 namespace {
 
 constexpr double kFar = 1e300;
-constexpr float kFarthest = 3e38f;
-
-uint32_t block_of(const PathMesh& mesh, const Stop& end) {
-  return mesh.block_at(end.rect, end.at.cell_x(), end.at.cell_z());
-}
 
 struct Edge {
   uint32_t to = 0;
@@ -202,198 +197,25 @@ Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& c
   for (auto& of_corner : labels) {
     for (const Made& label : of_corner) {
       out.labels.push_back({label.hub, static_cast<float>(label.length)});
-      out.next.push_back(label.next);
+      out.next.push_back({label.next, 0});
     }
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_corner = {};
   }
-  constexpr uint64_t kMostEntries = uint64_t{1} << 25;  // 320 MiB
-  out.by_block = build_block_labels(mesh, out, workers, kMostEntries);
-  return out;
-}
-
-// The corners that a way may bend at first from an end; false if the cells would have to tell
-// which.
-bool LabelSearch::gather(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
-                         std::vector<SeenCorner>& seen) {
-  seen.clear();
-  const CellPoint from = in_cells(end.at);
-  const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
-  for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
-    const uint32_t c = labels.candidates[i].corner;
-    const MeshCorner& corner = mesh.corners[c];
-    const double dx = corner.x - from.x, dz = corner.z - from.z;
-    if (!is_taut(corner, dx, dz)) continue;
-    if (labels.candidates[i].from_all != 0) {
-      seen.push_back({c, std::sqrt(dx * dx + dz * dz)});
-      continue;
-    }
-    const RayEnd ray = ray_to_corner(mesh, end, c);
-    if (ray == RayEnd::kTouches) return false;
-    if (ray == RayEnd::kArrived) seen.push_back({c, std::sqrt(dx * dx + dz * dz)});
-  }
-  return true;
-}
-
-// The shortest way over the gathered corners; false if there is none.
-bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best) {
-  if (reach_.size() != mesh.corner_count()) reach_.assign(mesh.corner_count(), {});
-  if (++search_ == 0) {
-    reach_.assign(mesh.corner_count(), {});
-    search_ = 1;
-  }
-  for (const SeenCorner& s : start_) {
-    for (const HubLabels::Label& label : labels.of(s.corner)) {
-      Reach& reach = reach_[label.hub];
-      const float here = static_cast<float>(s.distance) + label.length;
-      if (reach.search != search_ || here < reach.length) reach = {search_, s.corner, here};
-    }
-  }
-  best.length = kFarthest;
-  for (const SeenCorner& s : goal_) {
-    for (const HubLabels::Label& label : labels.of(s.corner)) {
-      const Reach& reach = reach_[label.hub];
-      const float here = reach.length + label.length + static_cast<float>(s.distance);
-      if (reach.search != search_ || here >= best.length) continue;
-      best = {here, label.hub, reach.corner, s.corner};
-    }
-  }
-  return best.length < kFarthest;
-}
-
-// The corners from each end to the hub.
-void LabelSearch::trace(const HubLabels& labels, const Best& best,
-                        std::vector<uint32_t>& corners) const {
-  const auto walk = [&](uint32_t corner) {
-    for (;;) {
-      corners.push_back(corner);
-      const auto list = labels.of(corner);
+  parallel_ranges(count, 64, workers, [&](size_t begin, size_t end) {
+    for (uint32_t i = out.first[begin]; i < out.first[end]; ++i) {
+      const auto list = out.of(out.next[i].corner);
       const auto at = std::lower_bound(
-          list.begin(), list.end(), best.hub,
-          [](const HubLabels::Label& label, uint32_t wanted) { return label.hub < wanted; });
-      const uint32_t next = labels.next[static_cast<size_t>(&*at - labels.labels.data())];
-      if (next == corner) return;
-      corner = next;
+          list.begin(), list.end(), out.labels[i].hub,
+          [](const HubLabels::Label& label, uint32_t hub) { return label.hub < hub; });
+      out.next[i].label = static_cast<uint32_t>(&*at - out.labels.data());
     }
-  };
-  walk(best.first);
-  const size_t middle = corners.size() - 1;
-  walk(best.last);
-  corners.pop_back();  // the hub, which is there already
-  std::reverse(corners.begin() + static_cast<ptrdiff_t>(middle) + 1, corners.end());
-}
-
-namespace {
-
-void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
-               std::vector<float>& out) {
-  const CellPoint from = in_cells(end.at);
-  out.clear();
-  const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
-  for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
-    const MeshCorner& corner = mesh.corners[labels.candidates[i].corner];
-    const double dx = corner.x - from.x, dz = corner.z - from.z;
-    out.push_back(static_cast<float>(std::sqrt(dx * dx + dz * dz)));
-  }
-}
-
-// The next run of entries of one hub, and its shortest by the distances.
-struct HubRun {
-  float length = kFarthest;
-  uint32_t candidate = 0;
-
-  HubRun(const BlockLabels& labels, uint32_t& at, uint32_t end, const std::vector<float>& to) {
-    const uint32_t hub = labels.hub[at];
-    for (; at < end && labels.hub[at] == hub; ++at) {
-      const float here = to[labels.candidate[at]] + labels.length[at];
-      if (here >= length) continue;
-      length = here;
-      candidate = labels.candidate[at];
-    }
-  }
-};
-
-}  // namespace
-
-// Joins the lists of the ends' blocks. Where a ray does not reach the best way's first or last
-// corner, the best without it.
-LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels,
-                                      const Stop& from, const Stop& to, Best& best) {
-  const BlockLabels& by_block = labels.by_block;
-  const uint32_t from_block = block_of(mesh, from), to_block = block_of(mesh, to);
-  distances(mesh, labels, from, from_);
-  distances(mesh, labels, to, to_);
-  const auto is_seen = [&](const Stop& end, uint32_t candidate, float& length, bool& unsure) {
-    const HubLabels::Candidate& c =
-        labels.candidates[labels.first_candidate[block_of(mesh, end)] + candidate];
-    if (c.from_all != 0) return true;
-    const RayEnd ray = ray_to_corner(mesh, end, c.corner);
-    unsure = unsure || ray == RayEnd::kTouches;
-    if (ray == RayEnd::kArrived) return true;
-    length = kFarthest;
-    return false;
-  };
-  for (;;) {
-    best.length = kFarthest;
-    uint32_t first = 0, last = 0;  // candidates
-    uint32_t i = by_block.first[from_block], j = by_block.first[to_block];
-    const uint32_t i_end = by_block.first[from_block + 1], j_end = by_block.first[to_block + 1];
-    while (i < i_end && j < j_end) {
-      if (by_block.hub[i] < by_block.hub[j]) {
-        ++i;
-      } else if (by_block.hub[j] < by_block.hub[i]) {
-        ++j;
-      } else {
-        const uint32_t hub = by_block.hub[i];
-        const HubRun a(by_block, i, i_end, from_), b(by_block, j, j_end, to_);
-        if (a.length + b.length >= best.length) continue;
-        best.length = a.length + b.length;
-        best.hub = hub;
-        first = a.candidate;
-        last = b.candidate;
-      }
-    }
-    if (!(best.length < kFarthest)) return Merge::kNone;
-    bool unsure = false;
-    const bool seen = is_seen(from, first, from_[first], unsure);
-    const bool both = is_seen(to, last, to_[last], unsure) && seen;
-    if (unsure) return Merge::kUnsure;
-    if (!both) continue;
-    best.first = labels.candidates[labels.first_candidate[from_block] + first].corner;
-    best.last = labels.candidates[labels.first_candidate[to_block] + last].corner;
-    return Merge::kFound;
-  }
-}
-
-bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
-                       const Stop& to, std::vector<uint32_t>& corners, double& length) {
-  corners.clear();
-  const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
-  length = distance(start, goal);
-  if (mesh_ray(mesh, from.rect, from.at, to.at) == to.rect) return true;
-  Best best;
-  Merge merged = Merge::kUnsure;
-  if (!labels.by_block.first.empty()) merged = merge(mesh, labels, from, to, best);
-  if (merged != Merge::kFound) {
-    if (!(gather(mesh, labels, from, start_) && gather(mesh, labels, to, goal_))) {
-      sight_.look(mesh, from.rect, start, to.rect, goal);
-      if (sight_.sees_goal()) return true;
-      start_ = sight_.corners();
-      sight_.look(mesh, to.rect, goal, kNoRect, {});
-      goal_ = sight_.corners();
-    }
-    if (!join(mesh, labels, best)) return false;
-  }
-  trace(labels, best, corners);
-  length = 0;
-  CellPoint at = start;
-  for (const uint32_t c : corners) {
-    const CellPoint next{double(mesh.corners[c].x), double(mesh.corners[c].z)};
-    length += distance(at, next);
-    at = next;
-  }
-  length += distance(at, goal);
-  return true;
+  });
+  constexpr uint64_t kMostEntries = uint64_t{1} << 25;  // 320 MiB
+  if (mesh.block_side == kSmallBlock)
+    out.by_block = build_block_labels(mesh, out, workers, kMostEntries);
+  if (out.by_block.first.empty()) out.by_middle = build_middle_labels(mesh, out, workers);
+  return out;
 }
 
 }  // namespace throng

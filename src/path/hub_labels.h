@@ -23,7 +23,11 @@ struct HubLabels {
   };
   std::vector<uint32_t> first;  // per corner, one more at the end
   std::vector<Label> labels;    // of a corner, by rising hub
-  std::vector<uint32_t> next;  // per label: the corner after this one on the way; at the hub itself
+  // The corner after this one on the way, and its label of the same hub; at the hub itself.
+  struct Next {
+    uint32_t corner = 0, label = 0;
+  };
+  std::vector<Next> next;  // per label
   // Per block the corners that may be seen from some point of it: a way from there that bends bends
   // first at one of them.
   struct Candidate {
@@ -32,7 +36,8 @@ struct HubLabels {
   };
   std::vector<uint32_t> first_candidate;  // one more at the end
   std::vector<Candidate> candidates;
-  BlockLabels by_block;
+  BlockLabels by_block;        // of small worlds
+  MiddleLabels by_middle;      // of others
   std::vector<uint32_t> hubs;  // by rank: the corner
   uint64_t edges = 0;          // pairs of corners that see each other and may bend at both
 
@@ -42,46 +47,12 @@ struct HubLabels {
   [[nodiscard]] uint64_t bytes() const {
     return (first.size() + hubs.size() + first_candidate.size() + candidates.size()) *
                sizeof(uint32_t) +
-           labels.size() * (sizeof(Label) + sizeof(uint32_t)) + by_block.bytes();
+           labels.size() * (sizeof(Label) + sizeof(Next)) + by_block.bytes() + by_middle.bytes();
   }
 };
 
 /// Looks from every corner, then labels them all. Fails with kCancelled. The same for any number of
 /// workers.
 Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& context);
-
-/// The way between two ends by their seen corners. Owns its memory: one per thread.
-class LabelSearch {
- public:
-  /// As PathSearch::find, without a budget: the length of what it finds is the same but for
-  /// rounding.
-  bool find(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
-            std::vector<uint32_t>& corners, double& length);
-
- private:
-  struct Reach {
-    uint32_t search = 0;  // that set it
-    uint32_t corner = 0;  // by which the hub is reached
-    float length = 0;
-  };
-  struct Best {
-    float length = 0;
-    uint32_t hub = 0, first = 0, last = 0;
-  };
-
-  static bool gather(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
-                     std::vector<SeenCorner>& seen);
-  bool join(const PathMesh& mesh, const HubLabels& labels, Best& best);
-  enum class Merge { kFound, kNone, kUnsure };
-  Merge merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
-              Best& best);
-  void trace(const HubLabels& labels, const Best& best, std::vector<uint32_t>& corners) const;
-
-  Sight sight_;
-  std::vector<SeenCorner> start_, goal_;
-  std::vector<Reach> reach_;      // per hub
-  std::vector<float> from_, to_;  // to each candidate of the ends' blocks
-  uint32_t search_ = 0;
-};
 
 }  // namespace throng

@@ -218,14 +218,25 @@ uint32_t PathMesh::rect_at(uint32_t level, int32_t x, int32_t z) const {
 
 MeshRect PathMesh::block(uint32_t rect, uint32_t n) const {
   MeshRect block = rects[rect];
-  const int32_t across = (block.width + kBlockSide - 1) / kBlockSide;
-  const int32_t x = static_cast<int32_t>(n) % across * kBlockSide;
-  const int32_t z = static_cast<int32_t>(n) / across * kBlockSide;
+  const int32_t across = (block.width + block_side - 1) / block_side;
+  const int32_t x = static_cast<int32_t>(n) % across * block_side;
+  const int32_t z = static_cast<int32_t>(n) / across * block_side;
   block.x += x;
   block.z += z;
-  block.width = std::min(kBlockSide, block.width - x);
-  block.depth = std::min(kBlockSide, block.depth - z);
+  block.width = std::min(block_side, block.width - x);
+  block.depth = std::min(block_side, block.depth - z);
   return block;
+}
+
+uint32_t cut_into_blocks(PathMesh& mesh, int32_t side) {
+  mesh.block_side = side;
+  uint32_t blocks = 0;
+  for (MeshRect& rect : mesh.rects) {
+    rect.first_block = blocks;
+    blocks +=
+        static_cast<uint32_t>((rect.width + side - 1) / side * ((rect.depth + side - 1) / side));
+  }
+  return blocks;
 }
 
 uint64_t PathMesh::bytes() const {
@@ -296,13 +307,8 @@ Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_
   }
   gather_corner_rects(mesh);
   find_components(mesh);
-  uint32_t blocks = 0;
-  for (MeshRect& rect : mesh.rects) {
-    constexpr int32_t kSide = PathMesh::kBlockSide;
-    rect.first_block = blocks;
-    blocks += static_cast<uint32_t>((rect.width + kSide - 1) / kSide *
-                                    ((rect.depth + kSide - 1) / kSide));
-  }
+  constexpr uint32_t kMostBlocks = 1 << 17;
+  if (cut_into_blocks(mesh, kSmallBlock) > kMostBlocks) cut_into_blocks(mesh, kLargeBlock);
   return mesh;
 }
 

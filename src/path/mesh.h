@@ -17,6 +17,10 @@ namespace throng {
 inline constexpr uint32_t kNoRect = UINT32_MAX;
 inline constexpr uint32_t kNoCorner = UINT32_MAX;
 
+/// Sides of blocks, of small worlds and of others. [cells]
+inline constexpr int32_t kSmallBlock = 8;
+inline constexpr int32_t kLargeBlock = 32;
+
 /// A point of the ground's plane. [cells]
 struct CellPoint {
   double x = 0, z = 0;
@@ -76,21 +80,24 @@ struct PathMesh {
   std::vector<uint32_t> corner_rects;  // rectangles around each corner
 
   [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const;  // cell of the grid
-  /// Rectangles are cut into blocks of up to 16 x 16 cells, small enough for lists of what may
-  /// matter to any of their points.
-  static constexpr int32_t kBlockSide = 8;
+  /// Rectangles are cut into blocks of up to so many cells along a side, small enough for lists of
+  /// what may matter to any of their points.
+  int32_t block_side = kSmallBlock;
   [[nodiscard]] uint32_t block_count() const { return rects.back().first_block; }
   [[nodiscard]] uint32_t block_at(uint32_t rect, int32_t x, int32_t z) const {  // cell of the grid
     const MeshRect& r = rects[rect];
-    const int32_t across = (r.width + kBlockSide - 1) / kBlockSide;
+    const int32_t across = (r.width + block_side - 1) / block_side;
     return r.first_block +
-           static_cast<uint32_t>((z - r.z) / kBlockSide * across + (x - r.x) / kBlockSide);
+           static_cast<uint32_t>((z - r.z) / block_side * across + (x - r.x) / block_side);
   }
   /// The cells of the n-th block of a rectangle.
   [[nodiscard]] MeshRect block(uint32_t rect, uint32_t n) const;
   [[nodiscard]] size_t corner_count() const { return corners.size() - 1; }
   [[nodiscard]] uint64_t bytes() const;
 };
+
+/// Cuts the rectangles into blocks of a side; returns how many there are then.
+uint32_t cut_into_blocks(PathMesh& mesh, int32_t side);
 
 /// Of a world whose zones can all be used. Fails with kCancelled. The same for any number of
 /// workers.

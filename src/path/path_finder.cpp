@@ -6,6 +6,7 @@
 #include <string>
 
 #include "path/hub_labels.h"
+#include "path/label_search.h"
 #include "path/legs.h"
 #include "path/mesh.h"
 #include "path/search.h"

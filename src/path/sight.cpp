@@ -18,6 +18,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   goal_ = goal;
   goal_point_ = goal_point;
   sees_goal_ = false;
+  in_triangle_ = false;
   views_.clear();
   seen_.clear();
   blocks_.clear();
@@ -41,6 +42,34 @@ void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner) {
     start(mesh.corner_rects[r]);
   run();
   finish();
+}
+
+void Sight::look_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
+                      CellPoint right, CellPoint left) {
+  begin(mesh, from, kNoRect, {});
+  in_triangle_ = true;
+  right_ = right;
+  left_ = left;
+  if (corner != kNoCorner) {
+    const uint32_t end = mesh.corners[corner + 1].first_rect;
+    for (uint32_t r = mesh.corners[corner].first_rect; r < end; ++r) start(mesh.corner_rects[r]);
+  } else {
+    rects_around(mesh, rect, from, around_);
+    for (const uint32_t r : around_) start(r);
+  }
+  run();
+  finish();
+}
+
+// True if nothing seen between two points of a line can lie in the triangle: both lie beyond its
+// far side, or what is between them lies to its right, to its left or behind the eye.
+bool Sight::is_outside(CellPoint right, CellPoint left) const {
+  if (cross(right_, left_, right) < -kSame && cross(right_, left_, left) < -kSame) return true;
+  const auto is_right = [&](CellPoint p) { return cross(from_, right_, p) < -kSame; };
+  const auto is_left = [&](CellPoint p) { return cross(from_, left_, p) > kSame; };
+  if (is_right(left) && !is_left(left)) return true;
+  if (is_left(right) && !is_right(right)) return true;
+  return is_right(left) && is_left(left) && is_right(right) && is_left(right);
 }
 
 void Sight::start(uint32_t rect_index) {
@@ -67,7 +96,8 @@ void Sight::note(uint32_t corner) {
   if (corner == kNoCorner || corner == own_) return;
   const MeshCorner& at = mesh_->corners[corner];
   const double dx = at.x - from_.x, dz = at.z - from_.z;
-  if (!is_taut(at, dx, dz)) return;
+  const CellPoint point{double(at.x), double(at.z)};
+  if (!is_taut(at, dx, dz) || (in_triangle_ && is_outside(point, point))) return;
   if (own_ != kNoCorner && !is_taut(mesh_->corners[own_], dx, dz)) return;
   seen_.push_back({corner, std::sqrt(dx * dx + dz * dz)});
 }
@@ -140,6 +170,7 @@ void Sight::add(const MeshRect& rect, const MeshPortal& portal, double from, dou
   view.right = point_around(rect, whole_from ? portal.from : from);
   view.left = point_around(rect, whole_to ? portal.to : to);
   view.rect = portal.rect;
+  if (in_triangle_ && is_outside(view.right, view.left)) return;
   if (own_ != kNoCorner) {
     // No shortest way leaves a corner into the quarter across from its missing cell.
     const MeshCorner& own = mesh_->corners[own_];

@@ -38,6 +38,11 @@ class Sight {
   /// The corners that are seen from a corner, along lines that may bend at both.
   void look_from_corner(const PathMesh& mesh, uint32_t corner);
 
+  /// The corners that are seen from a point, or from `corner` if that is one, in the triangle of
+  /// it, `right` and `left`; of what lies beyond, some.
+  void look_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
+                 CellPoint right, CellPoint left);
+
   [[nodiscard]] const std::vector<SeenCorner>& corners() const { return seen_; }
   [[nodiscard]] bool sees_goal() const { return sees_goal_; }
   /// Blocks of which something may be seen from the corner, by number.
@@ -55,6 +60,7 @@ class Sight {
   void expand(const View& view);
   void add(const MeshRect& rect, const MeshPortal& portal, double from, double to);
   void note(uint32_t corner);
+  [[nodiscard]] bool is_outside(CellPoint right, CellPoint left) const;
   void finish();
   void find_blocks();
   void judge_blocks(std::span<const View> views);
@@ -65,6 +71,8 @@ class Sight {
   uint32_t goal_ = kNoRect;
   CellPoint goal_point_;
   bool sees_goal_ = false;
+  bool in_triangle_ = false;  // only what lies in that of from_, right_ and left_
+  CellPoint right_, left_;
   std::vector<uint32_t> around_;
   std::vector<View> views_;
   std::vector<SeenCorner> seen_;

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/label_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "path/border.h"
+#include "path/mesh_ray.h"
+
+namespace throng {
+namespace {
+
+constexpr float kFarthest = 3e38f;
+constexpr double kMostLonger = 1.02;  // of ways by middles
+// Sums of two or three floats of up to 2^20 cells; what is as short within their error stays.
+constexpr float kSlack = 0.25f;  // cells
+
+uint32_t block_of(const PathMesh& mesh, const Stop& end) {
+  return mesh.block_at(end.rect, end.at.cell_x(), end.at.cell_z());
+}
+
+float gap(const MeshCorner& corner, CellPoint p) {
+  const double dx = corner.x - p.x, dz = corner.z - p.z;
+  return static_cast<float>(std::sqrt(dx * dx + dz * dz));
+}
+
+}  // namespace
+
+// Joins the labels of the corners that the ends see. A way from one end to the other over a corner
+// is at least as long as the straight lines to it and from it, so no corner outside the ellipse of
+// a way that is known can be on a shorter one, and rays are sent only to the corners within.
+LabelSearch::Merge LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels,
+                                       const Stop& from, const Stop& to, float known, Best& best) {
+  const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
+  const auto gather = [&](const Stop& end, CellPoint here, CellPoint there,
+                          std::vector<Turn>& turns) {
+    turns.clear();
+    const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
+    for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
+      const HubLabels::Candidate candidate = labels.candidates[i];
+      const MeshCorner& corner = mesh.corners[candidate.corner];
+      if (!is_taut(corner, corner.x - here.x, corner.z - here.z)) continue;
+      const float distance = gap(corner, here);
+      turns.push_back(
+          {candidate.corner, distance, distance + gap(corner, there), candidate.from_all != 0});
+    }
+  };
+  bool unsure = false;
+  const auto see = [&](const Stop& end, Turn& turn) {
+    if (turn.is_seen) return true;
+    const RayEnd ray = ray_to_corner(mesh, end, turn.corner);
+    unsure = unsure || ray == RayEnd::kTouches;
+    turn.is_seen = ray == RayEnd::kArrived;
+    return turn.is_seen;
+  };
+  gather(from, start, goal, start_);
+  gather(to, goal, start, goal_);
+  const auto keep = [&](const Stop& end, std::vector<Turn>& turns) {
+    std::erase_if(turns,
+                  [&](Turn& turn) { return turn.bound > known + kSlack || !see(end, turn); });
+  };
+  keep(from, start_);
+  keep(to, goal_);
+  if (unsure) return Merge::kUnsure;
+  return join(mesh, labels, best) ? Merge::kFound : Merge::kNone;
+}
+
+// The shortest way over the gathered corners; false if there is none.
+bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best) {
+  if (reach_.size() != mesh.corner_count()) reach_.assign(mesh.corner_count(), {});
+  if (++search_ == 0) {
+    reach_.assign(mesh.corner_count(), {});
+    search_ = 1;
+  }
+  for (const Turn& s : start_) {
+    for (const HubLabels::Label& label : labels.of(s.corner)) {
+      Reach& reach = reach_[label.hub];
+      const float here = s.distance + label.length;
+      if (reach.search != search_ || here < reach.length) reach = {search_, s.corner, here};
+    }
+  }
+  best.length = kFarthest;
+  for (const Turn& s : goal_) {
+    for (const HubLabels::Label& label : labels.of(s.corner)) {
+      const Reach& reach = reach_[label.hub];
+      const float here = reach.length + label.length + s.distance;
+      if (reach.search != search_ || here >= best.length) continue;
+      best = {here, label.hub, reach.corner, s.corner};
+    }
+  }
+  return best.length < kFarthest;
+}
+
+// The way by the middles of the ends' blocks, pulled taut. It is as short as the shortest but where
+// that passes something on another side. False if there is none, or if it cannot be proved to be no
+// longer than `kMostLonger` times the shortest; `length` is then still that of a way.
+bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
+                             const Stop& to, std::vector<uint32_t>& corners, double& length) {
+  const MiddleLabels& middles = labels.by_middle;
+  const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
+  const uint32_t a = block_of(mesh, from), b = block_of(mesh, to);
+  const auto* const from_list = middles.labels.data();
+  uint32_t i = middles.first[a], j = middles.first[b];
+  const uint32_t i_end = middles.first[a + 1], j_end = middles.first[b + 1];
+  float best = kFarthest;
+  uint32_t first = 0, last = 0;  // labels
+  while (i < i_end && j < j_end) {
+    const uint32_t hub_i = from_list[i].hub, hub_j = from_list[j].hub;
+    if (hub_i == hub_j) {
+      const float here = from_list[i].length + from_list[j].length;
+      if (here < best) {
+        best = here;
+        first = i;
+        last = j;
+      }
+    }
+    i += hub_i <= hub_j;
+    j += hub_j <= hub_i;
+  }
+  if (!(best < kFarthest)) return false;
+  const auto middle = [&](const Stop& end, uint32_t block) {
+    const uint32_t n = block - mesh.rects[end.rect].first_block;
+    return WayPoint{in_cells(middle_of(mesh.block(end.rect, n))), end.rect};
+  };
+  const WayPoint from_middle = middle(from, a), to_middle = middle(to, b);
+  const auto turn = [&](uint32_t block, uint32_t label) {
+    return labels.candidates[labels.first_candidate[block] + middles.turn[label]].corner;
+  };
+  trace(labels, {best, from_list[first].hub, turn(a, first), turn(b, last)}, corners);
+  way_.assign({{start, from.rect}, from_middle});
+  for (const uint32_t c : corners) way_.push_back(way_point(mesh, c));
+  way_.insert(way_.end(), {to_middle, {goal, to.rect}});
+  if (!pull_.pull(mesh, way_, corners, length)) return false;
+  // No way is shorter than this.
+  const double least = best - distance(start, from_middle.at) - distance(goal, to_middle.at);
+  return length <= kMostLonger * std::max(least - kSlack, distance(start, goal));
+}
+
+// The corners from each end to the hub.
+void LabelSearch::trace(const HubLabels& labels, const Best& best,
+                        std::vector<uint32_t>& corners) const {
+  const auto walk = [&](uint32_t corner) {
+    const auto list = labels.of(corner);
+    const auto at = std::lower_bound(
+        list.begin(), list.end(), best.hub,
+        [](const HubLabels::Label& label, uint32_t wanted) { return label.hub < wanted; });
+    auto label = static_cast<uint32_t>(&*at - labels.labels.data());
+    for (;;) {
+      corners.push_back(corner);
+      const HubLabels::Next& next = labels.next[label];
+      if (next.corner == corner) return;
+      corner = next.corner;
+      label = next.label;
+    }
+  };
+  walk(best.first);
+  const size_t middle = corners.size() - 1;
+  walk(best.last);
+  corners.pop_back();  // the hub, which is there already
+  std::reverse(corners.begin() + static_cast<ptrdiff_t>(middle) + 1, corners.end());
+}
+
+namespace {
+
+void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
+               std::vector<float>& out) {
+  const CellPoint from = in_cells(end.at);
+  out.clear();
+  const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
+  for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
+    const MeshCorner& corner = mesh.corners[labels.candidates[i].corner];
+    const double dx = corner.x - from.x, dz = corner.z - from.z;
+    out.push_back(static_cast<float>(std::sqrt(dx * dx + dz * dz)));
+  }
+}
+
+// The next run of entries of one hub, and its shortest by the distances.
+struct HubRun {
+  float length = kFarthest;
+  uint32_t candidate = 0;
+
+  HubRun(const BlockLabels& labels, uint32_t& at, uint32_t end, const std::vector<float>& to) {
+    const uint32_t hub = labels.hub[at];
+    for (; at < end && labels.hub[at] == hub; ++at) {
+      const float here = to[labels.candidate[at]] + labels.length[at];
+      if (here >= length) continue;
+      length = here;
+      candidate = labels.candidate[at];
+    }
+  }
+};
+
+}  // namespace
+
+// Joins the lists of the ends' blocks. Where a ray does not reach the best way's first or last
+// corner, the best without it.
+LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels,
+                                      const Stop& from, const Stop& to, Best& best) {
+  const BlockLabels& by_block = labels.by_block;
+  const uint32_t from_block = block_of(mesh, from), to_block = block_of(mesh, to);
+  distances(mesh, labels, from, from_);
+  distances(mesh, labels, to, to_);
+  const auto is_seen = [&](const Stop& end, uint32_t candidate, float& length, bool& unsure) {
+    const HubLabels::Candidate& c =
+        labels.candidates[labels.first_candidate[block_of(mesh, end)] + candidate];
+    if (c.from_all != 0) return true;
+    const RayEnd ray = ray_to_corner(mesh, end, c.corner);
+    unsure = unsure || ray == RayEnd::kTouches;
+    if (ray == RayEnd::kArrived) return true;
+    length = kFarthest;
+    return false;
+  };
+  for (;;) {
+    best.length = kFarthest;
+    uint32_t first = 0, last = 0;  // candidates
+    uint32_t i = by_block.first[from_block], j = by_block.first[to_block];
+    const uint32_t i_end = by_block.first[from_block + 1], j_end = by_block.first[to_block + 1];
+    while (i < i_end && j < j_end) {
+      if (by_block.hub[i] < by_block.hub[j]) {
+        ++i;
+      } else if (by_block.hub[j] < by_block.hub[i]) {
+        ++j;
+      } else {
+        const uint32_t hub = by_block.hub[i];
+        const HubRun a(by_block, i, i_end, from_), b(by_block, j, j_end, to_);
+        if (a.length + b.length >= best.length) continue;
+        best.length = a.length + b.length;
+        best.hub = hub;
+        first = a.candidate;
+        last = b.candidate;
+      }
+    }
+    if (!(best.length < kFarthest)) return Merge::kNone;
+    bool unsure = false;
+    const bool seen = is_seen(from, first, from_[first], unsure);
+    const bool both = is_seen(to, last, to_[last], unsure) && seen;
+    if (unsure) return Merge::kUnsure;
+    if (!both) continue;
+    best.first = labels.candidates[labels.first_candidate[from_block] + first].corner;
+    best.last = labels.candidates[labels.first_candidate[to_block] + last].corner;
+    return Merge::kFound;
+  }
+}
+
+bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
+                       const Stop& to, std::vector<uint32_t>& corners, double& length) {
+  corners.clear();
+  const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
+  length = distance(start, goal);
+  if (mesh_ray(mesh, from.rect, from.at, to.at) == to.rect) return true;
+  double known = kFarthest;
+  if (!labels.by_middle.first.empty()) {
+    if (by_middles(mesh, labels, from, to, corners, known)) {
+      length = known;
+      return true;
+    }
+    corners.clear();
+  }
+  Best best;
+  const Merge merged = labels.by_block.first.empty()
+                           ? narrow(mesh, labels, from, to, static_cast<float>(known), best)
+                           : merge(mesh, labels, from, to, best);
+  if (merged != Merge::kFound) {
+    // The cells would have to tell what is seen: look out from both ends.
+    const auto take_seen = [&](std::vector<Turn>& turns) {
+      turns.clear();
+      for (const SeenCorner& s : sight_.corners())
+        turns.push_back({s.corner, static_cast<float>(s.distance), 0, true});
+    };
+    sight_.look(mesh, from.rect, start, to.rect, goal);
+    if (sight_.sees_goal()) return true;
+    take_seen(start_);
+    sight_.look(mesh, to.rect, goal, kNoRect, {});
+    take_seen(goal_);
+    if (!join(mesh, labels, best)) return false;
+  }
+  trace(labels, best, corners);
+  length = 0;
+  CellPoint at = start;
+  for (const uint32_t c : corners) {
+    const CellPoint next{double(mesh.corners[c].x), double(mesh.corners[c].z)};
+    length += distance(at, next);
+    at = next;
+  }
+  length += distance(at, goal);
+  return true;
+}
+
+}  // namespace throng

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "path/hub_labels.h"
+#include "path/mesh.h"
+#include "path/pull.h"
+#include "path/sight.h"
+
+/// Shortest ways looked up in hub labels.
+namespace throng {
+
+/// The way between two ends by their seen corners. Owns its memory: one per thread.
+class LabelSearch {
+ public:
+  /// As PathSearch::find, without a budget: the length of what it finds is the same but for
+  /// rounding.
+  bool find(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+            std::vector<uint32_t>& corners, double& length);
+
+ private:
+  struct Reach {
+    uint32_t search = 0;  // that set it
+    uint32_t corner = 0;  // by which the hub is reached
+    float length = 0;
+  };
+  struct Best {
+    float length = 0;
+    uint32_t hub = 0, first = 0, last = 0;
+  };
+  // A corner that a way from an end may bend at first.
+  struct Turn {
+    uint32_t corner = 0;
+    float distance = 0;  // from the end [cells]
+    float bound = 0;     // and in a straight line to the other end
+    bool is_seen = false;
+  };
+  enum class Merge { kFound, kNone, kUnsure };
+
+  Merge narrow(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+               float known, Best& best);
+  bool join(const PathMesh& mesh, const HubLabels& labels, Best& best);
+  Merge merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+              Best& best);
+  bool by_middles(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+                  std::vector<uint32_t>& corners, double& length);
+  void trace(const HubLabels& labels, const Best& best, std::vector<uint32_t>& corners) const;
+
+  Sight sight_;
+  Puller pull_;
+  std::vector<WayPoint> way_;
+  std::vector<Turn> start_, goal_;
+  std::vector<Reach> reach_;      // per hub
+  std::vector<float> from_, to_;  // to each candidate of the ends' blocks
+  uint32_t search_ = 0;
+};
+
+}  // namespace throng

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/pull.h"
+
+#include "path/border.h"
+
+namespace throng {
+namespace {
+
+// Towards the missing cell, seen from a corner on a line along (dx, dz): positive if to the left.
+double missing_side(const MeshCorner& corner, double dx, double dz) {
+  return dx * -corner.away_z - dz * -corner.away_x;
+}
+
+// True if the way over `at` goes around what is missing there, or straight on.
+bool holds(const PathMesh& mesh, CellPoint before, const WayPoint& at, CellPoint after) {
+  if (at.corner == kNoCorner) return false;
+  const double turn = cross(before, at.at, after);
+  const double in_x = at.at.x - before.x, in_z = at.at.z - before.z;
+  const double out_x = after.x - at.at.x, out_z = after.z - at.at.z;
+  if (std::fabs(turn) <= kSame) return in_x * out_x + in_z * out_z >= 0;
+  const MeshCorner& corner = mesh.corners[at.corner];
+  if (!is_taut(corner, in_x, in_z) || !is_taut(corner, out_x, out_z)) return false;
+  return missing_side(corner, in_x, in_z) * turn > 0;
+}
+
+}  // namespace
+
+// What stands in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
+// chain of corners that a string over these two sides is caught by when it is pulled.
+void Puller::wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& over,
+                  const WayPoint& to) {
+  chain_.clear();
+  const double turn = cross(from.at, over.at, to.at);
+  if (std::fabs(turn) <= kSame) return;
+  const double side = turn > 0 ? 1 : -1;  // of `to`, seen along the first side
+  WayPoint at = from;
+  constexpr size_t kMost = 1000;  // corners: rounding must not wrap for ever
+  while (chain_.size() < kMost) {
+    const CellPoint right = side > 0 ? over.at : to.at, left = side > 0 ? to.at : over.at;
+    sight_.look_into(mesh, at.corner, at.rect, at.at, right, left);
+    // The first one that a line from `at` meets as it swings from `over` to `to`.
+    const SeenCorner* first = nullptr;
+    for (const SeenCorner& seen : sight_.corners()) {
+      const MeshCorner& corner = mesh.corners[seen.corner];
+      const CellPoint p{double(corner.x), double(corner.z)};
+      if (seen.corner == over.corner || seen.corner == to.corner || seen.distance <= kSame)
+        continue;
+      const double dx = p.x - at.at.x, dz = p.z - at.at.z;
+      if (missing_side(corner, dx, dz) * side <= 0) continue;
+      // Of what the second side touches, only what is within.
+      const double beyond = cross(over.at, to.at, p) * side;
+      if (beyond <= kSame &&
+          missing_side(corner, to.at.x - over.at.x, to.at.z - over.at.z) * side <= 0)
+        continue;
+      if (first != nullptr) {
+        const MeshCorner& best = mesh.corners[first->corner];
+        const double swing = cross(at.at, {double(best.x), double(best.z)}, p) * side;
+        if (swing > kSame || (swing > -kSame && seen.distance >= first->distance)) continue;
+      }
+      first = &seen;
+    }
+    if (first == nullptr) return;
+    at = way_point(mesh, first->corner);
+    chain_.push_back(at);
+    if (cross(at.at, over.at, to.at) * side <= kSame) return;
+  }
+}
+
+bool Puller::pull(const PathMesh& mesh, const std::vector<WayPoint>& way,
+                  std::vector<uint32_t>& corners, double& length) {
+  corners.clear();
+  taut_.assign(1, way.front());
+  ahead_.assign(way.rbegin(), way.rend() - 1);
+  // Each turn makes the way shorter; the count stops what rounding might keep going.
+  size_t turns = 1000 + 100 * way.size();
+  while (!ahead_.empty()) {
+    if (turns-- == 0) return false;
+    const WayPoint next = ahead_.back();
+    ahead_.pop_back();
+    if (taut_.size() == 1 || holds(mesh, taut_[taut_.size() - 2].at, taut_.back(), next.at)) {
+      taut_.push_back(next);
+      continue;
+    }
+    const WayPoint over = taut_.back();
+    taut_.pop_back();
+    wrap(mesh, taut_.back(), over, next);
+    ahead_.push_back(next);
+    ahead_.insert(ahead_.end(), chain_.rbegin(), chain_.rend());
+  }
+  length = 0;
+  for (size_t i = 1; i < taut_.size(); ++i) {
+    length += distance(taut_[i - 1].at, taut_[i].at);
+    if (i + 1 < taut_.size()) corners.push_back(taut_[i].corner);
+  }
+  return true;
+}
+
+}  // namespace throng

@@ -8,6 +8,7 @@
 
 #include "throng/base.h"
 #include "throng/context.h"
+#include "throng/ground_query.h"
 #include "throng/result.h"
 #include "throng/world.h"
 
@@ -37,7 +38,10 @@ struct Path {
   PathEnd end = PathEnd::kNoPlace;
   std::vector<Place> points;  ///< From the start to the goal; each leg is a legal move.
   double length = 0;          ///< Along the ground's plane. [m]
-  uint64_t nodes = 0;         ///< Intervals that the search looked at; 0 with labels.
+  double cost = 0;            ///< Of LiveGround's ways: metres times what they cost.
+  Obstacle obstacle =
+      Obstacle::kNone;  ///< Of LiveGround's: what is in the way to an unreachable goal.
+  uint64_t nodes = 0;   ///< Intervals that the search looked at; 0 with labels.
 };
 
 struct PathSummary {

@@ -66,9 +66,10 @@ struct WalkStop {
 
 /// Walks from `from` to `to` in a straight line, cell by cell, as far as it goes; through a corner
 /// only if both cells beside it let the body pass. `level` is then the one of the last cell.
-template <class Ground>
+/// enter(level, x, z, from_x, from_z) is told of every cell after the first, and whence.
+template <class Ground, class Enter>
 WalkStop walk_far(const Ground& ground, typename Ground::Level& level, GroundPoint from,
-                  GroundPoint to, int32_t step_mm) {
+                  GroundPoint to, int32_t step_mm, Enter enter) {
   int32_t x = from.cell_x(), z = from.cell_z();
   const int32_t end_x = to.cell_x(), end_z = to.cell_z();
   const int64_t dx = std::llabs(to.x - from.x), dz = std::llabs(to.z - from.z);
@@ -93,10 +94,17 @@ WalkStop walk_far(const Ground& ground, typename Ground::Level& level, GroundPoi
     }
     if (!next) return {false, x, z, nx - x, nz - z};
     level = *next;
+    enter(level, nx, nz, x, z);
     x = nx;
     z = nz;
   }
   return {true, x, z, 0, 0};
+}
+template <class Ground>
+WalkStop walk_far(const Ground& ground, typename Ground::Level& level, GroundPoint from,
+                  GroundPoint to, int32_t step_mm) {
+  return walk_far(ground, level, from, to, step_mm,
+                  [](const typename Ground::Level&, int32_t, int32_t, int32_t, int32_t) {});
 }
 
 /// As walk_far, all the way or not at all: false leaves `level` as it was.

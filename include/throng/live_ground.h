@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/path.h"
+#include "throng/result.h"
+#include "throng/world.h"
+
+/// A baked world as one class sees it now: with obstacles put up, doors shut, areas marked and
+/// priced since the bake. Nothing is made before it is needed, and a change undoes only the tiles
+/// that it touches: for large worlds that change. For many ways over a world that does not, take a
+/// PathFinder.
+namespace throng {
+
+struct LiveConfig {
+  int32_t avatar_class = 0;
+  /// Cost of a metre on a slope: 1 + slope_cost * rise, by classes of rise that end at 5, 10, 20,
+  /// 35, 60 and 120 %, each by its end; the gentlest is level ground, the last has all steeper
+  /// ones, too. [>= 0]
+  double slope_cost = 0;
+};
+
+/// A vertical prism over a convex polygon: a crate, a barrier, a door leaf, a marked zone.
+struct Prism {
+  std::vector<std::array<double, 2>> corners;  ///< (x, z), in either order. [m, 3 to 64]
+  double low = 0, high = 0;                    ///< Y of bottom and top. [m, low < high]
+
+  [[nodiscard]] static Prism box(Vec3d low, Vec3d high) {
+    return {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}, low.y, high.y};
+  }
+};
+
+/// One change; 0 is none.
+using ChangeId = uint32_t;
+
+/// Obstacles only take away: who wants to stand on a crate bakes it. Changes and questions from one
+/// thread at a time; copies are independent. Answers are the same on every machine.
+class THRONG_API LiveGround {
+ public:
+  /// Reads nothing yet. Fails with kBadConfig.
+  [[nodiscard]] static Result<LiveGround> make(const World& world, const LiveConfig& config);
+  LiveGround(const LiveGround&);
+  LiveGround& operator=(const LiveGround&);
+  LiveGround(LiveGround&&) noexcept;
+  LiveGround& operator=(LiveGround&&) noexcept;
+  ~LiveGround();
+
+  /// Nobody of the class stands where his body could touch the prism, its bottom above his step.
+  /// Fails with kBadInput. Time: the tiles that it touches.
+  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
+  /// The same for triangles, and only for those: a closed shell is hollow.
+  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
+                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Floors inside the prism are of this kind from now on; of several, the last one added counts.
+  [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
+  /// Takes a change back, for good or, as a door, until it is set again. False if there is none.
+  bool remove(ChangeId change);
+  bool set_active(ChangeId change, bool active);
+  /// Cost of a metre on ground of a kind; infinity closes it. 1 for all kinds at first. Fails with
+  /// kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
+
+  /// May the class stand there now?
+  [[nodiscard]] bool is_free(const Place& place);
+  /// A way of little cost, every leg a legal move: over points of the borders of rectangles, drawn
+  /// straight afterwards, in the mean within 1 % of the best. Where none leads there
+  /// (kUnreachable), `path` leads to the place of least distance to the goal that was met, and says
+  /// what is in the way. Gives up after `max_nodes` points. No allocation once it is warm.
+  void find(const Place& from, const Place& to, Path& path, uint64_t max_nodes = UINT64_MAX);
+  /// The same in slices: begin, then advance by some points a frame until it says true.
+  void begin(const Place& from, const Place& to);
+  bool advance(uint64_t max_nodes, Path& path);
+
+ private:
+  friend class FlowField;
+  struct State;
+  explicit LiveGround(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace throng

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/live_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "path/live_mesh.h"
+#include "path/live_search.h"
+#include "path/live_state.h"
+#include "path/obstacle.h"
+#include "path/prism.h"
+#include "world/place.h"
+
+namespace throng {
+
+bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
+  const WorldData& world = mesh.world();
+  if (!place || place.level1 > world.level_count ||
+      !std::isfinite(place.position.x + place.position.z))
+    return false;
+  stop.at = to_ground(world, place.position.x, place.position.z);
+  if (!in_grid(world, stop.at)) return false;
+  stop.level = place.level1 - 1;
+  const LiveLevel& level = *mesh.level(stop.level);
+  const int32_t x = stop.at.cell_x(), z = stop.at.cell_z();
+  if (level.ground.zone == nullptr || x >> 6 != level.tile_x || z >> 6 != level.tile_z ||
+      !level.is_legal(x & 63, z & 63))
+    return false;
+  stop.rect = level.rect_at(x & 63, z & 63);
+  return std::isfinite(mesh.factor(level.rects[stop.rect]));
+}
+
+void LiveGround::State::give(Path& path) {
+  const WorldData& world = mesh.world();
+  double length = 0, cost = 0;
+  for (size_t i = 0; i < way.size(); ++i) {
+    path.points.push_back(place_at(world, mesh.level(way[i].level)->ground, way[i].at));
+    if (i == 0) continue;
+    length += distance_of(way[i - 1].at, way[i].at);
+    cost += leg_cost(mesh, way[i - 1], way[i]);
+  }
+  path.length = length * world.summary.cell;
+  path.cost = cost * world.summary.cell;
+}
+
+Obstacle LiveGround::State::in_the_way() {
+  const LiveLevel* level = mesh.level(way.back().level);
+  const WalkStop stop = walk_far(mesh.ground(), level, way.back().at, to.at, mesh.step());
+  if (stop.arrived) return Obstacle::kGap;  // under or over the goal
+  // What was put up since the bake is not in its floors.
+  const WorldGround baked{mesh.world(), mesh.avatar_class()};
+  const Obstacle found = obstacle_beyond(baked, level->ground, stop);
+  const GroundLevel& ground = level->ground;
+  const bool was_free = step_to(baked, ground, stop.x, stop.z, stop.x + stop.toward_x,
+                                stop.z + stop.toward_z, mesh.step())
+                            .has_value();
+  return was_free ? Obstacle::kNarrow : found;
+}
+
+LiveGround::LiveGround(std::unique_ptr<State> state) : state_(std::move(state)) {}
+LiveGround::LiveGround(const LiveGround& other)
+    : LiveGround(std::make_unique<State>(other.state_->mesh)) {}
+LiveGround& LiveGround::operator=(const LiveGround& other) {
+  if (this != &other) state_ = std::make_unique<State>(other.state_->mesh);
+  return *this;
+}
+LiveGround::LiveGround(LiveGround&&) noexcept = default;
+LiveGround& LiveGround::operator=(LiveGround&&) noexcept = default;
+LiveGround::~LiveGround() = default;
+
+Result<LiveGround> LiveGround::make(const World& world, const LiveConfig& config) {
+  if (world.data() == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
+  const size_t classes = world.data()->summary.classes.size();
+  if (config.avatar_class < 0 || static_cast<size_t>(config.avatar_class) >= classes) {
+    return Error{Errc::kBadConfig, "live ground: there is no class " +
+                                       std::to_string(config.avatar_class) + ", the world has " +
+                                       std::to_string(classes)};
+  }
+  if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
+    return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
+  }
+  return LiveGround(std::make_unique<State>(LiveMesh(world, config)));
+}
+
+Result<ChangeId> LiveGround::add_obstacle(const Prism& prism) {
+  if (auto ok = check_prism(prism); !ok) return ok.error();
+  LiveMesh::Change change;
+  change.prism = prism;
+  return state_->mesh.add(std::move(change));
+}
+
+Result<ChangeId> LiveGround::add_obstacle(std::span<const Vec3d> corners,
+                                          std::span<const std::array<uint32_t, 3>> triangles) {
+  const auto bad = [](const std::string& what) {
+    return Error{Errc::kBadInput, "obstacle: " + what};
+  };
+  if (triangles.empty()) return bad("it has no triangles");
+  LiveMesh::Change change;
+  Box3d box;
+  for (size_t t = 0; t < triangles.size(); ++t) {
+    std::array<Vec3d, 3>& triangle = change.triangles.emplace_back();
+    for (size_t k = 0; k < 3; ++k) {
+      if (triangles[t][k] >= corners.size()) {
+        return bad("triangle " + std::to_string(t) + " uses corner " +
+                   std::to_string(triangles[t][k]) + " of " + std::to_string(corners.size()));
+      }
+      triangle[k] = corners[triangles[t][k]];
+      const Vec3d& p = triangle[k];
+      if (!(std::fabs(p.x) < 1e9 && std::fabs(p.y) < 1e9 && std::fabs(p.z) < 1e9))
+        return bad("triangle " + std::to_string(t) + " is not on Earth");
+      box.add(p);
+    }
+  }
+  change.prism = Prism::box(box.min, box.max);
+  return state_->mesh.add(std::move(change));
+}
+
+Result<ChangeId> LiveGround::add_area(const Prism& prism, uint8_t kind) {
+  if (kind == 0 || kind > 63) {
+    return Error{Errc::kBadConfig, "area: kind " + std::to_string(kind) + " is not one of 1 to 63"};
+  }
+  if (auto ok = check_prism(prism); !ok) return ok.error();
+  LiveMesh::Change change;
+  change.prism = prism;
+  change.is_area = true;
+  change.kind = kind;
+  return state_->mesh.add(std::move(change));
+}
+
+bool LiveGround::remove(ChangeId change) { return state_->mesh.set_active(change, false, true); }
+bool LiveGround::set_active(ChangeId change, bool active) {
+  return state_->mesh.set_active(change, active, false);
+}
+
+Result<void> LiveGround::set_area_cost(uint8_t kind, double cost) {
+  if (kind == 0 || kind > 63) {
+    return Error{Errc::kBadConfig, "area: kind " + std::to_string(kind) + " is not one of 1 to 63"};
+  }
+  if (!(cost >= 0.01 && (cost <= 10000 || std::isinf(cost)))) {
+    return Error{Errc::kBadConfig, "area: a cost must be 0.01 to 10000, or infinite"};
+  }
+  state_->mesh.set_area_cost(kind, cost);
+  return {};
+}
+
+bool LiveGround::is_free(const Place& place) {
+  LiveStop stop;
+  return state_->locate(place, stop);
+}
+
+void LiveGround::begin(const Place& from, const Place& to) {
+  State& s = *state_;
+  s.from_place = from;
+  s.to_place = to;
+  s.searching = s.locate(from, s.from) && s.locate(to, s.to);
+  s.version = s.mesh.version();
+  if (s.searching) s.search.begin(s.mesh, s.from, s.to);
+}
+
+bool LiveGround::advance(uint64_t max_nodes, Path& path) {
+  State& s = *state_;
+  // What the search has met may be gone.
+  if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
+  path.points.clear();
+  path.length = path.cost = 0;
+  path.nodes = 0;
+  path.obstacle = Obstacle::kNone;
+  path.end = PathEnd::kNoPlace;
+  if (!s.searching) return true;
+  const LiveSearch::State result = s.search.advance(s.mesh, max_nodes);
+  path.nodes = s.search.looked_at();
+  path.end = PathEnd::kGaveUp;
+  if (result == LiveSearch::State::kSearching) return false;
+  s.searching = false;
+  path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
+  s.search.way(s.mesh, s.way);
+  draw_straight(s.mesh, s.way);
+  s.give(path);
+  if (path.end == PathEnd::kUnreachable) path.obstacle = s.in_the_way();
+  return true;
+}
+
+void LiveGround::find(const Place& from, const Place& to, Path& path, uint64_t max_nodes) {
+  begin(from, to);
+  advance(max_nodes, path);
+}
+
+}  // namespace throng

@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/live_mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "path/prism.h"
+#include "path/rects.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+constexpr double kRounding = 0.003;  // of heights in whole millimetres, and then some [m]
+
+int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
+
+PlanSquare box_of(const std::vector<PlanPoint>& corners) {
+  PlanSquare box{1e300, 1e300, -1e300, -1e300};
+  for (const PlanPoint& p : corners) {
+    box = {std::min(box.x0, p[0]), std::min(box.z0, p[1]), std::max(box.x1, p[0]),
+           std::max(box.z1, p[1])};
+  }
+  return box;
+}
+
+// How a floor rises over a cell. [mm per cell]
+std::pair<int32_t, int32_t> rise_at(const LevelView& view, int32_t x, int32_t z) {
+  return {sheet_slope(
+              x, [&](int32_t i) { return view.sample(i, z); },
+              [&](int32_t i) { return view.has(i, z); }),
+          sheet_slope(
+              z, [&](int32_t k) { return view.sample(x, k); },
+              [&](int32_t k) { return view.has(x, k); })};
+}
+
+}  // namespace
+
+uint16_t LiveLevel::rect_at(int32_t x, int32_t z) const {
+  size_t r = 0;
+  while (x < rects[r].x0 || x >= rects[r].x1 || z < rects[r].z0 || z >= rects[r].z1) ++r;
+  return static_cast<uint16_t>(r);
+}
+
+LiveMesh::LiveMesh(World world, const LiveConfig& config)
+    : world_(std::move(world)),
+      config_(config),
+      step_(step_mm(world_.data()->summary.classes[static_cast<size_t>(config.avatar_class)])),
+      levels_(world_.data()->level_count) {
+  area_cost_.fill(1);
+  for (size_t s = 0; s < slope_factor_.size(); ++s) {
+    // The gentlest class has level ground in it: it is free.
+    slope_factor_[s] = 1 + (s == 0 ? 0 : config.slope_cost * kSteepestOf[s]);
+  }
+  plain_ = config.slope_cost == 0;
+}
+
+LiveMesh::LiveMesh(const LiveMesh& other)
+    : world_(other.world_),
+      config_(other.config_),
+      step_(other.step_),
+      area_cost_(other.area_cost_),
+      slope_factor_(other.slope_factor_),
+      least_factor_(other.least_factor_),
+      plain_(other.plain_),
+      levels_(other.levels_.size()),  // made again where they are asked for
+      changes_(other.changes_),
+      changes_of_tile_(other.changes_of_tile_) {}
+
+void LiveMesh::set_area_cost(uint8_t kind, double cost) {
+  ++version_;
+  area_cost_[kind] = cost;
+  least_factor_ = *std::min_element(area_cost_.begin(), area_cost_.end());
+  plain_ = config_.slope_cost == 0 &&
+           std::all_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c == 1; });
+}
+
+ChangeId LiveMesh::add(Change change) {
+  const WorldSummary& summary = world().summary;
+  const double radius = summary.classes[static_cast<size_t>(config_.avatar_class)].radius;
+  const PlanSquare box = box_of(change.prism.corners);
+  const double side = summary.cell * kTileCells;
+  const auto tile_of_metre = [&](double at, double origin, int32_t cells) {
+    const double tile = std::floor((at - origin) / side);
+    return static_cast<int32_t>(std::clamp(tile, -1.0, cells / kTileCells + 1.0));
+  };
+  const double around = radius + summary.cell;
+  const auto id = static_cast<ChangeId>(changes_.size() + 1);
+  for (int32_t z = tile_of_metre(box.z0 - around, summary.origin.z, world().depth);
+       z <= tile_of_metre(box.z1 + around, summary.origin.z, world().depth); ++z) {
+    for (int32_t x = tile_of_metre(box.x0 - around, summary.origin.x, world().width);
+         x <= tile_of_metre(box.x1 + around, summary.origin.x, world().width); ++x) {
+      const auto tile = world().tile_levels(x, z);
+      if (tile.first == tile.last) continue;
+      change.tiles.push_back(tile_key(x, z));
+      changes_of_tile_[tile_key(x, z)].push_back(id);
+    }
+  }
+  changes_.push_back(std::move(change));
+  for (const int64_t tile : changes_.back().tiles) forget(tile);
+  return id;
+}
+
+bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
+  if (id == 0 || id > changes_.size() || changes_[id - 1].removed) return false;
+  Change& change = changes_[id - 1];
+  if (change.active != active) {
+    change.active = active;
+    for (const int64_t tile : change.tiles) forget(tile);
+  }
+  if (remove) {
+    change.removed = true;
+    for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
+    change.triangles.clear();
+  }
+  return true;
+}
+
+// The tile's levels are made again; those beside it look for their portals again.
+void LiveMesh::forget(int64_t key) {
+  ++version_;
+  const auto x = static_cast<int32_t>(key), z = static_cast<int32_t>(key >> 32);
+  for (int32_t dz = -1; dz <= 1; ++dz) {
+    for (int32_t dx = -1; dx <= 1; ++dx) {
+      if (std::abs(dx) + std::abs(dz) > 1) continue;
+      const auto tile = world().tile_levels(x + dx, z + dz);
+      for (uint32_t i = tile.first; i < tile.last; ++i) {
+        if (dx == 0 && dz == 0) levels_[i].reset();
+        if (levels_[i] == nullptr) continue;
+        levels_[i]->has_portals = false;
+      }
+    }
+  }
+}
+
+const LiveLevel* LiveMesh::level(uint32_t index) {
+  std::unique_ptr<LiveLevel>& level = levels_[index];
+  if (level == nullptr) {
+    level = std::make_unique<LiveLevel>();
+    make(index, *level);
+  }
+  return level.get();
+}
+
+const LiveLevel* LiveMesh::level_with_portals(uint32_t index) {
+  level(index);
+  LiveLevel& level = *levels_[index];
+  if (!level.has_portals) find_portals(level);
+  return &level;
+}
+
+void LiveMesh::make(uint32_t index, LiveLevel& level) const {
+  level.ground = ground_level(world(), index, config_.avatar_class);
+  if (level.ground.zone == nullptr) {  // nobody stands there
+    level.ground.world_level = index;
+    level.rects.emplace_back();
+    level.has_portals = true;
+    return;
+  }
+  std::tie(level.tile_x, level.tile_z) =
+      tile_of(world(), *level.ground.zone, *level.ground.view.record);
+  level.legal = legal_rows(level.ground);
+  take_obstacles(level);
+  cut(level);
+}
+
+void LiveMesh::take_obstacles(LiveLevel& level) const {
+  const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
+  if (found == changes_of_tile_.end()) return;
+  const WorldSummary& summary = world().summary;
+  const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
+  const double bottom = body_bottom(avatar), reach = avatar.radius + kRounding;
+  const double origin_x = summary.origin.x + level.tile_x * kTileCells * summary.cell;
+  const double origin_z = summary.origin.z + level.tile_z * kTileCells * summary.cell;
+  // Cells of the tile that an interval may touch.
+  const auto cells = [&](double from, double to, double origin) {
+    const auto cell = [&](double at) {
+      return static_cast<int32_t>(
+          std::clamp(std::floor((at - origin) / summary.cell), -1.0, kTileCells + 0.0));
+    };
+    return std::pair{std::max(cell(from - reach), 0), std::min(cell(to + reach), kTileCells - 1)};
+  };
+  for (const ChangeId id : found->second) {
+    const Change& change = changes_[id - 1];
+    if (!change.active || change.is_area) continue;
+    const PlanSquare box = box_of(change.prism.corners);
+    const auto [first_x, last_x] = cells(box.x0, box.x1, origin_x);
+    const auto [first_z, last_z] = cells(box.z0, box.z1, origin_z);
+    if (first_x > last_x) continue;
+    const uint64_t columns = (~uint64_t{0} >> (63 - (last_x - first_x))) << first_x;
+    for (int32_t z = first_z; z <= last_z; ++z) {
+      uint64_t& row = level.legal[static_cast<size_t>(z)];
+      for (uint64_t left = row & columns; left != 0; left &= left - 1) {
+        const int32_t x = std::countr_zero(left);
+        PlanSquare cell;
+        cell.x0 = origin_x + x * summary.cell;
+        cell.z0 = origin_z + z * summary.cell;
+        cell.x1 = cell.x0 + summary.cell;
+        cell.z1 = cell.z0 + summary.cell;
+        if (!is_nearer(cell, change.prism.corners, reach)) continue;
+        // What the body takes on the cell, from its lowest feet to its highest.
+        const auto [gx, gz] = rise_at(level.ground.view, x, z);
+        const double feet = level.ground.view.sample(x, z) * 1e-3;
+        const double tilt = (std::abs(gx) + std::abs(gz)) * 0.5e-3 + kRounding;
+        const double low = feet - tilt + bottom, high = feet + tilt + avatar.height;
+        const auto meets = [&](double from, double to) { return to > low && from < high; };
+        bool hit = change.triangles.empty() && meets(change.prism.low, change.prism.high);
+        const PlanSquare around{cell.x0 - reach, cell.z0 - reach, cell.x1 + reach, cell.z1 + reach};
+        for (const std::array<Vec3d, 3>& t : change.triangles) {
+          if (hit) break;
+          const std::array<PlanPoint, 3> plan{PlanPoint{t[0].x, t[0].z}, PlanPoint{t[1].x, t[1].z},
+                                              PlanPoint{t[2].x, t[2].z}};
+          if (!is_nearer(cell, plan, reach)) continue;
+          const auto heights = heights_over(around, t);
+          hit = heights && meets(heights->first - kRounding, heights->second + kRounding);
+        }
+        if (hit) row &= ~(uint64_t{1} << x);
+      }
+    }
+  }
+}
+
+std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
+  std::array<uint8_t, 4096> kinds;
+  const format::Level& record = *level.ground.view.record;
+  kinds.fill(record.area_value());
+  if (record.area_kind() == format::CellsKind::Blocks) {
+    std::array<uint16_t, 4096> values;
+    unpack_values(level.ground.zone->words(record.area_offset()), values.data());
+    for (size_t c = 0; c < kinds.size(); ++c) kinds[c] = static_cast<uint8_t>(values[c] & 63);
+  }
+  const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
+  if (found == changes_of_tile_.end()) return kinds;
+  const WorldSummary& summary = world().summary;
+  for (const ChangeId id : found->second) {
+    const Change& change = changes_[id - 1];
+    if (!change.active || !change.is_area) continue;
+    for (size_t c = 0; c < kinds.size(); ++c) {
+      const auto x = static_cast<int32_t>(c % 64), z = static_cast<int32_t>(c / 64);
+      if (!level.is_legal(x, z)) continue;
+      const double feet = level.ground.view.sample(x, z) * 1e-3;
+      if (feet < change.prism.low || feet > change.prism.high) continue;
+      const double mx = summary.origin.x + (level.tile_x * kTileCells + x + 0.5) * summary.cell;
+      const double mz = summary.origin.z + (level.tile_z * kTileCells + z + 0.5) * summary.cell;
+      if (is_nearer({mx, mz, mx, mz}, change.prism.corners, 1e-9)) kinds[c] = change.kind;
+    }
+  }
+  return kinds;
+}
+
+std::array<uint8_t, 4096> LiveMesh::slopes_of(const LiveLevel& level) const {
+  std::array<uint8_t, 4096> slopes{};
+  if (config_.slope_cost == 0) return slopes;
+  const double cell = world().summary.cell * 1000;
+  for (size_t c = 0; c < slopes.size(); ++c) {
+    const auto x = static_cast<int32_t>(c % 64), z = static_cast<int32_t>(c / 64);
+    if (!level.is_legal(x, z)) continue;
+    const auto [gx, gz] = rise_at(level.ground.view, x, z);
+    const double rise = std::sqrt(static_cast<double>(gx) * gx + static_cast<double>(gz) * gz);
+    while (slopes[c] + 1 < kSlopeClasses && rise > kSteepestOf[slopes[c]] * cell) ++slopes[c];
+  }
+  return slopes;
+}
+
+// Rectangles of one kind of ground each.
+void LiveMesh::cut(LiveLevel& level) const {
+  const auto cuts = step_cuts(level.ground, level.legal, step_);
+  const std::array<uint8_t, 4096> kinds = kinds_of(level), slopes = slopes_of(level);
+  std::array<bool, 64 * kSlopeClasses> done{};
+  for (size_t c = 0; c < kinds.size(); ++c) {
+    const size_t sort = kinds[c] * size_t{kSlopeClasses} + slopes[c];
+    if (done[sort] || !level.is_legal(static_cast<int32_t>(c % 64), static_cast<int32_t>(c / 64)))
+      continue;
+    done[sort] = true;
+    CellRows same{};
+    for (size_t k = c; k < kinds.size(); ++k) {
+      if (kinds[k] == kinds[c] && slopes[k] == slopes[c]) same[k / 64] |= uint64_t{1} << (k % 64);
+    }
+    for (size_t z = 0; z < same.size(); ++z) same[z] &= level.legal[z];
+    for (const CellRect& r : tile_with_rects(same, cuts ? &*cuts : nullptr)) {
+      level.rects.push_back({static_cast<int16_t>(r.x0), static_cast<int16_t>(r.z0),
+                             static_cast<int16_t>(r.x1), static_cast<int16_t>(r.z1), kinds[c],
+                             slopes[c], 0});
+    }
+  }
+  level.rects.emplace_back();
+}
+
+void LiveMesh::find_portals(LiveLevel& level) {
+  level.portals.clear();
+  const Ground ground{*this};
+  for (size_t r = 0; r + 1 < level.rects.size(); ++r) {
+    LiveRect& rect = level.rects[r];
+    rect.first_portal = static_cast<uint32_t>(level.portals.size());
+    const auto side = [&](int32_t dx, int32_t dz) {
+      const int32_t begin = dx == 0 ? rect.x0 : rect.z0, end = dx == 0 ? rect.x1 : rect.z1;
+      bool joined = false;
+      for (int32_t i = begin; i < end; ++i) {
+        const int32_t x = level.tile_x * kTileCells + (dx == 0  ? i
+                                                       : dx > 0 ? rect.x1 - 1
+                                                                : rect.x0);
+        const int32_t z = level.tile_z * kTileCells + (dz == 0  ? i
+                                                       : dz > 0 ? rect.z1 - 1
+                                                                : rect.z0);
+        const auto there = step_to(ground, &level, x, z, x + dx, z + dz, step_);
+        const auto back =
+            there ? step_to(ground, *there, x + dx, z + dz, x, z, step_) : std::nullopt;
+        if (!back || *back != &level) {
+          joined = false;
+          continue;
+        }
+        const uint16_t to_rect = (*there)->rect_at((x + dx) & 63, (z + dz) & 63);
+        const uint32_t to_level = (*there)->ground.world_level;
+        if (joined && level.portals.back().to_level == to_level &&
+            level.portals.back().to_rect == to_rect) {
+          ++level.portals.back().to;
+        } else {
+          level.portals.push_back({to_level, to_rect, static_cast<int8_t>(dx),
+                                   static_cast<int8_t>(dz), static_cast<int16_t>(i),
+                                   static_cast<int16_t>(i + 1)});
+        }
+        joined = true;
+      }
+    };
+    side(0, -1);
+    side(1, 0);
+    side(0, 1);
+    side(-1, 0);
+  }
+  level.rects.back().first_portal = static_cast<uint32_t>(level.portals.size());
+  level.has_portals = true;
+}
+
+}  // namespace throng

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "path/live_mesh.h"
+
+/// Ways of little cost over a LiveMesh: a search over points of portals, drawn straight afterwards.
+namespace throng {
+
+/// A point of a way, standing in a rectangle.
+struct LiveStop {
+  uint32_t level = 0;  // of the world
+  uint16_t rect = 0;
+  GroundPoint at;
+};
+
+/// A point that the search has reached.
+struct LiveNode {
+  LiveStop stop;
+  uint32_t parent = UINT32_MAX;
+  double cost = 0;  // so far [cells]
+  bool done = false;
+};
+
+/// Nodes by the stop that they are, found by look-up. Owns its memory.
+class LiveNodes {
+ public:
+  void clear();
+  /// The node of a stop, and whether it is new.
+  std::pair<uint32_t, bool> node_of(const LiveStop& stop);
+  std::vector<LiveNode> nodes;
+
+ private:
+  void grow();
+  std::vector<uint32_t> table_;  // open addressing; 0 is free, else index plus one
+};
+
+/// Calls visit(on_this_side, beyond, cost factor beyond) for points of all portals of a rectangle;
+/// beyond is a stop in the next rectangle, straight across.
+template <class Visit>
+void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
+
+/// Cost of the straight leg between two stops, in cells; infinite if it is no legal move to that
+/// very level.
+double leg_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
+
+/// Leaves out stops where a straight leg is no dearer, and draws bends straighter.
+void draw_straight(LiveMesh& mesh, std::vector<LiveStop>& way);
+
+/// A*, best first. Owns its memory: no allocation once it has grown.
+class LiveSearch {
+ public:
+  enum class State { kSearching, kFound, kNone };
+
+  void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
+  /// Looks at up to `most` points more.
+  State advance(LiveMesh& mesh, uint64_t most);
+  /// The way to the goal, or to the point met that is nearest to it; not yet straight.
+  void way(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
+  [[nodiscard]] uint64_t looked_at() const { return looked_at_; }
+
+ private:
+  struct Open {
+    double bound = 0;
+    uint32_t node = 0;
+  };
+  void push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
+
+  void note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index);
+
+  LiveStop from_, to_, nearest_stop_;
+  LiveNodes nodes_;
+  std::vector<Open> open_;
+  uint32_t nearest_ = 0, goal_ = UINT32_MAX;
+  double nearest_distance_ = 0;
+  uint64_t looked_at_ = 0;
+};
+
+inline double distance_of(GroundPoint a, GroundPoint b) {  // [cells]
+  const auto dx = static_cast<double>(a.x - b.x), dz = static_cast<double>(a.z - b.z);
+  return std::sqrt(dx * dx + dz * dz) * (1.0 / kUnitsPerCell);
+}
+
+template <class Visit>
+void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
+  constexpr int32_t kSpacing = 8;  // cells
+  const LiveLevel& level = *mesh.level_with_portals(from.level);
+  const LiveRect& rect = level.rects[from.rect];
+  const uint32_t end = level.rects[from.rect + size_t{1}].first_portal;
+  const auto unit = [](int32_t tile, int32_t cell) {
+    return (int64_t{tile} * kTileCells + cell) << kUnitBits;
+  };
+  for (uint32_t p = rect.first_portal; p < end; ++p) {
+    const LivePortal portal = level.portals[p];
+    const bool along_x = portal.toward_x == 0;
+    const int64_t border_x = unit(level.tile_x, portal.toward_x > 0 ? rect.x1 : rect.x0);
+    const int64_t border_z = unit(level.tile_z, portal.toward_z > 0 ? rect.z1 : rect.z0);
+    const auto point = [&](int64_t along) {
+      // A border's units belong to the cells after it.
+      const int32_t toward = along_x ? portal.toward_z : portal.toward_x;
+      const int64_t border = along_x ? border_z : border_x;
+      const int64_t inside = toward > 0 ? border - 1 : border;
+      const int64_t outside = toward > 0 ? border : border - 1;
+      const LiveStop beyond{portal.to_level, portal.to_rect,
+                            along_x ? GroundPoint{along, outside} : GroundPoint{outside, along}};
+      visit(along_x ? GroundPoint{along, inside} : GroundPoint{inside, along}, beyond);
+    };
+    const int32_t tile = along_x ? level.tile_x : level.tile_z;
+    // A unit from its ends, so that nothing beside it is grazed; the same points from both sides.
+    point(unit(tile, portal.from) + 1);
+    for (int32_t i = (portal.from / kSpacing + 1) * kSpacing; i < portal.to; i += kSpacing)
+      point(unit(tile, i));
+    point(unit(tile, portal.to) - 2);
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "path/live_mesh.h"
+#include "path/live_search.h"
+
+/// What a LiveGround holds.
+namespace throng {
+
+struct LiveGround::State {
+  explicit State(LiveMesh of) : mesh(std::move(of)) {}
+
+  bool locate(const Place& place, LiveStop& stop);
+  /// Of `way`.
+  void give(Path& path);
+  /// What a straight line from its end to the goal meets first.
+  Obstacle in_the_way();
+
+  LiveMesh mesh;
+  LiveSearch search;
+  Place from_place, to_place;
+  LiveStop from, to;
+  uint64_t version = 0;
+  bool searching = false;
+  std::vector<LiveStop> way;
+};
+
+}  // namespace throng

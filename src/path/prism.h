@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "throng/live_ground.h"
+
+/// What obstacles take from cells.
+namespace throng {
+
+using PlanPoint = std::array<double, 2>;  // x, z [m]
+
+/// A square of the ground's plane. [m]
+struct PlanSquare {
+  double x0 = 0, z0 = 0, x1 = 0, z1 = 0;
+};
+
+/// Are a square and a convex polygon (of a single point or edge too) nearer than `distance`?
+bool is_nearer(const PlanSquare& square, std::span<const PlanPoint> polygon, double distance);
+
+/// Lowest and highest point of a triangle over a square, or none.
+std::optional<std::pair<double, double>> heights_over(const PlanSquare& square,
+                                                      const std::array<Vec3d, 3>& triangle);
+
+/// Fails with kBadInput unless the prism is as it says.
+Result<void> check_prism(const Prism& prism);
+
+}  // namespace throng

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/flow_field.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "baked.h"
+#include "throng/path.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+using test::bake;
+
+LiveGround live(const World& world, int32_t avatar_class = 0) {
+  auto made = LiveGround::make(world, {.avatar_class = avatar_class});
+  EXPECT_TRUE(made) << made.error().message;
+  return *std::move(made);
+}
+
+FlowField field(const LiveGround& ground, const std::vector<Place>& goals, double most = 1e9) {
+  Context context;
+  auto made = FlowField::make(ground, goals, {.most = most}, context);
+  EXPECT_TRUE(made) << made.error().message;
+  return *std::move(made);
+}
+
+TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
+  double sum = 0, drawn = 0;
+  uint64_t reached = 0, unreached = 0;
+  for (const World& world :
+       {bake(test::builtin({.name = "garage"}), 0.2), bake(test::builtin({.name = "church"}), 0.15),
+        bake(test::builtin({.name = "maze"}), 0.2), bake(worlds::random_soup(7, 400, 12), 0.15)}) {
+    Context context;
+    auto exact = PathFinder::make(world, {.avatar_class = 0}, context);
+    ASSERT_TRUE(exact);
+    std::vector<Place> goals;
+    for (uint64_t n = 0; n < 3; ++n) goals.push_back(world.random_place(0, 77, n));
+    FlowField flow = field(live(world), goals);
+    Path best, way;
+    for (uint64_t n = 0; n < 150; ++n) {
+      const Place from = world.random_place(0, 78, n);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Place& goal : goals) {
+        exact->find(from, goal, best);
+        if (best.end == PathEnd::kReached) nearest = std::min(nearest, best.length);
+      }
+      const double distance = flow.distance(from);
+      flow.way(from, way);
+      ASSERT_EQ(std::isfinite(distance), std::isfinite(nearest));
+      if (!std::isfinite(nearest)) {
+        EXPECT_EQ(way.end, PathEnd::kUnreachable);
+        EXPECT_FALSE(flow.next(from));
+        ++unreached;
+        continue;
+      }
+      ASSERT_EQ(way.end, PathEnd::kReached);
+      EXPECT_GE(distance, nearest - 0.01);
+      EXPECT_LE(distance, nearest * 1.1 + 3 * world.summary().cell);
+      EXPECT_LE(way.length, distance + 1e-6);
+      sum += distance / std::max(nearest, world.summary().cell);
+      drawn += way.length / std::max(nearest, world.summary().cell);
+      ++reached;
+      for (size_t i = 1; i < way.points.size(); ++i) {
+        const Vec3d step = way.points[i].position - way.points[i - 1].position;
+        ASSERT_EQ(world.move(0, way.points[i - 1], step.x, step.z).end, MoveEnd::kArrived);
+      }
+    }
+  }
+  EXPECT_GT(reached, 300u);
+  EXPECT_GT(unreached, 20u);
+  EXPECT_LT(sum / static_cast<double>(reached), 1.02);
+  EXPECT_LT(drawn / static_cast<double>(reached), 1.01);
+}
+
+// Whoever walks from point to point, each leg a legal move, comes to a goal on no longer a way than
+// was said.
+TEST(FlowField, WhoFollowsItArrives) {
+  uint64_t walked = 0;
+  for (const World& world :
+       {bake(test::builtin({.name = "garage"}), 0.2), bake(worlds::two_floors(), 0.1),
+        bake(worlds::random_soup(7, 400, 12), 0.15)}) {
+    const Place goal = world.random_place(0, 5, 0);
+    LiveGround ground = live(world);
+    ASSERT_TRUE(ground.add_obstacle(Prism::box({2, 0, 2}, {2.5, 2, 2.5})));
+    if (!ground.is_free(goal)) continue;
+    FlowField flow = field(ground, {goal});
+    for (uint64_t n = 0; n < 100; ++n) {
+      Place at = world.random_place(0, 6, n);
+      const double distance = flow.distance(at);
+      if (!std::isfinite(distance)) continue;
+      double length = 0;
+      int legs = 0;
+      while (std::hypot(at.position.x - goal.position.x, at.position.z - goal.position.z) > 1e-3 ||
+             at.level1 != goal.level1) {
+        const Place to = flow.next(at);
+        ASSERT_TRUE(to);
+        const Vec3d step = to.position - at.position;
+        const MoveResult move = world.move(0, at, step.x, step.z);
+        ASSERT_EQ(move.end, MoveEnd::kArrived);
+        ASSERT_EQ(move.place.level1, to.level1);
+        length += std::hypot(step.x, step.z);
+        at = to;
+        ASSERT_LT(++legs, 1000);
+      }
+      EXPECT_LE(length, distance + 1e-3 * (legs + 1));
+      ++walked;
+    }
+  }
+  EXPECT_GT(walked, 150u);
+}
+
+TEST(FlowField, StopsWhereAsked) {
+  const World world = bake(worlds::flat(30), 0.2);
+  const Place goal = world.find_place(0, {3, 0, 3}, 0.5);
+  FlowField near = field(live(world), {goal}, 5), far = field(live(world), {goal});
+  const Place close = world.find_place(0, {5, 0, 3}, 0.5),
+              off = world.find_place(0, {27, 0, 27}, 0.5);
+  EXPECT_NEAR(near.distance(close), 2, 1e-3);
+  EXPECT_FALSE(std::isfinite(near.distance(off)));
+  EXPECT_NEAR(far.distance(off), std::hypot(24, 24), 0.7);
+  EXPECT_LT(near.summary().points, far.summary().points);
+  FlowField copy = far;
+  EXPECT_EQ(copy.distance(off), far.distance(off));
+}
+
+TEST(FlowField, RefusesNonsense) {
+  const World world = bake(worlds::flat(6), 0.2);
+  LiveGround ground = live(world);
+  Context context;
+  EXPECT_FALSE(FlowField::make(ground, {}, {}, context));
+  const std::vector<Place> nowhere(2);
+  EXPECT_FALSE(FlowField::make(ground, nowhere, {}, context));
+  const std::vector<Place> goals{world.find_place(0, {3, 0, 3}, 0.5)};
+  EXPECT_FALSE(FlowField::make(ground, goals, {.most = -1}, context));
+  context.cancel = true;
+  EXPECT_FALSE(FlowField::make(ground, goals, {}, context));
+  context.cancel = false;
+  auto flow = FlowField::make(ground, goals, {}, context);
+  ASSERT_TRUE(flow);
+  EXPECT_FALSE(flow->next({}));
+  EXPECT_FALSE(std::isfinite(flow->distance({{1e300, 0, 0}, 1})));
+  EXPECT_EQ(flow->next(goals[0]).level1, goals[0].level1);
+}
+
+}  // namespace
+}  // namespace throng

@@ -57,8 +57,34 @@ struct RowTable {
   }
 };
 
+// Cells whose surface the class may stand on, feet or not. False if there are none.
+bool ground_of(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+               BitPlane& ground) {
+  const hn::CappedTag<uint8_t, 64> dc;
+  ground.fill(0);
+  if (sheet.one_code) {
+    if ((limits.allowed[sheet.some_code] & body.class_bit) == 0) return false;
+    ground.fill(~uint64_t{0});
+    return true;
+  }
+  uint64_t any = 0;
+  for (int32_t code = 0; code <= sheet.some_code; ++code) {
+    if ((limits.allowed[static_cast<size_t>(code)] & body.class_bit) == 0) continue;
+    const auto wanted = hn::Set(dc, static_cast<uint8_t>(code));
+    for (size_t c = 0; c < kTileArea; c += hn::Lanes(dc)) {
+      const uint64_t same = bits_of(dc, hn::Eq(hn::Load(dc, &sheet.code[c]), wanted));
+      ground[c / kTileSide] |= same << c % kTileSide;
+      any |= same;
+    }
+  }
+  return any != 0;
+}
+
 void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
                   LegalityScratch& scratch, LegalCells& out) {
+  BitPlane ground;  // what the class may stand on
+  out = {};
+  if (!ground_of(sheet, body, limits, ground)) return;
   const DU du;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
   const int32_t reach = body.reach;
@@ -89,10 +115,11 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const VU none = hn::Set(du, kNone16);
   const VU bottom = hn::Set(du, static_cast<uint16_t>(std::min(body.bottom, 65535)));
   const VU height = hn::Set(du, static_cast<uint16_t>(std::min(body.height, 65534)));
-  const bool uniform = sheet.one_code;
-  const bool uniform_ok = (limits.allowed[sheet.some_code] & body.class_bit) != 0;
+  const VU hope = hn::Set(du, static_cast<uint16_t>(body.hope));
   for (int32_t z = 0; z < kTileSide; ++z) {
     uint64_t legal = 0, stand = 0, slanted = 0;
+    const uint64_t allowed = ground[static_cast<size_t>(z)];
+    if (allowed == 0) continue;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const VU feet = hn::Load(du, &sheet.feet[cell]);
@@ -118,20 +145,13 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       const MU even = hn::And(low_enough, no_drop);
       stand |= bits_of(du, stands) << x;
       legal |= bits_of(du, hn::And(open, even)) << x;
-      slanted |= bits_of(du, hn::AndNot(even, open)) << x;
+      const MU near = hn::And(at_most(high_top, hn::SaturatedAdd(feet, hope)),
+                              at_most(feet, hn::SaturatedAdd(low_top, hope)));
+      slanted |= bits_of(du, hn::AndNot(even, hn::And(open, near))) << x;
     }
-    if (uniform) {
-      if (!uniform_ok) legal = stand = slanted = 0;
-    } else {
-      uint64_t allowed = 0;
-      for (int32_t x = 0; x < kTileSide; ++x) {
-        const uint8_t code = sheet.code[static_cast<size_t>(z * kTileSide + x)];
-        allowed |= static_cast<uint64_t>((limits.allowed[code] & body.class_bit) != 0) << x;
-      }
-      legal &= allowed;
-      stand &= allowed;
-      slanted &= allowed;
-    }
+    legal &= allowed;
+    stand &= allowed;
+    slanted &= allowed;
     out.legal[static_cast<size_t>(z)] = legal;
     out.stands[static_cast<size_t>(z)] = stand;
     out.slanted[static_cast<size_t>(z)] = slanted;

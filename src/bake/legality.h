@@ -21,6 +21,8 @@ struct BodyWindow {
   int32_t bottom = 0;  // [mm]
   int32_t height = 0;
   int32_t step = 0;
+  int32_t hope = 0;            // matter further from the feet, up or down, no recheck can pass
+  bool barely = false;         // its slope's rise under the rim takes all of the bottom
   double radius = 0;           // [cells]
   int32_t reach = 0;           // rows that a body on a cell can touch beyond it
   std::vector<int32_t> width;  // per row distance 0..reach: columns on either side

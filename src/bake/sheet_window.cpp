@@ -59,6 +59,10 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
   // Cells at distance (dx, dz) are max(|d| - 1, 0) cells apart; a body that just touches is not in.
   const double radius = avatar.radius / cell - 1e-9;
   body.radius = avatar.radius / cell;
+  // A plane of gradient g that carries the body rises g r <= bottom under it; the cells that the
+  // body reaches lie up to r + sqrt(2) away, and their tops half their tilt above their centres.
+  body.hope = static_cast<int32_t>(std::min(60000.0, body.bottom * (1 + 2.2 / body.radius))) + 3;
+  body.barely = avatar.step < body_bottom(avatar);
   for (int32_t dz = 0;; ++dz) {
     const double apart = std::max(dz - 1, 0);
     if (apart >= radius) break;

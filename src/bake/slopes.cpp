@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "bake/legality.h"
+#include "bake/surface_planes.h"
 
 // Feet on a cell lie on a plane p with gradient g. For a body at P and matter at Q within its
 // radius r,
@@ -162,6 +163,103 @@ void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScr
   }
 }
 
+// The finer test, for the same cells. With the feet's plane p on A, through f with gradient a, and
+// a plane s of gradient s' for comparison,
+//   y(Q) - p(P) = (y(Q) - s(Q)) + s' (Q - P) + (s(P) - p(P)),
+// where the middle is at most |s'| r, and a difference of planes over a cell is at most the one at
+// its centre and half of what their gradients differ by. s is the surface's plane on A, which is
+// right at ridges, or on B, which is right in valleys; both are better than none on a slope.
+using DF = hn::RebindToFloat<DI>;
+using VF = hn::Vec<DF>;
+
+// Feet are rounded to whole mm when they are asked for; the rest is for the arithmetic. [mm]
+constexpr float kFeetRounding = 0.6f;
+
+HWY_INLINE VF half_apart(VF ax, VF az, VF bx, VF bz) {
+  const DF df;
+  const VF apart = hn::Add(hn::Abs(hn::Sub(ax, bx)), hn::Abs(hn::Sub(az, bz)));
+  return hn::Mul(apart, hn::Set(df, 0.5f));
+}
+
+HWY_INLINE uint64_t free_by_planes(const SheetWindow& window, const CellPlanes& planes,
+                                   const BodyWindow& body, int32_t x, int32_t z, uint64_t asked,
+                                   VI feet_mm, VI feet_tilt, VF ax, VF az) {
+  const DI di;
+  const DF df;
+  const hn::Rebind<uint16_t, DI> dh;
+  const VF feet = hn::ConvertTo(df, feet_mm);
+  const VF radius = hn::Set(df, static_cast<float>(body.radius));
+  const VF budget = hn::Set(df, static_cast<float>(body.bottom) - kFeetRounding);
+  const VI bottom = hn::Set(di, body.bottom);
+  const VF level_high = hn::ConvertTo(df, hn::Add(hn::Sub(feet_mm, feet_tilt), bottom));
+  const VF level_low = hn::ConvertTo(df, hn::Sub(hn::Add(feet_mm, feet_tilt), bottom));
+  const size_t own = window.index(x, z);
+  const VF sx = hn::LoadU(df, &planes.slope_x[own]), sz = hn::LoadU(df, &planes.slope_z[own]);
+  // What comparing with A's plane costs in any case, and how much its feet are off it.
+  const VF own_cost =
+      hn::Add(half_apart(sx, sz, ax, az), hn::Mul(hn::LoadU(df, &planes.steepness[own]), radius));
+  const VF surface = hn::LoadU(df, &planes.height[own]);
+  const VF own_up = hn::Sub(budget, hn::Add(own_cost, hn::Sub(surface, feet)));
+  const VF own_down = hn::Sub(budget, hn::Sub(own_cost, hn::Sub(surface, feet)));
+  for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
+    const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
+    const VF fz = hn::Set(df, static_cast<float>(dz));
+    const VF across = hn::Add(surface, hn::Mul(sz, fz));
+    for (int32_t dx = -w; dx <= w; ++dx) {
+      const size_t i = window.index(x + dx, z + dz);
+      const VF fx = hn::Set(df, static_cast<float>(dx));
+      const VF height = hn::LoadU(df, &planes.height[i]);
+      const VF bx = hn::LoadU(df, &planes.slope_x[i]), bz = hn::LoadU(df, &planes.slope_z[i]);
+      const VF excess = hn::Max(hn::LoadU(df, &planes.excess[i]), hn::Zero(df));
+      const VF over_own = hn::Sub(height, hn::Add(across, hn::Mul(sx, fx)));
+      const VF own_apart = half_apart(bx, bz, sx, sz);
+      const VF highest = hn::Add(hn::Add(over_own, own_apart), excess);
+      const auto own_low = hn::Le(highest, own_up);
+      const auto own_high = hn::Le(hn::Sub(own_apart, over_own), own_down);
+      // Mostly the slope goes on, and A's plane tells all.
+      if ((asked & ~bits_of(df, hn::And(own_low, own_high))) == 0) continue;
+      const VF over_theirs =
+          hn::Sub(hn::Sub(hn::Sub(height, hn::Mul(bx, fx)), hn::Mul(bz, fz)), feet);
+      const VF their_cost =
+          hn::Add(half_apart(bx, bz, ax, az), hn::Mul(hn::LoadU(df, &planes.steepness[i]), radius));
+      const VF top = hn::ConvertTo(df, hn::PromoteTo(di, hn::LoadU(dh, &window.top[i])));
+      const auto low = hn::Or(hn::Le(hn::Add(hn::Add(over_theirs, their_cost), excess), budget),
+                              hn::Le(top, level_high));
+      const auto high =
+          hn::Or(hn::Le(hn::Sub(their_cost, over_theirs), budget), hn::Ge(top, level_low));
+      asked &= bits_of(df, hn::And(hn::Or(own_low, low), hn::Or(own_high, high)));
+      if (asked == 0) return 0;
+    }
+  }
+  return asked;
+}
+
+void RecheckPlanes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& surface,
+                   const LegalityScratch& scratch, LegalCells& cells) {
+  const DI di;
+  const DF df;
+  const hn::Rebind<uint16_t, DI> dh;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
+  RowPlanes planes;
+  for (int32_t z = 0; z < kTileSide; ++z) {
+    const size_t r = static_cast<size_t>(z);
+    const uint64_t row = cells.slanted[r] & ~cells.legal[r];
+    if (row == 0) continue;
+    planes.make(sheet, z);
+    for (int32_t x = 0; x < kTileSide; x += lanes) {
+      const uint64_t asked = (row >> x) & ((uint64_t{1} << lanes) - 1);
+      if (asked == 0) continue;
+      const size_t cell = static_cast<size_t>(z * kTileSide + x);
+      const uint64_t free =
+          free_by_planes(scratch.window, surface, body, x, z, asked, load_feet(&sheet.feet[cell]),
+                         hn::PromoteTo(di, hn::LoadU(dh, &scratch.tilt[cell])),
+                         hn::ConvertTo(df, hn::Load(di, planes.gx + x)),
+                         hn::ConvertTo(df, hn::Load(di, planes.gz + x)));
+      cells.legal[r] |= free << x;
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace throng
 HWY_AFTER_NAMESPACE();
@@ -170,10 +268,16 @@ HWY_AFTER_NAMESPACE();
 namespace throng {
 
 HWY_EXPORT(RecheckSlopes);
+HWY_EXPORT(RecheckPlanes);
 
 void recheck_slopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
                     LegalCells& cells) {
   HWY_DYNAMIC_DISPATCH(RecheckSlopes)(sheet, body, scratch, cells);
+}
+
+void recheck_planes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& planes,
+                    const LegalityScratch& scratch, LegalCells& cells) {
+  HWY_DYNAMIC_DISPATCH(RecheckPlanes)(sheet, body, planes, scratch, cells);
 }
 
 }  // namespace throng

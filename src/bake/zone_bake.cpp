@@ -3,12 +3,14 @@
 #include "bake/zone_bake.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 
 #include "bake/clearance.h"
 #include "bake/columns.h"
 #include "bake/sheet_kernels.h"
+#include "bake/surface_planes.h"
 #include "bake/zone_builder.h"
 #include "core/parallel.h"
 
@@ -64,6 +66,8 @@ class ZoneJob {
   void make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void judge(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void clear(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  void recheck_near_limit(int32_t column, int32_t row, size_t sheet, const BodyWindow& body,
+                          ZoneScratch::Worker& worker, LegalCells& cells);
   bool is_open(int32_t column, int32_t row, size_t avatar_class) const;
 
   const BakePlan& plan_;
@@ -81,6 +85,7 @@ struct ZoneScratch::Worker {
   TileColumns columns;
   TileGaps gaps;
   LegalityScratch legality;
+  CellPlanes planes;
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
   uint64_t spans = 0;
   std::vector<ClearancePlanes> clearance;  // of one sheet, per class
@@ -179,6 +184,7 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       LegalCells cells;
       legal_cells(sheet, body, plan_.limits, worker.legality, cells);
       recheck_slopes(sheet, body, worker.legality, cells);
+      if (body.barely) recheck_near_limit(column, row, s, body, worker, cells);
       recheck_seams(around, s, body, worker.legality, cells);
       verdict.legal = cells.legal;
       uint64_t any = 0, all = ~uint64_t{0};
@@ -196,6 +202,32 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
     }
   }
   worker.seconds_clearance += seconds_since(start);
+}
+
+// The last word on cells of a slope that is near what a class can climb, from the triangles.
+void ZoneJob::recheck_near_limit(int32_t column, int32_t row, size_t sheet, const BodyWindow& body,
+                                 ZoneScratch::Worker& worker, LegalCells& cells) {
+  const TileState& tile = at(column, row);
+  const FloorPlane& floor = tile.planes[sheet];
+  if (floor.found && (floor.slope_x | floor.slope_z) == 0) return;
+  BitPlane asked;
+  uint64_t any = 0;
+  for (size_t z = 0; z < kTileSide; ++z) any |= asked[z] = cells.slanted[z] & ~cells.legal[z];
+  if (any == 0) return;
+  TileTriangles triangles{.all = scratch_.triangles,
+                          .items = {},
+                          .cell_x = (first_x_ + column) * kTileSide,
+                          .cell_z = (first_z_ + row) * kTileSide};
+  for (int32_t i = 0; i < 9; ++i) {
+    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
+    if (!in_world(x, z)) continue;
+    const size_t bin = static_cast<size_t>(z * side_ + x);
+    triangles.items[static_cast<size_t>(i)] = {&bins_.items[bins_.first[bin]],
+                                               bins_.first[bin + 1] - bins_.first[bin]};
+  }
+  find_surface_planes(worker.legality.window, tile.sheets[sheet]->base, asked, body, triangles,
+                      worker.planes);
+  recheck_planes(*tile.sheets[sheet], body, worker.planes, worker.legality, cells);
 }
 
 // True if this tile and all around it are single sheets, legal everywhere, without a step between.

@@ -24,6 +24,10 @@ struct PathConfig {
   /// may pass something on the wrong side; it is proved to be no more than 2 % longer than the
   /// shortest, and hardly ever is (0.02 % on average over a city).
   bool labels = false;
+  /// Also work out the ways inside each zone between the gates of its borders, and label the gates:
+  /// for long ways over large worlds. A way between zones that do not touch is then the shortest of
+  /// those that pass every obstacle on the same side, but may pass one on the wrong side.
+  bool zones = false;
 };
 
 /// How a search ended.
@@ -48,6 +52,7 @@ struct PathSummary {
   uint64_t rectangles = 0;
   uint64_t portals = 0;
   uint64_t corners = 0;
+  uint64_t gates = 0;   ///< Of zones; 0 without them.
   uint64_t labels = 0;  ///< 0 without them.
   uint64_t bytes = 0;   ///< Of all.
   double seconds = 0;   ///< To make them.

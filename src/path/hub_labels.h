@@ -10,24 +10,13 @@
 #include "path/legs.h"
 #include "path/mesh.h"
 #include "path/sight.h"
+#include "path/two_hop.h"
 
 /// Shortest ways between corners, by look-up.
 namespace throng {
 
-/// Two-hop labels: for every two corners that hold together, some hub on a shortest way between
-/// them is in both their lists. Source: [AIY13].
-struct HubLabels {
-  struct Label {
-    uint32_t hub = 0;  // rank: 0 is the hub of most ways
-    float length = 0;  // to the hub [cells]
-  };
-  std::vector<uint32_t> first;  // per corner, one more at the end
-  std::vector<Label> labels;    // of a corner, by rising hub
-  // The corner after this one on the way, and its label of the same hub; at the hub itself.
-  struct Next {
-    uint32_t corner = 0, label = 0;
-  };
-  std::vector<Next> next;  // per label
+/// Labels of corners, and of what the blocks of a mesh see.
+struct HubLabels : TwoHopLabels {
   // Per block the corners that may be seen from some point of it: a way from there that bends bends
   // first at one of them.
   struct Candidate {
@@ -36,18 +25,13 @@ struct HubLabels {
   };
   std::vector<uint32_t> first_candidate;  // one more at the end
   std::vector<Candidate> candidates;
-  BlockLabels by_block;        // of small worlds
-  MiddleLabels by_middle;      // of others
-  std::vector<uint32_t> hubs;  // by rank: the corner
-  uint64_t edges = 0;          // pairs of corners that see each other and may bend at both
+  BlockLabels by_block;    // of small worlds
+  MiddleLabels by_middle;  // of others
+  uint64_t edges = 0;      // pairs of corners that see each other and may bend at both
 
-  [[nodiscard]] std::span<const Label> of(uint32_t corner) const {
-    return {labels.data() + first[corner], labels.data() + first[corner + 1]};
-  }
   [[nodiscard]] uint64_t bytes() const {
-    return (first.size() + hubs.size() + first_candidate.size() + candidates.size()) *
-               sizeof(uint32_t) +
-           labels.size() * (sizeof(Label) + sizeof(Next)) + by_block.bytes() + by_middle.bytes();
+    return TwoHopLabels::bytes() + (first_candidate.size() + candidates.size()) * sizeof(uint32_t) +
+           by_block.bytes() + by_middle.bytes();
   }
 };
 

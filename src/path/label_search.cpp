@@ -140,23 +140,9 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
 // The corners from each end to the hub.
 void LabelSearch::trace(const HubLabels& labels, const Best& best,
                         std::vector<uint32_t>& corners) const {
-  const auto walk = [&](uint32_t corner) {
-    const auto list = labels.of(corner);
-    const auto at = std::lower_bound(
-        list.begin(), list.end(), best.hub,
-        [](const HubLabels::Label& label, uint32_t wanted) { return label.hub < wanted; });
-    auto label = static_cast<uint32_t>(&*at - labels.labels.data());
-    for (;;) {
-      corners.push_back(corner);
-      const HubLabels::Next& next = labels.next[label];
-      if (next.corner == corner) return;
-      corner = next.corner;
-      label = next.label;
-    }
-  };
-  walk(best.first);
+  labels.walk(best.first, best.hub, corners);
   const size_t middle = corners.size() - 1;
-  walk(best.last);
+  labels.walk(best.last, best.hub, corners);
   corners.pop_back();  // the hub, which is there already
   std::reverse(corners.begin() + static_cast<ptrdiff_t>(middle) + 1, corners.end());
 }

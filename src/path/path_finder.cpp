@@ -10,6 +10,7 @@
 #include "path/legs.h"
 #include "path/mesh.h"
 #include "path/search.h"
+#include "path/zone_search.h"
 #include "throng/path.h"
 #include "world/place.h"
 
@@ -19,12 +20,14 @@ struct PathFinder::Shared {
   World world;
   PathMesh mesh;
   std::optional<HubLabels> labels;
+  std::optional<ZoneGraph> zones;
   PathSummary summary;
 };
 
 struct PathFinder::Scratch {
   PathSearch search;
   LabelSearch look_up;
+  ZoneSearch over_zones;
   std::vector<uint32_t> corners;
   std::vector<Stop> stops;
 };
@@ -49,6 +52,8 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
                                        std::to_string(config.avatar_class) + ", the world has " +
                                        std::to_string(classes)};
   }
+  if (config.labels && config.zones)
+    return Error{Errc::kBadConfig, "path: choose labels or zones, not both"};
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   const auto start = std::chrono::steady_clock::now();
   if (auto ok = world.check_all(); !ok) return ok.error();
@@ -58,15 +63,27 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
   shared->world = world;
   shared->mesh = std::move(*mesh);
   PathSummary& summary = shared->summary;
-  summary = {shared->mesh.rects.size() - 1, shared->mesh.portals.size(),
-             shared->mesh.corner_count(),   0,
-             shared->mesh.bytes(),          0};
+  summary = {shared->mesh.rects.size() - 1,
+             shared->mesh.portals.size(),
+             shared->mesh.corner_count(),
+             0,
+             0,
+             shared->mesh.bytes(),
+             0};
   if (config.labels) {
     auto labels = build_labels(shared->mesh, config.workers, context);
     if (!labels) return labels.error();
     shared->labels = std::move(*labels);
     summary.labels = shared->labels->labels.size();
     summary.bytes += shared->labels->bytes();
+  }
+  if (config.zones) {
+    auto zones = build_zone_graph(*world.data(), shared->mesh, config.workers, context);
+    if (!zones) return zones.error();
+    shared->zones = std::move(*zones);
+    summary.gates = shared->zones->gates.size();
+    summary.labels = shared->zones->label_count();
+    summary.bytes += shared->zones->bytes();
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return PathFinder(std::move(shared));
@@ -103,6 +120,11 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
     if (scratch_->look_up.find(mesh, *shared_->labels, start, goal, scratch_->corners, length)) {
       result = SearchResult::kFound;
     }
+  } else if (shared_->zones) {
+    ZoneSearch& search = scratch_->over_zones;
+    result = search.find(world, mesh, *shared_->zones, start, goal, max_nodes, scratch_->corners,
+                         length);
+    path.nodes = search.expanded();
   } else {
     result = scratch_->search.find(mesh, start, goal, max_nodes, scratch_->corners, length);
     path.nodes = scratch_->search.expanded();

@@ -13,7 +13,8 @@
 namespace throng {
 
 SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop& to,
-                              uint64_t max_nodes, std::vector<uint32_t>& corners, double& length) {
+                              uint64_t max_nodes, std::vector<uint32_t>& corners, double& length,
+                              double longest) {
   mesh_ = &mesh;
   goal_rect_ = to.rect;
   goal_ = in_cells(to.at);
@@ -31,7 +32,8 @@ SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop
   roots_.clear();
   nodes_.clear();
   open_.clear();
-  found_length_ = 1e300;
+  found_length_ = longest;
+  found_root_ = UINT32_MAX;
   start(from.rect, in_cells(from.at));
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end());
@@ -43,7 +45,7 @@ SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop
     if (++expanded_ > max_nodes) return SearchResult::kBudget;
     expand(node);
   }
-  if (found_length_ == 1e300) return SearchResult::kNone;
+  if (found_root_ == UINT32_MAX) return SearchResult::kNone;
   length = found_length_;
   for (uint32_t r = found_root_; roots_[r].corner != kNoCorner; r = roots_[r].before)
     corners.push_back(roots_[r].corner);
@@ -55,7 +57,7 @@ void PathSearch::start(uint32_t start_rect, CellPoint from) {
   roots_.push_back({from, 0, kNoCorner, 0});
   rects_around(*mesh_, start_rect, from, around_);
   for (const uint32_t r : around_) {
-    if (r == goal_rect_) {
+    if (r == goal_rect_ && distance(from, goal_) < found_length_) {
       found_length_ = distance(from, goal_);
       found_root_ = 0;
     }

@@ -18,9 +18,11 @@ enum class SearchResult { kFound, kNone, kBudget };
 class PathSearch {
  public:
   /// Corners of the shortest way from `from` to `to`, in order, ends left out; `length` in cells.
-  /// Gives up after `max_nodes` nodes.
+  /// Gives up after `max_nodes` nodes, and does not look for ways that are not shorter than
+  /// `longest`.
   SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to, uint64_t max_nodes,
-                    std::vector<uint32_t>& corners, double& length);
+                    std::vector<uint32_t>& corners, double& length, double longest = kAnyLength);
+  static constexpr double kAnyLength = 1e300;  // cells
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:

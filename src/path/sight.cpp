@@ -73,6 +73,7 @@ bool Sight::is_outside(CellPoint right, CellPoint left) const {
 }
 
 void Sight::start(uint32_t rect_index) {
+  if (is_kept_out(rect_index)) return;
   const MeshRect& rect = mesh_->rects[rect_index];
   if (rect_index == goal_) sees_goal_ = true;
   if (own_ != kNoCorner) {
@@ -165,7 +166,7 @@ void Sight::add(const MeshRect& rect, const MeshPortal& portal, double from, dou
   if (to - from < -kSame) return;
   if (whole_from) note(portal.from_corner);
   if (whole_to) note(portal.to_corner);
-  if (!(to - from > kSame)) return;
+  if (!(to - from > kSame) || is_kept_out(portal.rect)) return;
   View view;
   view.right = point_around(rect, whole_from ? portal.from : from);
   view.left = point_around(rect, whole_to ? portal.to : to);

@@ -31,6 +31,11 @@ inline bool is_taut(const MeshCorner& corner, double dx, double dz) {
 /// Looks over a mesh along straight lines. Owns its memory: one per thread.
 class Sight {
  public:
+  /// From now on, looks into rectangles [first, last) only.
+  void keep_to(uint32_t first_rect, uint32_t last_rect) {
+    first_rect_ = first_rect;
+    last_rect_ = last_rect;
+  }
   /// The corners that are seen from a point of a rectangle and that a way may bend at; each once,
   /// by number. If `goal` is a rectangle, also whether `goal_point` in it is seen.
   void look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
@@ -65,7 +70,12 @@ class Sight {
   void find_blocks();
   void judge_blocks(std::span<const View> views);
 
+  [[nodiscard]] bool is_kept_out(uint32_t rect) const {
+    return rect < first_rect_ || rect >= last_rect_;
+  }
+
   const PathMesh* mesh_ = nullptr;
+  uint32_t first_rect_ = 0, last_rect_ = kNoRect;
   CellPoint from_;
   uint32_t own_ = kNoCorner;  // the corner that is looked from
   uint32_t goal_ = kNoRect;

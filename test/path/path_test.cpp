@@ -10,6 +10,7 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "throng/bake.h"
 #include "throng/graph.h"
 #include "worlds.h"
 
@@ -206,8 +207,10 @@ void expect_as_graph(const World& world, uint64_t pairs) {
   for (int32_t c = 0; c < classes; ++c) {
     SCOPED_TRACE(world.summary().classes[static_cast<size_t>(c)].name);
     PathFinder paths = finder(world, c), looked_up = finder(world, c, true);
+    auto over_zones = PathFinder::make(world, {.avatar_class = c, .zones = true}, context);
+    ASSERT_TRUE(over_zones);
     EXPECT_EQ(looked_up.summary().corners == 0, looked_up.summary().labels == 0);
-    Path path, label_path;
+    Path path, label_path, zone_path;
     for (uint64_t n = 0; n < pairs; ++n) {
       Place from = world.random_place(c, 3, 2 * n), to = world.random_place(c, 3, 2 * n + 1);
       if (!from || !to) break;
@@ -219,7 +222,11 @@ void expect_as_graph(const World& world, uint64_t pairs) {
       ASSERT_EQ(path.end, together ? PathEnd::kReached : PathEnd::kUnreachable);
       looked_up.find(from, to, label_path);
       ASSERT_EQ(label_path.end, path.end);
+      over_zones->find(from, to, zone_path);
+      ASSERT_EQ(zone_path.end, path.end);
       if (!together) continue;
+      EXPECT_GE(zone_path.length, path.length - 1e-6);
+      EXPECT_LE(zone_path.length, path.length * 1.05 + 1e-6);
       expect_walkable(world, c, from, to, path);
       expect_walkable(world, c, from, to, label_path);
       EXPECT_NEAR(label_path.length, path.length, 1e-6);
@@ -233,6 +240,63 @@ TEST(Path, LeadsUpStairsRampsAndSpirals) {
   expect_as_graph(builtin({.name = "church"}, 0.15), 60);
   expect_as_graph(builtin({.name = "garage", .size = 45, .levels = 3}, 0.2), 60);
   expect_as_graph(builtin({.name = "maze", .size = 30, .levels = 2}, 0.1), 40);
+}
+
+// A city of many small zones, in territories of 8 x 8: ways over them beside the shortest.
+TEST(Path, WaysOverManyZonesAreHardlyLonger) {
+  BakeConfig config{.cell = 0.4, .resolution = 0.1, .zone = 26};
+  Context context;
+  const auto world = bake_world(test::builtin({.name = "city", .size = 420}), config, context);
+  ASSERT_TRUE(world);
+  const auto classes = static_cast<int32_t>(world->summary().classes.size());
+  uint64_t asked = 0, far = 0;
+  double sum = 0, shortest = 0;
+  for (int32_t c = 0; c < classes; ++c) {
+    SCOPED_TRACE(world->summary().classes[static_cast<size_t>(c)].name);
+    auto made = PathFinder::make(*world, {.avatar_class = c, .zones = true}, context);
+    ASSERT_TRUE(made);
+    PathFinder over_zones = *std::move(made), exact = finder(*world, c);
+    EXPECT_GT(over_zones.summary().gates, 100u);
+    Path path, best;
+    for (uint64_t n = 0; n < 150; ++n) {
+      Place from = world->random_place(c, 4, 2 * n), to = world->random_place(c, 4, 2 * n + 1);
+      if (n % 3 == 1) from = on_border(*world, c, from);
+      if (n % 3 == 2) to = on_border(*world, c, to);
+      SCOPED_TRACE(testing::Message() << "pair " << n);
+      exact.find(from, to, best);
+      over_zones.find(from, to, path);
+      ASSERT_EQ(path.end, best.end);
+      if (path.end != PathEnd::kReached) continue;
+      expect_walkable(*world, c, from, to, path);
+      EXPECT_GE(path.length, best.length - 1e-6);
+      EXPECT_LE(path.length, best.length * 1.05 + 1e-6);
+      ++asked;
+      far += path.nodes == 0;
+      sum += path.length;
+      shortest += best.length;
+    }
+  }
+  EXPECT_GT(asked, 200u);
+  EXPECT_GT(far, asked / 2);
+  EXPECT_LT(sum, shortest * 1.005);
+}
+
+TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
+  const BakeConfig config{.cell = 0.5, .resolution = 0.1, .zone = 32};
+  Context context;
+  const auto world = bake_world(test::builtin({.name = "city", .size = 250}), config, context);
+  ASSERT_TRUE(world);
+  std::vector<double> lengths;
+  for (const int32_t workers : {1, 2, 7}) {
+    auto made = PathFinder::make(*world, {.workers = workers, .zones = true}, context);
+    ASSERT_TRUE(made);
+    Path path;
+    for (uint64_t n = 0; n < 40; ++n) {
+      made->find(world->random_place(0, 6, 2 * n), world->random_place(0, 6, 2 * n + 1), path);
+      if (workers == 1) lengths.push_back(path.length);
+      EXPECT_EQ(path.length, lengths[n]) << workers << " workers, pair " << n;
+    }
+  }
 }
 
 TEST(Path, SaysWhyThereIsNone) {
@@ -267,6 +331,7 @@ TEST(Path, SaysWhyThereIsNone) {
   Context context;
   EXPECT_FALSE(PathFinder::make(world, {.avatar_class = 1}, context));
   EXPECT_FALSE(PathFinder::make(World{}, {}, context));
+  EXPECT_FALSE(PathFinder::make(world, {.labels = true, .zones = true}, context));
   context.cancel = true;
   EXPECT_FALSE(PathFinder::make(world, {}, context));
 }

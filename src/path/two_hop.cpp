@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/two_hop.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/random.h"
+
+namespace throng {
+namespace {
+
+constexpr double kFar = 1e300;
+constexpr double kSame = 1e-9;
+
+// Dijkstra's search with its memory.
+class Spread {
+ public:
+  explicit Spread(size_t count) : best_(count, kFar), before_(count, 0) {}
+
+  // Calls visit(node, length, before) in order of length; goes on from a node if it says so.
+  template <class Visit>
+  void run(const WayGraph& graph, uint32_t from, Visit visit) {
+    heap_.clear();
+    touched_.clear();
+    relax(from, 0, from);
+    while (!heap_.empty()) {
+      std::pop_heap(heap_.begin(), heap_.end(), later);
+      const auto [length, node] = heap_.back();
+      heap_.pop_back();
+      if (length > best_[node]) continue;
+      if (!visit(node, length, before_[node])) continue;
+      for (const WayGraph::Edge& edge : graph.of(node)) relax(edge.to, length + edge.length, node);
+    }
+    for (const uint32_t node : touched_) best_[node] = kFar;
+  }
+
+ private:
+  using Entry = std::pair<double, uint32_t>;
+  static bool later(const Entry& a, const Entry& b) { return a > b; }
+
+  void relax(uint32_t node, double length, uint32_t before) {
+    if (length >= best_[node]) return;
+    if (best_[node] == kFar) touched_.push_back(node);
+    best_[node] = length;
+    before_[node] = before;
+    heap_.push_back({length, node});
+    std::push_heap(heap_.begin(), heap_.end(), later);
+  }
+
+  std::vector<double> best_;
+  std::vector<uint32_t> before_;
+  std::vector<Entry> heap_;
+  std::vector<uint32_t> touched_;
+};
+
+// Nodes by how many shortest ways from a sample of nodes lead over them: the more, the better a
+// hub.
+std::vector<uint32_t> order_hubs(const WayGraph& graph, uint64_t samples, int32_t workers) {
+  const size_t count = graph.count();
+  samples = std::min<uint64_t>(samples, count);
+  const auto threads = static_cast<size_t>(worker_count(workers));
+  std::vector<std::vector<uint64_t>> ways(threads);  // per worker: sums do not depend on the order
+  parallel_for_worker(threads, workers, [&](size_t share, int32_t) {
+    std::vector<uint64_t>& sums = ways[share];
+    sums.assign(count, 0);
+    std::vector<uint64_t> below(count, 0);
+    Spread spread(count);
+    std::vector<std::pair<uint32_t, uint32_t>> tree;  // node, before it
+    for (uint64_t n = share; n < samples; n += threads) {
+      tree.clear();
+      const auto from = static_cast<uint32_t>(random_below(1, n, 0, count));
+      spread.run(graph, from, [&](uint32_t node, double, uint32_t before) {
+        tree.push_back({node, before});
+        return true;
+      });
+      for (size_t i = tree.size(); i-- > 1;) {
+        below[tree[i].second] += below[tree[i].first] + 1;
+        sums[tree[i].first] += below[tree[i].first];
+        below[tree[i].first] = 0;
+      }
+      if (!tree.empty()) below[tree[0].first] = 0;
+    }
+  });
+  for (size_t t = 1; t < threads; ++t) {
+    for (size_t i = 0; i < count; ++i) ways[0][i] += ways[t][i];
+  }
+  std::vector<uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  const auto weight = [&](uint32_t c) {
+    return std::pair{ways[0][c], uint64_t{graph.first[c + 1] - graph.first[c]}};
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return weight(a) > weight(b); });
+  return order;
+}
+
+}  // namespace
+
+void TwoHopLabels::walk(uint32_t node, uint32_t hub, std::vector<uint32_t>& nodes) const {
+  const auto list = of(node);
+  const auto at = std::lower_bound(list.begin(), list.end(), hub,
+                                   [](const Label& l, uint32_t wanted) { return l.hub < wanted; });
+  auto label = static_cast<uint32_t>(&*at - labels.data());
+  for (;;) {
+    nodes.push_back(node);
+    const Next& after = next[label];
+    if (after.node == node) return;
+    node = after.node;
+    label = after.label;
+  }
+}
+
+Result<TwoHopLabels> label_graph(const WayGraph& graph, uint64_t samples, int32_t workers,
+                                 Context& context) {
+  const size_t count = graph.count();
+  TwoHopLabels out;
+  out.hubs = order_hubs(graph, samples, workers);
+  struct Made {
+    uint32_t hub, next;
+    double length;
+  };
+  std::vector<std::vector<Made>> labels(count);
+  std::vector<double> to_root(count, kFar);  // per hub that the root has
+  Spread spread(count);
+  for (uint32_t rank = 0; rank < count; ++rank) {
+    if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
+    const uint32_t root = out.hubs[rank];
+    for (const auto& label : labels[root]) to_root[label.hub] = label.length;
+    spread.run(graph, root, [&](uint32_t node, double length, uint32_t before) {
+      for (const auto& label : labels[node]) {
+        // An earlier hub lies on a way as short.
+        if (to_root[label.hub] + label.length <= length + kSame) return false;
+      }
+      labels[node].push_back({rank, before, length});
+      return true;
+    });
+    for (const auto& label : labels[root]) to_root[label.hub] = kFar;
+  }
+  out.first.push_back(0);
+  for (auto& of_node : labels) {
+    for (const Made& label : of_node) {
+      out.labels.push_back({label.hub, static_cast<float>(label.length)});
+      out.next.push_back({label.next, 0});
+    }
+    out.first.push_back(static_cast<uint32_t>(out.labels.size()));
+    of_node = {};
+  }
+  constexpr size_t kGrain = 64;
+  parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
+    for (uint32_t i = out.first[begin]; i < out.first[end]; ++i) {
+      const auto list = out.of(out.next[i].node);
+      const auto at = std::lower_bound(
+          list.begin(), list.end(), out.labels[i].hub,
+          [](const TwoHopLabels::Label& label, uint32_t hub) { return label.hub < hub; });
+      out.next[i].label = static_cast<uint32_t>(&*at - out.labels.data());
+    }
+  });
+  return out;
+}
+
+}  // namespace throng

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "path/mesh.h"
+#include "path/pull.h"
+#include "path/search.h"
+#include "path/sight.h"
+#include "path/territory.h"
+
+/// Ways over large worlds: inside zones by their tables, inside territories by labels of their
+/// gates, between them by labels of their posts.
+namespace throng {
+
+/// Finds ways by a zone graph. Owns its memory: one per thread, no allocation once it has grown.
+class ZoneSearch {
+ public:
+  /// As PathSearch::find. Between zones that touch, the shortest way if that is found within a
+  /// budget; else the shortest of its kind (path/pull.h), led through gates.
+  SearchResult find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
+                    const Stop& from, const Stop& to, uint64_t max_nodes,
+                    std::vector<uint32_t>& corners, double& length);
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
+
+ private:
+  // How far hubs are, and from which of several nodes.
+  struct Reach {
+    uint32_t now = 0;
+    uint32_t from = 0;
+    float length = 0;
+  };
+  class Reached {
+   public:
+    void begin(size_t hubs);
+    void add(const TwoHopLabels& labels, uint32_t node, uint32_t from, float length);
+    [[nodiscard]] const Reach* at(uint32_t hub) const {
+      return hubs_[hub].now == now_ ? &hubs_[hub] : nullptr;
+    }
+
+   private:
+    std::vector<Reach> hubs_;
+    uint32_t now_ = 0;
+  };
+  struct End {
+    uint32_t zone = 0, territory = 0;
+    std::vector<float> length;   // to each gate of the zone
+    std::vector<uint16_t> next;  // as in the zone's tables
+    Reached hubs;                // of the territory's gates, from places of the zone's gates
+    struct Post {
+      float length;
+      uint32_t hub;  // of the territory's gates, over which it is reached
+    };
+    std::vector<Post> posts;  // of the territory
+  };
+  // Over a hub of one territory that both ends are in, or over posts.
+  struct Best {
+    float length = 0;
+    bool over_posts = false;
+    uint32_t hub = 0;
+    uint32_t first = 0, last = 0;  // posts: their places in their territories
+  };
+
+  void look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
+                const Stop& stop, End& end);
+  bool join(const ZoneGraph& graph, Best& best);
+  void join_posts(const ZoneGraph& graph, Best& best);
+  bool lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& from, const Stop& to,
+            const Best& best, std::vector<uint32_t>& corners, double& length);
+  void list_gates(const ZoneGraph& graph, const Best& best);
+  void add_gates(const Territory& territory, uint32_t from, uint32_t hub, uint32_t to);
+  void add_gate_way(const PathMesh& mesh, const ZoneGraph& graph, uint32_t from, uint32_t to);
+
+  PathSearch search_;
+  Sight sight_;
+  Puller pull_;
+  End start_, goal_;
+  Reached post_hubs_;
+  std::vector<uint32_t> gates_;          // of the way
+  std::vector<uint32_t> walked_, back_;  // scratch of walks over labels
+  std::vector<uint32_t> posts_;
+  std::vector<WayPoint> way_, tail_;
+  std::vector<uint32_t> near_corners_;
+  uint64_t expanded_ = 0;
+};
+
+}  // namespace throng

@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/zone_ways.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "path/border.h"
+#include "path/mesh_ray.h"
+
+namespace throng {
+namespace {
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+constexpr double kFar = 1e300;
+
+// A portal over a border of zones. Along the border: [begin, end) cells.
+struct Crossing {
+  uint32_t zone[2];
+  bool is_east;  // the other zone lies to the east, else above
+  int32_t line, begin, end;
+  uint32_t level[2], rect[2];
+  bool ends_low, ends_high;  // in a corner: what follows there is another run
+
+  [[nodiscard]] auto key() const {
+    return std::tuple{zone[0], zone[1], is_east, line, level[0], level[1], begin};
+  }
+  [[nodiscard]] bool is_continued_by(const Crossing& next) const {
+    return zone[0] == next.zone[0] && zone[1] == next.zone[1] && is_east == next.is_east &&
+           line == next.line && level[0] == next.level[0] && level[1] == next.level[1] &&
+           end == next.begin && !ends_high && !next.ends_low;
+  }
+};
+
+std::vector<Crossing> find_crossings(const PathMesh& mesh,
+                                     const std::vector<uint32_t>& zone_of_rect) {
+  std::vector<Crossing> crossings;
+  for (uint32_t r = 0; r + 1 < mesh.rects.size(); ++r) {
+    const MeshRect& rect = mesh.rects[r];
+    for (uint32_t p = rect.first_portal; p < mesh.rects[r + 1].first_portal; ++p) {
+      const MeshPortal& portal = mesh.portals[p];
+      if (zone_of_rect[portal.rect] == zone_of_rect[r]) continue;
+      const CellPoint a = point_around(rect, portal.from), b = point_around(rect, portal.to);
+      const bool is_east = a.x == b.x && a.x == rect.x + rect.width;
+      const bool is_up = a.z == b.z && a.z == rect.z + rect.depth;
+      if (!is_east && !is_up) continue;  // It is found from the other side.
+      // The way around leads up along the east side and back along the upper one.
+      const bool forth = is_east;
+      const bool from_corner = portal.from_corner != kNoCorner;
+      const bool to_corner = portal.to_corner != kNoCorner;
+      crossings.push_back({{zone_of_rect[r], zone_of_rect[portal.rect]},
+                           is_east,
+                           static_cast<int32_t>(is_east ? a.x : a.z),
+                           static_cast<int32_t>(is_east ? a.z : b.x),
+                           static_cast<int32_t>(is_east ? b.z : a.x),
+                           {rect.level, mesh.rects[portal.rect].level},
+                           {r, portal.rect},
+                           forth ? from_corner : to_corner,
+                           forth ? to_corner : from_corner});
+    }
+  }
+  std::sort(crossings.begin(), crossings.end(),
+            [](const Crossing& a, const Crossing& b) { return a.key() < b.key(); });
+  return crossings;
+}
+
+// A unit inside the zone: where rays to the gate end.
+GroundPoint inside(const Gate& gate, const MeshRect& rect) {
+  const auto units = [](double cells) { return static_cast<int64_t>(cells * kUnitsPerCell); };
+  GroundPoint p{units(gate.at.x), units(gate.at.z)};
+  if (gate.at.x == rect.x + rect.width) --p.x;
+  if (gate.at.z == rect.z + rect.depth) --p.z;
+  return p;
+}
+
+struct Edge {
+  uint16_t to = 0;
+  double length = 0;
+};
+
+// What the corners of a zone see in it, both ways.
+std::vector<std::vector<Edge>> see_corners(const PathMesh& mesh, const ZoneWays& ways,
+                                           Sight& sight) {
+  std::vector<std::vector<Edge>> edges(ways.corners.size());
+  for (size_t c = 0; c < ways.corners.size(); ++c) {
+    sight.look_from_corner(mesh, ways.corners[c]);
+    for (const SeenCorner& seen : sight.corners()) {
+      const size_t other = ways.place_of_corner(seen.corner);
+      edges[c].push_back({static_cast<uint16_t>(other), seen.distance});
+      edges[other].push_back({static_cast<uint16_t>(c), seen.distance});
+    }
+  }
+  return edges;
+}
+
+// How far corners are from a gate, and over which corner.
+class GateSpread {
+ public:
+  GateSpread(const std::vector<std::vector<Edge>>& edges, size_t corners)
+      : length(corners), next(corners), edges_(edges) {}
+
+  void run(const ZoneWays& ways, const std::vector<SeenCorner>& seen) {
+    std::fill(length.begin(), length.end(), kFar);
+    for (const SeenCorner& s : seen)
+      relax(static_cast<uint16_t>(ways.place_of_corner(s.corner)), s.distance, kStraight);
+    while (!heap_.empty()) {
+      std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
+      const auto [reached, corner] = heap_.back();
+      heap_.pop_back();
+      if (reached > length[corner]) continue;
+      for (const Edge& edge : edges_[corner]) relax(edge.to, reached + edge.length, corner);
+    }
+  }
+
+  std::vector<double> length;
+  std::vector<uint16_t> next;
+
+ private:
+  void relax(uint16_t corner, double reached, uint16_t over) {
+    if (reached >= length[corner]) return;
+    length[corner] = reached;
+    next[corner] = over;
+    heap_.push_back({reached, corner});
+    std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+  }
+
+  const std::vector<std::vector<Edge>>& edges_;
+  std::vector<std::pair<double, uint16_t>> heap_;
+};
+
+void take_shorter(double length, uint16_t next, float& best, uint16_t& best_next) {
+  const auto rounded = static_cast<float>(length);
+  if (!(rounded < best)) return;
+  best = rounded;
+  best_next = next;
+}
+
+}  // namespace
+
+size_t ZoneWays::place_of_corner(uint32_t corner) const {
+  return static_cast<size_t>(std::lower_bound(corners.begin(), corners.end(), corner) -
+                             corners.begin());
+}
+
+size_t ZoneWays::place_of_gate(uint32_t gate) const {
+  return static_cast<size_t>(std::lower_bound(gates.begin(), gates.end(), gate) - gates.begin());
+}
+
+std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mesh) {
+  std::vector<uint32_t> zones(mesh.rects.size() - 1);
+  for (size_t slot = 0; slot < world.slots.size(); ++slot) {
+    const uint32_t first = world.slots[slot]->first_level;
+    const uint32_t last = first + world.slots[slot]->entry.levels();
+    std::fill(zones.begin() + mesh.first[first], zones.begin() + mesh.first[last],
+              static_cast<uint32_t>(slot));
+  }
+  return zones;
+}
+
+std::vector<Gate> find_gates(const WorldData& world, const PathMesh& mesh,
+                             const std::vector<uint32_t>& zone_of_rect) {
+  const std::vector<Crossing> crossings = find_crossings(mesh, zone_of_rect);
+  const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * 64 / 10);
+  std::vector<Gate> gates;
+  for (size_t i = 0; i < crossings.size();) {
+    size_t stop = i + 1;
+    while (stop < crossings.size() && crossings[stop - 1].is_continued_by(crossings[stop])) ++stop;
+    const int32_t begin = crossings[i].begin, cells = crossings[stop - 1].end - begin;
+    const int32_t count = (cells + apart - 1) / apart;
+    for (int32_t n = 0; n < count; ++n) {
+      const int32_t cell = begin + static_cast<int32_t>((2 * n + 1) * int64_t{cells} / (2 * count));
+      while (crossings[i].end <= cell) ++i;
+      const Crossing& c = crossings[i];
+      const CellPoint at =
+          c.is_east ? CellPoint{double(c.line), cell + 0.5} : CellPoint{cell + 0.5, double(c.line)};
+      const size_t low = c.zone[0] < c.zone[1] ? 0 : 1;
+      gates.push_back({at, {c.zone[low], c.zone[1 - low]}, {c.rect[low], c.rect[1 - low]}});
+    }
+    i = stop;
+  }
+  return gates;
+}
+
+void find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
+                    Sight& sight, ZoneWays& ways) {
+  sight.keep_to(ways.first_rect, ways.last_rect);
+  ways.corners.clear();
+  for (uint32_t p = mesh.rects[ways.first_rect].first_portal;
+       p < mesh.rects[ways.last_rect].first_portal; ++p) {
+    for (const uint32_t corner : {mesh.portals[p].from_corner, mesh.portals[p].to_corner}) {
+      if (corner != kNoCorner) ways.corners.push_back(corner);
+    }
+  }
+  std::sort(ways.corners.begin(), ways.corners.end());
+  ways.corners.erase(std::unique(ways.corners.begin(), ways.corners.end()), ways.corners.end());
+  const size_t corners = ways.corners.size(), count = ways.gates.size();
+  ways.length.assign((corners + count) * count, kNever);
+  ways.next.assign(ways.length.size(), kStraight);
+  const auto edges = see_corners(mesh, ways, sight);
+  std::vector<std::vector<SeenCorner>> seen(count);
+  for (size_t g = 0; g < count; ++g) {
+    const Gate& gate = gates[ways.gates[g]];
+    sight.look(mesh, gate.rect_in(zone), gate.at, kNoRect, {});
+    seen[g] = sight.corners();
+  }
+  GateSpread spread(edges, corners);
+  for (size_t g = 0; g < count; ++g) {
+    spread.run(ways, seen[g]);
+    for (size_t c = 0; c < corners; ++c)
+      take_shorter(spread.length[c], spread.next[c], ways.length[ways.row(c) + g],
+                   ways.next[ways.row(c) + g]);
+    const Gate& to = gates[ways.gates[g]];
+    for (size_t other = 0; other < count; ++other) {
+      const Gate& from = gates[ways.gates[other]];
+      const size_t at = ways.row(corners + other) + g;
+      const uint32_t rect = from.rect_in(zone), goal = to.rect_in(zone);
+      const GroundPoint begin = inside(from, mesh.rects[rect]), end = inside(to, mesh.rects[goal]);
+      if (mesh_ray(mesh, rect, begin, end) == goal)
+        take_shorter(distance(from.at, to.at), kStraight, ways.length[at], ways.next[at]);
+      for (const SeenCorner& s : seen[other]) {
+        const size_t c = ways.place_of_corner(s.corner);
+        take_shorter(s.distance + spread.length[c], static_cast<uint16_t>(c), ways.length[at],
+                     ways.next[at]);
+      }
+    }
+  }
+}
+
+void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
+                    const ZoneWays& ways, const Stop& from, Sight& sight,
+                    std::vector<float>& length, std::vector<uint16_t>& next) {
+  const size_t count = ways.gates.size();
+  length.assign(count, kNever);
+  next.assign(count, kStraight);
+  sight.keep_to(ways.first_rect, ways.last_rect);
+  const CellPoint here = in_cells(from.at);
+  sight.look(mesh, from.rect, here, kNoRect, {});
+  for (const SeenCorner& s : sight.corners()) {
+    const size_t c = ways.place_of_corner(s.corner);
+    const float* row = &ways.length[ways.row(c)];
+    const auto first = static_cast<float>(s.distance);
+    for (size_t g = 0; g < count; ++g) {
+      if (!(first + row[g] < length[g])) continue;
+      length[g] = first + row[g];
+      next[g] = static_cast<uint16_t>(c);
+    }
+  }
+  for (size_t g = 0; g < count; ++g) {
+    const Gate& gate = gates[ways.gates[g]];
+    const double straight = distance(here, gate.at);
+    if (!(straight < length[g])) continue;
+    const uint32_t rect = gate.rect_in(zone);
+    if (mesh_ray(mesh, from.rect, from.at, inside(gate, mesh.rects[rect])) != rect) continue;
+    length[g] = static_cast<float>(straight);
+    next[g] = kStraight;
+  }
+}
+
+}  // namespace throng

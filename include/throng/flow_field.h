@@ -29,6 +29,7 @@ struct FlowSummary {
 
 /// Distances to goals over the points of borders of rectangles, as LiveGround searches them. It
 /// shows the ground as it was when the field was made: whoever changes the ground makes another.
+/// Jumps are left out.
 /// Each copy has its own memory for walking; give every thread one.
 class THRONG_API FlowField {
  public:

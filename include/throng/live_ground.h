@@ -10,6 +10,7 @@
 
 #include "throng/base.h"
 #include "throng/path.h"
+#include "throng/prism.h"
 #include "throng/result.h"
 #include "throng/world.h"
 
@@ -27,14 +28,11 @@ struct LiveConfig {
   double slope_cost = 0;
 };
 
-/// A vertical prism over a convex polygon: a crate, a barrier, a door leaf, a marked zone.
-struct Prism {
-  std::vector<std::array<double, 2>> corners;  ///< (x, z), in either order. [m, 3 to 64]
-  double low = 0, high = 0;                    ///< Y of bottom and top. [m, low < high]
-
-  [[nodiscard]] static Prism box(Vec3d low, Vec3d high) {
-    return {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}, low.y, high.y};
-  }
+/// See LiveGround::add_jump.
+struct Jump {
+  Place from, to;
+  double cost = 0;  ///< [m]
+  bool both_ways = true;
 };
 
 /// One change; 0 is none.
@@ -60,6 +58,10 @@ class THRONG_API LiveGround {
                                               std::span<const std::array<uint32_t, 3>> triangles);
   /// Floors inside the prism are of this kind from now on; of several, the last one added counts.
   [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
+  /// A way that moves do not know, given by hand: a jump over a ditch, a ladder, a lift. It leads
+  /// from one place of the class to another, and back if both_ways; nobody checks what is between.
+  /// It costs as many metres, at least as many as it is long in the plane. Fails with kBadInput.
+  [[nodiscard]] Result<ChangeId> add_jump(const Jump& jump);
   /// Takes a change back, for good or, as a door, until it is set again. False if there is none.
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);

@@ -40,9 +40,10 @@ enum class PathEnd {
 
 struct Path {
   PathEnd end = PathEnd::kNoPlace;
-  std::vector<Place> points;  ///< From the start to the goal; each leg is a legal move.
-  double length = 0;          ///< Along the ground's plane. [m]
-  double cost = 0;            ///< Of LiveGround's ways: metres times what they cost.
+  std::vector<Place> points;    ///< From the start to the goal; each leg is a legal move.
+  double length = 0;            ///< Along the ground's plane. [m]
+  std::vector<uint32_t> jumps;  ///< Of LiveGround's: points that a jump leads to, not a move.
+  double cost = 0;              ///< Of LiveGround's ways: metres times what they cost.
   Obstacle obstacle =
       Obstacle::kNone;  ///< Of LiveGround's: what is in the way to an unreachable goal.
   uint64_t nodes = 0;   ///< Intervals that the search looked at; 0 with labels.

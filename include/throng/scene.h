@@ -14,6 +14,7 @@
 #include "throng/context.h"
 #include "throng/math.h"
 #include "throng/patch.h"
+#include "throng/prism.h"
 #include "throng/result.h"
 
 /// A Scene is a triangle soup with an area kind per triangle: the only thing that a bake reads.
@@ -82,10 +83,18 @@ struct AreaRule {
   AreaKind kind = kAreaWalkable;
 };
 
+/// Floors inside the prism get an area kind, whatever rules said; kAreaIgnored cuts them out. The
+/// last volume that holds a place wins.
+struct AreaVolume {
+  Prism prism;
+  AreaKind kind = kAreaWalkable;
+};
+
 /// What to read and how: the content of a scene file.
 struct SceneConfig {
   std::vector<SceneSource> sources;
   std::vector<AreaRule> rules;
+  std::vector<AreaVolume> volumes;
   double plan_height = 3.0;  ///< How high obstacles of 2D plans rise. [m, > 0]
   double curve_tolerance =
       0.02;  ///< Largest gap between a curved patch and its triangles. [m, > 0]
@@ -97,6 +106,10 @@ struct SceneConfig {
 /// 1-2), gml (CityGML 2-3), bsp (Quake 3), wkt, geojson (2D plans), bpt, zonel, patches.json
 /// (curved patches). A folder stands for all its .zonel files; zones that meet are joined.
 [[nodiscard]] THRONG_API Result<Scene> load_scene(const SceneConfig& config, Context& context);
+
+/// Gives what lies inside a volume its kind: triangles that it cuts are cut in pieces. Fails with
+/// kBadInput: not a convex prism, or not an area kind.
+[[nodiscard]] THRONG_API Result<void> mark_volume(Scene& scene, const AreaVolume& volume);
 
 /// Reads a scene file (TOML or JSON). Paths inside are relative to the file. Fails with kBadFile,
 /// line and key.

@@ -226,6 +226,9 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   if (const auto joined = join_zones(all.patches, zones, all.report); !joined)
     return joined.error();
   if (const auto cut = cut_patches(all, config, context); !cut) return cut.error();
+  for (const AreaVolume& volume : config.volumes) {
+    if (const auto marked = mark_volume(all, volume); !marked) return marked.error();
+  }
   const std::string name = sources->size() == 1 ? sources->front().path
                                                 : fmt::format("scene of {} files", sources->size());
   if (auto cleaned = clean_scene(all, name, context); !cleaned) return cleaned.error();

@@ -77,6 +77,29 @@ Result<SceneSource> read_source(const ConfigNode& table, const std::string& name
   return source;
 }
 
+// "walkable", "blocked", "ignored" or a user's number.
+void read_kind(ConfigReader& reader, AreaKind& out) {
+  const ConfigNode* kind = reader.find("kind");
+  if (kind == nullptr) return;
+  const std::string wrong = fmt::format(
+      "kind must be \"walkable\", \"blocked\", \"ignored\" or a number from 2 to {}", kAreaLast);
+  if (kind->kind == ConfigNode::Kind::kString) {
+    if (kind->text == "walkable")
+      out = kAreaWalkable;
+    else if (kind->text == "blocked")
+      out = kAreaBlocked;
+    else if (kind->text == "ignored")
+      out = kAreaIgnored;
+    else
+      reader.fail(*kind, wrong);
+  } else if (kind->kind == ConfigNode::Kind::kNumber && kind->number >= 2 &&
+             kind->number <= kAreaLast && kind->number == std::floor(kind->number)) {
+    out = static_cast<AreaKind>(kind->number);
+  } else {
+    reader.fail(*kind, wrong);
+  }
+}
+
 Result<AreaRule> read_rule(const ConfigNode& table, const std::string& name, size_t index) {
   AreaRule rule;
   ConfigReader reader(name, table, fmt::format("rule {}", index));
@@ -84,30 +107,37 @@ Result<AreaRule> read_rule(const ConfigNode& table, const std::string& name, siz
   reader.only({"material", "node", "kind"});
   reader.text("material", rule.material);
   reader.text("node", rule.node);
-  if (const ConfigNode* kind = reader.find("kind"); kind != nullptr) {
-    const std::string wrong = fmt::format(
-        "kind must be \"walkable\", \"blocked\", \"ignored\" or a number from 2 to {}", kAreaLast);
-    if (kind->kind == ConfigNode::Kind::kString) {
-      if (kind->text == "walkable")
-        rule.kind = kAreaWalkable;
-      else if (kind->text == "blocked")
-        rule.kind = kAreaBlocked;
-      else if (kind->text == "ignored")
-        rule.kind = kAreaIgnored;
-      else
-        reader.fail(*kind, wrong);
-    } else if (kind->kind == ConfigNode::Kind::kNumber && kind->number >= 2 &&
-               kind->number <= kAreaLast && kind->number == std::floor(kind->number)) {
-      rule.kind = static_cast<AreaKind>(kind->number);
-    } else {
-      reader.fail(*kind, wrong);
-    }
-  }
+  read_kind(reader, rule.kind);
   if (rule.material.empty() && rule.node.empty()) {
     reader.fail(table, "needs a pattern: material or node (\"*\" for all)");
   }
   if (!reader.ok()) return reader.error();
   return rule;
+}
+
+Result<AreaVolume> read_volume(const ConfigNode& table, const std::string& name, size_t index) {
+  AreaVolume volume;
+  ConfigReader reader(name, table, fmt::format("volume {}", index));
+  for (const char* key : {"kind", "corners", "low", "high"}) reader.require(key);
+  reader.only({"kind", "corners", "low", "high"});
+  read_kind(reader, volume.kind);
+  reader.number("low", volume.prism.low, -1e6, 1e6);
+  reader.number("high", volume.prism.high, -1e6, 1e6);
+  if (const ConfigNode* corners = reader.find("corners"); corners != nullptr) {
+    bool good = corners->kind == ConfigNode::Kind::kArray;
+    for (size_t i = 0; good && i < corners->items.size(); ++i) {
+      const ConfigNode& corner = corners->items[i];
+      good = corner.kind == ConfigNode::Kind::kArray && corner.items.size() == 2 &&
+             corner.items[0].kind == ConfigNode::Kind::kNumber &&
+             corner.items[1].kind == ConfigNode::Kind::kNumber;
+      if (good) volume.prism.corners.push_back({corner.items[0].number, corner.items[1].number});
+    }
+    if (!good) reader.fail(*corners, "corners must be a list of [x, z]");
+  }
+  if (!reader.ok()) return reader.error();
+  if (const auto fine = check_prism(volume.prism); !fine) reader.fail(table, fine.error().message);
+  if (!reader.ok()) return reader.error();
+  return volume;
 }
 
 }  // namespace
@@ -116,7 +146,7 @@ Result<SceneConfig> read_scene_config(const ConfigNode& root, const std::string&
                                       const std::string& folder) {
   SceneConfig config;
   ConfigReader top(name, root, "scene");
-  top.only({"source", "rule", "plan_height", "curve_tolerance"});
+  top.only({"source", "rule", "volume", "plan_height", "curve_tolerance"});
   top.number("plan_height", config.plan_height, 0.01, 1000);
   top.number("curve_tolerance", config.curve_tolerance, 1e-4, 10);
   for (const ConfigNode* table : top.tables("source")) {
@@ -128,6 +158,11 @@ Result<SceneConfig> read_scene_config(const ConfigNode& root, const std::string&
     auto rule = read_rule(*table, name, config.rules.size() + 1);
     if (!rule) return rule.error();
     config.rules.push_back(*std::move(rule));
+  }
+  for (const ConfigNode* table : top.tables("volume")) {
+    auto volume = read_volume(*table, name, config.volumes.size() + 1);
+    if (!volume) return volume.error();
+    config.volumes.push_back(*std::move(volume));
   }
   if (!top.ok()) return top.error();
   return config;

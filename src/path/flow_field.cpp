@@ -201,8 +201,12 @@ Place FlowField::next(const Place& place) {
 
 void FlowField::way(const Place& place, Path& path) {
   LiveGround::State& ground = *state_->ground.state_;
-  path = Path{.end = PathEnd::kNoPlace, .points = std::move(path.points)};
+  path.end = PathEnd::kNoPlace;
   path.points.clear();
+  path.jumps.clear();
+  path.length = path.cost = 0;
+  path.nodes = 0;
+  path.obstacle = Obstacle::kNone;
   LiveStop stop;
   if (!ground.locate(place, stop)) return;
   const auto [first, total] = state_->leave_by(stop);

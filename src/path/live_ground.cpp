@@ -11,7 +11,7 @@
 #include "path/live_search.h"
 #include "path/live_state.h"
 #include "path/obstacle.h"
-#include "path/prism.h"
+#include "path/plan_shapes.h"
 #include "world/place.h"
 
 namespace throng {
@@ -24,13 +24,7 @@ bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
   stop.at = to_ground(world, place.position.x, place.position.z);
   if (!in_grid(world, stop.at)) return false;
   stop.level = place.level1 - 1;
-  const LiveLevel& level = *mesh.level(stop.level);
-  const int32_t x = stop.at.cell_x(), z = stop.at.cell_z();
-  if (level.ground.zone == nullptr || x >> 6 != level.tile_x || z >> 6 != level.tile_z ||
-      !level.is_legal(x & 63, z & 63))
-    return false;
-  stop.rect = level.rect_at(x & 63, z & 63);
-  return std::isfinite(mesh.factor(level.rects[stop.rect]));
+  return mesh.stand(stop.level, stop.at, stop.rect);
 }
 
 void LiveGround::State::give(Path& path) {
@@ -40,7 +34,8 @@ void LiveGround::State::give(Path& path) {
     path.points.push_back(place_at(world, mesh.level(way[i].level)->ground, way[i].at));
     if (i == 0) continue;
     length += distance_of(way[i - 1].at, way[i].at);
-    cost += leg_cost(mesh, way[i - 1], way[i]);
+    cost += cost_to(mesh, way[i - 1], way[i]);
+    if (way[i].jump > 0) path.jumps.push_back(static_cast<uint32_t>(i));
   }
   path.length = length * world.summary.cell;
   path.cost = cost * world.summary.cell;
@@ -130,6 +125,25 @@ Result<ChangeId> LiveGround::add_area(const Prism& prism, uint8_t kind) {
   return state_->mesh.add(std::move(change));
 }
 
+Result<ChangeId> LiveGround::add_jump(const Jump& jump) {
+  State& s = *state_;
+  LiveStop from, to;
+  if (!s.locate(jump.from, from) || !s.locate(jump.to, to)) {
+    return Error{Errc::kBadInput,
+                 std::string("jump: it must lead from a place of the class to ") + "another"};
+  }
+  const double cell = s.mesh.world().summary.cell;
+  const double length = distance_of(from.at, to.at);
+  if (!std::isfinite(jump.cost) || !(jump.cost > 0) || jump.cost < length * cell - 1e-6) {
+    return Error{Errc::kBadInput, "jump: its cost must be above 0 and at least its length"};
+  }
+  const ChangeId id = s.mesh.add({});
+  const double cost = std::max(jump.cost / cell, length);
+  s.mesh.add_jump(id, from.level, {id, from.at, to.at, to.level, cost});
+  if (jump.both_ways) s.mesh.add_jump(id, to.level, {id, to.at, from.at, from.level, cost});
+  return id;
+}
+
 bool LiveGround::remove(ChangeId change) { return state_->mesh.set_active(change, false, true); }
 bool LiveGround::set_active(ChangeId change, bool active) {
   return state_->mesh.set_active(change, active, false);
@@ -165,6 +179,7 @@ bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   // What the search has met may be gone.
   if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
   path.points.clear();
+  path.jumps.clear();
   path.length = path.cost = 0;
   path.nodes = 0;
   path.obstacle = Obstacle::kNone;

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "path/prism.h"
+#include "path/plan_shapes.h"
 #include "path/rects.h"
 #include "world/place.h"
 
@@ -69,7 +69,9 @@ LiveMesh::LiveMesh(const LiveMesh& other)
       plain_(other.plain_),
       levels_(other.levels_.size()),  // made again where they are asked for
       changes_(other.changes_),
-      changes_of_tile_(other.changes_of_tile_) {}
+      changes_of_tile_(other.changes_of_tile_),
+      jumps_(other.jumps_),
+      idle_jumps_(other.idle_jumps_) {}
 
 void LiveMesh::set_area_cost(uint8_t kind, double cost) {
   ++version_;
@@ -111,13 +113,59 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
   if (change.active != active) {
     change.active = active;
     for (const int64_t tile : change.tiles) forget(tile);
+    for (const uint32_t level : change.levels) switch_jumps(id, level, active);
   }
   if (remove) {
+    std::erase_if(idle_jumps_, [&](const auto& jump) { return jump.second.change == id; });
     change.removed = true;
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
     change.triangles.clear();
   }
   return true;
+}
+
+void LiveMesh::add_jump(ChangeId change, uint32_t level, const JumpEnd& jump) {
+  changes_[change - 1].levels.push_back(level);
+  jumps_[level].push_back(jump);
+  jumps_[level].back().change = change;
+  ++version_;
+}
+
+const std::vector<LiveMesh::JumpEnd>& LiveMesh::jumps_from(uint32_t level) const {
+  static const std::vector<JumpEnd> none;
+  const auto found = jumps_.find(level);
+  return found == jumps_.end() ? none : found->second;
+}
+
+void LiveMesh::switch_jumps(ChangeId change, uint32_t level, bool active) {
+  ++version_;
+  std::vector<JumpEnd>& here = jumps_[level];
+  if (active) {
+    for (const auto& [of_level, jump] : idle_jumps_) {
+      if (of_level == level && jump.change == change) here.push_back(jump);
+    }
+    std::erase_if(idle_jumps_, [&](const auto& idle) {
+      return idle.first == level && idle.second.change == change;
+    });
+    // In the order in which they were made: ways must not tell what was switched when.
+    std::stable_sort(here.begin(), here.end(),
+                     [](const JumpEnd& a, const JumpEnd& b) { return a.change < b.change; });
+  } else {
+    for (const JumpEnd& jump : here) {
+      if (jump.change == change) idle_jumps_.emplace_back(level, jump);
+    }
+    std::erase_if(here, [&](const JumpEnd& jump) { return jump.change == change; });
+  }
+}
+
+bool LiveMesh::stand(uint32_t index, GroundPoint at, uint16_t& rect) {
+  const LiveLevel& of = *level(index);
+  const int32_t x = at.cell_x(), z = at.cell_z();
+  if (of.ground.zone == nullptr || x >> 6 != of.tile_x || z >> 6 != of.tile_z ||
+      !of.is_legal(x & 63, z & 63))
+    return false;
+  rect = of.rect_at(x & 63, z & 63);
+  return std::isfinite(factor(of.rects[rect]));
 }
 
 // The tile's levels are made again; those beside it look for their portals again.

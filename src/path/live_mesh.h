@@ -76,9 +76,23 @@ class LiveMesh {
     uint8_t kind = 0;
     Prism prism;  // of a mesh: its box
     std::vector<std::array<Vec3d, 3>> triangles;
-    std::vector<int64_t> tiles;  // that it touches
+    std::vector<int64_t> tiles;    // that it touches
+    std::vector<uint32_t> levels;  // from which a jump leads
   };
   ChangeId add(Change change);
+  /// A jump, one way, as long as the change is active.
+  struct JumpEnd {
+    ChangeId change = 0;
+    GroundPoint from, to;
+    uint32_t to_level = 0;
+    double cost = 0;  // [cells]
+  };
+  /// [jumps of a change are added right after it]
+  void add_jump(ChangeId change, uint32_t level, const JumpEnd& jump);
+  /// Those that are active now.
+  [[nodiscard]] const std::vector<JumpEnd>& jumps_from(uint32_t level) const;
+  /// Can the class stand at a point of a level now? In which rectangle?
+  bool stand(uint32_t level, GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
 
   /// As world/walk.h wants it.
@@ -107,6 +121,7 @@ class LiveMesh {
   void cut(LiveLevel& level) const;
   void find_portals(LiveLevel& level);
   void forget(int64_t tile);
+  void switch_jumps(ChangeId change, uint32_t level, bool active);
   [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const LiveLevel& level) const;
   [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const LiveLevel& level) const;
 
@@ -121,6 +136,8 @@ class LiveMesh {
   std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not asked for
   std::vector<Change> changes_;
   std::unordered_map<int64_t, std::vector<ChangeId>> changes_of_tile_;  // in order; looked up only
+  std::unordered_map<uint32_t, std::vector<JumpEnd>> jumps_;            // active ones, by level
+  std::vector<std::pair<uint32_t, JumpEnd>> idle_jumps_;                // of changes switched off
 };
 
 }  // namespace throng

@@ -50,7 +50,7 @@ std::pair<uint32_t, bool> LiveNodes::node_of(const LiveStop& stop) {
     if (same(nodes[table_[slot] - 1].stop, stop)) return {table_[slot] - 1, false};
   }
   const auto index = static_cast<uint32_t>(nodes.size());
-  nodes.push_back({.stop = stop});
+  nodes.emplace_back().stop = stop;
   table_[slot] = index + 1;
   if (nodes.size() * 2 > table_.size()) grow();
   return {index, true};
@@ -94,7 +94,9 @@ double leg_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   return std::isfinite(cost) ? cost : kNever;
 }
 
-void draw_straight(LiveMesh& mesh, std::vector<LiveStop>& way) {
+namespace {
+
+void draw_walk_straight(LiveMesh& mesh, std::vector<LiveStop>& way) {
   constexpr double kSlack = 1 + 1e-9;
   // From each stop to the farthest that a straight leg reaches at no more cost, looked for by
   // doubling and halving: it need not be the farthest of all.
@@ -162,6 +164,25 @@ void draw_straight(LiveMesh& mesh, std::vector<LiveStop>& way) {
   }
 }
 
+}  // namespace
+
+void draw_straight(LiveMesh& mesh, std::vector<LiveStop>& way) {
+  if (std::none_of(way.begin(), way.end(), [](const LiveStop& stop) { return stop.jump > 0; }))
+    return draw_walk_straight(mesh, way);
+  std::vector<LiveStop> whole, walk;
+  for (const LiveStop& stop : way) {
+    if (stop.jump > 0) {
+      draw_walk_straight(mesh, walk);
+      whole.insert(whole.end(), walk.begin(), walk.end());
+      walk.clear();
+    }
+    walk.push_back(stop);
+  }
+  draw_walk_straight(mesh, walk);
+  whole.insert(whole.end(), walk.begin(), walk.end());
+  way = std::move(whole);
+}
+
 void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   from_ = from;
   to_ = to;
@@ -178,6 +199,7 @@ void LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, dou
   const auto [index, is_new] = nodes_.node_of(stop);
   LiveNode& node = nodes_.nodes[index];
   if (!is_new && (node.done || node.cost <= cost)) return;
+  node.stop = stop;  // by a jump, or not
   node.cost = cost;
   node.parent = parent;
   const double left = distance_of(stop.at, to_.at);
@@ -211,6 +233,18 @@ void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t i
   nearest_stop_ = {stop.level, stop.rect, at};
 }
 
+void LiveSearch::push_jumps(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor) {
+  for (const LiveMesh::JumpEnd& jump : mesh.jumps_from(node.stop.level)) {
+    LiveStop from{node.stop.level, 0, jump.from}, to{jump.to_level, 0, jump.to, jump.cost};
+    if (!mesh.stand(from.level, from.at, from.rect) || from.rect != node.stop.rect) continue;
+    if (!mesh.stand(to.level, to.at, to.rect)) continue;
+    const double cost = node.cost + distance_of(node.stop.at, from.at) * factor + jump.cost;
+    push(mesh, to, index, cost);
+    const uint32_t there = nodes_.node_of(to).first;
+    if (nodes_.nodes[there].parent == index) nodes_.nodes[there].jumped_from = from.at;
+  }
+}
+
 LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most) {
   for (uint64_t n = 0; n < most;) {
     if (open_.empty()) return State::kNone;
@@ -234,6 +268,7 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most) {
     const double factor = mesh.factor(level.rects[node.stop.rect]);
     if (node.stop.level == to_.level && node.stop.rect == to_.rect)
       push(mesh, to_, index, node.cost + away * factor);
+    push_jumps(mesh, node, index, factor);
     for_portal_points(mesh, node.stop, [&](GroundPoint side, const LiveStop& beyond) {
       const double beyond_factor = mesh.factor(mesh.level(beyond.level)->rects[beyond.rect]);
       if (!std::isfinite(beyond_factor)) return;
@@ -255,6 +290,10 @@ void LiveSearch::way(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
     if (node.parent == UINT32_MAX) break;
     // A stop beyond a portal was reached straight across from its other side.
     const LiveStop& before = nodes_.nodes[node.parent].stop;
+    if (node.stop.jump > 0) {
+      stops.push_back({before.level, before.rect, node.jumped_from});
+      continue;
+    }
     if (before.level == node.stop.level && before.rect == node.stop.rect) continue;
     for_portal_points(mesh, before, [&](GroundPoint side, const LiveStop& beyond) {
       if (same(beyond, node.stop)) stops.push_back({before.level, before.rect, side});

@@ -15,13 +15,15 @@ struct LiveStop {
   uint32_t level = 0;  // of the world
   uint16_t rect = 0;
   GroundPoint at;
+  double jump = 0;  // cost of the jump that leads there, 0 if a leg does [cells]
 };
 
 /// A point that the search has reached.
 struct LiveNode {
   LiveStop stop;
   uint32_t parent = UINT32_MAX;
-  double cost = 0;  // so far [cells]
+  double cost = 0;          // so far [cells]
+  GroundPoint jumped_from;  // if stop.jump > 0: in the parent's rectangle
   bool done = false;
 };
 
@@ -47,7 +49,12 @@ void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
 /// very level.
 double leg_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
 
-/// Leaves out stops where a straight leg is no dearer, and draws bends straighter.
+/// As leg_cost, or the cost of the jump.
+inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
+  return to.jump > 0 ? to.jump : leg_cost(mesh, from, to);
+}
+
+/// Leaves out stops where a straight leg is no dearer, and draws bends straighter; jumps stay.
 void draw_straight(LiveMesh& mesh, std::vector<LiveStop>& way);
 
 /// A*, best first. Owns its memory: no allocation once it has grown.
@@ -68,6 +75,7 @@ class LiveSearch {
     uint32_t node = 0;
   };
   void push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
+  void push_jumps(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
 
   void note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index);
 

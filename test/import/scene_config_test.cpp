@@ -46,6 +46,12 @@ kind = "ignored"
 [[rule]]
 material = "Carpet"
 kind = 7
+
+[[volume]]
+kind = 5
+corners = [[0, 0], [4, 0], [4, 3]]
+low = -1
+high = 2.5
 )";
 
 const char* const kJson = R"({"plan_height": 2.5, "curve_tolerance": 0.05, "source": [
@@ -54,7 +60,8 @@ const char* const kJson = R"({"plan_height": 2.5, "curve_tolerance": 0.05, "sour
    "transform": {"translate": [10, 0, -5], "rotate_y": 90, "scale": 2}},
   {"path": "x.glb", "transform": {"rows": [[1, 0, 0, 7], [0, 1, 0, 8], [0, 0, 1, 9]]}}],
  "rule": [{"material": "Water*", "kind": "blocked"}, {"node": "IfcDoor*", "kind": "ignored"},
-          {"material": "Carpet", "kind": 7}]})";
+          {"material": "Carpet", "kind": 7}],
+ "volume": [{"kind": 5, "corners": [[0, 0], [4, 0], [4, 3]], "low": -1, "high": 2.5}]})";
 
 TEST(SceneConfig, TomlAndJsonSayTheSame) {
   const test::ScratchFolder folder;
@@ -77,6 +84,12 @@ TEST(SceneConfig, TomlAndJsonSayTheSame) {
     EXPECT_EQ(config->rules[1].kind, kAreaIgnored);
     EXPECT_EQ(config->rules[1].node, "IfcDoor*");
     EXPECT_EQ(config->rules[2].kind, 7);
+    ASSERT_EQ(config->volumes.size(), 1u);
+    EXPECT_EQ(config->volumes[0].kind, 5);
+    ASSERT_EQ(config->volumes[0].prism.corners.size(), 3u);
+    EXPECT_EQ(config->volumes[0].prism.corners[2], (std::array<double, 2>{4, 3}));
+    EXPECT_EQ(config->volumes[0].prism.low, -1);
+    EXPECT_EQ(config->volumes[0].prism.high, 2.5);
   }
 }
 
@@ -91,6 +104,26 @@ TEST(SceneConfig, TheExampleInTheDocumentationWorks) {
   ASSERT_TRUE(config) << config.error().message;
   EXPECT_EQ(config->sources.size(), 3u);
   EXPECT_EQ(config->rules.size(), 3u);
+  EXPECT_EQ(config->volumes.size(), 1u);
+}
+
+TEST(SceneConfig, VolumesAreConvexPrismsOfAKind) {
+  EXPECT_EQ(refusal("a.toml", "[[volume]]\nkind = 3\nlow = 0\nhigh = 1\n"),
+            ":1: volume 1: corners is missing");
+  EXPECT_NE(
+      refusal("a.toml", "[[volume]]\nkind = 3\nlow = 0\nhigh = 1\ncorners = [[0, 0], [1, 0], 7]\n")
+          .find("corners must be a list of [x, z]"),
+      std::string::npos);
+  EXPECT_NE(refusal("a.toml",
+                    "[[volume]]\nkind = 3\nlow = 2\nhigh = 1\n"
+                    "corners = [[0, 0], [1, 0], [1, 1]]\n")
+                .find("its bottom must lie below its top"),
+            std::string::npos);
+  EXPECT_NE(refusal("a.toml",
+                    "[[volume]]\nkind = 99\nlow = 0\nhigh = 1\n"
+                    "corners = [[0, 0], [1, 0], [1, 1]]\n")
+                .find("kind must be"),
+            std::string::npos);
 }
 
 TEST(SceneConfig, FaultsAreNamedByLineAndKey) {

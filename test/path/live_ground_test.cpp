@@ -320,6 +320,49 @@ TEST(LiveGround, SlopesCostMoreWhereAskedTo) {
   EXPECT_NEAR(path.cost, length + 4 * 3 * 0.6, 1.2);
 }
 
+TEST(LiveGround, JumpsLeadWhereMovesDoNot) {
+  const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
+  LiveGround ground = live(world);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  const Place from = at(1, 1), to = at(7, 5);
+  Path path;
+  ground.find(from, to, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_FALSE(ground.add_jump({at(3.5, 3), at(4.5, 3), 0.5}));  // shorter than it is
+  EXPECT_FALSE(ground.add_jump({at(3.5, 3), {}, 2}));
+  const auto jump = ground.add_jump({at(3.5, 3), at(4.5, 3), 1.5, false});
+  ASSERT_TRUE(jump);
+  ground.find(from, to, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  ASSERT_EQ(path.jumps, std::vector<uint32_t>{2});
+  EXPECT_NEAR(path.points[1].position.x, 3.5, 1e-3);
+  EXPECT_NEAR(path.points[2].position.x, 4.5, 1e-3);
+  EXPECT_NEAR(path.length, 2 * std::hypot(2.5, 2) + 1, 0.01);
+  EXPECT_NEAR(path.cost, 2 * std::hypot(2.5, 2) + 1.5, 0.01);
+  ground.find(to, from, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);  // one way
+  const auto lift = ground.add_jump({at(3.5, 5), at(4.5, 5), 1.1});
+  ASSERT_TRUE(lift);
+  ground.find(to, from, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.jumps.size(), 1u);
+  LiveGround copy = ground;
+  ASSERT_TRUE(ground.set_active(*lift, false));
+  ground.find(to, from, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  copy.find(to, from, path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+  ASSERT_TRUE(ground.set_active(*lift, true));
+  ground.find(to, from, path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+  // A crate where it lands: nobody jumps there.
+  ASSERT_TRUE(ground.add_obstacle(Prism::box({4.4, 0, 2.9}, {4.6, 1, 3.1})));
+  ASSERT_TRUE(ground.remove(*lift));
+  ground.find(from, to, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  ASSERT_TRUE(ground.remove(*jump));
+}
+
 TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
   LiveGround ground = live(world);

@@ -7,9 +7,9 @@
 #include <span>
 #include <utility>
 
-#include "throng/live_ground.h"
+#include "throng/math.h"
 
-/// What obstacles take from cells.
+/// Squares of the ground's plane against polygons and triangles: what obstacles take from cells.
 namespace throng {
 
 using PlanPoint = std::array<double, 2>;  // x, z [m]
@@ -25,8 +25,5 @@ bool is_nearer(const PlanSquare& square, std::span<const PlanPoint> polygon, dou
 /// Lowest and highest point of a triangle over a square, or none.
 std::optional<std::pair<double, double>> heights_over(const PlanSquare& square,
                                                       const std::array<Vec3d, 3>& triangle);
-
-/// Fails with kBadInput unless the prism is as it says.
-Result<void> check_prism(const Prism& prism);
 
 }  // namespace throng

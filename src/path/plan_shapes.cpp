@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/prism.h"
+#include "path/plan_shapes.h"
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace throng {
 namespace {
@@ -82,36 +81,6 @@ std::optional<std::pair<double, double>> heights_over(const PlanSquare& square,
     heights = {std::min(heights.first, in[i].y), std::max(heights.second, in[i].y)};
   }
   return heights;
-}
-
-Result<void> check_prism(const Prism& prism) {
-  const auto bad = [](const std::string& what) { return Error{Errc::kBadInput, "prism: " + what}; };
-  const size_t count = prism.corners.size();
-  if (count < 3 || count > 64) {
-    return bad("it has " + std::to_string(count) + " corners, give it 3 to 64");
-  }
-  if (!(prism.low < prism.high) || !std::isfinite(prism.high - prism.low)) {
-    return bad("its bottom must lie below its top, both finite");
-  }
-  bool left = false, right = false;
-  int turns_back = 0;  // along x: a star turns one way too, but goes round more than once
-  for (size_t i = 0; i < count; ++i) {
-    const PlanPoint& a = prism.corners[i];
-    if (!(std::fabs(a[0]) < 1e9 && std::fabs(a[1]) < 1e9)) {
-      return bad("corner " + std::to_string(i) + " is not a place on Earth");
-    }
-    const double side = turn(a, prism.corners[(i + 1) % count], prism.corners[(i + 2) % count]);
-    if (side > 0) left = true;
-    if (side < 0) right = true;
-    const auto goes_up = [&](size_t k) {
-      return prism.corners[(k + 1) % count] > prism.corners[k % count];
-    };
-    if (goes_up(i) != goes_up(i + 1)) ++turns_back;
-  }
-  if (left == right || turns_back > 2) {
-    return bad("its corners are not those of a convex polygon, in order; cut it into convex ones");
-  }
-  return {};
 }
 
 }  // namespace throng

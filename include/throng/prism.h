@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/math.h"
+#include "throng/result.h"
+
+/// A simple volume for marking things.
+namespace throng {
+
+/// A vertical prism over a convex polygon: a crate, a barrier, a door leaf, a marked zone.
+struct Prism {
+  std::vector<std::array<double, 2>> corners;  ///< (x, z), in either order. [m, 3 to 64]
+  double low = 0, high = 0;                    ///< Y of bottom and top. [m, low < high]
+
+  [[nodiscard]] static Prism box(Vec3d low, Vec3d high) {
+    return {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}, low.y, high.y};
+  }
+};
+
+/// Fails with kBadInput and what is wrong unless the prism is as it says.
+[[nodiscard]] THRONG_API Result<void> check_prism(const Prism& prism);
+
+}  // namespace throng

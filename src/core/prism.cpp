@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/prism.h"
+
+#include <cmath>
+#include <string>
+
+namespace throng {
+namespace {
+
+using PlanPoint = std::array<double, 2>;
+
+double turn(PlanPoint a, PlanPoint b, PlanPoint c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+}  // namespace
+
+Result<void> check_prism(const Prism& prism) {
+  const auto bad = [](const std::string& what) { return Error{Errc::kBadInput, "prism: " + what}; };
+  const size_t count = prism.corners.size();
+  if (count < 3 || count > 64) {
+    return bad("it has " + std::to_string(count) + " corners, give it 3 to 64");
+  }
+  if (!(prism.low < prism.high) || !std::isfinite(prism.high - prism.low)) {
+    return bad("its bottom must lie below its top, both finite");
+  }
+  bool left = false, right = false;
+  int turns_back = 0;  // along x: a star turns one way too, but goes round more than once
+  for (size_t i = 0; i < count; ++i) {
+    const PlanPoint& a = prism.corners[i];
+    if (!(std::fabs(a[0]) < 1e9 && std::fabs(a[1]) < 1e9)) {
+      return bad("corner " + std::to_string(i) + " is not a place on Earth");
+    }
+    const double side = turn(a, prism.corners[(i + 1) % count], prism.corners[(i + 2) % count]);
+    if (side > 0) left = true;
+    if (side < 0) right = true;
+    const auto goes_up = [&](size_t k) {
+      return prism.corners[(k + 1) % count] > prism.corners[k % count];
+    };
+    if (goes_up(i) != goes_up(i + 1)) ++turns_back;
+  }
+  if (left == right || turns_back > 2) {
+    return bad("its corners are not those of a convex polygon, in order; cut it into convex ones");
+  }
+  return {};
+}
+
+}  // namespace throng

@@ -65,6 +65,19 @@ struct WorldSummary {
   std::vector<double> walkable_area;  ///< Per class. [m^2]
 };
 
+struct WorldConfig {
+  /// Zones in memory beyond so many bytes are given back to the system, those that have not been
+  /// used for long first; they are read again when they are touched. 0: all stay. Never changes
+  /// what a look-up finds.
+  uint64_t resident_bytes = 0;
+};
+
+/// What of a world is in memory. Counted only under WorldConfig::resident_bytes.
+struct WorldResidency {
+  uint64_t zones = 0;
+  uint64_t bytes = 0;  ///< Of their files.
+};
+
 /// A baked world. Cheap to copy (shared, immutable); safe to read from many threads.
 class THRONG_API World {
  public:
@@ -72,11 +85,13 @@ class THRONG_API World {
   explicit World(std::shared_ptr<const WorldData> data) : data_(std::move(data)) {}
 
   /// Opens a folder written by bake_world_to. Fails with kBadFile (by name) or kIo.
-  [[nodiscard]] static Result<World> open(const std::string& path);
+  /// Reads the manifest alone: zones are mapped, and checked, when they are first touched.
+  [[nodiscard]] static Result<World> open(const std::string& path, const WorldConfig& config = {});
   /// Checks every zone against the manifest's checksums. Fails with kBadFile and the zone's name.
   [[nodiscard]] Result<void> check_all() const;
 
   [[nodiscard]] WorldSummary summary() const;
+  [[nodiscard]] WorldResidency residency() const;
   /// Index of a class by name, or none.
   [[nodiscard]] std::optional<int32_t> find_class(const std::string& name) const;
 

@@ -24,6 +24,10 @@ FileMap::~FileMap() {
   if (!data_.empty()) munmap(const_cast<uint8_t*>(data_.data()), data_.size());
 }
 
+void FileMap::give_back() const {
+  if (!data_.empty()) madvise(const_cast<uint8_t*>(data_.data()), data_.size(), MADV_DONTNEED);
+}
+
 Result<FileMap> FileMap::open(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return io_error(path, "opened");

@@ -27,6 +27,9 @@ class FileMap {
   /// Fails with kIo and the system's reason.
   static Result<FileMap> open(const std::string& path);
   [[nodiscard]] std::span<const uint8_t> bytes() const { return data_; }
+  /// Lets the system take the memory back. The bytes stay where they are and can be read at any
+  /// moment, from any thread: they come from the file again.
+  void give_back() const;
 
  private:
   std::span<const uint8_t> data_;

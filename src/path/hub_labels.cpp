@@ -35,7 +35,7 @@ WayGraph look_around(const PathMesh& mesh, int32_t workers, const Context& conte
   parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
     Sight sight;
     for (size_t c = begin; c < end && !context.cancel; ++c) {
-      sight.look_from_corner(mesh, static_cast<uint32_t>(c));
+      sight.look_from_corner(mesh, static_cast<uint32_t>(c), true);
       seen[c] = sight.corners();
       blocks[c] = sight.blocks();
     }

@@ -18,7 +18,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   goal_ = goal;
   goal_point_ = goal_point;
   sees_goal_ = false;
-  in_triangle_ = false;
+  in_triangle_ = with_blocks_ = false;
   views_.clear();
   seen_.clear();
   blocks_.clear();
@@ -34,10 +34,11 @@ void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t g
   finish();
 }
 
-void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner) {
+void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks) {
   const MeshCorner& at = mesh.corners[corner];
   begin(mesh, {double(at.x), double(at.z)}, kNoRect, {});
   own_ = corner;
+  with_blocks_ = with_blocks;
   for (uint32_t r = at.first_rect; r < mesh.corners[corner + 1].first_rect; ++r)
     start(mesh.corner_rects[r]);
   run();
@@ -76,7 +77,7 @@ void Sight::start(uint32_t rect_index) {
   if (is_kept_out(rect_index)) return;
   const MeshRect& rect = mesh_->rects[rect_index];
   if (rect_index == goal_) sees_goal_ = true;
-  if (own_ != kNoCorner) {
+  if (with_blocks_) {
     for (uint32_t b = rect.first_block; b < mesh_->rects[rect_index + 1].first_block; ++b)
       blocks_.push_back({b, true});
   }
@@ -152,7 +153,7 @@ void Sight::judge_blocks(std::span<const View> views) {
 }
 
 void Sight::finish() {
-  if (own_ != kNoCorner) find_blocks();
+  if (with_blocks_) find_blocks();
   std::sort(seen_.begin(), seen_.end(),
             [](const SeenCorner& a, const SeenCorner& b) { return a.corner < b.corner; });
   seen_.erase(
@@ -201,7 +202,7 @@ void Sight::expand(const View& view) {
   if (!runs_along(rect, from_, view.left))
     last_seen = from_base(exit_around(rect, from_, view.left));
   last_seen = std::max(last_seen, first_seen);
-  if (own_ != kNoCorner) entered_.push_back(view);
+  if (with_blocks_) entered_.push_back(view);
   if (view.rect == goal_ && !sees_goal_) {
     sees_goal_ = cross(from_, view.right, goal_point_) >= -kSame &&
                  cross(from_, view.left, goal_point_) <= kSame;

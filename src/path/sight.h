@@ -41,7 +41,7 @@ class Sight {
   void look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
             CellPoint goal_point);
   /// The corners that are seen from a corner, along lines that may bend at both.
-  void look_from_corner(const PathMesh& mesh, uint32_t corner);
+  void look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks);
 
   /// The corners that are seen from a point, or from `corner` if that is one, in the triangle of
   /// it, `right` and `left`; of what lies beyond, some.
@@ -81,6 +81,7 @@ class Sight {
   uint32_t goal_ = kNoRect;
   CellPoint goal_point_;
   bool sees_goal_ = false;
+  bool with_blocks_ = false;
   bool in_triangle_ = false;  // only what lies in that of from_, right_ and left_
   CellPoint right_, left_;
   std::vector<uint32_t> around_;

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <optional>
+
+#include "path/border.h"
 
 namespace throng {
 namespace {
@@ -63,51 +66,89 @@ void ZoneSearch::look_out(const WorldData& world, const PathMesh& mesh, const Zo
   }
 }
 
-bool ZoneSearch::join(const ZoneGraph& graph, Best& best) {
+bool ZoneSearch::join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best) {
   best.length = kNever;
   if (start_.territory == goal_.territory) {
     const auto hubs = static_cast<uint32_t>(graph.territories[start_.territory].gates.size());
     for (uint32_t hub = 0; hub < hubs; ++hub) {
-      const Reach *from = start_.hubs.at(hub), *to = goal_.hubs.at(hub);
-      if (from != nullptr && to != nullptr && from->length + to->length < best.length)
-        best = {from->length + to->length, false, hub, 0, 0};
+      const Reach *there = start_.hubs.at(hub), *back = goal_.hubs.at(hub);
+      if (there != nullptr && back != nullptr && there->length + back->length < best.length)
+        best = {there->length + back->length, false, hub, 0, 0};
     }
   }
-  join_posts(graph, best);
+  join_posts(graph, from, to, best);
   return best.length < kNever;
 }
 
-// Ways that leave the territory.
-void ZoneSearch::join_posts(const ZoneGraph& graph, Best& best) {
-  for (End* end : {&start_, &goal_}) {
-    const Territory& territory = graph.territories[end->territory];
-    end->posts.assign(territory.posts.size(), {kNever, 0});
-    for (size_t p = 0; p < territory.posts.size(); ++p) {
-      End::Post& post = end->posts[p];
-      for (const TwoHopLabels::Label& label : territory.labels.of(territory.post_gates[p])) {
-        const Reach* hub = end->hubs.at(label.hub);
-        if (hub != nullptr && hub->length + label.length < post.length)
-          post = {hub->length + label.length, label.hub};
-      }
+// Finds how far a post of an end's territory is.
+void ZoneSearch::reach_post(const ZoneGraph& graph, End& end, size_t place) {
+  const Territory& territory = graph.territories[end.territory];
+  End::Post& post = end.posts[place];
+  for (const TwoHopLabels::Label& label : territory.labels.of(territory.post_gates[place])) {
+    const Reach* hub = end.hubs.at(label.hub);
+    if (hub != nullptr && hub->length + label.length < post.length)
+      post = {hub->length + label.length, label.hub, post.beyond, post.bound};
+  }
+}
+
+// Ways that leave the territory. No way over a post is shorter than the straight lines to it and
+// from it, so of all posts only those count that lie in the ellipse of a way that is known.
+void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best) {
+  const auto list = [&](End& end, CellPoint here, CellPoint there) {
+    const Territory& territory = graph.territories[end.territory];
+    end.posts.resize(territory.posts.size());
+    for (size_t p = 0; p < end.posts.size(); ++p) {
+      const CellPoint at = graph.gates[territory.gates[territory.post_gates[p]]].at;
+      const auto beyond = static_cast<float>(distance(at, there));
+      end.posts[p] = {kNever, 0, beyond, static_cast<float>(distance(here, at)) + beyond};
     }
-  }
-  post_hubs_.begin(graph.post_territories.size());
+  };
+  // The post of the smallest bound that is reached.
+  const auto nearest = [&](End& end) -> std::optional<size_t> {
+    std::vector<End::Post>& posts = end.posts;
+    for (size_t tries = 0; tries < posts.size(); ++tries) {
+      const auto least = std::min_element(
+          posts.begin(), posts.end(),
+          [](const End::Post& a, const End::Post& b) { return a.bound < b.bound; });
+      if (!(least->bound < kNever)) break;
+      const auto place = static_cast<size_t>(least - posts.begin());
+      reach_post(graph, end, place);
+      if (least->length < kNever) return place;
+      least->bound = kNever;
+    }
+    return std::nullopt;
+  };
+  const CellPoint start_at = in_cells(from.at), goal_at = in_cells(to.at);
+  list(start_, start_at, goal_at);
+  list(goal_, goal_at, start_at);
+  const auto first = nearest(start_), last = nearest(goal_);
+  if (!first || !last) return;
   const Territory& start = graph.territories[start_.territory];
-  for (size_t p = 0; p < start.posts.size(); ++p) {
-    if (start_.posts[p].length < best.length)
-      post_hubs_.add(graph.post_labels, start.posts[p], static_cast<uint32_t>(p),
-                     start_.posts[p].length);
-  }
   const Territory& goal = graph.territories[goal_.territory];
-  for (size_t p = 0; p < goal.posts.size(); ++p) {
-    if (!(goal_.posts[p].length < best.length)) continue;
+  const Meeting met = meet(graph.post_labels, start.posts[*first], goal.posts[*last]);
+  constexpr float kSlack = 1.00001f;  // floats
+  const float known = kSlack * std::min(best.length, start_.posts[*first].length + met.length +
+                                                         goal_.posts[*last].length);
+  const auto each_within = [&](End& end, auto visit) {
+    for (size_t p = 0; p < end.posts.size(); ++p) {
+      if (!(end.posts[p].bound <= known)) continue;
+      reach_post(graph, end, p);
+      if (end.posts[p].length + end.posts[p].beyond <= known) visit(p);
+    }
+  };
+  post_hubs_.begin(graph.post_territories.size());
+  each_within(start_, [&](size_t p) {
+    post_hubs_.add(graph.post_labels, start.posts[p], static_cast<uint32_t>(p),
+                   start_.posts[p].length);
+  });
+  each_within(goal_, [&](size_t p) {
     for (const TwoHopLabels::Label& label : graph.post_labels.of(goal.posts[p])) {
       const Reach* hub = post_hubs_.at(label.hub);
       if (hub == nullptr) continue;
       const float here = hub->length + label.length + goal_.posts[p].length;
       if (here < best.length) best = {here, true, label.hub, hub->from, static_cast<uint32_t>(p)};
     }
-  }
+  });
 }
 
 // Adds the gates from one of a territory to another over a hub, without the first.
@@ -218,7 +259,8 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
   look_out(world, mesh, graph, from, start_);
   look_out(world, mesh, graph, to, goal_);
   Best best;
-  const bool led = join(graph, best) && lead(mesh, graph, from, to, best, corners, length);
+  const bool led =
+      join(graph, from, to, best) && lead(mesh, graph, from, to, best, corners, length);
   if (led && !touch(world, start_.zone, goal_.zone)) return SearchResult::kFound;
   // Near ends, or a way that stays in one zone: search for one that is shorter.
   constexpr uint64_t kNearNodes = 4096;

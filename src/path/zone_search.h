@@ -52,6 +52,8 @@ class ZoneSearch {
     struct Post {
       float length;
       uint32_t hub;  // of the territory's gates, over which it is reached
+      float beyond;  // from it in a straight line to the other end
+      float bound;   // the same, and in a straight line to it
     };
     std::vector<Post> posts;  // of the territory
   };
@@ -65,8 +67,9 @@ class ZoneSearch {
 
   void look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                 const Stop& stop, End& end);
-  bool join(const ZoneGraph& graph, Best& best);
-  void join_posts(const ZoneGraph& graph, Best& best);
+  bool join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
+  void join_posts(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
+  void reach_post(const ZoneGraph& graph, End& end, size_t place);
   bool lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& from, const Stop& to,
             const Best& best, std::vector<uint32_t>& corners, double& length);
   void list_gates(const ZoneGraph& graph, const Best& best);

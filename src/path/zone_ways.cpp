@@ -86,7 +86,7 @@ std::vector<std::vector<Edge>> see_corners(const PathMesh& mesh, const ZoneWays&
                                            Sight& sight) {
   std::vector<std::vector<Edge>> edges(ways.corners.size());
   for (size_t c = 0; c < ways.corners.size(); ++c) {
-    sight.look_from_corner(mesh, ways.corners[c]);
+    sight.look_from_corner(mesh, ways.corners[c], false);
     for (const SeenCorner& seen : sight.corners()) {
       const size_t other = ways.place_of_corner(seen.corner);
       edges[c].push_back({static_cast<uint16_t>(other), seen.distance});

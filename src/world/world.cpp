@@ -43,7 +43,7 @@ const std::vector<uint64_t>& cells_before(const WorldData& world, int32_t avatar
 
 }  // namespace
 
-Result<World> World::open(const std::string& path) {
+Result<World> World::open(const std::string& path, const WorldConfig& config) {
   const std::string name = path + "/manifest.thm";
   auto map = FileMap::open(name);
   if (!map) {
@@ -55,6 +55,7 @@ Result<World> World::open(const std::string& path) {
   auto world = read_manifest(map->bytes(), name);
   if (!world) return world.error();
   (*world)->path = path;
+  (*world)->budget = config.resident_bytes;
   return World(std::move(*world));
 }
 
@@ -69,6 +70,12 @@ Result<void> World::check_all() const {
 WorldSummary World::summary() const {
   THRONG_ASSERT(data_);
   return data_->summary;
+}
+
+WorldResidency World::residency() const {
+  THRONG_ASSERT(data_);
+  const std::lock_guard lock(data_->residency);
+  return {data_->resident_zones, data_->resident_bytes};
 }
 
 std::optional<int32_t> World::find_class(const std::string& name) const {

@@ -152,39 +152,72 @@ LevelView Zone::view(uint32_t index) const {
   return view;
 }
 
-const Zone* WorldData::zone(size_t slot) const {
+void WorldData::open_zone(const Slot& entry) const {
+  if (entry.zone || path.empty()) return;
+  const std::string name = path + "/" + zone_file_name(entry.entry.x(), entry.entry.z());
+  auto map = FileMap::open(name);
+  if (!map) {
+    entry.error = map.error().message;
+    return;
+  }
+  if (map->bytes().size() != entry.entry.bytes() ||
+      hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
+    entry.error = bad_file(name,
+                           "its checksum is not the manifest's (truncated, damaged or of "
+                           "another bake)")
+                      .message;
+    return;
+  }
+  auto zone = Zone::from_file(std::move(*map), name);
+  if (!zone) {
+    entry.error = zone.error().message;
+    return;
+  }
+  const format::Zone& root = (*zone)->root();
+  if (root.tiles_per_side() != tiles_per_zone || root.class_count() != summary.classes.size() ||
+      (*zone)->level_count() != entry.entry.levels() || root.x() != entry.entry.x() ||
+      root.z() != entry.entry.z()) {
+    entry.error = bad_file(name, "belongs to another world").message;
+    return;
+  }
+  entry.zone = std::move(*zone);
+}
+
+// The slow way of zone(): the zone is not there, or the hand has come by.
+const Zone* WorldData::touch(size_t slot) const {
   const Slot& entry = *slots[slot];
-  std::call_once(entry.once, [&] {
-    if (entry.zone || path.empty()) return;
-    const std::string name = path + "/" + zone_file_name(entry.entry.x(), entry.entry.z());
-    auto map = FileMap::open(name);
-    if (!map) {
-      entry.error = map.error().message;
-      return;
-    }
-    if (map->bytes().size() != entry.entry.bytes() ||
-        hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
-      entry.error = bad_file(name,
-                             "its checksum is not the manifest's (truncated, damaged or of "
-                             "another bake)")
-                        .message;
-      return;
-    }
-    auto zone = Zone::from_file(std::move(*map), name);
-    if (!zone) {
-      entry.error = zone.error().message;
-      return;
-    }
-    const format::Zone& root = (*zone)->root();
-    if (root.tiles_per_side() != tiles_per_zone || root.class_count() != summary.classes.size() ||
-        (*zone)->level_count() != entry.entry.levels() || root.x() != entry.entry.x() ||
-        root.z() != entry.entry.z()) {
-      entry.error = bad_file(name, "belongs to another world").message;
-      return;
-    }
-    entry.zone = std::move(*zone);
-  });
+  std::call_once(entry.once, [&] { open_zone(entry); });
+  if (!entry.zone) return nullptr;
+  if (budget == 0 || path.empty()) {
+    entry.use.store(Use::kUsed, std::memory_order_release);
+    return entry.zone.get();
+  }
+  Use idle = Use::kIdle;
+  if (entry.use.compare_exchange_strong(idle, Use::kUsed)) return entry.zone.get();
+  const std::lock_guard lock(residency);
+  if (entry.use.load() == Use::kAway) {
+    resident_bytes += entry.entry.bytes();
+    ++resident_zones;
+    entry.use.store(Use::kUsed, std::memory_order_release);
+    make_room(slot);
+  }
   return entry.zone.get();
+}
+
+// Gives zones back that nobody has used since the hand last came by, until the rest fits. A thread
+// that holds such a zone reads on: its pages come back one by one.
+void WorldData::make_room(size_t for_slot) const {
+  for (size_t steps = 2 * slots.size(); resident_bytes > budget && steps > 0; --steps) {
+    hand = (hand + 1) % slots.size();
+    const Slot& entry = *slots[hand];
+    if (hand == for_slot) continue;
+    Use used = Use::kUsed, idle = Use::kIdle;
+    if (entry.use.compare_exchange_strong(used, Use::kIdle)) continue;
+    if (!entry.use.compare_exchange_strong(idle, Use::kAway)) continue;
+    entry.zone->give_back();
+    resident_bytes -= entry.entry.bytes();
+    --resident_zones;
+  }
 }
 
 size_t WorldData::slot_of_level(uint32_t level) const {

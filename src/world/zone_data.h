@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -35,6 +36,8 @@ class Zone {
   static Result<std::unique_ptr<Zone>> from_file(FileMap map, const std::string& name);
 
   [[nodiscard]] std::span<const uint8_t> bytes() const { return bytes_; }
+  /// FileMap::give_back, if it is mapped.
+  void give_back() const { map_.give_back(); }
   [[nodiscard]] const format::Zone& root() const { return *root_; }
   [[nodiscard]] uint32_t level_count() const { return level_count_; }
   [[nodiscard]] const format::Level& level(uint32_t index) const { return levels_[index]; }
@@ -72,12 +75,16 @@ struct ClassIndex {
 
 /// What World points to.
 struct WorldData {
+  // Of a zone's memory: not there, or given back; there, but not used since the hand last came by;
+  // used since.
+  enum class Use : uint8_t { kAway, kIdle, kUsed };
   struct Slot {
     format::ZoneEntry entry;
     uint32_t first_level = 0;  // of the world
     mutable std::once_flag once;
     mutable std::unique_ptr<Zone> zone;
     mutable std::string error;  // why the zone could not be used
+    mutable std::atomic<Use> use{Use::kAway};
   };
 
   WorldSummary summary;
@@ -91,8 +98,18 @@ struct WorldData {
   uint32_t level_count = 0;
   std::vector<std::unique_ptr<ClassIndex>> class_index;  // per class
 
-  /// The zone of a slot, opened and checked at its first touch; null if it cannot be used.
-  [[nodiscard]] const Zone* zone(size_t slot) const;
+  // Zones in memory. Those beyond the budget are given back, by a clock's hand over the slots.
+  uint64_t budget = 0;  // [bytes], 0: none
+  mutable std::mutex residency;
+  mutable uint64_t resident_bytes = 0, resident_zones = 0;
+  mutable size_t hand = 0;  // the slot that it looks at next
+
+  /// The zone of a slot, opened and checked at its first touch; null if it cannot be used. It stays
+  /// where it is for as long as the world: what a budget gives back comes from its file again.
+  [[nodiscard]] const Zone* zone(size_t slot) const {
+    const Slot& entry = *slots[slot];
+    return entry.use.load(std::memory_order_acquire) == Use::kUsed ? entry.zone.get() : touch(slot);
+  }
   /// Slot that holds a level of the world. [level < level_count]
   [[nodiscard]] size_t slot_of_level(uint32_t level) const;
   /// Levels of the world over a tile: [first, last), and the zone; {0, 0} where there are none.
@@ -102,6 +119,11 @@ struct WorldData {
     uint32_t zone_first = 0;       // first as a level of the zone
   };
   [[nodiscard]] TileLevels tile_levels(int32_t tile_x, int32_t tile_z) const;
+
+ private:
+  const Zone* touch(size_t slot) const;
+  void open_zone(const Slot& entry) const;
+  void make_room(size_t for_slot) const;
 };
 
 std::string zone_file_name(int32_t x, int32_t z);

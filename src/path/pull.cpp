@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "path/pull.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "path/border.h"
+#include "path/mesh_ray.h"
 
 namespace throng {
 namespace {
@@ -24,6 +28,34 @@ bool holds(const PathMesh& mesh, CellPoint before, const WayPoint& at, CellPoint
   return missing_side(corner, in_x, in_z) * turn > 0;
 }
 
+// Where a ray may begin or end: the point of a rectangle, or the one beside a corner.
+Stop stop_of(const PathMesh& mesh, const WayPoint& p) {
+  const auto inside = [&](uint32_t rect, GroundPoint at) {
+    const MeshRect& r = mesh.rects[rect];
+    return Stop{
+        {std::clamp(at.x, int64_t{r.x} << kUnitBits, (int64_t{r.x + r.width} << kUnitBits) - 1),
+         std::clamp(at.z, int64_t{r.z} << kUnitBits, (int64_t{r.z + r.depth} << kUnitBits) - 1)},
+        rect};
+  };
+  if (p.corner == kNoCorner) {
+    return inside(p.rect, {static_cast<int64_t>(std::floor(p.at.x * kUnitsPerCell)),
+                           static_cast<int64_t>(std::floor(p.at.z * kUnitsPerCell))});
+  }
+  const MeshCorner& corner = mesh.corners[p.corner];
+  const GroundPoint at = beside(corner);
+  for (uint32_t i = corner.first_rect; i < mesh.corners[p.corner + 1].first_rect; ++i) {
+    const Stop stop = inside(mesh.corner_rects[i], at);
+    if (stop.at.x == at.x && stop.at.z == at.z) return stop;
+  }
+  return {};
+}
+
+bool see_each_other(const PathMesh& mesh, const WayPoint& a, const WayPoint& b) {
+  const Stop from = stop_of(mesh, a), to = stop_of(mesh, b);
+  return from.rect != kNoRect && to.rect != kNoRect &&
+         mesh_ray(mesh, from.rect, from.at, to.at) == to.rect;
+}
+
 }  // namespace
 
 // What stands in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
@@ -31,6 +63,8 @@ bool holds(const PathMesh& mesh, CellPoint before, const WayPoint& at, CellPoint
 void Puller::wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& over,
                   const WayPoint& to) {
   chain_.clear();
+  // A ray is cheaper than looking into the triangle, and most often nothing stands there.
+  if (see_each_other(mesh, from, to)) return;
   const double turn = cross(from.at, over.at, to.at);
   if (std::fabs(turn) <= kSame) return;
   const double side = turn > 0 ? 1 : -1;  // of `to`, seen along the first side

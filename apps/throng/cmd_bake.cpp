@@ -17,6 +17,7 @@ struct BakeOptions {
   std::string output;
   std::string classes;
   bool fresh = false;
+  bool fly = false;
   BakeConfig config;
 };
 
@@ -41,6 +42,9 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"spans", report.spans},
           {"bytes", report.bytes},
           {"walkable_area", areas},
+          {"air_zones", report.air_zones},
+          {"air_bytes", report.air_bytes},
+          {"seconds_air", report.seconds_air},
           {"seconds_columns", report.seconds_columns},
           {"seconds_levels", report.seconds_levels},
           {"seconds_clearance", report.seconds_clearance},
@@ -59,6 +63,10 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
   }
+  if (report.air_zones > 0) {
+    text += fmt::format("  air over {} zones, {}, in {:.2f} s of the above\n", report.air_zones,
+                        human_bytes(report.air_bytes), report.seconds_air);
+  }
   return text;
 }
 
@@ -68,6 +76,7 @@ int bake(Session& session, BakeOptions& options) {
     if (!classes) return fail(classes.error());
     options.config.classes = *std::move(classes);
   }
+  if (options.fly) options.config.classes.push_back(flyer_class());
   if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
@@ -92,6 +101,11 @@ void add_bake(CLI::App& parser, Session& session) {
       ->required()
       ->type_name("WORLD.throng");
   command->add_option("--cell", config.cell, "Side of a cell [m]")->capture_default_str();
+  command->add_flag("--fly", options->fly, "Add the class flyer, an adult with wings");
+  command
+      ->add_option("--air", config.air,
+                   "Side of an air cell: 1, 2, 4, 8 or 16 cells; 0: none unless a class flies [m]")
+      ->capture_default_str();
   command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
       ->capture_default_str();
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "command.h"
+#include "throng/flight.h"
 #include "throng/world.h"
 
 // throng info: what a baked world holds, and whether its files are intact.
@@ -21,7 +23,18 @@ double bytes_per_area(const WorldSummary& summary) {
   return area > 0 ? static_cast<double>(summary.bytes) / area : 0;
 }
 
-Json info_json(const InfoOptions& options, const WorldSummary& summary) {
+Json air_json(const AirSummary& air) {
+  return {{"cell", air.cell},
+          {"floor", air.floor},
+          {"ceiling", air.ceiling},
+          {"zones", air.zones},
+          {"bytes", air.bytes},
+          {"nodes", air.nodes},
+          {"free_cells", air.free_cells}};
+}
+
+Json info_json(const InfoOptions& options, const WorldSummary& summary,
+               const std::optional<AirSummary>& air) {
   Json classes = Json::array();
   for (size_t i = 0; i < summary.classes.size(); ++i) {
     const AvatarClass& avatar = summary.classes[i];
@@ -31,6 +44,7 @@ Json info_json(const InfoOptions& options, const WorldSummary& summary) {
                        {"step", avatar.step},
                        {"max_slope", avatar.max_slope},
                        {"speed", avatar.speed},
+                       {"flies", avatar.flies},
                        {"walkable_area", summary.walkable_area[i]}});
   }
   const Box3d& box = summary.bounds;
@@ -48,11 +62,13 @@ Json info_json(const InfoOptions& options, const WorldSummary& summary) {
                {"bytes_per_walkable_m2", bytes_per_area(summary)},
                {"source_triangles", summary.source_triangles},
                {"classes", classes}};
+  if (air) json["air"] = air_json(*air);
   if (options.check) json["intact"] = true;
   return json;
 }
 
-std::string info_text(const InfoOptions& options, const WorldSummary& summary) {
+std::string info_text(const InfoOptions& options, const WorldSummary& summary,
+                      const std::optional<AirSummary>& air) {
   const Vec3d size = summary.bounds.max - summary.bounds.min;
   std::string text = fmt::format(
       "{}: {:.1f} x {:.1f} m, {:.1f} m high, from {} triangles\n"
@@ -67,7 +83,15 @@ std::string info_text(const InfoOptions& options, const WorldSummary& summary) {
     text += fmt::format(
         "  {:<12} {:.2f} m high, radius {:.2f} m, step {:.2f} m, slope {:.1f} deg: ", avatar.name,
         avatar.height, avatar.radius, avatar.step, avatar.max_slope);
-    text += fmt::format("{:.1f} m2 walkable\n", summary.walkable_area[i]);
+    text += fmt::format("{:.1f} m2 walkable{}\n", summary.walkable_area[i],
+                        avatar.flies ? ", flies" : "");
+  }
+  if (air) {
+    text += fmt::format(
+        "air from {:.1f} to {:.1f} m in cells of {} m: {} zones with matter, {} free cells in {} "
+        "nodes, {}\n",
+        air->floor, air->ceiling, air->cell, air->zones, air->free_cells, air->nodes,
+        human_bytes(air->bytes));
   }
   if (options.check) text += "all zones are intact\n";
   return text;
@@ -81,7 +105,13 @@ int info(const Session& session, const InfoOptions& options) {
     if (!intact) return fail(intact.error());
   }
   const WorldSummary summary = world->summary();
-  print_result(session, info_json(options, summary), info_text(options, summary));
+  std::optional<AirSummary> air;
+  if (Result<AirSummary> found = air_summary(*world)) {
+    air = *found;
+  } else if (found.error().code != Errc::kNotFound) {
+    return fail(found.error());
+  }
+  print_result(session, info_json(options, summary, air), info_text(options, summary, air));
   return kDone;
 }
 

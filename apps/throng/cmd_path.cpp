@@ -6,9 +6,11 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
+#include "throng/flight.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -22,6 +24,7 @@ struct PathOptions {
   std::vector<double> from, to;
   double reach = 1.0;
   int32_t threads = 0;
+  bool fly = false;
 };
 
 const char* word_for(PathEnd end) {
@@ -40,21 +43,39 @@ const char* word_for(PathEnd end) {
 
 std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }
 
-// One end of the way; fails with a sentence if the class cannot stand there.
-Result<Place> place_of(const World& world, const PathOptions& options, int32_t avatar_class,
-                       const std::vector<double>& at, const char* option) {
+// "WORLD: --from (1, 2, 3) " and what is wrong with that end.
+Error bad_end(const PathOptions& options, const Vec3d& position, const char* option,
+              const std::string& what) {
+  return {Errc::kBadInput,
+          fmt::format("{}: {} ({}) {}", options.world, option, where(position), what)};
+}
+
+// One end of the way as a position; fails with a sentence if it is none of the world's.
+Result<Vec3d> position_of(const World& world, const PathOptions& options,
+                          const std::vector<double>& at, const char* option) {
   const Vec3d position{at[0], at[1], at[2]};
-  const auto bad = [&](const std::string& what) {
-    return Error{Errc::kBadInput,
-                 fmt::format("{}: {} ({}) {}", options.world, option, where(position), what)};
-  };
-  if (!std::isfinite(position.x + position.y + position.z)) return bad("is not a finite position");
+  if (!std::isfinite(position.x + position.y + position.z)) {
+    return bad_end(options, position, option, "is not a finite position");
+  }
   const Box3d bounds = world.summary().bounds;
   if (position.x < bounds.min.x || position.x > bounds.max.x || position.z < bounds.min.z ||
       position.z > bounds.max.z) {
-    return bad(fmt::format("lies outside the world, which reaches from ({}) to ({})",
-                           where(bounds.min), where(bounds.max)));
+    return bad_end(options, position, option,
+                   fmt::format("lies outside the world, which reaches from ({}) to ({})",
+                               where(bounds.min), where(bounds.max)));
   }
+  return position;
+}
+
+// The same as a place; fails with a sentence if the class cannot stand there.
+Result<Place> place_of(const World& world, const PathOptions& options, int32_t avatar_class,
+                       const std::vector<double>& at, const char* option) {
+  const Result<Vec3d> found = position_of(world, options, at, option);
+  if (!found) return found.error();
+  const Vec3d position = *found;
+  const auto bad = [&](const std::string& what) {
+    return bad_end(options, position, option, what);
+  };
   const Place place = world.find_place(avatar_class, position, options.reach);
   if (!place) {
     return bad(
@@ -94,11 +115,84 @@ std::string path_text(const PathOptions& options, const Path& path, double secon
   return text;
 }
 
+const char* word_for(LegKind kind) {
+  switch (kind) {
+    case LegKind::kWalk:
+      return "walk";
+    case LegKind::kTakeOff:
+      return "take off";
+    case LegKind::kFly:
+      return "fly";
+    case LegKind::kLand:
+      return "land";
+  }
+  return "";
+}
+
+Json flight_json(const PathOptions& options, const FlightPath& path, const FlightSummary& summary,
+                 double seconds) {
+  Json points = Json::array(), legs = Json::array();
+  for (const Vec3d& p : path.points) points.push_back({p.x, p.y, p.z});
+  for (const LegKind kind : path.legs) legs.push_back(word_for(kind));
+  return {
+      {"world", options.world},
+      {"class", options.avatar_class},
+      {"end", word_for(path.end)},
+      {"length", path.length},
+      {"points", points},
+      {"legs", legs},
+      {"nodes", path.nodes},
+      {"seconds", seconds},
+      {"air", {{"boxes", summary.boxes}, {"bytes", summary.bytes}, {"seconds", summary.seconds}}}};
+}
+
+std::string flight_text(const PathOptions& options, const FlightPath& path, double seconds) {
+  if (path.end != PathEnd::kReached) {
+    return fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+  }
+  std::string text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
+                                 options.avatar_class, path.legs.size(), seconds * 1e3);
+  for (size_t i = 0; i < path.points.size(); ++i) {
+    text += fmt::format("  {}{}\n", where(path.points[i]),
+                        i == 0 ? "" : fmt::format("  {}", word_for(path.legs[i - 1])));
+  }
+  return text;
+}
+
+int fly(Session& session, const PathOptions& options, const World& world, int32_t avatar_class) {
+  const auto from = position_of(world, options, options.from, "--from");
+  if (!from) return fail(from.error());
+  const auto to = position_of(world, options, options.to, "--to");
+  if (!to) return fail(to.error());
+  Result<FlightFinder> finder = FlightFinder::make(
+      world, {.avatar_class = avatar_class, .workers = options.threads}, session.context);
+  if (!finder) return fail(finder.error());
+  for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
+    if (finder->is_legal(position) || world.find_place(avatar_class, position, options.reach)) {
+      continue;
+    }
+    return fail(bad_end(options, position, option,
+                        fmt::format("is neither in the air nor on the ground for class {}: its "
+                                    "body would touch matter, or it lies above or below the air",
+                                    options.avatar_class)));
+  }
+  FlightPath found;
+  const auto start = std::chrono::steady_clock::now();
+  finder->find(
+      {.from = *from, .to = *to, .reach = options.reach, .cancel = &session.context.cancel}, found);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  print_result(session, flight_json(options, found, finder->summary(), seconds),
+               flight_text(options, found, seconds));
+  return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
+}
+
 int path(Session& session, const PathOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());
+  if (options.fly) return fly(session, options, *world, *avatar_class);
   const auto from = place_of(*world, options, *avatar_class, options.from, "--from");
   if (!from) return fail(from.error());
   const auto to = place_of(*world, options, *avatar_class, options.to, "--to");
@@ -122,7 +216,9 @@ void add_path(CLI::App& parser, Session& session) {
   CLI::App* command =
       add_command(parser, session, "path", "Find the shortest way between two places",
                   "throng bake builtin:garage -o garage.throng\n"
-                  "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult");
+                  "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult\n"
+                  "throng bake builtin:bridge --fly -o bridge.throng\n"
+                  "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer --fly");
   const auto options = std::make_shared<PathOptions>();
   const auto add_place = [&](const char* name, std::vector<double>& at, const char* what) {
     command->add_option(name, at, what)
@@ -139,6 +235,8 @@ void add_path(CLI::App& parser, Session& session) {
   command->add_option("--reach", options->reach, "How far up or down the feet may be [m]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_flag("--fly", options->fly,
+                    "Through the air, for a class that flies; either end may be on the ground");
   command->add_option("--threads", options->threads, "Threads for making the mesh, 0 for all cores")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

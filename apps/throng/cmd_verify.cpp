@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct VerifyOptions {
 struct ClassReport {
   std::string name;
   VerifyReport report;
+  std::optional<FlightReport> flight;  // of a class that flies
 };
 
 bool passes(const VerifyReport& report) {
@@ -59,9 +61,18 @@ Json faults_json(const Scene& scene, const VerifyReport& report) {
   return faults;
 }
 
+Json flight_json(const ClassReport& entry) {
+  if (!entry.flight) return nullptr;
+  const FlightReport& flight = *entry.flight;
+  return {{"points", flight.points},  {"pairs", flight.pairs},         {"reached", flight.reached},
+          {"legs", flight.legs},      {"positions", flight.positions}, {"entered", flight.entered},
+          {"seconds", flight.seconds}};
+}
+
 Json class_json(const Scene& scene, const ClassReport& entry) {
   const VerifyReport& report = entry.report;
   return {{"class", entry.name},
+          {"flight", flight_json(entry)},
           {"states", report.states},
           {"moves", report.moves},
           {"surface_points", report.surface_points},
@@ -88,7 +99,9 @@ Json verify_json(const VerifyOptions& options, const Scene& scene,
                  const std::vector<ClassReport>& entries) {
   VerifyReport all;
   Json classes = Json::array();
-  for (const auto& [name, report] : entries) {
+  for (const ClassReport& entry : entries) {
+    const VerifyReport& report = entry.report;
+    if (entry.flight) all.entered += entry.flight->entered;
     all.entered += report.entered;
     all.unsupported += report.unsupported;
     all.torn += report.torn;
@@ -100,7 +113,7 @@ Json verify_json(const VerifyOptions& options, const Scene& scene,
     all.feet_error_p95 = std::max(all.feet_error_p95, report.feet_error_p95);
     all.lost_grown = std::max(all.lost_grown, report.lost_grown);
     all.lost_exact = std::max(all.lost_exact, report.lost_exact);
-    classes.push_back(class_json(scene, {name, report}));
+    classes.push_back(class_json(scene, entry));
   }
   return {{"world", options.world},
           {"triangles", scene.triangles.size()},
@@ -140,6 +153,18 @@ std::string class_text(const ClassReport& entry) {
     if (fault.what == "entered") text += fmt::format(" by triangle {}", fault.triangle);
     text += '\n';
   }
+  if (!entry.flight) return text;
+  const FlightReport& flight = *entry.flight;
+  text += fmt::format(
+      "  in the air: {} points, {} of {} pairs reached over {} legs, {} bodies on them in {:.1f} "
+      "s; "
+      "entered {}\n",
+      flight.points, flight.reached, flight.pairs, flight.legs, flight.positions, flight.seconds,
+      flight.entered);
+  for (const VerifyFault& fault : flight.faults) {
+    text += fmt::format("  {} in the air at {:.4f} {:.4f} {:.4f} by triangle {}\n", fault.what,
+                        fault.position.x, fault.position.y, fault.position.z, fault.triangle);
+  }
   return text;
 }
 
@@ -173,7 +198,14 @@ int verify(Session& session, VerifyOptions& options) {
     options.config.avatar_class = index;
     Result<VerifyReport> report = verify_world(*world, *scene, options.config, session.context);
     if (!report) return fail(report.error());
-    entries.push_back({classes[static_cast<size_t>(index)].name, *std::move(report)});
+    const AvatarClass& avatar = classes[static_cast<size_t>(index)];
+    entries.push_back({avatar.name, *std::move(report), std::nullopt});
+    if (avatar.flies) {
+      Result<FlightReport> flight = verify_flight(*world, *scene, options.config, session.context);
+      if (!flight) return fail(flight.error());
+      entries.back().flight = *std::move(flight);
+      passed = passed && entries.back().flight->entered == 0;
+    }
     text += class_text(entries.back());
     passed = passed && passes(entries.back().report);
   }

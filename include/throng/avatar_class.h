@@ -21,6 +21,7 @@ struct AvatarClass {
   double step = 0.4;  ///< Largest climb and drop between neighbouring places. [m, 0 to height / 2]
   double max_slope = 45;  ///< Steepest surface it stands on. [degrees, 0 to 89]
   double speed = 1.34;    ///< Preferred walking speed. [m/s, > 0]
+  bool flies = false;     ///< Moves through the air, too.
 };
 
 inline constexpr int32_t kMaxAvatarClasses = 16;
@@ -30,9 +31,11 @@ inline constexpr int32_t kMaxAvatarClasses = 16;
 
 /// adult, child (1.10 m), wheelchair (0.02 m step, 6 % slope), giant (3 m).
 [[nodiscard]] THRONG_API std::vector<AvatarClass> default_classes();
+/// An adult with wings, radius 0.4 m: not one of the default classes.
+[[nodiscard]] THRONG_API AvatarClass flyer_class();
 
 /// Reads classes from a TOML or JSON file: `[[class]] name = "adult" height = 1.75 ...`; missing
-/// numbers take AvatarClass's defaults. Fails with kBadFile and the line, key and limit.
+/// values take AvatarClass's defaults. Fails with kBadFile and the line, key and limit.
 [[nodiscard]] THRONG_API Result<std::vector<AvatarClass>> load_classes(const std::string& path);
 
 /// Checks limits, names (non-empty, distinct) and count. Fails with kBadConfig and the class.

@@ -23,7 +23,10 @@ enum class OldZones : uint8_t { kKeep, kBakeAgain };
 struct BakeConfig {
   double cell = 0.1;        ///< Side of a cell. [m, 0.02 to 5]
   double resolution = 0.1;  ///< Headroom that may be lost. [m, 0.001 to 1]
-  double zone = 160;        ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
+  /// Side of an air cell: 1, 2, 4, 8 or 16 cells. 0: no air is kept, or, if a class flies, that of
+  /// these which is nearest above 0.4 m. [m]
+  double air = 0;
+  double zone = 160;  ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
   std::vector<AvatarClass> classes = default_classes();
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
   OldZones old_zones = OldZones::kKeep;  ///< Of the world or the killed bake that is in the way.
@@ -39,10 +42,13 @@ struct BakeReport {
   uint64_t constant_level_tiles = 0;  ///< Whose floor is stored as a constant or a plane.
   uint64_t spans = 0;                 ///< Solid spans after merging, of the zones baked.
   uint64_t bytes = 0;                 ///< Of all zone files.
+  uint64_t air_zones = 0;             ///< Zones with an air file: those with matter.
+  uint64_t air_bytes = 0;             ///< Of all air files.
   std::vector<double> walkable_area;  ///< Per class. [m^2]
   double seconds_columns = 0;
   double seconds_levels = 0;
   double seconds_clearance = 0;
+  double seconds_air = 0;
   double seconds_write = 0;
   double seconds_total = 0;  ///< Wall clock.
 };
@@ -65,5 +71,10 @@ struct BakeReport {
 /// passable cell; its feet are at height 0. Fails with kBadConfig (cell, workers) or kBadInput.
 [[nodiscard]] THRONG_API Result<World> bake_flat_cells(const FlatCells& cells, double cell,
                                                        int32_t workers = 0);
+
+/// Takes voxels as they are: a world in memory without ground, whose one class, "point", flies
+/// wherever no voxel is; voxel (0, 0, 0) lies at the origin. Fails with kBadConfig (cell, a whole
+/// number of millimetres) or kBadInput.
+[[nodiscard]] THRONG_API Result<World> bake_voxel_cells(const VoxelCells& cells, double cell);
 
 }  // namespace throng

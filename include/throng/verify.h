@@ -58,4 +58,23 @@ struct VerifyReport {
                                                            const VerifyConfig& config,
                                                            Context& context);
 
+/// What the oracle found of a class that flies.
+struct FlightReport {
+  uint64_t points = 0;              ///< Random points of its legal air.
+  uint64_t pairs = 0;               ///< Random pairs of points of the air and places on the ground.
+  uint64_t reached = 0;             ///< Of these, with a way.
+  uint64_t legs = 0;                ///< Of the ways, in the air: taking off, flying, landing.
+  uint64_t positions = 0;           ///< Of bodies on them, at most half a radius apart.
+  uint64_t entered = 0;             ///< Points and legs whose body meets a triangle. Must be 0.
+  std::vector<VerifyFault> faults;  ///< The first few.
+  double seconds = 0;
+};
+
+/// Tests `config.samples` random points of the air, and the ways between a tenth as many pairs,
+/// with the class's whole cylinder against the triangles. Fails with kBadConfig, kNotFound (no
+/// air), kBadInput, kCancelled.
+[[nodiscard]] THRONG_API Result<FlightReport> verify_flight(const World& world, const Scene& source,
+                                                            const VerifyConfig& config,
+                                                            Context& context);
+
 }  // namespace throng

@@ -11,6 +11,7 @@
 #include <set>
 #include <tuple>
 
+#include "bake/air_bake.h"
 #include "bake/clearance.h"
 #include "bake/world_folder.h"
 #include "bake/zone_bake.h"
@@ -39,6 +40,7 @@ Result<void> check_config(const BakeConfig& config) {
   if (!(config.zone > 0 && config.zone <= 10000)) return bad("the zone must be 0 to 10000 m");
   if (config.workers < 0) return bad("workers must be 0 (all cores) or more");
   if (auto ok = check_classes(config.classes); !ok) return ok.error();
+  if (auto ok = check_air(config); !ok) return ok.error();
   for (const AvatarClass& avatar : config.classes) {
     if (avatar.radius / config.cell > 48) {
       return bad("class " + avatar.name + " is more than 48 cells in radius; use a larger cell");
@@ -116,6 +118,7 @@ struct ZoneStore {
   // A zone that need not be baked, or null: then none is kept.
   std::function<std::optional<WorldFolder::Kept>(int32_t x, int32_t z, uint64_t input)> keep;
   const WorldData* old_world = nullptr;
+  WorldFolder* folder = nullptr;  // where air files go; null: they stay in memory
 };
 
 // A kept zone as if it had just been baked.
@@ -247,6 +250,8 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
   world->slot_of_zone.assign(static_cast<size_t>(plan.zones_x) * static_cast<size_t>(plan.zones_z),
                              -1);
 
+  std::optional<AirBaker> air;
+  if (wants_air(config)) air.emplace(plan, air_shape(plan, bounds), store.folder);
   ZoneScratch scratch(worker_count(config.workers));
   std::vector<uint64_t> legal_cells(config.classes.size(), 0);
   const uint64_t total = static_cast<uint64_t>(plan.zones_x) * static_cast<uint64_t>(plan.zones_z);
@@ -256,6 +261,13 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
     const auto place = static_cast<size_t>(z * plan.zones_x + x);
     if (context.on_progress) context.on_progress({"bake", place, total});
     if (context.cancel) return cancelled;
+    if (air) {
+      const auto air_start = Clock::now();
+      if (auto ok = air->bake(x, z, inputs.triangles(place), input.hash(), context); !ok) {
+        return ok.error();
+      }
+      report.seconds_air += seconds_since(air_start);
+    }
     ZoneResult zone;
     format::ZoneEntry entry;
     auto kept = store.keep ? store.keep(x, z, input.hash()) : std::nullopt;
@@ -298,6 +310,11 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
     world->slots.push_back(std::move(slot));
   }
   if (store.keep) world->inputs = inputs.inputs;
+  if (air) {
+    world->air = air->finish(*world);
+    report.air_zones = world->air->slots.size();
+    report.air_bytes = world->air->bytes;
+  }
   for (const uint64_t cells : legal_cells) {
     summary.walkable_area.push_back(static_cast<double>(cells) * config.cell * config.cell);
     world->class_index.push_back(std::make_unique<ClassIndex>());
@@ -346,6 +363,7 @@ Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
   if (!folder) return folder.error();
   ZoneStore store;
   store.old_world = folder->old_world();
+  store.folder = &*folder;
   store.keep = [&](int32_t x, int32_t z, uint64_t input) { return folder->keep(x, z, input); };
   store.write = [&](const format::ZoneEntry& entry, uint64_t input,
                     const flatbuffers::DetachedBuffer& bytes) {

@@ -191,8 +191,36 @@ Result<void> WorldFolder::write(const format::ZoneEntry& entry, uint64_t input,
   return {};
 }
 
+std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) {
+  const std::string file = air_file_name(x, z);
+  for (const bool is_part : {true, false}) {
+    const fs::path from = (is_part ? part_ : fs::path(path_)) / file;
+    auto map = FileMap::open(from.string());
+    if (!map) continue;
+    auto zone = AirZone::from_file(std::move(*map), from.string());
+    if (!zone || (*zone)->root().input() != input) continue;
+    if (!is_part) {
+      std::error_code error;
+      fs::remove(part_ / file, error);
+      fs::create_hard_link(from, part_ / file, error);
+      if (error && !write_file((part_ / file).string(), (*zone)->bytes())) continue;
+    }
+    return std::move(*zone);
+  }
+  return nullptr;
+}
+
+Result<void> WorldFolder::write_air(int32_t x, int32_t z, std::span<const uint8_t> bytes) {
+  return write_file((part_ / air_file_name(x, z)).string(), bytes);
+}
+
 Result<void> WorldFolder::finish(const WorldData& world) {
   std::set<std::string> names;
+  if (world.air != nullptr) {
+    for (const auto& slot : world.air->slots) {
+      names.insert(air_file_name(slot->entry.x(), slot->entry.z()));
+    }
+  }
   for (const auto& slot : world.slots) {
     names.insert(zone_file_name(slot->entry.x(), slot->entry.z()));
   }
@@ -203,9 +231,12 @@ Result<void> WorldFolder::finish(const WorldData& world) {
     if (name != kJournal && !names.contains(name)) stale.push_back(file.path());
   }
   for (const fs::path& file : stale) fs::remove_all(file, error);
-  if (auto ok = write_file((part_ / kManifest).string(), write_manifest(world)); !ok) {
-    return ok.error();
+  const std::vector<uint8_t> manifest = write_manifest(world);
+  if (world.air != nullptr) {
+    const auto air = write_air_manifest(*world.air, hash_bytes(manifest.data(), manifest.size()));
+    if (auto ok = write_file((part_ / kAirManifest).string(), air); !ok) return ok.error();
   }
+  if (auto ok = write_file((part_ / kManifest).string(), manifest); !ok) return ok.error();
   if (!exchange(part_, path_, path_ + ".old")) {
     return Error{Errc::kIo, path_ + ": cannot be written: " + std::strerror(errno)};
   }

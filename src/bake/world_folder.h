@@ -14,6 +14,7 @@
 
 #include "throng/bake.h"
 #include "throng/result.h"
+#include "world/air_data.h"
 #include "world/zone_data.h"
 
 /// The folder of a world while it is baked: zones are taken over from the world that is there and
@@ -44,7 +45,14 @@ class WorldFolder {
   Result<void> write(const format::ZoneEntry& entry, uint64_t input,
                      std::span<const uint8_t> bytes);
 
-  /// Writes the manifest and puts the world in its place. Fails with kIo.
+  /// The air file of a zone that need not be baked, of the killed bake or the old world; it is then
+  /// in the new world. Air files carry their input and their sum, so no journal tells of them.
+  std::unique_ptr<AirZone> keep_air(int32_t x, int32_t z, uint64_t input);
+  /// Adds an air file. Fails with kIo.
+  Result<void> write_air(int32_t x, int32_t z, std::span<const uint8_t> bytes);
+
+  /// Writes the manifest, and that of the air if there is any, and puts the world in its place.
+  /// Fails with kIo.
   Result<void> finish(const WorldData& world);
 
  private:

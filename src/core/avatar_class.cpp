@@ -82,6 +82,8 @@ std::vector<AvatarClass> default_classes() {
   };
 }
 
+AvatarClass flyer_class() { return {.name = "flyer", .radius = 0.4, .speed = 5, .flies = true}; }
+
 Result<void> check_classes(std::span<const AvatarClass> classes) {
   if (classes.empty() || classes.size() > static_cast<size_t>(kMaxAvatarClasses)) {
     return Error{Errc::kBadConfig, fmt::format("avatar classes: need 1 to {}, not {}",
@@ -114,7 +116,8 @@ Result<std::vector<AvatarClass>> read_classes(const ConfigNode& root, const std:
     ConfigReader reader(name, *table, fmt::format("avatar class {}", classes.size() + 1));
     reader.require("name");
     reader.text("name", avatar.name);
-    reader.only({"name", "height", "radius", "step", "max_slope", "speed"});
+    reader.only({"name", "height", "radius", "step", "max_slope", "speed", "flies"});
+    reader.flag("flies", avatar.flies);
     for (const Limit& limit : kLimits) {
       reader.number(limit.key, avatar.*limit.member, limit.low, limit.high);
     }

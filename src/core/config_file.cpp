@@ -261,6 +261,16 @@ void ConfigReader::number(const char* key, double& value, double low, double hig
   }
 }
 
+void ConfigReader::flag(const char* key, bool& value) {
+  const ConfigNode* node = find(key);
+  if (node == nullptr) return;
+  if (node->kind != ConfigNode::Kind::kBool) {
+    fail(*node, fmt::format("{} must be true or false", key));
+  } else {
+    value = node->flag;
+  }
+}
+
 void ConfigReader::text(const char* key, std::string& value) {
   const ConfigNode* node = find(key);
   if (node == nullptr) return;

@@ -47,6 +47,7 @@ class ConfigReader {
   /// Leaves `value` alone where the key is absent. Limits are inclusive.
   void number(const char* key, double& value, double low, double high);
   void text(const char* key, std::string& value);
+  void flag(const char* key, bool& value);
   /// Array of tables under `key`; empty where it is absent.
   [[nodiscard]] std::vector<const ConfigNode*> tables(const char* key);
   /// A list of `count` finite numbers; false where the key is absent or wrong.

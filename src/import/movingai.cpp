@@ -9,6 +9,7 @@ namespace throng {
 namespace {
 
 constexpr long long kMostCells = 16000;  // along a side
+constexpr long long kMostVoxels = 4096;  // along a side
 
 Error bad_map(const std::string& name, const std::string& what) {
   return {Errc::kBadFile, name + ": " + what};
@@ -50,6 +51,42 @@ Result<FlatCells> load_grid_map(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return text.error();
   return read_grid_map(*text, path);
+}
+
+Result<VoxelCells> read_voxel_map(std::string_view text, const std::string& name) {
+  TextCursor at(text);
+  long long size[3];
+  if (at.take_word() != "voxel") {
+    return bad_map(name, "not a voxel map; its first line must be `voxel X Y Z`");
+  }
+  for (long long& side : size) {
+    if (!at.take(side) || side < 1 || side > kMostVoxels) {
+      return bad_map(name, "line 1 must be `voxel X Y Z`, each from 1 to 4096");
+    }
+  }
+  VoxelCells cells{.width = static_cast<int32_t>(size[0]),
+                   .height = static_cast<int32_t>(size[1]),
+                   .depth = static_cast<int32_t>(size[2]),
+                   .filled = {}};
+  for (size_t line = 2;; ++line) {
+    at.skip_space();
+    if (at.at_end()) return cells;
+    long long voxel[3];
+    for (size_t i = 0; i < 3; ++i) {
+      if (!at.take(voxel[i]) || voxel[i] < 0 || voxel[i] >= size[i]) {
+        return bad_map(name, "line " + std::to_string(line) +
+                                 " must be a voxel of the map, three whole numbers from 0");
+      }
+    }
+    cells.filled.push_back({static_cast<int32_t>(voxel[0]), static_cast<int32_t>(voxel[1]),
+                            static_cast<int32_t>(voxel[2])});
+  }
+}
+
+Result<VoxelCells> load_voxel_map(const std::string& path) {
+  const auto text = read_file(path);
+  if (!text) return text.error();
+  return read_voxel_map(*text, path);
 }
 
 }  // namespace throng

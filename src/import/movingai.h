@@ -12,5 +12,6 @@ namespace throng {
 
 /// `name` is for sentences only. Fails with kBadFile and the line.
 Result<FlatCells> read_grid_map(std::string_view text, const std::string& name);
+Result<VoxelCells> read_voxel_map(std::string_view text, const std::string& name);
 
 }  // namespace throng

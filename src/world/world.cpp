@@ -8,7 +8,9 @@
 #include <cstring>
 #include <tuple>
 
+#include "core/hash.h"
 #include "core/random.h"
+#include "world/air_data.h"
 #include "world/cell_blocks.h"
 #include "world/ground.h"
 #include "world/place.h"
@@ -56,6 +58,17 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
   if (!world) return world.error();
   (*world)->path = path;
   (*world)->budget = config.resident_bytes;
+  const std::string air_name = path + "/" + kAirManifest;
+  if (const auto air_map = FileMap::open(air_name)) {
+    const uint64_t hash = hash_bytes(map->bytes().data(), map->bytes().size());
+    auto air = read_air_manifest(air_map->bytes(), air_name, **world, hash);
+    if (!air) return air.error();
+    (*air)->path = path;
+    for (size_t c = 0; c < (*world)->summary.classes.size(); ++c) {
+      (*world)->summary.classes[c].flies = ((*air)->shape.flies >> c & 1) != 0;
+    }
+    (*world)->air = std::move(*air);
+  }
   return World(std::move(*world));
 }
 
@@ -63,6 +76,12 @@ Result<void> World::check_all() const {
   THRONG_ASSERT(data_);
   for (size_t s = 0; s < data_->slots.size(); ++s) {
     if (data_->zone(s) == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
+  }
+  if (data_->air == nullptr) return {};
+  for (const auto& slot : data_->air->slots) {
+    if (!data_->air->zone(slot->entry.x(), slot->entry.z()).usable) {
+      return Error{Errc::kBadFile, slot->error};
+    }
   }
   return {};
 }

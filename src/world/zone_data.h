@@ -73,6 +73,8 @@ struct ClassIndex {
   std::vector<uint64_t> cells_before;  // levels + 1
 };
 
+struct AirData;
+
 /// What World points to.
 struct WorldData {
   // Of a zone's memory: not there, or given back; there, but not used since the hand last came by;
@@ -97,6 +99,7 @@ struct WorldData {
   std::vector<format::ZoneInput> inputs;  // of the zones that were baked
   uint32_t level_count = 0;
   std::vector<std::unique_ptr<ClassIndex>> class_index;  // per class
+  std::shared_ptr<const AirData> air;                    // null: baked without
 
   // Zones in memory. Those beyond the budget are given back, by a clock's hand over the slots.
   uint64_t budget = 0;  // [bytes], 0: none

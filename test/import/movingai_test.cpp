@@ -39,5 +39,26 @@ TEST(GridMap, BadMapsAreRefusedAndTheLineIsNamed) {
             "a.map: line 6 has 0 cells, `width` says 2");
 }
 
+TEST(VoxelMap, ListsItsVoxels) {
+  const auto cells = read_voxel_map("voxel 4 5 6\n0 1 2\n3 4 5\n", "a.3dmap");
+  ASSERT_TRUE(cells) << cells.error().message;
+  EXPECT_EQ(cells->height, 5);
+  ASSERT_EQ(cells->filled.size(), 2u);
+  EXPECT_EQ(cells->filled[1].z, 5);
+}
+
+TEST(VoxelMap, BadMapsAreRefusedAndTheLineIsNamed) {
+  const auto message = [](std::string_view text) {
+    const auto cells = read_voxel_map(text, "a.3dmap");
+    EXPECT_FALSE(cells);
+    return cells.error().message;
+  };
+  EXPECT_NE(message("").find("first line"), std::string::npos);
+  EXPECT_NE(message("voxel 4 0 6\n").find("line 1"), std::string::npos);
+  EXPECT_NE(message("voxel 4 9999 6\n").find("4096"), std::string::npos);
+  EXPECT_NE(message("voxel 4 5 6\n0 1 2\n4 1 2\n").find("line 3"), std::string::npos);
+  EXPECT_NE(message("voxel 4 5 6\n0 1\n").find("line 2"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace throng

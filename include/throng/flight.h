@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/context.h"
+#include "throng/math.h"
+#include "throng/path.h"
+#include "throng/result.h"
+#include "throng/world.h"
+
+/// Ways through the air of a baked world, from the ground and back to it.
+namespace throng {
+
+/// The air of a world.
+struct AirSummary {
+  double cell = 0;          ///< Side of an air cell. [m]
+  double floor = 0;         ///< Lowest feet. [m]
+  double ceiling = 0;       ///< Feet stay below; what is higher is open sky. [m]
+  uint64_t zones = 0;       ///< With matter; all others are nothing but air.
+  uint64_t bytes = 0;       ///< Of all air files.
+  uint64_t nodes = 0;       ///< Of their octrees that are all free or mixed blocks.
+  uint64_t free_cells = 0;  ///< In zones with matter, within their octrees.
+};
+
+/// Reads every air file once. Fails with kNotFound (the world was baked without air) or kBadFile.
+[[nodiscard]] THRONG_API Result<AirSummary> air_summary(const World& world);
+
+struct FlightConfig {
+  int32_t avatar_class = 0;  ///< One that flies.
+  int32_t workers = 0;       ///< Threads for making the finder, 0 for all cores.
+};
+
+/// How a leg of a way is gone.
+enum class LegKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
+
+struct FlightQuery {
+  Vec3d from, to;      ///< Feet. In the air, or on the ground within `reach` above or below. [m]
+  double reach = 0.5;  ///< [m, >= 0]
+  uint64_t max_nodes = UINT64_MAX;            ///< Boxes that may be looked at.
+  const std::atomic<bool>* cancel = nullptr;  ///< Set from any thread to give up.
+};
+
+struct FlightPath {
+  PathEnd end = PathEnd::kNoPlace;
+  std::vector<Vec3d> points;  ///< Feet, from the start to the goal. [m]
+  std::vector<LegKind> legs;  ///< One less than the points.
+  double length = 0;          ///< Of all legs. [m]
+  uint64_t nodes = 0;         ///< Boxes that the search looked at.
+};
+
+struct FlightSummary {
+  uint64_t boxes = 0;  ///< Cubes of legal air.
+  uint64_t bytes = 0;  ///< Of them and what finds them.
+  double seconds = 0;  ///< To make them.
+};
+
+/// Finds ways for one class that flies. The legal air is shared by all copies; each copy has its
+/// own memory for searching: give every thread one. No allocation once it is warm.
+class THRONG_API FlightFinder {
+ public:
+  /// Reads every zone once. Fails with kNotFound (a world without air), kBadConfig (no such class,
+  /// or it does not fly), kBadFile or kCancelled.
+  [[nodiscard]] static Result<FlightFinder> make(const World& world, const FlightConfig& config,
+                                                 Context& context);
+  FlightFinder(const FlightFinder& other);
+  FlightFinder& operator=(const FlightFinder& other);
+  FlightFinder(FlightFinder&&) noexcept;
+  FlightFinder& operator=(FlightFinder&&) noexcept;
+  ~FlightFinder();
+
+  /// A short way: over the ground where that is shorter, else from the ground straight up into the
+  /// air, through it, and down again; a place under which nothing can take off is walked from. The
+  /// whole body passes. Ways through the air are taut, not always the shortest (docs/results.md).
+  /// `path` is reused: its memory stays.
+  void find(const FlightQuery& query, FlightPath& path);
+
+  /// May the feet be there, in the air? Constant time.
+  [[nodiscard]] bool is_legal(Vec3d feet) const;
+  /// The n-th of a reproducible stream of points, uniform over the legal air. No point only if
+  /// there is none.
+  [[nodiscard]] std::optional<Vec3d> random_point(uint64_t seed, uint64_t n) const;
+
+  /// Where feet at a place on the ground come into the air, straight up; nothing where matter is in
+  /// the way.
+  [[nodiscard]] std::optional<Vec3d> take_off(const Place& place) const;
+  /// The ground under a point of the air, straight down to the lowest box of air and there the best
+  /// place: the most clear of all, then the nearest to the box's axis [PACS00]. Nowhere if there is
+  /// none.
+  [[nodiscard]] Place landing(Vec3d feet) const;
+
+  [[nodiscard]] FlightSummary summary() const;
+
+ private:
+  struct Shared;
+  struct Scratch;
+  explicit FlightFinder(std::shared_ptr<const Shared> shared);
+
+  std::shared_ptr<const Shared> shared_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace throng

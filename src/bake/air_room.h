@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "world/air_data.h"
+#include "world/air_rows.h"
+
+/// Width and height of free cubes.
+namespace throng {
+
+/// Writes the room of every free cube of a tree that was built from `source`, whose rows reach
+/// `apron` cells beyond the zone on all sides: no width is promised beyond what they show. The
+/// highest layer of the rows has no matter. A height is that over the cube grown by its width.
+/// Time: the cells, and 15 layers over each cube.
+void measure_room(const AirTreeSource& source, int32_t apron, AirTreeData& tree);
+
+}  // namespace throng

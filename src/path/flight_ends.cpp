@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/flight_ends.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+double off_faces(double v) {
+  const double low = std::floor(v);
+  return std::clamp(v, low + kAirSkin, low + 1 - kAirSkin);
+}
+
+// Cells around in which everything is legal, as the bake has stored it: 0 to 7. [legal cell]
+int32_t margin_at(const GroundLevel& level, uint32_t zone_level, int32_t avatar_class, int32_t x,
+                  int32_t z) {
+  const format::Clearance& clearance =
+      level.zone->clearance(zone_level, static_cast<uint32_t>(avatar_class));
+  if (clearance.kind() != format::CellsKind::Blocks) return 7;
+  const uint64_t* words = level.zone->words(clearance.offset());
+  int32_t margin = 0;
+  for (int32_t bit = 0; bit < 3; ++bit) {
+    words += bit_words(words);
+    if (bit_at(words, x, z)) margin |= 1 << bit;
+  }
+  return margin;
+}
+
+}  // namespace
+
+FlightEnds::FlightEnds(const WorldData& world, const FlightSpace& space, int32_t avatar_class)
+    : world_(world),
+      space_(space),
+      ground_{world, avatar_class},
+      avatar_(world.summary.classes[static_cast<size_t>(avatar_class)]),
+      cell_(space.shape.cell * 1e-3) {}
+
+AirPoint FlightEnds::to_air(Vec3d p) const {
+  return {(p.x - world_.summary.origin.x) / cell_,
+          (p.y * 1000 - space_.shape.origin_y) / space_.shape.cell,
+          (p.z - world_.summary.origin.z) / cell_};
+}
+
+Vec3d FlightEnds::to_metres(AirPoint p) const {
+  return {world_.summary.origin.x + p.x * cell_,
+          (p.y * space_.shape.cell + space_.shape.origin_y) * 1e-3,
+          world_.summary.origin.z + p.z * cell_};
+}
+
+std::optional<AirPoint> FlightEnds::in_air(Vec3d feet) const {
+  if (!std::isfinite(feet.x + feet.y + feet.z)) return {};
+  const AirPoint p = to_air(feet);
+  if (space_.box_at(p) == kNoBox) return {};
+  return AirPoint{off_faces(p.x), off_faces(p.y), off_faces(p.z)};
+}
+
+std::optional<AirPoint> FlightEnds::take_off(const Place& place) const {
+  if (!place || !std::isfinite(place.position.x + place.position.y + place.position.z)) return {};
+  const AirPoint feet = to_air(place.position);
+  const double head = feet.y + avatar_.height / cell_;
+  const AirPoint column{off_faces(feet.x), 0, off_faces(feet.z)};
+  for (double y = std::floor(feet.y); y <= head; y += 1) {
+    const AirPoint p{column.x, std::max(y + kAirSkin, off_faces(feet.y)), column.z};
+    if (p.y > head) break;
+    if (space_.box_at(AirPoint{p.x, y + 0.5, p.z}) != kNoBox) return p;
+  }
+  return {};
+}
+
+Place FlightEnds::nearest_take_off(const Place& from, uint64_t most, CircleFlood& flood) const {
+  if (!from || from.level1 > world_.level_count) return {};
+  const GroundPoint start = to_ground(world_, from.position.x, from.position.z);
+  const GroundLevel level = ground_level(world_, from.level1 - 1, ground_.avatar_class);
+  if (!in_grid(world_, start) || level.zone == nullptr ||
+      !level.is_legal(start.cell_x() & 63, start.cell_z() & 63)) {
+    return {};
+  }
+  Place found;
+  uint64_t seen = 0;
+  flood.start(level, start.cell_x(), start.cell_z());
+  flood.run(
+      ground_, step_mm(avatar_), [&](int32_t, int32_t) { return !found && seen < most; },
+      [&](const CircleFlood::Cell& cell) {
+        ++seen;
+        const Place place = place_at(world_, cell.level,
+                                     {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
+                                      (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2});
+        if (take_off(place)) found = place;
+      },
+      [](const CircleFlood::Cell&, int32_t, int32_t) {});
+  return found;
+}
+
+uint32_t FlightEnds::lowest_box(AirPoint p) const {
+  uint32_t box = space_.box_at(p);
+  while (box != kNoBox) {
+    const AirCube& cube = space_.boxes[box];
+    const uint32_t below = space_.box_at(static_cast<int32_t>(std::floor(p.x)), cube.y - 1,
+                                         static_cast<int32_t>(std::floor(p.z)));
+    if (below == kNoBox) return box;
+    box = below;
+  }
+  return kNoBox;
+}
+
+// Most accessible first, most aligned with the box's axis next. Source: [PACS00] 1.2.3.7.
+Place FlightEnds::best_landing(uint32_t box) const {
+  const AirCube& cube = space_.boxes[box];
+  const int32_t multiple = space_.shape.multiple;
+  Place best;
+  int32_t best_margin = -1;
+  double best_off = 0;
+  const double bottom = to_metres({0, static_cast<double>(cube.y), 0}).y;
+  for (int32_t z = cube.z * multiple; z < (cube.z + cube.side) * multiple; ++z) {
+    for (int32_t x = cube.x * multiple; x < (cube.x + cube.side) * multiple; ++x) {
+      if (x >= world_.width || z >= world_.depth) continue;
+      const auto tile = world_.tile_levels(x >> 6, z >> 6);
+      for (uint32_t i = tile.first; i < tile.last; ++i) {
+        const uint32_t zone_level = tile.zone_first + i - tile.first;
+        const GroundLevel level = ground_level(*tile.zone, zone_level, i, ground_.avatar_class);
+        if (!level.is_legal(x & 63, z & 63)) continue;
+        const int32_t margin = margin_at(level, zone_level, ground_.avatar_class, x & 63, z & 63);
+        const double dx = (x + 0.5) / multiple - (cube.x + cube.side * 0.5);
+        const double dz = (z + 0.5) / multiple - (cube.z + cube.side * 0.5);
+        const double off = dx * dx + dz * dz;
+        if (margin < best_margin || (margin == best_margin && off >= best_off)) continue;
+        const Place place = place_at(world_, level,
+                                     {(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
+                                      (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
+        if (place.position.y > bottom) continue;
+        const auto up = take_off(place);
+        if (!up || space_.box_at(*up) != box) continue;
+        best = place;
+        best_margin = margin;
+        best_off = off;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace throng

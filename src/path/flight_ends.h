@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "path/circle_flood.h"
+#include "path/flight_space.h"
+#include "throng/world.h"
+
+/// Between the ground and the air: where a body that stands comes into the air, and where it lands.
+namespace throng {
+
+class FlightEnds {
+ public:
+  FlightEnds(const WorldData& world, const FlightSpace& space, int32_t avatar_class);
+
+  [[nodiscard]] AirPoint to_air(Vec3d p) const;
+  [[nodiscard]] Vec3d to_metres(AirPoint p) const;
+  /// The point of the air that stands for feet: the same, but for a skin off the faces of its cell.
+  /// Nothing where the body may not fly.
+  [[nodiscard]] std::optional<AirPoint> in_air(Vec3d feet) const;
+
+  /// Straight up from feet on the ground. The body on the ground is clear from its bottom to its
+  /// height, the body in the air from its feet to its height: where the one's feet are not above
+  /// the other's head, so is all that is passed between them.
+  [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
+  /// The nearest place, in steps, from which feet come into the air; `most` cells are looked at.
+  [[nodiscard]] Place nearest_take_off(const Place& from, uint64_t most, CircleFlood& flood) const;
+  /// The best place to land on under a box that holds no air below it.
+  [[nodiscard]] Place best_landing(uint32_t box) const;
+  /// The lowest box straight under a point of the air.
+  [[nodiscard]] uint32_t lowest_box(AirPoint p) const;
+
+ private:
+  const WorldData& world_;
+  const FlightSpace& space_;
+  WorldGround ground_;
+  const AvatarClass& avatar_;
+  double cell_;  // of the air [m]
+};
+
+}  // namespace throng

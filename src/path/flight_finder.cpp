@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "core/random.h"
+#include "path/flight_ends.h"
+#include "path/flight_pull.h"
+#include "path/flight_search.h"
+#include "throng/flight.h"
+
+namespace throng {
+namespace {
+
+constexpr int32_t kLargestBox = 32;            // air cells: larger ones hide good ways
+constexpr uint64_t kMostFloodCells = 1 << 18;  // on foot to where one can take off
+
+double distance(Vec3d a, Vec3d b) {
+  const Vec3d d = a - b;
+  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+}
+
+}  // namespace
+
+struct FlightFinder::Shared {
+  World world;
+  int32_t avatar_class = 0;
+  FlightSpace space;
+  std::vector<uint64_t> cells_before;  // per box, and of all
+  std::optional<PathFinder> walker;    // none where the class has no ground
+  FlightSummary summary;
+
+  [[nodiscard]] FlightEnds ends() const { return {*world.data(), space, avatar_class}; }
+};
+
+struct FlightFinder::Scratch {
+  explicit Scratch(const Shared& shared) : walker(shared.walker) {}
+
+  FlightSearch search;
+  FlightPull pull;
+  CircleFlood flood;
+  std::optional<PathFinder> walker;
+  std::vector<AirPoint> way;
+  Path walk_there, walk_on, walk_all;
+};
+
+FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
+    : shared_(std::move(shared)), scratch_(std::make_unique<Scratch>(*shared_)) {}
+FlightFinder::FlightFinder(const FlightFinder& other) : FlightFinder(other.shared_) {}
+FlightFinder& FlightFinder::operator=(const FlightFinder& other) {
+  shared_ = other.shared_;
+  scratch_ = std::make_unique<Scratch>(*shared_);
+  return *this;
+}
+FlightFinder::FlightFinder(FlightFinder&&) noexcept = default;
+FlightFinder& FlightFinder::operator=(FlightFinder&&) noexcept = default;
+FlightFinder::~FlightFinder() = default;
+
+Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& config,
+                                        Context& context) {
+  if (world.data() == nullptr) return Error{Errc::kBadInput, "flight: the world is empty"};
+  const WorldData& data = *world.data();
+  if (data.air == nullptr) {
+    return Error{Errc::kNotFound,
+                 "flight: the world was baked without air; bake it with --air or with a class that "
+                 "flies"};
+  }
+  const auto classes = static_cast<int32_t>(data.summary.classes.size());
+  if (config.avatar_class < 0 || config.avatar_class >= classes) {
+    return Error{Errc::kBadConfig, "flight: there is no class " +
+                                       std::to_string(config.avatar_class) + ", the world has " +
+                                       std::to_string(classes)};
+  }
+  if (config.workers < 0) return Error{Errc::kBadConfig, "flight: workers must be 0 or more"};
+  const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(config.avatar_class)];
+  if (!avatar.flies) {
+    return Error{Errc::kBadConfig, "flight: class " + avatar.name +
+                                       " does not fly; say `flies = true` in the classes' file"};
+  }
+  const auto start = std::chrono::steady_clock::now();
+  if (auto ok = world.check_all(); !ok) return ok.error();
+  auto space = build_flight_space(*data.air, air_body(avatar, data.air->shape), kLargestBox,
+                                  config.workers, context);
+  if (!space) return space.error();
+  auto shared = std::make_shared<Shared>();
+  shared->world = world;
+  shared->avatar_class = config.avatar_class;
+  shared->space = std::move(*space);
+  shared->cells_before.reserve(shared->space.boxes.size() + 1);
+  shared->cells_before.push_back(0);
+  for (const AirCube& box : shared->space.boxes) {
+    const auto side = static_cast<uint64_t>(box.side);
+    shared->cells_before.push_back(shared->cells_before.back() + side * side * side);
+  }
+  if (data.level_count > 0) {
+    auto walker = PathFinder::make(
+        world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
+    if (!walker) return walker.error();
+    shared->walker = std::move(*walker);
+  }
+  shared->summary.boxes = shared->space.boxes.size();
+  shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
+                          (shared->walker ? shared->walker->summary().bytes : 0);
+  shared->summary.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return FlightFinder(std::move(shared));
+}
+
+FlightSummary FlightFinder::summary() const { return shared_->summary; }
+
+bool FlightFinder::is_legal(Vec3d feet) const { return shared_->ends().in_air(feet).has_value(); }
+
+std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
+  const std::vector<uint64_t>& before = shared_->cells_before;
+  if (before.back() == 0) return {};
+  const uint64_t pick = random_below(seed, n, 0, before.back());
+  const auto box = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), pick) -
+                                       before.begin() - 1);
+  const AirCube& cube = shared_->space.boxes[box];
+  const auto part = [&](uint64_t i) {
+    return kAirSkin + random_unit(seed, n, i) * (cube.side - 2 * kAirSkin);
+  };
+  return shared_->ends().to_metres({cube.x + part(1), cube.y + part(2), cube.z + part(3)});
+}
+
+std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
+  const FlightEnds ends = shared_->ends();
+  const auto up = ends.take_off(place);
+  if (!up) return {};
+  return ends.to_metres(*up);
+}
+
+Place FlightFinder::landing(Vec3d feet) const {
+  const FlightEnds ends = shared_->ends();
+  const auto point = ends.in_air(feet);
+  if (!point) return {};
+  return ends.best_landing(ends.lowest_box(*point));
+}
+
+void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
+  const FlightEnds ends = shared_->ends();
+  Scratch& scratch = *scratch_;
+  path.end = PathEnd::kNoPlace;
+  path.points.clear();
+  path.legs.clear();
+  path.length = 0;
+  path.nodes = 0;
+
+  // An end is a point of the air, or a place with the nearest place to take off or to land.
+  struct End {
+    std::optional<AirPoint> air;
+    Place ground, port;
+  };
+  const auto locate = [&](Vec3d at, End& end) {
+    end.air = ends.in_air(at);
+    if (end.air) return true;
+    end.ground = shared_->world.find_place(shared_->avatar_class, at, query.reach);
+    return static_cast<bool>(end.ground);
+  };
+  const auto to_port = [&](End& end) {  // from the ground into the air
+    if (end.air) return true;
+    end.port = end.ground;
+    end.air = ends.take_off(end.port);
+    if (!end.air) {
+      end.port = ends.nearest_take_off(end.ground, kMostFloodCells, scratch.flood);
+      end.air = ends.take_off(end.port);
+    }
+    return end.air.has_value();
+  };
+  End from, to;
+  if (!locate(query.from, from) || !locate(query.to, to)) return;
+
+  path.end = PathEnd::kUnreachable;
+  double on_foot = INFINITY;
+  if (from.ground && to.ground && scratch.walker) {
+    scratch.walker->find(from.ground, to.ground, scratch.walk_all, query.max_nodes);
+    if (scratch.walk_all.end == PathEnd::kReached) {
+      on_foot = 0;
+      const auto& places = scratch.walk_all.points;
+      for (size_t i = 1; i < places.size(); ++i) {
+        on_foot += distance(places[i - 1].position, places[i].position);
+      }
+    }
+  }
+  const auto add = [&](Vec3d point, LegKind kind) {
+    if (!path.points.empty()) {
+      path.length += distance(path.points.back(), point);
+      path.legs.push_back(kind);
+    }
+    path.points.push_back(point);
+  };
+  const auto walk = [&](const Path& ground, size_t first) {
+    for (size_t i = first; i < ground.points.size(); ++i) {
+      add(ground.points[i].position, LegKind::kWalk);
+    }
+  };
+
+  const bool ports = to_port(from) && to_port(to);
+  SearchResult result = SearchResult::kNone;
+  if (ports && shared_->space.hold_together(*from.air, *to.air)) {
+    result = scratch.search.find(shared_->space, *from.air, *to.air, query.max_nodes, query.cancel,
+                                 scratch.way);
+    path.nodes = scratch.search.expanded();
+    if (result == SearchResult::kBudget) path.end = PathEnd::kGaveUp;
+  }
+  if (result == SearchResult::kFound) {
+    scratch.pull.pull(shared_->space, scratch.way);
+    bool walked = true;
+    if (from.ground) {
+      if (from.port.position.x != from.ground.position.x ||
+          from.port.position.z != from.ground.position.z) {
+        scratch.walker->find(from.ground, from.port, scratch.walk_there, query.max_nodes);
+        walked = scratch.walk_there.end == PathEnd::kReached;
+        walk(scratch.walk_there, 0);
+      } else {
+        add(from.port.position, LegKind::kWalk);
+      }
+    }
+    for (size_t i = 0; i < scratch.way.size(); ++i) {
+      add(ends.to_metres(scratch.way[i]), i == 0 ? LegKind::kTakeOff : LegKind::kFly);
+    }
+    if (to.ground) {
+      add(to.port.position, LegKind::kLand);
+      if (to.port.position.x != to.ground.position.x ||
+          to.port.position.z != to.ground.position.z) {
+        scratch.walker->find(to.port, to.ground, scratch.walk_on, query.max_nodes);
+        walked = walked && scratch.walk_on.end == PathEnd::kReached;
+        walk(scratch.walk_on, 1);
+      }
+    }
+    if (walked && path.length <= on_foot) {
+      path.end = PathEnd::kReached;
+      return;
+    }
+  }
+  path.points.clear();
+  path.legs.clear();
+  path.length = 0;
+  if (on_foot == INFINITY) return;
+  walk(scratch.walk_all, 0);
+  path.end = PathEnd::kReached;
+}
+
+Result<AirSummary> air_summary(const World& world) {
+  if (world.data() == nullptr || world.data()->air == nullptr) {
+    return Error{Errc::kNotFound, "the world was baked without air"};
+  }
+  const AirData& air = *world.data()->air;
+  const AirShape& shape = air.shape;
+  const auto height = [&](int32_t layer) {
+    return (static_cast<double>(layer) * shape.cell + shape.origin_y) * 1e-3;
+  };
+  AirSummary summary{.cell = shape.cell * 1e-3,
+                     .floor = height(shape.floor),
+                     .ceiling = height(shape.ceiling),
+                     .zones = air.slots.size(),
+                     .bytes = air.bytes};
+  for (const auto& slot : air.slots) {
+    const AirData::ZoneAir zone = air.zone(slot->entry.x(), slot->entry.z());
+    if (!zone.usable) return Error{Errc::kBadFile, slot->error};
+    zone.tree->for_each([&](const AirCube& cube, uint32_t word) {
+      if (air_kind(word) == AirKind::kFull) return;
+      ++summary.nodes;
+      if (air_kind(word) == AirKind::kLeaf) {
+        summary.free_cells +=
+            static_cast<uint64_t>(std::popcount(zone.tree->leaves[air_number(word)]));
+        return;
+      }
+      const int32_t layers =
+          std::min(cube.y + cube.side, shape.ceiling) - std::max(cube.y, shape.floor);
+      summary.free_cells += static_cast<uint64_t>(std::max(layers, 0)) *
+                            static_cast<uint64_t>(cube.side) * static_cast<uint64_t>(cube.side);
+    });
+  }
+  return summary;
+}
+
+}  // namespace throng

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "path/flight_space.h"
+
+/// Pulls a way through the air taut.
+namespace throng {
+
+/// Leaves out bends that are not needed and slides the others to where the way is shortest, as far
+/// as the lines to their neighbours stay legal. Never makes a way longer. Owns its memory.
+class FlightPull {
+ public:
+  void pull(const FlightSpace& space, std::vector<AirPoint>& way);
+
+ private:
+  void shortcut();
+  void cut_corners();
+  bool slide(size_t bend);
+
+  const FlightSpace* space_ = nullptr;
+  std::vector<AirPoint>* way_ = nullptr;
+  std::vector<AirPoint> next_;
+};
+
+}  // namespace throng

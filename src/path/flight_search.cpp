@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/flight_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+namespace {
+
+constexpr double kShorter = 1e-9;
+
+double axis_of(AirPoint p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+// The plane between two boxes that share a part of a face.
+struct Door {
+  int axis = 0;
+  double plane = 0;
+  double skin = 0;  // what leads from the plane into the second box
+};
+
+Door door_between(const AirCube& a, const AirCube& b) {
+  const int32_t low_a[3] = {a.x, a.y, a.z}, low_b[3] = {b.x, b.y, b.z};
+  for (int i = 0; i < 3; ++i) {
+    if (low_a[i] + a.side == low_b[i]) return {i, static_cast<double>(low_b[i]), kAirSkin};
+    if (low_b[i] + b.side == low_a[i]) return {i, static_cast<double>(low_a[i]), -kAirSkin};
+  }
+  return {};
+}
+
+// Where the way from `from` to `to` best passes from one box into another: on the face that they
+// share, where the straight line crosses its plane (mirrored, if both lie on one side of it).
+AirPoint pass(const AirCube& a, const AirCube& b, AirPoint from, AirPoint to) {
+  const int32_t low_a[3] = {a.x, a.y, a.z}, low_b[3] = {b.x, b.y, b.z};
+  const auto [axis, plane, skin] = door_between(a, b);
+  const double inside = plane + skin;
+  const double da = std::fabs(axis_of(from, axis) - plane),
+               db = std::fabs(axis_of(to, axis) - plane);
+  const double t = da + db > 0 ? da / (da + db) : 0.5;
+  double out[3];
+  for (int i = 0; i < 3; ++i) {
+    if (i == axis) {
+      out[i] = inside;
+      continue;
+    }
+    const double low = std::max(low_a[i], low_b[i]) + kAirSkin;
+    const double high = std::min(low_a[i] + a.side, low_b[i] + b.side) - kAirSkin;
+    const double at = axis_of(from, i) + t * (axis_of(to, i) - axis_of(from, i));
+    out[i] = std::clamp(at, low, high);
+  }
+  return {out[0], out[1], out[2]};
+}
+
+}  // namespace
+
+void FlightSearch::push(uint32_t node) {
+  open_.push_back({nodes_[node].estimate, node});
+  std::push_heap(open_.begin(), open_.end());
+}
+
+SearchResult FlightSearch::find(const FlightSpace& space, AirPoint from, AirPoint to,
+                                uint64_t max_nodes, const std::atomic<bool>* cancel,
+                                std::vector<AirPoint>& way) {
+  space_ = &space;
+  goal_ = to;
+  expanded_ = 0;
+  way.clear();
+  const uint32_t start = space.box_at(from);
+  goal_box_ = space.box_at(to);
+  if (start == kNoBox || goal_box_ == kNoBox) return SearchResult::kNone;
+  if (space.sees(from, to)) {
+    way = {from, to};
+    return SearchResult::kFound;
+  }
+  if (marks_.size() != space.boxes.size()) marks_.assign(space.boxes.size(), {});
+  if (++search_ == 0) {
+    marks_.assign(space.boxes.size(), {});
+    search_ = 1;
+  }
+  nodes_.clear();
+  open_.clear();
+  nodes_.push_back({from, 0, air_distance(from, to), start, 0, 0, false});
+  marks_[start] = {search_, 0};
+  push(0);
+  while (!open_.empty()) {
+    std::pop_heap(open_.begin(), open_.end());
+    const Entry entry = open_.back();
+    open_.pop_back();
+    Node& node = nodes_[entry.node];
+    if (node.opened || entry.estimate > node.estimate) continue;
+    if (++expanded_ > max_nodes) return SearchResult::kBudget;
+    if (cancel != nullptr && (expanded_ & 255) == 0 && *cancel) return SearchResult::kBudget;
+    // Seen from the bend after all? Else the way bends where it entered the box before.
+    if (node.parent != node.via && !space.sees(nodes_[node.parent].point, node.point)) {
+      node.parent = node.via;
+      const Node& via = nodes_[node.via];
+      const double longer = via.length + air_distance(via.point, node.point) - node.length;
+      node.length += longer;
+      node.estimate += longer;
+      if (!open_.empty() && open_.front().estimate < node.estimate) {
+        push(entry.node);
+        continue;
+      }
+    }
+    node.opened = true;
+    if (node.box == goal_box_) {
+      trace(entry.node, way);
+      return SearchResult::kFound;
+    }
+    open(entry.node);
+  }
+  return SearchResult::kNone;
+}
+
+// From the goal back. A leg from box to box leaves the first through the face that they share, but
+// a skin before its end: where it runs so flat that this matters, it goes straight up to the face.
+void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& way) const {
+  way.push_back(goal_);
+  for (uint32_t n = node;; n = nodes_[n].parent) {
+    const Node& at = nodes_[n];
+    way.push_back(at.point);
+    if (n == 0) break;
+    const Node& via = nodes_[at.via];
+    if (at.parent != at.via || space_->sees(via.point, at.point)) continue;
+    const Door door = door_between(space_->boxes[via.box], space_->boxes[at.box]);
+    double before[3] = {at.point.x, at.point.y, at.point.z};
+    before[door.axis] = door.plane - door.skin;
+    way.push_back({before[0], before[1], before[2]});
+  }
+  std::reverse(way.begin(), way.end());
+}
+
+void FlightSearch::open(uint32_t node) {
+  space_->for_neighbours(space_->boxes[nodes_[node].box], [&](uint32_t box) { reach(node, box); });
+}
+
+void FlightSearch::reach(uint32_t from, uint32_t box) {
+  Mark& mark = marks_[box];
+  const bool known = mark.search == search_;
+  if (known && nodes_[mark.node].opened) return;
+  const uint32_t parent = nodes_[from].parent;
+  const Node& bend = nodes_[parent];
+  Node next;
+  next.point = pass(space_->boxes[nodes_[from].box], space_->boxes[box], bend.point, goal_);
+  next.length = bend.length + air_distance(bend.point, next.point);
+  next.estimate = next.length + air_distance(next.point, goal_);
+  next.box = box;
+  next.parent = parent;
+  next.via = from;
+  if (known) {
+    Node& old = nodes_[mark.node];
+    if (next.estimate >= old.estimate - kShorter) return;
+    old = next;
+    push(mark.node);
+    return;
+  }
+  mark = {search_, static_cast<uint32_t>(nodes_.size())};
+  nodes_.push_back(next);
+  push(mark.node);
+}
+
+}  // namespace throng

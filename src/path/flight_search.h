@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "path/flight_space.h"
+#include "path/search.h"
+
+/// A short way through the air, over boxes.
+namespace throng {
+
+/// Lazy Theta* [NKH10] over boxes of any size: where the way enters a box is found anew for each,
+/// where the straight line from the last bend to the goal would, and a bend is taken for seen until
+/// its box is opened. Owns its memory: one per thread, no allocation once it has grown.
+class FlightSearch {
+ public:
+  /// Bends of a way from `from` to `to`, ends included. Gives up after `max_nodes` boxes, or where
+  /// `cancel` (may be null) is set.
+  SearchResult find(const FlightSpace& space, AirPoint from, AirPoint to, uint64_t max_nodes,
+                    const std::atomic<bool>* cancel, std::vector<AirPoint>& way);
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
+
+ private:
+  struct Node {
+    AirPoint point;       // where the way enters the box
+    double length = 0;    // to there
+    double estimate = 0;  // of the whole
+    uint32_t box = kNoBox;
+    uint32_t parent = 0;  // node of the bend before it
+    uint32_t via = 0;     // node of the box before it
+    bool opened = false;
+  };
+  struct Entry {
+    double estimate;
+    uint32_t node;
+    bool operator<(const Entry& other) const {
+      return estimate != other.estimate ? estimate > other.estimate : node < other.node;
+    }
+  };
+  struct Mark {
+    uint32_t search = 0;
+    uint32_t node = 0;
+  };
+
+  void open(uint32_t node);
+  void trace(uint32_t node, std::vector<AirPoint>& way) const;
+  void reach(uint32_t from, uint32_t box);
+  void push(uint32_t node);
+
+  const FlightSpace* space_ = nullptr;
+  AirPoint goal_;
+  uint32_t goal_box_ = kNoBox;
+  uint32_t search_ = 0;
+  uint64_t expanded_ = 0;
+  std::vector<Node> nodes_;
+  std::vector<Entry> open_;
+  std::vector<Mark> marks_;  // per box
+};
+
+}  // namespace throng

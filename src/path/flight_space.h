@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "throng/context.h"
+#include "throng/result.h"
+#include "world/air_data.h"
+#include "world/air_rows.h"
+#include "world/zone_data.h"
+
+/// Where one class may fly, as boxes: what flight search runs on.
+namespace throng {
+
+inline constexpr uint32_t kNoBox = UINT32_MAX;
+
+/// A point of the air, or the way between two. [air cells from the world's origin and layer 0]
+struct AirPoint {
+  double x = 0, y = 0, z = 0;
+  friend AirPoint operator+(AirPoint a, AirPoint b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend AirPoint operator-(AirPoint a, AirPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend AirPoint operator*(double s, AirPoint a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+double air_distance(AirPoint a, AirPoint b);
+
+/// Points keep that far off the faces of boxes, so that a line between two never runs along one.
+/// [air cells]
+inline constexpr double kAirSkin = 1.0 / 1024;
+
+struct FlightSpace {
+  AirShape shape;
+  int32_t width = 0, depth = 0;  // [air cells]
+  int32_t zone_side = 0, zones_x = 0, zones_z = 0;
+  /// A zone's tree: the number of a free cube is its box, of a leaf its index in the arrays below.
+  std::vector<AirTreeData> zones;
+  struct Leaf {
+    uint64_t starts = 0;     // lowest cell of each box
+    uint32_t first_box = 0;  // boxes follow in the order of these
+  };
+  std::vector<std::vector<Leaf>> leaves;  // per zone
+  std::vector<AirCube> boxes;
+  std::vector<uint32_t> component;  // per box: the first box of all that hold together with it
+
+  /// The box that a cell belongs to, or none if the body may not be there.
+  [[nodiscard]] uint32_t box_at(int32_t x, int32_t y, int32_t z) const;
+  [[nodiscard]] uint32_t box_at(AirPoint p) const;
+  /// Is there any way from one to the other?
+  [[nodiscard]] bool hold_together(AirPoint a, AirPoint b) const {
+    const uint32_t from = box_at(a), to = box_at(b);
+    return from != kNoBox && to != kNoBox && component[from] == component[to];
+  }
+  /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
+  [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
+  /// Calls visit(box) for each box that shares a part of a face with this one.
+  template <class Visit>
+  void for_neighbours(const AirCube& box, Visit&& visit) const;
+  [[nodiscard]] uint64_t bytes() const;
+
+ private:
+  template <class Visit>
+  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side,
+                  Visit& visit) const;
+};
+
+/// The cells where the body may be, from what is free around. Boxes have at most `largest` cells a
+/// side. Fails with kBadFile (a zone cannot be used) or kCancelled. The same for any number of
+/// workers.
+Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, int32_t largest,
+                                       int32_t workers, Context& context);
+
+/// Clears every cell of `free` around which the body is not free; layers over the rows count as
+/// free, cells beside them do not. Word by word.
+void erode_air(const AirBody& body, const AirRows& free, AirRows& legal);
+
+namespace flight_detail {
+/// Bits of the 2 x 2 x 2 octant that holds bit b of a leaf, and the lowest of them.
+constexpr uint32_t octant_low(uint32_t b) { return b & 0b101010; }
+constexpr uint64_t octant(uint32_t b) {
+  return uint64_t{0b11 | 0b11 << 4 | 0b11 << 16 | 0b11 << 20} << octant_low(b);
+}
+}  // namespace flight_detail
+
+inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
+  if (x < 0 || z < 0 || x >= width || z >= depth) return kNoBox;
+  const int32_t zx = x / zone_side, zz = z / zone_side;
+  const auto zone = static_cast<size_t>(zz * zones_x + zx);
+  const AirTree tree = zones[zone].view();
+  x -= zx * zone_side;
+  z -= zz * zone_side;
+  const auto place = tree.find(x, y, z);
+  if (air_kind(place.word) == AirKind::kFree) return air_number(place.word);
+  if (air_kind(place.word) != AirKind::kLeaf) return kNoBox;
+  const uint32_t index = air_number(place.word), bit = air_bit(x, y - tree.base, z);
+  const uint64_t cells = tree.leaves[index];
+  if ((cells >> bit & 1) == 0) return kNoBox;
+  const uint64_t all = flight_detail::octant(bit);
+  const uint32_t low = (cells & all) == all ? flight_detail::octant_low(bit) : bit;
+  const Leaf& leaf = leaves[zone][index];
+  return leaf.first_box +
+         static_cast<uint32_t>(std::popcount(leaf.starts & ((uint64_t{1} << low) - 1)));
+}
+
+template <class Visit>
+void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side,
+                             Visit& visit) const {
+  const int32_t x = axis == 0 ? plane : u;
+  const int32_t y = axis == 1 ? plane : axis == 0 ? u : v;
+  const int32_t z = axis == 2 ? plane : v;
+  if (x < 0 || z < 0 || x >= width || z >= depth) return;
+  const int32_t zx = x / zone_side, zz = z / zone_side;
+  const auto zone = static_cast<size_t>(zz * zones_x + zx);
+  const AirTree tree = zones[zone].view();
+  const auto place = tree.find(x - zx * zone_side, y, z - zz * zone_side);
+  const AirKind kind = air_kind(place.word);
+  if (kind == AirKind::kFull && (place.cube.side == 0 || place.cube.side >= side)) return;
+  if (kind == AirKind::kFree && place.cube.side >= side) {
+    visit(air_number(place.word));
+    return;
+  }
+  if (kind == AirKind::kLeaf && side <= 2) {
+    const uint32_t box = box_at(x, y, z);
+    if (side == 1 || (box != kNoBox && boxes[box].side == 2)) {
+      if (box != kNoBox) visit(box);
+      return;
+    }
+  }
+  if (side == 1) return;
+  const int32_t half = side / 2;
+  visit_face(axis, plane, u, v, half, visit);
+  visit_face(axis, plane, u + half, v, half, visit);
+  visit_face(axis, plane, u, v + half, half, visit);
+  visit_face(axis, plane, u + half, v + half, half, visit);
+}
+
+template <class Visit>
+void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit) const {
+  visit_face(0, box.x + box.side, box.y, box.z, box.side, visit);
+  visit_face(0, box.x - 1, box.y, box.z, box.side, visit);
+  visit_face(1, box.y + box.side, box.x, box.z, box.side, visit);
+  visit_face(1, box.y - 1, box.x, box.z, box.side, visit);
+  visit_face(2, box.z + box.side, box.x, box.y, box.side, visit);
+  visit_face(2, box.z - 1, box.x, box.y, box.side, visit);
+}
+
+}  // namespace throng

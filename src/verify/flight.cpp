@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/flight.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "core/parallel.h"
+#include "throng/verify.h"
+#include "verify/cylinder.h"
+#include "verify/triangle_tree.h"
+
+// The oracle of flyers: whole cylinders, from the feet to the head, where the world says that a
+// body may fly and wherever it is on the ways that the finder gives.
+namespace throng {
+namespace {
+
+using verify::Cylinder;
+
+constexpr uint64_t kMostFaults = 8;
+constexpr uint64_t kPairsSalt = 0x7061697273;
+constexpr double kReach = 0.05;  // of the feet of a place on the ground [m]
+
+struct Record {
+  bool reached = false;
+  uint64_t legs = 0, positions = 0, entered = 0;
+  Vec3d at;
+  uint32_t triangle = 0;
+};
+
+class Judge {
+ public:
+  Judge(const verify::TriangleTree& tree, const AvatarClass& avatar)
+      : tree_(tree), avatar_(avatar), spacing_(std::min(avatar.radius / 2, avatar.height / 4)) {}
+
+  // Does matter meet the body whose feet go from `low` to `high` at one place?
+  bool meets(Vec3d low, double high, Record& record) const {
+    const Cylinder body{
+        .x = low.x, .z = low.z, .low = low.y, .high = high, .radius = avatar_.radius};
+    return tree_.find(body.bounds(), [&](uint32_t triangle, const verify::Corners& corners) {
+      if (!verify::meets(body, corners)) return false;
+      record.at = low;
+      record.triangle = triangle;
+      return true;
+    });
+  }
+
+  void judge_point(Vec3d feet, Record& record) const {
+    if (meets(feet, feet.y + avatar_.height, record)) ++record.entered;
+  }
+
+  void judge_path(const FlightPath& path, Record& record) const {
+    for (size_t i = 1; i < path.points.size(); ++i) {
+      const Vec3d a = path.points[i - 1], b = path.points[i];
+      const LegKind kind = path.legs[i - 1];
+      if (kind == LegKind::kWalk) continue;  // legal moves: verify_world's matter
+      ++record.legs;
+      if (kind != LegKind::kFly) {  // straight up or down: all that it passes at once
+        const Vec3d& ground = kind == LegKind::kTakeOff ? a : b;
+        const Vec3d& air = kind == LegKind::kTakeOff ? b : a;
+        ++record.positions;
+        const Vec3d low{air.x, std::min(ground.y + body_bottom(avatar_), air.y), air.z};
+        if (meets(low, air.y + avatar_.height, record)) ++record.entered;
+        continue;
+      }
+      const Vec3d way = b - a;
+      const double length = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+      const auto steps = static_cast<uint64_t>(std::ceil(length / spacing_)) + 1;
+      bool entered = false;
+      for (uint64_t s = 0; s <= steps; ++s) {
+        const double t = static_cast<double>(s) / static_cast<double>(steps);
+        const Vec3d feet{a.x + t * way.x, a.y + t * way.y, a.z + t * way.z};
+        ++record.positions;
+        entered = entered || meets(feet, feet.y + avatar_.height, record);
+      }
+      if (entered) ++record.entered;
+    }
+  }
+
+ private:
+  const verify::TriangleTree& tree_;
+  const AvatarClass& avatar_;
+  double spacing_;
+};
+
+}  // namespace
+
+Result<FlightReport> verify_flight(const World& world, const Scene& source,
+                                   const VerifyConfig& config, Context& context) {
+  const auto start = std::chrono::steady_clock::now();
+  if (source.triangles.empty()) return Error{Errc::kBadInput, "verify: the scene has no triangles"};
+  auto finder = FlightFinder::make(
+      world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
+  if (!finder) return finder.error();
+  const AvatarClass avatar = world.summary().classes[static_cast<size_t>(config.avatar_class)];
+  const verify::TriangleTree tree(source, config.workers);
+  const Judge judge(tree, avatar);
+
+  FlightReport report;
+  report.points = config.samples;
+  report.pairs = config.samples / 10;
+  std::vector<Record> records(static_cast<size_t>(report.points + report.pairs));
+  struct Worker {
+    FlightFinder finder;
+    FlightPath path;
+  };
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (int32_t i = 0; i < worker_count(config.workers); ++i) {
+    workers.push_back(std::make_unique<Worker>(Worker{*finder, {}}));
+  }
+  // Half of the ends are on the ground, where there is any.
+  const auto end_of = [&](const FlightFinder& from, uint64_t n, uint64_t which) {
+    if ((n >> which & 1) != 0) {
+      const Place place =
+          world.random_place(config.avatar_class, config.seed ^ kPairsSalt, 2 * n + which);
+      if (place) return std::optional<Vec3d>(place.position);
+    }
+    return from.random_point(config.seed ^ kPairsSalt, 2 * n + which);
+  };
+  parallel_for_worker(records.size(), config.workers, [&](size_t i, int32_t w) {
+    if (context.cancel) return;
+    Worker& worker = *workers[static_cast<size_t>(w)];
+    if (i < report.points) {
+      const auto point = worker.finder.random_point(config.seed, i);
+      if (point) judge.judge_point(*point, records[i]);
+      return;
+    }
+    const uint64_t n = i - report.points;
+    const auto from = end_of(worker.finder, n, 0), to = end_of(worker.finder, n, 1);
+    if (!from || !to) return;
+    worker.finder.find({.from = *from, .to = *to, .reach = kReach}, worker.path);
+    records[i].reached = worker.path.end == PathEnd::kReached;
+    if (records[i].reached) judge.judge_path(worker.path, records[i]);
+  });
+  if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
+  for (const Record& record : records) {
+    report.reached += record.reached ? 1 : 0;
+    report.legs += record.legs;
+    report.positions += record.positions;
+    report.entered += record.entered;
+    if (record.entered > 0 && report.faults.size() < kMostFaults) {
+      report.faults.push_back({"entered", record.at, record.triangle});
+    }
+  }
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+}  // namespace throng

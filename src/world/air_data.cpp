@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "world/air_data.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/hash.h"
+#include "world/zone_data.h"
+
+namespace throng {
+namespace {
+
+constexpr const char* kZoneIdentifier = "THAZ";
+constexpr const char* kManifestIdentifier = "THAM";
+constexpr int32_t kMostLayers = 1 << 21;
+
+Error bad_file(const std::string& name, const std::string& what) {
+  return {Errc::kBadFile, name + ": " + what + "; bake the world again"};
+}
+
+uint64_t sum_of(uint64_t input, const AirTree& tree) {
+  const uint64_t head[] = {input, static_cast<uint64_t>(tree.side),
+                           static_cast<uint64_t>(tree.base), tree.roots};
+  return hash_span(tree.leaves, hash_span(tree.nodes, hash_span(std::span<const uint64_t>(head))));
+}
+
+template <class T>
+bool is_aligned(const flatbuffers::Vector<T>& words) {
+  return words.size() == 0 || reinterpret_cast<uintptr_t>(words.Data()) % 8 == 0;
+}
+
+}  // namespace
+
+flatbuffers::DetachedBuffer air_zone_bytes(int32_t x, int32_t z, uint64_t input,
+                                           const AirTreeData& tree) {
+  flatbuffers::FlatBufferBuilder builder(tree.nodes.size() * 4 + tree.leaves.size() * 8 + 256);
+  const auto nodes = builder.CreateVector(tree.nodes);
+  const auto leaves = builder.CreateVector(tree.leaves);
+  builder.Finish(
+      format::CreateAirZone(builder, kAirVersion, x, z, input, sum_of(input, tree.view()),
+                            tree.side, tree.base, tree.roots, nodes, leaves),
+      kZoneIdentifier);
+  return builder.Release();
+}
+
+Result<std::unique_ptr<AirZone>> AirZone::from_bytes(flatbuffers::DetachedBuffer bytes,
+                                                     const std::string& name) {
+  auto zone = std::make_unique<AirZone>();
+  zone->owned_ = std::move(bytes);
+  zone->bytes_ = {zone->owned_.data(), zone->owned_.size()};
+  if (auto attached = zone->attach(name); !attached) return attached.error();
+  return zone;
+}
+
+Result<std::unique_ptr<AirZone>> AirZone::from_file(FileMap map, const std::string& name) {
+  auto zone = std::make_unique<AirZone>();
+  zone->map_ = std::move(map);
+  zone->bytes_ = zone->map_.bytes();
+  if (auto attached = zone->attach(name); !attached) return attached.error();
+  return zone;
+}
+
+Result<void> AirZone::attach(const std::string& name) {
+  flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
+  if (bytes_.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes_.data(), kZoneIdentifier) ||
+      !verifier.VerifyBuffer<format::AirZone>(kZoneIdentifier)) {
+    return bad_file(name, "not an air file, or truncated");
+  }
+  root_ = flatbuffers::GetRoot<format::AirZone>(bytes_.data());
+  if (root_->version() != kAirVersion) {
+    return bad_file(name, "air version " + std::to_string(root_->version()) +
+                              ", this program reads " + std::to_string(kAirVersion));
+  }
+  const auto* nodes = root_->nodes();
+  const auto* leaves = root_->leaves();
+  if (!nodes || !leaves || !is_aligned(*leaves)) return bad_file(name, "an array is missing");
+  tree_ = {root_->side(),
+           root_->base(),
+           root_->roots(),
+           {reinterpret_cast<const uint32_t*>(nodes->Data()), nodes->size()},
+           {reinterpret_cast<const uint64_t*>(leaves->Data()), leaves->size()}};
+  if (tree_.base < -kMostLayers || tree_.base > kMostLayers || tree_.roots > kMostLayers) {
+    return bad_file(name, "its layers lie out of this world");
+  }
+  if (const std::string fault = tree_.fault(); !fault.empty()) return bad_file(name, fault);
+  if (root_->sum() != sum_of(root_->input(), tree_)) return bad_file(name, "its sum is wrong");
+  return {};
+}
+
+AirData::ZoneAir AirData::zone(int32_t x, int32_t z) const {
+  const int32_t slot = slot_of_zone[static_cast<size_t>(z * zones_x + x)];
+  if (slot < 0) return {true, nullptr};
+  const Slot& entry = *slots[static_cast<size_t>(slot)];
+  std::call_once(entry.once, [&] {
+    if (entry.zone || path.empty()) return;
+    const std::string name = path + "/" + air_file_name(entry.entry.x(), entry.entry.z());
+    auto map = FileMap::open(name);
+    if (!map) {
+      entry.error = map.error().message;
+      return;
+    }
+    if (map->bytes().size() != entry.entry.bytes() ||
+        hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
+      entry.error = bad_file(name,
+                             "its checksum is not the air manifest's (truncated, damaged or "
+                             "of another bake)")
+                        .message;
+      return;
+    }
+    auto zone = AirZone::from_file(std::move(*map), name);
+    if (!zone) {
+      entry.error = zone.error().message;
+      return;
+    }
+    if ((*zone)->root().x() != entry.entry.x() || (*zone)->root().z() != entry.entry.z() ||
+        (*zone)->tree().side < zone_side) {
+      entry.error = bad_file(name, "belongs to another world").message;
+      return;
+    }
+    entry.zone = std::move(*zone);
+  });
+  if (entry.zone == nullptr) return {};
+  return {true, &entry.zone->tree()};
+}
+
+bool AirData::is_free(int32_t x, int32_t y, int32_t z) const {
+  if (x < 0 || z < 0 || x >= width || z >= depth || y < shape.floor) return false;
+  if (y >= shape.ceiling) return true;
+  const int32_t zx = x / zone_side, zz = z / zone_side;
+  const ZoneAir air = zone(zx, zz);
+  if (!air.usable) return false;
+  if (air.tree == nullptr) return true;
+  const AirTree& tree = *air.tree;
+  const int64_t up = int64_t{y} - tree.base;
+  if (up < 0 || up >= int64_t{tree.side} * tree.roots) return true;
+  return tree.is_free(x - zx * zone_side, y, z - zz * zone_side);
+}
+
+bool AirData::is_legal(const AirBody& body, int32_t x, int32_t y, int32_t z) const {
+  if (x < 0 || z < 0 || x >= width || z >= depth || y < shape.floor || y >= shape.ceiling) {
+    return false;
+  }
+  const int32_t zx = x / zone_side, zz = z / zone_side;
+  const ZoneAir air = zone(zx, zz);
+  if (air.usable && air.tree != nullptr) {
+    // A cube with room around it answers at once.
+    const auto place = air.tree->find(x - zx * zone_side, y, z - zz * zone_side);
+    if (air_kind(place.word) == AirKind::kFree) {
+      const AirRoom room = air_room(air_number(place.word));
+      if (room.width >= body.reach && room.height >= body.up) return true;
+    }
+  }
+  for (int32_t dy = 0; dy <= body.up; ++dy) {
+    for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
+      const int32_t half = body.half_width[static_cast<size_t>(std::abs(dz))];
+      for (int32_t dx = -half; dx <= half; ++dx) {
+        if (!is_free(x + dx, y + dy, z + dz)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+void AirData::fit(const WorldData& world) {
+  zone_side = static_cast<int32_t>(world.tiles_per_zone) * 64 / shape.multiple;
+  width = (world.width + shape.multiple - 1) / shape.multiple;
+  depth = (world.depth + shape.multiple - 1) / shape.multiple;
+  zones_x = world.zones_x;
+  zones_z = world.zones_z;
+  slot_of_zone.assign(static_cast<size_t>(zones_x) * static_cast<size_t>(zones_z), -1);
+}
+
+// The gap between two cells is the distance that the feet may be nearer than their cells' numbers
+// say: a cell `d` away may be `d - 1` cells away. What is nearer than the radius must be free.
+AirBody air_body(const AvatarClass& avatar, const AirShape& shape) {
+  AirBody body;
+  body.half_width = {0};
+  if (shape.points) return body;
+  const double cell = shape.cell * 1e-3, radius = avatar.radius / cell;
+  body.reach = static_cast<int32_t>(std::ceil(radius));
+  body.up = static_cast<int32_t>(std::ceil(avatar.height / cell));
+  body.half_width.clear();
+  for (int32_t dz = 0; dz <= body.reach; ++dz) {
+    const double gap = std::max(dz - 1, 0), rest = radius * radius - gap * gap;
+    body.half_width.push_back(rest > 0 ? static_cast<int32_t>(std::ceil(std::sqrt(rest))) : 0);
+  }
+  return body;
+}
+
+std::string air_file_name(int32_t x, int32_t z) {
+  return "zone_" + std::to_string(x) + "_" + std::to_string(z) + ".tha";
+}
+
+Result<std::shared_ptr<AirData>> read_air_manifest(std::span<const uint8_t> bytes,
+                                                   const std::string& name, const WorldData& world,
+                                                   uint64_t world_hash) {
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  if (bytes.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes.data(), kManifestIdentifier) ||
+      !verifier.VerifyBuffer<format::AirManifest>(kManifestIdentifier)) {
+    return bad_file(name, "not an air manifest, or truncated");
+  }
+  const auto& root = *flatbuffers::GetRoot<format::AirManifest>(bytes.data());
+  if (root.version() != kAirVersion) {
+    return bad_file(name, "air version " + std::to_string(root.version()) +
+                              ", this program reads " + std::to_string(kAirVersion));
+  }
+  if (root.world() != world_hash) return bad_file(name, "belongs to another bake of this world");
+  const int32_t multiple = root.multiple();
+  const bool sound = root.zones() != nullptr && is_aligned(*root.zones()) && multiple >= 1 &&
+                     multiple <= 16 && std::has_single_bit(static_cast<uint32_t>(multiple)) &&
+                     root.cell() >= 1 && root.cell() <= 80000 && root.floor() < root.ceiling() &&
+                     std::abs(root.origin_y()) <= root.cell() && root.floor() > -kMostLayers &&
+                     root.ceiling() < kMostLayers &&
+                     root.flies() >> world.summary.classes.size() == 0;
+  if (!sound) return bad_file(name, "its numbers make no sense");
+  auto air = std::make_shared<AirData>();
+  air->shape = {.multiple = multiple,
+                .cell = root.cell(),
+                .origin_y = root.origin_y(),
+                .floor = root.floor(),
+                .ceiling = root.ceiling(),
+                .flies = root.flies(),
+                .points = root.points()};
+  air->fit(world);
+  int64_t last = -1;
+  for (uint32_t i = 0; i < root.zones()->size(); ++i) {
+    const format::AirEntry& entry = *root.zones()->Get(i);
+    if (entry.x() < 0 || entry.z() < 0 || entry.x() >= air->zones_x || entry.z() >= air->zones_z) {
+      return bad_file(name, "zone " + std::to_string(i) + " lies outside the grid");
+    }
+    const auto place = int64_t{entry.z()} * air->zones_x + entry.x();
+    if (place <= last) return bad_file(name, "its zones are out of order");
+    last = place;
+    air->slot_of_zone[static_cast<size_t>(place)] = static_cast<int32_t>(i);
+    air->slots.push_back(std::make_unique<AirData::Slot>());
+    air->slots.back()->entry = entry;
+    air->bytes += entry.bytes();
+  }
+  return air;
+}
+
+std::vector<uint8_t> write_air_manifest(const AirData& air, uint64_t world_hash) {
+  flatbuffers::FlatBufferBuilder builder;
+  std::vector<format::AirEntry> zones;
+  for (const auto& slot : air.slots) zones.push_back(slot->entry);
+  const AirShape& s = air.shape;
+  builder.Finish(
+      format::CreateAirManifestDirect(builder, kAirVersion, world_hash, s.multiple, s.cell,
+                                      s.origin_y, s.floor, s.ceiling, s.flies, s.points, &zones),
+      kManifestIdentifier);
+  return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
+}
+
+}  // namespace throng

@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/flight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "throng/bake.h"
+#include "throng/builtin_worlds.h"
+#include "throng/verify.h"
+#include "voxel_oracle.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+World bake(const Scene& scene, double cell = 0.1) {
+  Context context;
+  auto world = bake_world(scene, {.cell = cell, .classes = {flyer_class()}}, context);
+  EXPECT_TRUE(world) << world.error().message;
+  return *world;
+}
+
+FlightFinder finder(const World& world) {
+  Context context;
+  auto made = FlightFinder::make(world, {}, context);
+  EXPECT_TRUE(made) << made.error().message;
+  return *std::move(made);
+}
+
+// Two floors 20 m apart, both 8 m wide: nobody walks from one to the other.
+Scene two_floors() {
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, 8}, {8, 0, 8}, {8, 0, 0});
+  scene.add_quad({28, 3, 0}, {28, 3, 8}, {36, 3, 8}, {36, 3, 0});
+  return scene;
+}
+
+TEST(Flight, LeadsFromTheGroundThroughTheAirToTheGround) {
+  const World world = bake(two_floors());
+  FlightFinder flight = finder(world);
+  FlightPath path;
+  flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  ASSERT_GE(path.legs.size(), 3u);
+  EXPECT_EQ(path.legs.front(), LegKind::kTakeOff);
+  EXPECT_EQ(path.legs.back(), LegKind::kLand);
+  for (size_t i = 1; i + 1 < path.legs.size(); ++i) EXPECT_EQ(path.legs[i], LegKind::kFly);
+  EXPECT_EQ(path.points.size(), path.legs.size() + 1);
+  EXPECT_NEAR(path.points.front().y, 0, 1e-6);
+  EXPECT_NEAR(path.points.back().y, 3, 1e-6);
+  EXPECT_LT(path.length, 1.1 * std::hypot(28, 3));
+}
+
+TEST(Flight, WalksWhereThatIsShorter) {
+  const World world = bake(two_floors());
+  FlightFinder flight = finder(world);
+  FlightPath path;
+  flight.find({.from = {2, 0, 4}, .to = {6, 0, 4}}, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.legs, (std::vector<LegKind>{LegKind::kWalk}));
+  EXPECT_NEAR(path.length, 4, 1e-3);
+}
+
+// Under a table 2 m high one stands but does not take off.
+TEST(Flight, WalksToWhereOneCanTakeOff) {
+  Scene scene = two_floors();
+  scene.add_box({1, 1.9, 1}, {7, 2.5, 7});
+  const World world = bake(scene);
+  FlightFinder flight = finder(world);
+  EXPECT_FALSE(flight.take_off(world.find_place(0, {4, 0, 4}, 0.1)));
+  FlightPath path;
+  flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.legs.front(), LegKind::kWalk);
+  EXPECT_EQ(path.legs.back(), LegKind::kLand);
+}
+
+TEST(Flight, LandsOnTheMostOpenGroundBelow) {
+  const World world = bake(two_floors());
+  const FlightFinder flight = finder(world);
+  const Place place = flight.landing({4, 6, 4});
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place.position.y, 0, 1e-6);
+  EXPECT_TRUE(flight.take_off(place));
+  EXPECT_FALSE(flight.landing({18, 6, 4}));  // over nothing
+  EXPECT_FALSE(flight.landing({4, -5, 4}));
+}
+
+TEST(Flight, EndsInMatterOrOutsideOrNowhereAreNoPlaces) {
+  Scene scene = two_floors();
+  scene.add_box({3, 0, 3}, {5, 4, 5});
+  const World world = bake(scene);
+  FlightFinder flight = finder(world);
+  FlightPath path;
+  const Vec3d good{32, 6, 4};
+  for (const Vec3d bad :
+       {Vec3d{4, 2, 4}, Vec3d{2.9, 2, 4}, Vec3d{-5, 3, 4}, Vec3d{1e30, 3, 4}, Vec3d{4, 1e6, 4},
+        Vec3d{4, -20, 4}, Vec3d{NAN, 3, 4}, Vec3d{4, INFINITY, 4}}) {
+    EXPECT_FALSE(flight.is_legal(bad));
+    flight.find({.from = good, .to = bad}, path);
+    EXPECT_EQ(path.end, PathEnd::kNoPlace);
+    flight.find({.from = bad, .to = good}, path);
+    EXPECT_EQ(path.end, PathEnd::kNoPlace);
+    EXPECT_TRUE(path.points.empty());
+  }
+}
+
+TEST(Flight, TellsWhatCannotBeReachedAndKeepsToItsBudget) {
+  Scene scene = two_floors();
+  scene.add_box({10, 0, 0}, {20, 8, 8});  // hollow: inside is air, too
+  const World world = bake(scene);
+  FlightFinder flight = finder(world);
+  FlightPath path;
+  ASSERT_TRUE(flight.is_legal({15, 4, 4}));
+  flight.find({.from = {15, 4, 4}, .to = {32, 6, 4}}, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}, .max_nodes = 3}, path);
+  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}}, path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+  EXPECT_GT(path.nodes, 3u);
+}
+
+TEST(Flight, NeedsAirAndAClassThatFlies) {
+  Context context;
+  const Scene scene = two_floors();
+  const auto ground = bake_world(scene, {.cell = 0.2}, context);
+  EXPECT_EQ(FlightFinder::make(*ground, {}, context).error().code, Errc::kNotFound);
+  const auto air = bake_world(scene, {.cell = 0.2, .air = 0.4}, context);
+  EXPECT_EQ(FlightFinder::make(*air, {}, context).error().code, Errc::kBadConfig);
+  EXPECT_EQ(FlightFinder::make(*air, {.avatar_class = 9}, context).error().code, Errc::kBadConfig);
+}
+
+TEST(Flight, CopiesAndSecondQueriesFindTheSame) {
+  const World world = bake(two_floors());
+  FlightFinder a = finder(world), b = a;
+  FlightPath first, second;
+  for (uint64_t n = 0; n < 20; ++n) {
+    const auto from = a.random_point(1, 2 * n), to = a.random_point(1, 2 * n + 1);
+    ASSERT_TRUE(from && to && a.is_legal(*from) && a.is_legal(*to));
+    a.find({.from = *from, .to = *to}, first);
+    b.find({.from = *from, .to = *to}, second);
+    ASSERT_EQ(first.points.size(), second.points.size());
+    ASSERT_EQ(first.length, second.length);
+  }
+}
+
+// The oracle: no body on any way meets a triangle.
+TEST(Flight, NoBodyOnAnyWayTouchesABuiltInWorld) {
+  Context context;
+  uint64_t pairs = 0, bodies = 0;
+  for (const char* name : {"stairs", "garage", "church", "cube"}) {
+    const auto scene = make_builtin_world({.name = name});
+    ASSERT_TRUE(scene) << scene.error().message;
+    const World world = bake(*scene, 0.2);
+    const auto report = verify_flight(world, *scene, {.samples = 1500}, context);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->entered, 0u) << name;
+    EXPECT_GT(report->reached, 50u) << name;
+    pairs += report->pairs;
+    bodies += report->positions;
+  }
+  EXPECT_EQ(pairs, 600u);
+  EXPECT_GT(bodies, 5000u);
+}
+
+// Whoever takes the oracle's triangles away from under the world must hear of it.
+TEST(Flight, TheOracleSeesAWallThatTheBakeDidNot) {
+  Context context;
+  Scene scene = two_floors();
+  const World world = bake(scene);
+  scene.add_box({12, -3, -1}, {24, 12, 9});
+  const auto report = verify_flight(world, scene, {.samples = 500}, context);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_GT(report->entered, 20u);
+}
+
+VoxelCells random_voxels(uint64_t seed, uint64_t percent) {
+  VoxelCells cells{.width = 14, .height = 11, .depth = 13, .filled = {}};
+  uint64_t n = 0;
+  for (int32_t z = 0; z < cells.depth; ++z) {
+    for (int32_t y = 0; y < cells.height; ++y) {
+      for (int32_t x = 0; x < cells.width; ++x) {
+        if (random_below(seed, 0, n++, 100) < percent) cells.filled.push_back({x, y, z});
+      }
+    }
+  }
+  return cells;
+}
+
+TEST(VoxelCells, WaysAreLegalAndNotMuchLongerThanBruteForceFinds) {
+  Context context;
+  double ratios = 0, worst = 0;
+  uint64_t compared = 0, unreachable = 0;
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    const VoxelCells cells = random_voxels(seed, 4 + 7 * seed);
+    const auto world = bake_voxel_cells(cells, 1);
+    ASSERT_TRUE(world) << world.error().message;
+    FlightFinder flight = finder(*world);
+    const test::VoxelOracle oracle(cells);
+    FlightPath path;
+    for (uint64_t n = 0; n < 12; ++n) {
+      int32_t at[6];
+      const int32_t side[3] = {cells.width, cells.height, cells.depth};
+      for (uint64_t i = 0; i < 6; ++i) {
+        at[i] =
+            static_cast<int32_t>(random_below(seed, n + 1, i, static_cast<uint64_t>(side[i % 3])));
+      }
+      const bool open = oracle.is_open(at[0], at[1], at[2]) && oracle.is_open(at[3], at[4], at[5]);
+      flight.find({.from = {at[0] + 0.5, at[1] + 0.5, at[2] + 0.5},
+                   .to = {at[3] + 0.5, at[4] + 0.5, at[5] + 0.5}},
+                  path);
+      if (!open) {
+        ASSERT_EQ(path.end, PathEnd::kNoPlace);
+        continue;
+      }
+      const auto best = oracle.shortest(test::middle(at[0], at[1], at[2]),
+                                        test::middle(at[3], at[4], at[5]), 60, 100000);
+      ASSERT_EQ(path.end == PathEnd::kReached, best.length.has_value()) << seed << ", " << n;
+      if (!best.length) {
+        ++unreachable;
+        continue;
+      }
+      for (size_t i = 1; i < path.points.size(); ++i) {
+        ASSERT_TRUE(oracle.is_clear(path.points[i - 1], path.points[i])) << seed << ", " << n;
+      }
+      ++compared;
+      const double ratio = *best.length > 0 ? path.length / *best.length : 1;
+      ratios += ratio;
+      worst = std::max(worst, ratio);
+    }
+  }
+  EXPECT_GT(compared, 50u);
+  EXPECT_GT(unreachable, 0u);
+  EXPECT_LT(ratios / static_cast<double>(compared), 1.02);
+  EXPECT_LT(worst, 1.25);
+}
+
+TEST(VoxelCells, MapsThatDoNotFitAreRefused) {
+  EXPECT_EQ(bake_voxel_cells({}, 1).error().code, Errc::kBadInput);
+  VoxelCells cells{.width = 4, .height = 4, .depth = 4, .filled = {{4, 0, 0}}};
+  EXPECT_EQ(bake_voxel_cells(cells, 1).error().code, Errc::kBadInput);
+  cells.filled.clear();
+  EXPECT_EQ(bake_voxel_cells(cells, 0).error().code, Errc::kBadConfig);
+  EXPECT_TRUE(bake_voxel_cells(cells, 1));
+}
+
+}  // namespace
+}  // namespace throng

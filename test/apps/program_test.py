@@ -70,6 +70,26 @@ class Program(unittest.TestCase):
         self.assert_refused(self.run_throng("run", self.world, "--class", "horse"), "horse", "adult")
         self.assertEqual(list(self.path.iterdir()), [])
 
+    def test_a_way_through_the_air_is_told_by_its_legs_and_bad_ends_are_refused(self):
+        self.assert_refused(self.run_throng("path", self.world, "--from", "14,0,8", "--to", "30,0,8", "--fly"), "baked without air")
+        done = self.run_throng("bake", "builtin:cube", "--fly", "--cell", "0.2", "-o", "cube.throng", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(json.loads(done.stdout)["air_bytes"], 0)
+        air = json.loads(self.run_throng("info", "cube.throng", "--json").stdout)["air"]
+        self.assertAlmostEqual(air["cell"], 0.4)
+
+        def fly(start, goal, *more):
+            return self.run_throng("path", "cube.throng", "--from", start, "--to", goal, "--class", "flyer", "--fly", *more)
+
+        found = json.loads(fly("2,3,2", "4,3,4", "--json").stdout)
+        self.assertEqual((found["end"], found["legs"]), ("reached", ["fly"]))
+        self.assert_refused(fly("nan,3,2", "4,3,4"), "--from", "finite")
+        self.assert_refused(fly("2,3,2", "400,3,4"), "--to", "outside")
+        self.assert_refused(fly("2,3,2", "4,900,4"), "--to", "neither in the air nor on the ground")
+        self.assert_refused(fly("0.05,3,2", "4,3,4"), "--from", "neither in the air nor on the ground")
+        self.assert_refused(self.run_throng("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "adult", "--fly"),
+                            "does not fly")
+
     def test_landscapes_are_written_curved_read_back_and_refused_when_damaged(self):
         hills = self.path / "hills.patches.json"
         self.assertEqual(self.run_throng("world", "landscape", "--size", 64, "-o", hills).returncode, 0)

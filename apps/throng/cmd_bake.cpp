@@ -7,6 +7,7 @@
 #include "command.h"
 #include "sources.h"
 #include "throng/bake.h"
+#include "throng/cluster.h"
 
 // throng bake: any model in, a folder of zone files out.
 namespace throng::app {
@@ -79,11 +80,13 @@ int bake(Session& session, BakeOptions& options) {
   if (options.fly) options.config.classes.push_back(flyer_class());
   if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
   const Result<Scene> scene = read_sources(options.sources, session.context);
-  if (!scene) return fail(scene.error());
+  const auto read = agree_over_ranks(scene ? Result<void>() : scene.error());
+  if (!read) return fail(read.error());
   const uint64_t peak_read = peak_memory();
   const Result<BakeReport> report =
-      bake_world_to(options.output, *scene, options.config, session.context);
+      bake_over_ranks(options.output, *scene, options.config, session.context);
   if (!report) return fail(report.error());
+  if (rank_info().rank > 0) return kDone;
   print_result(session, bake_json(options, *scene, *report, peak_read),
                bake_text(options, *scene, *report));
   return kDone;
@@ -110,7 +113,8 @@ void add_bake(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
   command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)");
-  command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  command->add_option("--threads", config.workers,
+                      "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->callback([&session, options] { session.exit_code = bake(session, *options); });
 }

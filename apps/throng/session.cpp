@@ -12,6 +12,7 @@
 #include <new>
 
 #include "command.h"
+#include "throng/cluster.h"
 
 namespace throng::app {
 namespace {
@@ -117,7 +118,9 @@ int run_program(int argc, const char* const* argv,
   parser.require_subcommand(1);
   parser.set_version_flag("--version", "throng " THRONG_VERSION);
   Session session;
-  session.context.on_progress = [](const Progress& progress) { progress_line().show(progress); };
+  if (rank_info().rank == 0) {
+    session.context.on_progress = [](const Progress& progress) { progress_line().show(progress); };
+  }
   add(parser, session);
 
   g_cancel = &session.context.cancel;
@@ -157,11 +160,15 @@ void print_result(const Session& session, const Json& object, const std::string&
 
 int fail(const Error& error) {
   progress_line().clear();
-  fmt::print(stderr, "throng: {}\n", error.message);
+  // One of several processes: rank 0 speaks for all. If it is the one that died, rank 1 does.
+  const int32_t rank = rank_info().rank;
+  const bool silent = rank > 1 || (rank == 1 && error.code != Errc::kCancelled);
+  if (!silent && !error.message.empty()) fmt::print(stderr, "throng: {}\n", error.message);
   return error.code == Errc::kCancelled ? kInterrupted : kBadUsage;
 }
 
 void note(const std::string& sentence) {
+  if (rank_info().rank > 0) return;
   progress_line().clear();
   fmt::print(stderr, "throng: note: {}\n", sentence);
 }

@@ -50,6 +50,11 @@ bool exchange(const fs::path& part, const fs::path& target, const fs::path& old)
   return true;
 }
 
+std::string without_slash(std::string path) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  return path;
+}
+
 }  // namespace
 
 // A record of the journal.
@@ -78,7 +83,7 @@ WorldFolder::~WorldFolder() {
 }
 
 Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
-  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  path = without_slash(path);
   const fs::path target(path), old(path + ".old");
   std::error_code error;
   if (fs::exists(target, error)) {
@@ -99,13 +104,17 @@ Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
   return folder;
 }
 
-void WorldFolder::read_old() {
-  const std::string name = (fs::path(path_) / kManifest).string();
+std::shared_ptr<WorldData> WorldFolder::read_world(const std::string& path) {
+  const std::string name = (fs::path(path) / kManifest).string();
   const auto map = FileMap::open(name);
-  if (!map) return;
+  if (!map) return nullptr;
   auto world = read_manifest(map->bytes(), name);
-  if (!world) return;
-  old_ = std::move(*world);
+  return world ? std::move(*world) : nullptr;
+}
+
+void WorldFolder::read_old() {
+  old_ = read_world(path_);
+  if (old_ == nullptr) return;
   std::map<std::pair<int32_t, int32_t>, format::ZoneEntry> entries;
   for (const auto& slot : old_->slots) entries[{slot->entry.z(), slot->entry.x()}] = slot->entry;
   for (const format::ZoneInput& input : old_->inputs) {
@@ -169,10 +178,18 @@ std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_
 
 Result<void> WorldFolder::write(const format::ZoneEntry& entry, uint64_t input,
                                 std::span<const uint8_t> bytes) {
-  if (!bytes.empty()) {
-    const std::string file = (part_ / zone_file_name(entry.x(), entry.z())).string();
-    if (auto ok = write_file(file, bytes); !ok) return ok.error();
-  }
+  if (auto ok = write_zone(path_, entry, bytes); !ok) return ok.error();
+  return add(entry, input);
+}
+
+Result<void> WorldFolder::write_zone(const std::string& path, const format::ZoneEntry& entry,
+                                     std::span<const uint8_t> bytes) {
+  if (bytes.empty()) return {};
+  const fs::path part(without_slash(path) + ".part");
+  return write_file((part / zone_file_name(entry.x(), entry.z())).string(), bytes);
+}
+
+Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
   Done done{.x = entry.x(),
             .z = entry.z(),
             .levels = entry.levels(),

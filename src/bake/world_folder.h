@@ -30,6 +30,17 @@ class WorldFolder {
   /// Removes what was begun and not finished.
   ~WorldFolder();
 
+  /// The world at `path`, without its zones; null if there is none that can be read. For ranks that
+  /// do not own the folder.
+  static std::shared_ptr<WorldData> read_world(const std::string& path);
+  /// Writes the file of a baked zone, if anybody stands there; `add` makes it count.
+  static Result<void> write_zone(const std::string& path, const format::ZoneEntry& entry,
+                                 std::span<const uint8_t> bytes);
+  /// Adds a zone whose file is written. Fails with kIo.
+  Result<void> add(const format::ZoneEntry& entry, uint64_t input);
+  /// Leaves what was begun to the next bake.
+  void leave() { part_.clear(); }
+
   /// The world that is there, without its zones; null if there is none that can be read.
   [[nodiscard]] const WorldData* old_world() const { return old_.get(); }
 

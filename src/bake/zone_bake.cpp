@@ -306,9 +306,15 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
   for (int32_t row = 0; row < side_ + 2; row += kBand) {
     if (context.cancel) return false;
     const int32_t end = row + kBand;
-    for_tiles(row, end, [&](int32_t x, int32_t z, Worker& w) { make_sheets(x, z, w); });
-    for_tiles(row - 1, end - 1, [&](int32_t x, int32_t z, Worker& w) { judge(x, z, w); });
-    for_tiles(row - 2, end - 2, [&](int32_t x, int32_t z, Worker& w) { clear(x, z, w); });
+    // Once cancelled, no pass looks at what the one before it has left out.
+    const auto pass = [&](int32_t behind, auto&& work) {
+      for_tiles(row - behind, end - behind, [&](int32_t x, int32_t z, Worker& w) {
+        if (!context.cancel) work(x, z, w);
+      });
+    };
+    pass(0, [&](int32_t x, int32_t z, Worker& w) { make_sheets(x, z, w); });
+    pass(1, [&](int32_t x, int32_t z, Worker& w) { judge(x, z, w); });
+    pass(2, [&](int32_t x, int32_t z, Worker& w) { clear(x, z, w); });
     // Rows that nothing will look at again.
     for (int32_t z = std::max(row - 4, 0); z < std::min(end - 4, side_); ++z) {
       for (int32_t x = 0; x < side_; ++x) {
@@ -321,6 +327,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
     for (auto& sheet : tile.sheets) scratch_.pool.give(std::move(sheet));
     tile = {};
   }
+  if (context.cancel) return false;
   for (const auto& worker : scratch_.workers) {
     result.seconds_columns += worker->seconds_columns;
     result.seconds_levels += worker->seconds_levels;

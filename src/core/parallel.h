@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <thread>
 
 /// Threads only through here. Bodies write only what their index owns, so results never depend on
 /// the number of workers.
@@ -30,5 +32,33 @@ void parallel_for(size_t count, int32_t workers, Body&& body) {
 /// For scratch memory only; the result must not depend on it.
 void parallel_for_worker(size_t count, int32_t workers,
                          const std::function<void(size_t index, int32_t worker)>& body);
+
+/// A thread for work that must not hold up its owner, who waits for it with join(), at the latest
+/// when it goes.
+class SideThread {
+ public:
+  explicit SideThread(std::function<void()> body)
+      : thread_([this, run = std::move(body)] {
+          try {
+            run();
+          } catch (...) {
+            failure_ = std::current_exception();
+          }
+        }) {}
+  SideThread(const SideThread&) = delete;
+  SideThread& operator=(const SideThread&) = delete;
+  ~SideThread() {
+    if (thread_.joinable()) thread_.join();
+  }
+  /// Throws what the body threw.
+  void join() {
+    thread_.join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
 
 }  // namespace throng

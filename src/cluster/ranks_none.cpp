@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "cluster/ranks.h"
+
+// The library without MPI.
+namespace throng {
+
+Result<Ranks*> Ranks::join() {
+  return Error{Errc::kBadConfig,
+               "started by mpirun as several processes, but throng was built without MPI; install "
+               "libopenmpi-dev and build it again, or start one process"};
+}
+
+std::vector<uint64_t> Ranks::gather(uint64_t mine) { return {mine}; }
+void Ranks::send(int32_t /*to*/, int32_t /*tag*/, std::span<const uint8_t> /*bytes*/) {}
+std::optional<RankMessage> Ranks::poll() { return std::nullopt; }
+void Ranks::abandon() {}
+
+}  // namespace throng

@@ -1,0 +1,156 @@
+# SPDX-FileCopyrightText: 2026 the throng authors
+# SPDX-License-Identifier: MIT
+"""A bake by several processes under mpirun: the bytes of one by one process, for any number of them, and after one
+of them has died.
+
+python3 ranks_test.py build/release/throng [--built-without-mpi]"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+MODEL = "builtin:city,size=300,seed=3"
+OPTIONS = ["--zone", "25.6", "--json"]
+MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else [])]
+# A busy machine may need more than the second that Open MPI leaves between its two signals. One without ssh has no
+# other machines to start ranks on, and Open MPI must not look for one.
+ENVIRONMENT = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "3",
+               **({} if shutil.which("ssh") else {"OMPI_MCA_plm_rsh_agent": "/bin/false"})}
+RECORD = 48  # bytes of the journal for each zone
+
+
+def bake_words(world, model=MODEL, options=()):
+    return [PROGRAM, "bake", model, "-o", world, *OPTIONS, *options]
+
+
+def run(words):
+    return subprocess.run(words, capture_output=True, text=True, check=False, env=ENVIRONMENT)
+
+
+def ours(text):
+    return [line for line in text.splitlines() if line.startswith("throng: ")]
+
+
+def content(world):
+    return {file.name: file.read_bytes() for file in world.iterdir()}
+
+
+def child_of_rank(parent, rank):
+    """The process of a rank that mpirun has started, or None."""
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            stat = (folder / "stat").read_text().rpartition(")")[2].split()
+            names = (folder / "environ").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if int(stat[1]) == parent and f"OMPI_COMM_WORLD_RANK={rank}".encode() in names:
+            return int(folder.name)
+    return None
+
+
+def kill_a_rank(folder, rank, ranks):
+    """Bakes until some zones are done, kills one rank; the words that were said, and the zones in the journal."""
+    world = folder / "killed.throng"
+    journal = folder / "killed.throng.part" / "journal"
+    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *bake_words(world, options=["--threads", "1"])], env=ENVIRONMENT,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while process.poll() is None:
+            if journal.exists() and journal.stat().st_size >= 5 * RECORD:
+                os.kill(child_of_rank(process.pid, rank), signal.SIGKILL)
+                break
+            time.sleep(0.0005)
+        out, err = process.communicate(timeout=60)
+        assert process.returncode != 0, "a rank was killed and mpirun does not say so"
+        assert not world.exists() and not out.strip(), out
+    return err, journal.stat().st_size // RECORD
+
+
+def test_bytes(folder, reference):
+    for ranks in (1, 2, 3):
+        world = folder / f"by{ranks}.throng"
+        done = run([*MPIRUN, "-n", str(ranks), *bake_words(world)])
+        assert done.returncode == 0, done.stderr
+        assert not ours(done.stderr), done.stderr
+        report = json.loads(done.stdout)  # One object, from one rank.
+        assert report["zones_kept"] == 0 and report["zones_baked"] == reference["report"]["zones_baked"]
+        assert report["walkable_area"] == reference["report"]["walkable_area"]
+        assert content(world) == reference["content"], f"{ranks} ranks: other bytes than one process"
+        again = run([*MPIRUN, "-n", str(ranks), *bake_words(world)])
+        assert json.loads(again.stdout)["zones_baked"] == 0, again.stdout
+        assert content(world) == reference["content"], f"{ranks} ranks: other bytes when all is kept"
+        shutil.rmtree(world)
+
+
+def test_death(folder, reference):
+    total = reference["report"]["zones_baked"]
+    for rank, ranks in ((1, 2), (0, 2), (2, 3)):
+        err, finished = kill_a_rank(folder, rank, ranks)
+        assert 5 <= finished < total, f"{finished} of {total} zones: nothing was left to kill"
+        said = ours(err)
+        assert said and all("another rank has died" in line and "goes on from there" in line for line in said), err
+        assert len(said) <= 2 and all(f"rank {rank} of {ranks}" not in line for line in said), err
+        world = folder / "killed.throng"
+        # Whoever goes on: one process, or others.
+        words = bake_words(world) if rank == 0 else [*MPIRUN, "-n", "2", *bake_words(world)]
+        done = run(words)
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["zones_kept"] >= finished, done.stdout
+        assert content(world) == reference["content"], "other bytes than undisturbed"
+        assert not (folder / "killed.throng.part").exists()
+        shutil.rmtree(world)
+
+
+def test_refusals(folder):
+    world = folder / "refused.throng"
+
+    def refused(*words):
+        done = run([*MPIRUN, *words])
+        assert done.returncode != 0 and not done.stdout.strip(), done.stdout
+        assert not world.exists() and not (folder / "refused.throng.part").exists()
+        assert len(ours(done.stderr)) == 1, done.stderr
+        return ours(done.stderr)[0]
+
+    missing = folder / "missing.obj"
+    here = bake_words(world)
+    assert "missing.obj" in refused("-n", "3", *bake_words(world, missing))
+    assert "rank 1: " in refused("-n", "1", *here, ":", "-n", "1", *bake_words(world, missing))
+    assert "cell" in refused("-n", "2", *bake_words(world, options=["--cell", "0"]))
+    other = bake_words(world, "builtin:city,size=300,seed=4")
+    assert "rank 2 has read another scene" in refused("-n", "2", *here, ":", "-n", "1", *other)
+    (folder / "refused.throng").write_text("not a world")
+    done = run([*MPIRUN, "-n", "2", *here])
+    assert done.returncode != 0 and "is not a baked world" in ours(done.stderr)[0], done.stderr
+
+
+def test_without_mpi(folder):
+    """Several processes that do not know of each other would write one folder."""
+    for rank in range(2):
+        ENVIRONMENT.update(OMPI_COMM_WORLD_SIZE="2", OMPI_COMM_WORLD_RANK=str(rank))
+        done = run(bake_words(folder / "w.throng"))
+        assert done.returncode != 0 and not done.stdout and not list(folder.iterdir())
+        assert ["built without MPI" in line for line in ours(done.stderr)] == [True] * (1 - rank), done.stderr
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if "--built-without-mpi" in sys.argv:
+            test_without_mpi(folder)
+            return
+        world = folder / "reference.throng"
+        done = run(bake_words(world))
+        assert done.returncode == 0, done.stderr
+        reference = {"report": json.loads(done.stdout), "content": content(world)}
+        test_bytes(folder, reference)
+        test_death(folder, reference)
+        test_refusals(folder)
+        print("equal bytes by 1, 2 and 3 ranks, and after each of three deaths")
+
+
+main()

@@ -19,9 +19,12 @@ struct AvatarClass {
   double height = 1.75;  ///< [m, 0.1 to 30]
   double radius = 0.25;  ///< [m, 0.01 to 5]
   double step = 0.4;  ///< Largest climb and drop between neighbouring places. [m, 0 to height / 2]
-  double max_slope = 45;  ///< Steepest surface it stands on. [degrees, 0 to 89]
+  double max_slope = 45;  ///< Steepest surface it stands on upright. [degrees, 0 to 89]
   double speed = 1.34;    ///< Preferred walking speed. [m/s, > 0]
-  bool flies = false;     ///< Moves through the air, too.
+  /// Steepest surface of a curved patch that it climbs, its axis along the normal: 90 is a wall,
+  /// 180 a ceiling. 0: it does not climb. [degrees, 0 to 180]
+  double climb_slope = 0;
+  bool flies = false;  ///< Moves through the air, too.
 };
 
 inline constexpr int32_t kMaxAvatarClasses = 16;

@@ -25,12 +25,13 @@ struct Limit {
   const char* unit;
 };
 
-constexpr std::array<Limit, 5> kLimits{{
+constexpr std::array<Limit, 6> kLimits{{
     {"height", &AvatarClass::height, 0.1, 30, "m"},
     {"radius", &AvatarClass::radius, 0.01, 5, "m"},
     {"step", &AvatarClass::step, 0, 15, "m"},
     {"max_slope", &AvatarClass::max_slope, 0, 89, "degrees"},
     {"speed", &AvatarClass::speed, 1e-6, 1000, "m/s"},
+    {"climb_slope", &AvatarClass::climb_slope, 0, 180, "degrees"},
 }};
 
 // The limit that `avatar` breaks, as words, or nothing.
@@ -116,7 +117,7 @@ Result<std::vector<AvatarClass>> read_classes(const ConfigNode& root, const std:
     ConfigReader reader(name, *table, fmt::format("avatar class {}", classes.size() + 1));
     reader.require("name");
     reader.text("name", avatar.name);
-    reader.only({"name", "height", "radius", "step", "max_slope", "speed", "flies"});
+    reader.only({"name", "height", "radius", "step", "max_slope", "speed", "climb_slope", "flies"});
     reader.flag("flies", avatar.flies);
     for (const Limit& limit : kLimits) {
       reader.number(limit.key, avatar.*limit.member, limit.low, limit.high);

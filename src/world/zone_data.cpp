@@ -303,7 +303,8 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
                                .radius = entry.radius(),
                                .step = entry.step(),
                                .max_slope = entry.max_slope(),
-                               .speed = entry.speed()});
+                               .speed = entry.speed(),
+                               .climb_slope = entry.climb_slope()});
     summary.walkable_area.push_back(entry.walkable_area());
     world->class_index.push_back(std::make_unique<ClassIndex>());
   }
@@ -347,7 +348,7 @@ std::vector<uint8_t> write_manifest(const WorldData& world) {
     const AvatarClass& a = s.classes[c];
     classes.push_back(format::CreateClassEntryDirect(builder, a.name.c_str(), a.height, a.radius,
                                                      a.step, a.max_slope, a.speed,
-                                                     s.walkable_area[c]));
+                                                     s.walkable_area[c], a.climb_slope));
   }
   std::vector<format::ZoneEntry> zones;
   for (const auto& slot : world.slots) zones.push_back(slot->entry);

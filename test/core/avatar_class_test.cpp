@@ -83,7 +83,7 @@ TEST(AvatarClass, AWrongSettingIsNamedByLineKeyAndLimit) {
             ":4: avatar class 2: radius = 9 is outside 0.01 to 5");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nheigth = 1\n"),
             ":3: avatar class 1: unknown key 'heigth'; known are name, height, radius, step, "
-            "max_slope, speed, flies");
+            "max_slope, speed, climb_slope, flies");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nradius = \"wide\"\n"),
             ":3: avatar class 1: radius must be a number");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nheight = 1\nstep = 0.6\n"),

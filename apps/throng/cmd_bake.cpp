@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "command.h"
 #include "sources.h"
 #include "throng/bake.h"
 #include "throng/cluster.h"
+#include "throng/nodes.h"
 
 // throng bake: any model in, a folder of zone files out.
 namespace throng::app {
@@ -18,9 +23,70 @@ struct BakeOptions {
   std::string output;
   std::string classes;
   bool fresh = false;
+  bool nodes = false;
+  std::string jumps;
   bool fly = false;
   BakeConfig config;
+  NodeConfig node_config;
 };
+
+// Nodes are made when they are asked for, and whenever a class climbs: only they carry climbers.
+bool wants_nodes(const BakeOptions& options) {
+  return options.nodes || !options.jumps.empty() ||
+         std::any_of(options.config.classes.begin(), options.config.classes.end(),
+                     [](const AvatarClass& avatar) { return avatar.climb_slope > 0; });
+}
+
+bool read_point(const Json& entry, const char* key, Vec3d& out) {
+  if (!entry.is_object() || !entry.contains(key)) return false;
+  const Json& p = entry[key];
+  const auto is_number = [](const Json& number) { return number.is_number(); };
+  if (!p.is_array() || p.size() != 3 || !std::all_of(p.begin(), p.end(), is_number)) return false;
+  out = {p[0].get<double>(), p[1].get<double>(), p[2].get<double>()};
+  return true;
+}
+
+// Jumps from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways": false}].
+Result<std::vector<NodeJump>> read_jumps(const std::string& name, const World& world) {
+  std::ifstream file(name);
+  if (!file) return Error{Errc::kBadFile, name + ": cannot be read"};
+  const Json json = Json::parse(file, nullptr, false);
+  if (!json.is_array()) return Error{Errc::kBadFile, name + ": is no list of jumps in JSON"};
+  std::vector<NodeJump> jumps;
+  for (const Json& entry : json) {
+    const auto bad = [&](const std::string& what) {
+      return Error{Errc::kBadFile, fmt::format("{}: jump {}: {}", name, jumps.size() + 1, what)};
+    };
+    NodeJump jump;
+    if (!read_point(entry, "from", jump.from) || !read_point(entry, "to", jump.to)) {
+      return bad("needs \"from\" and \"to\", three numbers each");
+    }
+    if (!entry.contains("class") || !entry["class"].is_string()) return bad("needs a \"class\"");
+    const Result<int32_t> index = class_named(world, entry["class"].get<std::string>());
+    if (!index) return bad(index.error().message);
+    jump.avatar_class = *index;
+    if (entry.contains("both_ways")) {
+      if (!entry["both_ways"].is_boolean()) return bad("both_ways must be true or false");
+      jump.both_ways = entry["both_ways"].get<bool>();
+    }
+    jumps.push_back(jump);
+  }
+  return jumps;
+}
+
+Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
+  const Result<World> world = World::open(options.output);
+  if (!world) return world.error();
+  if (!options.jumps.empty()) {
+    Result<std::vector<NodeJump>> jumps = read_jumps(options.jumps, *world);
+    if (!jumps) return jumps.error();
+    options.node_config.jumps = *std::move(jumps);
+  }
+  const Result<Nodes> nodes = Nodes::make(*world, scene, options.node_config, context);
+  if (!nodes) return nodes.error();
+  if (auto ok = nodes->write(options.output); !ok) return ok.error();
+  return nodes->summary();
+}
 
 Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport& report,
                uint64_t peak_read) {
@@ -87,8 +153,21 @@ int bake(Session& session, BakeOptions& options) {
       bake_over_ranks(options.output, *scene, options.config, session.context);
   if (!report) return fail(report.error());
   if (rank_info().rank > 0) return kDone;
-  print_result(session, bake_json(options, *scene, *report, peak_read),
-               bake_text(options, *scene, *report));
+  Json json = bake_json(options, *scene, *report, peak_read);
+  std::string text = bake_text(options, *scene, *report);
+  if (wants_nodes(options)) {
+    options.node_config.workers = options.config.workers;
+    const Result<NodeSummary> nodes = bake_nodes(options, *scene, session.context);
+    if (!nodes) return fail(nodes.error());
+    json["nodes"] = nodes->nodes;
+    json["node_arcs"] = nodes->arcs;
+    json["node_bytes"] = nodes->bytes;
+    json["seconds_nodes"] = nodes->seconds;
+    json["peak_bytes"] = peak_memory();
+    text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}\n", nodes->nodes, nodes->arcs,
+                        nodes->seconds, human_bytes(nodes->bytes));
+  }
+  print_result(session, json, text);
   return kDone;
 }
 
@@ -116,6 +195,14 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--threads", config.workers,
                       "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
+  command->add_flag("--nodes", options->nodes,
+                    "Also make nodes and links; always done where a class climbs");
+  command->add_option("--jumps", options->jumps, "With nodes: ways given by hand (JSON)")
+      ->type_name("FILE.json");
+  command
+      ->add_option("--node-size", options->node_config.size,
+                   "Finest sub-patches of curved patches [m]")
+      ->capture_default_str();
   command->callback([&session, options] { session.exit_code = bake(session, *options); });
 }
 

@@ -61,6 +61,7 @@ std::string human_bytes(uint64_t bytes);
 void add_bake(CLI::App& parser, Session& session);
 void add_export(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
+void add_nodes(CLI::App& parser, Session& session);
 void add_path(CLI::App& parser, Session& session);
 void add_picture(CLI::App& parser, Session& session);
 void add_place(CLI::App& parser, Session& session);

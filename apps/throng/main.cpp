@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
     add_bake(parser, session);
     add_export(parser, session);
     add_info(parser, session);
+    add_nodes(parser, session);
     add_path(parser, session);
     add_picture(parser, session);
     add_place(parser, session);

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "command.h"
+#include "throng/nodes.h"
+
+// throng nodes: how many nodes and links a world has, and what each class can reach by them.
+namespace throng::app {
+namespace {
+
+int print_nodes(Session& session, const std::string& path) {
+  const Result<Nodes> nodes = Nodes::open(path);
+  if (!nodes) return fail(nodes.error());
+  if (auto ok = nodes->check_all(); !ok) return fail(ok.error());
+  const NodeSummary summary = nodes->summary();
+  const double count = static_cast<double>(std::max<uint64_t>(summary.nodes, 1));
+  Json json = {{"world", path},
+               {"nodes", summary.nodes},
+               {"terminal", summary.terminal},
+               {"arcs", summary.arcs},
+               {"patches", summary.patches},
+               {"zones", summary.zones},
+               {"bytes", summary.bytes},
+               {"bytes_a_node", static_cast<double>(summary.bytes) / count}};
+  std::string text = fmt::format(
+      "{}: {} nodes ({} terminal), {} arcs, {} patches in {} zones, {} ({:.1f} bytes a node)\n",
+      path, summary.nodes, summary.terminal, summary.arcs, summary.patches, summary.zones,
+      human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
+  json["classes"] = Json::array();
+  for (size_t c = 0; c < summary.classes.size(); ++c) {
+    const auto reach = nodes->reach(static_cast<int32_t>(c));
+    double area = 0;
+    uint64_t stands = 0;
+    for (const NodeReach& part : reach) {
+      area += part.area;
+      stands += part.nodes;
+    }
+    const double largest = reach.empty() ? 0 : reach[0].area;
+    json["classes"].push_back({{"class", summary.classes[c].name},
+                               {"nodes", stands},
+                               {"area", area},
+                               {"parts", reach.size()},
+                               {"largest", largest}});
+    text += fmt::format("  {:<12} {:9} nodes {:12.1f} m2, {} parts, the largest {:.1f} m2\n",
+                        summary.classes[c].name, stands, area, reach.size(), largest);
+  }
+  print_result(session, json, text);
+  return kDone;
+}
+
+}  // namespace
+
+void add_nodes(CLI::App& parser, Session& session) {
+  CLI::App* command =
+      add_command(parser, session, "nodes", "What the nodes of a world let one reach",
+                  "throng bake builtin:landscape -o hills.throng --cell 0.5 --nodes\n"
+                  "throng nodes hills.throng");
+  const auto path = std::make_shared<std::string>();
+  command->add_option("world", *path, "World folder with nodes")
+      ->required()
+      ->type_name("WORLD.throng");
+  command->callback([&session, path] { session.exit_code = print_nodes(session, *path); });
+}
+
+}  // namespace throng::app

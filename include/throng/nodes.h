@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/context.h"
+#include "throng/math.h"
+#include "throng/result.h"
+#include "throng/world.h"
+
+/// Nodes: where bodies can be on Bezier patches, overhangs included, and on level tiles, as one
+/// graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
+namespace throng {
+
+struct Scene;
+struct NodeData;  // Internal: zones of nodes.
+
+/// How a body gets from one node to another.
+enum class LinkKind : uint8_t {
+  kWalk = 0,
+  kStep,     ///< Over a rise that some class cannot take.
+  kClimb,    ///< One end is steeper than any walker's limit, or a gap between patches lies between.
+  kDrop,     ///< One way, down. (None are made yet.)
+  kJump,     ///< Given by hand; the only one that may lead one way.
+  kLand,     ///< From the air. (Reserved.)
+  kTakeOff,  ///< To the air. (Reserved.)
+};
+inline constexpr uint8_t kLinkKinds = 7;
+
+enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };
+
+/// A way that no rule finds: a jump, a ladder, a lift. Given by hand; nothing tests the body on it.
+struct NodeJump {
+  Vec3d from, to;  ///< Within a metre of places of the class. [m]
+  int32_t avatar_class = 0;
+  bool both_ways = false;
+};
+
+struct NodeConfig {
+  double size = 1.0;  ///< Sub-patches of Bezier patches are halved down to this. [m, 0.05 to 100]
+  uint16_t classes = 0xffff;  ///< Bit per class: whom to make nodes for.
+  std::vector<NodeJump> jumps = {};
+  int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
+};
+
+/// Edges of the bins in which promises are kept. A code k of inclination means "at most
+/// inclination[k] degrees" (180 beyond the last); a code k > 0 of a length means "at least
+/// edge[k - 1] metres", 0 promises nothing. Every class's own limits are edges.
+struct THRONG_API NodeBins {
+  std::vector<double> inclination;  ///< Ascending, at most 15. [degrees]
+  std::vector<double> height;       ///< Also of headroom. [m]
+  std::vector<double> width;        ///< [m]
+
+  [[nodiscard]] double inclination_of(uint8_t code) const {
+    return code < inclination.size() ? inclination[code] : 180;
+  }
+  [[nodiscard]] double height_of(uint8_t code) const { return length_of(height, code); }
+  [[nodiscard]] double width_of(uint8_t code) const { return length_of(width, code); }
+  /// The best code that is true of a value, on the safe side.
+  [[nodiscard]] uint8_t inclination_code(double degrees) const;
+  [[nodiscard]] uint8_t height_code(double metres) const;
+  [[nodiscard]] uint8_t width_code(double metres) const;
+
+ private:
+  static double length_of(const std::vector<double>& edges, size_t code) {
+    return code == 0 || edges.empty() ? 0
+                                      : edges[code < edges.size() ? code - 1 : edges.size() - 1];
+  }
+};
+
+/// A sub-patch and what bodies may rely on everywhere in it.
+struct NodeInfo {
+  uint16_t classes = 0;     ///< Bit per class: its body may stand anywhere in the sub-patch.
+  uint8_t inclination = 0;  ///< Steepest surface. [code]
+  uint8_t height = 0;       ///< Free height along the normal (level tiles: straight up). [code]
+  uint8_t headroom = 0;     ///< Free height straight up. [code]
+  uint8_t width = 0;        ///< Radius around the middle without anything more restrictive. [code]
+  bool terminal = true;     ///< No smaller node lies in it.
+  PatchKind kind = PatchKind::kLevelTile;
+  uint32_t source = 0;   ///< Bezier patch of the scene, or level tile of the world.
+  uint8_t depth = 0;     ///< The patch is cut into 2^depth x 2^depth finest sub-patches.
+  uint8_t level = 0;     ///< The node is one of 2^level x 2^level blocks of the patch,
+  uint8_t s = 0, t = 0;  ///< namely this one.
+  uint32_t parent1 = 0;  ///< Smallest node around it, plus one; 0: none.
+  float area = 0;        ///< [m^2]
+};
+
+/// A way out of a node. Its opposite stands at the other node, always, save of jumps one way.
+struct NodeArc {
+  uint32_t to = 0;
+  uint16_t classes = 0;  ///< Who can go.
+  LinkKind kind = LinkKind::kWalk;
+  /// The nodes do not touch: a body goes straight between these two of their places, by parameters
+  /// of their patches, turning evenly.
+  bool leaps = false;
+  double from_s = 0, from_t = 0, to_s = 0, to_t = 0;
+};
+
+struct NodeSummary {
+  uint64_t nodes = 0;
+  uint64_t terminal = 0;
+  uint64_t arcs = 0;  ///< Two a link.
+  uint64_t patches = 0;
+  uint64_t bezier_patches = 0;
+  uint64_t zones = 0;
+  uint64_t bytes = 0;  ///< Of all zones.
+  double seconds = 0;  ///< To make them; 0 if they were opened.
+  NodeBins bins;
+  std::vector<AvatarClass> classes;
+};
+
+/// Places that a class can go to from each other.
+struct NodeReach {
+  double area = 0;  ///< [m^2]
+  uint64_t nodes = 0;
+  uint32_t node = 0;  ///< One of them, the first.
+};
+
+/// A body on a node: it stands at `feet` along `axis`, which is the surface's normal for climbers
+/// on Bezier patches and straight up for all others. A zero-initialised place is nowhere.
+struct NodePlace {
+  uint32_t node1 = 0;  ///< Node plus one.
+  Vec3d feet;          ///< [m]
+  Vec3d axis;
+  Vec3d normal;  ///< Of the surface; straight up on level tiles.
+  [[nodiscard]] explicit operator bool() const { return node1 != 0; }
+};
+
+/// The nodes of a world. Cheap to copy (shared, immutable); safe to read from many threads.
+class THRONG_API Nodes {
+ public:
+  Nodes() = default;
+  explicit Nodes(std::shared_ptr<const NodeData> data) : data_(std::move(data)) {}
+
+  /// Makes the nodes of a world from the scene that it was baked from: of its Bezier patches and,
+  /// where there are triangles that belong to none, of its level tiles. Fails with kBadConfig,
+  /// kBadFile (a zone cannot be used), kLimit or kCancelled.
+  [[nodiscard]] static Result<Nodes> make(const World& world, const Scene& scene,
+                                          const NodeConfig& config, Context& context);
+  /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.
+  [[nodiscard]] static Result<Nodes> open(const std::string& world_path);
+  /// Puts them into the folder of the world that they were made for, in place of any that are
+  /// there. Fails with kIo or, if the folder holds another world, kBadFile.
+  [[nodiscard]] Result<void> write(const std::string& world_path) const;
+  /// Checks every zone against the index. Fails with kBadFile and the zone's name.
+  [[nodiscard]] Result<void> check_all() const;
+
+  [[nodiscard]] NodeSummary summary() const;
+  [[nodiscard]] uint32_t node_count() const;
+  [[nodiscard]] NodeInfo node(uint32_t node) const;
+  [[nodiscard]] std::vector<NodeArc> arcs(uint32_t node) const;
+  /// Corners of a node's sub-patch, in the order of BezierPatch's vertices, at the ground. [m]
+  [[nodiscard]] std::array<Vec3d, 4> corners(uint32_t node) const;
+  /// The ground at (s, t) of the parameters of a node's patch, in the node or not. [m, 0 to 1]
+  [[nodiscard]] Vec3d point(uint32_t node, double s, double t) const;
+  /// The place at (s, t) of the patch's parameters, which must lie in the node; nowhere if the
+  /// class may not stand there.
+  [[nodiscard]] NodePlace place(int32_t avatar_class, uint32_t node, double s, double t) const;
+  /// The n-th of a reproducible stream of places of a class, about uniform over its area. Nowhere
+  /// only if the class has no node.
+  [[nodiscard]] NodePlace random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const;
+
+  /// What a class can reach: connected parts of the graph, largest first. `of_node`, if given,
+  /// takes the part of each node, UINT32_MAX for nodes that the class cannot stand on. Linear in
+  /// nodes and arcs.
+  [[nodiscard]] std::vector<NodeReach> reach(int32_t avatar_class,
+                                             std::vector<uint32_t>* of_node = nullptr) const;
+
+  [[nodiscard]] const std::shared_ptr<const NodeData>& data() const { return data_; }
+
+ private:
+  std::shared_ptr<const NodeData> data_;
+};
+
+}  // namespace throng

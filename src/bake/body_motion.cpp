@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/body_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace throng {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kGrowth = 0.03;  // How little bodies are grown between poses at the end. [m]
+constexpr int kMostSteps = 256;   // of a walker's way
+
+// Height of a triangle on the vertical line through (x, z), if it is there.
+bool carries(const LocalTriangle& t, Vec3d at, double reach) {
+  double height = 0, sum = 0;
+  std::array<double, 3> weight;
+  for (size_t i = 0; i < 3; ++i) {
+    const Vec3d a = t[(i + 1) % 3], b = t[(i + 2) % 3];
+    weight[i] = (a.x - at.x) * (b.z - at.z) - (a.z - at.z) * (b.x - at.x);
+    sum += weight[i];
+    height += weight[i] * t[i].y;
+  }
+  if (sum == 0) return false;
+  for (const double w : weight) {
+    if (w * sum < 0) return false;
+  }
+  return std::fabs(height / sum - at.y) <= reach;
+}
+
+}  // namespace
+
+bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to) {
+  if (dot(from.axis, to.axis) < -0.5) return false;  // Which way it turns would be a guess.
+  const double far = std::sqrt(body.height * body.height + body.radius * body.radius);
+  // The turning axis moves fastest half way, by the angle's tangent: twice the chord holds it.
+  const double way = length(to.feet - from.feet) + 2 * far * length(to.axis - from.axis);
+  Box3d box;
+  for (const BodyPose& pose : {from, to}) {
+    const Vec3d reach{far + kGrowth, far + kGrowth, far + kGrowth};
+    box.add(pose.feet - reach);
+    box.add(pose.feet + reach);
+  }
+  found_.clear();
+  triangles_->find(box, found_);
+  near_.clear();
+  for (const uint32_t t : found_) near_.push_back(triangles_->corners(t));
+  return is_free(body, from, to, way, 0, 1);
+}
+
+// The part of a motion from t0 to t1, halved until the grown body is free.
+bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to,
+                          double way, double t0, double t1) const {
+  const double t = (t0 + t1) / 2, growth = way * (t1 - t0) / 2;
+  const Vec3d axis = from.axis * (1 - t) + to.axis * t;
+  const BodyFrame frame =
+      BodyFrame::around(from.feet * (1 - t) + to.feet * t, axis * (1 / length(axis)));
+  const BodySweep exact{.radius = body.radius, .low = body.bottom, .high = body.height};
+  const BodySweep grown{
+      .radius = body.radius + growth, .low = body.bottom - growth, .high = body.height + growth};
+  bool free = true;
+  for (const LocalTriangle& triangle : near_) {
+    LocalTriangle local;
+    for (size_t i = 0; i < 3; ++i) local[i] = frame.local(triangle[i]);
+    if (lowest_entry(local, grown) == kNever) continue;
+    if (growth <= kGrowth || lowest_entry(local, exact) < kNever) return false;
+    free = false;
+  }
+  return free || (is_free(body, from, to, way, t0, t) && is_free(body, from, to, way, t, t1));
+}
+
+bool MotionJudge::is_carried(Vec3d from, Vec3d to, double reach, double spacing) {
+  Box3d box;
+  box.add(from);
+  box.add(to);
+  box.min.y -= reach;
+  box.max.y += reach;
+  found_.clear();
+  triangles_->find(box, found_);
+  const int steps = static_cast<int>(std::ceil(length(to - from) / spacing)) + 1;
+  if (steps > kMostSteps) return false;
+  for (int k = 0; k <= steps; ++k) {
+    const double t = static_cast<double>(k) / steps;
+    const Vec3d at = from * (1 - t) + to * t;
+    const bool carried = std::any_of(found_.begin(), found_.end(), [&](uint32_t triangle) {
+      return carries(triangles_->corners(triangle), at, reach);
+    });
+    if (!carried) return false;
+  }
+  return true;
+}
+
+}  // namespace throng

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bake/patch_cells.h"
+
+/// Bodies on their way between two places, against triangles.
+namespace throng {
+
+/// A place of a body: its feet and its axis, of unit length.
+struct BodyPose {
+  Vec3d feet, axis;
+};
+
+/// Tests motions of bodies from pose to pose: the feet straight, the axis turning evenly. One per
+/// thread: owns scratch memory.
+class MotionJudge {
+ public:
+  explicit MotionJudge(const TriangleSquares& triangles) : triangles_(&triangles) {}
+
+  /// True if no triangle meets the body on its way. Proved, not sampled: between two poses the body
+  /// is grown by as far as any of its points moves.
+  [[nodiscard]] bool is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to);
+
+  /// True if there is a surface within `reach` above or below the straight line between two points,
+  /// everywhere up to `spacing`.
+  [[nodiscard]] bool is_carried(Vec3d from, Vec3d to, double reach, double spacing);
+
+ private:
+  [[nodiscard]] bool is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to,
+                             double way, double t0, double t1) const;
+
+  const TriangleSquares* triangles_;
+  std::vector<uint32_t> found_;
+  std::vector<LocalTriangle> near_;
+};
+
+}  // namespace throng

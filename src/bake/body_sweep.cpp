@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/body_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "core/parallel.h"
+
+namespace throng {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// A convex polygon with room for a triangle cut twice.
+struct Clipped {
+  std::array<Vec3d, 6> corners;
+  size_t count = 0;
+
+  void add(Vec3d p) { corners[count++] = p; }
+};
+
+// What is left on the side of the plane where sign * (y - height) >= 0; heights are in z here.
+Clipped clip(const Clipped& in, double height, double sign) {
+  Clipped out;
+  for (size_t i = 0; i < in.count; ++i) {
+    const Vec3d a = in.corners[i], b = in.corners[(i + 1) % in.count];
+    const double da = sign * (a.z - height), db = sign * (b.z - height);
+    if (da >= 0) out.add(a);
+    if ((da > 0 && db < 0) || (da < 0 && db > 0)) out.add(a + (b - a) * (da / (da - db)));
+  }
+  return out;
+}
+
+double distance2_to_segment(Vec3d a, Vec3d b) {
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  const double along = dx * dx + dy * dy;
+  double t = along > 0 ? -(a.x * dx + a.y * dy) / along : 0;
+  t = std::clamp(t, 0.0, 1.0);
+  const double x = a.x + t * dx, y = a.y + t * dy;
+  return x * x + y * y;
+}
+
+// Squared distance from the axis to a convex polygon seen along it.
+double distance2(const Clipped& polygon) {
+  bool left = false, right = false;
+  double nearest = kNever;
+  for (size_t i = 0; i < polygon.count; ++i) {
+    const Vec3d a = polygon.corners[i], b = polygon.corners[(i + 1) % polygon.count];
+    const double side = a.x * b.y - a.y * b.x;
+    left |= side > 0;
+    right |= side < 0;
+    nearest = std::min(nearest, distance2_to_segment(a, b));
+  }
+  return left != right ? 0 : nearest;  // All edges turn one way around the axis.
+}
+
+}  // namespace
+
+BodyFrame BodyFrame::around(Vec3d centre, Vec3d up) {
+  // Any direction across will do; the coordinate axis that lies flattest is farthest from parallel.
+  const double x = std::fabs(up.x), y = std::fabs(up.y), z = std::fabs(up.z);
+  const Vec3d flat = x <= y && x <= z ? Vec3d{1, 0, 0} : y <= z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  Vec3d side = cross(flat, up);
+  side = side * (1 / length(side));
+  return {centre, side, cross(up, side), up};
+}
+
+double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep) {
+  const auto& [a, b, c] = triangle;
+  const double low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});
+  if (low > sweep.high || high < sweep.low) return kNever;
+  const double r = sweep.radius;
+  if (std::min({a.x, b.x, c.x}) > r || std::max({a.x, b.x, c.x}) < -r ||
+      std::min({a.y, b.y, c.y}) > r || std::max({a.y, b.y, c.y}) < -r) {
+    return kNever;
+  }
+  Clipped polygon{{a, b, c}, 3};
+  if (low < sweep.low) polygon = clip(polygon, sweep.low, 1);
+  if (high > sweep.high) polygon = clip(polygon, sweep.high, -1);
+  if (polygon.count == 0 || distance2(polygon) > r * r) return kNever;
+  double lowest = kNever;
+  for (size_t i = 0; i < polygon.count; ++i) lowest = std::min(lowest, polygon.corners[i].z);
+  return lowest;
+}
+
+Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep) {
+  const Vec3d up = frame.up;
+  const auto across = [&](double along) {
+    return sweep.radius * std::sqrt(1 - std::min(1.0, along * along));
+  };
+  const Vec3d r{across(up.x), across(up.y), across(up.z)};
+  Box3d box;
+  for (const double height : {sweep.low, sweep.high}) {
+    const Vec3d middle = frame.centre + up * height;
+    box.add(middle - r);
+    box.add(middle + r);
+  }
+  return box;
+}
+
+TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&scene) {
+  const Box3d bounds = scene.bounds();
+  origin_x_ = bounds.min.x;
+  origin_z_ = bounds.min.z;
+  make_clusters(workers);
+  const double width = bounds.max.x - bounds.min.x, depth = bounds.max.z - bounds.min.z;
+  // Small against bodies and sub-patches, but not so many that the squares cost more than they
+  // save.
+  side_ = std::max(2.0, std::max(width, depth) / 4096);
+  const auto squares = [&](double extent) { return static_cast<int32_t>(extent / side_) + 1; };
+  const auto box = [&](size_t c) {
+    const auto& b = clusters_[c].box;
+    const auto at = [&](double v, double origin) { return (v - origin) / side_; };
+    return CellBox{at(b[0], origin_x_), at(b[3], origin_x_), at(b[2], origin_z_),
+                   at(b[5], origin_z_)};
+  };
+  bins_ = bin_boxes(clusters_.size(), box, 0, 0, squares(width), squares(depth), 1, 0);
+}
+
+// Runs of triangles that follow each other are sorted by cubes of kCube metres, and what lies in
+// one cube is a cluster. Whatever the order of a soup, clusters hold all its triangles.
+void TriangleSquares::make_clusters(int32_t workers) {
+  constexpr size_t kRun = 2048;
+  constexpr double kCube = 1.5;
+  constexpr uint32_t kMost = 24;
+  const size_t count = scene_->triangles.size();
+  order_.resize(count);
+  const auto patch_of = [&](size_t t) {
+    return scene_->patch_of_triangle.empty() ? kNoPatch : scene_->patch_of_triangle[t];
+  };
+  std::vector<std::vector<Cluster>> lists((count + kRun - 1) / kRun);
+  parallel_for(lists.size(), workers, [&](size_t run) {
+    using Key = std::tuple<uint32_t, int64_t, int64_t, int64_t, uint32_t>;  // patch first
+    std::vector<Key> keys;
+    const size_t begin = run * kRun, end = std::min(count, begin + kRun);
+    for (size_t t = begin; t < end; ++t) {
+      const LocalTriangle c = corners(static_cast<uint32_t>(t));
+      const Vec3d middle = (c[0] + c[1] + c[2]) * (1.0 / 3 / kCube);
+      const auto cube = [](double v) { return static_cast<int64_t>(std::floor(v)); };
+      keys.emplace_back(patch_of(t), cube(middle.x), cube(middle.z), cube(middle.y),
+                        static_cast<uint32_t>(t));
+    }
+    std::sort(keys.begin(), keys.end());
+    const auto same_cube = [](const Key& a, const Key& b) {
+      return std::get<0>(a) == std::get<0>(b) && std::get<1>(a) == std::get<1>(b) &&
+             std::get<2>(a) == std::get<2>(b) && std::get<3>(a) == std::get<3>(b);
+    };
+    for (size_t i = 0; i < keys.size(); ++i) order_[begin + i] = std::get<4>(keys[i]);
+    for (size_t i = 0; i < keys.size();) {
+      size_t j = i + 1;
+      while (j < keys.size() && j - i < kMost && same_cube(keys[i], keys[j])) ++j;
+      lists[run].push_back(
+          measure(static_cast<uint32_t>(begin + i), static_cast<uint32_t>(begin + j)));
+      lists[run].back().patch = std::get<0>(keys[i]);
+      i = j;
+    }
+  });
+  for (const auto& list : lists) clusters_.insert(clusters_.end(), list.begin(), list.end());
+}
+
+TriangleSquares::Cluster TriangleSquares::measure(uint32_t first, uint32_t last) const {
+  Cluster cluster;
+  cluster.first = first;
+  cluster.last = last;
+  Box3d box;
+  Vec3d normal;
+  for (uint32_t i = first; i < last; ++i) {
+    const LocalTriangle c = corners(order_[i]);
+    for (const Vec3d& p : c) box.add(p);
+    normal = normal + cross(c[1] - c[0], c[2] - c[0]);
+  }
+  const double size = length(normal);
+  cluster.axis = size > 0 ? normal * (1 / size) : Vec3d{0, 1, 0};
+  cluster.centre = (box.min + box.max) * 0.5;
+  double radius = 0, thick = 0;
+  for (uint32_t i = first; i < last; ++i) {
+    for (const Vec3d& p : corners(order_[i])) {
+      const Vec3d d = p - cluster.centre;
+      const double along = dot(d, cluster.axis);
+      thick = std::max(thick, std::fabs(along));
+      radius = std::max(radius, dot(d, d) - along * along);
+    }
+  }
+  const auto above = [](double v) { return std::nextafter(static_cast<float>(v), INFINITY); };
+  const auto below = [](double v) { return std::nextafter(static_cast<float>(v), -INFINITY); };
+  cluster.radius = above(std::sqrt(std::max(0.0, radius)) + 1e-9);
+  cluster.thick = above(thick + 1e-9);
+  cluster.box = {below(box.min.x), below(box.min.y), below(box.min.z),
+                 above(box.max.x), above(box.max.y), above(box.max.z)};
+  return cluster;
+}
+
+// A cluster in several squares is visited in the first one that the box has in common with it.
+template <class Visit>
+void TriangleSquares::for_each_near(const Box3d& box, Visit visit) const {
+  const auto square = [&](double v, double origin, int32_t count) {
+    return static_cast<int32_t>(
+        std::clamp((v - origin) / side_, 0.0, static_cast<double>(count - 1)));
+  };
+  const int32_t x0 = square(box.min.x, origin_x_, bins_.squares_x);
+  const int32_t x1 = square(box.max.x, origin_x_, bins_.squares_x);
+  const int32_t z0 = square(box.min.z, origin_z_, bins_.squares_z);
+  const int32_t z1 = square(box.max.z, origin_z_, bins_.squares_z);
+  for (int32_t z = z0; z <= z1; ++z) {
+    for (int32_t x = x0; x <= x1; ++x) {
+      const auto s =
+          static_cast<size_t>(z) * static_cast<size_t>(bins_.squares_x) + static_cast<size_t>(x);
+      for (uint32_t i = bins_.first[s]; i < bins_.first[s + 1]; ++i) {
+        const Cluster& cluster = clusters_[bins_.items[i]];
+        const auto& b = cluster.box;
+        if (!(b[0] <= box.max.x && b[3] >= box.min.x && b[1] <= box.max.y && b[4] >= box.min.y &&
+              b[2] <= box.max.z && b[5] >= box.min.z)) {
+          continue;
+        }
+        const bool earlier_x = x > x0 && square(b[0], origin_x_, bins_.squares_x) < x;
+        const bool earlier_z = z > z0 && square(b[2], origin_z_, bins_.squares_z) < z;
+        if (!earlier_x && !earlier_z) visit(cluster);
+      }
+    }
+  }
+}
+
+void TriangleSquares::find(const Box3d& box, std::vector<uint32_t>& out) const {
+  for_each_near(box, [&](const Cluster& cluster) {
+    out.insert(out.end(), order_.begin() + cluster.first, order_.begin() + cluster.last);
+  });
+}
+
+bool TriangleSquares::may_enter(const Cluster& cluster, const BodyFrame& frame,
+                                const BodySweep& sweep) {
+  const Vec3d d = cluster.centre - frame.centre;
+  const double height = dot(d, frame.up), along = std::fabs(dot(cluster.axis, frame.up));
+  const double across = std::sqrt(std::max(0.0, 1 - along * along)) + 1e-9;
+  const double up = along * cluster.thick + across * cluster.radius;
+  if (height + up < sweep.low || height - up > sweep.high) return false;
+  const double side2 = dot(d, d) - height * height;
+  const double near = sweep.radius + cluster.radius + across * cluster.thick + 1e-9;
+  return side2 <= near * near;
+}
+
+void TriangleSquares::find(const BodyFrame& frame, const BodySweep& sweep,
+                           std::vector<uint32_t>& out) const {
+  for_each_near(sweep_box(frame, sweep), [&](const Cluster& cluster) {
+    if (!may_enter(cluster, frame, sweep)) return;
+    out.insert(out.end(), order_.begin() + cluster.first, order_.begin() + cluster.last);
+  });
+}
+
+void TriangleSquares::find_patches(const BodyFrame& frame, const BodySweep& sweep,
+                                   std::span<const uint32_t> not_of,
+                                   std::vector<uint32_t>& out) const {
+  for_each_near(sweep_box(frame, sweep), [&](const Cluster& cluster) {
+    if (cluster.patch == kNoPatch || (!out.empty() && out.back() == cluster.patch) ||
+        std::find(not_of.begin(), not_of.end(), cluster.patch) != not_of.end() ||
+        !may_enter(cluster, frame, sweep)) {
+      return;
+    }
+    for (uint32_t i = cluster.first; i < cluster.last; ++i) {
+      LocalTriangle local = corners(order_[i]);
+      for (Vec3d& corner : local) corner = frame.local(corner);
+      if (lowest_entry(local, sweep) == kNever) continue;
+      out.push_back(cluster.patch);
+      return;
+    }
+  });
+}
+
+LocalTriangle TriangleSquares::corners(uint32_t triangle) const {
+  const auto& [a, b, c] = scene_->triangles[triangle];
+  return {scene_->positions[a], scene_->positions[b], scene_->positions[c]};
+}
+
+}  // namespace throng

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "bake/triangles.h"
+#include "throng/math.h"
+#include "throng/scene.h"
+
+/// Where a body may be while its feet are anywhere in a sub-patch, against triangles.
+namespace throng {
+
+/// Right-handed axes around a point; `up` is the body's axis. Unit lengths.
+struct BodyFrame {
+  Vec3d centre, side, front, up;
+
+  static BodyFrame around(Vec3d centre, Vec3d up);
+  /// Coordinates along side and front, and the height along up.
+  [[nodiscard]] Vec3d local(Vec3d p) const {
+    const Vec3d d = p - centre;
+    return {dot(d, side), dot(d, front), dot(d, up)};
+  }
+};
+
+/// The cylinder that holds the body wherever its feet are. Heights along a frame's axis. [m]
+struct BodySweep {
+  double radius = 0, low = 0, high = 0;
+};
+
+using LocalTriangle = std::array<Vec3d, 3>;
+
+/// The least height in a sweep that a triangle reaches there; infinite if it stays outside. The
+/// triangle is clipped to the sweep's heights and what is left is compared with its radius, so the
+/// height is at most the true one.
+[[nodiscard]] double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep);
+
+/// The box that holds a sweep.
+[[nodiscard]] Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep);
+
+/// Triangles of a scene in small flat clusters, by squares of the ground: smooth ground is told to
+/// lie below a body a cluster at a time.
+class TriangleSquares {
+ public:
+  TriangleSquares(const Scene& scene, int32_t workers);
+
+  /// Appends the triangles of clusters whose boxes overlap `box`, each once.
+  void find(const Box3d& box, std::vector<uint32_t>& out) const;
+  /// Appends the triangles of clusters that may come into a sweep, each once.
+  void find(const BodyFrame& frame, const BodySweep& sweep, std::vector<uint32_t>& out) const;
+  /// Appends the patches, but for those in `not_of`, whose triangles come into a sweep.
+  void find_patches(const BodyFrame& frame, const BodySweep& sweep,
+                    std::span<const uint32_t> not_of, std::vector<uint32_t>& out) const;
+  [[nodiscard]] LocalTriangle corners(uint32_t triangle) const;
+  [[nodiscard]] const Scene& scene() const { return *scene_; }
+
+ private:
+  /// All corners lie within `radius` of the axis through `centre` and within `thick` along it.
+  struct Cluster {
+    Vec3d centre, axis;
+    float radius = 0, thick = 0;
+    std::array<float, 6> box;      ///< Rounded outward.
+    uint32_t first = 0, last = 0;  ///< of order_
+    uint32_t patch = kNoPatch;     ///< That all its triangles belong to.
+  };
+
+  [[nodiscard]] static bool may_enter(const Cluster& cluster, const BodyFrame& frame,
+                                      const BodySweep& sweep);
+  void make_clusters(int32_t workers);
+  [[nodiscard]] Cluster measure(uint32_t first, uint32_t last) const;
+  template <class Visit>
+  void for_each_near(const Box3d& box, Visit visit) const;
+
+  const Scene* scene_;
+  double side_ = 2;  // [m]
+  double origin_x_ = 0, origin_z_ = 0;
+  std::vector<uint32_t> order_;  // triangles
+  std::vector<Cluster> clusters_;
+  TriangleBins bins_;  // of clusters
+};
+
+}  // namespace throng

@@ -1,0 +1,482 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <tuple>
+
+#include "bake/node_file.h"
+#include "bake/patch_links.h"
+#include "core/file_map.h"
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "graph/node_bins.h"
+#include "graph/node_width.h"
+#include "graph/patch_pairs.h"
+#include "graph/tile_cells.h"
+#include "throng/scene.h"
+#include "world/node_data.h"
+#include "world/place.h"
+
+// From patches and level tiles to nodes, links and widths. What decides is per cell and class;
+// everything after that only groups cells, so it is the same for Bezier patches and level tiles.
+namespace throng {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Result<void> check(const World& world, const Scene& scene, const NodeConfig& config) {
+  if (world.data() == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
+  if (!(config.size >= 0.05 && config.size <= 100)) {
+    return Error{Errc::kBadConfig, "nodes: the size must be 0.05 to 100 m"};
+  }
+  if (config.workers < 0) return Error{Errc::kBadConfig, "nodes: workers must be 0 or more"};
+  if (scene.triangles.size() != world.summary().source_triangles) {
+    return Error{Errc::kBadInput, "nodes: the world was not baked from this scene: it has " +
+                                      std::to_string(world.summary().source_triangles) +
+                                      " source triangles, the scene has " +
+                                      std::to_string(scene.triangles.size())};
+  }
+  return world.check_all();
+}
+
+// A patch of the forest: where it comes from and which zone keeps it.
+struct PatchSource {
+  int32_t zone_z = 0, zone_x = 0;
+  PatchKind kind = PatchKind::kBezier;
+  uint32_t source = 0;
+
+  friend auto operator<=>(const PatchSource&, const PatchSource&) = default;
+};
+
+// Cells between which a body goes straight though they do not touch.
+struct Leap {
+  uint32_t from_patch = 0, from_cell = 0, to_patch = 0, to_cell = 0;
+};
+
+class NodeBaker {
+ public:
+  NodeBaker(const World& world, const Scene& scene, const NodeConfig& config, Context& context)
+      : world_(world),
+        data_(*world.data()),
+        scene_(scene),
+        config_(config),
+        context_(context),
+        bins_(make_bins(data_.summary.classes)) {}
+
+  Result<Nodes> run() {
+    const auto start = Clock::now();
+    choose_layers();
+    judge_patches();
+    if (context_.cancel) return cancelled();
+    list_patches();
+    grow_trees();
+    if (forest_.size() >= kFarNode) {
+      return Error{Errc::kLimit, "nodes: more than 2^31 nodes; use a larger cell or node size"};
+    }
+    find_pairs();
+    if (auto ok = add_jumps(); !ok) return ok.error();
+    if (context_.cancel) return cancelled();
+    link();
+    measure();
+    if (context_.cancel) return cancelled();
+    auto nodes = pack();
+    if (!nodes) return nodes.error();
+    (*nodes)->summary.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return Nodes(std::move(*nodes));
+  }
+
+ private:
+  static Error cancelled() { return {Errc::kCancelled, "nodes: cancelled"}; }
+
+  // Bezier patches carry everybody where all ground is made of them; where there is other ground
+  // too, level tiles carry those who walk, and patches those who climb.
+  void choose_layers() {
+    const auto& of = scene_.patch_of_triangle;
+    has_patches_ = !scene_.patches.empty();
+    has_tiles_ = of.empty() || std::find(of.begin(), of.end(), kNoPatch) != of.end();
+    on_patches_ = 0;
+    for (size_t c = 0; c < data_.summary.classes.size(); ++c) {
+      const bool climbs = data_.summary.classes[c].climb_slope > 0;
+      if (climbs || !has_tiles_) on_patches_ |= static_cast<uint16_t>(1u << c);
+    }
+    on_patches_ &= config_.classes;
+    if (on_patches_ == 0) has_patches_ = false;
+  }
+
+  void judge_patches() {
+    if (!has_patches_) return;
+    triangles_.emplace(scene_, config_.workers);
+    cells_.resize(scene_.patches.size());
+    std::vector<uint8_t> blocked(cells_.size(), 0);
+    for (size_t t = 0; t < scene_.triangles.size(); ++t) {
+      const uint32_t p = scene_.patch_of_triangle[t];
+      if (p != kNoPatch && scene_.area[t] == kAreaBlocked) blocked[p] = 1;
+    }
+    std::vector<PatchJudge> judges(
+        static_cast<size_t>(worker_count(config_.workers)),
+        PatchJudge(*triangles_, data_.summary.classes, bins_, config_.size));
+    parallel_for_worker(cells_.size(), config_.workers, [&](size_t p, int32_t worker) {
+      if (context_.cancel) return;
+      cells_[p] = judges[static_cast<size_t>(worker)].judge(static_cast<uint32_t>(p));
+      for (Promise& cell : cells_[p].promise.cells) {
+        cell.classes = blocked[p] != 0 ? uint16_t{0} : cell.classes & on_patches_;
+      }
+    });
+  }
+
+  void list_patches() {
+    const auto per_zone = static_cast<int32_t>(data_.tiles_per_zone);
+    for (uint32_t p = 0; p < cells_.size(); ++p) {
+      const Box3d box = scene_.patches.patches[p].bounds();
+      const Vec3d middle = (box.min + box.max) * 0.5;
+      const auto zone = [&](double at, double origin, int32_t zones) {
+        const double tile = (at - origin) / data_.summary.cell / 64;
+        return std::clamp(static_cast<int32_t>(std::floor(tile / per_zone)), 0, zones - 1);
+      };
+      sources_.push_back({zone(middle.z, data_.summary.origin.z, data_.zones_z),
+                          zone(middle.x, data_.summary.origin.x, data_.zones_x), PatchKind::kBezier,
+                          p});
+    }
+    if (has_tiles_) {
+      for (size_t s = 0; s < data_.slots.size(); ++s) {
+        const auto& slot = *data_.slots[s];
+        for (uint32_t l = 0; l < slot.entry.levels(); ++l) {
+          sources_.push_back(
+              {slot.entry.z(), slot.entry.x(), PatchKind::kLevelTile, slot.first_level + l});
+        }
+      }
+    }
+    std::sort(sources_.begin(), sources_.end());
+    bezier_.resize(cells_.size());
+    level_.resize(has_tiles_ ? data_.level_count : 0);
+    for (uint32_t p = 0; p < sources_.size(); ++p) {
+      (sources_[p].kind == PatchKind::kBezier ? bezier_ : level_)[sources_[p].source] = p;
+    }
+  }
+
+  // The cells of level tiles are read again for their links: kept, they would fill the memory.
+  [[nodiscard]] PatchCells cells_of(const PatchSource& source) const {
+    if (source.kind == PatchKind::kBezier) return cells_[source.source].promise;
+    return tile_cells(world_, source.source, config_.classes, bins_);
+  }
+
+  void grow_trees() {
+    std::vector<PatchTree> trees(sources_.size());
+    parallel_for(sources_.size(), config_.workers, [&](size_t p) {
+      if (!context_.cancel) trees[p] = build_tree(cells_of(sources_[p]));
+    });
+    forest_.first = {0};
+    for (PatchTree& tree : trees) forest_.add(std::move(tree));
+  }
+
+  void find_pairs() {
+    const auto take = [&](std::vector<CellPair> list, const std::vector<uint32_t>& of_a,
+                          const std::vector<uint32_t>& of_b) {
+      for (CellPair& pair : list) {
+        pair.patch_a = of_a[pair.patch_a];
+        pair.patch_b = of_b[pair.patch_b];
+        if (pair.side_a == 4) {
+          leaps_.push_back({pair.patch_a, pair.cell_a, pair.patch_b, pair.cell_b});
+          pair.leap1 = static_cast<uint32_t>(leaps_.size());
+        }
+        pairs_.push_back(pair);
+      }
+    };
+    if (has_patches_) {
+      const PatchLinkInput input{.triangles = &*triangles_,
+                                 .world = &world_,
+                                 .classes = data_.summary.classes,
+                                 .cells = cells_,
+                                 .size = config_.size};
+      take(link_edges(input, config_.workers), bezier_, bezier_);
+      take(link_holes(input, config_.workers), bezier_, bezier_);
+      if (has_tiles_) take(link_tiles(input, config_.workers), bezier_, level_);
+    }
+    if (!has_tiles_) return;
+    const int32_t tiles_x = data_.summary.tiles_x, tiles_z = data_.summary.tiles_z;
+    std::vector<std::vector<CellPair>> lists(static_cast<size_t>(tiles_x) *
+                                             static_cast<size_t>(tiles_z));
+    parallel_for(lists.size(), config_.workers, [&](size_t i) {
+      const auto tile = static_cast<int32_t>(i);
+      if (!context_.cancel) lists[i] = tile_pairs(data_, tile % tiles_x, tile / tiles_x);
+    });
+    for (auto& list : lists) take(std::move(list), level_, level_);
+  }
+
+  // The cell nearest to a point, of those on which a class may stand within a metre.
+  [[nodiscard]] std::optional<std::pair<uint32_t, uint32_t>> cell_near(int32_t avatar_class,
+                                                                       Vec3d at) const {
+    constexpr double kReach = 1;
+    std::optional<std::pair<uint32_t, uint32_t>> best;
+    double nearest = kReach * kReach;
+    if (has_tiles_) {
+      if (const Place place = world_.find_place(avatar_class, at, kReach)) {
+        const GroundPoint p = to_ground(data_, place.position.x, place.position.z);
+        best = {level_[place.level1 - 1],
+                static_cast<uint32_t>((p.cell_z() & 63) * 64 + (p.cell_x() & 63))};
+        nearest = (place.position.y - at.y) * (place.position.y - at.y);
+      }
+    }
+    for (size_t patch = 0; patch < cells_.size(); ++patch) {
+      for (size_t i = 0; i < cells_[patch].shape.size(); ++i) {
+        const CellShape& c = cells_[patch].shape[i];
+        const Vec3d d{c.x - at.x, c.y - at.y, c.z - at.z};
+        const double far = dot(d, d);
+        const uint16_t classes = cells_[patch].promise.cells[i].classes;
+        if (far >= nearest || (classes >> avatar_class & 1) == 0) continue;
+        nearest = far;
+        best = {bezier_[patch], static_cast<uint32_t>(i)};
+      }
+    }
+    return best;
+  }
+
+  Result<void> add_jumps() {
+    for (size_t j = 0; j < config_.jumps.size(); ++j) {
+      const NodeJump& jump = config_.jumps[j];
+      const auto& classes = data_.summary.classes;
+      const auto bad = [&](const std::string& what) {
+        return Error{Errc::kBadInput, "nodes: jump " + std::to_string(j + 1) + ": " + what};
+      };
+      if (jump.avatar_class < 0 || static_cast<size_t>(jump.avatar_class) >= classes.size()) {
+        return bad("the world has no such avatar class");
+      }
+      const auto from = cell_near(jump.avatar_class, jump.from);
+      const auto to = cell_near(jump.avatar_class, jump.to);
+      if (!from || !to) {
+        return bad(classes[static_cast<size_t>(jump.avatar_class)].name +
+                   " has no place within a metre of where it " + (from ? "ends" : "begins"));
+      }
+      leaps_.push_back({from->first, from->second, to->first, to->second});
+      pairs_.push_back({.patch_a = from->first,
+                        .cell_a = from->second,
+                        .patch_b = to->first,
+                        .cell_b = to->second,
+                        .classes = static_cast<uint16_t>(1u << jump.avatar_class),
+                        .kind = LinkKind::kJump,
+                        .leap1 = static_cast<uint32_t>(leaps_.size()),
+                        .one_way = !jump.both_ways});
+    }
+    return {};
+  }
+
+  void link() {
+    std::vector<std::vector<NodeLink>> lists(sources_.size());
+    parallel_for(sources_.size(), config_.workers, [&](size_t p) {
+      if (context_.cancel || forest_.trees[p].nodes.size() < 2) return;
+      NodeLinker linker(forest_);
+      linker.link_inside(static_cast<uint32_t>(p), cells_of(sources_[p]));
+      lists[p] = linker.take();
+    });
+    NodeLinker across(forest_);
+    for (const CellPair& pair : pairs_) across.link(pair);
+    links_ = across.take();
+    for (const auto& list : lists) links_.insert(links_.end(), list.begin(), list.end());
+    merge_node_links(links_);
+    // Beyond what any walker stands on, a way is climbed.
+    double steepest = 0;
+    for (const AvatarClass& avatar : data_.summary.classes) {
+      steepest = std::max(steepest, avatar.max_slope);
+    }
+    const uint8_t code = bins_.inclination_code(steepest);
+    for (NodeLink& l : links_) {
+      if (worst(l).inclination > code && l.kind == LinkKind::kWalk) l.kind = LinkKind::kClimb;
+    }
+    merge_node_links(links_);
+  }
+
+  [[nodiscard]] const PatchNode& node(uint32_t id) const {
+    const auto after = std::upper_bound(forest_.first.begin(), forest_.first.end(), id);
+    const auto patch = static_cast<size_t>(after - forest_.first.begin()) - 1;
+    return forest_.trees[patch].nodes[id - forest_.first[patch]];
+  }
+  [[nodiscard]] Promise worst(const NodeLink& l) const {
+    return both(node(l.a).promise, node(l.b).promise);
+  }
+
+  [[nodiscard]] CellBall ball(uint32_t patch, uint32_t cell) const {
+    const PatchSource& source = sources_[patch];
+    if (source.kind == PatchKind::kBezier) {
+      const CellShape& shape = cells_[source.source].shape[cell];
+      return {shape.x, shape.y, shape.z, shape.radius};
+    }
+    // Seen from above, which can only be nearer.
+    const auto [x, z] = tile_place_[source.source];
+    const double side = data_.summary.cell;
+    return {(x * 64 + static_cast<double>(cell % 64) + 0.5) * side, 0,
+            (z * 64 + static_cast<double>(cell / 64) + 0.5) * side, side * 0.7072};
+  }
+
+  void measure() {
+    for (size_t s = 0; has_tiles_ && s < data_.slots.size(); ++s) {
+      const Zone& zone = *data_.zone(s);
+      for (uint32_t l = 0; l < zone.level_count(); ++l) {
+        tile_place_.push_back(tile_of(data_, zone, zone.level(l)));
+      }
+    }
+    const CrossCells cross(pairs_);
+    const double most = bins_.width.back();
+    widths_.resize(forest_.trees.size());
+    parallel_for(widths_.size(), config_.workers, [&](size_t p) {
+      if (context_.cancel) return;
+      const auto here = static_cast<uint32_t>(p);
+      widths_[p] = node_widths(forest_, here, cross, most,
+                               [&](uint32_t patch, uint32_t cell) { return ball(patch, cell); });
+    });
+  }
+
+  [[nodiscard]] double area_of(const PatchSource& source, const PatchTree& tree,
+                               const PatchNode& n) const {
+    const int32_t size = 1 << (tree.depth - n.level);
+    if (source.kind == PatchKind::kLevelTile) {
+      return size * size * data_.summary.cell * data_.summary.cell;
+    }
+    double area = 0;
+    const BezierCells& cells = cells_[source.source];
+    for (int32_t t = n.t * size; t < (n.t + 1) * size; ++t) {
+      for (int32_t s = n.s * size; s < (n.s + 1) * size; ++s) {
+        area += cells.shape[cells.promise.index(s, t)].area;
+      }
+    }
+    return area;
+  }
+
+  Result<std::shared_ptr<NodeData>> pack() {
+    auto nodes = std::make_shared<NodeData>();
+    nodes->world = world_;
+    nodes->world_hash = world_hash(data_);
+    nodes->size = config_.size;
+    nodes->summary.bins = bins_;
+    nodes->summary.bezier_patches = scene_.patches.size();
+    const std::vector<ArcRecord> arcs = arcs_of(links_, forest_.size());
+    std::vector<size_t> arc_first(forest_.size() + 1, 0);
+    for (const ArcRecord& arc : arcs) ++arc_first[arc.from + 1];
+    for (size_t n = 0; n < forest_.size(); ++n) arc_first[n + 1] += arc_first[n];
+
+    for (size_t begin = 0; begin < sources_.size();) {
+      size_t end = begin;
+      const PatchSource& zone = sources_[begin];
+      while (end < sources_.size() && sources_[end].zone_x == zone.zone_x &&
+             sources_[end].zone_z == zone.zone_z) {
+        ++end;
+      }
+      zones_.push_back({zone.zone_x, zone.zone_z, forest_.first[begin], forest_.first[end]});
+      begins_.push_back(begin);
+      begin = end;
+    }
+    begins_.push_back(sources_.size());
+    for (size_t z = 0; z < zones_.size(); ++z) {
+      if (zones_[z].first == zones_[z].last) continue;
+      auto slot = pack_zone(z, arcs, arc_first);
+      if (!slot) return slot.error();
+      (*slot)->first_node = zones_[z].first;
+      nodes->summary.bytes += (*slot)->entry.bytes();
+      nodes->summary.patches += (*slot)->entry.patches();
+      nodes->slots.push_back(std::move(*slot));
+    }
+    nodes->node_count = forest_.size();
+    nodes->summary.nodes = forest_.size();
+    nodes->summary.zones = nodes->slots.size();
+    return nodes;
+  }
+
+  Result<std::unique_ptr<NodeData::Slot>> pack_zone(size_t z, const std::vector<ArcRecord>& arcs,
+                                                    const std::vector<size_t>& arc_first) {
+    const ZoneRange& zone = zones_[z];
+    ZoneContent content;
+    content.x = zone.x;
+    content.z = zone.z;
+    for (size_t p = begins_[z]; p < begins_[z + 1]; ++p) {
+      const PatchSource& source = sources_[p];
+      const PatchTree& tree = forest_.trees[p];
+      if (tree.nodes.empty()) continue;
+      const uint32_t first = forest_.first[p] - zone.first;
+      const bool bezier = source.kind == PatchKind::kBezier;
+      content.patches.emplace_back(static_cast<uint8_t>(source.kind),
+                                   static_cast<uint8_t>(tree.depth), first,
+                                   static_cast<uint32_t>(tree.nodes.size()), source.source,
+                                   bezier ? static_cast<uint32_t>(content.points.size()) : 0);
+      if (bezier) {
+        for (const Vec3d& point : scene_.patches.patches[source.source].points) {
+          content.points.insert(content.points.end(), {point.x, point.y, point.z});
+        }
+      }
+      for (size_t n = 0; n < tree.nodes.size(); ++n) {
+        const PatchNode& node = tree.nodes[n];
+        const uint32_t id = forest_.first[p] + static_cast<uint32_t>(n);
+        const uint8_t width = bins_.width_code(widths_[p][n]);
+        content.nodes.emplace_back(
+            node.promise.classes, node.level, node.s, node.t,
+            static_cast<uint8_t>(node.promise.inclination << 4 | node.promise.height),
+            static_cast<uint8_t>(node.promise.headroom << 4 | width),
+            static_cast<uint8_t>(node.terminal ? 1 : 0),
+            node.parent == kNoNode ? UINT32_MAX : first + node.parent,
+            static_cast<float>(area_of(source, tree, node)),
+            static_cast<uint32_t>(content.arcs.size()));
+        for (size_t a = arc_first[id]; a < arc_first[id + 1]; ++a) {
+          if (arcs[a].leap1 != 0) add_leap(arcs[a], content);
+          const Promise least = worst({.a = arcs[a].from, .b = arcs[a].to});
+          content.arcs.emplace_back(target(arcs[a].to, zone, content), arcs[a].classes,
+                                    static_cast<uint8_t>(arcs[a].kind),
+                                    static_cast<uint8_t>(least.inclination << 4 | least.height));
+        }
+      }
+    }
+    return node_slot(content);
+  }
+
+  void add_leap(const ArcRecord& arc, ZoneContent& content) const {
+    Leap leap = leaps_[arc.leap1 - 1];
+    if (arc.backward) leap = {leap.to_patch, leap.to_cell, leap.from_patch, leap.from_cell};
+    const auto part = [&](uint32_t patch, uint32_t cell) {
+      const int32_t depth = forest_.trees[patch].depth;
+      return std::pair{static_cast<uint8_t>(cell & ((1u << depth) - 1)),
+                       static_cast<uint8_t>(cell >> depth)};
+    };
+    const auto [from_s, from_t] = part(leap.from_patch, leap.from_cell);
+    const auto [to_s, to_t] = part(leap.to_patch, leap.to_cell);
+    content.leaps.emplace_back(static_cast<uint32_t>(content.arcs.size()), from_s, from_t, to_s,
+                               to_t);
+  }
+
+  // An arc's end as the zone writes it.
+  uint32_t target(uint32_t node, const ZoneRange& zone, ZoneContent& content) {
+    if (node >= zone.first && node < zone.last) return node - zone.first;
+    const auto after = std::upper_bound(zones_.begin(), zones_.end(), node,
+                                        [](uint32_t n, const ZoneRange& r) { return n < r.last; });
+    return content.far_node({after->x, after->z, node - after->first});
+  }
+
+  const World& world_;
+  const WorldData& data_;
+  const Scene& scene_;
+  const NodeConfig& config_;
+  Context& context_;
+  NodeBins bins_;
+  bool has_patches_ = false, has_tiles_ = false;
+  uint16_t on_patches_ = 0;  // classes
+  std::optional<TriangleSquares> triangles_;
+  std::vector<BezierCells> cells_;        // by Bezier patch
+  std::vector<PatchSource> sources_;      // patches of the forest
+  std::vector<uint32_t> bezier_, level_;  // where they are in the forest
+  NodeForest forest_;
+  std::vector<CellPair> pairs_;
+  std::vector<Leap> leaps_;
+  std::vector<NodeLink> links_;
+  std::vector<std::pair<int32_t, int32_t>> tile_place_;  // by level of the world
+  std::vector<std::vector<double>> widths_;
+  std::vector<ZoneRange> zones_;
+  std::vector<size_t> begins_;  // first patch of each zone
+};
+
+}  // namespace
+
+Result<Nodes> Nodes::make(const World& world, const Scene& scene, const NodeConfig& config,
+                          Context& context) {
+  if (auto ok = check(world, scene, config); !ok) return ok.error();
+  if (context.on_progress) context.on_progress({"nodes", 0, 1});
+  return NodeBaker(world, scene, config, context).run();
+}
+
+}  // namespace throng

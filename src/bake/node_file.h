@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "graph/node_links.h"
+#include "world/node_data.h"
+#include "world/zone_data.h"
+
+/// Packs nodes into the files of zones.
+namespace throng {
+
+/// One direction of a link.
+struct ArcRecord {
+  uint32_t from = 0, to = 0;
+  uint16_t classes = 0;
+  LinkKind kind = LinkKind::kWalk;
+  uint32_t leap1 = 0;
+  bool backward = false;  ///< Against the leap.
+};
+
+/// Both directions of all links, by `from`, then `to`, then kind.
+[[nodiscard]] std::vector<ArcRecord> arcs_of(std::span<const NodeLink> links, uint32_t nodes);
+
+/// Nodes [first, last) of all belong to a zone.
+struct ZoneRange {
+  int32_t x = 0, z = 0;
+  uint32_t first = 0, last = 0;
+};
+
+struct ZoneContent {
+  int32_t x = 0, z = 0;
+  std::vector<format::NodePatch> patches;
+  std::vector<format::Node> nodes;
+  std::vector<format::Arc> arcs;
+  std::vector<format::Leap> leaps;
+  std::vector<format::FarNode> far;
+  std::vector<double> points;
+
+  /// What an arc's `to` says for a node of another zone.
+  uint32_t far_node(const format::FarNode& node);
+  std::map<std::tuple<int32_t, int32_t, uint32_t>, uint32_t> far_known;  ///< Index into `far`.
+};
+
+/// The zone's bytes, read back and checked. Fails with kLimit.
+[[nodiscard]] Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content);
+
+/// XXH3 of the manifest of a world: of its file, or of what would be written.
+[[nodiscard]] uint64_t world_hash(const WorldData& world);
+
+}  // namespace throng

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/patch_links.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "graph/patch_pairs.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+constexpr double kSmooth = 0.9962;    // cosine of 5 degrees: no crease
+constexpr double kWalkSpacing = 0.1;  // between the points where a walker's way is looked at [m]
+constexpr size_t kTries = 6;          // cells of a patch that are tried for one link
+
+const CellShape& shape_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
+  return input.cells[patch].shape[cell];
+}
+
+// The middle of a cell of a patch, as a body stands there.
+BodyPose pose_on(const PatchLinkInput& input, const PatchBody& body, uint32_t patch,
+                 uint32_t cell) {
+  const int32_t depth = input.cells[patch].promise.depth;
+  const double side = 1 << depth;
+  const double s = ((cell & ((1u << depth) - 1)) + 0.5) / side, t = ((cell >> depth) + 0.5) / side;
+  const BezierPatch& surface = input.triangles->scene().patches.patches[patch];
+  return {surface.at(s, t), body.climbs ? surface.normal(s, t) : Vec3d{0, 1, 0}};
+}
+
+// Can a body go straight from one pose to another?
+bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const BodyPose& to,
+          double step) {
+  if (!body.climbs && !judge.is_carried(from.feet, to.feet, step, kWalkSpacing)) return false;
+  return judge.is_free(body, from, to);
+}
+
+std::vector<CellPair> merged(std::vector<std::vector<CellPair>>& lists) {
+  std::vector<CellPair> all;
+  for (auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+  const auto place = [](const CellPair& p) {
+    return std::tuple(p.patch_a, p.cell_a, p.patch_b, p.cell_b);
+  };
+  std::sort(all.begin(), all.end(),
+            [&](const CellPair& p, const CellPair& q) { return place(p) < place(q); });
+  size_t kept = 0;
+  for (const CellPair& pair : all) {
+    if (kept > 0 && place(all[kept - 1]) == place(pair)) {
+      all[kept - 1].classes |= pair.classes;
+    } else {
+      all[kept++] = pair;
+    }
+  }
+  all.resize(kept);
+  return all;
+}
+
+}  // namespace
+
+std::vector<CellPair> link_edges(const PatchLinkInput& input, int32_t workers) {
+  const PatchSet& set = input.triangles->scene().patches;
+  const std::vector<PatchBody> bodies = patch_bodies(input.classes);
+  std::vector<int32_t> depth;
+  for (const BezierCells& cells : input.cells) depth.push_back(cells.promise.depth);
+  std::vector<std::vector<CellPair>> lists(set.size());
+  parallel_for(set.size(), workers, [&](size_t p) {
+    MotionJudge judge(*input.triangles);
+    for (const EdgePair& pair : edge_pairs(set, depth, static_cast<uint32_t>(p))) {
+      CellPair cells = pair.cells;
+      const uint16_t both = input.cells[cells.patch_a].promise.cells[cells.cell_a].classes &
+                            input.cells[cells.patch_b].promise.cells[cells.cell_b].classes;
+      if (both == 0) continue;
+      const auto at = [&](PatchSide side, double along) {
+        const auto [s, t] = edge_parameters(side.edge, along);
+        const BezierPatch& patch = set.patches[side.patch];
+        return BodyPose{patch.at(s, t), patch.normal(s, t)};
+      };
+      const BodyPose a = at(pair.side_a, pair.at_a), b = at(pair.side_b, pair.at_b);
+      const bool creased = dot(a.axis, b.axis) < kSmooth;
+      for (const PatchBody& body : bodies) {
+        if ((both & body.bit) == 0) continue;
+        if (body.climbs && creased && !judge.is_free(body, a, b)) continue;
+        cells.classes |= body.bit;
+      }
+      if (cells.classes != 0) lists[p].push_back(cells);
+    }
+  });
+  return merged(lists);
+}
+
+namespace {
+
+// Cells of a patch on which a class may stand.
+std::vector<uint32_t> cells_of(const BezierCells& cells, uint16_t bit) {
+  std::vector<uint32_t> found;
+  for (uint32_t i = 0; i < cells.promise.cells.size(); ++i) {
+    if ((cells.promise.cells[i].classes & bit) != 0) found.push_back(i);
+  }
+  return found;
+}
+
+// Does a neighbour within the patch, or whatever lies over its border, lack the class?
+bool lacks_neighbour(const PatchCells& cells, uint32_t cell, uint16_t bit) {
+  const int32_t side = cells.side(), s = static_cast<int32_t>(cell) % side,
+                t = static_cast<int32_t>(cell) / side;
+  constexpr std::array<std::array<int32_t, 2>, 4> kBeside = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  return std::any_of(kBeside.begin(), kBeside.end(), [&](const auto& d) {
+    const int32_t i = s + d[0], j = t + d[1];
+    if (i < 0 || j < 0 || i >= side || j >= side) return true;
+    return (cells.cells[cells.index(i, j)].classes & bit) == 0;
+  });
+}
+
+}  // namespace
+
+std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
+  const std::vector<PatchBody> bodies = patch_bodies(input.classes);
+  std::vector<std::vector<CellPair>> lists(input.cells.size());
+  parallel_for(input.cells.size(), workers, [&](size_t p) {
+    const BezierCells& here = input.cells[p];
+    if (here.makers.empty()) return;
+    MotionJudge judge(*input.triangles);
+    std::vector<std::pair<double, uint32_t>> nearest;
+    for (size_t c = 0; c < bodies.size(); ++c) {
+      const PatchBody& body = bodies[c];
+      const double widest = 3 * input.size + 2 * body.radius;  // of the gap between cells' middles
+      const std::vector<uint32_t> from = cells_of(here, body.bit);
+      for (const uint32_t maker : here.makers) {
+        const std::vector<uint32_t> to = cells_of(input.cells[maker], body.bit);
+        for (const uint32_t a : from) {
+          if (!lacks_neighbour(here.promise, a, body.bit)) continue;
+          const CellShape& at = shape_of(input, static_cast<uint32_t>(p), a);
+          nearest.clear();
+          for (const uint32_t b : to) {
+            const CellShape& other = shape_of(input, maker, b);
+            const Vec3d d{double{other.x} - at.x, double{other.y} - at.y, double{other.z} - at.z};
+            if (const double far = dot(d, d); far <= widest * widest) nearest.push_back({far, b});
+          }
+          std::sort(nearest.begin(), nearest.end());
+          const BodyPose start = pose_on(input, body, static_cast<uint32_t>(p), a);
+          for (size_t k = 0; k < std::min(kTries, nearest.size()); ++k) {
+            const uint32_t b = nearest[k].second;
+            if (!goes(judge, body, start, pose_on(input, body, maker, b), input.classes[c].step)) {
+              continue;
+            }
+            lists[p].push_back({.patch_a = static_cast<uint32_t>(p),
+                                .cell_a = a,
+                                .patch_b = maker,
+                                .cell_b = b,
+                                .classes = body.bit,
+                                .kind = LinkKind::kClimb});
+            break;
+          }
+        }
+      }
+    }
+  });
+  return merged(lists);
+}
+
+std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers) {
+  const std::vector<PatchBody> bodies = patch_bodies(input.classes);
+  const WorldData& data = *input.world->data();
+  std::vector<std::vector<CellPair>> lists(input.cells.size());
+  parallel_for(input.cells.size(), workers, [&](size_t p) {
+    MotionJudge judge(*input.triangles);
+    for (size_t c = 0; c < bodies.size(); ++c) {
+      const PatchBody& body = bodies[c];
+      if (!body.climbs) continue;
+      for (const uint32_t a : cells_of(input.cells[p], body.bit)) {
+        const BodyPose on = pose_on(input, body, static_cast<uint32_t>(p), a);
+        const double step = input.classes[c].step;
+        const Place place = input.world->find_place(static_cast<int32_t>(c), on.feet, step);
+        if (!place || !judge.is_free(body, {place.position, {0, 1, 0}}, on)) continue;
+        const GroundPoint at = to_ground(data, place.position.x, place.position.z);
+        lists[p].push_back(
+            {.patch_a = static_cast<uint32_t>(p),
+             .cell_a = a,
+             .patch_b = place.level1 - 1,
+             .cell_b = static_cast<uint32_t>((at.cell_z() & 63) * 64 + (at.cell_x() & 63)),
+             .classes = body.bit,
+             .kind = LinkKind::kClimb});
+      }
+    }
+  });
+  return merged(lists);
+}
+
+}  // namespace throng

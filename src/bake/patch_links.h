@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/body_motion.h"
+#include "bake/patch_cells.h"
+#include "graph/node_links.h"
+
+/// Which classes go from a Bezier patch's cells to those of others: over shared edges, over the
+/// holes that patches make in each other, and onto level tiles.
+namespace throng {
+
+struct PatchLinkInput {
+  const TriangleSquares* triangles = nullptr;
+  const World* world = nullptr;
+  std::span<const AvatarClass> classes;
+  std::span<const BezierCells> cells;  ///< By patch of the scene.
+  double size = 1;                     ///< Of cells. [m]
+};
+
+/// Pairs of cells over all edges that patches share. Where the surface has a crease, a climber must
+/// be able to turn over it.
+[[nodiscard]] std::vector<CellPair> link_edges(const PatchLinkInput& input, int32_t workers);
+
+/// For each class, each cell of a patch with holes that lacks a neighbour, and each patch that made
+/// the holes: the nearest of its cells to which the body can go straight. Source: [PACS00] 1.2.3.6.
+[[nodiscard]] std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers);
+
+/// Cells on which a climber also finds a place on a level tile, and can straighten up there.
+/// `patch_b` counts levels of the world.
+[[nodiscard]] std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers);
+
+}  // namespace throng

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "throng/nodes.h"
+
+/// Which bins promises are kept in.
+namespace throng {
+
+/// Every class's own limits, so that no class loses anything by rounding, and a few edges between
+/// them so that costs and pictures can tell slopes apart. At most 15 of each.
+[[nodiscard]] NodeBins make_bins(std::span<const AvatarClass> classes);
+
+}  // namespace throng

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "graph/node_links.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <tuple>
+#include <utility>
+
+namespace throng {
+namespace {
+
+constexpr size_t kLongestChain = 16;  // a patch is halved at most 6 times
+
+}  // namespace
+
+void NodeForest::add(PatchTree tree) {
+  if (first.empty()) first.push_back(0);
+  first.push_back(first.back() + static_cast<uint32_t>(tree.nodes.size()));
+  trees.push_back(std::move(tree));
+}
+
+uint32_t NodeLinker::chain(uint32_t patch, uint32_t leaf, std::span<uint32_t> out) const {
+  uint32_t count = 0;
+  for (uint32_t local = leaf - forest_->first[patch]; local != kNoNode;
+       local = forest_->trees[patch].nodes[local].parent) {
+    out[count++] = forest_->first[patch] + local;
+  }
+  return count;
+}
+
+void NodeLinker::add(uint32_t a, uint32_t b, uint16_t classes, LinkKind kind) {
+  const bool turned = a > b;
+  if (turned) std::swap(a, b);
+  // Neighbours along a border mostly repeat the pair before them.
+  for (size_t k = links_.size(); k-- > 0 && links_.size() - k <= 4;) {
+    NodeLink& last = links_[k];
+    if (last.a == a && last.b == b && last.kind == kind && last.leap1 == leap1_) {
+      last.classes |= classes;
+      return;
+    }
+  }
+  links_.push_back({a, b, classes, kind, leap1_, turned, one_way_});
+}
+
+void NodeLinker::link_chains(uint32_t patch_a, uint32_t leaf_a, uint32_t patch_b, uint32_t leaf_b,
+                             uint16_t classes, LinkKind kind) {
+  std::array<uint32_t, kLongestChain> chain_a, chain_b;
+  uint32_t count_a = chain(patch_a, leaf_a, chain_a), count_b = chain(patch_b, leaf_b, chain_b);
+  // Nodes that hold both cells need no link; their classes are free to go.
+  uint32_t inside = 0;
+  while (count_a > 0 && count_b > 0 && chain_a[count_a - 1] == chain_b[count_b - 1]) {
+    inside = node(patch_a, chain_a[count_a - 1]).promise.classes;
+    --count_a;
+    --count_b;
+  }
+  uint32_t linked = inside;
+  const auto to_less_restrictive = [&](uint32_t from_patch, std::span<const uint32_t> from,
+                                       uint32_t to_patch, std::span<const uint32_t> to,
+                                       bool backward) {
+    for (const uint32_t f : from) {
+      const Promise& promise = node(from_patch, f).promise;
+      const uint16_t both_ways = promise.classes & classes;
+      if (both_ways == 0) continue;
+      for (size_t k = to.size(); k-- > 0;) {  // The largest first.
+        if (!covers(node(to_patch, to[k]).promise, promise)) continue;
+        backward ? add(to[k], f, both_ways, kind) : add(f, to[k], both_ways, kind);
+        linked |= both_ways;
+        break;
+      }
+    }
+  };
+  const std::span<const uint32_t> as(chain_a.data(), count_a), bs(chain_b.data(), count_b);
+  to_less_restrictive(patch_a, as, patch_b, bs, false);
+  to_less_restrictive(patch_b, bs, patch_a, as, true);
+  // Neither is less restrictive: the largest nodes of a class on both sides, for what both allow.
+  const auto largest_for = [&](uint32_t patch, std::span<const uint32_t> nodes, uint32_t bit) {
+    for (size_t k = nodes.size(); k-- > 0;) {
+      if ((node(patch, nodes[k]).promise.classes & bit) != 0) return nodes[k];
+    }
+    return kNoNode;
+  };
+  for (uint32_t left = classes & ~linked; left != 0;) {
+    const uint32_t bit = left & (~left + 1);
+    const uint32_t a = largest_for(patch_a, as, bit), b = largest_for(patch_b, bs, bit);
+    if (a == kNoNode || b == kNoNode) {
+      left &= ~bit;
+      continue;
+    }
+    const auto both_ways = static_cast<uint16_t>(node(patch_a, a).promise.classes &
+                                                 node(patch_b, b).promise.classes & classes);
+    add(a, b, both_ways, kind);
+    left &= ~uint32_t{both_ways};
+  }
+}
+
+void NodeLinker::link_inside(uint32_t patch, const PatchCells& cells) {
+  const PatchTree& tree = forest_->trees[patch];
+  if (tree.leaf.empty() || tree.nodes.empty()) return;
+  const int32_t side = cells.side();
+  const auto visit = [&](size_t here, size_t next, const std::vector<uint16_t>& cuts) {
+    const uint32_t a = tree.leaf[here], b = tree.leaf[next];
+    if (a == b || a == kNoNode || b == kNoNode) return;
+    const uint16_t together = cells.cells[here].classes & cells.cells[next].classes;
+    const uint16_t cut = cuts.empty() ? uint16_t{0} : cuts[here];
+    const auto classes = static_cast<uint16_t>(together & ~cut);
+    if (classes == 0) return;
+    const uint32_t first = forest_->first[patch];
+    link_chains(patch, first + a, patch, first + b, classes,
+                (together & cut) != 0 ? LinkKind::kStep : LinkKind::kWalk);
+  };
+  for (int32_t t = 0; t < side; ++t) {
+    for (int32_t s = 0; s < side; ++s) {
+      const size_t here = cells.index(s, t);
+      if (s + 1 < side) visit(here, here + 1, cells.cut_s);
+      if (t + 1 < side) visit(here, here + static_cast<size_t>(side), cells.cut_t);
+    }
+  }
+}
+
+void NodeLinker::link(const CellPair& pair) {
+  const uint32_t a = forest_->leaf(pair.patch_a, pair.cell_a);
+  const uint32_t b = forest_->leaf(pair.patch_b, pair.cell_b);
+  if (a == kNoNode || b == kNoNode || a == b) return;
+  const uint16_t classes =
+      node(pair.patch_a, a).promise.classes & node(pair.patch_b, b).promise.classes & pair.classes;
+  leap1_ = pair.leap1;
+  one_way_ = pair.one_way;
+  if (classes != 0) link_chains(pair.patch_a, a, pair.patch_b, b, classes, pair.kind);
+  leap1_ = 0;
+  one_way_ = false;
+}
+
+std::vector<NodeLink> NodeLinker::take() {
+  merge_node_links(links_);
+  return std::move(links_);
+}
+
+void merge_node_links(std::vector<NodeLink>& links) {
+  std::sort(links.begin(), links.end(), [](const NodeLink& p, const NodeLink& q) {
+    return std::tie(p.a, p.b, p.kind, p.leap1) < std::tie(q.a, q.b, q.kind, q.leap1);
+  });
+  size_t kept = 0, group = 0;  // `group`: where the kept links of this pair and kind begin
+  for (const NodeLink& link : links) {
+    const NodeLink* last = kept > group ? &links[kept - 1] : nullptr;
+    if (last == nullptr || last->a != link.a || last->b != link.b || last->kind != link.kind) {
+      group = kept;
+    }
+    if (kept > group && links[kept - 1].leap1 == link.leap1) {
+      links[kept - 1].classes |= link.classes;
+      continue;
+    }
+    // A leap that serves no class that an earlier one does not serve is left out.
+    uint16_t served = 0;
+    // (Jumps are given one by one, and some lead one way: all are kept.)
+    for (size_t k = group; k < kept && link.kind != LinkKind::kJump; ++k) {
+      served |= links[k].classes;
+    }
+    if ((link.classes & ~served) == 0) continue;
+    links[kept++] = link;
+  }
+  links.resize(kept);
+}
+
+}  // namespace throng

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "graph/node_width.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+namespace throng {
+namespace {
+
+uint64_t key_of(uint32_t patch, uint32_t cell) { return uint64_t{patch} << 32 | cell; }
+
+}  // namespace
+
+CrossCells::CrossCells(std::span<const CellPair> pairs) {
+  std::vector<std::pair<uint64_t, Cell>> all;
+  all.reserve(2 * pairs.size());
+  for (const CellPair& p : pairs) {
+    all.push_back({key_of(p.patch_a, p.cell_a), {p.patch_b, p.cell_b, p.classes, p.side_a}});
+    all.push_back({key_of(p.patch_b, p.cell_b), {p.patch_a, p.cell_a, p.classes, p.side_b}});
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [key, cell] : all) {
+    key_.push_back(key);
+    cell_.push_back(cell);
+  }
+}
+
+std::span<const CrossCells::Cell> CrossCells::beside(uint32_t patch, uint32_t cell) const {
+  const auto [first, last] = std::equal_range(key_.begin(), key_.end(), key_of(patch, cell));
+  return {cell_.data() + (first - key_.begin()), static_cast<size_t>(last - first)};
+}
+
+namespace {
+
+class Flood {
+ public:
+  Flood(const NodeForest& forest, const CrossCells& cross, double most,
+        const std::function<CellBall(uint32_t, uint32_t)>& ball)
+      : forest_(forest), cross_(cross), most_(most), ball_(ball) {}
+
+  double width(uint32_t patch, const PatchNode& node) {
+    const PatchTree& tree = forest_.trees[patch];
+    const int32_t size = 1 << (tree.depth - node.level);
+    const int32_t s0 = node.s * size, t0 = node.t * size;
+    // The middle of a block of an even number of cells is a corner of four.
+    middle_ = {};
+    int32_t count = 0;
+    for (int32_t t = (size - 1) / 2; t <= size / 2; ++t) {
+      for (int32_t s = (size - 1) / 2; s <= size / 2; ++s, ++count) {
+        const CellBall b = ball_(patch, cell_of(tree, s0 + s, t0 + t));
+        middle_ = {middle_.x + b.x, middle_.y + b.y, middle_.z + b.z, 0};
+      }
+    }
+    middle_ = {middle_.x / count, middle_.y / count, middle_.z / count, 0};
+    promise_ = node.promise;
+    nearest_ = most_;
+    seen_.clear();
+    ring_.clear();
+    for (int32_t i = (size - 1) / 2; i <= size / 2; ++i) {
+      for (int32_t j = (size - 1) / 2; j <= size / 2; ++j) {
+        enter(patch, cell_of(tree, s0 + i, t0 + j));
+      }
+    }
+    while (!ring_.empty()) {
+      last_.swap(ring_);
+      ring_.clear();
+      for (const auto& [p, cell] : last_) spread(p, cell);
+    }
+    return nearest_;
+  }
+
+ private:
+  static uint32_t cell_of(const PatchTree& tree, int32_t s, int32_t t) {
+    return (static_cast<uint32_t>(t) << tree.depth) + static_cast<uint32_t>(s);
+  }
+
+  // The least distance at which a cell can be.
+  [[nodiscard]] double distance(uint32_t patch, uint32_t cell) const {
+    const CellBall b = ball_(patch, cell);
+    const double x = b.x - middle_.x, y = b.y - middle_.y, z = b.z - middle_.z;
+    return std::max(0.0, std::sqrt(x * x + y * y + z * z) - b.radius);
+  }
+
+  void enter(uint32_t patch, uint32_t cell) {
+    if (!seen_.insert(key_of(patch, cell)).second) return;
+    const double far = distance(patch, cell);
+    if (far >= nearest_) return;
+    const PatchTree& tree = forest_.trees[patch];
+    const uint32_t leaf = tree.nodes.empty() ? kNoNode : tree.leaf_of(cell);
+    if (leaf == kNoNode || !covers(tree.nodes[leaf].promise, promise_)) {
+      nearest_ = far;
+      return;
+    }
+    ring_.push_back({patch, cell});
+  }
+
+  void spread(uint32_t patch, uint32_t cell) {
+    const PatchTree& tree = forest_.trees[patch];
+    const int32_t side = 1 << tree.depth;
+    const int32_t s = static_cast<int32_t>(cell) & (side - 1);
+    const int32_t t = static_cast<int32_t>(cell) >> tree.depth;
+    constexpr std::array<std::array<int32_t, 2>, 4> kBeside = {{{-1, 0}, {0, 1}, {1, 0}, {0, -1}}};
+    for (uint8_t edge = 0; edge < 4; ++edge) {
+      const int32_t i = s + kBeside[edge][0], j = t + kBeside[edge][1];
+      if (i >= 0 && j >= 0 && i < side && j < side) {
+        enter(patch, cell_of(tree, i, j));
+        continue;
+      }
+      bool open = true;
+      for (const CrossCells::Cell& next : cross_.beside(patch, cell)) {
+        if (next.side != edge || (promise_.classes & ~next.classes) != 0) continue;
+        enter(next.patch, next.cell);
+        open = false;
+      }
+      // Where the ground ends, so does the flood.
+      if (open) nearest_ = std::min(nearest_, distance(patch, cell));
+    }
+  }
+
+  const NodeForest& forest_;
+  const CrossCells& cross_;
+  double most_;
+  const std::function<CellBall(uint32_t, uint32_t)>& ball_;
+  CellBall middle_;
+  Promise promise_;
+  double nearest_ = 0;
+  std::unordered_set<uint64_t> seen_;
+  std::vector<std::pair<uint32_t, uint32_t>> ring_, last_;
+};
+
+}  // namespace
+
+std::vector<double> node_widths(const NodeForest& forest, uint32_t patch, const CrossCells& cross,
+                                double most,
+                                const std::function<CellBall(uint32_t, uint32_t)>& ball) {
+  Flood flood(forest, cross, most, ball);
+  std::vector<double> widths;
+  for (const PatchNode& node : forest.trees[patch].nodes) {
+    widths.push_back(flood.width(patch, node));
+  }
+  return widths;
+}
+
+}  // namespace throng

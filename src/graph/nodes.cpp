@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/nodes.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/hash.h"
+#include "core/random.h"
+#include "throng/patch.h"
+#include "world/node_data.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+NodeInfo info_of(const format::NodePatch& patch, const format::Node& node) {
+  return {.classes = node.classes(),
+          .inclination = static_cast<uint8_t>(node.surface() >> 4),
+          .height = static_cast<uint8_t>(node.surface() & 15),
+          .headroom = static_cast<uint8_t>(node.room() >> 4),
+          .width = static_cast<uint8_t>(node.room() & 15),
+          .terminal = node.terminal() != 0,
+          .kind = static_cast<PatchKind>(patch.kind()),
+          .source = patch.source(),
+          .depth = patch.depth(),
+          .level = node.level(),
+          .s = node.s(),
+          .t = node.t(),
+          .parent1 = 0,
+          .area = node.area()};
+}
+
+BezierPatch surface_of(const NodeZone& zone, const format::NodePatch& patch) {
+  BezierPatch out;
+  const double* at = zone.points(patch);
+  for (Vec3d& p : out.points) {
+    p = {at[0], at[1], at[2]};
+    at += 3;
+  }
+  return out;
+}
+
+// The ground of a level tile at parameters (s, t).
+Vec3d on_tile(const WorldData& world, uint32_t level, double s, double t) {
+  const GroundLevel ground = ground_level(world, level, 0);
+  const auto [tile_x, tile_z] = tile_of(world, *ground.zone, *ground.view.record);
+  const auto unit = [](int32_t tile, double at) {
+    const double cells = std::clamp(at, 0.0, 1.0) * 64;
+    const auto units =
+        static_cast<int64_t>(std::min(cells * kUnitsPerCell, 64.0 * kUnitsPerCell - 1));
+    return (int64_t{tile} * 64 << kUnitBits) + units;
+  };
+  return place_at(world, ground, {unit(tile_x, s), unit(tile_z, t)}).position;
+}
+
+// Only jumps may lead one way; no two places hold together by one that does.
+bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::Arc& arc) {
+  if (arc.kind() != static_cast<uint8_t>(LinkKind::kJump)) return true;
+  const size_t slot = data.slot_of(to);
+  const NodeZone* zone = data.zone(slot);
+  if (zone == nullptr) return false;
+  const auto arcs = zone->arcs(to - data.slots[slot]->first_node);
+  return std::any_of(arcs.begin(), arcs.end(), [&](const format::Arc& back) {
+    return back.kind() == arc.kind() && (back.classes() & arc.classes()) == arc.classes() &&
+           data.target(slot, *zone, back) == from;
+  });
+}
+
+bool is_bezier(const format::NodePatch& patch) {
+  return patch.kind() == static_cast<uint8_t>(PatchKind::kBezier);
+}
+
+}  // namespace
+
+Result<Nodes> Nodes::open(const std::string& world_path) {
+  auto world = World::open(world_path);
+  if (!world) return world.error();
+  const std::string folder = world_path + "/" + kNodeFolder, name = folder + "/" + kNodeIndexName;
+  const auto map = FileMap::open(name);
+  if (!map) {
+    return Error{Errc::kBadFile,
+                 world_path + ": this world has no nodes; bake it again with --nodes"};
+  }
+  auto nodes = read_node_index(map->bytes(), name);
+  if (!nodes) return nodes.error();
+  const auto manifest = FileMap::open(world_path + "/manifest.thm");
+  if (!manifest) return manifest.error();
+  if (hash_bytes(manifest->bytes().data(), manifest->bytes().size()) != (*nodes)->world_hash) {
+    return Error{Errc::kBadFile, name + ": belongs to another world; bake it again with --nodes"};
+  }
+  (*nodes)->world = *world;
+  (*nodes)->path = folder;
+  return Nodes(std::move(*nodes));
+}
+
+Result<void> Nodes::check_all() const {
+  THRONG_ASSERT(data_);
+  for (size_t s = 0; s < data_->slots.size(); ++s) {
+    if (data_->zone(s) == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
+  }
+  return data_->world.check_all();
+}
+
+NodeSummary Nodes::summary() const {
+  THRONG_ASSERT(data_);
+  NodeSummary summary = data_->summary;
+  summary.classes = data_->world.summary().classes;
+  for (size_t s = 0; s < data_->slots.size(); ++s) {
+    const NodeZone* zone = data_->zone(s);
+    if (zone == nullptr) continue;
+    for (const format::Node& node : zone->nodes()) summary.terminal += node.terminal() != 0;
+    for (uint32_t n = 0; n < zone->nodes().size(); ++n) summary.arcs += zone->arcs(n).size();
+  }
+  return summary;
+}
+
+uint32_t Nodes::node_count() const {
+  THRONG_ASSERT(data_);
+  return data_->node_count;
+}
+
+NodeInfo Nodes::node(uint32_t node) const {
+  THRONG_ASSERT(node < node_count());
+  const auto [zone, local] = data_->find(node);
+  if (zone == nullptr) return {};
+  const format::Node& found = zone->nodes()[local];
+  NodeInfo info = info_of(zone->patch_of(local), found);
+  if (found.parent() != UINT32_MAX) info.parent1 = node - local + found.parent() + 1;
+  return info;
+}
+
+std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
+  THRONG_ASSERT(node < node_count());
+  std::vector<NodeArc> out;
+  const size_t slot = data_->slot_of(node);
+  const NodeZone* zone = data_->zone(slot);
+  if (zone == nullptr) return out;
+  const uint32_t local = node - data_->slots[slot]->first_node;
+  for (const format::Arc& arc : zone->arcs(local)) {
+    NodeArc& found = out.emplace_back(NodeArc{.to = data_->target(slot, *zone, arc),
+                                              .classes = arc.classes(),
+                                              .kind = static_cast<LinkKind>(arc.kind())});
+    const auto* leap = zone->leap_of(static_cast<uint32_t>(&arc - zone->first_arc()));
+    const auto [other, to] = data_->find(found.to);
+    if (leap == nullptr || other == nullptr) continue;
+    const double from_side = 1 << zone->patch_of(local).depth();
+    const double to_side = 1 << other->patch_of(to).depth();
+    found.leaps = true;
+    found.from_s = (leap->from_s() + 0.5) / from_side;
+    found.from_t = (leap->from_t() + 0.5) / from_side;
+    found.to_s = (leap->to_s() + 0.5) / to_side;
+    found.to_t = (leap->to_t() + 0.5) / to_side;
+  }
+  return out;
+}
+
+std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
+  const NodeInfo info = this->node(node);
+  // Of a level tile the far corners lie in the next cells, which may have no floor.
+  const double inside = info.kind == PatchKind::kLevelTile ? 1e-5 : 0;
+  const double whole = 1.0 / (1 << info.level), side = whole - inside;
+  const double s = info.s * whole, t = info.t * whole;
+  return {point(node, s, t), point(node, s, t + side), point(node, s + side, t + side),
+          point(node, s + side, t)};
+}
+
+Vec3d Nodes::point(uint32_t node, double s, double t) const {
+  THRONG_ASSERT(node < node_count());
+  const auto [zone, local] = data_->find(node);
+  if (zone == nullptr) return {};
+  const format::NodePatch& patch = zone->patch_of(local);
+  return is_bezier(patch) ? surface_of(*zone, patch).at(s, t)
+                          : on_tile(*data_->world.data(), patch.source(), s, t);
+}
+
+NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) const {
+  THRONG_ASSERT(node < node_count());
+  const auto& classes = data_->world.data()->summary.classes;
+  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= classes.size()) return {};
+  const auto [zone, local] = data_->find(node);
+  if (zone == nullptr) return {};
+  const format::Node& found = zone->nodes()[local];
+  const double blocks = 1 << found.level();
+  const bool inside = s * blocks >= found.s() && s * blocks <= found.s() + 1 &&
+                      t * blocks >= found.t() && t * blocks <= found.t() + 1;
+  if (!inside || (found.classes() >> avatar_class & 1) == 0) return {};
+  const format::NodePatch& patch = zone->patch_of(local);
+  if (!is_bezier(patch)) {
+    return {node + 1, on_tile(*data_->world.data(), patch.source(), s, t), {0, 1, 0}, {0, 1, 0}};
+  }
+  const BezierPatch surface = surface_of(*zone, patch);
+  const bool climbs = classes[static_cast<size_t>(avatar_class)].climb_slope > 0;
+  const Vec3d normal = surface.normal(s, t);
+  return {node + 1, surface.at(s, t), climbs ? normal : Vec3d{0, 1, 0}, normal};
+}
+
+NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const {
+  THRONG_ASSERT(data_);
+  // Nodes without a parent for the class share out its area; sums of them are made once.
+  const auto& areas = data_->areas_before(avatar_class);
+  if (areas.empty() || !(areas.back().second > 0)) return {};
+  const double target = random_unit(seed, n, 0) * areas.back().second;
+  auto found = std::upper_bound(areas.begin(), areas.end(), target,
+                                [](double at, const auto& entry) { return at < entry.second; });
+  if (found == areas.end()) --found;
+  const NodeInfo info = node(found->first);
+  const double side = 1.0 / (1 << info.level);
+  return place(avatar_class, found->first, (info.s + random_unit(seed, n, 1)) * side,
+               (info.t + random_unit(seed, n, 2)) * side);
+}
+
+std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>* of_node) const {
+  THRONG_ASSERT(data_);
+  const uint32_t count = data_->node_count;
+  std::vector<uint32_t> root(count);
+  std::iota(root.begin(), root.end(), uint32_t{0});
+  const auto find = [&](uint32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  // The root of a part is its first node, so numbers do not depend on the order of unions.
+  const auto join = [&](uint32_t a, uint32_t b) {
+    a = find(a);
+    b = find(b);
+    root[std::max(a, b)] = std::min(a, b);
+  };
+  const uint32_t bit =
+      avatar_class >= 0 && avatar_class < kMaxAvatarClasses ? 1u << avatar_class : 0u;
+  std::vector<uint8_t> stands(count, 0);
+  std::vector<double> area(count, 0);
+  for (size_t s = 0; s < data_->slots.size(); ++s) {
+    const NodeZone* zone = data_->zone(s);
+    if (zone == nullptr) continue;
+    const uint32_t first = data_->slots[s]->first_node;
+    const auto nodes = zone->nodes();
+    for (uint32_t n = 0; n < nodes.size(); ++n) {
+      if ((nodes[n].classes() & bit) == 0) continue;
+      stands[first + n] = 1;
+      const uint32_t parent = nodes[n].parent();
+      const bool inside = parent != UINT32_MAX && (nodes[parent].classes() & bit) != 0;
+      if (inside) join(first + n, first + parent);
+      area[first + n] = inside ? 0 : nodes[n].area();
+      for (const format::Arc& arc : zone->arcs(n)) {
+        if ((arc.classes() & bit) == 0) continue;
+        const uint32_t to = data_->target(s, *zone, arc);
+        if (goes_back(*data_, first + n, to, arc)) join(first + n, to);
+      }
+    }
+  }
+  std::vector<NodeReach> parts;
+  std::vector<uint32_t> part(count, UINT32_MAX);
+  for (uint32_t n = 0; n < count; ++n) {
+    if (stands[n] == 0) continue;
+    const uint32_t r = find(n);
+    if (r == n) {
+      part[n] = static_cast<uint32_t>(parts.size());
+      parts.push_back({.area = 0, .nodes = 0, .node = n});
+    }
+    part[n] = part[r];
+    parts[part[n]].area += area[n];
+    ++parts[part[n]].nodes;
+  }
+  std::vector<uint32_t> order(parts.size()), rank(parts.size());
+  std::iota(order.begin(), order.end(), uint32_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return parts[a].area > parts[b].area; });
+  std::vector<NodeReach> sorted;
+  for (uint32_t i = 0; i < order.size(); ++i) {
+    rank[order[i]] = i;
+    sorted.push_back(parts[order[i]]);
+  }
+  if (of_node != nullptr) {
+    for (uint32_t& p : part) p = p == UINT32_MAX ? p : rank[p];
+    *of_node = std::move(part);
+  }
+  return sorted;
+}
+
+}  // namespace throng

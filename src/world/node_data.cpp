@@ -1,0 +1,325 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "world/node_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/hash.h"
+
+namespace throng {
+namespace {
+
+constexpr const char* kZoneIdentifier = "THNZ";
+constexpr const char* kIndexIdentifier = "THNI";
+constexpr double kFarthest = 1e9;  // [m]
+
+Error bad_nodes(const std::string& name, const std::string& what) {
+  return {Errc::kBadFile, name + ": " + what + "; bake the world again with --nodes"};
+}
+
+template <class T>
+bool starts_aligned(const flatbuffers::Vector<T>& values) {
+  return values.size() == 0 || reinterpret_cast<uintptr_t>(values.Data()) % 8 == 0;
+}
+
+template <class T>
+std::span<const T> structs(const flatbuffers::Vector<const T*>& values) {
+  return {reinterpret_cast<const T*>(values.Data()), values.size()};
+}
+
+bool ascending(const flatbuffers::Vector<double>& edges, double low, double high) {
+  if (edges.size() > 15) return false;
+  double last = low;
+  for (const double edge : edges) {
+    if (!(edge >= last && edge <= high)) return false;
+    last = edge;
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<NodeZone>> NodeZone::from_bytes(flatbuffers::DetachedBuffer bytes,
+                                                       const std::string& name) {
+  auto zone = std::make_unique<NodeZone>();
+  zone->owned_ = std::move(bytes);
+  zone->bytes_ = {zone->owned_.data(), zone->owned_.size()};
+  if (auto attached = zone->attach(name); !attached) return attached.error();
+  return zone;
+}
+
+Result<std::unique_ptr<NodeZone>> NodeZone::from_file(FileMap map, const std::string& name) {
+  auto zone = std::make_unique<NodeZone>();
+  zone->map_ = std::move(map);
+  zone->bytes_ = zone->map_.bytes();
+  if (auto attached = zone->attach(name); !attached) return attached.error();
+  return zone;
+}
+
+// As for zones: what is checked here need not be checked by any look-up.
+Result<void> NodeZone::attach(const std::string& name) {
+  flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
+  if (bytes_.size() < 8 || !verifier.VerifyBuffer<format::NodeZone>(kZoneIdentifier)) {
+    return bad_nodes(name, "not a file of nodes, or truncated");
+  }
+  root_ = flatbuffers::GetRoot<format::NodeZone>(bytes_.data());
+  if (root_->version() != kNodeVersion) {
+    return bad_nodes(name, "node version " + std::to_string(root_->version()) +
+                               ", this program reads " + std::to_string(kNodeVersion));
+  }
+  if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() || !root_->leaps() ||
+      !root_->points() || !starts_aligned(*root_->points())) {
+    return bad_nodes(name, "an array is missing");
+  }
+  patches_ = structs(*root_->patches());
+  nodes_ = structs(*root_->nodes());
+  arcs_ = structs(*root_->arcs());
+  leaps_ = structs(*root_->leaps());
+  far_ = structs(*root_->far());
+  points_ = {root_->points()->data(), root_->points()->size()};
+  if (const char* what = fault()) return bad_nodes(name, what);
+  return {};
+}
+
+const char* NodeZone::fault() const {
+  for (const double p : points_) {
+    if (!(std::fabs(p) <= kFarthest)) return "a control point makes no sense";
+  }
+  uint64_t next = 0;
+  for (const format::NodePatch& patch : patches_) {
+    const bool bezier = patch.kind() == static_cast<uint8_t>(PatchKind::kBezier);
+    if (patch.kind() > static_cast<uint8_t>(PatchKind::kLevelTile) ||
+        patch.depth() > kDeepestPatch || patch.first_node() != next ||
+        (bezier && uint64_t{patch.points()} + 48 > points_.size())) {
+      return "its patches make no sense";
+    }
+    next += patch.nodes();
+    if (next > nodes_.size()) return "its patches have more nodes than there are";
+    for (uint64_t n = patch.first_node(); n < next; ++n) {
+      const format::Node& node = nodes_[n];
+      const uint32_t blocks = uint32_t{1} << std::min<uint32_t>(node.level(), 31);
+      if (node.level() > patch.depth() || node.s() >= blocks || node.t() >= blocks ||
+          !(node.area() >= 0 && node.area() <= 1e12F)) {
+        return "a node makes no sense";
+      }
+      if (node.parent() == UINT32_MAX) continue;
+      if (node.parent() < patch.first_node() || node.parent() >= n) {
+        return "a node's parent is not before it";
+      }
+      const format::Node& parent = nodes_[node.parent()];
+      const int32_t up = node.level() - parent.level();
+      if (up <= 0 || node.s() >> up != parent.s() || node.t() >> up != parent.t()) {
+        return "a node does not lie in its parent";
+      }
+    }
+  }
+  if (next != nodes_.size()) return "nodes without a patch";
+  uint32_t last = 0;
+  for (const format::Node& node : nodes_) {
+    if (node.first_arc() < last || node.first_arc() > arcs_.size()) {
+      return "its arcs are out of order";
+    }
+    last = node.first_arc();
+  }
+  for (const format::Arc& arc : arcs_) {
+    const bool is_far = (arc.to() & kFarNode) != 0;
+    const uint32_t index = arc.to() & ~kFarNode;
+    if (index >= (is_far ? far_.size() : nodes_.size()) || arc.kind() >= kLinkKinds) {
+      return "an arc leads nowhere";
+    }
+  }
+  uint64_t next_arc = 0;
+  for (const format::Leap& leap : leaps_) {
+    if (leap.arc() < next_arc || leap.arc() >= arcs_.size()) return "its leaps are out of order";
+    next_arc = uint64_t{leap.arc()} + 1;
+  }
+  return nullptr;
+}
+
+const format::Leap* NodeZone::leap_of(uint32_t arc) const {
+  const auto found =
+      std::lower_bound(leaps_.begin(), leaps_.end(), arc,
+                       [](const format::Leap& leap, uint32_t a) { return leap.arc() < a; });
+  return found != leaps_.end() && found->arc() == arc ? &*found : nullptr;
+}
+
+std::span<const format::Arc> NodeZone::arcs(uint32_t node) const {
+  const uint32_t begin = nodes_[node].first_arc();
+  const size_t end = node + 1 < nodes_.size() ? nodes_[node + 1].first_arc() : arcs_.size();
+  return arcs_.subspan(begin, end - begin);
+}
+
+const format::NodePatch& NodeZone::patch_of(uint32_t node) const {
+  // The last that begins at or before it: patches without nodes begin where the next one does.
+  const auto after =
+      std::upper_bound(patches_.begin(), patches_.end(), node,
+                       [](uint32_t n, const format::NodePatch& p) { return n < p.first_node(); });
+  return *(after - 1);
+}
+
+const NodeZone* NodeData::zone(size_t slot) const {
+  const Slot& entry = *slots[slot];
+  std::call_once(entry.once, [&] {
+    if (entry.zone || path.empty()) return;
+    const std::string name = path + "/" + node_file_name(entry.entry.x(), entry.entry.z());
+    auto map = FileMap::open(name);
+    if (!map) {
+      entry.error = map.error().message;
+      return;
+    }
+    if (map->bytes().size() != entry.entry.bytes() ||
+        hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
+      entry.error = bad_nodes(name,
+                              "its checksum is not the index's (truncated, damaged or of another "
+                              "bake)")
+                        .message;
+      return;
+    }
+    auto zone = NodeZone::from_file(std::move(*map), name);
+    if (!zone) {
+      entry.error = zone.error().message;
+      return;
+    }
+    const NodeZone& found = **zone;
+    bool belongs = found.x() == entry.entry.x() && found.z() == entry.entry.z() &&
+                   found.nodes().size() == entry.entry.nodes();
+    for (const format::FarNode& far : found.far()) {
+      const size_t other = slot_at(far.x(), far.z());
+      belongs = belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
+    }
+    for (const format::NodePatch& patch : found.patches()) {
+      belongs = belongs && (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier) ||
+                            (patch.source() < world.level_tile_count() && patch.depth() == 6));
+    }
+    if (!belongs) {
+      entry.error = bad_nodes(name, "belongs to another world").message;
+      return;
+    }
+    entry.zone = std::move(*zone);
+  });
+  return entry.zone.get();
+}
+
+size_t NodeData::slot_of(uint32_t node) const {
+  const auto after = std::upper_bound(slots.begin(), slots.end(), node,
+                                      [](uint32_t n, const auto& s) { return n < s->first_node; });
+  return static_cast<size_t>(after - slots.begin()) - 1;
+}
+
+size_t NodeData::slot_at(int32_t x, int32_t z) const {
+  const auto found = std::lower_bound(slots.begin(), slots.end(), std::pair{z, x},
+                                      [](const auto& s, std::pair<int32_t, int32_t> at) {
+                                        return std::pair{s->entry.z(), s->entry.x()} < at;
+                                      });
+  const bool hit = found != slots.end() && (*found)->entry.x() == x && (*found)->entry.z() == z;
+  return hit ? static_cast<size_t>(found - slots.begin()) : slots.size();
+}
+
+std::pair<const NodeZone*, uint32_t> NodeData::find(uint32_t node) const {
+  const size_t slot = slot_of(node);
+  return {zone(slot), node - slots[slot]->first_node};
+}
+
+const NodeData::AreaList& NodeData::areas_before(int32_t avatar_class) const {
+  static const AreaList kNone;
+  if (avatar_class < 0 || avatar_class >= kMaxAvatarClasses) return kNone;
+  ClassAreas& areas = class_areas[static_cast<size_t>(avatar_class)];
+  std::call_once(areas.once, [&] {
+    double sum = 0;
+    for (size_t s = 0; s < slots.size(); ++s) {
+      const NodeZone* found = zone(s);
+      if (found == nullptr) continue;
+      const auto nodes = found->nodes();
+      const auto stands = [&](uint32_t n) { return (nodes[n].classes() >> avatar_class & 1) != 0; };
+      for (uint32_t n = 0; n < nodes.size(); ++n) {
+        const uint32_t parent = nodes[n].parent();
+        if (!stands(n) || (parent != UINT32_MAX && stands(parent))) continue;
+        sum += static_cast<double>(nodes[n].area());
+        areas.list.push_back({slots[s]->first_node + n, sum});
+      }
+    }
+  });
+  return areas.list;
+}
+
+uint32_t NodeData::target(size_t slot, const NodeZone& from, const format::Arc& arc) const {
+  if ((arc.to() & kFarNode) == 0) return slots[slot]->first_node + arc.to();
+  const format::FarNode& far = from.far()[arc.to() & ~kFarNode];
+  return slots[slot_at(far.x(), far.z())]->first_node + far.node();
+}
+
+std::string node_file_name(int32_t x, int32_t z) {
+  return "zone_" + std::to_string(x) + "_" + std::to_string(z) + ".thn";
+}
+
+std::vector<uint8_t> write_node_index(const NodeData& nodes) {
+  flatbuffers::FlatBufferBuilder builder;
+  std::vector<format::NodeZoneEntry> entries;
+  for (const auto& slot : nodes.slots) entries.push_back(slot->entry);
+  const NodeBins& bins = nodes.summary.bins;
+  const auto inclination = builder.CreateVector(bins.inclination);
+  const auto height = builder.CreateVector(bins.height);
+  const auto width = builder.CreateVector(bins.width);
+  const auto zones = builder.CreateVectorOfStructs(entries);
+  builder.Finish(
+      format::CreateNodeIndex(builder, kNodeVersion, nodes.world_hash, nodes.size, inclination,
+                              height, width, nodes.summary.bezier_patches, zones),
+      kIndexIdentifier);
+  return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
+}
+
+Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes,
+                                                  const std::string& name) {
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  if (bytes.size() < 8 || !verifier.VerifyBuffer<format::NodeIndex>(kIndexIdentifier)) {
+    return bad_nodes(name, "not an index of nodes, or truncated");
+  }
+  const auto& root = *flatbuffers::GetRoot<format::NodeIndex>(bytes.data());
+  if (root.version() != kNodeVersion) {
+    return bad_nodes(name, "node version " + std::to_string(root.version()) +
+                               ", this program reads " + std::to_string(kNodeVersion));
+  }
+  if (!root.inclination() || !root.height() || !root.width() || !root.zones() ||
+      !starts_aligned(*root.inclination()) || !starts_aligned(*root.height()) ||
+      !starts_aligned(*root.width()) || !starts_aligned(*root.zones()) ||
+      !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kFarthest) ||
+      !ascending(*root.width(), 0, kFarthest) || !(root.size() > 0 && root.size() <= kFarthest)) {
+    return bad_nodes(name, "its numbers make no sense");
+  }
+  auto nodes = std::make_shared<NodeData>();
+  nodes->world_hash = root.world();
+  nodes->size = root.size();
+  NodeSummary& summary = nodes->summary;
+  summary.bins = {{root.inclination()->begin(), root.inclination()->end()},
+                  {root.height()->begin(), root.height()->end()},
+                  {root.width()->begin(), root.width()->end()}};
+  summary.bezier_patches = root.bezier_patches();
+  uint64_t count = 0;
+  for (const format::NodeZoneEntry& entry : structs(*root.zones())) {
+    if (!nodes->slots.empty()) {
+      const format::NodeZoneEntry& last = nodes->slots.back()->entry;
+      if (std::pair{last.z(), last.x()} >= std::pair{entry.z(), entry.x()}) {
+        return bad_nodes(name, "its zones are out of order");
+      }
+    }
+    if (entry.nodes() * sizeof(format::Node) > entry.bytes()) {
+      return bad_nodes(name, "a zone has more nodes than bytes");
+    }
+    auto slot = std::make_unique<NodeData::Slot>();
+    slot->entry = entry;
+    slot->first_node = static_cast<uint32_t>(count);
+    count += entry.nodes();
+    summary.bytes += entry.bytes();
+    summary.patches += entry.patches();
+    nodes->slots.push_back(std::move(slot));
+  }
+  if (count >= UINT32_MAX) return bad_nodes(name, "more than 2^32 nodes");
+  nodes->node_count = static_cast<uint32_t>(count);
+  summary.nodes = count;
+  summary.zones = nodes->slots.size();
+  return nodes;
+}
+
+}  // namespace throng

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <flatbuffers/flatbuffers.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/file_map.h"
+#include "throng/nodes.h"
+#include "throng/result.h"
+#include "world/nodes_generated.h"
+
+/// Nodes in memory: zones mapped from files, or owned after they were made.
+namespace throng {
+
+inline constexpr uint32_t kNodeVersion = 1;
+inline constexpr const char* kNodeIndexName = "index.thn";
+inline constexpr const char* kNodeFolder = "nodes";
+inline constexpr uint32_t kFarNode = uint32_t{1} << 31;
+inline constexpr uint8_t kDeepestPatch = 6;
+
+/// A zone's bytes after the verifier and the checks of its numbers.
+class NodeZone {
+ public:
+  /// Fails with kBadFile and `name` if the bytes are not sound nodes of this version.
+  static Result<std::unique_ptr<NodeZone>> from_bytes(flatbuffers::DetachedBuffer bytes,
+                                                      const std::string& name);
+  static Result<std::unique_ptr<NodeZone>> from_file(FileMap map, const std::string& name);
+
+  [[nodiscard]] std::span<const uint8_t> bytes() const { return bytes_; }
+  [[nodiscard]] int32_t x() const { return root_->x(); }
+  [[nodiscard]] int32_t z() const { return root_->z(); }
+  [[nodiscard]] std::span<const format::NodePatch> patches() const { return patches_; }
+  [[nodiscard]] std::span<const format::Node> nodes() const { return nodes_; }
+  [[nodiscard]] std::span<const format::FarNode> far() const { return far_; }
+  [[nodiscard]] std::span<const format::Arc> arcs(uint32_t node) const;
+  [[nodiscard]] const format::Arc* first_arc() const { return arcs_.data(); }
+  /// The leap of an arc, or null.
+  [[nodiscard]] const format::Leap* leap_of(uint32_t arc) const;
+  /// Patch of the zone that a node belongs to.
+  [[nodiscard]] const format::NodePatch& patch_of(uint32_t node) const;
+  /// The 48 numbers of a Bezier patch.
+  [[nodiscard]] const double* points(const format::NodePatch& patch) const {
+    return points_.data() + patch.points();
+  }
+
+ private:
+  Result<void> attach(const std::string& name);
+  [[nodiscard]] const char* fault() const;
+
+  flatbuffers::DetachedBuffer owned_;
+  FileMap map_;
+  std::span<const uint8_t> bytes_;
+  const format::NodeZone* root_ = nullptr;
+  std::span<const format::NodePatch> patches_;
+  std::span<const format::Node> nodes_;
+  std::span<const format::Arc> arcs_;
+  std::span<const format::Leap> leaps_;
+  std::span<const format::FarNode> far_;
+  std::span<const double> points_;
+};
+
+/// What Nodes points to.
+struct NodeData {
+  using AreaList = std::vector<std::pair<uint32_t, double>>;
+  struct Slot {
+    format::NodeZoneEntry entry;
+    uint32_t first_node = 0;  // of all
+    mutable std::once_flag once;
+    mutable std::unique_ptr<NodeZone> zone;
+    mutable std::string error;  // why the zone could not be used
+  };
+
+  NodeSummary summary;
+  World world;  // that they belong to
+  uint64_t world_hash = 0;
+  double size = 0;
+  std::string path;  // of their folder; empty: in memory
+  std::vector<std::unique_ptr<Slot>> slots;
+  uint32_t node_count = 0;
+  struct ClassAreas {
+    std::once_flag once;
+    AreaList list;
+  };
+  mutable std::array<ClassAreas, kMaxAvatarClasses> class_areas;
+
+  /// The zone of a slot, opened and checked at its first touch; null if it cannot be used.
+  [[nodiscard]] const NodeZone* zone(size_t slot) const;
+  /// Slot that holds a node of all. [node < node_count]
+  [[nodiscard]] size_t slot_of(uint32_t node) const;
+  /// Slot of a zone, or slots.size().
+  [[nodiscard]] size_t slot_at(int32_t x, int32_t z) const;
+  /// A node's zone and its number there; null if the zone cannot be used.
+  [[nodiscard]] std::pair<const NodeZone*, uint32_t> find(uint32_t node) const;
+  /// For a class, the nodes that share out its area (those whose parents it cannot stand on), and
+  /// the area up to and with each. Made when first asked for.
+  [[nodiscard]] const AreaList& areas_before(int32_t avatar_class) const;
+  /// Where an arc of a slot's zone leads to, as a node of all.
+  [[nodiscard]] uint32_t target(size_t slot, const NodeZone& zone, const format::Arc& arc) const;
+};
+
+std::string node_file_name(int32_t x, int32_t z);
+
+std::vector<uint8_t> write_node_index(const NodeData& nodes);
+/// Fills everything but the world and the zones. Fails with kBadFile and `name`.
+Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes,
+                                                  const std::string& name);
+
+}  // namespace throng

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "graph/quadtree.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numeric>
+
+#include "core/random.h"
+#include "graph/node_links.h"
+
+// Trees and links against the cells themselves, on random patches.
+namespace throng {
+namespace {
+
+constexpr uint16_t kClasses = 0b1111;
+
+// Blotches of promises, so that there are blocks of all sizes, and cuts between some cells.
+PatchCells random_cells(int32_t depth, uint64_t seed, bool with_cuts) {
+  PatchCells patch;
+  patch.depth = depth;
+  const auto count = size_t{1} << (2 * depth);
+  patch.cells.resize(count, {kClasses, 1, 3, 3});
+  for (uint64_t blot = 0; blot < 6; ++blot) {
+    const auto draw = [&](uint64_t k, uint64_t n) {
+      return static_cast<int32_t>(random_below(seed, blot, k, n));
+    };
+    const int32_t side = patch.side();
+    const int32_t s0 = draw(0, static_cast<uint64_t>(side)),
+                  t0 = draw(1, static_cast<uint64_t>(side));
+    const int32_t s1 = std::min(side, s0 + 1 + draw(2, 5)),
+                  t1 = std::min(side, t0 + 1 + draw(3, 5));
+    const Promise worse{static_cast<uint16_t>(draw(4, 16)), static_cast<uint8_t>(draw(5, 4)),
+                        static_cast<uint8_t>(draw(6, 4)), static_cast<uint8_t>(draw(7, 4))};
+    for (int32_t t = t0; t < t1; ++t) {
+      for (int32_t s = s0; s < s1; ++s) {
+        Promise& cell = patch.cells[patch.index(s, t)];
+        cell = both(cell, worse);
+      }
+    }
+  }
+  if (!with_cuts) return patch;
+  patch.cut_s.resize(count);
+  patch.cut_t.resize(count);
+  for (size_t i = 0; i < count; ++i) {
+    if (random_below(seed, i, 20, 12) == 0) {
+      patch.cut_s[i] = static_cast<uint16_t>(random_below(seed, i, 21, 16));
+    }
+    if (random_below(seed, i, 22, 12) == 0) {
+      patch.cut_t[i] = static_cast<uint16_t>(random_below(seed, i, 23, 16));
+    }
+  }
+  return patch;
+}
+
+// Calls visit(s, t) for the cells of a node.
+template <class Visit>
+void for_cells(const PatchTree& tree, const PatchNode& node, Visit visit) {
+  const int32_t size = 1 << (tree.depth - node.level);
+  for (int32_t t = node.t * size; t < (node.t + 1) * size; ++t) {
+    for (int32_t s = node.s * size; s < (node.s + 1) * size; ++s) visit(s, t);
+  }
+}
+
+TEST(Quadtree, ANodePromisesTheWorstOfItsCells) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    const PatchCells cells = random_cells(static_cast<int32_t>(seed % 5), seed, seed % 2 == 0);
+    const PatchTree tree = build_tree(cells);
+    std::vector<bool> has_child(tree.nodes.size(), false);
+    for (const PatchNode& node : tree.nodes) {
+      Promise worst{0xffff, 0, 255, 255};
+      uint16_t cut = 0;
+      const int32_t size = 1 << (tree.depth - node.level);
+      for_cells(tree, node, [&](int32_t s, int32_t t) {
+        worst = both(worst, cells.cells[cells.index(s, t)]);
+        if (cells.cut_s.empty()) return;
+        if (s + 1 < (node.s + 1) * size) cut |= cells.cut_s[cells.index(s, t)];
+        if (t + 1 < (node.t + 1) * size) cut |= cells.cut_t[cells.index(s, t)];
+      });
+      worst.classes = static_cast<uint16_t>(worst.classes & ~cut);
+      EXPECT_EQ(node.promise, worst) << "seed " << seed;
+      EXPECT_NE(node.promise.classes, 0);
+      if (node.parent == kNoNode) continue;
+      has_child[node.parent] = true;
+      EXPECT_TRUE(covers(node.promise, tree.nodes[node.parent].promise));
+      EXPECT_NE(node.promise, tree.nodes[node.parent].promise);
+    }
+    for (size_t n = 0; n < tree.nodes.size(); ++n) {
+      EXPECT_EQ(tree.nodes[n].terminal, !has_child[n]);
+    }
+  }
+}
+
+TEST(Quadtree, EveryClassHasTheCellsThatItHasAlone) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    const PatchCells cells = random_cells(4, seed, seed % 2 == 0);
+    const PatchTree tree = build_tree(cells);
+    std::vector<uint16_t> covered(cells.cells.size(), 0);
+    std::vector<uint32_t> smallest(cells.cells.size(), kNoNode);
+    for (uint32_t n = 0; n < tree.nodes.size(); ++n) {
+      for_cells(tree, tree.nodes[n], [&](int32_t s, int32_t t) {
+        covered[cells.index(s, t)] |= tree.nodes[n].promise.classes;
+        smallest[cells.index(s, t)] = n;  // Parents come first.
+      });
+    }
+    for (size_t i = 0; i < cells.cells.size(); ++i) {
+      EXPECT_EQ(covered[i], cells.cells[i].classes) << "seed " << seed << " cell " << i;
+      EXPECT_EQ(tree.leaf_of(i), smallest[i]);
+    }
+  }
+}
+
+TEST(Quadtree, AnEvenPatchIsOneNode) {
+  PatchCells cells{.depth = 6, .cells = {}, .cut_s = {}, .cut_t = {}};
+  cells.cells.assign(4096, {1, 2, 3, 4});
+  const PatchTree tree = build_tree(cells);
+  ASSERT_EQ(tree.nodes.size(), 1u);
+  EXPECT_TRUE(tree.nodes[0].terminal);
+  EXPECT_TRUE(tree.leaf.empty());
+  cells.cells[77].inclination = 3;  // One steeper cell: the whole is as steep, and its rest less.
+  EXPECT_GT(build_tree(cells).nodes.size(), 6u);
+}
+
+class Sets {
+ public:
+  explicit Sets(size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0u); }
+  uint32_t find(uint32_t i) {
+    while (root_[i] != i) i = root_[i];
+    return i;
+  }
+  void join(uint32_t a, uint32_t b) { root_[find(a)] = find(b); }
+
+ private:
+  std::vector<uint32_t> root_;
+};
+
+// Two patches beside each other, some pairs of their border cells joined for some classes: cells
+// hold together for a class exactly if the nodes that hold them do.
+TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
+  size_t tested = 0;
+  for (uint64_t seed = 1; seed <= 80; ++seed) {
+    const std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
+                                             random_cells(3, seed + 1000, seed % 3 == 0)};
+    NodeForest forest;
+    for (const PatchCells& patch : cells) forest.add(build_tree(patch));
+    std::vector<CellPair> pairs;
+    for (uint32_t i = 0; i < 16; ++i) {
+      pairs.push_back({.patch_a = 0,
+                       .cell_a = i * 16 + 15,
+                       .patch_b = 1,
+                       .cell_b = i / 2 * 8,
+                       .classes = static_cast<uint16_t>(random_below(seed, i, 40, 16))});
+    }
+    NodeLinker linker(forest);
+    for (uint32_t p = 0; p < 2; ++p) linker.link_inside(p, cells[p]);
+    for (const CellPair& pair : pairs) linker.link(pair);
+    const std::vector<NodeLink> links = linker.take();
+    for (const NodeLink& link : links) EXPECT_LT(link.a, link.b);
+
+    for (uint32_t c = 0; c < 4; ++c) {
+      const uint16_t bit = static_cast<uint16_t>(1u << c);
+      Sets naive(256 + 64), nodes(forest.size());
+      for (uint32_t p = 0; p < 2; ++p) {
+        const PatchCells& patch = cells[p];
+        const uint32_t base = p == 0 ? 0 : 256;
+        const auto join = [&](size_t a, size_t b, const std::vector<uint16_t>& cuts) {
+          const uint16_t cut = cuts.empty() ? uint16_t{0} : cuts[a];
+          if ((patch.cells[a].classes & patch.cells[b].classes & ~cut & bit) == 0) return;
+          naive.join(base + static_cast<uint32_t>(a), base + static_cast<uint32_t>(b));
+        };
+        for (int32_t t = 0; t < patch.side(); ++t) {
+          for (int32_t s = 0; s < patch.side(); ++s) {
+            const size_t i = patch.index(s, t);
+            if (s + 1 < patch.side()) join(i, i + 1, patch.cut_s);
+            if (t + 1 < patch.side()) join(i, i + static_cast<size_t>(patch.side()), patch.cut_t);
+          }
+        }
+        const PatchTree& tree = forest.trees[p];
+        for (uint32_t n = 0; n < tree.nodes.size(); ++n) {
+          const uint32_t parent = tree.nodes[n].parent;
+          if (parent != kNoNode && (tree.nodes[parent].promise.classes & bit) != 0) {
+            nodes.join(forest.first[p] + n, forest.first[p] + parent);
+          }
+        }
+      }
+      for (const CellPair& pair : pairs) {
+        const bool stands = (cells[0].cells[pair.cell_a].classes &
+                             cells[1].cells[pair.cell_b].classes & pair.classes & bit) != 0;
+        if (stands) naive.join(pair.cell_a, 256 + pair.cell_b);
+      }
+      for (const NodeLink& link : links) {
+        if ((link.classes & bit) != 0) nodes.join(link.a, link.b);
+      }
+      std::map<uint32_t, uint32_t> part_of;  // naive part -> part of nodes, and back
+      std::map<uint32_t, uint32_t> back;
+      for (uint32_t i = 0; i < 320; ++i) {
+        const uint32_t p = i < 256 ? 0 : 1, cell = i < 256 ? i : i - 256;
+        if ((cells[p].cells[cell].classes & bit) == 0) continue;
+        const uint32_t a = naive.find(i), b = nodes.find(forest.leaf(p, cell));
+        EXPECT_EQ(part_of.try_emplace(a, b).first->second, b) << "seed " << seed;
+        EXPECT_EQ(back.try_emplace(b, a).first->second, a) << "seed " << seed;
+        ++tested;
+      }
+    }
+  }
+  EXPECT_GT(tested, 40000u);
+}
+
+TEST(NodeLinks, LinkTheLargestThatIsNoMoreRestrictive) {
+  // A gentle half and a steep half, side by side: the whole is one steep node, the gentle half two.
+  PatchCells cells{.depth = 2, .cells = {}, .cut_s = {}, .cut_t = {}};
+  cells.cells.assign(16, {1, 2, 1, 1});
+  for (int32_t t = 0; t < 4; ++t) {
+    for (int32_t s = 0; s < 2; ++s) cells.cells[cells.index(s, t)].inclination = 0;
+  }
+  NodeForest forest;
+  forest.add(build_tree(cells));
+  ASSERT_EQ(forest.size(), 3u);
+  EXPECT_FALSE(forest.trees[0].nodes[0].terminal);
+  NodeLinker linker(forest);
+  linker.link_inside(0, cells);
+  const auto links = linker.take();
+  ASSERT_EQ(links.size(), 1u);  // The two gentle ones; the steep one holds both.
+  EXPECT_EQ(links[0].a, 1u);
+  EXPECT_EQ(links[0].b, 2u);
+}
+
+}  // namespace
+}  // namespace throng

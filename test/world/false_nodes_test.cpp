@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "baked.h"
+#include "core/random.h"
+#include "world/node_data.h"
+
+// Files of nodes with bytes changed at random: refused by name, or used without reading beyond
+// them.
+namespace throng {
+namespace {
+
+Nodes make_small(Scene& scene) {
+  scene = test::builtin({.name = "landscape", .size = 100});
+  std::vector<AvatarClass> classes = {AvatarClass{}, AvatarClass{.name = "climber"}};
+  classes[1].climb_slope = 150;
+  Context context;
+  const auto nodes = Nodes::make(test::bake(scene, 0.5, classes), scene, {.size = 4}, context);
+  EXPECT_TRUE(nodes);
+  return nodes ? *nodes : Nodes{};
+}
+
+std::unique_ptr<NodeZone> changed(std::span<const uint8_t> bytes, uint64_t seed, std::string& why) {
+  auto* copy = new uint8_t[bytes.size()];
+  std::copy(bytes.begin(), bytes.end(), copy);
+  const uint64_t changes = 1 + random_below(seed, 0, 0, 3);
+  for (uint64_t k = 0; k < changes; ++k) {
+    copy[random_below(seed, k, 1, bytes.size())] = static_cast<uint8_t>(random_u64(seed, k, 2));
+  }
+  auto zone = NodeZone::from_bytes(
+      flatbuffers::DetachedBuffer(nullptr, false, copy, bytes.size(), copy, bytes.size()), "it");
+  if (!zone) why = zone.error().message;
+  return zone ? std::move(*zone) : nullptr;
+}
+
+TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
+  Scene scene;
+  const Nodes nodes = make_small(scene);
+  size_t refused = 0, used = 0;
+  for (uint64_t seed = 0; seed < 1500; ++seed) {
+    const NodeZone& zone = *nodes.data()->zone(seed % nodes.data()->slots.size());
+    std::string why;
+    const auto found = changed(zone.bytes(), seed, why);
+    if (found == nullptr) {
+      EXPECT_EQ(why.substr(0, 4), "it: ");
+      ++refused;
+      continue;
+    }
+    uint64_t sum = 0;
+    for (uint32_t n = 0; n < found->nodes().size(); ++n) {
+      const format::NodePatch& patch = found->patch_of(n);
+      EXPECT_GE(n, patch.first_node());
+      EXPECT_LT(n, patch.first_node() + patch.nodes());
+      if (patch.kind() == 0) sum += static_cast<uint64_t>(found->points(patch)[47] != 0);
+      for (const format::Arc& arc : found->arcs(n)) {
+        const uint32_t to = arc.to() & ~kFarNode;
+        sum += (arc.to() & kFarNode) != 0 ? found->far()[to].node() : found->nodes()[to].level();
+        const auto* leap = found->leap_of(static_cast<uint32_t>(&arc - found->first_arc()));
+        sum += leap != nullptr ? leap->to_s() : 0;
+      }
+    }
+    used += sum > 0 ? 1 : 0;
+  }
+  EXPECT_GT(refused, 100u);
+  EXPECT_GT(used, 300u);
+}
+
+TEST(FalseNodes, ATruncatedOrForeignFileIsRefused) {
+  Scene scene;
+  const Nodes nodes = make_small(scene);
+  const auto bytes = nodes.data()->zone(0)->bytes();
+  for (size_t size = 0; size < bytes.size(); size += 1 + size / 3) {
+    auto* copy = new uint8_t[size + 1];
+    std::copy_n(bytes.data(), size, copy);
+    EXPECT_FALSE(NodeZone::from_bytes(
+        flatbuffers::DetachedBuffer(nullptr, false, copy, size + 1, copy, size), "it"));
+  }
+  const std::vector<uint8_t> index = write_node_index(*nodes.data());
+  EXPECT_TRUE(read_node_index(index, "it"));
+  EXPECT_FALSE(read_node_index(std::span(index).first(index.size() / 2), "it"));
+  EXPECT_FALSE(read_node_index(bytes, "it"));  // A zone is no index.
+  size_t refused = 0;
+  for (uint64_t seed = 0; seed < 500; ++seed) {
+    std::vector<uint8_t> copy = index;
+    copy[random_below(seed, 0, 5, copy.size())] = static_cast<uint8_t>(random_u64(seed, 0, 6));
+    refused += read_node_index(copy, "it") ? 0 : 1;
+  }
+  EXPECT_GT(refused, 20u);
+}
+
+}  // namespace
+}  // namespace throng

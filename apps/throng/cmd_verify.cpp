@@ -23,6 +23,7 @@ struct VerifyOptions {
   std::string world;
   SourceOptions sources;
   std::string class_name = "all";
+  bool nodes = false;
   VerifyConfig config;
 };
 
@@ -182,6 +183,56 @@ Result<std::vector<int32_t>> pick_classes(const World& world, const std::string&
                fmt::format("--class {}: the world has no such class; choose from {}", name, known)};
 }
 
+bool passes(const NodeVerifyReport& report) {
+  return report.entered + report.unsupported + report.steeper + report.lower + report.one_way == 0;
+}
+
+// The nodes of a world instead of its level tiles.
+int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector<int32_t>& picked,
+                     const Scene& scene) {
+  const Result<Nodes> nodes = Nodes::open(options.world);
+  if (!nodes) return fail(nodes.error());
+  if (auto ok = nodes->check_all(); !ok) return fail(ok.error());
+  const std::vector<AvatarClass> classes = nodes->summary().classes;
+  Json list = Json::array();
+  std::string text;
+  bool passed = true;
+  for (const int32_t index : picked) {
+    options.config.avatar_class = index;
+    const auto report = verify_nodes(*nodes, scene, options.config, session.context);
+    if (!report) return fail(report.error());
+    const std::string& name = classes[static_cast<size_t>(index)].name;
+    passed = passed && passes(*report);
+    list.push_back({{"class", name},
+                    {"places", report->places},
+                    {"arcs", report->arcs},
+                    {"leaps", report->leaps},
+                    {"entered", report->entered},
+                    {"unsupported", report->unsupported},
+                    {"steeper", report->steeper},
+                    {"lower", report->lower},
+                    {"one_way", report->one_way},
+                    {"seconds", report->seconds}});
+    text += fmt::format(
+        "{}: {} places on nodes, {} arcs, {} leaps in {:.1f} s\n"
+        "  entered {}, unsupported {}, steeper {}, lower {}, one way {}\n",
+        name, report->places, report->arcs, report->leaps, report->seconds, report->entered,
+        report->unsupported, report->steeper, report->lower, report->one_way);
+    for (const VerifyFault& fault : report->faults) {
+      text += fmt::format("  {} at {:.4f} {:.4f} {:.4f}\n", fault.what, fault.position.x,
+                          fault.position.y, fault.position.z);
+    }
+  }
+  text += passed ? "passed\n" : "NOT passed\n";
+  print_result(session,
+               {{"world", options.world},
+                {"seed", options.config.seed},
+                {"classes", list},
+                {"passed", passed}},
+               text);
+  return passed ? kDone : kAnswerIsNo;
+}
+
 int verify(Session& session, VerifyOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
@@ -189,6 +240,7 @@ int verify(Session& session, VerifyOptions& options) {
   if (!picked) return fail(picked.error());
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
+  if (options.nodes) return verify_all_nodes(session, options, *picked, *scene);
 
   const std::vector<AvatarClass> classes = world->summary().classes;
   std::vector<ClassReport> entries;
@@ -231,6 +283,7 @@ void add_verify(CLI::App& parser, Session& session) {
   command->add_option("--seed", options->config.seed, "Seed of the samples")->capture_default_str();
   command->add_option("--class", options->class_name, "Avatar class by name, or all")
       ->capture_default_str();
+  command->add_flag("--nodes", options->nodes, "Test the world's nodes, not its level tiles");
   command->add_option("--threads", options->config.workers, "Threads, 0 for all cores");
   command->callback([&session, options] { session.exit_code = verify(session, *options); });
 }

@@ -8,6 +8,7 @@
 
 #include "throng/base.h"
 #include "throng/context.h"
+#include "throng/nodes.h"
 #include "throng/result.h"
 #include "throng/scene.h"
 #include "throng/world.h"
@@ -52,6 +53,27 @@ struct VerifyReport {
   std::vector<VerifyFault> faults;  ///< The first few of each kind.
   double seconds = 0;
 };
+
+/// What the oracle found of nodes. All counts but the first three must be 0.
+struct NodeVerifyReport {
+  uint64_t places = 0;
+  uint64_t arcs = 0;         ///< Looked at on the way.
+  uint64_t leaps = 0;        ///< Of these, between nodes that do not touch.
+  uint64_t entered = 0;      ///< Places, or leaps, whose body meets a triangle.
+  uint64_t unsupported = 0;  ///< Places without a surface at the feet.
+  uint64_t steeper = 0;      ///< Places on a steeper surface than a node around them promises.
+  uint64_t lower = 0;        ///< Places with less free height than a node around them promises.
+  uint64_t one_way = 0;      ///< Arcs without one back.
+  std::vector<VerifyFault> faults;  ///< The first few of each kind.
+  double seconds = 0;
+};
+
+/// Tests random places of a class on nodes, and the arcs of their nodes: the body against all
+/// triangles, and what the nodes around the place promise. Fails like verify_world.
+[[nodiscard]] THRONG_API Result<NodeVerifyReport> verify_nodes(const Nodes& nodes,
+                                                               const Scene& source,
+                                                               const VerifyConfig& config,
+                                                               Context& context);
 
 /// Time: about samples x triangles near a body. Fails with kBadConfig, kBadInput, kCancelled.
 [[nodiscard]] THRONG_API Result<VerifyReport> verify_world(const World& world, const Scene& source,

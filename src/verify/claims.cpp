@@ -178,12 +178,11 @@ class Judge {
   uint64_t done_ = 0;
 };
 
-Result<void> check_input(const Claims& claims, const Scene& scene, const VerifyConfig& config) {
+}  // namespace
+
+Result<void> check_source(const Scene& scene, const VerifyConfig& config) {
   if (config.samples == 0 || config.samples > (uint64_t{1} << 40) || config.workers < 0) {
     return Error{Errc::kBadConfig, "verify: need 1 to 2^40 samples and workers >= 0"};
-  }
-  if (!(claims.cell > 0) || !(claims.resolution >= 0)) {
-    return Error{Errc::kBadConfig, "verify: the world's cell and resolution are not positive"};
   }
   if (scene.triangles.empty()) {
     return Error{Errc::kBadInput, "verify: the source has no triangles; is it the right file?"};
@@ -212,12 +211,13 @@ Result<void> check_input(const Claims& claims, const Scene& scene, const VerifyC
   return {};
 }
 
-}  // namespace
-
 Result<VerifyReport> verify_claims(const Claims& claims, const Scene& source,
                                    const VerifyConfig& config, Context& context) {
   const auto start = std::chrono::steady_clock::now();
-  if (auto sound = check_input(claims, source, config); !sound) return sound.error();
+  if (auto sound = check_source(source, config); !sound) return sound.error();
+  if (!(claims.cell > 0) || !(claims.resolution >= 0)) {
+    return Error{Errc::kBadConfig, "verify: the world's cell and resolution are not positive"};
+  }
   auto report = Judge(claims, source, config, context).run();
   if (report) {
     report->seconds =

@@ -26,6 +26,9 @@ struct Claims {
   std::function<double(const Place& place)> feet;
 };
 
+/// Can this source be tested with these settings? Fails with kBadConfig, kBadInput or kLimit.
+[[nodiscard]] Result<void> check_source(const Scene& scene, const VerifyConfig& config);
+
 /// Tests the claims against the triangles. `config.avatar_class` is not used: the claims are about
 /// one class. Fails with kBadConfig, kBadInput (no triangles, bad indices), kCancelled.
 [[nodiscard]] Result<VerifyReport> verify_claims(const Claims& claims, const Scene& source,

@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/nodes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "baked.h"
+#include "core/random.h"
+#include "patch_nets.h"
+#include "scratch_folder.h"
+#include "throng/bake.h"
+#include "throng/graph.h"
+#include "throng/verify.h"
+#include "world/node_data.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+using test::bake;
+using test::builtin;
+
+Nodes make(const World& world, const Scene& scene, NodeConfig config = {}) {
+  Context context;
+  const auto nodes = Nodes::make(world, scene, config, context);
+  EXPECT_TRUE(nodes) << nodes.error().message;
+  return nodes ? *nodes : Nodes{};
+}
+
+AvatarClass climber() {
+  AvatarClass avatar{.name = "climber"};
+  avatar.climb_slope = 180;
+  return avatar;
+}
+
+// Walkers and climbers of many sizes.
+std::vector<AvatarClass> many_classes() {
+  std::vector<AvatarClass> classes = default_classes();
+  classes.push_back(climber());
+  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  classes.back().climb_slope = 95;
+  classes.push_back({.name = "ogre", .height = 2.5, .radius = 0.8, .step = 0.6, .max_slope = 30});
+  return classes;
+}
+
+// A landscape of Bezier patches only, all kinds of neighbours among them.
+Scene net_scene(double relief, int32_t side = 3) {
+  Scene scene;
+  const PatchSet set = test::make_net({.side = side, .cell = 8, .relief = relief});
+  scene.patches = set;
+  Context context;
+  const auto mesh = tessellate_patches(set, {}, context);
+  EXPECT_TRUE(mesh);
+  scene.positions = mesh->positions;
+  scene.triangles = mesh->triangles;
+  scene.area.assign(scene.triangles.size(), kAreaWalkable);
+  for (uint32_t p = 0; p < set.size(); ++p) {
+    scene.patch_of_triangle.insert(scene.patch_of_triangle.end(),
+                                   mesh->first[p + 1] - mesh->first[p], p);
+  }
+  return scene;
+}
+
+TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
+  for (const char* name : {"garage", "stairs", "bridge", "maze"}) {
+    const Scene scene = builtin({.name = name});
+    const World world = bake(scene, 0.2);
+    const Nodes nodes = make(world, scene);
+    std::vector<std::vector<uint16_t>> covered(world.level_tile_count(),
+                                               std::vector<uint16_t>(4096, 0));
+    for (uint32_t n = 0; n < nodes.node_count(); ++n) {
+      const NodeInfo info = nodes.node(n);
+      ASSERT_EQ(info.kind, PatchKind::kLevelTile);
+      const int32_t size = 64 >> info.level;
+      for (int32_t t = info.t * size; t < (info.t + 1) * size; ++t) {
+        for (int32_t s = info.s * size; s < (info.s + 1) * size; ++s) {
+          covered[info.source][static_cast<size_t>(t * 64 + s)] |= info.classes;
+        }
+      }
+    }
+    for (uint32_t l = 0; l < world.level_tile_count(); ++l) {
+      const LevelTileContent tile = world.level_tile(l);
+      for (size_t i = 0; i < 4096; ++i) {
+        uint16_t legal = 0;
+        for (size_t c = 0; c < tile.clearance.size(); ++c) {
+          if (tile.clearance[c][i] > 0) legal |= static_cast<uint16_t>(1u << c);
+        }
+        ASSERT_EQ(covered[l][i], legal) << name << ", level " << l << ", cell " << i;
+      }
+    }
+  }
+}
+
+// The regions of src/graph share no code with nodes but the moves' own rule.
+TEST(Nodes, OnLevelTilesPartsAreTheRegionsComponents) {
+  for (const char* name : {"garage", "stairs", "bridge", "church", "maze", "powerplant"}) {
+    const Scene scene = builtin({.name = name});
+    const World world = bake(scene, 0.25);
+    const Nodes nodes = make(world, scene);
+    Context context;
+    const auto graph = Graph::make(world, {}, context);
+    ASSERT_TRUE(graph);
+    for (int32_t c = 0; c < 4; ++c) {
+      std::vector<double> by_nodes, by_regions;
+      for (const NodeReach& part : nodes.reach(c)) by_nodes.push_back(part.area);
+      for (const Component& part : graph->components(c)) by_regions.push_back(part.area);
+      ASSERT_EQ(by_nodes.size(), by_regions.size()) << name << ", class " << c;
+      for (size_t i = 0; i < by_nodes.size(); ++i) {
+        EXPECT_NEAR(by_nodes[i], by_regions[i], 1e-3) << name << ", class " << c;
+      }
+    }
+  }
+}
+
+TEST(Nodes, EveryArcLeadsBack) {
+  for (const char* name : {"garage", "landscape"}) {
+    const Scene scene = builtin({.name = name, .size = name[0] == 'l' ? 160.0 : 0.0});
+    const Nodes nodes = make(bake(scene, 0.4, many_classes()), scene, {.size = 1.5});
+    size_t arcs = 0, leaps = 0;
+    for (uint32_t n = 0; n < nodes.node_count(); ++n) {
+      const NodeInfo here = nodes.node(n);
+      for (const NodeArc& arc : nodes.arcs(n)) {
+        ASSERT_LT(arc.to, nodes.node_count());
+        const NodeInfo there = nodes.node(arc.to);
+        EXPECT_EQ(arc.classes & ~here.classes & 0xffff, 0);
+        EXPECT_EQ(arc.classes & ~there.classes & 0xffff, 0);
+        EXPECT_NE(arc.classes, 0);
+        const auto back = nodes.arcs(arc.to);
+        EXPECT_TRUE(std::any_of(back.begin(), back.end(), [&](const NodeArc& b) {
+          return b.to == n && b.kind == arc.kind && b.classes == arc.classes &&
+                 b.leaps == arc.leaps && b.from_s == arc.to_s && b.to_t == arc.from_t;
+        }));
+        ++arcs;
+        leaps += arc.leaps ? 1 : 0;
+      }
+    }
+    EXPECT_GT(arcs, 1000u);
+    EXPECT_EQ(leaps > 0, name[0] == 'l');
+  }
+}
+
+// Alone: of curved patches, in a world baked for the class alone. Level tiles depend a little on
+// which classes they are baked for together, so there the world is shared and the nodes are not.
+TEST(Nodes, ManyClassesShareOneGraph) {
+  const std::vector<AvatarClass> classes = many_classes();
+  const auto test_world = [&](const std::string& name, const Scene& scene, double cell) {
+    const World world = bake(scene, cell, classes);
+    const Nodes together = make(world, scene, {.size = 1.5});
+    uint64_t largest = 0;
+    for (size_t c = 0; c < classes.size(); ++c) {
+      const auto bit = static_cast<uint16_t>(1u << c);
+      const bool curved = !scene.patches.empty();
+      const Nodes alone = curved ? make(bake(scene, cell, {classes[c]}), scene, {.size = 1.5})
+                                 : make(world, scene, {.classes = bit});
+      largest = std::max(largest, alone.summary().bytes);
+      const auto one = alone.reach(curved ? 0 : static_cast<int32_t>(c));
+      const auto shared = together.reach(static_cast<int32_t>(c));
+      ASSERT_EQ(one.size(), shared.size()) << name << ", " << classes[c].name;
+      for (size_t i = 0; i < one.size(); ++i) {
+        EXPECT_NEAR(one[i].area, shared[i].area, 1e-6 * (1 + one[i].area))
+            << name << ", " << classes[c].name;
+      }
+    }
+    RecordProperty(name, std::to_string(static_cast<double>(together.summary().bytes) /
+                                        static_cast<double>(largest)));
+  };
+  test_world("net", net_scene(5), 0.25);
+  for (const char* name : {"cube", "stairs", "garage", "bridge", "church", "powerplant", "maze"}) {
+    test_world(name, builtin({.name = name}), 0.25);
+  }
+  test_world("city", builtin({.name = "city", .size = 100}), 0.25);
+  test_world("landscape", builtin({.name = "landscape", .size = 160}), 0.5);
+}
+
+TEST(Nodes, AreTheSameForAnyNumberOfThreads) {
+  const Scene scene = builtin({.name = "landscape", .size = 160});
+  const World world = bake(scene, 0.5, many_classes());
+  std::vector<uint64_t> first;
+  for (const int32_t workers : {1, 2, 3, 0}) {
+    const Nodes nodes = make(world, scene, {.size = 2, .workers = workers});
+    std::vector<uint64_t> hashes;
+    for (const auto& slot : nodes.data()->slots) hashes.push_back(slot->entry.hash());
+    EXPECT_GT(hashes.size(), 4u);
+    if (first.empty()) first = hashes;
+    EXPECT_EQ(hashes, first) << workers << " workers";
+  }
+}
+
+// The oracle of src/verify, which shares no code with the bake.
+TEST(Nodes, NoBodyMeetsATriangleAndNoPromiseIsBroken) {
+  Context context;
+  const auto check = [&](const char* name, const Scene& scene, double cell, double size) {
+    const Nodes nodes = make(bake(scene, cell, many_classes()), scene, {.size = size});
+    for (int32_t c = 0; c < 7; ++c) {
+      const auto report = verify_nodes(nodes, scene, {.samples = 3000, .avatar_class = c}, context);
+      ASSERT_TRUE(report) << report.error().message;
+      EXPECT_EQ(
+          report->entered + report->unsupported + report->steeper + report->lower + report->one_way,
+          0u)
+          << name << ", class " << c;
+    }
+  };
+  check("net", net_scene(6), 0.25, 0.7);
+  check("landscape", builtin({.name = "landscape", .size = 160, .seed = 3}), 0.5, 1.5);
+  check("garage", builtin({.name = "garage"}), 0.25, 1);
+}
+
+TEST(Nodes, ClimbersReachWhatWalkersCannot) {
+  const Scene scene = net_scene(9);
+  const Nodes nodes = make(bake(scene, 0.25, {AvatarClass{}, climber()}), scene, {.size = 0.5});
+  const auto walker = nodes.reach(0), all = nodes.reach(1);
+  ASSERT_FALSE(walker.empty());
+  ASSERT_FALSE(all.empty());
+  EXPECT_GT(all[0].area, walker[0].area * 1.2);
+  bool steep = false;
+  for (uint64_t n = 0; n < 2000; ++n) {
+    const NodePlace place = nodes.random_place(1, 1, n);
+    ASSERT_TRUE(place);
+    EXPECT_EQ(place.axis, place.normal);
+    steep |= place.normal.y < 0.5;
+    EXPECT_GT(nodes.random_place(0, 1, n).normal.y, 0.70);  // 45 degrees
+  }
+  EXPECT_TRUE(steep);
+}
+
+TEST(Nodes, WidthsAreNeverTooWide) {
+  const Scene scene = builtin({.name = "garage"});
+  const World world = bake(scene, 0.2);
+  const Nodes nodes = make(world, scene);
+  const NodeBins bins = nodes.summary().bins;
+  // Legal cells of each level and class; a node's disc may not hold a cell that lacks a class of
+  // the node, on the node's own level.
+  std::map<uint32_t, LevelTileContent> tiles;
+  size_t tested = 0;
+  for (uint32_t n = 0; n < nodes.node_count(); n += 7) {
+    const NodeInfo info = nodes.node(n);
+    const double width = bins.width_of(info.width);
+    if (width == 0) continue;
+    if (!tiles.contains(info.source)) tiles[info.source] = world.level_tile(info.source);
+    const LevelTileContent& tile = tiles[info.source];
+    const double size = 64 >> info.level, s = (info.s + 0.5) * size, t = (info.t + 0.5) * size;
+    for (int32_t i = 0; i < 4096; ++i) {
+      const double ds = std::max(0.0, std::abs(i % 64 + 0.5 - s) - 0.5);
+      const double dt = std::max(0.0, std::abs(i / 64 + 0.5 - t) - 0.5);
+      if ((ds * ds + dt * dt) * 0.04 >= width * width * (1 - 1e-9)) continue;
+      for (size_t c = 0; c < 4; ++c) {
+        if ((info.classes >> c & 1) == 0) continue;
+        EXPECT_GT(tile.clearance[c][static_cast<size_t>(i)], 0) << "node " << n;
+      }
+    }
+    ++tested;
+  }
+  EXPECT_GT(tested, 100u);
+}
+
+TEST(Nodes, JumpsGivenByHandJoinWhatNothingElseJoins) {
+  Scene scene;  // Two islands, two metres apart.
+  scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
+  scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
+  const World world = bake(scene, 0.2);
+  EXPECT_EQ(make(world, scene).reach(0).size(), 2u);
+  NodeConfig config;
+  config.jumps = {{.from = {4, 0, 3}, .to = {10, 0.5, 3}, .avatar_class = 0, .both_ways = true}};
+  const Nodes joined = make(world, scene, config);
+  EXPECT_EQ(joined.reach(0).size(), 1u);
+  EXPECT_EQ(joined.reach(1).size(), 2u);  // For its class only.
+  config.jumps[0].both_ways = false;
+  const Nodes one_way = make(world, scene, config);
+  EXPECT_EQ(one_way.reach(0).size(), 2u);  // Who jumps cannot come back.
+  size_t jumps = 0, back = 0;
+  for (uint32_t n = 0; n < one_way.node_count(); ++n) {
+    for (const NodeArc& arc : one_way.arcs(n)) {
+      if (arc.kind != LinkKind::kJump) continue;
+      const Vec3d from = one_way.point(n, arc.from_s, arc.from_t);
+      const Vec3d to = one_way.point(arc.to, arc.to_s, arc.to_t);
+      EXPECT_NEAR(from.x, 4, 0.21);
+      EXPECT_NEAR(to.x, 10, 0.21);
+      ++jumps;
+      back += to.x < from.x ? 1 : 0;
+    }
+  }
+  EXPECT_GT(jumps, 0u);
+  EXPECT_EQ(back, 0u);
+  config.jumps[0].to = {7, 0, 3};
+  Context context;
+  EXPECT_EQ(Nodes::make(world, scene, config, context).error().message,
+            "nodes: jump 1: adult has no place within a metre of where it ends");
+}
+
+TEST(Nodes, AreWrittenAndOpened) {
+  const test::ScratchFolder folder;
+  const std::string path = folder.path() + "/hills.throng";
+  const Scene scene = builtin({.name = "landscape", .size = 160});
+  Context context;
+  ASSERT_TRUE(
+      bake_world_to(path, scene, {.cell = 0.5, .zone = 64, .classes = many_classes()}, context));
+  EXPECT_EQ(Nodes::open(path).error().message,
+            path + ": this world has no nodes; bake it again with --nodes");
+  const Nodes made = make(*World::open(path), scene, {.size = 2});
+  ASSERT_TRUE(made.write(path));
+  ASSERT_TRUE(made.write(path));  // In place of those that are there.
+  const auto opened = Nodes::open(path);
+  ASSERT_TRUE(opened) << opened.error().message;
+  ASSERT_TRUE(opened->check_all());
+  EXPECT_EQ(opened->node_count(), made.node_count());
+  EXPECT_EQ(opened->summary().arcs, made.summary().arcs);
+  for (int32_t c = 0; c < 7; ++c) {
+    const auto a = made.reach(c), b = opened->reach(c);
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].area, b[i].area);
+    EXPECT_EQ(made.random_place(c, 5, 6).feet, opened->random_place(c, 5, 6).feet);
+  }
+  // Another world in the folder: its nodes went with it; nodes of this one are refused there.
+  ASSERT_TRUE(bake_world_to(path, scene, {.cell = 0.5, .zone = 32}, context));
+  EXPECT_FALSE(Nodes::open(path));
+  EXPECT_EQ(made.write(path).error().message, path + ": holds another world than these nodes' own");
+}
+
+TEST(Nodes, BadInputIsRefusedAndNamed) {
+  const Scene scene = builtin({.name = "cube"});
+  const World world = bake(scene, 0.25);
+  Context context;
+  const auto message = [&](const Result<Nodes>& nodes) {
+    EXPECT_FALSE(nodes);
+    return nodes ? std::string() : nodes.error().message;
+  };
+  EXPECT_EQ(message(Nodes::make(world, scene, {.size = 0}, context)),
+            "nodes: the size must be 0.05 to 100 m");
+  EXPECT_EQ(message(Nodes::make(world, scene, {.workers = -1}, context)),
+            "nodes: workers must be 0 or more");
+  EXPECT_EQ(message(Nodes::make({}, scene, {}, context)), "nodes: the world is empty");
+  EXPECT_NE(message(Nodes::make(world, builtin({.name = "bridge"}), {}, context))
+                .find("not baked from this scene"),
+            std::string::npos);
+  context.cancel = true;
+  EXPECT_EQ(message(Nodes::make(world, scene, {}, context)), "nodes: cancelled");
+}
+
+}  // namespace
+}  // namespace throng

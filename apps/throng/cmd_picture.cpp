@@ -4,11 +4,14 @@
 
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "avatars_csv.h"
 #include "command.h"
+#include "throng/nodes.h"
 #include "throng/picture.h"
 
 // throng picture: a baked world, and a crowd in it, on one sheet.
@@ -21,8 +24,51 @@ struct PictureOptions {
   std::string avatars;
   std::string avatar_class;
   std::string storey = "all";
+  std::string path;
+  std::vector<double> area;
+  bool nodes = false;
   PictureConfig config;
+  NodePictureConfig node_config;
 };
+
+// The points of what `throng path --json` printed.
+Result<std::vector<Vec3d>> read_path(const std::string& name) {
+  std::ifstream file(name);
+  const auto bad = [&](const char* what) { return Error{Errc::kBadFile, name + ": " + what}; };
+  if (!file) return bad("cannot be read");
+  const Json json = Json::parse(file, nullptr, false);
+  if (!json.is_object() || !json.contains("points") || !json["points"].is_array()) {
+    return bad("has no points; write it with `throng path ... --json`");
+  }
+  std::vector<Vec3d> points;
+  for (const Json& p : json["points"]) {
+    const bool sound =
+        p.is_array() && p.size() == 3 && p[0].is_number() && p[1].is_number() && p[2].is_number();
+    if (!sound) return bad("a point is not three numbers");
+    points.push_back({p[0].get<double>(), p[1].get<double>(), p[2].get<double>()});
+  }
+  return points;
+}
+
+Result<Image> draw_all_nodes(const World& world, PictureOptions& options) {
+  const Result<Nodes> nodes = Nodes::open(options.world);
+  if (!nodes) return nodes.error();
+  NodePictureConfig& config = options.node_config;
+  config.world = world;
+  config.width = options.config.width;
+  config.storey = options.config.storey;
+  config.title = options.config.title;
+  if (!options.area.empty()) {
+    config.area.add({options.area[0], 0, options.area[1]});
+    config.area.add({options.area[2], 0, options.area[3]});
+  }
+  if (!options.path.empty()) {
+    Result<std::vector<Vec3d>> read = read_path(options.path);
+    if (!read) return read.error();
+    config.path = *std::move(read);
+  }
+  return draw_nodes(*nodes, config);
+}
 
 int picture(Session& session, PictureOptions& options) {
   const Result<World> world = World::open(options.world);
@@ -53,7 +99,12 @@ int picture(Session& session, PictureOptions& options) {
     options.config.title = (path.has_filename() ? path : path.parent_path()).stem().string();
   }
   show_progress(session, "draw", 0, 0);
-  const Result<Image> image = draw_world(*world, avatars, options.config);
+  if (!options.nodes &&
+      (options.node_config.links || !options.area.empty() || !options.path.empty())) {
+    return fail({Errc::kBadConfig, "--links, --area and --path draw nodes: add --nodes"});
+  }
+  const Result<Image> image =
+      options.nodes ? draw_all_nodes(*world, options) : draw_world(*world, avatars, options.config);
   if (!image) return fail(image.error());
   if (auto done = write_png(*image, options.output); !done) return fail(done.error());
   print_result(session,
@@ -85,6 +136,16 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_option("--avatars", options->avatars, "Trajectories; the last step is drawn")
       ->type_name("FILE.csv");
   command->add_option("--class", options->avatar_class, "Whose floors to show")->type_name("NAME");
+  command->add_flag("--nodes", options->nodes, "Draw the world's nodes, by inclination");
+  command->add_flag("--links", options->node_config.links, "With --nodes: also their links");
+  command->add_option("--area", options->area, "With --nodes: only this part of the ground [m]")
+      ->expected(4)
+      ->delimiter(',')
+      ->type_name("X0,Z0,X1,Z1");
+  command
+      ->add_option("--path", options->path,
+                   "With --nodes: a way, as `throng path --json` prints it")
+      ->type_name("FILE.json");
   command->add_option("--width", options->config.width, "Width of the picture [px]")
       ->capture_default_str();
   command->add_option("--title", options->config.title, "Title; the folder's name if not given");

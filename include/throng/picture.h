@@ -9,6 +9,7 @@
 
 #include "throng/base.h"
 #include "throng/math.h"
+#include "throng/nodes.h"
 #include "throng/result.h"
 #include "throng/slices.h"
 #include "throng/world.h"
@@ -29,6 +30,16 @@ struct PictureConfig {
   std::string title;
 };
 
+struct NodePictureConfig {
+  int32_t width = 1600;  ///< Of the whole picture. [px, 200 to 16000]
+  bool links = false;
+  int32_t storey = -1;      ///< Only level tiles of this storey, or all nodes (-1).
+  World world;              ///< Tells storeys apart; needed only for `storey`.
+  Box3d area;               ///< Only nodes whose middle lies in its x and z; empty: all. [m]
+  std::vector<Vec3d> path;  ///< A way to draw over them.
+  std::string title;
+};
+
 /// 8-bit RGB, rows from the top.
 struct Image {
   int32_t width = 0;
@@ -41,6 +52,10 @@ struct Image {
 [[nodiscard]] THRONG_API Result<Image> draw_world(const World& world,
                                                   std::span<const PictureAvatar> avatars,
                                                   const PictureConfig& config);
+
+/// Nodes seen at a slant: green flat, yellow steep, red overhanging; links in the same colours.
+[[nodiscard]] THRONG_API Result<Image> draw_nodes(const Nodes& nodes,
+                                                  const NodePictureConfig& config);
 
 /// One slice as [ML06] figures 9 and 10 draw it: darker is higher.
 [[nodiscard]] THRONG_API Image draw_slice(const SliceSet& slices, size_t index);

@@ -1,0 +1,373 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "render/canvas.h"
+#include "render/text.h"
+#include "throng/nodes.h"
+#include "throng/picture.h"
+
+// Nodes as surfaces seen at a slant from the south, as in the last figures of [PACS00]: every
+// sub-patch in the colour of its inclination, smaller nodes over the larger ones that hold them,
+// links and a path above. Everything goes through one depth buffer, three times too large in both
+// directions and averaged at the end.
+namespace throng {
+namespace {
+
+constexpr int32_t kSamples = 3;
+constexpr double kTurn = 0.45;  // of the view around the vertical [radians]
+constexpr double kTilt = 0.82;  // of the view above the horizon [radians]
+constexpr double kHeader = 64, kFooter = 58, kMargin = 24;  // [px]
+
+struct InclinationColour {
+  double degrees;
+  Rgb colour;
+};
+// Green flat, yellow steep, red overhanging, as the source has it; light enough for lines above.
+constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
+                                                  {30, {142, 194, 84}},
+                                                  {45, {206, 210, 78}},
+                                                  {90, {246, 190, 52}},
+                                                  {91, {232, 106, 66}},
+                                                  {180, {176, 34, 46}}}};
+constexpr Rgb kWalkLink{24, 92, 52}, kSteepLink{150, 104, 8}, kOverLink{140, 20, 32};
+constexpr Rgb kLeapLink{20, 20, 26}, kUnderlay{226, 228, 232}, kPath{20, 60, 220};
+
+Rgb inclination_colour(double degrees) {
+  for (size_t i = 1; i < kRamp.size(); ++i) {
+    if (degrees > kRamp[i].degrees) continue;
+    const InclinationColour &a = kRamp[i - 1], &b = kRamp[i];
+    return mix(a.colour, b.colour, (degrees - a.degrees) / (b.degrees - a.degrees));
+  }
+  return kRamp.back().colour;
+}
+
+struct Seen {
+  double x = 0, y = 0, depth = 0;  // [m], y down; smaller depth is nearer
+};
+
+class View {
+ public:
+  View() : cos_turn_(std::cos(kTurn)), sin_turn_(std::sin(kTurn)) {}
+  [[nodiscard]] Seen operator()(Vec3d p) const {
+    const double right = p.x * cos_turn_ - p.z * sin_turn_;
+    const double away = -p.x * sin_turn_ - p.z * cos_turn_;
+    return {right, -(away * std::sin(kTilt) + p.y * std::cos(kTilt)),
+            away * std::cos(kTilt) - p.y * std::sin(kTilt)};
+  }
+
+ private:
+  double cos_turn_, sin_turn_;
+};
+
+// A picture with depth.
+class DepthCanvas {
+ public:
+  DepthCanvas(int32_t width, int32_t height)
+      : canvas_(width, height, kPaper),
+        depth_(static_cast<size_t>(width) * static_cast<size_t>(height),
+               std::numeric_limits<float>::infinity()) {}
+
+  // Corners in pixels and metres of depth.
+  void triangle(const std::array<Seen, 3>& c, Rgb colour) {
+    const double area =
+        (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
+    if (!(std::fabs(area) > 1e-9)) return;
+    const auto clamp = [](double v, int32_t limit) {
+      return static_cast<int32_t>(std::clamp(v, 0.0, static_cast<double>(limit)));
+    };
+    const int32_t x0 = clamp(std::floor(std::min({c[0].x, c[1].x, c[2].x})), canvas_.width());
+    const int32_t x1 = clamp(std::ceil(std::max({c[0].x, c[1].x, c[2].x})), canvas_.width());
+    const int32_t y0 = clamp(std::floor(std::min({c[0].y, c[1].y, c[2].y})), canvas_.height());
+    const int32_t y1 = clamp(std::ceil(std::max({c[0].y, c[1].y, c[2].y})), canvas_.height());
+    for (int32_t y = y0; y < y1; ++y) {
+      for (int32_t x = x0; x < x1; ++x) {
+        const double px = x + 0.5, py = y + 0.5;
+        const auto weight = [&](const Seen& a, const Seen& b) {
+          return ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;
+        };
+        const double w0 = weight(c[1], c[2]), w1 = weight(c[2], c[0]), w2 = weight(c[0], c[1]);
+        if (w0 < -1e-9 || w1 < -1e-9 || w2 < -1e-9) continue;
+        put(x, y, w0 * c[0].depth + w1 * c[1].depth + w2 * c[2].depth, colour);
+      }
+    }
+  }
+
+  void line(Seen a, Seen b, double thick, Rgb colour) {
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    const int32_t steps = static_cast<int32_t>(std::min(20000.0, std::ceil(length / 0.7))) + 1;
+    const auto half = static_cast<int32_t>(std::max(0.0, thick / 2 - 0.25));
+    for (int32_t k = 0; k <= steps; ++k) {
+      const double t = static_cast<double>(k) / steps;
+      const auto x = static_cast<int32_t>(std::floor(a.x + (b.x - a.x) * t));
+      const auto y = static_cast<int32_t>(std::floor(a.y + (b.y - a.y) * t));
+      for (int32_t j = -half; j <= half; ++j) {
+        for (int32_t i = -half; i <= half; ++i) {
+          put(x + i, y + j, a.depth + (b.depth - a.depth) * t, colour);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] const Canvas& canvas() const { return canvas_; }
+
+ private:
+  void put(int32_t x, int32_t y, double depth, Rgb colour) {
+    if (x < 0 || y < 0 || x >= canvas_.width() || y >= canvas_.height()) return;
+    float& there = depth_[static_cast<size_t>(y) * static_cast<size_t>(canvas_.width()) +
+                          static_cast<size_t>(x)];
+    if (static_cast<float>(depth) >= there) return;
+    there = static_cast<float>(depth);
+    canvas_.set(x, y, colour);
+  }
+
+  Canvas canvas_;
+  std::vector<float> depth_;
+};
+
+class NodePicture {
+ public:
+  NodePicture(const Nodes& nodes, const NodePictureConfig& config)
+      : nodes_(nodes), config_(config), summary_(nodes.summary()) {
+    if (config.storey >= 0) storeys_ = config.world.storeys();
+  }
+
+  Result<Image> draw() {
+    choose();
+    if (shown_.empty()) {
+      return Error{Errc::kNotFound, "picture: no node lies in the area and storey asked for"};
+    }
+    fit();
+    DepthCanvas large(static_cast<int32_t>(width_) * kSamples,
+                      static_cast<int32_t>(height_) * kSamples);
+    for (const auto& [patch, node] : first_of_patch_) underlay(large, node);
+    for (const uint32_t n : shown_) surface(large, n);
+    if (config_.links) {
+      for (const uint32_t n : shown_) links(large, n);
+    }
+    path(large);
+    Canvas sheet(config_.width, static_cast<int32_t>(kHeader + height_ + kFooter), kPaper);
+    sheet.draw_reduced(large.canvas(), kSamples, static_cast<int32_t>(kMargin),
+                       static_cast<int32_t>(kHeader));
+    letter(sheet);
+    return std::move(sheet).take();
+  }
+
+ private:
+  // Nodes to draw, in order; the widest view of them.
+  void choose() {
+    const bool whole = config_.area.max.x <= config_.area.min.x;
+    for (uint32_t n = 0; n < nodes_.node_count(); ++n) {
+      const NodeInfo info = nodes_.node(n);
+      if (!storeys_.empty() &&
+          (info.kind != PatchKind::kLevelTile || storeys_[info.source] != config_.storey)) {
+        continue;
+      }
+      const auto corners = nodes_.corners(n);
+      Box3d box;
+      for (const Vec3d& c : corners) box.add(c);
+      const Vec3d middle = (box.min + box.max) * 0.5;
+      if (!whole && !(middle.x >= config_.area.min.x && middle.x <= config_.area.max.x &&
+                      middle.z >= config_.area.min.z && middle.z <= config_.area.max.z)) {
+        continue;
+      }
+      shown_.push_back(n);
+      for (const Vec3d& c : corners) {
+        const Seen s = view_(c);
+        low_x_ = std::min(low_x_, s.x);
+        high_x_ = std::max(high_x_, s.x);
+        low_y_ = std::min(low_y_, s.y);
+        high_y_ = std::max(high_y_, s.y);
+      }
+      terminal_ += info.terminal ? 1 : 0;
+      if (whole && info.kind == PatchKind::kBezier) first_of_patch_.try_emplace(info.source, n);
+    }
+  }
+
+  void fit() {
+    width_ = config_.width - 2 * kMargin;
+    const double across = std::max(high_x_ - low_x_, 1e-3), down = std::max(high_y_ - low_y_, 1e-3);
+    scale_ = std::min(width_ / across, 1.1 * width_ / down);
+    height_ = std::ceil(down * scale_) + 8;
+  }
+
+  [[nodiscard]] Seen at(Vec3d p, double nearer = 0) const {
+    const Seen s = view_(p);
+    const double k = scale_ * kSamples;
+    const double left = (width_ - (high_x_ - low_x_) * scale_) / 2 * kSamples;
+    return {(s.x - low_x_) * k + left, (s.y - low_y_) * k + 4 * kSamples, s.depth - nearer};
+  }
+
+  // Calls quad(corners, normal) for pieces of a block of a patch, small enough to look curved.
+  template <class Quad>
+  void pieces(uint32_t node, double s0, double t0, double side, int32_t parts, Quad quad) const {
+    const double step = side / parts;
+    for (int32_t j = 0; j < parts; ++j) {
+      for (int32_t i = 0; i < parts; ++i) {
+        const double s = s0 + i * step, t = t0 + j * step;
+        const std::array<Vec3d, 4> c = {nodes_.point(node, s, t), nodes_.point(node, s, t + step),
+                                        nodes_.point(node, s + step, t + step),
+                                        nodes_.point(node, s + step, t)};
+        quad(c, cross(c[2] - c[0], c[3] - c[1]));
+      }
+    }
+  }
+
+  void fill(DepthCanvas& canvas, const std::array<Vec3d, 4>& c, Vec3d normal, Rgb colour,
+            double nearer) const {
+    // Light from the upper left, so that forms are seen where the colour is one.
+    const double size = length(normal);
+    const Vec3d light{-0.35, 0.85, 0.39};
+    const double lit = size > 0 ? std::fabs(dot(normal, light)) / size : 1;
+    const Rgb shaded = shade(colour, 0.72 + 0.30 * lit);
+    const std::array<Seen, 4> p = {at(c[0], nearer), at(c[1], nearer), at(c[2], nearer),
+                                   at(c[3], nearer)};
+    canvas.triangle({p[0], p[1], p[2]}, shaded);
+    canvas.triangle({p[0], p[2], p[3]}, shaded);
+  }
+
+  void underlay(DepthCanvas& canvas, uint32_t node) const {
+    pieces(node, 0, 0, 1, 16, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
+      fill(canvas, c, normal, kUnderlay, -0.15);
+    });
+  }
+
+  void surface(DepthCanvas& canvas, uint32_t node) const {
+    const NodeInfo info = nodes_.node(node);
+    // The far corners of a tile's cells lie in the next cells, which may have no floor.
+    const double whole = 1.0 / (1 << info.level);
+    const double side = whole - (info.kind == PatchKind::kLevelTile ? 1e-5 : 0);
+    const double s0 = info.s * whole, t0 = info.t * whole;
+    const Rgb colour = inclination_colour(summary_.bins.inclination_of(info.inclination));
+    const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.level) : 1;
+    const double nearer = 0.01 * info.level;
+    pieces(node, s0, t0, side, parts, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
+      fill(canvas, c, normal, colour, nearer);
+    });
+    // The rim, unless it would be all that is seen.
+    const auto corners = nodes_.corners(node);
+    const double pixels = length(corners[2] - corners[0]) * scale_;
+    if (pixels < 5) return;
+    const Rgb rim = shade(colour, 0.62);
+    const auto edge = [&](double sa, double ta, double sb, double tb) {
+      const int32_t n = 2 * parts;
+      for (int32_t k = 0; k < n; ++k) {
+        const double a = static_cast<double>(k) / n, b = static_cast<double>(k + 1) / n;
+        canvas.line(at(nodes_.point(node, sa + (sb - sa) * a, ta + (tb - ta) * a), nearer + 0.05),
+                    at(nodes_.point(node, sa + (sb - sa) * b, ta + (tb - ta) * b), nearer + 0.05),
+                    1, rim);
+      }
+    };
+    edge(s0, t0, s0 + side, t0);
+    edge(s0, t0, s0, t0 + side);
+    edge(s0 + side, t0, s0 + side, t0 + side);
+    edge(s0, t0 + side, s0 + side, t0 + side);
+  }
+
+  [[nodiscard]] Vec3d middle(const NodeInfo& info, uint32_t node) const {
+    const double side = 1.0 / (1 << info.level);
+    return nodes_.point(node, (info.s + 0.5) * side, (info.t + 0.5) * side);
+  }
+
+  void links(DepthCanvas& canvas, uint32_t node) const {
+    const NodeInfo info = nodes_.node(node);
+    for (const NodeArc& arc : nodes_.arcs(node)) {
+      if (arc.to < node) continue;
+      const NodeInfo other = nodes_.node(arc.to);
+      if (!storeys_.empty() && storeys_[other.source] != config_.storey) continue;
+      // Large nodes that hold smaller ones would only add lines across them.
+      if (!arc.leaps && (!info.terminal || !other.terminal)) continue;
+      const double steepest =
+          summary_.bins.inclination_of(std::max(info.inclination, other.inclination));
+      Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
+      if (arc.leaps) colour = kLeapLink;
+      const Vec3d a = arc.leaps ? nodes_.point(node, arc.from_s, arc.from_t) : middle(info, node);
+      const Vec3d b = arc.leaps ? nodes_.point(arc.to, arc.to_s, arc.to_t) : middle(other, arc.to);
+      canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
+    }
+  }
+
+  void path(DepthCanvas& canvas) const {
+    for (size_t i = 1; i < config_.path.size(); ++i) {
+      canvas.line(at(config_.path[i - 1], 1.2), at(config_.path[i], 1.2), 9, kPaper);
+    }
+    for (size_t i = 1; i < config_.path.size(); ++i) {
+      canvas.line(at(config_.path[i - 1], 1.4), at(config_.path[i], 1.4), 5, kPath);
+    }
+  }
+
+  void letter(Canvas& sheet) const {
+    draw_text(sheet, {kMargin, 30}, config_.title, {.size = 15, .bold = true});
+    const std::string line =
+        fmt::format("{} nodes ({} of them terminal), {} in all; {} links", shown_.size(), terminal_,
+                    summary_.nodes, summary_.arcs / 2);
+    draw_text(sheet, {kMargin, 52}, line, {.size = 9, .colour = kFaintInk});
+    const double y = kHeader + height_ + 20;
+    double x = kMargin;
+    double last = 0;
+    std::vector<double> edges = summary_.bins.inclination;
+    if (edges.empty() || edges.back() < 180) edges.push_back(180);
+    for (const double edge : edges) {
+      sheet.fill({x, y, 22, 12}, inclination_colour(edge));
+      const std::string label = fmt::format("{:.0f}-{:.0f}", last, edge);
+      draw_text(sheet, {x + 27, y + 10}, label, {.size = 8});
+      x += 38 + text_width(label, {.size = 8});
+      last = edge;
+    }
+    draw_text(sheet, {x, y + 10}, "degrees", {.size = 8});
+    x += 70;
+    if (config_.links) {
+      const auto key = [&](Rgb colour, const char* label) {
+        sheet.line({x, y + 6}, {x + 20, y + 6}, 2, colour);
+        draw_text(sheet, {x + 26, y + 10}, label, {.size = 8});
+        x += 40 + text_width(label, {.size = 8});
+      };
+      key(kWalkLink, "link");
+      key(kSteepLink, "steep");
+      key(kOverLink, "overhanging");
+      key(kLeapLink, "over a hole");
+    }
+    // A length of 1, 2 or 5 times a power of ten, along the slanted x axis.
+    double metres = 1;
+    for (const double step : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0}) {
+      if (step * scale_ < 120) metres = step;
+    }
+    const double right = config_.width - kMargin;
+    sheet.line({right - metres * scale_, y + 6}, {right, y + 6}, 2, kInk);
+    draw_text(sheet, {right - metres * scale_ - 8, y + 10}, fmt::format("{:g} m", metres),
+              {.size = 8, .align = Align::kRight});
+  }
+
+  const Nodes& nodes_;
+  const NodePictureConfig& config_;
+  NodeSummary summary_;
+  std::vector<int32_t> storeys_;
+  View view_;
+  std::vector<uint32_t> shown_;
+  std::map<uint32_t, uint32_t> first_of_patch_;  // a node of each Bezier patch
+  uint64_t terminal_ = 0;
+  double low_x_ = 1e30, high_x_ = -1e30, low_y_ = 1e30, high_y_ = -1e30;
+  double scale_ = 1, width_ = 0, height_ = 0;
+};
+
+}  // namespace
+
+Result<Image> draw_nodes(const Nodes& nodes, const NodePictureConfig& config) {
+  if (config.width < 200 || config.width > 16000) {
+    return Error{Errc::kBadConfig, "picture: the width must be 200 to 16000 pixels"};
+  }
+  if (nodes.data() == nullptr || nodes.node_count() == 0) {
+    return Error{Errc::kNotFound, "picture: this world has no nodes to draw"};
+  }
+  if (auto ok = nodes.check_all(); !ok) return ok.error();
+  return NodePicture(nodes, config).draw();
+}
+
+}  // namespace throng

@@ -57,7 +57,7 @@ int print_nodes(Session& session, const std::string& path) {
 void add_nodes(CLI::App& parser, Session& session) {
   CLI::App* command =
       add_command(parser, session, "nodes", "What the nodes of a world let one reach",
-                  "throng bake builtin:landscape -o hills.throng --cell 0.5 --nodes\n"
+                  "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
                   "throng nodes hills.throng");
   const auto path = std::make_shared<std::string>();
   command->add_option("world", *path, "World folder with nodes")

@@ -235,6 +235,7 @@ void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
   const size_t count = ways.gates.size();
   length.assign(count, kNever);
   next.assign(count, kStraight);
+  if (count == 0) return;
   sight.keep_to(ways.first_rect, ways.last_rect);
   const CellPoint here = in_cells(from.at);
   sight.look(mesh, from.rect, here, kNoRect, {});

@@ -16,19 +16,16 @@ constexpr const char* kZoneIdentifier = "THAZ";
 constexpr const char* kManifestIdentifier = "THAM";
 constexpr int32_t kMostLayers = 1 << 21;
 
+constexpr const char* kRemedy = "bake the world again";
+
 Error bad_file(const std::string& name, const std::string& what) {
-  return {Errc::kBadFile, name + ": " + what + "; bake the world again"};
+  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
 }
 
 uint64_t sum_of(uint64_t input, const AirTree& tree) {
   const uint64_t head[] = {input, static_cast<uint64_t>(tree.side),
                            static_cast<uint64_t>(tree.base), tree.roots};
   return hash_span(tree.leaves, hash_span(tree.nodes, hash_span(std::span<const uint64_t>(head))));
-}
-
-template <class T>
-bool is_aligned(const flatbuffers::Vector<T>& words) {
-  return words.size() == 0 || reinterpret_cast<uintptr_t>(words.Data()) % 8 == 0;
 }
 
 }  // namespace
@@ -45,30 +42,13 @@ flatbuffers::DetachedBuffer air_zone_bytes(int32_t x, int32_t z, uint64_t input,
   return builder.Release();
 }
 
-Result<std::unique_ptr<AirZone>> AirZone::from_bytes(flatbuffers::DetachedBuffer bytes,
-                                                     const std::string& name) {
-  auto zone = std::make_unique<AirZone>();
-  zone->owned_ = std::move(bytes);
-  zone->bytes_ = {zone->owned_.data(), zone->owned_.size()};
-  if (auto attached = zone->attach(name); !attached) return attached.error();
-  return zone;
-}
-
-Result<std::unique_ptr<AirZone>> AirZone::from_file(FileMap map, const std::string& name) {
-  auto zone = std::make_unique<AirZone>();
-  zone->map_ = std::move(map);
-  zone->bytes_ = zone->map_.bytes();
-  if (auto attached = zone->attach(name); !attached) return attached.error();
-  return zone;
-}
-
 Result<void> AirZone::attach(const std::string& name) {
-  flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
-  if (bytes_.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes_.data(), kZoneIdentifier) ||
+  flatbuffers::Verifier verifier(bytes().data(), bytes().size());
+  if (bytes().size() < 8 || !flatbuffers::BufferHasIdentifier(bytes().data(), kZoneIdentifier) ||
       !verifier.VerifyBuffer<format::AirZone>(kZoneIdentifier)) {
     return bad_file(name, "not an air file, or truncated");
   }
-  root_ = flatbuffers::GetRoot<format::AirZone>(bytes_.data());
+  root_ = flatbuffers::GetRoot<format::AirZone>(bytes().data());
   if (root_->version() != kAirVersion) {
     return bad_file(name, "air version " + std::to_string(root_->version()) +
                               ", this program reads " + std::to_string(kAirVersion));
@@ -96,17 +76,10 @@ AirData::ZoneAir AirData::zone(int32_t x, int32_t z) const {
   std::call_once(entry.once, [&] {
     if (entry.zone || path.empty()) return;
     const std::string name = path + "/" + air_file_name(entry.entry.x(), entry.entry.z());
-    auto map = FileMap::open(name);
+    auto map =
+        map_listed(name, entry.entry.bytes(), entry.entry.hash(), "the air manifest's", kRemedy);
     if (!map) {
       entry.error = map.error().message;
-      return;
-    }
-    if (map->bytes().size() != entry.entry.bytes() ||
-        hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
-      entry.error = bad_file(name,
-                             "its checksum is not the air manifest's (truncated, damaged or "
-                             "of another bake)")
-                        .message;
       return;
     }
     auto zone = AirZone::from_file(std::move(*map), name);

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "core/file_map.h"
 #include "throng/avatar_class.h"
 #include "throng/result.h"
 #include "world/air_generated.h"
 #include "world/air_tree.h"
+#include "world/zone_file.h"
 
 /// The air of a world: which cells over and between its zones' matter are free.
 namespace throng {
@@ -25,23 +25,15 @@ struct WorldData;
 inline constexpr uint32_t kAirVersion = 1;
 
 /// One air file, after the verifier and the checks of its tree.
-class AirZone {
+class AirZone : public ZoneFile<AirZone> {
  public:
-  /// Fails with kBadFile and `name` if the bytes are no sound air file of this version.
-  static Result<std::unique_ptr<AirZone>> from_bytes(flatbuffers::DetachedBuffer bytes,
-                                                     const std::string& name);
-  static Result<std::unique_ptr<AirZone>> from_file(FileMap map, const std::string& name);
-
-  [[nodiscard]] std::span<const uint8_t> bytes() const { return bytes_; }
   [[nodiscard]] const format::AirZone& root() const { return *root_; }
   [[nodiscard]] const AirTree& tree() const { return tree_; }
 
  private:
+  friend class ZoneFile<AirZone>;
   Result<void> attach(const std::string& name);
 
-  flatbuffers::DetachedBuffer owned_;
-  FileMap map_;
-  std::span<const uint8_t> bytes_;
   const format::AirZone* root_ = nullptr;
   AirTree tree_;
 };

@@ -15,13 +15,10 @@ constexpr const char* kZoneIdentifier = "THNZ";
 constexpr const char* kIndexIdentifier = "THNI";
 constexpr double kFarthest = 1e9;  // [m]
 
-Error bad_nodes(const std::string& name, const std::string& what) {
-  return {Errc::kBadFile, name + ": " + what + "; bake the world again with --nodes"};
-}
+constexpr const char* kRemedy = "bake the world again with --nodes";
 
-template <class T>
-bool starts_aligned(const flatbuffers::Vector<T>& values) {
-  return values.size() == 0 || reinterpret_cast<uintptr_t>(values.Data()) % 8 == 0;
+Error bad_nodes(const std::string& name, const std::string& what) {
+  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
 }
 
 template <class T>
@@ -41,36 +38,19 @@ bool ascending(const flatbuffers::Vector<double>& edges, double low, double high
 
 }  // namespace
 
-Result<std::unique_ptr<NodeZone>> NodeZone::from_bytes(flatbuffers::DetachedBuffer bytes,
-                                                       const std::string& name) {
-  auto zone = std::make_unique<NodeZone>();
-  zone->owned_ = std::move(bytes);
-  zone->bytes_ = {zone->owned_.data(), zone->owned_.size()};
-  if (auto attached = zone->attach(name); !attached) return attached.error();
-  return zone;
-}
-
-Result<std::unique_ptr<NodeZone>> NodeZone::from_file(FileMap map, const std::string& name) {
-  auto zone = std::make_unique<NodeZone>();
-  zone->map_ = std::move(map);
-  zone->bytes_ = zone->map_.bytes();
-  if (auto attached = zone->attach(name); !attached) return attached.error();
-  return zone;
-}
-
 // As for zones: what is checked here need not be checked by any look-up.
 Result<void> NodeZone::attach(const std::string& name) {
-  flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
-  if (bytes_.size() < 8 || !verifier.VerifyBuffer<format::NodeZone>(kZoneIdentifier)) {
+  flatbuffers::Verifier verifier(bytes().data(), bytes().size());
+  if (bytes().size() < 8 || !verifier.VerifyBuffer<format::NodeZone>(kZoneIdentifier)) {
     return bad_nodes(name, "not a file of nodes, or truncated");
   }
-  root_ = flatbuffers::GetRoot<format::NodeZone>(bytes_.data());
+  root_ = flatbuffers::GetRoot<format::NodeZone>(bytes().data());
   if (root_->version() != kNodeVersion) {
     return bad_nodes(name, "node version " + std::to_string(root_->version()) +
                                ", this program reads " + std::to_string(kNodeVersion));
   }
   if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() || !root_->leaps() ||
-      !root_->points() || !starts_aligned(*root_->points())) {
+      !root_->points() || !is_aligned(*root_->points())) {
     return bad_nodes(name, "an array is missing");
   }
   patches_ = structs(*root_->patches());
@@ -164,17 +144,9 @@ const NodeZone* NodeData::zone(size_t slot) const {
   std::call_once(entry.once, [&] {
     if (entry.zone || path.empty()) return;
     const std::string name = path + "/" + node_file_name(entry.entry.x(), entry.entry.z());
-    auto map = FileMap::open(name);
+    auto map = map_listed(name, entry.entry.bytes(), entry.entry.hash(), "the index's", kRemedy);
     if (!map) {
       entry.error = map.error().message;
-      return;
-    }
-    if (map->bytes().size() != entry.entry.bytes() ||
-        hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
-      entry.error = bad_nodes(name,
-                              "its checksum is not the index's (truncated, damaged or of another "
-                              "bake)")
-                        .message;
       return;
     }
     auto zone = NodeZone::from_file(std::move(*map), name);
@@ -282,8 +254,8 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
                                ", this program reads " + std::to_string(kNodeVersion));
   }
   if (!root.inclination() || !root.height() || !root.width() || !root.zones() ||
-      !starts_aligned(*root.inclination()) || !starts_aligned(*root.height()) ||
-      !starts_aligned(*root.width()) || !starts_aligned(*root.zones()) ||
+      !is_aligned(*root.inclination()) || !is_aligned(*root.height()) ||
+      !is_aligned(*root.width()) || !is_aligned(*root.zones()) ||
       !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kFarthest) ||
       !ascending(*root.width(), 0, kFarthest) || !(root.size() > 0 && root.size() <= kFarthest)) {
     return bad_nodes(name, "its numbers make no sense");

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/file_map.h"
 #include "throng/nodes.h"
 #include "throng/result.h"
 #include "world/nodes_generated.h"
+#include "world/zone_file.h"
 
 /// Nodes in memory: zones mapped from files, or owned after they were made.
 namespace throng {
@@ -28,14 +28,8 @@ inline constexpr uint32_t kFarNode = uint32_t{1} << 31;
 inline constexpr uint8_t kDeepestPatch = 6;
 
 /// A zone's bytes after the verifier and the checks of its numbers.
-class NodeZone {
+class NodeZone : public ZoneFile<NodeZone> {
  public:
-  /// Fails with kBadFile and `name` if the bytes are not sound nodes of this version.
-  static Result<std::unique_ptr<NodeZone>> from_bytes(flatbuffers::DetachedBuffer bytes,
-                                                      const std::string& name);
-  static Result<std::unique_ptr<NodeZone>> from_file(FileMap map, const std::string& name);
-
-  [[nodiscard]] std::span<const uint8_t> bytes() const { return bytes_; }
   [[nodiscard]] int32_t x() const { return root_->x(); }
   [[nodiscard]] int32_t z() const { return root_->z(); }
   [[nodiscard]] std::span<const format::NodePatch> patches() const { return patches_; }
@@ -53,12 +47,10 @@ class NodeZone {
   }
 
  private:
+  friend class ZoneFile<NodeZone>;
   Result<void> attach(const std::string& name);
   [[nodiscard]] const char* fault() const;
 
-  flatbuffers::DetachedBuffer owned_;
-  FileMap map_;
-  std::span<const uint8_t> bytes_;
   const format::NodeZone* root_ = nullptr;
   std::span<const format::NodePatch> patches_;
   std::span<const format::Node> nodes_;

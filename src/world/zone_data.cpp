@@ -16,8 +16,10 @@ constexpr uint32_t kArea = 4096;
 constexpr int32_t kHighest = 1'050'000'000;  // [mm]: more than is baked, differences fit 32 bits
 constexpr int32_t kMostCells = 1 << 20;      // along a side
 
+constexpr const char* kRemedy = "bake the world again";
+
 Error bad_file(const std::string& name, const std::string& what) {
-  return {Errc::kBadFile, name + ": " + what + "; bake the world again"};
+  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
 }
 
 // Legal cells of a class on a level, or none if its sets do not lie within `words`.
@@ -35,40 +37,17 @@ std::optional<uint32_t> legal_cells(const format::Clearance& entry,
   return count_bits(&words[entry.offset()]);
 }
 
-// The verifier sees to the alignment of a vector's length, 4 bytes, but not of larger elements.
-template <class T>
-bool is_aligned(const flatbuffers::Vector<T>& words) {
-  return words.size() == 0 || reinterpret_cast<uintptr_t>(words.Data()) % 8 == 0;
-}
-
 }  // namespace
-
-Result<std::unique_ptr<Zone>> Zone::from_bytes(flatbuffers::DetachedBuffer bytes,
-                                               const std::string& name) {
-  auto zone = std::make_unique<Zone>();
-  zone->owned_ = std::move(bytes);
-  zone->bytes_ = {zone->owned_.data(), zone->owned_.size()};
-  if (auto attached = zone->attach(name); !attached) return attached.error();
-  return zone;
-}
-
-Result<std::unique_ptr<Zone>> Zone::from_file(FileMap map, const std::string& name) {
-  auto zone = std::make_unique<Zone>();
-  zone->map_ = std::move(map);
-  zone->bytes_ = zone->map_.bytes();
-  if (auto attached = zone->attach(name); !attached) return attached.error();
-  return zone;
-}
 
 // The verifier proves that every vector lies within the file; the rest proves that every offset in
 // the records lies within its vector and that counts are true, so that look-ups need no checks.
 Result<void> Zone::attach(const std::string& name) {
-  flatbuffers::Verifier verifier(bytes_.data(), bytes_.size());
-  if (bytes_.size() < 8 || !format::ZoneBufferHasIdentifier(bytes_.data()) ||
+  flatbuffers::Verifier verifier(bytes().data(), bytes().size());
+  if (bytes().size() < 8 || !format::ZoneBufferHasIdentifier(bytes().data()) ||
       !format::VerifyZoneBuffer(verifier)) {
     return bad_file(name, "not a zone file, or truncated");
   }
-  root_ = format::GetZone(bytes_.data());
+  root_ = format::GetZone(bytes().data());
   if (root_->version() != kZoneVersion) {
     return bad_file(name, "zone version " + std::to_string(root_->version()) +
                               ", this program reads " + std::to_string(kZoneVersion));
@@ -155,17 +134,9 @@ LevelView Zone::view(uint32_t index) const {
 void WorldData::open_zone(const Slot& entry) const {
   if (entry.zone || path.empty()) return;
   const std::string name = path + "/" + zone_file_name(entry.entry.x(), entry.entry.z());
-  auto map = FileMap::open(name);
+  auto map = map_listed(name, entry.entry.bytes(), entry.entry.hash(), "the manifest's", kRemedy);
   if (!map) {
     entry.error = map.error().message;
-    return;
-  }
-  if (map->bytes().size() != entry.entry.bytes() ||
-      hash_bytes(map->bytes().data(), map->bytes().size()) != entry.entry.hash()) {
-    entry.error = bad_file(name,
-                           "its checksum is not the manifest's (truncated, damaged or of "
-                           "another bake)")
-                      .message;
     return;
   }
   auto zone = Zone::from_file(std::move(*map), name);

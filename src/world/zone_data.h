@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "core/file_map.h"
 #include "throng/result.h"
 #include "throng/world.h"
 #include "world/level_view.h"
 #include "world/manifest_generated.h"
+#include "world/zone_file.h"
 #include "world/zone_generated.h"
 
 /// Zones in memory: mapped from files, or owned by a world that was baked in memory.
@@ -28,16 +28,8 @@ inline constexpr int32_t kMaxSlope =
 inline constexpr double kMaxHeight = 1'000'000;  // [m]: differences are whole mm in 32 bits
 
 /// A zone's bytes after the verifier and the checks of its offsets.
-class Zone {
+class Zone : public ZoneFile<Zone> {
  public:
-  /// Fails with kBadFile and `name` if the bytes are not a sound zone of this version.
-  static Result<std::unique_ptr<Zone>> from_bytes(flatbuffers::DetachedBuffer bytes,
-                                                  const std::string& name);
-  static Result<std::unique_ptr<Zone>> from_file(FileMap map, const std::string& name);
-
-  [[nodiscard]] std::span<const uint8_t> bytes() const { return bytes_; }
-  /// FileMap::give_back, if it is mapped.
-  void give_back() const { map_.give_back(); }
   [[nodiscard]] const format::Zone& root() const { return *root_; }
   [[nodiscard]] uint32_t level_count() const { return level_count_; }
   [[nodiscard]] const format::Level& level(uint32_t index) const { return levels_[index]; }
@@ -53,11 +45,9 @@ class Zone {
   [[nodiscard]] const uint64_t* words(uint32_t offset) const { return words_ + offset; }
 
  private:
+  friend class ZoneFile<Zone>;
   Result<void> attach(const std::string& name);
 
-  flatbuffers::DetachedBuffer owned_;
-  FileMap map_;
-  std::span<const uint8_t> bytes_;
   const format::Zone* root_ = nullptr;
   const uint32_t* tile_first_ = nullptr;
   const format::Level* levels_ = nullptr;

@@ -343,7 +343,12 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     const auto world = bake->world(*facts, report);
     if (!world) return world.error();
     // By this rank alone, on its own threads: the others have parted.
-    if (auto ok = bake->add_air(&*folder, **world, context, report); !ok) return ok.error();
+    if (auto ok = bake->add_air(&*folder, **world, context, report); !ok) {
+      if (ok.error().code != Errc::kCancelled) return ok.error();
+      ranks.abandon();
+      folder->leave();
+      return told_to_stop(ranks, path, "all zones' ground and some of their air are finished");
+    }
     if (auto ok = folder->finish(**world); !ok) return ok.error();
     report.seconds_total = seconds_since(start);
   }

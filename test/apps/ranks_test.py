@@ -54,15 +54,22 @@ def child_of_rank(parent, rank):
     return None
 
 
-def kill_a_rank(folder, rank, ranks):
-    """Bakes until some zones are done, kills one rank; the words that were said, and the zones in the journal."""
+def kill_a_rank(folder, rank, ranks, air_files=0, options=()):
+    """Bakes until some zones are done, or some air files, kills one rank; the words that were said, and the zones in
+    the journal. Rank 0 makes the air alone, and has made it before Open MPI tells it to stop: it is told here."""
     world = folder / "killed.throng"
-    journal = folder / "killed.throng.part" / "journal"
-    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *bake_words(world, options=["--threads", "1"])], env=ENVIRONMENT,
+    part = folder / "killed.throng.part"
+    journal = part / "journal"
+    words = bake_words(world, options=["--threads", "1", *options])
+    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=ENVIRONMENT,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while process.poll() is None:
-            if journal.exists() and journal.stat().st_size >= 5 * RECORD:
-                os.kill(child_of_rank(process.pid, rank), signal.SIGKILL)
+            if journal.exists() and journal.stat().st_size >= 5 * RECORD and \
+                    len(list(part.glob("*.tha"))) >= air_files:
+                killed, first = child_of_rank(process.pid, rank), child_of_rank(process.pid, 0)
+                os.kill(killed, signal.SIGKILL)
+                if air_files and rank != 0:
+                    os.kill(first, signal.SIGTERM)
                 break
             time.sleep(0.0005)
         out, err = process.communicate(timeout=60)
@@ -104,6 +111,32 @@ def test_death(folder, reference):
         assert content(world) == reference["content"], "other bytes than undisturbed"
         assert not (folder / "killed.throng.part").exists()
         shutil.rmtree(world)
+
+
+def test_air(folder):
+    """The air is made after the ground, by rank 0: the others wait for it, and may die."""
+    fly = ["--fly", "--air", "0.4"]
+    world = folder / "air.throng"
+    done = run(bake_words(world, options=fly))
+    assert done.returncode == 0, done.stderr
+    report, one = json.loads(done.stdout), content(world)
+    assert report["air_zones"] > 20, report
+    shutil.rmtree(world)
+    done = run([*MPIRUN, "-n", "2", *bake_words(world, options=fly)])
+    assert done.returncode == 0, done.stderr
+    assert content(world) == one, "other bytes of air than by one process"
+    shutil.rmtree(world)
+    for rank in (1, 0):
+        err, finished = kill_a_rank(folder, rank, 2, air_files=3, options=fly)
+        assert finished == report["zones_baked"], f"{finished} zones: the air was not yet due"
+        said = ours(err)
+        assert all("another rank has died" in line and "goes on from there" in line for line in said), err
+        assert rank == 0 or said, err
+        done = run(bake_words(folder / "killed.throng", options=fly))
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["zones_kept"] == finished, done.stdout
+        assert content(folder / "killed.throng") == one, "other bytes of air than undisturbed"
+        shutil.rmtree(folder / "killed.throng")
 
 
 def test_refusals(folder):
@@ -149,6 +182,7 @@ def main():
         reference = {"report": json.loads(done.stdout), "content": content(world)}
         test_bytes(folder, reference)
         test_death(folder, reference)
+        test_air(folder)
         test_refusals(folder)
         print("equal bytes by 1, 2 and 3 ranks, and after each of three deaths")
 

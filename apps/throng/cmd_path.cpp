@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "command.h"
 #include "throng/flight.h"
+#include "throng/live_ground.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -25,6 +27,14 @@ struct PathOptions {
   double reach = 1.0;
   int32_t threads = 0;
   bool fly = false;
+  std::vector<double> blocks;      // six numbers a box
+  std::vector<double> jumps;       // six numbers a jump
+  std::vector<double> area_costs;  // a kind and its cost
+  double slope_cost = 0;
+
+  [[nodiscard]] bool is_live() const {
+    return !blocks.empty() || !jumps.empty() || !area_costs.empty() || slope_cost > 0;
+  }
 };
 
 const char* word_for(PathEnd end) {
@@ -40,8 +50,6 @@ const char* word_for(PathEnd end) {
   }
   return "";
 }
-
-std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }
 
 // "WORLD: --from (1, 2, 3) " and what is wrong with that end.
 Error bad_end(const PathOptions& options, const Vec3d& position, const char* option,
@@ -86,32 +94,57 @@ Result<Place> place_of(const World& world, const PathOptions& options, int32_t a
   return place;
 }
 
-Json path_json(const PathOptions& options, const Path& path, const PathSummary& summary,
-               double seconds) {
+double plan_distance(const Vec3d& a, const Vec3d& b) { return std::hypot(a.x - b.x, a.z - b.z); }
+
+Json path_json(const PathOptions& options, const Path& path, const Place& to, double seconds) {
   Json points = Json::array();
-  for (const Place& p : path.points) points.push_back({p.position.x, p.position.y, p.position.z});
-  return {{"world", options.world},
-          {"class", options.avatar_class},
-          {"end", word_for(path.end)},
-          {"length", path.length},
-          {"points", points},
-          {"nodes", path.nodes},
-          {"seconds", seconds},
-          {"mesh",
-           {{"rectangles", summary.rectangles},
-            {"portals", summary.portals},
-            {"corners", summary.corners},
-            {"bytes", summary.bytes},
-            {"seconds", summary.seconds}}}};
+  for (const Place& p : path.points) points.push_back(numbers(p.position));
+  Json json = {{"world", options.world},    {"class", options.avatar_class},
+               {"end", word_for(path.end)}, {"length", path.length},
+               {"points", points},          {"nodes", path.nodes},
+               {"seconds", seconds}};
+  if (options.is_live()) {
+    json["cost"] = path.cost;
+    json["jumps"] = path.jumps;
+  }
+  if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
+    const Vec3d& nearest = path.points.back().position;
+    json["nearest"] = {{"place", numbers(nearest)},
+                       {"distance", plan_distance(nearest, to.position)},
+                       {"obstacle", app::word_for(path.obstacle)}};
+  }
+  return json;
 }
 
-std::string path_text(const PathOptions& options, const Path& path, double seconds) {
-  if (path.end != PathEnd::kReached) {
-    return fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+Json mesh_json(const PathSummary& summary) {
+  return {{"rectangles", summary.rectangles},
+          {"portals", summary.portals},
+          {"corners", summary.corners},
+          {"bytes", summary.bytes},
+          {"seconds", summary.seconds}};
+}
+
+std::string path_text(const PathOptions& options, const Path& path, const Place& to,
+                      double seconds) {
+  std::string text;
+  if (path.end == PathEnd::kReached) {
+    text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
+                       options.avatar_class, path.points.size() - 1, seconds * 1e3);
+    if (options.is_live()) text += fmt::format("  costs {:.3f}\n", path.cost);
+  } else {
+    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+    if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
+    const Vec3d& nearest = path.points.back().position;
+    text += fmt::format(
+        "  gets to ({}), {:.3f} m from there in the plane; what is in the way: {}\n",
+        where(nearest), plan_distance(nearest, to.position), app::word_for(path.obstacle));
   }
-  std::string text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
-                                 options.avatar_class, path.points.size() - 1, seconds * 1e3);
-  for (const Place& p : path.points) text += "  " + where(p.position) + "\n";
+  size_t jump = 0;
+  for (size_t i = 0; i < path.points.size(); ++i) {
+    const bool jumps = jump < path.jumps.size() && path.jumps[jump] == i;
+    if (jumps) ++jump;
+    text += "  " + where(path.points[i].position) + (jumps ? "  jump\n" : "\n");
+  }
   return text;
 }
 
@@ -132,7 +165,7 @@ const char* word_for(LegKind kind) {
 Json flight_json(const PathOptions& options, const FlightPath& path, const FlightSummary& summary,
                  double seconds) {
   Json points = Json::array(), legs = Json::array();
-  for (const Vec3d& p : path.points) points.push_back({p.x, p.y, p.z});
+  for (const Vec3d& p : path.points) points.push_back(numbers(p));
   for (const LegKind kind : path.legs) legs.push_back(word_for(kind));
   return {
       {"world", options.world},
@@ -187,6 +220,59 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
 }
 
+Vec3d point_of(const std::vector<double>& numbers, size_t first) {
+  return {numbers[first], numbers[first + 1], numbers[first + 2]};
+}
+
+// The ground as the options say that it is now.
+Result<LiveGround> live_ground(const World& world, const PathOptions& options,
+                               int32_t avatar_class) {
+  auto ground =
+      LiveGround::make(world, {.avatar_class = avatar_class, .slope_cost = options.slope_cost});
+  if (!ground) return ground.error();
+  for (size_t i = 0; i < options.blocks.size(); i += 6) {
+    const Vec3d a = point_of(options.blocks, i), b = point_of(options.blocks, i + 3);
+    if (a.x == b.x || a.y == b.y || a.z == b.z) {
+      return Error{
+          Errc::kBadInput,
+          fmt::format("--block: ({}) and ({}) are no opposite corners of a box, which differ "
+                      "in x, y and z",
+                      where(a), where(b))};
+    }
+    const Prism box = Prism::box({std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+                                 {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)});
+    if (auto added = ground->add_obstacle(box); !added) {
+      return Error{Errc::kBadInput, "--block: " + added.error().message};
+    }
+  }
+  for (size_t i = 0; i < options.area_costs.size(); i += 2) {
+    const double kind = options.area_costs[i];
+    if (!(kind >= 0 && kind <= 255 && kind == std::floor(kind))) {
+      return Error{
+          Errc::kBadConfig,
+          fmt::format("--area-cost: {} is no kind of ground, which are whole numbers", kind)};
+    }
+    if (auto ok = ground->set_area_cost(static_cast<uint8_t>(kind), options.area_costs[i + 1]);
+        !ok) {
+      return Error{ok.error().code, "--area-cost: " + ok.error().message};
+    }
+  }
+  for (size_t i = 0; i < options.jumps.size(); i += 6) {
+    Jump jump;
+    for (Place* end : {&jump.from, &jump.to}) {
+      const auto at = options.jumps.begin() + static_cast<ptrdiff_t>(i + (end == &jump.to ? 3 : 0));
+      auto place = place_of(world, options, avatar_class, {at, at + 3}, "--jump");
+      if (!place) return place.error();
+      *end = *place;
+    }
+    jump.cost = length(jump.to.position - jump.from.position);
+    if (auto added = ground->add_jump(jump); !added) {
+      return Error{Errc::kBadInput, "--jump: " + added.error().message};
+    }
+  }
+  return ground;
+}
+
 int path(Session& session, const PathOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
@@ -197,16 +283,36 @@ int path(Session& session, const PathOptions& options) {
   if (!from) return fail(from.error());
   const auto to = place_of(*world, options, *avatar_class, options.to, "--to");
   if (!to) return fail(to.error());
-  Result<PathFinder> finder = PathFinder::make(
-      *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
-  if (!finder) return fail(finder.error());
+  auto ground = live_ground(*world, options, *avatar_class);
+  if (!ground) return fail(ground.error());
   Path found;
+  Json mesh;
   const auto start = std::chrono::steady_clock::now();
-  finder->find(*from, *to, found);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  print_result(session, path_json(options, found, finder->summary(), seconds),
-               path_text(options, found, seconds));
+  double seconds = 0;
+  if (options.is_live()) {
+    for (const auto& [place, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
+      if (ground->is_free(place)) continue;
+      return fail(
+          bad_end(options, place.position, option,
+                  "is no place to stand now: a --block stands there, or its ground is closed"));
+    }
+  } else {
+    Result<PathFinder> finder = PathFinder::make(
+        *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
+    if (!finder) return fail(finder.error());
+    mesh = mesh_json(finder->summary());
+    const auto began = std::chrono::steady_clock::now();
+    finder->find(*from, *to, found);
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  }
+  // How near it gets, and why no nearer, only the other one says.
+  if (options.is_live() || found.end == PathEnd::kUnreachable) {
+    ground->find(*from, *to, found);
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  Json json = path_json(options, found, *to, seconds);
+  if (!mesh.is_null()) json["mesh"] = mesh;
+  print_result(session, json, path_text(options, found, *to, seconds));
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
 }
 
@@ -217,6 +323,7 @@ void add_path(CLI::App& parser, Session& session) {
       add_command(parser, session, "path", "Find the shortest way between two places",
                   "throng bake builtin:garage -o garage.throng\n"
                   "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult\n"
+                  "throng path garage.throng --from 14,0,8 --to 20,0,8 --block 16,0,0,17,2,9\n"
                   "throng bake builtin:bridge --fly -o bridge.throng\n"
                   "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer --fly");
   const auto options = std::make_shared<PathOptions>();
@@ -237,6 +344,25 @@ void add_path(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_flag("--fly", options->fly,
                     "Through the air, for a class that flies; either end may be on the ground");
+  const auto add_list = [&](const char* name, std::vector<double>& list, const char* what,
+                            char between, int count, const char* type) {
+    command->add_option(name, list, what)
+        ->delimiter(between)
+        ->type_size(count)
+        ->expected(1, 1 << 16)
+        ->type_name(type);
+  };
+  add_list("--block", options->blocks, "A box that stands there now, from corner to corner [m]",
+           ',', 6, "X,Y,Z,X,Y,Z");
+  add_list("--jump", options->jumps, "A way from one place to another and back, given by hand [m]",
+           ',', 6, "X,Y,Z,X,Y,Z");
+  add_list("--area-cost", options->area_costs,
+           "What a metre on ground of a kind costs; inf closes it", '=', 2, "KIND=COST");
+  command
+      ->add_option("--slope-cost", options->slope_cost,
+                   "What a metre costs more for each metre that the ground rises on it")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads for making the mesh, 0 for all cores")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

@@ -25,27 +25,6 @@ struct PlaceOptions {
   uint64_t seed = 1;
 };
 
-const char* word_for(Obstacle obstacle) {
-  switch (obstacle) {
-    case Obstacle::kNone:
-      return "nothing";
-    case Obstacle::kGap:
-      return "a gap";
-    case Obstacle::kStep:
-      return "too high a step";
-    case Obstacle::kLow:
-      return "too low";
-    case Obstacle::kSteep:
-      return "too steep";
-    case Obstacle::kNarrow:
-      return "a wall, or too narrow";
-  }
-  return "";
-}
-
-Json numbers(const Vec3d& p) { return {p.x, p.y, p.z}; }
-std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }
-
 void describe_wall(GroundQuery& query, const Place& place, double radius, Json& json,
                    std::string& text) {
   const NearestWall wall = query.nearest_wall(place, radius);

@@ -10,6 +10,8 @@
 #include <string_view>
 
 #include "throng/context.h"
+#include "throng/ground_query.h"
+#include "throng/math.h"
 #include "throng/result.h"
 #include "throng/world.h"
 
@@ -51,6 +53,13 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
 
 /// Index of the class that --class names. Fails with kNotFound and the names to choose from.
 Result<int32_t> class_named(const World& world, const std::string& name);
+
+/// "nothing", "too low", ...
+const char* word_for(Obstacle obstacle);
+
+/// A position as JSON and for people, in millimetres.
+Json numbers(const Vec3d& p);
+std::string where(const Vec3d& p);
 
 /// Most memory that this process has held so far. [bytes]
 uint64_t peak_memory();

@@ -206,4 +206,26 @@ std::string human_bytes(uint64_t bytes) {
   return fmt::format("{:.2f} GB", value / 1e9);
 }
 
+const char* word_for(Obstacle obstacle) {
+  switch (obstacle) {
+    case Obstacle::kNone:
+      return "nothing";
+    case Obstacle::kGap:
+      return "a gap";
+    case Obstacle::kStep:
+      return "too high a step";
+    case Obstacle::kLow:
+      return "too low";
+    case Obstacle::kSteep:
+      return "too steep";
+    case Obstacle::kNarrow:
+      return "a wall, or too narrow";
+  }
+  return "";
+}
+
+Json numbers(const Vec3d& p) { return {p.x, p.y, p.z}; }
+
+std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }
+
 }  // namespace throng::app

@@ -90,6 +90,31 @@ class Program(unittest.TestCase):
         self.assert_refused(self.run_throng("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "adult", "--fly"),
                             "does not fly")
 
+    def test_ways_lead_around_boxes_and_say_what_is_in_the_way(self):
+        def way(goal, *more):
+            done = self.run_throng("path", self.world, "--from", "14,0,8", "--to", goal, "--json", *more)
+            return done.returncode, json.loads(done.stdout)
+
+        code, straight = way("20,0,8")
+        self.assertEqual((code, straight["end"]), (0, "reached"))
+        code, around = way("20,0,8", "--block", "17,2,9,16,0,0")
+        self.assertEqual((code, around["end"]), (0, "reached"))
+        self.assertGreater(around["length"], straight["length"] + 0.5)
+        self.assertGreater(max(z for _, _, z in around["points"]), 9.2)
+        code, shut = way("20,0,8", "--block", "16,0,0,17,2,40")
+        self.assertEqual((code, shut["end"]), (1, "unreachable"))
+        self.assertEqual(shut["nearest"]["obstacle"], "a wall, or too narrow")
+        self.assertLess(shut["points"][-1][0], 16)
+        code, jump = way("20,0,8", "--block", "16,0,0,17,2,40", "--jump", "15,0,8,18,0,8")
+        self.assertEqual((code, len(jump["jumps"])), (0, 1))
+        code, up = way("30,2.9,30", "--class", "wheelchair")
+        self.assertEqual((code, up["end"], up["nearest"]["obstacle"]), (1, "unreachable", "a gap"))
+        ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
+        self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9"), "--from", "--block")
+        self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,13,2,9"), "--block", "opposite corners")
+        self.assert_refused(self.run_throng(*ends, "--area-cost", "1.5=2"), "--area-cost", "whole numbers")
+        self.assert_refused(self.run_throng(*ends, "--jump", "14,0,8,19,0,99"), "--jump", "outside")
+
     def test_landscapes_are_written_curved_read_back_and_refused_when_damaged(self):
         hills = self.path / "hills.patches.json"
         self.assertEqual(self.run_throng("world", "landscape", "--size", 64, "-o", hills).returncode, 0)

@@ -63,8 +63,8 @@ struct PathSummary {
 /// searching: give every thread one. No allocation once it is warm.
 class THRONG_API PathFinder {
  public:
-  /// Reads every zone once. Fails with kBadConfig (no such class), kBadFile (a zone cannot be used)
-  /// or kCancelled.
+  /// Reads every zone once. Fails with kBadConfig (no such class, or zones with too many corners
+  /// for `zones`), kBadFile (a zone cannot be used) or kCancelled.
   [[nodiscard]] static Result<PathFinder> make(const World& world, const PathConfig& config,
                                                Context& context);
   PathFinder(const PathFinder& other);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -207,12 +208,25 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
     for (const uint32_t zone : graph.gates[g].zone) graph.zones[zone].gates.push_back(g);
   }
   std::vector<Sight> sights(static_cast<size_t>(worker_count(workers)));
+  std::vector<uint8_t> fits(graph.zones.size(), 1);
   parallel_for_worker(graph.zones.size(), workers, [&](size_t zone, int32_t worker) {
     if (context.cancel) return;
-    find_zone_ways(mesh, graph.gates, static_cast<uint32_t>(zone),
-                   sights[static_cast<size_t>(worker)], graph.zones[zone]);
+    Sight& sight = sights[static_cast<size_t>(worker)];
+    fits[zone] =
+        find_zone_ways(mesh, graph.gates, static_cast<uint32_t>(zone), sight, graph.zones[zone])
+            ? 1
+            : 0;
   });
   if (context.cancel) return cancelled;
+  if (const auto bad = std::find(fits.begin(), fits.end(), uint8_t{0}); bad != fits.end()) {
+    const auto slot = static_cast<size_t>(bad - fits.begin());
+    const format::ZoneEntry& entry = world.slots[slot]->entry;
+    return Error{Errc::kBadConfig,
+                 "path: zone " + std::to_string(entry.x()) + ", " + std::to_string(entry.z()) +
+                     " has " + std::to_string(graph.zones[slot].corners.size()) +
+                     " corners, zones of paths may have " + std::to_string(kStraight - 1) +
+                     "; bake the world with smaller zones"};
+  }
 
   const auto zones = group_zones(world, graph);
   graph.territories.resize(zones.size());

@@ -46,7 +46,8 @@ struct Meeting {
 };
 Meeting meet(const TwoHopLabels& labels, uint32_t a, uint32_t b);
 
-/// Fails with kCancelled. The same for any number of workers.
+/// Fails with kBadConfig (a zone has too many corners) or kCancelled. The same for any number of
+/// workers.
 Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh, int32_t workers,
                                    Context& context);
 

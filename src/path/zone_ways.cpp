@@ -184,7 +184,7 @@ std::vector<Gate> find_gates(const WorldData& world, const PathMesh& mesh,
   return gates;
 }
 
-void find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
+bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
                     Sight& sight, ZoneWays& ways) {
   sight.keep_to(ways.first_rect, ways.last_rect);
   ways.corners.clear();
@@ -197,6 +197,7 @@ void find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
   std::sort(ways.corners.begin(), ways.corners.end());
   ways.corners.erase(std::unique(ways.corners.begin(), ways.corners.end()), ways.corners.end());
   const size_t corners = ways.corners.size(), count = ways.gates.size();
+  if (corners >= kStraight) return false;
   ways.length.assign((corners + count) * count, kNever);
   ways.next.assign(ways.length.size(), kStraight);
   const auto edges = see_corners(mesh, ways, sight);
@@ -227,6 +228,7 @@ void find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
       }
     }
   }
+  return true;
 }
 
 void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,

@@ -21,7 +21,7 @@ struct Gate {
   [[nodiscard]] uint32_t rect_in(uint32_t of) const { return rect[of == zone[0] ? 0 : 1]; }
 };
 
-inline constexpr uint16_t kStraight = UINT16_MAX;
+inline constexpr uint16_t kStraight = UINT16_MAX;  // also one more than corners a zone may have
 
 /// The shortest ways from each corner and each gate of a zone to each of its gates that do not
 /// leave the zone. Made from the zone's part of the mesh alone, so that it can be made again when
@@ -52,9 +52,10 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
 std::vector<Gate> find_gates(const WorldData& world, const PathMesh& mesh,
                              const std::vector<uint32_t>& zone_of_rect);
 
-/// `ways` has its rectangles and gates; finds the rest. `sight` is scratch.
-void find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
-                    Sight& sight, ZoneWays& ways);
+/// `ways` has its rectangles and gates; finds the rest. `sight` is scratch. False if the zone has
+/// too many corners for `next`: then only `ways.corners` is filled.
+[[nodiscard]] bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates,
+                                  uint32_t zone, Sight& sight, ZoneWays& ways);
 
 /// From a point of a zone to each of its gates, as a row of the tables.
 void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,

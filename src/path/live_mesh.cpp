@@ -279,7 +279,8 @@ std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
   if (record.area_kind() == format::CellsKind::Blocks) {
     std::array<uint16_t, 4096> values;
     unpack_values(level.ground.zone->words(record.area_offset()), values.data());
-    for (size_t c = 0; c < kinds.size(); ++c) kinds[c] = static_cast<uint8_t>(values[c] & 63);
+    for (size_t c = 0; c < kinds.size(); ++c)
+      kinds[c] = static_cast<uint8_t>(values[c] & kLastAreaKind);
   }
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return kinds;

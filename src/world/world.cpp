@@ -131,8 +131,8 @@ LevelTileContent World::level_tile(uint32_t index) const {
     const size_t i = static_cast<size_t>(c);
     if (!view.has(x, z)) continue;
     out.floor[i] = view.sample(x, z);
-    out.area[i] =
-        areas != nullptr ? static_cast<uint8_t>(value_at(areas, x, z)) : level.area_value();
+    out.area[i] = areas != nullptr ? static_cast<uint8_t>(value_at(areas, x, z) & kLastAreaKind)
+                                   : level.area_value();
     if (level.ceiling_kind() == format::HeightKind::Constant) out.ceiling[i] = level.ceiling_base();
     if (ceilings == nullptr) continue;
     const uint16_t ceiling = value_at(ceilings, x, z);

@@ -92,6 +92,9 @@ Result<void> Zone::attach(const std::string& name) {
       if (!in_world(level.floor_base()) || !in_world(level.ceiling_base())) {
         return bad_file(name, "level " + std::to_string(i) + " lies out of this world");
       }
+      if (level.area_value() > kLastAreaKind) {
+        return bad_file(name, "level " + std::to_string(i) + " is of an area kind that is none");
+      }
       if (level.tile() != tile || !floor_ok || !ceiling_ok || !present_ok || !area_ok) {
         return bad_file(name, "level " + std::to_string(i) + " points outside the file");
       }

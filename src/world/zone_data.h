@@ -25,6 +25,8 @@ inline constexpr uint32_t kManifestVersion = 2;
 inline constexpr int32_t kMaxSlope =
     1 << 23;  // of a plane [1/1024 mm per cell]: no overflow in 64 cells
 
+inline constexpr uint8_t kLastAreaKind = 63;  // that cells may be of; all its bits are set
+
 inline constexpr double kMaxHeight = 1'000'000;  // [m]: differences are whole mm in 32 bits
 
 /// A zone's bytes after the verifier and the checks of its offsets.

@@ -138,5 +138,28 @@ TEST(FalseZones, WithAnyHeightsAnswerAndDoNotCrash) {
   EXPECT_GT(run, 30);
 }
 
+// Costs and paints are looked up by the kind of a cell.
+TEST(FalseZones, OfAKindThatIsNoneAreRefused) {
+  std::vector<uint8_t> bytes = bake_small().zones[0];
+  auto* root = flatbuffers::GetMutableRoot<format::Zone>(bytes.data());
+  auto* levels = reinterpret_cast<format::Level*>(const_cast<uint8_t*>(root->levels()->Data()));
+  const format::Level level = levels[0];
+  for (const uint8_t kind : {uint8_t{0}, uint8_t{63}, uint8_t{64}, uint8_t{255}}) {
+    levels[0] =
+        format::Level(level.tile(), level.floor_kind(), level.ceiling_kind(), level.floor_base(),
+                      level.ceiling_base(), level.slope_x(), level.slope_z(), level.floor_offset(),
+                      level.ceiling_offset(), level.floor_part(), level.present_kind(),
+                      level.area_kind(), kind, level.present_offset(), level.area_offset());
+    auto* copy = new uint8_t[bytes.size()];
+    std::copy(bytes.begin(), bytes.end(), copy);
+    const auto zone = Zone::from_bytes(
+        flatbuffers::DetachedBuffer(nullptr, false, copy, bytes.size(), copy, bytes.size()),
+        "z.thz");
+    EXPECT_EQ(static_cast<bool>(zone), kind <= 63);
+    if (zone) continue;
+    EXPECT_NE(zone.error().message.find("area kind"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace throng

@@ -64,7 +64,7 @@ int place(Session& session, const PlaceOptions& options) {
   if (!avatar_class) return fail(avatar_class.error());
   Result<GroundQuery> query = GroundQuery::make(*world, *avatar_class);
   if (!query) return fail(query.error());
-  if (auto ok = world->check_all(); !ok) return fail(ok.error());
+  if (auto ok = world->check_ground(); !ok) return fail(ok.error());
   const Vec3d at{options.at[0], options.at[1], options.at[2]};
   if (!std::isfinite(at.x + at.y + at.z)) {
     return fail({Errc::kBadInput, options.world + ": --at is not a finite position"});

@@ -88,6 +88,8 @@ class THRONG_API World {
   /// Reads the manifest alone: zones are mapped, and checked, when they are first touched.
   [[nodiscard]] static Result<World> open(const std::string& path, const WorldConfig& config = {});
   /// Checks every zone against the manifest's checksums. Fails with kBadFile and the zone's name.
+  [[nodiscard]] Result<void> check_ground() const;
+  /// As check_ground, and the air's files too, if there are any.
   [[nodiscard]] Result<void> check_all() const;
 
   [[nodiscard]] WorldSummary summary() const;

@@ -37,7 +37,7 @@ Result<void> check(const World& world, const Scene& scene, const NodeConfig& con
                                       " source triangles, the scene has " +
                                       std::to_string(scene.triangles.size())};
   }
-  return world.check_all();
+  return world.check_ground();
 }
 
 // A patch of the forest: where it comes from and which zone keeps it.

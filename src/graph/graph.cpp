@@ -38,7 +38,7 @@ Result<Graph> Graph::make(const World& world, const GraphConfig& config, Context
   if (config.workers < 0) return Error{Errc::kBadConfig, "graph: workers must be 0 or more"};
   const auto start = std::chrono::steady_clock::now();
   const WorldData& data = *world.data();
-  if (auto ok = world.check_all(); !ok) return ok.error();
+  if (auto ok = world.check_ground(); !ok) return ok.error();
   auto regions = build_regions(data, config.workers, context);
   if (!regions) return regions.error();
   auto graph = std::make_shared<GraphData>();

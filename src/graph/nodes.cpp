@@ -99,7 +99,7 @@ Result<void> Nodes::check_all() const {
   for (size_t s = 0; s < data_->slots.size(); ++s) {
     if (data_->zone(s) == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
   }
-  return data_->world.check_all();
+  return data_->world.check_ground();
 }
 
 NodeSummary Nodes::summary() const {

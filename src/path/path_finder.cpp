@@ -56,7 +56,7 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
     return Error{Errc::kBadConfig, "path: choose labels or zones, not both"};
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   const auto start = std::chrono::steady_clock::now();
-  if (auto ok = world.check_all(); !ok) return ok.error();
+  if (auto ok = world.check_ground(); !ok) return ok.error();
   auto mesh = build_mesh(*world.data(), config.avatar_class, config.workers, context);
   if (!mesh) return mesh.error();
   auto shared = std::make_shared<Shared>();

@@ -131,7 +131,7 @@ Result<Scene> walkable_surface(const World& world, int32_t avatar_class, Context
     return Error{Errc::kBadConfig, "surface: there is no class " + std::to_string(avatar_class) +
                                        ", the world has " + std::to_string(summary.classes.size())};
   }
-  if (auto ok = world.check_all(); !ok) return ok.error();
+  if (auto ok = world.check_ground(); !ok) return ok.error();
   const std::vector<int32_t> storeys = world.storeys();
   std::vector<uint32_t> order(world.level_tile_count());
   for (uint32_t l = 0; l < order.size(); ++l) order[l] = l;

@@ -72,12 +72,16 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
   return World(std::move(*world));
 }
 
-Result<void> World::check_all() const {
+Result<void> World::check_ground() const {
   THRONG_ASSERT(data_);
   for (size_t s = 0; s < data_->slots.size(); ++s) {
     if (data_->zone(s) == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
   }
-  if (data_->air == nullptr) return {};
+  return {};
+}
+
+Result<void> World::check_all() const {
+  if (auto ok = check_ground(); !ok || data_->air == nullptr) return ok;
   for (const auto& slot : data_->air->slots) {
     if (!data_->air->zone(slot->entry.x(), slot->entry.z()).usable) {
       return Error{Errc::kBadFile, slot->error};

@@ -12,6 +12,7 @@
 
 #include "path/live_search.h"
 #include "path/live_state.h"
+#include "path/reset_path.h"
 #include "world/place.h"
 
 namespace throng {
@@ -99,11 +100,12 @@ class Outwards {
 
 struct FlowField::State {
   LiveGround ground;
+  double most = kNever;  // [cells]
   std::shared_ptr<const std::vector<FlowPoint>> points;
   double seconds = 0;
   std::vector<LiveStop> way;
 
-  // The point of a stop's rectangle by which it is nearest to a goal.
+  // The point of a stop's rectangle by which it is nearest to a goal, none if that costs too much.
   [[nodiscard]] std::pair<uint32_t, double> leave_by(const LiveStop& stop) {
     LiveMesh& mesh = ground.state_->mesh;
     const double factor = mesh.factor(mesh.level(stop.level)->rects[stop.rect]);
@@ -113,7 +115,7 @@ struct FlowField::State {
     std::pair<uint32_t, double> best{kNoPoint, kNever};
     for (auto p = first; p != last; ++p) {
       const double cost = p->cost + distance_of(p->stop.at, stop.at) * factor;
-      if (cost >= best.second) continue;
+      if (cost >= best.second || cost > most) continue;
       best = {static_cast<uint32_t>(p - points->begin()), cost};
     }
     return best;
@@ -147,9 +149,10 @@ Result<FlowField> FlowField::make(const LiveGround& ground, std::span<const Plac
                                   const FlowConfig& config, Context& context) {
   if (!(config.most > 0)) return Error{Errc::kBadConfig, "flow field: most must be above 0"};
   const auto start = std::chrono::steady_clock::now();
-  auto state = std::make_unique<State>(State{ground, nullptr, 0, {}});
+  auto state = std::make_unique<State>(State{ground, kNever, nullptr, 0, {}});
   LiveMesh& mesh = state->ground.state_->mesh;
-  Outwards search(mesh, config.most / mesh.world().summary.cell);
+  state->most = config.most / mesh.world().summary.cell;
+  Outwards search(mesh, state->most);
   bool any = false;
   for (const Place& goal : goals) {
     LiveStop stop;
@@ -201,12 +204,7 @@ Place FlowField::next(const Place& place) {
 
 void FlowField::way(const Place& place, Path& path) {
   LiveGround::State& ground = *state_->ground.state_;
-  path.end = PathEnd::kNoPlace;
-  path.points.clear();
-  path.jumps.clear();
-  path.length = path.cost = 0;
-  path.nodes = 0;
-  path.obstacle = Obstacle::kNone;
+  reset(path);
   LiveStop stop;
   if (!ground.locate(place, stop)) return;
   const auto [first, total] = state_->leave_by(stop);
@@ -218,7 +216,7 @@ void FlowField::way(const Place& place, Path& path) {
     ground.way.push_back(points[p].stop);
     if (points[p].next != kNoPoint) ground.way.push_back(state_->across(points[p]));
   }
-  draw_straight(ground.mesh, ground.way);
+  ground.straight.draw(ground.mesh, ground.way);
   ground.give(path);
   path.end = PathEnd::kReached;
 }

@@ -52,13 +52,18 @@ struct GroundQuery::State {
 
   // False if the class cannot stand there.
   bool locate(const Place& place, GroundLevel& level, GroundPoint& point) const {
-    if (!place || place.level1 > data().level_count ||
-        !std::isfinite(place.position.x + place.position.z))
-      return false;
-    point = to_ground(data(), place.position.x, place.position.z);
-    if (!in_grid(data(), point)) return false;
+    const auto found = ground_point(data(), place);
+    if (!found) return false;
+    point = *found;
     level = ground_level(data(), place.level1 - 1, avatar_class);
-    return level.zone != nullptr && level.is_legal(point.cell_x() & 63, point.cell_z() & 63);
+    return level.is_legal(point.cell_x() & 63, point.cell_z() & 63);
+  }
+  // Where a push from a place leads. One longer than the grid ends a cell beside it: farther off,
+  // products of lengths would not fit 64 bits.
+  [[nodiscard]] GroundPoint pushed(const Place& from, double dx, double dz) const {
+    const double longest = (std::max(data().width, data().depth) + 1) * data().summary.cell;
+    const double part = std::min({1.0, longest / std::fabs(dx), longest / std::fabs(dz)});
+    return to_ground(data(), from.position.x + part * dx, from.position.z + part * dz);
   }
 
   // The legal cells of one level that may be nearer than `best`, a place and its distance.
@@ -164,7 +169,7 @@ GroundRay GroundQuery::ray(const Place& from, double dx, double dz) {
   GroundLevel level;
   GroundPoint start;
   if (!std::isfinite(dx + dz) || !s.locate(from, level, start)) return result;
-  const GroundPoint goal = to_ground(s.data(), from.position.x + dx, from.position.z + dz);
+  const GroundPoint goal = s.pushed(from, dx, dz);
   const WorldGround ground = s.ground();
   GroundLevel last = level;
   const WalkStop stop = walk_far(ground, last, start, goal, s.step);
@@ -207,7 +212,7 @@ Place GroundQuery::slide(const Place& from, double dx, double dz) {
   GroundLevel level;
   GroundPoint start;
   if (!std::isfinite(dx + dz) || !s.locate(from, level, start)) return from;
-  const GroundPoint goal = to_ground(s.data(), from.position.x + dx, from.position.z + dz);
+  const GroundPoint goal = s.pushed(from, dx, dz);
   if (const GroundRay whole = ray(from, dx, dz); whole.arrived) return whole.place;
   const GroundPoint middle{(start.x + goal.x) / 2, (start.z + goal.z) / 2};
   // A cell more than half the push: else a push shorter than a cell could leave none.

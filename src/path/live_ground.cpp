@@ -12,17 +12,15 @@
 #include "path/live_state.h"
 #include "path/obstacle.h"
 #include "path/plan_shapes.h"
+#include "path/reset_path.h"
 #include "world/place.h"
 
 namespace throng {
 
 bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
-  const WorldData& world = mesh.world();
-  if (!place || place.level1 > world.level_count ||
-      !std::isfinite(place.position.x + place.position.z))
-    return false;
-  stop.at = to_ground(world, place.position.x, place.position.z);
-  if (!in_grid(world, stop.at)) return false;
+  const auto at = ground_point(mesh.world(), place);
+  if (!at) return false;
+  stop.at = *at;
   stop.level = place.level1 - 1;
   return mesh.stand(stop.level, stop.at, stop.rect);
 }
@@ -178,12 +176,7 @@ bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
   // What the search has met may be gone.
   if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
-  path.points.clear();
-  path.jumps.clear();
-  path.length = path.cost = 0;
-  path.nodes = 0;
-  path.obstacle = Obstacle::kNone;
-  path.end = PathEnd::kNoPlace;
+  reset(path);
   if (!s.searching) return true;
   const LiveSearch::State result = s.search.advance(s.mesh, max_nodes);
   path.nodes = s.search.looked_at();
@@ -192,7 +185,7 @@ bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   s.searching = false;
   path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
   s.search.way(s.mesh, s.way);
-  draw_straight(s.mesh, s.way);
+  s.straight.draw(s.mesh, s.way);
   s.give(path);
   if (path.end == PathEnd::kUnreachable) path.obstacle = s.in_the_way();
   return true;

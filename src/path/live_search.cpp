@@ -94,37 +94,36 @@ double leg_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   return std::isfinite(cost) ? cost : kNever;
 }
 
-namespace {
-
-void draw_walk_straight(LiveMesh& mesh, std::vector<LiveStop>& way) {
+// From each stop to the farthest that a straight leg reaches at no more cost, looked for by
+// doubling and halving: it need not be the farthest of all.
+void WayStraightener::leave_out(LiveMesh& mesh, std::vector<LiveStop>& way) {
   constexpr double kSlack = 1 + 1e-9;
-  // From each stop to the farthest that a straight leg reaches at no more cost, looked for by
-  // doubling and halving: it need not be the farthest of all.
-  const auto leave_out = [&] {
-    if (way.size() < 3) return;
-    std::vector<double> before(way.size(), 0);  // cost up to each stop
-    for (size_t i = 1; i < way.size(); ++i)
-      before[i] = before[i - 1] + leg_cost(mesh, way[i - 1], way[i]);
-    size_t kept = 1;
-    for (size_t i = 0; i + 1 < before.size();) {
-      const LiveStop from = way[kept - 1];
-      const auto reaches = [&](size_t to) {
-        return leg_cost(mesh, from, way[to]) <= (before[to] - before[i]) * kSlack;
-      };
-      size_t good = i + 1, stride = 1;
-      while (good + stride < before.size() && reaches(good + stride)) {
-        good += stride;
-        stride *= 2;
-      }
-      for (; stride > 0; stride /= 2) {
-        if (good + stride < before.size() && reaches(good + stride)) good += stride;
-      }
-      way[kept++] = way[good];
-      i = good;
+  if (way.size() < 3) return;
+  before_.assign(way.size(), 0);
+  for (size_t i = 1; i < way.size(); ++i)
+    before_[i] = before_[i - 1] + leg_cost(mesh, way[i - 1], way[i]);
+  size_t kept = 1;
+  for (size_t i = 0; i + 1 < before_.size();) {
+    const LiveStop from = way[kept - 1];
+    const auto reaches = [&](size_t to) {
+      return leg_cost(mesh, from, way[to]) <= (before_[to] - before_[i]) * kSlack;
+    };
+    size_t good = i + 1, stride = 1;
+    while (good + stride < before_.size() && reaches(good + stride)) {
+      good += stride;
+      stride *= 2;
     }
-    way.resize(kept);
-  };
-  leave_out();
+    for (; stride > 0; stride /= 2) {
+      if (good + stride < before_.size() && reaches(good + stride)) good += stride;
+    }
+    way[kept++] = way[good];
+    i = good;
+  }
+  way.resize(kept);
+}
+
+void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
+  leave_out(mesh, way);
   // Bends move towards the straight line between their neighbours as far as the ground lets them.
   constexpr int kSweeps = 2, kHalvings = 6;
   for (int sweep = 0; sweep < kSweeps && way.size() > 2; ++sweep) {
@@ -160,27 +159,26 @@ void draw_walk_straight(LiveMesh& mesh, std::vector<LiveStop>& way) {
         low = t;
       }
     }
-    leave_out();
+    leave_out(mesh, way);
   }
 }
 
-}  // namespace
-
-void draw_straight(LiveMesh& mesh, std::vector<LiveStop>& way) {
+void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
   if (std::none_of(way.begin(), way.end(), [](const LiveStop& stop) { return stop.jump > 0; }))
-    return draw_walk_straight(mesh, way);
-  std::vector<LiveStop> whole, walk;
+    return draw_walk(mesh, way);
+  whole_.clear();
+  walk_.clear();
+  const auto end_walk = [&] {
+    draw_walk(mesh, walk_);
+    whole_.insert(whole_.end(), walk_.begin(), walk_.end());
+    walk_.clear();
+  };
   for (const LiveStop& stop : way) {
-    if (stop.jump > 0) {
-      draw_walk_straight(mesh, walk);
-      whole.insert(whole.end(), walk.begin(), walk.end());
-      walk.clear();
-    }
-    walk.push_back(stop);
+    if (stop.jump > 0) end_walk();
+    walk_.push_back(stop);
   }
-  draw_walk_straight(mesh, walk);
-  whole.insert(whole.end(), walk.begin(), walk.end());
-  way = std::move(whole);
+  end_walk();
+  way.swap(whole_);
 }
 
 void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
@@ -195,10 +193,10 @@ void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to)
   push(mesh, from, UINT32_MAX, 0);
 }
 
-void LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost) {
+LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost) {
   const auto [index, is_new] = nodes_.node_of(stop);
   LiveNode& node = nodes_.nodes[index];
-  if (!is_new && (node.done || node.cost <= cost)) return;
+  if (!is_new && (node.done || node.cost <= cost)) return nullptr;
   node.stop = stop;  // by a jump, or not
   node.cost = cost;
   node.parent = parent;
@@ -208,6 +206,7 @@ void LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, dou
   std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
     return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
   });
+  return &node;
 }
 
 // Of the node's rectangle, the point nearest to the goal, heights too: below it is not there.
@@ -239,9 +238,7 @@ void LiveSearch::push_jumps(LiveMesh& mesh, const LiveNode& node, uint32_t index
     if (!mesh.stand(from.level, from.at, from.rect) || from.rect != node.stop.rect) continue;
     if (!mesh.stand(to.level, to.at, to.rect)) continue;
     const double cost = node.cost + distance_of(node.stop.at, from.at) * factor + jump.cost;
-    push(mesh, to, index, cost);
-    const uint32_t there = nodes_.node_of(to).first;
-    if (nodes_.nodes[there].parent == index) nodes_.nodes[there].jumped_from = from.at;
+    if (LiveNode* there = push(mesh, to, index, cost)) there->jumped_from = from.at;
   }
 }
 

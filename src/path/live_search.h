@@ -54,8 +54,19 @@ inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) 
   return to.jump > 0 ? to.jump : leg_cost(mesh, from, to);
 }
 
-/// Leaves out stops where a straight leg is no dearer, and draws bends straighter; jumps stay.
-void draw_straight(LiveMesh& mesh, std::vector<LiveStop>& way);
+/// Leaves out stops where a straight leg is no dearer, and draws bends straighter; jumps stay. Owns
+/// its memory: no allocation once it has grown.
+class WayStraightener {
+ public:
+  void draw(LiveMesh& mesh, std::vector<LiveStop>& way);
+
+ private:
+  void draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way);
+  void leave_out(LiveMesh& mesh, std::vector<LiveStop>& way);
+
+  std::vector<LiveStop> whole_, walk_;
+  std::vector<double> before_;  // cost up to each stop
+};
 
 /// A*, best first. Owns its memory: no allocation once it has grown.
 class LiveSearch {
@@ -74,7 +85,8 @@ class LiveSearch {
     double bound = 0;
     uint32_t node = 0;
   };
-  void push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
+  /// The node that now comes from `parent`, or null if what is known is no dearer.
+  LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
   void push_jumps(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
 
   void note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index);

@@ -22,6 +22,7 @@ struct LiveGround::State {
 
   LiveMesh mesh;
   LiveSearch search;
+  WayStraightener straight;
   Place from_place, to_place;
   LiveStop from, to;
   uint64_t version = 0;

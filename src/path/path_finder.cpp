@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <chrono>
-#include <cmath>
 #include <optional>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "path/label_search.h"
 #include "path/legs.h"
 #include "path/mesh.h"
+#include "path/reset_path.h"
 #include "path/search.h"
 #include "path/zone_search.h"
 #include "throng/path.h"
@@ -37,6 +37,7 @@ PathFinder::PathFinder(std::shared_ptr<const Shared> shared)
 PathFinder::PathFinder(const PathFinder& other) : PathFinder(other.shared_) {}
 PathFinder& PathFinder::operator=(const PathFinder& other) {
   shared_ = other.shared_;
+  if (scratch_ == nullptr) scratch_ = std::make_unique<Scratch>();  // it was moved from
   return *this;
 }
 PathFinder::PathFinder(PathFinder&&) noexcept = default;
@@ -94,16 +95,11 @@ PathSummary PathFinder::summary() const { return shared_->summary; }
 void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t max_nodes) {
   const WorldData& world = *shared_->world.data();
   const PathMesh& mesh = shared_->mesh;
-  path.end = PathEnd::kNoPlace;
-  path.points.clear();
-  path.length = 0;
-  path.nodes = 0;
+  reset(path);
   const auto locate = [&](const Place& place, Stop& end) {
-    if (!place || place.level1 > world.level_count ||
-        !std::isfinite(place.position.x + place.position.z))
-      return false;
-    end.at = to_ground(world, place.position.x, place.position.z);
-    if (!in_grid(world, end.at)) return false;
+    const auto at = ground_point(world, place);
+    if (!at) return false;
+    end.at = *at;
     end.rect = mesh.rect_at(place.level1 - 1, end.at.cell_x(), end.at.cell_z());
     return end.rect != kNoRect;
   };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "world/ground.h"
@@ -23,6 +24,19 @@ inline GroundPoint to_ground(const WorldData& world, double x, double z) {
 inline bool in_grid(const WorldData& world, GroundPoint p) {
   return p.x >= 0 && p.z >= 0 && p.x < (int64_t{world.width} << kUnitBits) &&
          p.z < (int64_t{world.depth} << kUnitBits);
+}
+
+/// Where a place lies on the grid; none if it is of no level of the world, or not over the tile of
+/// its level: the cell there would be another tile's.
+inline std::optional<GroundPoint> ground_point(const WorldData& world, const Place& place) {
+  if (!place || place.level1 > world.level_count ||
+      !std::isfinite(place.position.x + place.position.z))
+    return std::nullopt;
+  const GroundPoint point = to_ground(world, place.position.x, place.position.z);
+  if (!in_grid(world, point)) return std::nullopt;
+  const auto tile = world.tile_levels(point.cell_x() >> 6, point.cell_z() >> 6);
+  if (place.level1 <= tile.first || place.level1 > tile.last) return std::nullopt;
+  return point;
 }
 
 /// Tile of the grid over which a level of a zone lies.

@@ -206,19 +206,16 @@ Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const
 
 MoveResult World::move(int32_t avatar_class, const Place& from, double dx, double dz) const {
   MoveResult result{from, MoveEnd::kBlocked};
-  if (!good_class(*data_, avatar_class) || !from || from.level1 > data_->level_count ||
-      !std::isfinite(dx + dz)) {
-    return result;
-  }
+  if (!good_class(*data_, avatar_class) || !std::isfinite(dx + dz)) return result;
+  const auto start = ground_point(*data_, from);
+  if (!start) return result;
   const Vec3d goal{from.position.x + dx, 0, from.position.z + dz};
-  const GroundPoint start = to_ground(*data_, from.position.x, from.position.z);
   const GroundPoint end = to_ground(*data_, goal.x, goal.z);
-  if (!in_grid(*data_, start) || !in_grid(*data_, end)) return result;
+  if (!in_grid(*data_, end)) return result;
   GroundLevel level = ground_level(*data_, from.level1 - 1, avatar_class);
-  if (level.zone == nullptr || !level.is_legal(start.cell_x() & 63, start.cell_z() & 63))
-    return result;
+  if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return result;
   const int32_t step = step_mm(data_->summary.classes[static_cast<size_t>(avatar_class)]);
-  if (!walk(WorldGround{*data_, avatar_class}, level, start, end, step)) return result;
+  if (!walk(WorldGround{*data_, avatar_class}, level, *start, end, step)) return result;
   result.place = {{goal.x, feet_at(level, end), goal.z}, level.world_level + 1};
   result.end = MoveEnd::kArrived;
   return result;

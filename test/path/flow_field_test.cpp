@@ -128,6 +128,14 @@ TEST(FlowField, StopsWhereAsked) {
   EXPECT_LT(near.summary().points, far.summary().points);
   FlowField copy = far;
   EXPECT_EQ(copy.distance(off), far.distance(off));
+  // Also beside the goal, where nothing but the last stretch is too long.
+  const Place beside = world.find_place(0, {9, 0, 3}, 0.5);
+  EXPECT_NEAR(far.distance(beside), 6, 0.1);
+  EXPECT_FALSE(std::isfinite(near.distance(beside)));
+  EXPECT_FALSE(near.next(beside));
+  Path way;
+  near.way(beside, way);
+  EXPECT_EQ(way.end, PathEnd::kUnreachable);
 }
 
 TEST(FlowField, RefusesNonsense) {

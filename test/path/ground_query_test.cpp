@@ -288,6 +288,43 @@ TEST(GroundQuery, SaysWhatIsInTheWay) {
   EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 3}, 4, 0), Obstacle::kNone);
 }
 
+// However far it is meant to go, and in whichever direction.
+TEST(GroundQuery, APushFarBeyondTheWorldIsOneToItsRim) {
+  const World world = bake(worlds::doorway(0.9), 0.1);
+  GroundQuery ask = query(world);
+  const Place from = world.find_place(0, {2, 0, 1}, 0.5);
+  ASSERT_TRUE(from);
+  for (const auto& [dx, dz] :
+       {std::pair{1.0, 0.0}, {-1.0, 0.3}, {0.7, 1.0}, {0.01, -1.0}, {0.3, 0.8}}) {
+    const GroundRay rim = ask.ray(from, 20 * dx, 20 * dz);
+    ASSERT_FALSE(rim.arrived);
+    for (const double length : {1e4, 1e7, 1e9, 1e12, 1e300}) {
+      const GroundRay ray = ask.ray(from, length * dx, length * dz);
+      EXPECT_FALSE(ray.arrived);
+      EXPECT_EQ(ray.obstacle, rim.obstacle);
+      EXPECT_LT(::throng::length(ray.place.position - rim.place.position), 1e-3) << length;
+      EXPECT_NE(ask.slide(from, length * dx, length * dz).position, from.position);
+    }
+  }
+}
+
+// Its cell there would be another tile's.
+TEST(GroundQuery, APlaceBesideTheTileOfItsLevelIsNone) {
+  const World world = bake(worlds::flat(30), 0.1);
+  const Place here = world.find_place(0, {3, 0, 3}, 0.5);
+  const Place there = world.find_place(0, {20, 0, 20}, 0.5);
+  ASSERT_TRUE(here && there);
+  ASSERT_NE(here.level1, there.level1);
+  const Place false_place{there.position, here.level1};
+  GroundQuery ask = query(world);
+  EXPECT_FALSE(ask.ray(false_place, 1, 0).arrived);
+  EXPECT_FALSE(ask.nearest_wall(false_place, 50).found);
+  EXPECT_EQ(ask.area_near(false_place, 3), 0);
+  EXPECT_EQ(world.move(0, false_place, 0.5, 0).end, MoveEnd::kBlocked);
+  EXPECT_TRUE(ask.ray(there, 1, 0).arrived);
+  EXPECT_EQ(world.move(0, there, 0.5, 0).end, MoveEnd::kArrived);
+}
+
 TEST(GroundQuery, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.1);
   EXPECT_FALSE(GroundQuery::make(world, 99));

@@ -363,6 +363,45 @@ TEST(LiveGround, JumpsLeadWhereMovesDoNot) {
   ASSERT_TRUE(ground.remove(*jump));
 }
 
+// Two jumps to one place: the way takes the cheaper, and stands where that one begins.
+TEST(LiveGround, OfTwoJumpsToOnePlaceTheCheaperIsTaken) {
+  const World world = bake(worlds::doorway(0.2), 0.1);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  const Place from = at(1, 3), to = at(7, 3);
+  for (const bool cheap_first : {true, false}) {
+    LiveGround ground = live(world);
+    const Jump cheap{at(3.3, 3), at(4.7, 3), 2, false}, dear{at(3.3, 4.5), at(4.7, 3), 9, false};
+    ASSERT_TRUE(ground.add_jump(cheap_first ? cheap : dear));
+    ASSERT_TRUE(ground.add_jump(cheap_first ? dear : cheap));
+    Path path;
+    ground.find(from, to, path);
+    ASSERT_EQ(path.end, PathEnd::kReached);
+    ASSERT_EQ(path.jumps, std::vector<uint32_t>{2});
+    EXPECT_NEAR(path.points[1].position.z, 3, 1e-3);
+    EXPECT_NEAR(path.cost, 2.3 + 2 + 2.3, 0.01);
+  }
+}
+
+// A path is used again and again, by whoever finds one next.
+TEST(LiveGround, NothingOfAnOldPathIsLeft) {
+  const World world = bake(worlds::doorway(0.2), 0.1);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  LiveGround ground = live(world);
+  PathFinder finder = exact(world);
+  Path path;
+  ground.find(at(1, 1), at(7, 5), path);
+  ASSERT_NE(path.obstacle, Obstacle::kNone);
+  finder.find(at(1, 1), at(2, 5), path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.obstacle, Obstacle::kNone);
+  ASSERT_TRUE(ground.add_jump({at(3.5, 3), at(4.5, 3), 1.5, false}));
+  ground.find(at(1, 1), at(7, 5), path);
+  ASSERT_EQ(path.jumps.size(), 1u);
+  finder.find(at(1, 1), at(2, 5), path);
+  EXPECT_TRUE(path.jumps.empty());
+  EXPECT_EQ(path.cost, 0);
+}
+
 TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
   LiveGround ground = live(world);

@@ -328,6 +328,10 @@ TEST(Path, SaysWhyThereIsNone) {
   Path again;
   copy.find(from, to, again);
   EXPECT_EQ(again.length, path.length);
+  PathFinder moved = std::move(copy);
+  copy = through;
+  copy.find(from, to, again);
+  EXPECT_EQ(again.length, path.length);
   Context context;
   EXPECT_FALSE(PathFinder::make(world, {.avatar_class = 1}, context));
   EXPECT_FALSE(PathFinder::make(World{}, {}, context));

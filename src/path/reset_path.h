@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "throng/path.h"
+
+/// What every finder does to a path before it fills it.
+namespace throng {
+
+/// Nothing found, from no place; the memory stays.
+inline void reset(Path& path) {
+  path.end = PathEnd::kNoPlace;
+  path.points.clear();
+  path.jumps.clear();
+  path.length = path.cost = 0;
+  path.obstacle = Obstacle::kNone;
+  path.nodes = 0;
+}
+
+}  // namespace throng

@@ -43,8 +43,9 @@ enum class LegKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
 struct FlightQuery {
   Vec3d from, to;      ///< Feet. In the air, or on the ground within `reach` above or below. [m]
   double reach = 0.5;  ///< [m, >= 0]
-  uint64_t max_nodes = UINT64_MAX;            ///< Boxes that may be looked at.
-  const std::atomic<bool>* cancel = nullptr;  ///< Set from any thread to give up.
+  uint64_t max_nodes = UINT64_MAX;  ///< Boxes that may be looked at; nodes, of each way on foot.
+  /// Set from any thread to give up. A search on foot is gone through with before it is looked at.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 struct FlightPath {

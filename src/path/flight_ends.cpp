@@ -71,19 +71,22 @@ std::optional<AirPoint> FlightEnds::take_off(const Place& place) const {
   return {};
 }
 
-Place FlightEnds::nearest_take_off(const Place& from, uint64_t most, CircleFlood& flood) const {
-  if (!from || from.level1 > world_.level_count) return {};
-  const GroundPoint start = to_ground(world_, from.position.x, from.position.z);
+FlightEnds::TakeOff FlightEnds::nearest_take_off(const Place& from, uint64_t most,
+                                                 CircleFlood& flood) const {
+  const auto start = ground_point(world_, from);
+  if (!start) return {};
   const GroundLevel level = ground_level(world_, from.level1 - 1, ground_.avatar_class);
-  if (!in_grid(world_, start) || level.zone == nullptr ||
-      !level.is_legal(start.cell_x() & 63, start.cell_z() & 63)) {
-    return {};
-  }
+  if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return {};
   Place found;
   uint64_t seen = 0;
-  flood.start(level, start.cell_x(), start.cell_z());
+  bool gave_up = false;
+  flood.start(level, start->cell_x(), start->cell_z());
   flood.run(
-      ground_, step_mm(avatar_), [&](int32_t, int32_t) { return !found && seen < most; },
+      ground_, step_mm(avatar_),
+      [&](int32_t, int32_t) {
+        gave_up = !found && seen == most;
+        return !found && !gave_up;
+      },
       [&](const CircleFlood::Cell& cell) {
         ++seen;
         const Place place = place_at(world_, cell.level,
@@ -92,7 +95,7 @@ Place FlightEnds::nearest_take_off(const Place& from, uint64_t most, CircleFlood
         if (take_off(place)) found = place;
       },
       [](const CircleFlood::Cell&, int32_t, int32_t) {});
-  return found;
+  return {found, gave_up};
 }
 
 uint32_t FlightEnds::lowest_box(AirPoint p) const {

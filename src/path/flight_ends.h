@@ -26,7 +26,12 @@ class FlightEnds {
   /// the other's head, so is all that is passed between them.
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
   /// The nearest place, in steps, from which feet come into the air; `most` cells are looked at.
-  [[nodiscard]] Place nearest_take_off(const Place& from, uint64_t most, CircleFlood& flood) const;
+  struct TakeOff {
+    Place place;           ///< Null if there is none among them.
+    bool gave_up = false;  ///< There were more cells.
+  };
+  [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t most,
+                                         CircleFlood& flood) const;
   /// The best place to land on under a box that holds no air below it.
   [[nodiscard]] Place best_landing(uint32_t box) const;
   /// The lowest box straight under a point of the air.

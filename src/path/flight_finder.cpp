@@ -9,6 +9,7 @@
 #include "path/flight_ends.h"
 #include "path/flight_pull.h"
 #include "path/flight_search.h"
+#include "path/reset_path.h"
 #include "throng/flight.h"
 
 namespace throng {
@@ -159,29 +160,39 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     end.ground = shared_->world.find_place(shared_->avatar_class, at, query.reach);
     return static_cast<bool>(end.ground);
   };
+  bool gave_up = false;  // somewhere: then what was not found may be there all the same
   const auto to_port = [&](End& end) {  // from the ground into the air
     if (end.air) return true;
     end.port = end.ground;
     end.air = ends.take_off(end.port);
     if (!end.air) {
-      end.port = ends.nearest_take_off(end.ground, kMostFloodCells, scratch.flood);
+      const auto nearest = ends.nearest_take_off(end.ground, kMostFloodCells, scratch.flood);
+      gave_up = gave_up || nearest.gave_up;
+      end.port = nearest.place;
       end.air = ends.take_off(end.port);
     }
     return end.air.has_value();
   };
+  const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
+    reset(ground);
+    if (query.cancel != nullptr && *query.cancel) {
+      gave_up = true;
+      return false;
+    }
+    scratch.walker->find(a, b, ground, query.max_nodes);
+    gave_up = gave_up || ground.end == PathEnd::kGaveUp;
+    return ground.end == PathEnd::kReached;
+  };
   End from, to;
   if (!locate(query.from, from) || !locate(query.to, to)) return;
 
-  path.end = PathEnd::kUnreachable;
   double on_foot = INFINITY;
-  if (from.ground && to.ground && scratch.walker) {
-    scratch.walker->find(from.ground, to.ground, scratch.walk_all, query.max_nodes);
-    if (scratch.walk_all.end == PathEnd::kReached) {
-      on_foot = 0;
-      const auto& places = scratch.walk_all.points;
-      for (size_t i = 1; i < places.size(); ++i) {
-        on_foot += distance(places[i - 1].position, places[i].position);
-      }
+  if (from.ground && to.ground && scratch.walker &&
+      find_on_foot(from.ground, to.ground, scratch.walk_all)) {
+    on_foot = 0;
+    const auto& places = scratch.walk_all.points;
+    for (size_t i = 1; i < places.size(); ++i) {
+      on_foot += distance(places[i - 1].position, places[i].position);
     }
   }
   const auto add = [&](Vec3d point, LegKind kind) {
@@ -203,7 +214,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     result = scratch.search.find(shared_->space, *from.air, *to.air, query.max_nodes, query.cancel,
                                  scratch.way);
     path.nodes = scratch.search.expanded();
-    if (result == SearchResult::kBudget) path.end = PathEnd::kGaveUp;
+    gave_up = gave_up || result == SearchResult::kBudget;
   }
   if (result == SearchResult::kFound) {
     scratch.pull.pull(shared_->space, scratch.way);
@@ -211,8 +222,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     if (from.ground) {
       if (from.port.position.x != from.ground.position.x ||
           from.port.position.z != from.ground.position.z) {
-        scratch.walker->find(from.ground, from.port, scratch.walk_there, query.max_nodes);
-        walked = scratch.walk_there.end == PathEnd::kReached;
+        walked = find_on_foot(from.ground, from.port, scratch.walk_there);
         walk(scratch.walk_there, 0);
       } else {
         add(from.port.position, LegKind::kWalk);
@@ -225,8 +235,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
       add(to.port.position, LegKind::kLand);
       if (to.port.position.x != to.ground.position.x ||
           to.port.position.z != to.ground.position.z) {
-        scratch.walker->find(to.port, to.ground, scratch.walk_on, query.max_nodes);
-        walked = walked && scratch.walk_on.end == PathEnd::kReached;
+        walked = find_on_foot(to.port, to.ground, scratch.walk_on) && walked;
         walk(scratch.walk_on, 1);
       }
     }
@@ -238,6 +247,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
   path.points.clear();
   path.legs.clear();
   path.length = 0;
+  path.end = gave_up ? PathEnd::kGaveUp : PathEnd::kUnreachable;
   if (on_foot == INFINITY) return;
   walk(scratch.walk_all, 0);
   path.end = PathEnd::kReached;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "core/random.h"
@@ -122,6 +123,31 @@ TEST(Flight, TellsWhatCannotBeReachedAndKeepsToItsBudget) {
   flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}}, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
   EXPECT_GT(path.nodes, 3u);
+}
+
+// Under a roof that nothing takes off from, walked to behind a wall.
+TEST(Flight, GivingUpOnFootIsNoProofThatNothingLeadsThere) {
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, 8}, {12, 0, 8}, {12, 0, 0});
+  scene.add_box({-2, 1.9, -2}, {14, 2.5, 10});
+  scene.add_box({5, 0, -1}, {5.5, 1.9, 6});
+  scene.add_box({7, 0, 2}, {7.5, 1.9, 9});
+  const World world = bake(scene);
+  FlightFinder flight = finder(world);
+  FlightPath path;
+  FlightQuery query{.from = {2, 0, 2}, .to = {10, 0, 4}};
+  ASSERT_FALSE(flight.take_off(world.find_place(0, query.from, 0.1)));
+  flight.find(query, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  ASSERT_EQ(path.legs.back(), LegKind::kWalk);
+  query.max_nodes = 1;
+  flight.find(query, path);
+  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  query.max_nodes = UINT64_MAX;
+  const std::atomic<bool> cancel = true;
+  query.cancel = &cancel;
+  flight.find(query, path);
+  EXPECT_EQ(path.end, PathEnd::kGaveUp);
 }
 
 TEST(Flight, NeedsAirAndAClassThatFlies) {

@@ -145,8 +145,30 @@ void AirBaker::rasterise(int32_t tile_x, int32_t tile_z, const TileRect& rect,
 
 Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint32_t> triangles,
                             uint64_t input, Context& context) {
-  const uint64_t words[] = {kAirBakeVersion, input, static_cast<uint64_t>(shape_.multiple),
-                            static_cast<uint64_t>(shape_.cell)};
+  if (shape_.floor <= -kMostAirLayers || shape_.ceiling >= kMostAirLayers) {
+    return Error{Errc::kLimit,
+                 "bake: the air reaches over 2 million air cells above or below height 0; use a "
+                 "larger air cell"};
+  }
+  const int32_t tiles = plan_.tiles_per_zone, ring = tiles + 2;
+  // Rows are padded by whole blocks, but what lies beyond the zone's apron is not among the
+  // triangles.
+  const int32_t per_tile = kTileSide / shape_.multiple, apron = std::min(per_tile, 16);
+  const int32_t known = std::min(apron, plan_.apron() / shape_.multiple);
+  const int32_t side = tiles * per_tile, across = side + 2 * apron;
+  const int32_t grid_x = (plan_.grid.width + shape_.multiple - 1) / shape_.multiple;
+  const int32_t grid_z = (plan_.grid.depth + shape_.multiple - 1) / shape_.multiple;
+  // How much of what is looked at is the world's: a world may grow within its last tiles, and no
+  // triangle of this zone tell of it.
+  const auto own_part = [&](int32_t grid, int32_t zone) {
+    return static_cast<uint64_t>(std::clamp(grid - zone * side, 0, side + known));
+  };
+  const uint64_t words[] = {kAirBakeVersion,
+                            input,
+                            static_cast<uint64_t>(shape_.multiple),
+                            static_cast<uint64_t>(shape_.cell),
+                            own_part(grid_x, zone_x),
+                            own_part(grid_z, zone_z)};
   const uint64_t key = hash_span(std::span<const uint64_t>(words));
   if (folder_ != nullptr) {
     if (auto kept = folder_->keep_air(zone_x, zone_z, key)) {
@@ -154,7 +176,6 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
       return {};
     }
   }
-  const int32_t tiles = plan_.tiles_per_zone, ring = tiles + 2;
   const int32_t first_x = zone_x * tiles - 1, first_z = zone_z * tiles - 1;
   triangles_.resize(triangles.size());
   parallel_for(triangles.size(), plan_.config->workers, [&](size_t i) {
@@ -163,14 +184,9 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
   });
   const TriangleBins bins =
       bin_triangles(triangles_, first_x * kTileSide, first_z * kTileSide, ring, ring, kTileSide, 0);
-  // Rows are padded by whole blocks, but what lies beyond the zone's apron is not among the
-  // triangles.
-  const int32_t per_tile = kTileSide / shape_.multiple, apron = std::min(per_tile, 16);
-  const int32_t known = std::min(apron, plan_.apron() / shape_.multiple);
   std::vector<TileAir> air(static_cast<size_t>(ring) * static_cast<size_t>(ring));
   parallel_for_worker(air.size(), plan_.config->workers, [&](size_t i, int32_t worker) {
-    const auto items =
-        std::span(bins.items).subspan(bins.first[i], bins.first[i + 1] - bins.first[i]);
+    const auto items = bins.square(i);
     if (items.empty() || context.cancel) return;
     const int32_t column = static_cast<int32_t>(i) % ring, row = static_cast<int32_t>(i) / ring;
     TileRect rect;  // of a ring tile only what is looked at
@@ -197,15 +213,12 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
   if (!own) return {};  // nothing but air
   // The highest layer stays free of matter: it stands for all that is higher or lower.
   const int32_t base = low & -4, height = ((high - base + 2) + 3) & -4;
-  const int32_t side = tiles * per_tile, across = side + 2 * apron;
   if (static_cast<double>(height) * across * across / 8 > static_cast<double>(kMostBytes)) {
     return Error{Errc::kLimit, "bake: the air of zone " + std::to_string(zone_x) + ", " +
                                    std::to_string(zone_z) + " takes more than 2 GiB while it is " +
                                    "baked; use a larger air cell or smaller zones"};
   }
   AirRows rows(across, height, across, true);
-  const int32_t grid_x = (plan_.grid.width + shape_.multiple - 1) / shape_.multiple;
-  const int32_t grid_z = (plan_.grid.depth + shape_.multiple - 1) / shape_.multiple;
   parallel_for(static_cast<size_t>(across), plan_.config->workers, [&](size_t i) {
     const auto z = static_cast<int32_t>(i);
     const int32_t cell_z = zone_z * side + z - apron, first_cell = zone_x * side - apron;

@@ -70,6 +70,10 @@ struct TriangleBins {
   int32_t squares_z = 0;
   std::vector<uint32_t> first;
   std::vector<uint32_t> items;
+
+  [[nodiscard]] std::span<const uint32_t> square(size_t s) const {
+    return std::span(items).subspan(first[s], first[s + 1] - first[s]);
+  }
 };
 
 /// What a triangle covers of the grid. [cells]

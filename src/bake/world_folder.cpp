@@ -211,6 +211,7 @@ Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
 std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) {
   const std::string file = air_file_name(x, z);
   for (const bool is_part : {true, false}) {
+    if (!is_part && old_ == nullptr) break;  // not to be used, or not to be read
     const fs::path from = (is_part ? part_ : fs::path(path_)) / file;
     auto map = FileMap::open(from.string());
     if (!map) continue;

@@ -221,9 +221,7 @@ void ZoneJob::recheck_near_limit(int32_t column, int32_t row, size_t sheet, cons
   for (int32_t i = 0; i < 9; ++i) {
     const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
     if (!in_world(x, z)) continue;
-    const size_t bin = static_cast<size_t>(z * side_ + x);
-    triangles.items[static_cast<size_t>(i)] = {&bins_.items[bins_.first[bin]],
-                                               bins_.first[bin + 1] - bins_.first[bin]};
+    triangles.items[static_cast<size_t>(i)] = bins_.square(static_cast<size_t>(z * side_ + x));
   }
   find_surface_planes(worker.legality.window, tile.sheets[sheet]->base, asked, body, triangles,
                       worker.planes);

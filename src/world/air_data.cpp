@@ -14,8 +14,6 @@ namespace {
 
 constexpr const char* kZoneIdentifier = "THAZ";
 constexpr const char* kManifestIdentifier = "THAM";
-constexpr int32_t kMostLayers = 1 << 21;
-
 constexpr const char* kRemedy = "bake the world again";
 
 Error bad_file(const std::string& name, const std::string& what) {
@@ -61,7 +59,9 @@ Result<void> AirZone::attach(const std::string& name) {
            root_->roots(),
            {reinterpret_cast<const uint32_t*>(nodes->Data()), nodes->size()},
            {reinterpret_cast<const uint64_t*>(leaves->Data()), leaves->size()}};
-  if (tree_.base < -kMostLayers || tree_.base > kMostLayers || tree_.roots > kMostLayers) {
+  const bool in_world = tree_.base >= -kMostAirLayers && tree_.base <= kMostAirLayers &&
+                        int64_t{tree_.side} * tree_.roots <= 4 * int64_t{kMostAirLayers};
+  if (!in_world) {
     return bad_file(name, "its layers lie out of this world");
   }
   if (const std::string fault = tree_.fault(); !fault.empty()) return bad_file(name, fault);
@@ -184,8 +184,8 @@ Result<std::shared_ptr<AirData>> read_air_manifest(std::span<const uint8_t> byte
   const bool sound = root.zones() != nullptr && is_aligned(*root.zones()) && multiple >= 1 &&
                      multiple <= 16 && std::has_single_bit(static_cast<uint32_t>(multiple)) &&
                      root.cell() >= 1 && root.cell() <= 80000 && root.floor() < root.ceiling() &&
-                     std::abs(root.origin_y()) <= root.cell() && root.floor() > -kMostLayers &&
-                     root.ceiling() < kMostLayers &&
+                     root.origin_y() >= -root.cell() && root.origin_y() <= root.cell() &&
+                     root.floor() > -kMostAirLayers && root.ceiling() < kMostAirLayers &&
                      root.flies() >> world.summary.classes.size() == 0;
   if (!sound) return bad_file(name, "its numbers make no sense");
   auto air = std::make_shared<AirData>();

@@ -23,6 +23,7 @@ namespace throng {
 struct WorldData;
 
 inline constexpr uint32_t kAirVersion = 1;
+inline constexpr int32_t kMostAirLayers = 1 << 21;  // above height 0, and below it
 
 /// One air file, after the verifier and the checks of its tree.
 class AirZone : public ZoneFile<AirZone> {

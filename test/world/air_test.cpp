@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
 #include "throng/flight.h"
+#include "throng/path.h"
 #include "verify/cylinder.h"
 #include "world/air_data.h"
 #include "worlds.h"
@@ -213,7 +215,7 @@ TEST(Air, SameBytesForAnyNumberOfWorkers) {
   // Also on another machine and with another compiler.
   uint64_t all = 0;
   for (const auto& slot : one.data()->air->slots) all = mix64(all ^ slot->entry.hash());
-  EXPECT_EQ(all, 9690753472465597605u);
+  EXPECT_EQ(all, 9259508204915397938u);
 }
 
 TEST(Air, SettingsThatDoNotFitAreRefused) {
@@ -227,6 +229,13 @@ TEST(Air, SettingsThatDoNotFitAreRefused) {
   EXPECT_EQ(message(0.3, 0.1), "bake: the air cell must be 1, 2, 4, 8 or 16 times the cell");
   EXPECT_EQ(message(NAN, 0.1), "bake: the air cell must be 0 (none) to 80 m");
   EXPECT_EQ(message(0.0333, 0.0333).substr(0, 30), "bake: the air cell must be a w");
+  // As many layers as a file may name.
+  Scene tower = worlds::flat(1);
+  tower.add_box({0, 90000, 0}, {1, 90001, 1});
+  const auto world = bake_world(tower, {.cell = 0.02, .air = 0.02, .classes = flyers()}, context);
+  ASSERT_FALSE(world);
+  EXPECT_EQ(world.error().code, Errc::kLimit);
+  EXPECT_NE(world.error().message.find("2 million air cells"), std::string::npos);
 }
 
 class DamagedAir : public testing::Test {
@@ -284,6 +293,49 @@ TEST_F(DamagedAir, IsKeptByTheNextBakeAndLeftOutOfOneWithoutAir) {
   EXPECT_FALSE(std::filesystem::exists(air_file_));
   EXPECT_FALSE(std::filesystem::exists(path_ + "/air.thm"));
   EXPECT_EQ(air_summary(*World::open(path_)).error().code, Errc::kNotFound);
+}
+
+TEST_F(DamagedAir, OldFilesAreNotTakenOverWhereAllIsBakedAgain) {
+  const std::string before = read(air_file_);
+  const auto long_ago = std::filesystem::last_write_time(air_file_) - std::chrono::hours(1);
+  std::filesystem::last_write_time(air_file_, long_ago);
+  Context context;
+  BakeConfig config{.cell = 0.1, .air = 0.4, .zone = 6.4, .classes = flyers()};
+  ASSERT_TRUE(bake_world_to(path_, litter(2), config, context));
+  EXPECT_EQ(std::filesystem::last_write_time(air_file_), long_ago);
+  config.old_zones = OldZones::kBakeAgain;
+  ASSERT_TRUE(bake_world_to(path_, litter(2), config, context));
+  EXPECT_NE(std::filesystem::last_write_time(air_file_), long_ago);
+  EXPECT_EQ(read(air_file_), before);
+}
+
+// Two zones, of which the farther one grows to the side, within the last tile of both.
+TEST_F(DamagedAir, IsBakedAgainWhereTheWorldEndsElsewhere) {
+  const BakeConfig config{.cell = 0.1, .air = 0.4, .zone = 6.4, .classes = flyers()};
+  Scene scene;
+  scene.add_box({0, 0, 0}, {3, 0.2, 12});
+  Context context;
+  ASSERT_TRUE(bake_world_to(path_, scene, config, context));
+  scene.add_box({3, 0, 11}, {5, 0.2, 12});
+  ASSERT_TRUE(bake_world_to(path_, scene, config, context));
+  const std::string fresh = folder_.path() + "/fresh";
+  ASSERT_TRUE(bake_world_to(fresh, scene, config, context));
+  for (const char* file : {"/zone_0_0.tha", "/zone_0_1.tha"}) {
+    ASSERT_FALSE(read(fresh + file).empty());
+    EXPECT_EQ(read(path_ + file), read(fresh + file)) << file;
+  }
+}
+
+// Whoever only walks needs none of them.
+TEST_F(DamagedAir, DoesNotConcernTheGround) {
+  write(air_file_, read(air_file_).substr(0, 100));
+  const auto world = World::open(path_);
+  ASSERT_TRUE(world);
+  EXPECT_TRUE(world->check_ground());
+  EXPECT_FALSE(world->check_all());
+  Context context;
+  EXPECT_TRUE(PathFinder::make(*world, {}, context));
+  EXPECT_EQ(FlightFinder::make(*world, {}, context).error().code, Errc::kBadFile);
 }
 
 TEST_F(DamagedAir, FilesAreRefusedByName) {
@@ -344,6 +396,13 @@ TEST(Air, ForgedTreesAreRefused) {
   EXPECT_TRUE(refused(tree));
   tree.side = 16;
   tree.roots = 2;
+  EXPECT_TRUE(refused(tree));
+  // Heights must fit 32 bits.
+  tree = {.side = AirTree::kMostSide, .base = 0, .roots = 256, .nodes = {}, .leaves = {}};
+  tree.nodes.assign(tree.roots, air_word(AirKind::kFree, 0));
+  EXPECT_FALSE(refused(tree));
+  tree.roots = 1 << 17;
+  tree.nodes.assign(tree.roots, air_word(AirKind::kFree, 0));
   EXPECT_TRUE(refused(tree));
 }
 

@@ -60,7 +60,8 @@ Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
                 .flies = 1,
                 .points = true};
   air->fit(*world);
-  AirRows rows(air->zone_side, (cells.height + 3) & -4, air->zone_side, true);
+  // Whole blocks and words of the map, not of the zone around it: that is square.
+  AirRows rows((cells.width + 63) & -64, (cells.height + 3) & -4, (cells.depth + 3) & -4, true);
   for (const VoxelCells::Cube& c : cells.filled) rows.fill(c.x, c.x + 1, c.y, c.z, false);
   const AirTreeSource source{.rows = &rows,
                              .x = 0,

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "throng/verify.h"
+#include "verify/claims.h"
 #include "verify/cylinder.h"
 #include "verify/triangle_tree.h"
 
@@ -20,6 +21,7 @@ namespace {
 using verify::Cylinder;
 
 constexpr uint64_t kMostFaults = 8;
+constexpr uint64_t kBatch = 4096;
 constexpr uint64_t kPairsSalt = 0x7061697273;
 constexpr double kReach = 0.05;  // of the feet of a place on the ground [m]
 
@@ -90,7 +92,7 @@ class Judge {
 Result<FlightReport> verify_flight(const World& world, const Scene& source,
                                    const VerifyConfig& config, Context& context) {
   const auto start = std::chrono::steady_clock::now();
-  if (source.triangles.empty()) return Error{Errc::kBadInput, "verify: the scene has no triangles"};
+  if (auto sound = verify::check_source(source, config); !sound) return sound.error();
   auto finder = FlightFinder::make(
       world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
   if (!finder) return finder.error();
@@ -101,7 +103,6 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
   FlightReport report;
   report.points = config.samples;
   report.pairs = config.samples / 10;
-  std::vector<Record> records(static_cast<size_t>(report.points + report.pairs));
   struct Worker {
     FlightFinder finder;
     FlightPath path;
@@ -119,29 +120,36 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
     }
     return from.random_point(config.seed ^ kPairsSalt, 2 * n + which);
   };
-  parallel_for_worker(records.size(), config.workers, [&](size_t i, int32_t w) {
-    if (context.cancel) return;
-    Worker& worker = *workers[static_cast<size_t>(w)];
+  const auto judge_one = [&](uint64_t i, Worker& worker, Record& record) {
     if (i < report.points) {
       const auto point = worker.finder.random_point(config.seed, i);
-      if (point) judge.judge_point(*point, records[i]);
+      if (point) judge.judge_point(*point, record);
       return;
     }
     const uint64_t n = i - report.points;
     const auto from = end_of(worker.finder, n, 0), to = end_of(worker.finder, n, 1);
     if (!from || !to) return;
     worker.finder.find({.from = *from, .to = *to, .reach = kReach}, worker.path);
-    records[i].reached = worker.path.end == PathEnd::kReached;
-    if (records[i].reached) judge.judge_path(worker.path, records[i]);
-  });
-  if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
-  for (const Record& record : records) {
-    report.reached += record.reached ? 1 : 0;
-    report.legs += record.legs;
-    report.positions += record.positions;
-    report.entered += record.entered;
-    if (record.entered > 0 && report.faults.size() < kMostFaults) {
-      report.faults.push_back({"entered", record.at, record.triangle});
+    record.reached = worker.path.end == PathEnd::kReached;
+    if (record.reached) judge.judge_path(worker.path, record);
+  };
+  const uint64_t all = report.points + report.pairs;
+  std::vector<Record> records;
+  for (uint64_t begin = 0; begin < all; begin += kBatch) {
+    if (context.on_progress) context.on_progress({"verify", begin, all});
+    records.assign(std::min(kBatch, all - begin), {});
+    parallel_for_worker(records.size(), config.workers, [&](size_t i, int32_t w) {
+      if (!context.cancel) judge_one(begin + i, *workers[static_cast<size_t>(w)], records[i]);
+    });
+    if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
+    for (const Record& record : records) {
+      report.reached += record.reached ? 1 : 0;
+      report.legs += record.legs;
+      report.positions += record.positions;
+      report.entered += record.entered;
+      if (record.entered > 0 && report.faults.size() < kMostFaults) {
+        report.faults.push_back({"entered", record.at, record.triangle});
+      }
     }
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

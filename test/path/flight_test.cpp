@@ -199,9 +199,14 @@ TEST(Flight, TheOracleSeesAWallThatTheBakeDidNot) {
   Scene scene = two_floors();
   const World world = bake(scene);
   scene.add_box({12, -3, -1}, {24, 12, 9});
-  const auto report = verify_flight(world, scene, {.samples = 500}, context);
+  const auto report = verify_flight(world, scene, {.samples = 5000}, context);
   ASSERT_TRUE(report) << report.error().message;
-  EXPECT_GT(report->entered, 20u);
+  EXPECT_EQ(report->points, 5000u);
+  EXPECT_GT(report->entered, 200u);
+  EXPECT_EQ(verify_flight(world, scene, {.samples = 0}, context).error().code, Errc::kBadConfig);
+  scene.triangles.push_back({0, 1, 4'000'000'000});
+  scene.area.push_back(kAreaWalkable);
+  EXPECT_EQ(verify_flight(world, scene, {.samples = 50}, context).error().code, Errc::kBadInput);
 }
 
 VoxelCells random_voxels(uint64_t seed, uint64_t percent) {
@@ -272,6 +277,8 @@ TEST(VoxelCells, MapsThatDoNotFitAreRefused) {
   cells.filled.clear();
   EXPECT_EQ(bake_voxel_cells(cells, 0).error().code, Errc::kBadConfig);
   EXPECT_TRUE(bake_voxel_cells(cells, 1));
+  // The whole box is at most 500 MB of bits, whatever its shape: a plate takes 8.
+  EXPECT_TRUE(bake_voxel_cells({.width = 4096, .height = 4096, .depth = 1, .filled = {}}, 1));
 }
 
 }  // namespace

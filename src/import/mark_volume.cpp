@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "import/raw_scene.h"
 #include "throng/scene.h"
 
 // Cuts triangles at the sides of a prism, one plane after the other (Sutherland and Hodgman, 1974,
@@ -44,7 +45,10 @@ std::vector<Plane> planes_of(const Prism& prism) {
 class Cutter {
  public:
   Cutter(Scene& scene, const AreaVolume& volume)
-      : scene_(scene), kind_(volume.kind), planes_(planes_of(volume.prism)) {
+      : scene_(scene),
+        kind_(volume.kind),
+        planes_(planes_of(volume.prism)),
+        vertices_(scene.positions.size()) {
     for (const auto& corner : volume.prism.corners) {
       box_.add({corner[0], volume.prism.low, corner[1]});
       box_.add({corner[0], volume.prism.high, corner[1]});
@@ -52,16 +56,18 @@ class Cutter {
   }
 
   void cut() {
+    uint32_t done = 0;
+    const auto cut_until = [&](uint32_t end) {
+      while (done < end) cut(done++);
+    };
     for (ScenePart& part : scene_.parts) {
+      cut_until(part.first_triangle);  // what no part names
       const auto first = static_cast<uint32_t>(triangles_.size());
-      for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
-        cut(t);
+      cut_until(part.first_triangle + part.triangle_count);
       part.first_triangle = first;
       part.triangle_count = static_cast<uint32_t>(triangles_.size()) - first;
     }
-    if (scene_.parts.empty()) {
-      for (uint32_t t = 0; t < scene_.triangles.size(); ++t) cut(t);
-    }
+    cut_until(static_cast<uint32_t>(scene_.triangles.size()));
     scene_.triangles = std::move(triangles_);
     scene_.area = std::move(area_);
     if (!scene_.patch_of_triangle.empty()) scene_.patch_of_triangle = std::move(patch_);
@@ -82,6 +88,7 @@ class Cutter {
 
   void cut(uint32_t t) {
     const std::array<uint32_t, 3>& corners = scene_.triangles[t];
+    if (!is_sound(corners)) return keep_broken(t);
     Box3d box;
     for (const uint32_t c : corners) box.add(scene_.positions[c]);
     const bool apart = box.min.x > box_.max.x || box.max.x < box_.min.x || box.min.y > box_.max.y ||
@@ -102,6 +109,23 @@ class Cutter {
     } else {
       keep(inside, t, kind_);
     }
+  }
+
+  [[nodiscard]] bool is_sound(const std::array<uint32_t, 3>& corners) const {
+    return std::all_of(corners.begin(), corners.end(), [&](uint32_t c) {
+      if (c >= vertices_) return false;
+      const Vec3d& p = scene_.positions[c];
+      return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    });
+  }
+  // Volumes come before clean_scene, which counts and drops such a triangle. Its missing corners
+  // must not become those that cuts add.
+  void keep_broken(uint32_t t) {
+    std::array<uint32_t, 3> corners = scene_.triangles[t];
+    for (uint32_t& c : corners) {
+      if (c >= vertices_) c = kNoVertex;
+    }
+    keep(corners[0], corners[1], corners[2], t, scene_.area[t]);
   }
 
   // A polygon of which no corner lies off the plane on one side is not cut.
@@ -143,6 +167,7 @@ class Cutter {
   Scene& scene_;
   AreaKind kind_;
   std::vector<Plane> planes_;
+  size_t vertices_;  // before any cut
   Box3d box_;
   std::map<std::array<uint32_t, 3>, uint32_t> crossings_;
   std::vector<std::array<uint32_t, 3>> triangles_;

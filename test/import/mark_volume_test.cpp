@@ -130,6 +130,50 @@ TEST(MarkVolume, KeepsPartsTogether) {
   }
 }
 
+// Volumes come before broken triangles are dropped: those must come out of them as they were.
+TEST(MarkVolume, LeavesBrokenTrianglesToWhoeverCountsThem) {
+  Scene scene = worlds::flat(4);
+  const auto corners = static_cast<uint32_t>(scene.positions.size());
+  scene.positions.push_back({std::numeric_limits<double>::quiet_NaN(), 0, 1});
+  // The second names the first corner that a cut will add.
+  for (const uint32_t bad : {corners, corners + 1, UINT32_MAX}) {
+    scene.triangles.push_back({0, 1, bad});
+    scene.area.push_back(kAreaWalkable);
+  }
+  for (const double x : {1.0, 2.0}) {
+    ASSERT_TRUE(mark_volume(scene, {Prism::box({x, -1, 1}, {x + 0.5, 1, 3}), 7}));
+  }
+  EXPECT_GT(std::count(scene.area.begin(), scene.area.end(), 7), 0);
+  size_t missing = 0, not_finite = 0;
+  for (const auto& triangle : scene.triangles) {
+    for (const uint32_t corner : triangle) {
+      missing += corner >= scene.positions.size();
+      not_finite += corner < scene.positions.size() && std::isnan(scene.positions[corner].x);
+    }
+  }
+  EXPECT_EQ(missing, 2u);
+  EXPECT_EQ(not_finite, 1u);
+}
+
+TEST(MarkVolume, KeepsTrianglesThatNoPartNames) {
+  Scene scene = worlds::flat(4);
+  const auto first = static_cast<uint32_t>(scene.triangles.size());
+  scene.add_box({1, 0, 1}, {2, 1, 2});
+  const auto last = static_cast<uint32_t>(scene.triangles.size());
+  scene.add_box({3, 0, 3}, {3.5, 1, 3.5});
+  scene.parts = {{.file = "f",
+                  .node = "box",
+                  .material = "",
+                  .first_triangle = first,
+                  .triangle_count = last - first}};
+  const auto before = scene.triangles.size();
+  ASSERT_TRUE(mark_volume(scene, {Prism::box({8, 0, 8}, {9, 1, 9}), 3}));  // beside all
+  EXPECT_EQ(scene.triangles.size(), before);
+  ASSERT_EQ(scene.parts.size(), 1u);
+  EXPECT_EQ(scene.parts[0].first_triangle, first);
+  EXPECT_EQ(scene.parts[0].triangle_count, last - first);
+}
+
 TEST(MarkVolume, RefusesNonsense) {
   Scene scene = worlds::flat(4);
   EXPECT_FALSE(mark_volume(scene, {Prism{}, 3}));

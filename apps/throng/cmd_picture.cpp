@@ -50,11 +50,10 @@ Result<std::vector<Vec3d>> read_path(const std::string& name) {
   return points;
 }
 
-Result<Image> draw_all_nodes(const World& world, PictureOptions& options) {
+Result<Image> draw_all_nodes(PictureOptions& options) {
   const Result<Nodes> nodes = Nodes::open(options.world);
   if (!nodes) return nodes.error();
   NodePictureConfig& config = options.node_config;
-  config.world = world;
   config.width = options.config.width;
   config.storey = options.config.storey;
   config.title = options.config.title;
@@ -104,7 +103,7 @@ int picture(Session& session, PictureOptions& options) {
     return fail({Errc::kBadConfig, "--links, --area and --path draw nodes: add --nodes"});
   }
   const Result<Image> image =
-      options.nodes ? draw_all_nodes(*world, options) : draw_world(*world, avatars, options.config);
+      options.nodes ? draw_all_nodes(options) : draw_world(*world, avatars, options.config);
   if (!image) return fail(image.error());
   if (auto done = write_png(*image, options.output); !done) return fail(done.error());
   print_result(session,

@@ -34,7 +34,6 @@ struct NodePictureConfig {
   int32_t width = 1600;  ///< Of the whole picture. [px, 200 to 16000]
   bool links = false;
   int32_t storey = -1;      ///< Only level tiles of this storey, or all nodes (-1).
-  World world;              ///< Tells storeys apart; needed only for `storey`.
   Box3d area;               ///< Only nodes whose middle lies in its x and z; empty: all. [m]
   std::vector<Vec3d> path;  ///< A way to draw over them.
   std::string title;

@@ -13,6 +13,7 @@
 #include "render/text.h"
 #include "throng/nodes.h"
 #include "throng/picture.h"
+#include "world/node_data.h"
 
 // Nodes as surfaces seen at a slant from the south, as in the last figures of [PACS00]: every
 // sub-patch in the colour of its inclination, smaller nodes over the larger ones that hold them,
@@ -101,6 +102,7 @@ class DepthCanvas {
   }
 
   void line(Seen a, Seen b, double thick, Rgb colour) {
+    if (!clip(a, b, thick)) return;
     const double length = std::hypot(b.x - a.x, b.y - a.y);
     const int32_t steps = static_cast<int32_t>(std::min(20000.0, std::ceil(length / 0.7))) + 1;
     const auto half = static_cast<int32_t>(std::max(0.0, thick / 2 - 0.25));
@@ -119,6 +121,31 @@ class DepthCanvas {
   [[nodiscard]] const Canvas& canvas() const { return canvas_; }
 
  private:
+  // Cuts a line to the picture and a rim around it; false if nothing is left. Ends far off it would
+  // not fit whole pixels.
+  [[nodiscard]] bool clip(Seen& a, Seen& b, double rim) const {
+    double first = 0, last = 1;
+    const auto keep_within = [&](double from, double to, double size) {
+      const double low = -rim - 1 - from, high = size + rim + 1 - from, way = to - from;
+      if (way == 0) {
+        if (low > 0 || high < 0) last = -1;
+        return;
+      }
+      first = std::max(first, (way > 0 ? low : high) / way);
+      last = std::min(last, (way > 0 ? high : low) / way);
+    };
+    keep_within(a.x, b.x, canvas_.width());
+    keep_within(a.y, b.y, canvas_.height());
+    const bool finite = std::isfinite(a.x + a.y + b.x + b.y);
+    if (!finite || !(first <= last)) return false;
+    const Seen from = a, way{b.x - a.x, b.y - a.y, b.depth - a.depth};
+    const auto at = [&](double t) {
+      return Seen{from.x + t * way.x, from.y + t * way.y, from.depth + t * way.depth};
+    };
+    if (first > 0) a = at(first);
+    if (last < 1) b = at(last);
+    return true;
+  }
   void put(int32_t x, int32_t y, double depth, Rgb colour) {
     if (x < 0 || y < 0 || x >= canvas_.width() || y >= canvas_.height()) return;
     float& there = depth_[static_cast<size_t>(y) * static_cast<size_t>(canvas_.width()) +
@@ -136,7 +163,7 @@ class NodePicture {
  public:
   NodePicture(const Nodes& nodes, const NodePictureConfig& config)
       : nodes_(nodes), config_(config), summary_(nodes.summary()) {
-    if (config.storey >= 0) storeys_ = config.world.storeys();
+    if (config.storey >= 0) storeys_ = nodes.data()->world.storeys();
   }
 
   Result<Image> draw() {
@@ -161,15 +188,18 @@ class NodePicture {
   }
 
  private:
+  // Is a node on the storey asked for?
+  [[nodiscard]] bool on_storey(const NodeInfo& info) const {
+    return config_.storey < 0 ||
+           (info.kind == PatchKind::kLevelTile && storeys_[info.source] == config_.storey);
+  }
+
   // Nodes to draw, in order; the widest view of them.
   void choose() {
     const bool whole = config_.area.max.x <= config_.area.min.x;
     for (uint32_t n = 0; n < nodes_.node_count(); ++n) {
       const NodeInfo info = nodes_.node(n);
-      if (!storeys_.empty() &&
-          (info.kind != PatchKind::kLevelTile || storeys_[info.source] != config_.storey)) {
-        continue;
-      }
+      if (!on_storey(info)) continue;
       const auto corners = nodes_.corners(n);
       Box3d box;
       for (const Vec3d& c : corners) box.add(c);
@@ -281,7 +311,7 @@ class NodePicture {
     for (const NodeArc& arc : nodes_.arcs(node)) {
       if (arc.to < node) continue;
       const NodeInfo other = nodes_.node(arc.to);
-      if (!storeys_.empty() && storeys_[other.source] != config_.storey) continue;
+      if (!on_storey(other)) continue;
       // Large nodes that hold smaller ones would only add lines across them.
       if (!arc.leaps && (!info.terminal || !other.terminal)) continue;
       const double steepest =

@@ -13,7 +13,7 @@ namespace throng {
 namespace {
 
 // Two storeys of 40 x 20 m, 3 m apart, and a ramp between them along the middle.
-World two_storeys() {
+Scene two_storeys_scene() {
   Scene scene;
   const auto sheet = [&](double x0, double z0, double x1, double z1, double y0, double y1) {
     scene.add_quad({x0, y0, z0}, {x0, y0, z1}, {x1, y1, z1}, {x1, y1, z0});
@@ -23,8 +23,11 @@ World two_storeys() {
   sheet(0, 12, 40, 20, 3, 3);
   sheet(28, 8, 40, 12, 3, 3);
   sheet(10, 8, 28, 12, 0, 3);
+  return scene;
+}
+World two_storeys() {
   Context context;
-  auto world = bake_world(scene, {}, context);
+  auto world = bake_world(two_storeys_scene(), {}, context);
   EXPECT_TRUE(world) << world.error().message;
   return *world;
 }
@@ -45,6 +48,29 @@ TEST(Storeys, AFloorStaysOneStoreyAlthoughARampLeadsToTheNext) {
   ASSERT_EQ(cells.size(), 2u) << "one height in each of two storeys";
   EXPECT_EQ(cells.begin()->first, (std::pair{0, 0}));
   EXPECT_EQ(cells.rbegin()->first, (std::pair{1, 3000}));
+}
+
+TEST(NodePicture, DrawsNodesAndAWayFromFarBeyondThem) {
+  Context context;
+  const auto nodes = Nodes::make(two_storeys(), two_storeys_scene(), {}, context);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  NodePictureConfig config{.width = 600, .links = true, .area = {}, .path = {}, .title = ""};
+  const auto all = draw_nodes(*nodes, config);
+  ASSERT_TRUE(all) << all.error().message;
+  config.path = {{-1e13, 1, 10}, {1e13, 1, 10}};
+  const auto with_way = draw_nodes(*nodes, config);
+  ASSERT_TRUE(with_way);
+  ASSERT_EQ(with_way->rgb.size(), all->rgb.size());
+  size_t changed = 0;
+  for (size_t i = 0; i < all->rgb.size(); i += 3) changed += with_way->rgb[i] != all->rgb[i];
+  EXPECT_GT(changed, 1000u);  // from side to side
+  config.path.clear();
+  config.storey = 1;
+  const auto upper = draw_nodes(*nodes, config);
+  ASSERT_TRUE(upper) << upper.error().message;
+  EXPECT_NE(upper->rgb, all->rgb);
+  config.storey = 7;
+  EXPECT_EQ(draw_nodes(*nodes, config).error().code, Errc::kNotFound);
 }
 
 TEST(Picture, DrawsABakedWorldForEachClass) {

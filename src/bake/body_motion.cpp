@@ -79,6 +79,8 @@ bool MotionJudge::is_carried(Vec3d from, Vec3d to, double reach, double spacing)
   box.max.y += reach;
   found_.clear();
   triangles_->find(box, found_);
+  const Scene& scene = triangles_->scene();
+  std::erase_if(found_, [&](uint32_t triangle) { return scene.area[triangle] == kAreaBlocked; });
   const int steps = static_cast<int>(std::ceil(length(to - from) / spacing)) + 1;
   if (steps > kMostSteps) return false;
   for (int k = 0; k <= steps; ++k) {

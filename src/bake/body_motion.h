@@ -22,8 +22,8 @@ class MotionJudge {
   /// is grown by as far as any of its points moves.
   [[nodiscard]] bool is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to);
 
-  /// True if there is a surface within `reach` above or below the straight line between two points,
-  /// everywhere up to `spacing`.
+  /// True if there is a surface that is not blocked within `reach` above or below the straight line
+  /// between two points, everywhere up to `spacing`.
   [[nodiscard]] bool is_carried(Vec3d from, Vec3d to, double reach, double spacing);
 
  private:

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include "core/parallel.h"
 #include "graph/patch_pairs.h"
@@ -42,20 +41,7 @@ bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const
 std::vector<CellPair> merged(std::vector<std::vector<CellPair>>& lists) {
   std::vector<CellPair> all;
   for (auto& list : lists) all.insert(all.end(), list.begin(), list.end());
-  const auto place = [](const CellPair& p) {
-    return std::tuple(p.patch_a, p.cell_a, p.patch_b, p.cell_b);
-  };
-  std::sort(all.begin(), all.end(),
-            [&](const CellPair& p, const CellPair& q) { return place(p) < place(q); });
-  size_t kept = 0;
-  for (const CellPair& pair : all) {
-    if (kept > 0 && place(all[kept - 1]) == place(pair)) {
-      all[kept - 1].classes |= pair.classes;
-    } else {
-      all[kept++] = pair;
-    }
-  }
-  all.resize(kept);
+  merge_cell_pairs(all);
   return all;
 }
 

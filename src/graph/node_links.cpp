@@ -137,6 +137,23 @@ std::vector<NodeLink> NodeLinker::take() {
   return std::move(links_);
 }
 
+void merge_cell_pairs(std::vector<CellPair>& pairs) {
+  const auto key = [](const CellPair& p) {
+    return std::tie(p.patch_a, p.cell_a, p.patch_b, p.cell_b, p.side_a, p.side_b);
+  };
+  std::sort(pairs.begin(), pairs.end(),
+            [&](const CellPair& p, const CellPair& q) { return key(p) < key(q); });
+  size_t kept = 0;
+  for (const CellPair& pair : pairs) {
+    if (kept > 0 && key(pairs[kept - 1]) == key(pair)) {
+      pairs[kept - 1].classes |= pair.classes;
+    } else {
+      pairs[kept++] = pair;
+    }
+  }
+  pairs.resize(kept);
+}
+
 void merge_node_links(std::vector<NodeLink>& links) {
   std::sort(links.begin(), links.end(), [](const NodeLink& p, const NodeLink& q) {
     return std::tie(p.a, p.b, p.kind, p.leap1) < std::tie(q.a, q.b, q.kind, q.leap1);

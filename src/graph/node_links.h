@@ -80,6 +80,9 @@ class NodeLinker {
   bool one_way_ = false;
 };
 
+/// Sorts pairs and makes one of those that name the same cells and sides, for all their classes.
+void merge_cell_pairs(std::vector<CellPair>& pairs);
+
 /// Merges and sorts links.
 void merge_node_links(std::vector<NodeLink>& links);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <tuple>
 #include <utility>
 
 #include "graph/ground_parts.h"
@@ -168,21 +167,7 @@ class PairFinder {
 
 std::vector<CellPair> tile_pairs(const WorldData& world, int32_t tile_x, int32_t tile_z) {
   std::vector<CellPair> pairs = PairFinder(world, tile_x, tile_z).find();
-  // One pair for all its classes.
-  const auto place = [](const CellPair& p) {
-    return std::tuple(p.patch_a, p.cell_a, p.patch_b, p.cell_b);
-  };
-  std::sort(pairs.begin(), pairs.end(),
-            [&](const CellPair& p, const CellPair& q) { return place(p) < place(q); });
-  size_t kept = 0;
-  for (const CellPair& pair : pairs) {
-    if (kept > 0 && place(pairs[kept - 1]) == place(pair)) {
-      pairs[kept - 1].classes |= pair.classes;
-    } else {
-      pairs[kept++] = pair;
-    }
-  }
-  pairs.resize(kept);
+  merge_cell_pairs(pairs);  // one for all its classes
   return pairs;
 }
 

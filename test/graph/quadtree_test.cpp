@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -205,6 +206,30 @@ TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
     }
   }
   EXPECT_GT(tested, 40000u);
+}
+
+TEST(NodeLinks, PairsOfTheSameCellsAndSidesAreOneInAnyOrder) {
+  const auto pair = [](uint32_t cell_b, uint16_t classes, uint8_t side_a) {
+    return CellPair{.patch_a = 1,
+                    .cell_a = 5,
+                    .patch_b = 2,
+                    .cell_b = cell_b,
+                    .classes = classes,
+                    .side_a = side_a};
+  };
+  const std::vector<CellPair> given{pair(7, 1, 2), pair(7, 2, 3), pair(6, 8, 2), pair(7, 4, 2)};
+  std::vector<size_t> order{0, 1, 2, 3};
+  do {
+    std::vector<CellPair> pairs;
+    for (const size_t i : order) pairs.push_back(given[i]);
+    merge_cell_pairs(pairs);
+    ASSERT_EQ(pairs.size(), 3u);
+    EXPECT_EQ(pairs[0].cell_b, 6u);
+    EXPECT_EQ(pairs[1].side_a, 2);
+    EXPECT_EQ(pairs[1].classes, 5);
+    EXPECT_EQ(pairs[2].side_a, 3);
+    EXPECT_EQ(pairs[2].classes, 2);
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST(NodeLinks, LinkTheLargestThatIsNoMoreRestrictive) {

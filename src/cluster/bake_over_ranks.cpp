@@ -7,7 +7,9 @@
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <new>
 #include <numeric>
+#include <optional>
 #include <thread>
 #include <type_traits>
 
@@ -87,12 +89,15 @@ Error told_to_stop(const Ranks& ranks, const std::string& path, const std::strin
               " goes on from there"};
 }
 
-// Bakes one zone and writes its file.
+// Bakes one zone and writes its file. `scratch` is made for the first. What does not fit in memory
+// is an error like any other: ranks would wait for ever for one that has only stopped.
 Result<ZoneFacts> bake_and_write(const WorldBake& bake, const std::string& path, size_t zone,
-                                 ZoneScratch& scratch, Context& context) {
+                                 int32_t workers, std::optional<ZoneScratch>& scratch,
+                                 Context& context) try {
+  if (!scratch) scratch.emplace(workers);
   ZoneFacts facts;
   flatbuffers::DetachedBuffer bytes;
-  if (!bake.bake(zone, scratch, context, facts, bytes)) {
+  if (!bake.bake(zone, *scratch, context, facts, bytes)) {
     return Error{Errc::kCancelled, "bake: cancelled"};
   }
   const auto start = Clock::now();
@@ -101,6 +106,8 @@ Result<ZoneFacts> bake_and_write(const WorldBake& bake, const std::string& path,
   }
   facts.seconds_write = seconds_since(start);
   return facts;
+} catch (const std::bad_alloc&) {
+  return Error{Errc::kLimit, "bake: out of memory; use smaller zones or fewer ranks a machine"};
 }
 
 // Rank 0.
@@ -165,11 +172,11 @@ std::optional<uint64_t> Coordinator::next_zone() {
 }
 
 void Coordinator::bake_beside(int32_t workers) {
-  ZoneScratch scratch(workers);
+  std::optional<ZoneScratch> scratch;
   while (!own_context_.cancel) {
     const auto zone = next_zone();
     if (!zone) return;
-    auto facts = bake_and_write(bake_, path_, *zone, scratch, own_context_);
+    auto facts = bake_and_write(bake_, path_, *zone, workers, scratch, own_context_);
     const std::lock_guard lock(mutex_);
     if (!facts) {
       own_error_ = facts.error();
@@ -248,7 +255,7 @@ Result<std::vector<ZoneFacts>> Coordinator::run(int32_t workers) {
 // All others: bake what rank 0 says, until it says no more.
 Result<void> work(Ranks& ranks, const WorldBake& bake, const std::string& path, int32_t workers,
                   Context& context) {
-  ZoneScratch scratch(workers);
+  std::optional<ZoneScratch> scratch;
   ranks.send(0, kFree, {});
   while (true) {
     const auto message = ranks.poll();
@@ -262,7 +269,8 @@ Result<void> work(Ranks& ranks, const WorldBake& bake, const std::string& path, 
     }
     if (message->tag == kNoMore) return {};
     const auto zone = value_of<uint64_t>(*message);
-    const auto facts = bake_and_write(bake, path, static_cast<size_t>(zone), scratch, context);
+    const auto facts =
+        bake_and_write(bake, path, static_cast<size_t>(zone), workers, scratch, context);
     if (facts) {
       ranks.send(0, kDone, bytes_of(Finished{zone, *facts}));
     } else if (!context.cancel) {

@@ -12,6 +12,27 @@ constexpr double kShorter = 1e-9;
 // What is left counts a little more than what is behind: among ways that are nearly as short, the
 // one that is nearly there is followed. It costs 0.02 % of length and spares three boxes of four.
 constexpr double kHaste = 1.02;
+constexpr double kLargeHaste = 1.1;  // through large boxes
+
+// Over hills and roofs most boxes are those of a cell or two along them, and most of those that a
+// search looks at are of no use. So ends that are far apart are first looked for through boxes that
+// are the larger the farther they are from both ends. What that finds is taken if it is hardly
+// longer than the straight line; else it waits for what a search through all boxes finds within a
+// budget. Pulling takes the way to the edges of what is in between in any case.
+constexpr double kFar = 256;            // ends so many cells apart
+constexpr double kHardlyLonger = 1.05;  // before it is pulled taut
+constexpr uint64_t kBudget = 1u << 17;  // boxes
+struct Ring {
+  double within;  // cells from an end
+  int32_t least;  // cells a side of a box
+};
+constexpr Ring kRings[] = {{64, 1}, {256, 4}, {1024, 8}, {HUGE_VAL, 16}};
+
+double length_of(const std::vector<AirPoint>& way) {
+  double sum = 0;
+  for (size_t i = 1; i < way.size(); ++i) sum += air_distance(way[i - 1], way[i]);
+  return sum;
+}
 
 double axis_of(AirPoint p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -65,6 +86,7 @@ SearchResult FlightSearch::find(const FlightSpace& space, AirPoint from, AirPoin
                                 uint64_t max_nodes, const std::atomic<bool>* cancel,
                                 std::vector<AirPoint>& way) {
   space_ = &space;
+  start_ = from;
   goal_ = to;
   expanded_ = 0;
   way.clear();
@@ -75,14 +97,51 @@ SearchResult FlightSearch::find(const FlightSpace& space, AirPoint from, AirPoin
     way = {from, to};
     return SearchResult::kFound;
   }
-  if (marks_.size() != space.boxes.size()) marks_.assign(space.boxes.size(), {});
+  const double straight = air_distance(from, to);
+  if (straight <= kFar) {
+    large_ = false;
+    return search(from, start, max_nodes, cancel, way);
+  }
+  large_ = true;
+  large_way_.clear();
+  const SearchResult large = search(from, start, max_nodes, cancel, large_way_);
+  if (large == SearchResult::kBudget) return large;
+  const bool found = large == SearchResult::kFound;
+  const double length = length_of(large_way_);
+  if (!found || length > kHardlyLonger * straight) {
+    large_ = false;
+    const uint64_t left = max_nodes - expanded_;
+    const SearchResult all =
+        search(from, start, expanded_ + (found ? std::min(left, kBudget) : left), cancel, way);
+    if (!found || (all == SearchResult::kFound && length_of(way) <= length)) return all;
+  }
+  way = large_way_;
+  return SearchResult::kFound;
+}
+
+int32_t FlightSearch::least_around(const AirCube& box) const {
+  if (!large_) return 1;
+  const auto off = [&](AirPoint p) {
+    return std::max({box.x - p.x, p.x - (box.x + box.side), box.y - p.y, p.y - (box.y + box.side),
+                     box.z - p.z, p.z - (box.z + box.side)});
+  };
+  const double distance = std::min(off(start_), off(goal_));
+  const Ring* ring = kRings;
+  while (distance >= ring->within) ++ring;
+  return ring->least;
+}
+
+SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_nodes,
+                                  const std::atomic<bool>* cancel, std::vector<AirPoint>& way) {
+  if (marks_.size() != space_->boxes.size()) marks_.assign(space_->boxes.size(), {});
   if (++search_ == 0) {
-    marks_.assign(space.boxes.size(), {});
+    marks_.assign(space_->boxes.size(), {});
     search_ = 1;
   }
+  way.clear();
   nodes_.clear();
   open_.clear();
-  nodes_.push_back({from, 0, air_distance(from, to), start, 0, 0, false});
+  nodes_.push_back({from, 0, air_distance(from, goal_), start, 0, 0, false});
   marks_[start] = {search_, 0};
   push(0);
   while (!open_.empty()) {
@@ -94,7 +153,7 @@ SearchResult FlightSearch::find(const FlightSpace& space, AirPoint from, AirPoin
     if (++expanded_ > max_nodes) return SearchResult::kBudget;
     if (cancel != nullptr && (expanded_ & 255) == 0 && *cancel) return SearchResult::kBudget;
     // Seen from the bend after all? Else the way bends where it entered the box before.
-    if (node.parent != node.via && !space.sees(nodes_[node.parent].point, node.point)) {
+    if (node.parent != node.via && !space_->sees(nodes_[node.parent].point, node.point)) {
       node.parent = node.via;
       const Node& via = nodes_[node.via];
       const double longer = via.length + air_distance(via.point, node.point) - node.length;
@@ -134,7 +193,9 @@ void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& way) const {
 }
 
 void FlightSearch::open(uint32_t node) {
-  space_->for_neighbours(space_->boxes[nodes_[node].box], [&](uint32_t box) { reach(node, box); });
+  const AirCube& box = space_->boxes[nodes_[node].box];
+  space_->for_neighbours(
+      box, [&](uint32_t next) { reach(node, next); }, least_around(box));
 }
 
 void FlightSearch::reach(uint32_t from, uint32_t box) {
@@ -146,7 +207,7 @@ void FlightSearch::reach(uint32_t from, uint32_t box) {
   Node next;
   next.point = pass(space_->boxes[nodes_[from].box], space_->boxes[box], bend.point, goal_);
   next.length = bend.length + air_distance(bend.point, next.point);
-  next.estimate = next.length + kHaste * air_distance(next.point, goal_);
+  next.estimate = next.length + (large_ ? kLargeHaste : kHaste) * air_distance(next.point, goal_);
   next.box = box;
   next.parent = parent;
   next.via = from;

@@ -18,12 +18,16 @@ namespace throng {
 class FlightSearch {
  public:
   /// Bends of a way from `from` to `to`, ends included. Gives up after `max_nodes` boxes, or where
-  /// `cancel` (may be null) is set.
+  /// `cancel` (may be null) is set. Far ends are looked for
+  /// through large boxes first.
   SearchResult find(const FlightSpace& space, AirPoint from, AirPoint to, uint64_t max_nodes,
                     const std::atomic<bool>* cancel, std::vector<AirPoint>& way);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
+  SearchResult search(AirPoint from, uint32_t start, uint64_t max_nodes,
+                      const std::atomic<bool>* cancel, std::vector<AirPoint>& way);
+  [[nodiscard]] int32_t least_around(const AirCube& box) const;
   struct Node {
     AirPoint point;       // where the way enters the box
     double length = 0;    // to there
@@ -51,13 +55,15 @@ class FlightSearch {
   void push(uint32_t node);
 
   const FlightSpace* space_ = nullptr;
-  AirPoint goal_;
+  AirPoint start_, goal_;
+  bool large_ = false;  // only through boxes that are the larger the farther from both ends
   uint32_t goal_box_ = kNoBox;
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   std::vector<Node> nodes_;
   std::vector<Entry> open_;
-  std::vector<Mark> marks_;  // per box
+  std::vector<Mark> marks_;          // per box
+  std::vector<AirPoint> large_way_;  // through large boxes
 };
 
 }  // namespace throng

@@ -54,14 +54,15 @@ struct FlightSpace {
   }
   /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
-  /// Calls visit(box) for each box that shares a part of a face with this one.
+  /// Calls visit(box) for each box of at least `least` cells a side (1 or 4) that shares a part of
+  /// a face with this one.
   template <class Visit>
-  void for_neighbours(const AirCube& box, Visit&& visit) const;
+  void for_neighbours(const AirCube& box, Visit&& visit, int32_t least = 1) const;
   [[nodiscard]] uint64_t bytes() const;
 
  private:
   template <class Visit>
-  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side,
+  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t least,
                   Visit& visit) const;
 };
 
@@ -105,7 +106,7 @@ inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
 
 template <class Visit>
 void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side,
-                             Visit& visit) const {
+                             int32_t least, Visit& visit) const {
   const int32_t x = axis == 0 ? plane : u;
   const int32_t y = axis == 1 ? plane : axis == 0 ? u : v;
   const int32_t z = axis == 2 ? plane : v;
@@ -120,6 +121,7 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
     visit(air_number(place.word));
     return;
   }
+  if (kind == AirKind::kLeaf && least > 2) return;  // boxes of leaves have 1 or 2 cells a side
   if (kind == AirKind::kLeaf && side <= 2) {
     const uint32_t box = box_at(x, y, z);
     if (side == 1 || (box != kNoBox && boxes[box].side == 2)) {
@@ -127,22 +129,22 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
       return;
     }
   }
-  if (side == 1) return;
+  if (side <= least) return;
   const int32_t half = side / 2;
-  visit_face(axis, plane, u, v, half, visit);
-  visit_face(axis, plane, u + half, v, half, visit);
-  visit_face(axis, plane, u, v + half, half, visit);
-  visit_face(axis, plane, u + half, v + half, half, visit);
+  visit_face(axis, plane, u, v, half, least, visit);
+  visit_face(axis, plane, u + half, v, half, least, visit);
+  visit_face(axis, plane, u, v + half, half, least, visit);
+  visit_face(axis, plane, u + half, v + half, half, least, visit);
 }
 
 template <class Visit>
-void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit) const {
-  visit_face(0, box.x + box.side, box.y, box.z, box.side, visit);
-  visit_face(0, box.x - 1, box.y, box.z, box.side, visit);
-  visit_face(1, box.y + box.side, box.x, box.z, box.side, visit);
-  visit_face(1, box.y - 1, box.x, box.z, box.side, visit);
-  visit_face(2, box.z + box.side, box.x, box.y, box.side, visit);
-  visit_face(2, box.z - 1, box.x, box.y, box.side, visit);
+void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t least) const {
+  visit_face(0, box.x + box.side, box.y, box.z, box.side, least, visit);
+  visit_face(0, box.x - 1, box.y, box.z, box.side, least, visit);
+  visit_face(1, box.y + box.side, box.x, box.z, box.side, least, visit);
+  visit_face(1, box.y - 1, box.x, box.z, box.side, least, visit);
+  visit_face(2, box.z + box.side, box.x, box.y, box.side, least, visit);
+  visit_face(2, box.z - 1, box.x, box.y, box.side, least, visit);
 }
 
 }  // namespace throng

@@ -270,6 +270,52 @@ TEST(VoxelCells, WaysAreLegalAndNotMuchLongerThanBruteForceFinds) {
   EXPECT_LT(worst, 1.25);
 }
 
+// Walls across a long hall, each with a hole somewhere: of `least` voxels a side or a few more.
+VoxelCells hall_of_walls(uint64_t seed, int32_t least) {
+  VoxelCells cells{.width = 352, .height = 14, .depth = 32, .filled = {}};
+  for (int32_t x = 48; x < cells.width - 48; x += 64) {
+    const auto n = static_cast<uint64_t>(x);
+    const auto side = least + static_cast<int32_t>(random_below(seed, n, 0, 4));
+    const auto from = [&](uint64_t which, int32_t size) {
+      return static_cast<int32_t>(random_below(seed, n, which, static_cast<uint64_t>(size - side)));
+    };
+    const int32_t y0 = from(1, cells.height), z0 = from(2, cells.depth);
+    for (int32_t y = 0; y < cells.height; ++y) {
+      for (int32_t z = 0; z < cells.depth; ++z) {
+        const bool hole = y >= y0 && y < y0 + side && z >= z0 && z < z0 + side;
+        if (!hole) cells.filled.push_back({x, y, z});
+      }
+    }
+  }
+  return cells;
+}
+
+TEST(VoxelCells, FarEndsAreFoundThroughLargeBoxesOrAroundThem) {
+  // Holes that only boxes of one or two voxels fit through, and holes for larger ones.
+  for (const int32_t least : {1, 9}) {
+    double ratios = 0;
+    for (uint64_t seed = 0; seed < 3; ++seed) {
+      const VoxelCells cells = hall_of_walls(seed, least);
+      const auto world = bake_voxel_cells(cells, 1);
+      ASSERT_TRUE(world) << world.error().message;
+      FlightFinder flight = finder(*world);
+      const test::VoxelOracle oracle(cells);
+      FlightPath path;
+      flight.find({.from = {3.5, 2.5, 28.5}, .to = {340.5, 12.5, 4.5}}, path);
+      ASSERT_EQ(path.end, PathEnd::kReached);
+      for (size_t i = 1; i < path.points.size(); ++i) {
+        ASSERT_TRUE(oracle.is_clear(path.points[i - 1], path.points[i])) << seed;
+      }
+      const auto best =
+          oracle.shortest(test::middle(3, 2, 28), test::middle(340, 12, 4), 2000, 100000);
+      ASSERT_TRUE(best.length);
+      EXPECT_LT(path.length, 1.05 * *best.length) << seed << ", holes of " << least;
+      ratios += path.length / *best.length;
+    }
+    EXPECT_LT(ratios / 3, 1.02) << least;
+  }
+}
+
 TEST(VoxelCells, MapsThatDoNotFitAreRefused) {
   EXPECT_EQ(bake_voxel_cells({}, 1).error().code, Errc::kBadInput);
   VoxelCells cells{.width = 4, .height = 4, .depth = 4, .filled = {{4, 0, 0}}};

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/picture.h"
+#include "throng/result.h"
+
+/// Line charts as pictures, for tables of results.
+namespace throng {
+
+enum class LineKind : uint8_t {
+  kFaint,   ///< Thin and grey: one of many.
+  kPlain,   ///< In a colour of its own.
+  kStrong,  ///< Twice as thick.
+  kDashed,  ///< A bound or what somebody else found.
+};
+
+struct ChartLine {
+  std::string name;            ///< In the legend; lines without one are left out of it.
+  std::vector<double> values;  ///< One for each x of the chart. [finite, >= 0]
+  std::vector<double> spread;  ///< Drawn as a band of values +- spread; or empty. [finite, >= 0]
+  LineKind kind = LineKind::kPlain;
+};
+
+/// Lines over a shared x; both axes linear, y from 0.
+struct Chart {
+  std::string title;
+  std::vector<std::string> notes;  ///< Under the title, each in one line.
+  std::string x_title, y_title;
+  std::vector<double> x;  ///< [finite, ascending, at least 2]
+  std::vector<ChartLine> lines;
+  double most = 0;       ///< Top of the y axis, 0: from the values. What lies above is cut off.
+  int32_t width = 1200;  ///< [px, 400 to 8000]
+};
+
+/// Draws a chart. Fails with kBadConfig and the line that does not fit.
+[[nodiscard]] THRONG_API Result<Image> draw_chart(const Chart& chart);
+
+}  // namespace throng

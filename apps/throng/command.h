@@ -68,6 +68,7 @@ uint64_t peak_memory();
 std::string human_bytes(uint64_t bytes);
 
 void add_bake(CLI::App& parser, Session& session);
+void add_caacd(CLI::App& parser, Session& session);
 void add_export(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
 void add_nodes(CLI::App& parser, Session& session);

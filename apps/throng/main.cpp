@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {
     // One line a command, in the order of --help.
     add_bake(parser, session);
+    add_caacd(parser, session);
     add_export(parser, session);
     add_info(parser, session);
     add_nodes(parser, session);

@@ -58,12 +58,12 @@ enum class Length : uint8_t {
   kMaxAndSum,
 };
 
-/// What makes an avatar avoid its greatest threat.
+/// What makes an avatar avoid another. Obstacles go by zones alone.
 enum class Trigger : uint8_t {
-  kNever,   ///< A control: nobody avoids.
+  kNever,   ///< A control: nobody avoids anything.
   kThreat,  ///< Any critical or alert threat: [CAACD] III.A, its last paragraph.
-  kNear,    ///< Such a threat that is in the alert field already: [CAACD] figures 3 to 5.
-  kZones,   ///< Such a threat whose repulsive zone meets one's own: [CAACD] II.
+  kNear,    ///< Such a threat within the alert field: who is farther is tolerable, [CAACD] II.
+  kZones,   ///< Such a threat whose repulsive zone meets one's own: [CAACD] II, figure 7.
 };
 
 /// Along which axes eq. 11 pushes.
@@ -72,16 +72,16 @@ enum class Axes : uint8_t { kSide, kSideAndUp };
 /// Settings of the model. The first three are the paper's Mass/MaxSpeed/MaxForce, of which it names
 /// 2.0/0.4/0.06 the best; it prints no value for the others: ours, see docs/design/007-caacd.md.
 struct Model {
-  double mass = 2.0;        ///< [> 0]
-  double max_speed = 0.4;   ///< [length / time, > 0]
-  double max_force = 0.06;  ///< [mass length / time^2, > 0]
-  double horizon = 60;      ///< T3: a nearest approach later than this is no threat. [time, > 0]
-  double lambda1 = 0.75;    ///< Of eq. 10, see Length. [0.5 to 1; lambda2 is 1 - lambda1]
-  double lambda3 = 0.5;     ///< Of eq. 12 and 13: part of max_speed. [0 to 1]
+  double mass = 2.0;         ///< [> 0]
+  double max_speed = 0.4;    ///< [length / time, > 0]
+  double max_force = 0.06;   ///< [mass length / time^2, > 0]
+  double horizon = 60;       ///< T3: a nearest approach later than this is no threat. [time, > 0]
+  double lambda1 = 0.75;     ///< Of eq. 10, see Length. [0.5 to 1; lambda2 is 1 - lambda1]
+  double lambda3 = 0.5;      ///< Of eq. 12 and 13: part of max_speed. [0 to 1]
   double deceleration = 30;  ///< Psi: distance to the target at which braking begins. [length, > 0]
   double zone_time = 0;      ///< A repulsive zone reaches A_pre + speed x zone_time. [time, >= 0]
   Length length = Length::kTrue;
-  Trigger trigger = Trigger::kZones;
+  Trigger trigger = Trigger::kNear;
   Axes axes = Axes::kSide;
 };
 
@@ -116,7 +116,7 @@ struct Threat {
 };
 
 /// What `other` means to `self`: critical if B_d <= r_pre, alert if B_d <= r_alert, both with
-/// A_tau in [0, T3); else tolerable. With Trigger::kZones also tolerable if the zones do not meet.
+/// A_tau in [0, T3) and as model.trigger asks; else tolerable.
 [[nodiscard]] THRONG_API Threat threat_of(const Body& self, const Body& other, const Model& model);
 
 /// An obstacle is a critical threat from when the zone overlaps its precaution field, if it lies

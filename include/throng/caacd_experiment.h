@@ -20,14 +20,15 @@ namespace throng::caacd {
 
 /// A random space. The paper gives none of these numbers: ours, see docs/design/007-caacd.md.
 struct SpaceConfig {
-  int32_t avatars = 50;             ///< [1 to 2000]
-  double side = 400;                ///< Starts and targets lie in a square of this side. [> 0]
-  Fields fields{5, 10, 20};         ///< Of every avatar. [> 0, ascending]
-  int32_t obstacles = 6;            ///< [0 to 1000]
-  double least_obstacle = 8;        ///< Smallest repulsive radius of an obstacle. [> 0]
-  double largest_obstacle = 24;     ///< [>= least_obstacle]
-  double obstacle_precaution = 5;   ///< From an obstacle's repulsive to its precaution radius. [>= 0]
-  double obstacle_alert = 15;       ///< From an obstacle's repulsive to its alert radius; not less.
+  int32_t avatars = 50;          ///< [1 to 2000]
+  double side = 400;             ///< Starts and targets lie in a square of this side. [> 0]
+  Fields fields{5, 7.5, 12};     ///< Of every avatar. [> 0, ascending]
+  int32_t obstacles = 6;         ///< [0 to 1000]
+  double least_obstacle = 8;     ///< Smallest repulsive radius of an obstacle. [> 0]
+  double largest_obstacle = 24;  ///< [>= least_obstacle]
+  double obstacle_precaution =
+      5;                       ///< From an obstacle's repulsive to its precaution radius. [>= 0]
+  double obstacle_alert = 15;  ///< From an obstacle's repulsive to its alert radius; not less.
   uint64_t seed = 1;
 };
 
@@ -64,10 +65,10 @@ struct Counts {
 
 /// One run. Every frame: forces from the state of the frame before act on all at once, eq. 15, then
 /// positions, arrivals, collisions.
-class THRONG_API Run {
+class THRONG_API Simulation {
  public:
   /// Fails with kBadConfig (model, dt) or kBadInput (not finite, sizes differ, ids not in order).
-  static Result<Run> create(Space space, const Model& model, double dt = 1);
+  static Result<Simulation> create(Space space, const Model& model, double dt = 1);
 
   void step();
   /// Does everybody stand at the target, or wait for good?
@@ -80,13 +81,14 @@ class THRONG_API Run {
   /// By whom each is threatened now.
   [[nodiscard]] std::span<const Threat> threats() const { return threats_; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
+  [[nodiscard]] const Model& model() const { return model_; }
   /// Of all positions and velocities, bit by bit.
   [[nodiscard]] uint64_t state_hash() const;
   /// Gives somebody a new target.
   void send(uint32_t id, Vec3d target);
 
  private:
-  Run() = default;
+  Simulation() = default;
   void find_rivals();
   void negotiate();
   void sense(size_t i);
@@ -100,11 +102,11 @@ class THRONG_API Run {
   std::vector<Activity> activities_;
   std::vector<Threat> threats_;
   std::vector<Vec3d> steer_;
-  std::vector<double> stop_before_;     // Who waits stops so far from the target; others 0.
-  std::vector<uint8_t> claims_;         // Who may go on to its target.
-  std::vector<uint32_t> rival_first_;   // n + 1 offsets into rivals_.
-  std::vector<uint32_t> rivals_;        // Whose targets are too near to one's own.
-  std::vector<uint8_t> inside_;         // Pair (i, j < i) at i (i - 1) / 2 + j; in r_rep now?
+  std::vector<double> stop_before_;    // Who waits stops so far from the target; others 0.
+  std::vector<uint8_t> claims_;        // Who may go on to its target.
+  std::vector<uint32_t> rival_first_;  // n + 1 offsets into rivals_.
+  std::vector<uint32_t> rivals_;       // Whose targets are too near to one's own.
+  std::vector<uint8_t> inside_;        // Pair (i, j < i) at i (i - 1) / 2 + j; in r_rep now?
   std::vector<uint8_t> inside_obstacle_;
   Counts counts_;
 };
@@ -137,13 +139,13 @@ struct Reported {
 /// Many runs: every set with every number of avatars from every seed.
 struct StudyConfig {
   std::vector<ParameterSet> sets = named_sets();
-  std::vector<int32_t> avatars;  ///< Numbers of avatars. [each 1 to 2000]
-  int32_t seeds = 30;            ///< [1 to 100000]
-  int64_t frames = 3000;         ///< A run ends here, or when all have arrived. [1 to 10^7]
-  Model model;                   ///< All but mass, max_speed and max_force.
-  SpaceConfig space;             ///< All but avatars; seeds count up from space.seed.
-  double dt = 1;                 ///< [frames, > 0]
-  int32_t workers = 0;           ///< Threads, 0 for all cores. Never changes the result. [>= 0]
+  std::vector<int32_t> avatars = {};  ///< Numbers of avatars. [each 1 to 2000]
+  int32_t seeds = 30;                 ///< [1 to 100000]
+  int64_t frames = 3000;              ///< A run ends here, or when all have arrived. [1 to 10^7]
+  Model model = {};                   ///< All but mass, max_speed and max_force.
+  SpaceConfig space = {};             ///< All but avatars; seeds count up from space.seed.
+  double dt = 1;                      ///< [frames, > 0]
+  int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
 };
 
 /// One set with one number of avatars, over all seeds.

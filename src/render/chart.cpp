@@ -137,8 +137,9 @@ void draw_legend(Canvas& canvas, const Frame& frame, const std::vector<Drawn>& d
     if (d.line->name.empty()) continue;
     const Point a{frame.plot.x + 20 * u, y}, b{frame.plot.x + 64 * u, y};
     // On paper, or the grid would run through the words.
-    canvas.fill({a.x - 6 * u, y - 11 * u,
-                 78 * u + text_width(d.line->name, {.size = text}), 22 * u}, kPaper);
+    canvas.fill(
+        {a.x - 6 * u, y - 11 * u, 78 * u + text_width(d.line->name, {.size = text}), 22 * u},
+        kPaper);
     if (d.line->kind == LineKind::kDashed) {
       draw_dashes(canvas, {a, b}, d.width, 7 * u, d.colour);
     } else {

@@ -74,10 +74,10 @@ Approach nearest_approach(const Body& self, const Body& other) {
   const Vec3d relative_velocity = other.velocity - self.velocity;  // eq. 1
   const double speed = length(relative_velocity);                  // eq. 2
   if (speed < kNone) return {};
-  const Vec3d tangent = relative_velocity * (1 / speed);               // eq. 3
-  const Vec3d relative_position = self.position - other.position;      // eq. 4
-  const double projected_distance = dot(tangent, relative_position);   // eq. 5
-  return {.speed = speed, .time = projected_distance / speed};         // eq. 6
+  const Vec3d tangent = relative_velocity * (1 / speed);              // eq. 3
+  const Vec3d relative_position = self.position - other.position;     // eq. 4
+  const double projected_distance = dot(tangent, relative_position);  // eq. 5
+  return {.speed = speed, .time = projected_distance / speed};        // eq. 6
 }
 
 Vec3d position_at(const Body& body, double time) { return body.position + body.velocity * time; }
@@ -174,8 +174,8 @@ Vec3d lateral_avoidance(const Body& self, const Threat& threat, const Model& mod
 }
 
 Vec3d forward_avoidance(const Body& self, const Threat& threat, const Model& model) {
-  if (length(self.velocity) < model.max_speed * model.lambda3) return self.forward;   // eq. 12
-  return self.forward * dot(threat.self_then - threat.other_then, self.forward);      // eq. 13
+  if (length(self.velocity) < model.max_speed * model.lambda3) return self.forward;  // eq. 12
+  return self.forward * dot(threat.self_then - threat.other_then, self.forward);     // eq. 13
 }
 
 Vec3d avoidance(const Body& self, const Threat& threat, const Model& model) {
@@ -190,9 +190,9 @@ Vec3d path_amendment(const Body& self, Vec3d target, double stop_before, const M
   Vec3d wanted{};
   if (left > 0 && distance > kNone) {
     // Even braking: the speed falls with the square root of the way left.
-    const double speed =
-        left < model.deceleration ? model.max_speed * std::sqrt(left / model.deceleration)
-                                  : model.max_speed;
+    const double speed = left < model.deceleration
+                             ? model.max_speed * std::sqrt(left / model.deceleration)
+                             : model.max_speed;
     wanted = way * (speed / distance);
   }
   return limited(wanted - self.velocity, model.max_force);

@@ -90,8 +90,7 @@ Result<Space> random_space(const SpaceConfig& config, const Model& model) {
     // Obstacles leave a way between them for an avatar and its precaution field.
     const auto is_free = [&](Vec3d p) {
       for (const Obstacle& o : space.obstacles) {
-        const double apart =
-            o.fields.precaution + fields.precaution + 2 * config.fields.precaution;
+        const double apart = o.fields.precaution + fields.precaution + 2 * config.fields.precaution;
         if (flat_distance2(p, o.position) <= square(apart)) return false;
       }
       return true;
@@ -99,8 +98,8 @@ Result<Space> random_space(const SpaceConfig& config, const Model& model) {
     bool placed = false;
     if (2 * fields.alert < config.side) {
       for (uint64_t attempt = 0; attempt < kTries && !placed; ++attempt) {
-        const Vec3d p = random_point(seed, stream_of(kObstaclePlace, i), attempt, config.side,
-                                     fields.alert);
+        const Vec3d p =
+            random_point(seed, stream_of(kObstaclePlace, i), attempt, config.side, fields.alert);
         if (is_free(p)) {
           space.obstacles.push_back({p, fields});
           placed = true;

@@ -33,9 +33,10 @@ Result<void> check_study(const StudyConfig& c) {
   const bool counts = std::ranges::all_of(c.avatars, [](int32_t n) { return n >= 1 && n <= 2000; });
   if (c.sets.empty() || c.avatars.empty() || !counts || c.seeds < 1 || c.seeds > 100000 ||
       c.frames < 1 || c.frames > 10'000'000 || c.workers < 0) {
-    return Error{Errc::kBadConfig,
-                 "caacd: need parameter sets, numbers of avatars from 1 to 2000, 1 to 100000 seeds, "
-                 "1 to 10000000 frames and workers >= 0"};
+    return Error{
+        Errc::kBadConfig,
+        "caacd: need parameter sets, numbers of avatars from 1 to 2000, 1 to 100000 seeds, "
+        "1 to 10000000 frames and workers >= 0"};
   }
   for (const ParameterSet& set : c.sets) {
     if (auto ok = check_model(with_set(c.model, set)); !ok) {
@@ -52,7 +53,7 @@ Result<Outcome> run_once(const StudyConfig& config, const Model& model, int32_t 
   space.seed = seed;
   Result<Space> made = random_space(space, model);
   if (!made) return made.error();
-  Result<Run> run = Run::create(*std::move(made), model, config.dt);
+  Result<Simulation> run = Simulation::create(*std::move(made), model, config.dt);
   if (!run) return run.error();
   while (run->counts().frames < config.frames && !run->finished()) run->step();
   return Outcome{run->counts(), run->state_hash()};
@@ -131,8 +132,8 @@ Result<Study> run_study(const StudyConfig& config, Context& context) {
     if (context.cancel.load()) return;
     const size_t cell = task / seeds;
     const Model model = with_set(config.model, config.sets[cell / counts]);
-    const auto outcome = run_once(config, model, config.avatars[cell % counts],
-                                  config.space.seed + task % seeds);
+    const auto outcome =
+        run_once(config, model, config.avatars[cell % counts], config.space.seed + task % seeds);
     if (outcome) {
       outcomes[task] = *outcome;
     } else {

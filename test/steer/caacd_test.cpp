@@ -214,12 +214,12 @@ TEST(Caacd, TheGreatestThreatIsTheSoonestThenTheNearestThenTheLowestId) {
   const Model model = brisk();
   const Body self = body(0, 0, 1, 0, 9);
   const std::vector<Body> others = {
-      self,                        // not itself
-      body(40, 0, -1, 0, 1),       // in 20 frames, through the middle
-      body(30, 12, -1, 0, 2),      // in 15, 12 away
-      body(30, 3, -1, 0, 7),       // in 15, 3 away
-      body(30, -3, -1, 0, 5),      // the same on the other side
-      body(2, 30, 0, 0.5, 3),      // parts
+      self,                    // not itself
+      body(40, 0, -1, 0, 1),   // in 20 frames, through the middle
+      body(30, 12, -1, 0, 2),  // in 15, 12 away
+      body(30, 3, -1, 0, 7),   // in 15, 3 away
+      body(30, -3, -1, 0, 5),  // the same on the other side
+      body(2, 30, 0, 0.5, 3),  // parts
   };
   EXPECT_EQ(greatest_threat(self, others, {}, model).id, 5u);
   EXPECT_EQ(greatest_threat(self, std::span(others).first(4), {}, model).id, 7u);
@@ -236,8 +236,7 @@ TEST(Caacd, TheGreatestThreatIsTheSoonestThenTheNearestThenTheLowestId) {
 TEST(Caacd, LateralAvoidanceByEquation11) {
   const Model model = brisk();
   // Ap - Bcp = (-20, 4); heading +x, the right is +z: ((Ap - Bcp).side) side = (0, 4).
-  Threat threat{
-      .time = 10, .now = {30, 0, -4}, .self_then = {10, 0, 0}, .other_then = {20, 0, -4}};
+  Threat threat{.time = 10, .now = {30, 0, -4}, .self_then = {10, 0, 0}, .other_then = {20, 0, -4}};
   expect_near(lateral_avoidance(body(0, 0, 1, 0), threat, model), {0, 0, 4});
   // Heading (3, 4) / 5, right (-4, 3) / 5: (-20, 4).(-4, 3) / 5 = 92 / 5.
   expect_near(lateral_avoidance(body(0, 0, 3, 4), threat, model),
@@ -264,8 +263,7 @@ TEST(Caacd, ForwardAvoidanceByEquations12And13) {
 TEST(Caacd, SteeringByEquation14AndItsLimit) {
   Model model = brisk();
   model.max_force = 100;
-  const Threat threat{
-      .now = {30, 0, -4}, .self_then = {12, 0, 0}, .other_then = {9, 0, -4}};
+  const Threat threat{.now = {30, 0, -4}, .self_then = {12, 0, 0}, .other_then = {9, 0, -4}};
   expect_near(avoidance(body(0, 0, 1.5, 0), threat, model), {3, 0, 4});
   model.max_force = 0.5;
   expect_near(avoidance(body(0, 0, 1.5, 0), threat, model), {0.3, 0, 0.4});
@@ -275,8 +273,8 @@ TEST(Caacd, VelocityByEquation15WithMassAndLimits) {
   const Model model = brisk();
   expect_near(steered({1, 0, 0}, {0.3, 0, 0.4}, 1, model), {1.15, 0, 0.2});
   expect_near(steered({1, 0, 0}, {0.3, 0, 0.4}, 0.5, model), {1.075, 0, 0.1});
-  expect_near(steered({1, 0, 0}, {3, 0, 4}, 1, model), {1.15, 0, 0.2});         // max_force 0.5
-  expect_near(steered({1.99, 0, 0}, {0.5, 0, 0}, 1, model), {2, 0, 0});         // max_speed 2
+  expect_near(steered({1, 0, 0}, {3, 0, 4}, 1, model), {1.15, 0, 0.2});  // max_force 0.5
+  expect_near(steered({1.99, 0, 0}, {0.5, 0, 0}, 1, model), {2, 0, 0});  // max_speed 2
   expect_near(steered({3, 0, 4}, {}, 1, model), {1.2, 0, 1.6});
 }
 
@@ -334,7 +332,7 @@ TEST(Caacd, WhoStandInOnePointPart) {
   const Threat ta = threat_of(a, b, model), tb = threat_of(b, a, model);
   EXPECT_EQ(ta.level, State::kCritical);
   EXPECT_EQ(ta.distance, 0);
-  expect_near(lateral_avoidance(a, ta, model), {0, 0, 0.5});   // the smaller id to its right
+  expect_near(lateral_avoidance(a, ta, model), {0, 0, 0.5});  // the smaller id to its right
   expect_near(lateral_avoidance(b, tb, model), {0, 0, -0.5});
 }
 

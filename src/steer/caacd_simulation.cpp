@@ -40,7 +40,7 @@ Error bad_input(const char* what, size_t index) {
 
 }  // namespace
 
-Result<Run> Run::create(Space space, const Model& model, double dt) {
+Result<Simulation> Simulation::create(Space space, const Model& model, double dt) {
   if (auto ok = check_model(model); !ok) return ok.error();
   if (!(dt > 0 && dt <= 1e6)) return Error{Errc::kBadConfig, "caacd: dt must be above 0"};
   const size_t n = space.bodies.size();
@@ -58,7 +58,7 @@ Result<Run> Run::create(Space space, const Model& model, double dt) {
     const Obstacle& o = space.obstacles[i];
     if (!is_finite(o.position) || !is_sound(o.fields)) return bad_input("obstacle", i);
   }
-  Run run;
+  Simulation run;
   run.space_ = std::move(space);
   run.model_ = model;
   run.dt_ = dt;
@@ -81,7 +81,7 @@ Result<Run> Run::create(Space space, const Model& model, double dt) {
   return run;
 }
 
-void Run::find_rivals() {
+void Simulation::find_rivals() {
   const size_t n = space_.bodies.size();
   rival_first_.assign(1, 0);
   rivals_.clear();
@@ -96,7 +96,7 @@ void Run::find_rivals() {
   }
 }
 
-void Run::send(uint32_t id, Vec3d target) {
+void Simulation::send(uint32_t id, Vec3d target) {
   space_.targets[id] = target;
   activities_[id] = Activity::kTravelling;
   claims_[id] = 0;
@@ -105,7 +105,7 @@ void Run::send(uint32_t id, Vec3d target) {
 
 // Who comes first into the neighbourhood of a place that another wants too claims it and keeps it;
 // the others stop before it, outside of the precaution field.
-void Run::negotiate() {
+void Simulation::negotiate() {
   const auto& bodies = space_.bodies;
   const auto rivals = [&](size_t i) {
     return std::span(rivals_).subspan(rival_first_[i], rival_first_[i + 1] - rival_first_[i]);
@@ -115,10 +115,10 @@ void Run::negotiate() {
     return distance2(bodies[i].position, space_.targets[i]) <= reach * reach;
   };
   for (size_t i = 0; i < bodies.size(); ++i) {
-    if (claims_[i] != 0 || rivals(i).empty() || !is_near(i)) continue;
+    if (claims_[i] != 0 || !is_near(i)) continue;
     const bool first = std::ranges::all_of(rivals(i), [&](uint32_t j) {
-      return claims_[j] == 0 &&
-             (!is_near(j) || goes_first(bodies[i], space_.targets[i], bodies[j], space_.targets[j]));
+      return claims_[j] == 0 && (!is_near(j) || goes_first(bodies[i], space_.targets[i], bodies[j],
+                                                           space_.targets[j]));
     });
     if (first) claims_[i] = 1;
   }
@@ -134,7 +134,7 @@ void Run::negotiate() {
   }
 }
 
-void Run::sense(size_t i) {
+void Simulation::sense(size_t i) {
   const Body& self = space_.bodies[i];
   threats_[i] = {};
   if (activities_[i] == Activity::kArrived) {
@@ -164,7 +164,7 @@ void Run::sense(size_t i) {
                                                : Activity::kArriving;
 }
 
-void Run::move(size_t i) {
+void Simulation::move(size_t i) {
   if (activities_[i] == Activity::kArrived) return;
   Body& body = space_.bodies[i];
   body.velocity = steered(body.velocity, steer_[i], dt_, model_);
@@ -172,14 +172,13 @@ void Run::move(size_t i) {
   body.position = body.position + body.velocity * dt_;
   counts_.walked += length(body.velocity) * dt_;
   const double arrival = kArrival * body.fields.repulsive;
-  if (stop_before_[i] == 0 &&
-      distance2(body.position, space_.targets[i]) <= arrival * arrival) {
+  if (stop_before_[i] == 0 && distance2(body.position, space_.targets[i]) <= arrival * arrival) {
     body.velocity = {};
     activities_[i] = Activity::kArrived;
   }
 }
 
-void Run::count() {
+void Simulation::count() {
   const auto& bodies = space_.bodies;
   const auto enter = [](uint8_t& inside, bool now) {
     const bool entered = now && inside == 0;
@@ -206,7 +205,7 @@ void Run::count() {
   counts_.waiting = std::ranges::count(activities_, Activity::kWaiting);
 }
 
-void Run::step() {
+void Simulation::step() {
   const size_t n = space_.bodies.size();
   negotiate();
   for (size_t i = 0; i < n; ++i) sense(i);
@@ -215,7 +214,7 @@ void Run::step() {
   count();
 }
 
-bool Run::finished() const {
+bool Simulation::finished() const {
   for (size_t i = 0; i < activities_.size(); ++i) {
     if (activities_[i] == Activity::kArrived) continue;
     if (activities_[i] != Activity::kWaiting) return false;
@@ -225,7 +224,7 @@ bool Run::finished() const {
   return true;
 }
 
-uint64_t Run::state_hash() const {
+uint64_t Simulation::state_hash() const {
   std::vector<double> state;
   for (const Body& body : space_.bodies) {
     for (const Vec3d& v : {body.position, body.velocity}) {

@@ -27,7 +27,7 @@ struct Frame {
   double x_low = 0, x_high = 1, y_high = 1;
   [[nodiscard]] Point at(double x, double y) const {
     return {plot.x + (x - x_low) / (x_high - x_low) * plot.width,
-            plot.y + plot.height - std::min(y / y_high, 1.0) * plot.height};
+            plot.y + plot.height - y / y_high * plot.height};
   }
 };
 
@@ -85,6 +85,25 @@ void draw_dashes(Canvas& canvas, const std::vector<Point>& points, double width,
   }
 }
 
+// The pieces of a line that lie below the top of the plot.
+std::vector<std::vector<Point>> pieces_of(const Frame& frame, const std::vector<double>& x,
+                                          const std::vector<double>& y) {
+  std::vector<std::vector<Point>> pieces;
+  bool inside = false;
+  for (size_t i = 0; i < x.size(); ++i) {
+    const bool now = y[i] <= frame.y_high;
+    const auto crossing = [&] {
+      const double t = (frame.y_high - y[i - 1]) / (y[i] - y[i - 1]);
+      return frame.at(x[i - 1] + t * (x[i] - x[i - 1]), frame.y_high);
+    };
+    if (now && !inside) pieces.emplace_back();
+    if (i > 0 && now != inside) pieces.back().push_back(crossing());
+    if (now) pieces.back().push_back(frame.at(x[i], y[i]));
+    inside = now;
+  }
+  return pieces;
+}
+
 void draw_band(Canvas& canvas, const Frame& frame, const Chart& chart, const ChartLine& line,
                Rgb colour) {
   for (size_t i = 1; i < chart.x.size(); ++i) {
@@ -95,7 +114,8 @@ void draw_band(Canvas& canvas, const Frame& frame, const Chart& chart, const Cha
     // Column by column, so that neighbouring pieces share no pixel.
     for (auto x = static_cast<int32_t>(std::ceil(a.x - 0.5)); x + 0.5 < b.x; ++x) {
       const double t = (x + 0.5 - a.x) / (b.x - a.x);
-      const double top = a.y + (b.y - a.y) * t, bottom = d.y + (c.y - d.y) * t;
+      const double top = std::max(frame.plot.y, a.y + (b.y - a.y) * t);
+      const double bottom = d.y + (c.y - d.y) * t;
       for (auto y = static_cast<int32_t>(std::ceil(top - 0.5)); y + 0.5 < bottom; ++y) {
         canvas.blend(x, y, colour, 0.14);
       }
@@ -208,14 +228,12 @@ Result<Image> draw_chart(const Chart& chart) {
     if (!d.line->spread.empty()) draw_band(canvas, frame, chart, *d.line, d.colour);
   }
   for (const Drawn& d : drawn) {
-    std::vector<Point> points;
-    for (size_t i = 0; i < chart.x.size(); ++i) {
-      points.push_back(frame.at(chart.x[i], d.line->values[i]));
-    }
-    if (d.line->kind == LineKind::kDashed) {
-      draw_dashes(canvas, points, d.width, 7 * u, d.colour);
-    } else {
-      canvas.path(points, d.width, d.colour);
+    for (const std::vector<Point>& points : pieces_of(frame, chart.x, d.line->values)) {
+      if (d.line->kind == LineKind::kDashed) {
+        draw_dashes(canvas, points, d.width, 7 * u, d.colour);
+      } else {
+        canvas.path(points, d.width, d.colour);
+      }
     }
   }
   draw_legend(canvas, frame, drawn);

@@ -50,7 +50,8 @@ TEST(Chart, ABandIsAsWideAsTheSpreadAndHighValuesAreCutOff) {
   Chart chart{.title = "t", .notes = {}, .x_title = "x", .y_title = "y", .x = {0, 10}};
   chart.most = 100;
   chart.lines = {{.name = "", .values = {50, 50}, .spread = {10, 10}, .kind = LineKind::kPlain},
-                 {.name = "", .values = {900, 900}, .spread = {}, .kind = LineKind::kPlain}};
+                 {.name = "", .values = {900, 900}, .spread = {}, .kind = LineKind::kPlain},
+                 {.name = "", .values = {0, 200}, .spread = {}, .kind = LineKind::kPlain}};
   const auto image = draw_chart(chart);
   ASSERT_TRUE(image) << image.error().message;
   int32_t tinted = 0;
@@ -59,7 +60,11 @@ TEST(Chart, ABandIsAsWideAsTheSpreadAndHighValuesAreCutOff) {
     tinted += c[0] > 240 && c[2] < 230 && c[2] > 200;
   }
   EXPECT_NEAR(tinted, 0.2 * 520, 6);
-  EXPECT_FALSE(rows_of(*image, 600, kSecond).empty());  // along the top
+  EXPECT_TRUE(rows_of(*image, 600, kSecond).empty());
+  // The third one leaves at the top half way along: the plot is 1070 pixels wide, from 90.
+  constexpr Colour kThird{0, 158, 115};
+  EXPECT_FALSE(rows_of(*image, 90 + 520, kThird).empty());
+  EXPECT_TRUE(rows_of(*image, 90 + 550, kThird).empty());
 }
 
 TEST(Chart, WhatDoesNotFitIsNamed) {

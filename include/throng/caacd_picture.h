@@ -19,7 +19,7 @@ namespace throng::caacd {
 struct PictureConfig {
   double side = 400;     ///< The square from (0, 0) that is shown. [> 0]
   int32_t width = 1200;  ///< [px, 400 to 8000]
-  std::string title;
+  std::string title = {};
 };
 
 /// Draws where everybody is now, as [CAACD] figure 9 does: obstacles, avatars with their fields,

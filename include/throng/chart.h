@@ -21,19 +21,20 @@ enum class LineKind : uint8_t {
 };
 
 struct ChartLine {
-  std::string name;            ///< In the legend; lines without one are left out of it.
-  std::vector<double> values;  ///< One for each x of the chart. [finite, >= 0]
-  std::vector<double> spread;  ///< Drawn as a band of values +- spread; or empty. [finite, >= 0]
+  std::string name = {};            ///< In the legend; lines without one are left out of it.
+  std::vector<double> values = {};  ///< One for each x of the chart. [finite, >= 0]
+  std::vector<double> spread =
+      {};  ///< Drawn as a band of values +- spread; or empty. [finite, >= 0]
   LineKind kind = LineKind::kPlain;
 };
 
 /// Lines over a shared x; both axes linear, y from 0.
 struct Chart {
-  std::string title;
-  std::vector<std::string> notes;  ///< Under the title, each in one line.
-  std::string x_title, y_title;
-  std::vector<double> x;  ///< [finite, ascending, at least 2]
-  std::vector<ChartLine> lines;
+  std::string title = {};
+  std::vector<std::string> notes = {};  ///< Under the title, each in one line.
+  std::string x_title = {}, y_title = {};
+  std::vector<double> x = {};  ///< [finite, ascending, at least 2]
+  std::vector<ChartLine> lines = {};
   double most = 0;       ///< Top of the y axis, 0: from the values. What lies above is cut off.
   int32_t width = 1200;  ///< [px, 400 to 8000]
 };

@@ -256,6 +256,29 @@ TEST(CaacdSimulation, OfTwoBoundForOneTargetExactlyOneGoesFirstAndTheOtherWaits)
   }
 }
 
+TEST(CaacdSimulation, OfTwoThatAreBothNearTheNearerOneGoesFirstWhateverItsId) {
+  for (const double farther : {0, 1}) {
+    Space space;
+    for (const double from : {0, 1}) {
+      const double x = from == farther ? -26 : 22;
+      add(space, {x, 0, 0}, {x < 0 ? 1.0 : -1.0, 0, 0}, 0.4, {0, 0, 0});
+    }
+    Simulation run = made(space, best());
+    EXPECT_EQ(first_at(run, {0, 0, 0}), farther == 0 ? 1 : 0);
+  }
+}
+
+TEST(CaacdSimulation, NobodyBrakesForAPlaceThatNobodyHasClaimed) {
+  Space space;
+  add(space, {-100, 0, 0}, {1, 0, 0}, 0.4, {0, 0, 0});
+  add(space, {900, 0, 0}, {-1, 0, 0}, 0.4, {0, 0, 0});
+  Simulation run = made(space, best());
+  while (run.bodies()[0].position.x < -30.5) {
+    run.step();
+    ASSERT_NEAR(length(run.bodies()[0].velocity), 0.4, 1e-9) << run.counts().frames;
+  }
+}
+
 TEST(CaacdSimulation, EveryChangeOfActivityHappensAndNoOther) {
   using enum Activity;
   std::set<std::pair<Activity, Activity>> seen;

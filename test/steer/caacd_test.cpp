@@ -430,6 +430,15 @@ TEST(Caacd, NothingFartherThanTheReachIsAThreat) {
   EXPECT_GT(threats, 500);
 }
 
+TEST(Caacd, TheReachAllowsForALengthThatIsTooShort) {
+  Model model{.max_speed = 0.01, .horizon = 1, .lambda1 = 0.5};
+  model.length = Length::kMaxAndSum;
+  model.trigger = Trigger::kThreat;
+  const Body a = body(0, 0, 0, 0), b = body(39, 0, 0, 0, 1);  // 19.5 by eq. 10
+  EXPECT_EQ(threat_of(a, b, model).level, State::kAlert);
+  EXPECT_GE(threat_reach(a, kFields.alert, model), 39);
+}
+
 TEST(Caacd, AnyInputGivesFiniteForcesWithinTheLimits) {
   // Everything that is not random here is where formulas break: zero, equal, tiny, huge.
   const std::array<double, 10> hard{0, -0.0, 1, -1, 1e-300, -1e-160, 1e-20, 1e6, -1e90, 1e99};

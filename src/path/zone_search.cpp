@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "path/border.h"
+#include "path/mesh_ray.h"
 
 namespace throng {
 namespace {
@@ -256,6 +257,11 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
                               const Stop& from, const Stop& to, uint64_t max_nodes,
                               std::vector<uint32_t>& corners, double& length) {
   expanded_ = 0;
+  if (mesh_ray(mesh, from.rect, from.at, to.at) == to.rect) {
+    corners.clear();
+    length = distance(in_cells(from.at), in_cells(to.at));
+    return SearchResult::kFound;
+  }
   look_out(world, mesh, graph, from, start_);
   look_out(world, mesh, graph, to, goal_);
   Best best;

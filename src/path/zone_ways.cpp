@@ -76,42 +76,64 @@ GroundPoint inside(const Gate& gate, const MeshRect& rect) {
   return p;
 }
 
-struct Edge {
-  uint16_t to = 0;
-  double length = 0;
+// What the corners of a zone see in it, both ways: corner c owns edges[first[c]] to
+// edges[first[c + 1]].
+struct CornerGraph {
+  struct Edge {
+    uint16_t from = 0, to = 0;
+    double length = 0;
+  };
+  std::vector<uint32_t> first;
+  std::vector<Edge> edges;
 };
 
-// What the corners of a zone see in it, both ways.
-std::vector<std::vector<Edge>> see_corners(const PathMesh& mesh, const ZoneWays& ways,
-                                           Sight& sight) {
-  std::vector<std::vector<Edge>> edges(ways.corners.size());
+// What one sees the other does, even where rounding hid it from one of them.
+CornerGraph see_corners(const PathMesh& mesh, const ZoneWays& ways, Sight& sight) {
+  CornerGraph graph;
   for (size_t c = 0; c < ways.corners.size(); ++c) {
     sight.look_from_corner(mesh, ways.corners[c], false);
     for (const SeenCorner& seen : sight.corners()) {
-      const size_t other = ways.place_of_corner(seen.corner);
-      edges[c].push_back({static_cast<uint16_t>(other), seen.distance});
-      edges[other].push_back({static_cast<uint16_t>(c), seen.distance});
+      const auto here = static_cast<uint16_t>(c);
+      const auto other = static_cast<uint16_t>(ways.place_of_corner(seen.corner));
+      graph.edges.push_back({here, other, seen.distance});
+      graph.edges.push_back({other, here, seen.distance});
     }
   }
-  return edges;
+  const auto key = [](const CornerGraph::Edge& e) { return std::tie(e.from, e.to, e.length); };
+  std::sort(graph.edges.begin(), graph.edges.end(),
+            [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  const auto again = [](const CornerGraph::Edge& a, const CornerGraph::Edge& b) {
+    return a.from == b.from && a.to == b.to;
+  };
+  graph.edges.erase(std::unique(graph.edges.begin(), graph.edges.end(), again), graph.edges.end());
+  graph.first.assign(ways.corners.size() + 1, 0);
+  for (const CornerGraph::Edge& edge : graph.edges) ++graph.first[edge.from + size_t{1}];
+  for (size_t c = 1; c < graph.first.size(); ++c) graph.first[c] += graph.first[c - 1];
+  return graph;
 }
+
+// A corner that a gate sees, by its place in the zone's corners.
+struct GateView {
+  uint16_t corner = 0;
+  double distance = 0;
+};
 
 // How far corners are from a gate, and over which corner.
 class GateSpread {
  public:
-  GateSpread(const std::vector<std::vector<Edge>>& edges, size_t corners)
-      : length(corners), next(corners), edges_(edges) {}
+  explicit GateSpread(const CornerGraph& graph)
+      : length(graph.first.size() - 1), next(graph.first.size() - 1), graph_(graph) {}
 
-  void run(const ZoneWays& ways, const std::vector<SeenCorner>& seen) {
+  void run(const std::vector<GateView>& seen) {
     std::fill(length.begin(), length.end(), kFar);
-    for (const SeenCorner& s : seen)
-      relax(static_cast<uint16_t>(ways.place_of_corner(s.corner)), s.distance, kStraight);
+    for (const GateView& s : seen) relax(s.corner, s.distance, kStraight);
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
       const auto [reached, corner] = heap_.back();
       heap_.pop_back();
       if (reached > length[corner]) continue;
-      for (const Edge& edge : edges_[corner]) relax(edge.to, reached + edge.length, corner);
+      for (uint32_t e = graph_.first[corner]; e < graph_.first[corner + size_t{1}]; ++e)
+        relax(graph_.edges[e].to, reached + graph_.edges[e].length, corner);
     }
   }
 
@@ -127,7 +149,7 @@ class GateSpread {
     std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
   }
 
-  const std::vector<std::vector<Edge>>& edges_;
+  const CornerGraph& graph_;
   std::vector<std::pair<double, uint16_t>> heap_;
 };
 
@@ -186,8 +208,9 @@ std::vector<Gate> find_gates(const WorldData& world, const PathMesh& mesh,
 
 bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
                     Sight& sight, ZoneWays& ways) {
-  sight.keep_to(ways.first_rect, ways.last_rect);
   ways.corners.clear();
+  if (ways.gates.empty()) return true;  // no way leads out, nor in
+  sight.keep_to(ways.first_rect, ways.last_rect);
   for (uint32_t p = mesh.rects[ways.first_rect].first_portal;
        p < mesh.rects[ways.last_rect].first_portal; ++p) {
     for (const uint32_t corner : {mesh.portals[p].from_corner, mesh.portals[p].to_corner}) {
@@ -200,16 +223,17 @@ bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
   if (corners >= kStraight) return false;
   ways.length.assign((corners + count) * count, kNever);
   ways.next.assign(ways.length.size(), kStraight);
-  const auto edges = see_corners(mesh, ways, sight);
-  std::vector<std::vector<SeenCorner>> seen(count);
+  const CornerGraph graph = see_corners(mesh, ways, sight);
+  std::vector<std::vector<GateView>> seen(count);
   for (size_t g = 0; g < count; ++g) {
     const Gate& gate = gates[ways.gates[g]];
     sight.look(mesh, gate.rect_in(zone), gate.at, kNoRect, {});
-    seen[g] = sight.corners();
+    for (const SeenCorner& s : sight.corners())
+      seen[g].push_back({static_cast<uint16_t>(ways.place_of_corner(s.corner)), s.distance});
   }
-  GateSpread spread(edges, corners);
+  GateSpread spread(graph);
   for (size_t g = 0; g < count; ++g) {
-    spread.run(ways, seen[g]);
+    spread.run(seen[g]);
     for (size_t c = 0; c < corners; ++c)
       take_shorter(spread.length[c], spread.next[c], ways.length[ways.row(c) + g],
                    ways.next[ways.row(c) + g]);
@@ -221,11 +245,9 @@ bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
       const GroundPoint begin = inside(from, mesh.rects[rect]), end = inside(to, mesh.rects[goal]);
       if (mesh_ray(mesh, rect, begin, end) == goal)
         take_shorter(distance(from.at, to.at), kStraight, ways.length[at], ways.next[at]);
-      for (const SeenCorner& s : seen[other]) {
-        const size_t c = ways.place_of_corner(s.corner);
-        take_shorter(s.distance + spread.length[c], static_cast<uint16_t>(c), ways.length[at],
+      for (const GateView& s : seen[other])
+        take_shorter(s.distance + spread.length[s.corner], s.corner, ways.length[at],
                      ways.next[at]);
-      }
     }
   }
   return true;

@@ -66,6 +66,13 @@ struct GroundQuery::State {
     return to_ground(data(), from.position.x + part * dx, from.position.z + part * dz);
   }
 
+  // Where a push that arrived has led: to a point on `last`.
+  [[nodiscard]] static Place end_of(const Place& from, double dx, double dz,
+                                    const GroundLevel& last, GroundPoint goal) {
+    return {{from.position.x + dx, feet_at(last, goal), from.position.z + dz},
+            last.world_level + 1};
+  }
+
   // The legal cells of one level that may be nearer than `best`, a place and its distance.
   void nearest_on(const GroundLevel& level, int32_t tile_x, int32_t tile_z, Vec3d position,
                   GroundPoint at, std::pair<Place, double>& best) const;
@@ -175,8 +182,7 @@ GroundRay GroundQuery::ray(const Place& from, double dx, double dz) {
   const WalkStop stop = walk_far(ground, last, start, goal, s.step);
   if (stop.arrived) {
     result.arrived = true;
-    result.place = {{from.position.x + dx, feet_at(last, goal), from.position.z + dz},
-                    last.world_level + 1};
+    result.place = State::end_of(from, dx, dz, last, goal);
     return result;
   }
   const double sides = std::sqrt(std::abs(stop.toward_x) + std::abs(stop.toward_z));
@@ -213,7 +219,8 @@ Place GroundQuery::slide(const Place& from, double dx, double dz) {
   GroundPoint start;
   if (!std::isfinite(dx + dz) || !s.locate(from, level, start)) return from;
   const GroundPoint goal = s.pushed(from, dx, dz);
-  if (const GroundRay whole = ray(from, dx, dz); whole.arrived) return whole.place;
+  GroundLevel last = level;
+  if (walk(s.ground(), last, start, goal, s.step)) return State::end_of(from, dx, dz, last, goal);
   const GroundPoint middle{(start.x + goal.x) / 2, (start.z + goal.z) / 2};
   // A cell more than half the push: else a push shorter than a cell could leave none.
   const double reach = std::sqrt(squared(start, goal)) / 2 + kUnitsPerCell;

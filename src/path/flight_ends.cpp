@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "world/place.h"
 
@@ -118,28 +119,42 @@ Place FlightEnds::best_landing(uint32_t box) const {
   int32_t best_margin = -1;
   double best_off = 0;
   const double bottom = to_metres({0, static_cast<double>(cube.y), 0}).y;
-  for (int32_t z = cube.z * multiple; z < (cube.z + cube.side) * multiple; ++z) {
-    for (int32_t x = cube.x * multiple; x < (cube.x + cube.side) * multiple; ++x) {
-      if (x >= world_.width || z >= world_.depth) continue;
+  struct Floor {
+    uint32_t zone_level;
+    GroundLevel ground;
+  };
+  std::vector<Floor> floors;  // of a tile
+  const int32_t end_x = std::min((cube.x + cube.side) * multiple, world_.width);
+  const int32_t end_z = std::min((cube.z + cube.side) * multiple, world_.depth);
+  const auto try_cell = [&](const Floor& floor, int32_t x, int32_t z) {
+    if (!floor.ground.is_legal(x & 63, z & 63)) return;
+    const int32_t margin =
+        margin_at(floor.ground, floor.zone_level, ground_.avatar_class, x & 63, z & 63);
+    const double dx = (x + 0.5) / multiple - (cube.x + cube.side * 0.5);
+    const double dz = (z + 0.5) / multiple - (cube.z + cube.side * 0.5);
+    const double off = dx * dx + dz * dz;
+    if (margin < best_margin || (margin == best_margin && off >= best_off)) return;
+    const Place place = place_at(world_, floor.ground,
+                                 {(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
+                                  (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
+    if (place.position.y > bottom) return;
+    const auto up = take_off(place);
+    if (!up || space_.box_at(*up) != box) return;
+    best = place;
+    best_margin = margin;
+    best_off = off;
+  };
+  for (int32_t z = cube.z * multiple; z < end_z; ++z) {
+    for (int32_t x = cube.x * multiple; x < end_x;) {
       const auto tile = world_.tile_levels(x >> 6, z >> 6);
+      floors.clear();
       for (uint32_t i = tile.first; i < tile.last; ++i) {
         const uint32_t zone_level = tile.zone_first + i - tile.first;
-        const GroundLevel level = ground_level(*tile.zone, zone_level, i, ground_.avatar_class);
-        if (!level.is_legal(x & 63, z & 63)) continue;
-        const int32_t margin = margin_at(level, zone_level, ground_.avatar_class, x & 63, z & 63);
-        const double dx = (x + 0.5) / multiple - (cube.x + cube.side * 0.5);
-        const double dz = (z + 0.5) / multiple - (cube.z + cube.side * 0.5);
-        const double off = dx * dx + dz * dz;
-        if (margin < best_margin || (margin == best_margin && off >= best_off)) continue;
-        const Place place = place_at(world_, level,
-                                     {(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
-                                      (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
-        if (place.position.y > bottom) continue;
-        const auto up = take_off(place);
-        if (!up || space_.box_at(*up) != box) continue;
-        best = place;
-        best_margin = margin;
-        best_off = off;
+        floors.push_back(
+            {zone_level, ground_level(*tile.zone, zone_level, i, ground_.avatar_class)});
+      }
+      for (const int32_t tile_end = std::min((x | 63) + 1, end_x); x < tile_end; ++x) {
+        for (const Floor& floor : floors) try_cell(floor, x, z);
       }
     }
   }

@@ -61,6 +61,9 @@ struct FlightSpace {
   [[nodiscard]] uint64_t bytes() const;
 
  private:
+  /// Of a cell of a zone, and of the node of the zone's tree that holds it.
+  [[nodiscard]] uint32_t box_in(size_t zone, const AirTree& tree, const AirTree::Place& place,
+                                int32_t x, int32_t y, int32_t z) const;
   template <class Visit>
   void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t least,
                   Visit& visit) const;
@@ -84,14 +87,8 @@ constexpr uint64_t octant(uint32_t b) {
 }
 }  // namespace flight_detail
 
-inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
-  if (x < 0 || z < 0 || x >= width || z >= depth) return kNoBox;
-  const int32_t zx = x / zone_side, zz = z / zone_side;
-  const auto zone = static_cast<size_t>(zz * zones_x + zx);
-  const AirTree tree = zones[zone].view();
-  x -= zx * zone_side;
-  z -= zz * zone_side;
-  const auto place = tree.find(x, y, z);
+inline uint32_t FlightSpace::box_in(size_t zone, const AirTree& tree, const AirTree::Place& place,
+                                    int32_t x, int32_t y, int32_t z) const {
   if (air_kind(place.word) == AirKind::kFree) return air_number(place.word);
   if (air_kind(place.word) != AirKind::kLeaf) return kNoBox;
   const uint32_t index = air_number(place.word), bit = air_bit(x, y - tree.base, z);
@@ -104,6 +101,16 @@ inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
          static_cast<uint32_t>(std::popcount(leaf.starts & ((uint64_t{1} << low) - 1)));
 }
 
+inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
+  if (x < 0 || z < 0 || x >= width || z >= depth) return kNoBox;
+  const int32_t zx = x / zone_side, zz = z / zone_side;
+  const auto zone = static_cast<size_t>(zz * zones_x + zx);
+  const AirTree tree = zones[zone].view();
+  x -= zx * zone_side;
+  z -= zz * zone_side;
+  return box_in(zone, tree, tree.find(x, y, z), x, y, z);
+}
+
 template <class Visit>
 void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side,
                              int32_t least, Visit& visit) const {
@@ -114,7 +121,8 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
   const int32_t zx = x / zone_side, zz = z / zone_side;
   const auto zone = static_cast<size_t>(zz * zones_x + zx);
   const AirTree tree = zones[zone].view();
-  const auto place = tree.find(x - zx * zone_side, y, z - zz * zone_side);
+  const int32_t own_x = x - zx * zone_side, own_z = z - zz * zone_side;
+  const auto place = tree.find(own_x, y, own_z);
   const AirKind kind = air_kind(place.word);
   if (kind == AirKind::kFull && (place.cube.side == 0 || place.cube.side >= side)) return;
   if (kind == AirKind::kFree && place.cube.side >= side) {
@@ -123,7 +131,7 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
   }
   if (kind == AirKind::kLeaf && least > 2) return;  // boxes of leaves have 1 or 2 cells a side
   if (kind == AirKind::kLeaf && side <= 2) {
-    const uint32_t box = box_at(x, y, z);
+    const uint32_t box = box_in(zone, tree, place, own_x, y, own_z);
     if (side == 1 || (box != kNoBox && boxes[box].side == 2)) {
       if (box != kNoBox) visit(box);
       return;

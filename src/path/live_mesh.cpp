@@ -117,9 +117,10 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
   }
   if (remove) {
     std::erase_if(idle_jumps_, [&](const auto& jump) { return jump.second.change == id; });
-    change.removed = true;
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
-    change.triangles.clear();
+    change = Change{};  // Its id is never used again, its memory is given back.
+    change.active = false;
+    change.removed = true;
   }
   return true;
 }
@@ -216,28 +217,37 @@ void LiveMesh::make(uint32_t index, LiveLevel& level) const {
   cut(level);
 }
 
+PlanPoint LiveMesh::origin_of(const LiveLevel& level) const {
+  const WorldSummary& summary = world().summary;
+  return {summary.origin.x + level.tile_x * kTileCells * summary.cell,
+          summary.origin.z + level.tile_z * kTileCells * summary.cell};
+}
+
+LiveMesh::CellRange LiveMesh::cells_of(const Change& change, const LiveLevel& level,
+                                       double reach) const {
+  const PlanSquare box = box_of(change.prism.corners);
+  const auto [origin_x, origin_z] = origin_of(level);
+  const auto cell = [&](double at, double origin) {
+    return static_cast<int32_t>(
+        std::clamp(std::floor((at - origin) / world().summary.cell), -1.0, kTileCells + 0.0));
+  };
+  return {std::max(cell(box.x0 - reach, origin_x), 0),
+          std::min(cell(box.x1 + reach, origin_x), kTileCells - 1),
+          std::max(cell(box.z0 - reach, origin_z), 0),
+          std::min(cell(box.z1 + reach, origin_z), kTileCells - 1)};
+}
+
 void LiveMesh::take_obstacles(LiveLevel& level) const {
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return;
   const WorldSummary& summary = world().summary;
   const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
   const double bottom = body_bottom(avatar), reach = avatar.radius + kRounding;
-  const double origin_x = summary.origin.x + level.tile_x * kTileCells * summary.cell;
-  const double origin_z = summary.origin.z + level.tile_z * kTileCells * summary.cell;
-  // Cells of the tile that an interval may touch.
-  const auto cells = [&](double from, double to, double origin) {
-    const auto cell = [&](double at) {
-      return static_cast<int32_t>(
-          std::clamp(std::floor((at - origin) / summary.cell), -1.0, kTileCells + 0.0));
-    };
-    return std::pair{std::max(cell(from - reach), 0), std::min(cell(to + reach), kTileCells - 1)};
-  };
+  const auto [origin_x, origin_z] = origin_of(level);
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || change.is_area) continue;
-    const PlanSquare box = box_of(change.prism.corners);
-    const auto [first_x, last_x] = cells(box.x0, box.x1, origin_x);
-    const auto [first_z, last_z] = cells(box.z0, box.z1, origin_z);
+    const auto [first_x, last_x, first_z, last_z] = cells_of(change, level, reach);
     if (first_x > last_x) continue;
     const uint64_t columns = (~uint64_t{0} >> (63 - (last_x - first_x))) << first_x;
     for (int32_t z = first_z; z <= last_z; ++z) {
@@ -288,14 +298,17 @@ std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || !change.is_area) continue;
-    for (size_t c = 0; c < kinds.size(); ++c) {
-      const auto x = static_cast<int32_t>(c % 64), z = static_cast<int32_t>(c / 64);
-      if (!level.is_legal(x, z)) continue;
-      const double feet = level.ground.view.sample(x, z) * 1e-3;
-      if (feet < change.prism.low || feet > change.prism.high) continue;
-      const double mx = summary.origin.x + (level.tile_x * kTileCells + x + 0.5) * summary.cell;
-      const double mz = summary.origin.z + (level.tile_z * kTileCells + z + 0.5) * summary.cell;
-      if (is_nearer({mx, mz, mx, mz}, change.prism.corners, 1e-9)) kinds[c] = change.kind;
+    const CellRange cells = cells_of(change, level, kRounding);
+    for (int32_t z = cells.first_z; z <= cells.last_z; ++z) {
+      for (int32_t x = cells.first_x; x <= cells.last_x; ++x) {
+        if (!level.is_legal(x, z)) continue;
+        const double feet = level.ground.view.sample(x, z) * 1e-3;
+        if (feet < change.prism.low || feet > change.prism.high) continue;
+        const double mx = summary.origin.x + (level.tile_x * kTileCells + x + 0.5) * summary.cell;
+        const double mz = summary.origin.z + (level.tile_z * kTileCells + z + 0.5) * summary.cell;
+        if (is_nearer({mx, mz, mx, mz}, change.prism.corners, 1e-9))
+          kinds[static_cast<size_t>(z * 64 + x)] = change.kind;
+      }
     }
   }
   return kinds;

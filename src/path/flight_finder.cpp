@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/check_class.h"
 #include "core/random.h"
 #include "path/flight_ends.h"
 #include "path/flight_pull.h"
@@ -68,12 +69,8 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
                  "flight: the world was baked without air; bake it with --air or with a class that "
                  "flies"};
   }
-  const auto classes = static_cast<int32_t>(data.summary.classes.size());
-  if (config.avatar_class < 0 || config.avatar_class >= classes) {
-    return Error{Errc::kBadConfig, "flight: there is no class " +
-                                       std::to_string(config.avatar_class) + ", the world has " +
-                                       std::to_string(classes)};
-  }
+  if (auto ok = check_class(data.summary.classes, config.avatar_class, "flight"); !ok)
+    return ok.error();
   if (config.workers < 0) return Error{Errc::kBadConfig, "flight: workers must be 0 or more"};
   const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(config.avatar_class)];
   if (!avatar.flies) {

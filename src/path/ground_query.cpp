@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/check_class.h"
 #include "core/random.h"
 #include "path/circle_flood.h"
 #include "path/obstacle.h"
@@ -88,11 +89,7 @@ GroundQuery::~GroundQuery() = default;
 Result<GroundQuery> GroundQuery::make(const World& world, int32_t avatar_class) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "ground query: the world is empty"};
   const std::vector<AvatarClass>& classes = world.data()->summary.classes;
-  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= classes.size()) {
-    return Error{Errc::kBadConfig, "ground query: there is no class " +
-                                       std::to_string(avatar_class) + ", the world has " +
-                                       std::to_string(classes.size())};
-  }
+  if (auto ok = check_class(classes, avatar_class, "ground query"); !ok) return ok.error();
   auto state = std::make_unique<State>();
   state->world = world;
   state->avatar_class = avatar_class;

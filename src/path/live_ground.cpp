@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/check_class.h"
 #include "path/live_mesh.h"
 #include "path/live_search.h"
 #include "path/live_state.h"
@@ -66,12 +67,8 @@ LiveGround::~LiveGround() = default;
 
 Result<LiveGround> LiveGround::make(const World& world, const LiveConfig& config) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
-  const size_t classes = world.data()->summary.classes.size();
-  if (config.avatar_class < 0 || static_cast<size_t>(config.avatar_class) >= classes) {
-    return Error{Errc::kBadConfig, "live ground: there is no class " +
-                                       std::to_string(config.avatar_class) + ", the world has " +
-                                       std::to_string(classes)};
-  }
+  if (auto ok = check_class(world.data()->summary.classes, config.avatar_class, "live ground"); !ok)
+    return ok.error();
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "core/check_class.h"
 #include "path/hub_labels.h"
 #include "path/label_search.h"
 #include "path/legs.h"
@@ -47,12 +48,8 @@ PathFinder::~PathFinder() = default;
 Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config,
                                     Context& context) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "path: the world is empty"};
-  const auto classes = static_cast<int32_t>(world.data()->summary.classes.size());
-  if (config.avatar_class < 0 || config.avatar_class >= classes) {
-    return Error{Errc::kBadConfig, "path: there is no class " +
-                                       std::to_string(config.avatar_class) + ", the world has " +
-                                       std::to_string(classes)};
-  }
+  if (auto ok = check_class(world.data()->summary.classes, config.avatar_class, "path"); !ok)
+    return ok.error();
   if (config.labels && config.zones)
     return Error{Errc::kBadConfig, "path: choose labels or zones, not both"};
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/check_class.h"
+
 namespace throng {
 namespace {
 
@@ -127,10 +129,7 @@ void add_rect(const World& world, const WorldSummary& summary, uint32_t level,
 Result<Scene> walkable_surface(const World& world, int32_t avatar_class, Context& context) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "surface: the world is empty"};
   const WorldSummary summary = world.summary();
-  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= summary.classes.size()) {
-    return Error{Errc::kBadConfig, "surface: there is no class " + std::to_string(avatar_class) +
-                                       ", the world has " + std::to_string(summary.classes.size())};
-  }
+  if (auto ok = check_class(summary.classes, avatar_class, "surface"); !ok) return ok.error();
   if (auto ok = world.check_ground(); !ok) return ok.error();
   const std::vector<int32_t> storeys = world.storeys();
   std::vector<uint32_t> order(world.level_tile_count());

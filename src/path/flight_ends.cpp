@@ -11,11 +11,6 @@
 namespace throng {
 namespace {
 
-double off_faces(double v) {
-  const double low = std::floor(v);
-  return std::clamp(v, low + kAirSkin, low + 1 - kAirSkin);
-}
-
 // Cells around in which everything is legal, as the bake has stored it: 0 to 7. [legal cell]
 int32_t margin_at(const GroundLevel& level, uint32_t zone_level, int32_t avatar_class, int32_t x,
                   int32_t z) {
@@ -56,7 +51,7 @@ std::optional<AirPoint> FlightEnds::in_air(Vec3d feet) const {
   if (!std::isfinite(feet.x + feet.y + feet.z)) return {};
   const AirPoint p = to_air(feet);
   if (space_.box_at(p) == kNoBox) return {};
-  return AirPoint{off_faces(p.x), off_faces(p.y), off_faces(p.z)};
+  return off_faces(p);
 }
 
 std::optional<AirPoint> FlightEnds::take_off(const Place& place) const {

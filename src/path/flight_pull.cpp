@@ -16,19 +16,10 @@ constexpr int32_t kRounds = 6;
 constexpr int32_t kHalvings = 8;
 constexpr double kGain = 1e-3;  // less is not worth a round, of the whole length
 
-double& axis_of(AirPoint& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-double axis_of(const AirPoint& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
 double length_of(const std::vector<AirPoint>& way) {
   double sum = 0;
   for (size_t i = 1; i < way.size(); ++i) sum += air_distance(way[i - 1], way[i]);
   return sum;
-}
-
-// Keeps points off the faces of their cells.
-double off_faces(double v) {
-  const double low = std::floor(v);
-  return std::clamp(v, low + kAirSkin, low + 1 - kAirSkin);
 }
 
 }  // namespace
@@ -75,14 +66,13 @@ void FlightPull::cut_corners() {
   next_.push_back(way[0]);
   for (size_t i = 1; i + 1 < way.size(); ++i) {
     const AirPoint before = next_.back(), here = way[i], after = way[i + 1];
+    const auto toward = [&](AirPoint end, double part) {
+      return off_faces(here + part * (end - here));
+    };
     double low = 0, high = 1;
     for (int32_t h = 0; h < kHalvings; ++h) {
       const double part = (low + high) / 2;
-      AirPoint a = here + part * (before - here), b = here + part * (after - here);
-      for (int axis = 0; axis < 3; ++axis) {
-        axis_of(a, axis) = off_faces(axis_of(a, axis));
-        axis_of(b, axis) = off_faces(axis_of(b, axis));
-      }
+      const AirPoint a = toward(before, part), b = toward(after, part);
       const bool legal = space_->sees(before, a) && space_->sees(a, b) && space_->sees(b, after);
       (legal ? low : high) = part;
     }
@@ -90,22 +80,16 @@ void FlightPull::cut_corners() {
       next_.push_back(here);
       continue;
     }
-    AirPoint a = here + low * (before - here), b = here + low * (after - here);
-    for (int axis = 0; axis < 3; ++axis) {
-      axis_of(a, axis) = off_faces(axis_of(a, axis));
-      axis_of(b, axis) = off_faces(axis_of(b, axis));
-    }
-    next_.push_back(a);
-    next_.push_back(b);
+    next_.push_back(toward(before, low));
+    next_.push_back(toward(after, low));
   }
   next_.push_back(way.back());
   way.swap(next_);
 }
 
-bool FlightPull::slide(size_t bend) {
+void FlightPull::slide(size_t bend) {
   AirPoint& here = (*way_)[bend];
   const AirPoint before = (*way_)[bend - 1], after = (*way_)[bend + 1];
-  bool moved = false;
   for (int axis = 0; axis < 3; ++axis) {
     // Where the angles are alike: the other two coordinates tell how far either end is.
     double across[2] = {0, 0};
@@ -135,9 +119,7 @@ bool FlightPull::slide(size_t bend) {
     axis_of(to, axis) = off_faces(from + low * (best - from));
     if (air_distance(before, to) + air_distance(to, after) >= old) continue;
     here = to;
-    moved = true;
   }
-  return moved;
 }
 
 }  // namespace throng

@@ -18,7 +18,7 @@ class FlightPull {
  private:
   void shortcut();
   void cut_corners();
-  bool slide(size_t bend);
+  void slide(size_t bend);
 
   const FlightSpace* space_ = nullptr;
   std::vector<AirPoint>* way_ = nullptr;

@@ -34,8 +34,6 @@ double length_of(const std::vector<AirPoint>& way) {
   return sum;
 }
 
-double axis_of(AirPoint p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
 // The plane between two boxes that share a part of a face.
 struct Door {
   int axis = 0;

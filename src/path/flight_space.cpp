@@ -15,6 +15,13 @@ double air_distance(AirPoint a, AirPoint b) {
   return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
 
+double off_faces(double v) {
+  const double low = std::floor(v);
+  return std::clamp(v, low + kAirSkin, low + 1 - kAirSkin);
+}
+
+AirPoint off_faces(AirPoint p) { return {off_faces(p.x), off_faces(p.y), off_faces(p.z)}; }
+
 uint32_t FlightSpace::box_at(AirPoint p) const {
   constexpr double kFar = 1e9;
   if (!(std::fabs(p.x) < kFar && std::fabs(p.y) < kFar && std::fabs(p.z) < kFar)) return kNoBox;

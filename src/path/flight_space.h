@@ -25,10 +25,17 @@ struct AirPoint {
   friend AirPoint operator*(double s, AirPoint a) { return {s * a.x, s * a.y, s * a.z}; }
 };
 double air_distance(AirPoint a, AirPoint b);
+inline double& axis_of(AirPoint& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+inline double axis_of(const AirPoint& p, int axis) {
+  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+}
 
 /// Points keep that far off the faces of boxes, so that a line between two never runs along one.
 /// [air cells]
 inline constexpr double kAirSkin = 1.0 / 1024;
+/// The nearest such coordinates in the same cell.
+double off_faces(double v);
+AirPoint off_faces(AirPoint p);
 
 struct FlightSpace {
   AirShape shape;

@@ -5,16 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "core/plan_point.h"
+
 namespace throng {
-namespace {
-
-using PlanPoint = std::array<double, 2>;
-
-double turn(PlanPoint a, PlanPoint b, PlanPoint c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-}  // namespace
 
 Result<void> check_prism(const Prism& prism) {
   const auto bad = [](const std::string& what) { return Error{Errc::kBadInput, "prism: " + what}; };

@@ -78,7 +78,6 @@ Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& c
   auto labels = label_graph(graph, kSamples, workers, context);
   if (!labels) return labels.error();
   static_cast<TwoHopLabels&>(out) = std::move(*labels);
-  out.edges = graph.edges.size() / 2;
   constexpr uint64_t kMostEntries = uint64_t{1} << 25;  // 320 MiB
   if (mesh.block_side == kSmallBlock)
     out.by_block = build_block_labels(mesh, out, workers, kMostEntries);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "path/block_labels.h"
-#include "path/legs.h"
 #include "path/mesh.h"
 #include "path/sight.h"
 #include "path/two_hop.h"
@@ -27,7 +26,6 @@ struct HubLabels : TwoHopLabels {
   std::vector<Candidate> candidates;
   BlockLabels by_block;    // of small worlds
   MiddleLabels by_middle;  // of others
-  uint64_t edges = 0;      // pairs of corners that see each other and may bend at both
 
   [[nodiscard]] uint64_t bytes() const {
     return TwoHopLabels::bytes() + (first_candidate.size() + candidates.size()) * sizeof(uint32_t) +

@@ -156,8 +156,7 @@ void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
   const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
   for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
     const MeshCorner& corner = mesh.corners[labels.candidates[i].corner];
-    const double dx = corner.x - from.x, dz = corner.z - from.z;
-    out.push_back(static_cast<float>(std::sqrt(dx * dx + dz * dz)));
+    out.push_back(gap(corner, from));
   }
 }
 

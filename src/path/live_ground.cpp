@@ -134,8 +134,8 @@ Result<ChangeId> LiveGround::add_jump(const Jump& jump) {
   }
   const ChangeId id = s.mesh.add({});
   const double cost = std::max(jump.cost / cell, length);
-  s.mesh.add_jump(id, from.level, {id, from.at, to.at, to.level, cost});
-  if (jump.both_ways) s.mesh.add_jump(id, to.level, {id, to.at, from.at, from.level, cost});
+  s.mesh.add_jump(from.level, {id, from.at, to.at, to.level, cost});
+  if (jump.both_ways) s.mesh.add_jump(to.level, {id, to.at, from.at, from.level, cost});
   return id;
 }
 

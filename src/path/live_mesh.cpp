@@ -125,10 +125,9 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
   return true;
 }
 
-void LiveMesh::add_jump(ChangeId change, uint32_t level, const JumpEnd& jump) {
-  changes_[change - 1].levels.push_back(level);
+void LiveMesh::add_jump(uint32_t level, const JumpEnd& jump) {
+  changes_[jump.change - 1].levels.push_back(level);
   jumps_[level].push_back(jump);
-  jumps_[level].back().change = change;
   ++version_;
 }
 

@@ -87,8 +87,8 @@ class LiveMesh {
     uint32_t to_level = 0;
     double cost = 0;  // [cells]
   };
-  /// [jumps of a change are added right after it]
-  void add_jump(ChangeId change, uint32_t level, const JumpEnd& jump);
+  /// From a level. [jumps of a change are added right after it]
+  void add_jump(uint32_t level, const JumpEnd& jump);
   /// Those that are active now.
   [[nodiscard]] const std::vector<JumpEnd>& jumps_from(uint32_t level) const;
   /// Can the class stand at a point of a level now? In which rectangle?

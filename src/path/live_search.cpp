@@ -182,7 +182,6 @@ void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
 }
 
 void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
-  from_ = from;
   to_ = to;
   nodes_.clear();
   open_.clear();

@@ -40,7 +40,7 @@ class LiveNodes {
   std::vector<uint32_t> table_;  // open addressing; 0 is free, else index plus one
 };
 
-/// Calls visit(on_this_side, beyond, cost factor beyond) for points of all portals of a rectangle;
+/// Calls visit(on_this_side, beyond) for points of all portals of a rectangle;
 /// beyond is a stop in the next rectangle, straight across.
 template <class Visit>
 void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
@@ -91,7 +91,7 @@ class LiveSearch {
 
   void note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index);
 
-  LiveStop from_, to_, nearest_stop_;
+  LiveStop to_, nearest_stop_;
   LiveNodes nodes_;
   std::vector<Open> open_;
   uint32_t nearest_ = 0, goal_ = UINT32_MAX;

@@ -17,10 +17,6 @@ double squared_to_segment(PlanPoint p, PlanPoint a, PlanPoint b) {
   return dx * dx + dz * dz;
 }
 
-double turn(PlanPoint a, PlanPoint b, PlanPoint c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
 // Convex, of either order.
 bool holds(std::span<const PlanPoint> polygon, PlanPoint p) {
   bool left = false, right = false;

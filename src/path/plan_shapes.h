@@ -7,12 +7,11 @@
 #include <span>
 #include <utility>
 
+#include "core/plan_point.h"
 #include "throng/math.h"
 
 /// Squares of the ground's plane against polygons and triangles: what obstacles take from cells.
 namespace throng {
-
-using PlanPoint = std::array<double, 2>;  // x, z [m]
 
 /// A square of the ground's plane. [m]
 struct PlanSquare {

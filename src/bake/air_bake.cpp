@@ -254,7 +254,7 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
                              .largest = AirTree::kMostSide,
                              .free_beyond = true};
   AirTreeData tree = build_air_tree(source);
-  measure_room(source, apron, tree);
+  measure_room(source, apron, plan_.config->workers, tree);
   auto bytes = air_zone_bytes(zone_x, zone_z, key, tree);
   const std::span<const uint8_t> view(bytes.data(), bytes.size());
   if (folder_ != nullptr) {

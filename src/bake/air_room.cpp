@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/parallel.h"
+
 // Distances in the plane count rows and columns alike (the larger of the two), so two sweeps over a
 // layer give them exactly; squares of 4 x 4 cells keep the smallest, as no cube is smaller or
 // lies across them. Source: [RP66].
@@ -15,13 +17,15 @@ namespace {
 // of them is not, 1 if one beside them. At most 1 more than the room that can be promised.
 class Distances {
  public:
-  Distances(const AirTreeSource& source, int32_t apron)
+  Distances(const AirTreeSource& source, int32_t apron, int32_t workers)
       : side_(source.side / 4), height_(source.rows->height), base_(source.base) {
     distances_.resize(static_cast<size_t>(side_) * static_cast<size_t>(side_) *
                       static_cast<size_t>(height_));
     most_ = std::min(apron, kMostAirRoom);
-    std::vector<uint8_t> layer;
-    for (int32_t y = 0; y < height_; ++y) sweep(source, apron, y, layer);
+    std::vector<std::vector<uint8_t>> layers(static_cast<size_t>(worker_count(workers)));
+    parallel_for_worker(static_cast<size_t>(height_), workers, [&](size_t y, int32_t worker) {
+      sweep(source, apron, static_cast<int32_t>(y), layers[static_cast<size_t>(worker)]);
+    });
   }
 
   /// Over all cells of a cube's footprint, in one layer of the world. Layers over and under the
@@ -132,8 +136,8 @@ class RoomWriter {
 
 }  // namespace
 
-void measure_room(const AirTreeSource& source, int32_t apron, AirTreeData& tree) {
-  const Distances distances(source, apron);
+void measure_room(const AirTreeSource& source, int32_t apron, int32_t workers, AirTreeData& tree) {
+  const Distances distances(source, apron, workers);
   RoomWriter writer(distances, tree);
   for (uint32_t r = 0; r < tree.roots; ++r) {
     writer.write({0, tree.base + static_cast<int32_t>(r) * tree.side, 0, tree.side}, r);

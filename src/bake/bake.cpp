@@ -2,42 +2,28 @@
 // SPDX-License-Identifier: MIT
 #include "throng/bake.h"
 
-#include <chrono>
-#include <functional>
-#include <optional>
+#include <memory>
+#include <vector>
 
 #include "bake/world_bake.h"
 #include "bake/world_folder.h"
 #include "bake/zone_bake.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "world/zone_data.h"
 
 namespace throng {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// Where zones go, in order of z, then x, and where some of them come from.
-struct ZoneStore {
-  // Receives each baked zone; `bytes` are empty where nobody can stand.
-  std::function<Result<void>(const format::ZoneEntry&, uint64_t input, flatbuffers::DetachedBuffer)>
-      write;
-  // A zone that need not be baked, or null: then none is kept.
-  std::function<std::optional<WorldFolder::Kept>(int32_t x, int32_t z, uint64_t input)> keep;
-  const WorldData* old_world = nullptr;
-  WorldFolder* folder = nullptr;  // where air files go; null: they stay in memory
-};
-
+// Zones go into the folder, which may have some of them already, or, if it is null, in order of z,
+// then x, into `in_memory`.
 Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,
                                               Context& context, BakeReport& report,
-                                              const ZoneStore& store) {
+                                              WorldFolder* folder,
+                                              std::vector<std::unique_ptr<Zone>>& in_memory) {
   const auto start = Clock::now();
-  const auto begun =
-      WorldBake::begin(scene, config, store.old_world, static_cast<bool>(store.keep));
+  const WorldData* old_world = folder != nullptr ? folder->old_world() : nullptr;
+  const auto begun = WorldBake::begin(scene, config, old_world, folder != nullptr);
   if (!begun) return begun.error();
   const WorldBake& bake = *begun;
   ZoneScratch scratch(worker_count(config.workers));
@@ -49,8 +35,8 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
       context.on_progress({"bake", bake.place(i), bake.place_count()});
     }
     if (context.cancel) return cancelled;
-    if (store.keep) {
-      if (const auto kept = store.keep(input.x(), input.z(), input.hash())) {
+    if (folder != nullptr) {
+      if (const auto kept = folder->keep(input.x(), input.z(), input.hash())) {
         facts[i] = bake.facts_of(*kept);
         continue;
       }
@@ -58,14 +44,20 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
     flatbuffers::DetachedBuffer bytes;
     if (!bake.bake(i, scratch, context, facts[i], bytes)) return cancelled;
     const auto write_start = Clock::now();
-    if (auto ok = store.write(facts[i].entry, input.hash(), std::move(bytes)); !ok) {
-      return ok.error();
+    const format::ZoneEntry& entry = facts[i].entry;
+    if (folder != nullptr) {
+      if (auto ok = folder->write(entry, input.hash(), {bytes.data(), bytes.size()}); !ok)
+        return ok.error();
+    } else if (entry.levels() > 0) {
+      auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(entry.x(), entry.z()));
+      if (!zone) return zone.error();
+      in_memory.push_back(std::move(*zone));
     }
     facts[i].seconds_write = seconds_since(write_start);
   }
   auto world = bake.world(facts, report);
   if (!world) return world.error();
-  if (auto ok = bake.add_air(store.folder, **world, context, report); !ok) return ok.error();
+  if (auto ok = bake.add_air(folder, **world, context, report); !ok) return ok.error();
   report.seconds_total = seconds_since(start);
   if (context.on_progress) context.on_progress({"bake", bake.place_count(), bake.place_count()});
   return world;
@@ -78,16 +70,7 @@ Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& 
   if (auto ok = check_bake(scene, config); !ok) return ok.error();
   BakeReport local;
   std::vector<std::unique_ptr<Zone>> zones;
-  ZoneStore store;
-  store.write = [&](const format::ZoneEntry& entry, uint64_t /*input*/,
-                    flatbuffers::DetachedBuffer bytes) -> Result<void> {
-    if (entry.levels() == 0) return {};
-    auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(entry.x(), entry.z()));
-    if (!zone) return zone.error();
-    zones.push_back(std::move(*zone));
-    return {};
-  };
-  auto world = bake_zones(scene, config, context, local, store);
+  auto world = bake_zones(scene, config, context, local, nullptr, zones);
   if (!world) return world.error();
   for (size_t i = 0; i < zones.size(); ++i) (*world)->slots[i]->zone = std::move(zones[i]);
   if (report != nullptr) *report = local;
@@ -99,16 +82,9 @@ Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
   if (auto ok = check_bake(scene, config); !ok) return ok.error();
   auto folder = WorldFolder::begin(path, config.old_zones);
   if (!folder) return folder.error();
-  ZoneStore store;
-  store.old_world = folder->old_world();
-  store.folder = &*folder;
-  store.keep = [&](int32_t x, int32_t z, uint64_t input) { return folder->keep(x, z, input); };
-  store.write = [&](const format::ZoneEntry& entry, uint64_t input,
-                    const flatbuffers::DetachedBuffer& bytes) {
-    return folder->write(entry, input, {bytes.data(), bytes.size()});
-  };
+  std::vector<std::unique_ptr<Zone>> none;
   BakeReport report;
-  auto world = bake_zones(scene, config, context, report, store);
+  auto world = bake_zones(scene, config, context, report, &*folder, none);
   if (!world) return world.error();
   if (auto ok = folder->finish(**world); !ok) return ok.error();
   return report;

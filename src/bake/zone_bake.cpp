@@ -13,6 +13,7 @@
 #include "bake/surface_planes.h"
 #include "bake/zone_builder.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 
 // A zone is baked in bands of tile rows, so that only a few rows of sheets are alive at a time:
 // while a band's columns are dealt to sheets, legality is judged one row behind it, because it
@@ -20,12 +21,6 @@
 // the zone is rasterised as far as the zone looks, so that no zone depends on another's result.
 namespace throng {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 constexpr int32_t kBand = 8;  // tile rows
 

@@ -18,6 +18,7 @@
 #include "cluster/ranks.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "throng/cluster.h"
 
 // Rank 0 owns the folder: it takes over what need not be baked, hands out the rest, the largest
@@ -27,8 +28,6 @@
 // spinning, which would take a core from those that bake.
 namespace throng {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 enum Tag : int32_t {
   kFree,   // a rank wants work; empty
@@ -57,10 +56,6 @@ T value_of(const RankMessage& message) {
 }
 
 void nap() { std::this_thread::sleep_for(std::chrono::microseconds(300)); }
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // The cores of the machine, shared among its ranks, unless mpirun has dealt them already.
 int32_t own_workers(int32_t asked, int32_t local_ranks) {
@@ -327,9 +322,10 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     }
   }
   if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
-  std::shared_ptr<WorldData> old;
-  if (config.old_zones == OldZones::kKeep) old = WorldFolder::read_world(path);
-  const auto bake = WorldBake::begin(scene, own, old.get(), true);
+  std::shared_ptr<WorldData> read;
+  if (!folder && config.old_zones == OldZones::kKeep) read = WorldFolder::read_world(path);
+  const WorldData* old = folder ? folder->old_world() : read.get();
+  const auto bake = WorldBake::begin(scene, own, old, true);
   Result<void> planned;
   if (!bake) planned = bake.error();
   if (auto ok = agree_over_ranks(planned); !ok) return ok.error();

@@ -11,6 +11,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/stopwatch.h"
 #include "crowd/crowd_blocks.h"
 #include "crowd/crowd_check.h"
 #include "crowd/crowd_step.h"
@@ -19,12 +20,6 @@
 
 namespace throng {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 constexpr int32_t kBlockPixels = 32;
 // Pixels of the map for each avatar above which small pages, taken only around him, save memory: he

@@ -8,8 +8,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+
+#include "core/part_file.h"
 
 namespace throng {
 namespace {
@@ -57,18 +58,9 @@ Result<FileMap> FileMap::open(const std::string& path) {
 }
 
 Result<void> write_file(const std::string& path, std::span<const uint8_t> bytes) {
-  const std::string part = path + ".part";
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  if (file == nullptr) return io_error(path, "written");
-  const bool written =
-      bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const bool closed = std::fclose(file) == 0;
-  if (!written || !closed || std::rename(part.c_str(), path.c_str()) != 0) {
-    Error error = io_error(path, "written");
-    std::remove(part.c_str());
-    return error;
-  }
-  return {};
+  PartFile file(path);
+  file.write(bytes.data(), bytes.size());
+  return file.close();
 }
 
 }  // namespace throng

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/part_file.h"
 #include "import/patch_edges.h"
 #include "throng/patch.h"
 
@@ -59,12 +59,10 @@ std::string quoted(const std::string& text) {
 Result<void> write_patches(const PatchSet& set, const std::string& path) {
   if (set.empty()) return Error{Errc::kBadInput, path + ": there are no patches to write"};
   if (const auto checked = check_patches(set); !checked) return checked;
-  const std::string part = path + ".part";
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  bool good = file != nullptr;
+  PartFile file(path);
   std::string text;
   const auto flush = [&] {
-    good = good && std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    file.write(text.data(), text.size());
     text.clear();
   };
   text = "{\"format\":\"throng-patches\",\"version\":1,\"groups\":[";
@@ -82,13 +80,7 @@ Result<void> write_patches(const PatchSet& set, const std::string& path) {
   }
   text += "]}\n";
   flush();
-  if (file != nullptr && std::fclose(file) != 0) good = false;
-  if (!good || std::rename(part.c_str(), path.c_str()) != 0) {
-    std::remove(part.c_str());
-    return Error{Errc::kIo,
-                 fmt::format("{}: cannot be written; check the folder and the free space", path)};
-  }
-  return {};
+  return file.close();
 }
 
 }  // namespace throng

@@ -9,19 +9,7 @@
 
 namespace throng {
 
-SceneOutput::SceneOutput(std::string path)
-    : path_(std::move(path)),
-      part_(path_ + ".part"),
-      file_(std::fopen(part_.c_str(), "wb")),
-      good_(file_ != nullptr) {
-  buffer_.reserve(kBuffer);
-}
-
-SceneOutput::~SceneOutput() {
-  if (file_ == nullptr) return;
-  std::fclose(file_);
-  std::remove(part_.c_str());
-}
+SceneOutput::SceneOutput(std::string path) : file_(std::move(path)) { buffer_.reserve(kBuffer); }
 
 void SceneOutput::put_bytes(const void* data, size_t size) {
   if (buffer_.size() + size > kBuffer) flush();
@@ -30,20 +18,13 @@ void SceneOutput::put_bytes(const void* data, size_t size) {
 }
 
 void SceneOutput::flush() {
-  if (buffer_.empty()) return;
-  if (good_ && std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size())
-    good_ = false;
+  file_.write(buffer_.data(), buffer_.size());
   buffer_.clear();
 }
 
 Result<void> SceneOutput::close() {
   flush();
-  if (file_ != nullptr && std::fclose(file_) != 0) good_ = false;
-  file_ = nullptr;
-  if (good_ && std::rename(part_.c_str(), path_.c_str()) == 0) return {};
-  std::remove(part_.c_str());
-  return Error{Errc::kIo,
-               fmt::format("{}: cannot be written; check the folder and the free space", path_)};
+  return file_.close();
 }
 
 Result<void> check_scene(const Scene& scene, const std::string& path) {

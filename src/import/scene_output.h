@@ -2,25 +2,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/part_file.h"
 #include "throng/result.h"
 #include "throng/scene.h"
 
 /// What the writers of scenes share.
 namespace throng {
 
-/// A file under a name of its own until it is whole: gathers what is written and remembers the
-/// first failure.
+/// A PartFile that gathers what is written.
 class SceneOutput {
  public:
   explicit SceneOutput(std::string path);
-  SceneOutput(const SceneOutput&) = delete;
-  SceneOutput& operator=(const SceneOutput&) = delete;
-  ~SceneOutput();  // not closed: nothing is left
 
   template <class T>
   void put(const T& value) {
@@ -35,9 +31,7 @@ class SceneOutput {
   static constexpr size_t kBuffer = 1 << 20;
   void flush();
 
-  std::string path_, part_;
-  std::FILE* file_;
-  bool good_ = false;
+  PartFile file_;
   std::vector<char> buffer_;
 };
 

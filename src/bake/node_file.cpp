@@ -40,9 +40,11 @@ uint32_t ZoneContent::far_node(const format::FarNode& node) {
 
 Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
   const std::string name = node_file_name(content.x, content.z);
-  const uint64_t bytes = content.nodes.size() * sizeof(format::Node) +
-                         content.arcs.size() * sizeof(format::Arc) +
-                         content.points.size() * sizeof(double);
+  const uint64_t bytes =
+      content.patches.size() * sizeof(format::NodePatch) +
+      content.nodes.size() * sizeof(format::Node) + content.arcs.size() * sizeof(format::Arc) +
+      content.leaps.size() * sizeof(format::Leap) + content.far.size() * sizeof(format::FarNode) +
+      content.points.size() * sizeof(double);
   if (bytes > (uint64_t{1} << 31) - (1 << 20)) {
     return Error{Errc::kLimit, name + ": more than 2 GiB of nodes; use smaller zones"};
   }

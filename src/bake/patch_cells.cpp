@@ -26,11 +26,12 @@ constexpr double kSlopeMargin = 1e-6;  // a plane at exactly a limit keeps it
 
 double sine_of(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
 
-}  // namespace
-
+// To 9 digits: the last bits of cos() differ between machines' libraries.
 double rounded_cosine(double degrees) {
   return std::round(std::cos(degrees * std::numbers::pi / 180) * 1e9) / 1e9;
 }
+
+}  // namespace
 
 std::vector<PatchBody> patch_bodies(std::span<const AvatarClass> classes) {
   std::vector<PatchBody> bodies;
@@ -161,7 +162,6 @@ int32_t PatchJudge::depth_of(const BezierPatch& patch) const {
 }
 
 BezierCells PatchJudge::judge(uint32_t patch) {
-  patch_ = patch;
   // The patch, its neighbours and theirs, among them those that share a corner with it.
   beside_ = {patch};
   for (int ring = 0; ring < 2; ++ring) {

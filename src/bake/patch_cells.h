@@ -27,9 +27,6 @@ struct PatchBody {
 
 [[nodiscard]] std::vector<PatchBody> patch_bodies(std::span<const AvatarClass> classes);
 
-/// Cosine of an angle to 9 digits: the last bits of cos() differ between machines' libraries.
-[[nodiscard]] double rounded_cosine(double degrees);
-
 /// Where all surface points of a sub-patch and their normals are: a cone around `frame.up` of the
 /// normals, a cylinder around the frame's axis of the points.
 struct SurfaceBound {
@@ -73,10 +70,10 @@ class PatchJudge {
              const NodeBins& bins, double size);
 
   [[nodiscard]] BezierCells judge(uint32_t patch);
-  /// How often a patch is halved.
-  [[nodiscard]] int32_t depth_of(const BezierPatch& patch) const;
 
  private:
+  /// How often a patch is halved.
+  [[nodiscard]] int32_t depth_of(const BezierPatch& patch) const;
   void visit(const BezierPatch& part, int32_t level, int32_t s, int32_t t, BezierCells& out);
   void judge_cell(const BezierPatch& part, size_t cell, BezierCells& out);
   void judge_posture(const BodyFrame& frame, const SurfaceBound& surface, bool climbs,
@@ -91,7 +88,6 @@ class PatchJudge {
   double tallest_ = 0, least_bottom_ = 0;
   std::array<std::optional<PatchBody>, 2> envelope_;  // of walkers, of climbers
 
-  uint32_t patch_ = 0;
   std::vector<uint32_t> beside_;  // patches that go on from this one
   std::vector<uint32_t> found_;
   std::vector<LocalTriangle> local_;

@@ -16,7 +16,6 @@ constexpr size_t kLongestChain = 16;  // a patch is halved at most 6 times
 }  // namespace
 
 void NodeForest::add(PatchTree tree) {
-  if (first.empty()) first.push_back(0);
   first.push_back(first.back() + static_cast<uint32_t>(tree.nodes.size()));
   trees.push_back(std::move(tree));
 }

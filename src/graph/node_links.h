@@ -15,7 +15,7 @@ namespace throng {
 /// Trees of all patches; node n of patch p is node first[p] + n of all.
 struct NodeForest {
   std::vector<PatchTree> trees;
-  std::vector<uint32_t> first;  ///< patches + 1
+  std::vector<uint32_t> first{0};  ///< patches + 1
 
   void add(PatchTree tree);
   [[nodiscard]] uint32_t size() const { return first.back(); }

@@ -3,32 +3,38 @@
 #include "throng/graph.h"
 
 #include <chrono>
+#include <cmath>
 
-#include "graph/components.h"
-#include "graph/regions.h"
-#include "world/ground.h"
+#include "core/file_map.h"
+#include "graph/graph_passes.h"
+#include "graph/zone_regions.h"
 #include "world/place.h"
+#include "world/region_data.h"
 
 namespace throng {
-
-struct GraphData {
-  World world;
-  RegionGraph regions;
-  std::vector<uint32_t> component_of_part;
-  std::vector<std::vector<Component>> components;  // per class
-  GraphSummary summary;
-};
-
 namespace {
 
-// The middle of the region's key cell.
-Place place_in(const WorldData& world, const Region& region) {
-  const GroundLevel level = ground_level(world, region.level, 0);
-  const auto [tile_x, tile_z] = tile_of(world, *level.zone, *level.view.record);
-  const auto middle = [](int32_t tile, uint32_t cell) {
-    return ((int64_t{tile} * 64 + cell) << kUnitBits) + kUnitsPerCell / 2;
-  };
-  return place_at(world, level, {middle(tile_x, region.key % 64), middle(tile_z, region.key / 64)});
+// Null where the bake has left none.
+Result<std::shared_ptr<GraphData>> read_index(const WorldData& world) {
+  if (world.path.empty()) return std::shared_ptr<GraphData>();
+  const std::string name = world.path + "/" + kGraphIndexName;
+  const auto map = FileMap::open(name);
+  if (!map) return std::shared_ptr<GraphData>();
+  auto graph = read_graph_index(map->bytes(), name, world, world.manifest_hash);
+  if (!graph) return graph.error();
+  (*graph)->path = world.path;
+  (*graph)->summary.on_disk = true;
+  return graph;
+}
+
+Result<std::shared_ptr<GraphData>> read_or_make(const World& world, int32_t workers,
+                                                Context& context) {
+  auto graph = read_index(*world.data());
+  if (!graph || *graph != nullptr) return graph;
+  if (auto ok = world.check_ground(); !ok) return ok.error();
+  auto made = make_graph(*world.data(), nullptr, workers, context);
+  if (!made) return made.error();
+  return std::move(made->graph);
 }
 
 }  // namespace
@@ -36,28 +42,14 @@ Place place_in(const WorldData& world, const Region& region) {
 Result<Graph> Graph::make(const World& world, const GraphConfig& config, Context& context) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "graph: the world is empty"};
   if (config.workers < 0) return Error{Errc::kBadConfig, "graph: workers must be 0 or more"};
+  if (context.cancel) return Error{Errc::kCancelled, "graph: cancelled"};
   const auto start = std::chrono::steady_clock::now();
-  const WorldData& data = *world.data();
-  if (auto ok = world.check_ground(); !ok) return ok.error();
-  auto regions = build_regions(data, config.workers, context);
-  if (!regions) return regions.error();
-  auto graph = std::make_shared<GraphData>();
-  graph->world = world;
-  graph->regions = std::move(*regions);
-  const size_t classes = data.summary.classes.size();
-  const auto found = find_components(graph->regions, classes, graph->component_of_part);
-  const double cell_area = data.summary.cell * data.summary.cell;
-  for (const ClassComponents& of_class : found) {
-    auto& components = graph->components.emplace_back();
-    for (size_t i = 0; i < of_class.cells.size(); ++i) {
-      components.push_back({static_cast<double>(of_class.cells[i]) * cell_area, of_class.regions[i],
-                            place_in(data, graph->regions.regions[of_class.first_region[i]])});
-    }
-  }
-  graph->summary = {
-      graph->regions.regions.size(), graph->regions.links.size(), graph->regions.bytes(),
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
-  return Graph(std::move(graph));
+  auto graph = read_or_make(world, config.workers, context);
+  if (!graph) return graph.error();
+  (*graph)->world = world;
+  (*graph)->summary.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return Graph(std::move(*graph));
 }
 
 GraphSummary Graph::summary() const {
@@ -67,20 +59,53 @@ GraphSummary Graph::summary() const {
 
 std::span<const Component> Graph::components(int32_t avatar_class) const {
   THRONG_ASSERT(data_);
-  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= data_->components.size()) return {};
-  return data_->components[static_cast<size_t>(avatar_class)];
+  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= data_->by_class.size()) return {};
+  return data_->by_class[static_cast<size_t>(avatar_class)];
 }
 
 int32_t Graph::component_at(int32_t avatar_class, const Place& place) const {
   THRONG_ASSERT(data_);
   const WorldData& world = *data_->world.data();
-  if (components(avatar_class).empty() || !place || place.level1 > world.level_count) return -1;
-  const GroundPoint at = to_ground(world, place.position.x, place.position.z);
-  if (!in_grid(world, at)) return -1;
-  const uint32_t region = region_at(world, data_->regions, place.level1 - 1, avatar_class,
-                                    at.cell_x() & 63, at.cell_z() & 63);
+  if (components(avatar_class).empty()) return -1;
+  const auto at = ground_point(world, place);
+  if (!at) return -1;
+  const uint32_t level = place.level1 - 1;
+  const size_t slot = world.slot_of_level(level);
+  const RegionZone* zone = data_->zone(world, slot);
+  if (zone == nullptr) return -1;
+  const uint32_t region =
+      region_at(world, *zone, level, avatar_class, at->cell_x() & 63, at->cell_z() & 63);
   if (region == kNoRegion) return -1;
-  return static_cast<int32_t>(data_->component_of_part[data_->regions.part(region, avatar_class)]);
+  const uint32_t component = zone->component(region, static_cast<uint32_t>(avatar_class));
+  return static_cast<int32_t>(
+      data_->component_of[data_->slots[slot]->entry.first_component() + component]);
+}
+
+Result<void> Graph::check_at(Vec3d position) const {
+  THRONG_ASSERT(data_);
+  const WorldData& world = *data_->world.data();
+  if (!std::isfinite(position.x + position.z)) return {};
+  const GroundPoint at = to_ground(world, position.x, position.z);
+  if (!in_grid(world, at)) return {};
+  const auto cells = static_cast<int32_t>(world.tiles_per_zone) * kTileCells;
+  const int32_t found = slot_at(world, at.cell_x() / cells, at.cell_z() / cells);
+  if (found < 0) return {};
+  const auto slot = static_cast<size_t>(found);
+  if (world.zone(slot) == nullptr) return Error{Errc::kBadFile, world.slots[slot]->error};
+  if (data_->zone(world, slot) == nullptr) {
+    return Error{Errc::kBadFile, data_->slots[slot]->error};
+  }
+  return {};
+}
+
+Result<void> Graph::check_files(const World& world) {
+  if (world.data() == nullptr) return Error{Errc::kBadInput, "graph: the world is empty"};
+  const auto graph = read_index(*world.data());
+  if (!graph) return graph.error();
+  for (size_t slot = 0; *graph != nullptr && slot < (*graph)->slots.size(); ++slot) {
+    if (auto ok = (*graph)->check_links(*world.data(), slot); !ok) return ok.error();
+  }
+  return {};
 }
 
 }  // namespace throng

@@ -58,10 +58,10 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
   if (!world) return world.error();
   (*world)->path = path;
   (*world)->budget = config.resident_bytes;
+  (*world)->manifest_hash = hash_bytes(map->bytes().data(), map->bytes().size());
   const std::string air_name = path + "/" + kAirManifest;
   if (const auto air_map = FileMap::open(air_name)) {
-    const uint64_t hash = hash_bytes(map->bytes().data(), map->bytes().size());
-    auto air = read_air_manifest(air_map->bytes(), air_name, **world, hash);
+    auto air = read_air_manifest(air_map->bytes(), air_name, **world, (*world)->manifest_hash);
     if (!air) return air.error();
     (*air)->path = path;
     for (size_t c = 0; c < (*world)->summary.classes.size(); ++c) {

@@ -86,6 +86,7 @@ struct WorldData {
   uint32_t tiles_per_zone = 0;
   int32_t zones_x = 0, zones_z = 0;
   std::string path;                   // empty: baked in memory
+  uint64_t manifest_hash = 0;         // XXH3 of the manifest, if it was read from a folder
   std::vector<int32_t> slot_of_zone;  // zones_x * zones_z, -1: no levels there
   std::vector<std::unique_ptr<Slot>> slots;
   std::vector<format::ZoneInput> inputs;  // of the zones that were baked

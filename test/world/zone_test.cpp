@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
+#include "world/region_data.h"
 #include "world/zone_data.h"
 #include "worlds.h"
 
@@ -159,6 +160,16 @@ TEST(FuzzSeeds, TheZoneIsOfThisVersion) {
 }
 
 // A zone that lies about its content but carries the right checksum, as an attacker would make it.
+TEST(FuzzSeeds, RegionsAndLinksAreOfThisVersion) {
+  const auto map = [](const char* name) {
+    auto file = FileMap::open(std::string(THRONG_TEST_DATA "/../fuzz/seeds/regions/") + name);
+    EXPECT_TRUE(file);
+    return file ? *std::move(file) : FileMap{};
+  };
+  EXPECT_TRUE(RegionZone::from_file(map("small.thr"), "small.thr"));
+  EXPECT_TRUE(LinkZone::from_file(map("small.thl"), "small.thl"));
+}
+
 TEST_F(ZoneFiles, AFlippedByteBehindTheChecksumIsRefusedOrHarmless) {
   const auto whole = as_zone(zone_);
   ASSERT_TRUE(whole) << whole.error().message;

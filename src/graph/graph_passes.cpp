@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "graph/graph_passes.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <vector>
+
+#include "core/hash.h"
+#include "graph/disjoint_sets.h"
+#include "graph/zone_regions.h"
+#include "world/place.h"
+
+// Pass 1 looks at one zone at a time, pass 2 at a zone and the two behind its eastern and southern
+// border: each border belongs to one zone, so a zone that changes costs its own links and those of
+// its western and northern neighbours. A step leads over sides of cells only, so zones that touch
+// at a corner have no link; and a zone is as high as the world, so there is none over or under it.
+// Components are joined over borders from those within zones: pass 2 never looks at single parts.
+namespace throng {
+namespace {
+
+constexpr uint64_t kMostZoneBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuffers' limit
+
+Error cancelled() { return {Errc::kCancelled, "graph: cancelled"}; }
+
+class Passes {
+ public:
+  Passes(const WorldData& world, GraphFiles* files, int32_t workers, Context& context)
+      : world_(world), files_(files), workers_(workers), context_(context) {
+    made_.graph = std::make_shared<GraphData>();
+  }
+
+  Result<GraphMade> run();
+
+ private:
+  // A slot, or none.
+  struct Side {
+    int32_t slot = -1;
+    const RegionZone* zone = nullptr;
+  };
+  struct Around {
+    Side own, east, south;
+  };
+
+  Result<void> find_regions(size_t slot);
+  Result<void> find_links(size_t slot, DisjointSets& sets);
+  Result<flatbuffers::DetachedBuffer> make_links(size_t slot, uint64_t input, const Around& around);
+  void number_components(DisjointSets& sets);
+  [[nodiscard]] uint64_t region_input(size_t slot) const;
+  [[nodiscard]] Result<Side> side(int32_t slot) const;
+  [[nodiscard]] uint64_t link_input(const Around& around) const;
+  [[nodiscard]] Result<void> usable(int32_t slot) const;
+  void tell(const char* stage, size_t done) const;
+
+  const WorldData& world_;
+  GraphFiles* files_;
+  int32_t workers_;
+  Context& context_;
+  GraphMade made_;
+  std::vector<uint64_t> inputs_;  // of the slots' regions
+  uint32_t components_ = 0;       // of zones
+};
+
+void Passes::tell(const char* stage, size_t done) const {
+  if (context_.on_progress) context_.on_progress({stage, done, world_.slots.size()});
+}
+
+// All that regions are made from: the zone's bytes and what they leave out, the steps of classes.
+uint64_t Passes::region_input(size_t slot) const {
+  std::vector<uint64_t> words{kGraphVersion, world_.slots[slot]->entry.hash()};
+  for (const AvatarClass& avatar : world_.summary.classes) {
+    words.push_back(static_cast<uint64_t>(step_mm(avatar)));
+  }
+  return hash_span(std::span<const uint64_t>(words));
+}
+
+Result<void> Passes::usable(int32_t slot) const {
+  if (slot < 0 || world_.zone(static_cast<size_t>(slot)) != nullptr) return {};
+  return Error{Errc::kBadFile, world_.slots[static_cast<size_t>(slot)]->error};
+}
+
+uint64_t Passes::link_input(const Around& around) const {
+  std::vector<uint64_t> words{kGraphVersion};
+  for (const Side& of : {around.own, around.east, around.south}) {
+    words.push_back(of.slot < 0 ? 0 : inputs_[static_cast<size_t>(of.slot)]);
+  }
+  return hash_span(std::span<const uint64_t>(words));
+}
+
+Result<Passes::Side> Passes::side(int32_t slot) const {
+  if (slot < 0) return Side{};
+  const RegionZone* zone = made_.graph->zone(world_, static_cast<size_t>(slot));
+  if (zone != nullptr) return Side{slot, zone};
+  return Error{Errc::kBadFile, made_.graph->slots[static_cast<size_t>(slot)]->error};
+}
+
+Result<void> Passes::find_regions(size_t slot) {
+  const format::ZoneEntry& entry = world_.slots[slot]->entry;
+  const uint64_t input = region_input(slot);
+  inputs_.push_back(input);
+  std::unique_ptr<RegionZone> zone;
+  if (files_ != nullptr) {
+    zone = files_->keep_regions(entry.x(), entry.z(), input);
+    if (zone && !is_of_slot(*zone, world_, slot)) zone = nullptr;
+  }
+  if (zone == nullptr) {
+    if (auto ok = usable(static_cast<int32_t>(slot)); !ok) return ok.error();
+    const auto tables = find_zone_regions(world_, slot, workers_, context_);
+    if (!tables) return cancelled();
+    const std::string name = region_file_name(entry.x(), entry.z());
+    const uint64_t bytes = tables->regions.size() * sizeof(format::Region) +
+                           tables->part_component.size() * sizeof(uint32_t) +
+                           tables->components.size() * sizeof(format::ZoneComponent) +
+                           tables->links.size() * sizeof(format::RegionLink);
+    if (bytes > kMostZoneBytes) {
+      return Error{Errc::kLimit, name + ": more than 2 GiB of regions; use smaller zones"};
+    }
+    auto made =
+        RegionZone::from_bytes(region_zone_bytes(entry.x(), entry.z(), input, *tables), name);
+    if (!made) return made.error();
+    zone = std::move(*made);
+    if (files_ != nullptr) {
+      if (auto ok = files_->write(name, zone->bytes()); !ok) return ok.error();
+    }
+  }
+  if (uint64_t{components_} + zone->components().size() >= UINT32_MAX) {
+    return Error{Errc::kLimit, "graph: more than 2^32 parts; use a larger cell"};
+  }
+  auto own = std::make_unique<GraphData::Slot>();
+  own->entry = {entry.x(),
+                entry.z(),
+                static_cast<uint32_t>(zone->regions().size()),
+                static_cast<uint32_t>(zone->links().size()),
+                static_cast<uint32_t>(zone->components().size()),
+                components_,
+                zone->bytes().size(),
+                hash_bytes(zone->bytes().data(), zone->bytes().size()),
+                0,
+                0};
+  components_ += own->entry.components();
+  // Those in a folder are mapped again when pass 2 comes to them.
+  if (files_ == nullptr) own->zone = std::move(zone);
+  made_.graph->slots.push_back(std::move(own));
+  return {};
+}
+
+Result<flatbuffers::DetachedBuffer> Passes::make_links(size_t slot, uint64_t input,
+                                                       const Around& around) {
+  const format::GraphZone& entry = made_.graph->slots[slot]->entry;
+  std::array<std::vector<format::RegionLink>, 2> links;
+  for (size_t i = 0; i < links.size(); ++i) {
+    const Side& next = i == 0 ? around.east : around.south;
+    if (next.slot < 0) continue;
+    for (const Side& zone : {around.own, next}) {
+      if (auto ok = usable(zone.slot); !ok) return ok.error();
+    }
+    links[i] = find_zone_links(world_, {slot, around.own.zone},
+                               {static_cast<size_t>(next.slot), next.zone}, workers_);
+  }
+  ++made_.zones_relinked;
+  return link_zone_bytes(entry.x(), entry.z(), input, links[0], links[1]);
+}
+
+Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
+  format::GraphZone& entry = made_.graph->slots[slot]->entry;
+  const auto own = side(static_cast<int32_t>(slot)),
+             east = side(slot_at(world_, entry.x() + 1, entry.z())),
+             south = side(slot_at(world_, entry.x(), entry.z() + 1));
+  for (const auto* zone : {&own, &east, &south}) {
+    if (!*zone) return zone->error();
+  }
+  const Around around{*own, *east, *south};
+  const uint64_t input = link_input(around);
+  std::unique_ptr<LinkZone> links;
+  if (files_ != nullptr) {
+    links = files_->keep_links(entry.x(), entry.z(), input);
+    if (links && (links->root().x() != entry.x() || links->root().z() != entry.z() ||
+                  !links->fits(*own->zone, east->zone, south->zone))) {
+      links = nullptr;
+    }
+  }
+  if (links == nullptr) {
+    auto bytes = make_links(slot, input, around);
+    if (!bytes) return bytes.error();
+    const std::string name = link_file_name(entry.x(), entry.z());
+    auto made = LinkZone::from_bytes(*std::move(bytes), name);
+    if (!made) return made.error();
+    links = std::move(*made);
+    if (files_ != nullptr) {
+      if (auto ok = files_->write(name, links->bytes()); !ok) return ok.error();
+    }
+  }
+  const auto join = [&](std::span<const format::RegionLink> over, const Side& to) {
+    for (const format::RegionLink& link : over) {
+      for (uint32_t left = link.classes(); left != 0; left &= left - 1) {
+        const auto c = static_cast<uint32_t>(std::countr_zero(left));
+        const auto& next = made_.graph->slots[static_cast<size_t>(to.slot)]->entry;
+        sets.join(entry.first_component() + own->zone->component(link.a(), c),
+                  next.first_component() + to.zone->component(link.b(), c));
+      }
+    }
+  };
+  join(links->east(), *east);
+  join(links->south(), *south);
+  const uint64_t count = entry.links() + links->east().size() + links->south().size();
+  entry = {entry.x(),
+           entry.z(),
+           entry.regions(),
+           static_cast<uint32_t>(count),
+           entry.components(),
+           entry.first_component(),
+           entry.region_bytes(),
+           entry.region_hash(),
+           links->bytes().size(),
+           hash_bytes(links->bytes().data(), links->bytes().size())};
+  return {};
+}
+
+// The components of each class, the largest first, then by their first region: the roots of the
+// sets are in that order.
+void Passes::number_components(DisjointSets& sets) {
+  GraphData& graph = *made_.graph;
+  graph.class_first.assign(1, 0);
+  std::vector<uint32_t> of_root(components_, 0), component_of(components_, 0);
+  const auto each_of_class = [&](uint32_t c, auto visit) {
+    for (size_t s = 0; s < graph.slots.size(); ++s) {
+      const RegionZone& zone = *graph.zone(world_, s);
+      const auto [first, last] = zone.class_components(c);
+      for (uint32_t i = first; i < last; ++i) {
+        visit(s, graph.slots[s]->entry.first_component() + i, zone.components()[i], zone);
+      }
+    }
+  };
+  for (uint32_t c = 0; c < world_.summary.classes.size(); ++c) {
+    std::vector<format::GraphComponent> found;
+    each_of_class(
+        c, [&](size_t s, uint32_t i, const format::ZoneComponent& part, const RegionZone& zone) {
+          const uint32_t root = sets.find(i);
+          if (root == i) {
+            const uint32_t level =
+                world_.slots[s]->first_level + zone.regions()[part.first_region()].level();
+            of_root[i] = static_cast<uint32_t>(found.size());
+            found.emplace_back(0, part.feet(), 0, level, part.cell_x(), part.cell_z());
+          }
+          format::GraphComponent& all = found[of_root[root]];
+          all = {all.cells() + part.cells(),
+                 all.feet(),
+                 all.regions() + part.regions(),
+                 all.level(),
+                 all.cell_x(),
+                 all.cell_z()};
+        });
+    std::vector<uint32_t> order(found.size()), rank(found.size());
+    std::iota(order.begin(), order.end(), uint32_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return found[a].cells() > found[b].cells(); });
+    for (uint32_t i = 0; i < order.size(); ++i) {
+      rank[order[i]] = i;
+      graph.components.push_back(found[order[i]]);
+    }
+    each_of_class(c, [&](size_t, uint32_t i, const format::ZoneComponent&, const RegionZone&) {
+      component_of[i] = rank[of_root[sets.find(i)]];
+    });
+    graph.class_first.push_back(static_cast<uint32_t>(graph.components.size()));
+  }
+  graph.component_of = std::move(component_of);
+}
+
+Result<GraphMade> Passes::run() {
+  GraphData& graph = *made_.graph;
+  const size_t zones = world_.slots.size();
+  for (size_t s = 0; s < zones; ++s) {
+    tell("regions", s);
+    if (context_.cancel) return cancelled();
+    if (auto ok = find_regions(s); !ok) return ok.error();
+  }
+  if (files_ != nullptr) graph.path = world_.path;
+  DisjointSets sets(components_);
+  for (size_t s = 0; s < zones; ++s) {
+    tell("links", s);
+    if (context_.cancel) return cancelled();
+    if (auto ok = find_links(s, sets); !ok) return ok.error();
+  }
+  number_components(sets);
+  graph.show(world_);
+  return std::move(made_);
+}
+
+}  // namespace
+
+Result<GraphMade> make_graph(const WorldData& world, GraphFiles* files, int32_t workers,
+                             Context& context) {
+  return Passes(world, files, workers, context).run();
+}
+
+}  // namespace throng

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "graph/zone_regions.h"
+
+#include <bit>
+
+#include "core/parallel.h"
+#include "graph/disjoint_sets.h"
+#include "graph/ground_parts.h"
+#include "graph/tile_regions.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+// The tiles of a zone and their regions, numbered through the zone.
+struct ZoneTiles {
+  int32_t first_x = 0, first_z = 0, side = 0;
+  std::vector<TileParts> tiles;
+  std::vector<uint32_t> base;  // per tile: its first region in the zone
+};
+
+std::vector<format::RegionLink> to_format(const std::vector<RegionLink>& links) {
+  std::vector<format::RegionLink> out;
+  out.reserve(links.size());
+  for (const RegionLink& link : links) out.emplace_back(link.a, link.b, link.classes);
+  return out;
+}
+
+// Regions in the zone's numbers, with their parts counted; `cells` gets those of each part.
+void number_regions(const WorldData& world, size_t slot, ZoneTiles& zone, RegionTables& tables,
+                    std::vector<uint32_t>& cells) {
+  const uint32_t first_level = world.slots[slot]->first_level;
+  const size_t classes = world.summary.classes.size();
+  tables.first.assign(1, 0);
+  uint32_t parts = 0;
+  for (const TileParts& tile : zone.tiles) {
+    const auto base = static_cast<uint32_t>(tables.regions.size());
+    zone.base.push_back(base);
+    for (uint32_t l = 0; l < tile.levels; ++l) tables.first.push_back(base + tile.first[l + 1]);
+    for (const Region& region : tile.regions) {
+      tables.regions.emplace_back(region.level - first_level, parts,
+                                  static_cast<uint16_t>(region.key),
+                                  static_cast<uint16_t>(region.classes));
+      parts += static_cast<uint32_t>(std::popcount(region.classes));
+    }
+  }
+  cells.assign(parts, 0);
+  for (size_t t = 0; t < zone.tiles.size(); ++t) {
+    const TileParts& tile = zone.tiles[t];
+    for (size_t i = 0; i < tile.classes.size(); ++i) {
+      const uint32_t below = (uint32_t{1} << i % classes) - 1;
+      for (uint32_t p = tile.classes[i].first; p < tile.classes[i].last; ++p) {
+        const format::Region& region = tables.regions[zone.base[t] + tile.parts[p].region];
+        const auto before = static_cast<uint32_t>(std::popcount(region.classes() & below));
+        cells[region.first_part() + before] = tile.parts[p].cells;
+      }
+    }
+  }
+}
+
+uint32_t part_of(const RegionTables& tables, uint32_t region, uint32_t avatar_class) {
+  const format::Region& of = tables.regions[region];
+  const uint32_t below = of.classes() & ((uint32_t{1} << avatar_class) - 1);
+  return of.first_part() + static_cast<uint32_t>(std::popcount(below));
+}
+
+// The middle of a region's key, of the grid and over it.
+format::ZoneComponent component_at_key(const WorldData& world, size_t slot,
+                                       const format::Region& region, uint32_t index) {
+  const GroundLevel level = ground_level(world, world.slots[slot]->first_level + region.level(), 0);
+  const auto [tile_x, tile_z] = tile_of(world, *level.zone, *level.view.record);
+  const int32_t x = tile_x * kTileCells + region.key() % kTileCells;
+  const int32_t z = tile_z * kTileCells + region.key() / kTileCells;
+  const auto middle = [](int32_t cell) { return (int64_t{cell} << kUnitBits) + kUnitsPerCell / 2; };
+  return {0, feet_at(level, {middle(x), middle(z)}), 0, index, x, z};
+}
+
+void find_components(const WorldData& world, size_t slot, const std::vector<uint32_t>& cells,
+                     RegionTables& tables) {
+  // A part belongs to one region and class, so one forest serves all classes.
+  DisjointSets sets(cells.size());
+  for (const format::RegionLink& link : tables.links) {
+    for (uint32_t left = link.classes(); left != 0; left &= left - 1) {
+      const auto c = static_cast<uint32_t>(std::countr_zero(left));
+      sets.join(part_of(tables, link.a(), c), part_of(tables, link.b(), c));
+    }
+  }
+  tables.part_component.assign(cells.size(), 0);
+  tables.class_first.assign(1, 0);
+  for (uint32_t c = 0; c < world.summary.classes.size(); ++c) {
+    for (uint32_t r = 0; r < tables.regions.size(); ++r) {
+      if ((tables.regions[r].classes() >> c & 1) == 0) continue;
+      const uint32_t part = part_of(tables, r, c), root = sets.find(part);
+      if (root == part) {  // Roots come first.
+        tables.part_component[part] = static_cast<uint32_t>(tables.components.size());
+        tables.components.push_back(component_at_key(world, slot, tables.regions[r], r));
+      }
+      const uint32_t index = tables.part_component[part] = tables.part_component[root];
+      const format::ZoneComponent& of = tables.components[index];
+      tables.components[index] = {of.cells() + cells[part], of.feet(),   of.regions() + 1,
+                                  of.first_region(),        of.cell_x(), of.cell_z()};
+    }
+    tables.class_first.push_back(static_cast<uint32_t>(tables.components.size()));
+  }
+}
+
+}  // namespace
+
+std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slot, int32_t workers,
+                                              const Context& context) {
+  const format::ZoneEntry& entry = world.slots[slot]->entry;
+  ZoneTiles zone;
+  zone.side = static_cast<int32_t>(world.tiles_per_zone);
+  zone.first_x = entry.x() * zone.side;
+  zone.first_z = entry.z() * zone.side;
+  zone.tiles.resize(static_cast<size_t>(zone.side) * static_cast<size_t>(zone.side));
+  const TileRegions finder(world);
+  const auto at = [&](size_t t) {
+    return std::pair{static_cast<int32_t>(t) % zone.side, static_cast<int32_t>(t) / zone.side};
+  };
+  parallel_for(zone.tiles.size(), workers, [&](size_t t) {
+    if (context.cancel) return;
+    const auto [x, z] = at(t);
+    zone.tiles[t] = finder.linked_parts(zone.first_x + x, zone.first_z + z);
+  });
+  if (context.cancel) return std::nullopt;
+  RegionTables tables;
+  std::vector<uint32_t> cells;
+  number_regions(world, slot, zone, tables, cells);
+
+  std::vector<std::vector<RegionLink>> found(zone.tiles.size());
+  parallel_for(zone.tiles.size(), workers, [&](size_t t) {
+    if (context.cancel) return;
+    const int32_t x = at(t).first, z = at(t).second;
+    const auto add = [&](const std::vector<RegionLink>& links, size_t to) {
+      for (const RegionLink& link : links) {
+        found[t].push_back({link.a + zone.base[t], link.b + zone.base[to], link.classes});
+      }
+    };
+    const auto border = [&](TileSide side, size_t to) {
+      add(finder.border(zone.first_x + x, zone.first_z + z, side, zone.tiles[t], zone.tiles[to]),
+          to);
+    };
+    add(zone.tiles[t].links, t);
+    if (x + 1 < zone.side) border(kEast, t + 1);
+    if (z + 1 < zone.side) border(kSouth, t + static_cast<size_t>(zone.side));
+  });
+  if (context.cancel) return std::nullopt;
+  std::vector<RegionLink> links;
+  for (const auto& of_tile : found) links.insert(links.end(), of_tile.begin(), of_tile.end());
+  merge_links(links);
+  tables.links = to_format(links);
+  find_components(world, slot, cells, tables);
+  return tables;
+}
+
+std::vector<format::RegionLink> find_zone_links(const WorldData& world, const ZoneBorder& from,
+                                                const ZoneBorder& to, int32_t workers) {
+  const format::ZoneEntry& a = world.slots[from.slot]->entry;
+  const format::ZoneEntry& b = world.slots[to.slot]->entry;
+  const TileSide side = b.x() > a.x() ? kEast : kSouth;
+  const auto tiles = static_cast<int32_t>(world.tiles_per_zone);
+  const TileRegions finder(world);
+  std::vector<std::vector<RegionLink>> found(world.tiles_per_zone);
+  parallel_for(found.size(), workers, [&](size_t i) {
+    const auto along = static_cast<int32_t>(i);
+    const int32_t x = a.x() * tiles + (side == kEast ? tiles - 1 : along);
+    const int32_t z = a.z() * tiles + (side == kEast ? along : tiles - 1);
+    const TileParts here = finder.parts(x, z);
+    if (here.levels == 0) return;
+    const TileParts there = side == kEast ? finder.parts(x + 1, z) : finder.parts(x, z + 1);
+    if (there.levels == 0) return;
+    const auto first_region = [&](const ZoneBorder& zone, const TileParts& tile) {
+      return zone.regions->level_regions(tile.first_level - world.slots[zone.slot]->first_level)
+          .first;
+    };
+    const uint32_t base_a = first_region(from, here), base_b = first_region(to, there);
+    for (const RegionLink& link : finder.border(x, z, side, here, there)) {
+      found[i].push_back({link.a + base_a, link.b + base_b, link.classes});
+    }
+  });
+  std::vector<RegionLink> links;
+  for (const auto& of_tile : found) links.insert(links.end(), of_tile.begin(), of_tile.end());
+  merge_links(links);
+  return to_format(links);
+}
+
+uint32_t region_at(const WorldData& world, const RegionZone& regions, uint32_t level,
+                   int32_t avatar_class, int32_t x, int32_t z) {
+  const GroundLevel ground = ground_level(world, level, avatar_class);
+  if (ground.zone == nullptr || !ground.is_legal(x, z)) return kNoRegion;
+  const auto has_class = [&](uint32_t r) {
+    return (regions.regions()[r].classes() >> avatar_class & 1) != 0;
+  };
+  const auto [first, last] =
+      regions.level_regions(level - world.slots[world.slot_of_level(level)]->first_level);
+  uint32_t only = kNoRegion, count = 0;
+  for (uint32_t r = first; r < last; ++r) {
+    if (!has_class(r)) continue;
+    only = r;
+    ++count;
+  }
+  if (count <= 1) return only;
+  const CellRows legal = legal_rows(ground);
+  const auto cuts =
+      step_cuts(ground, legal, step_mm(world.summary.classes[static_cast<size_t>(avatar_class)]));
+  const CellRows part = flood(legal, cuts ? &*cuts : nullptr, x, z);
+  for (uint32_t r = first; r < last; ++r) {
+    const uint32_t key = regions.regions()[r].key();
+    if (has_class(r) && (part[key / 64] >> key % 64 & 1) != 0) return r;
+  }
+  return kNoRegion;
+}
+
+}  // namespace throng

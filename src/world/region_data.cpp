@@ -1,0 +1,424 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "world/region_data.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "core/hash.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+constexpr const char* kRegionIdentifier = "THRZ";
+constexpr const char* kLinkIdentifier = "THLZ";
+constexpr const char* kIndexIdentifier = "THGI";
+constexpr const char* kRemedy = "bake the world again";
+constexpr double kHighestFeet = 2'200'000;  // [m]: more than 32 bits of mm tell
+constexpr int32_t kMostCells = 1 << 20;     // along a side of the grid
+
+Error bad_file(const std::string& name, const std::string& what) {
+  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
+}
+
+template <class T>
+std::span<const T> structs(const flatbuffers::Vector<const T*>& values) {
+  return {reinterpret_cast<const T*>(values.Data()), values.size()};
+}
+std::span<const uint32_t> numbers(const flatbuffers::Vector<uint32_t>& values) {
+  return {reinterpret_cast<const uint32_t*>(values.Data()), values.size()};
+}
+
+// The root of a file of ours, or why it is none.
+template <class Root>
+Result<const Root*> checked_root(std::span<const uint8_t> bytes, const char* identifier,
+                                 const std::string& name, const char* what) {
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  if (bytes.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes.data(), identifier) ||
+      !verifier.VerifyBuffer<Root>(identifier)) {
+    return bad_file(name, std::string("not ") + what + ", or truncated");
+  }
+  const Root* root = flatbuffers::GetRoot<Root>(bytes.data());
+  if (root->version() != kGraphVersion) {
+    return bad_file(name, "graph version " + std::to_string(root->version()) +
+                              ", this program reads " + std::to_string(kGraphVersion));
+  }
+  return root;
+}
+
+template <class T>
+uint64_t chained(std::span<const T> values, uint64_t seed) {
+  const uint64_t count = values.size();
+  return hash_bytes(values.data(), values.size_bytes(), hash_bytes(&count, sizeof count, seed));
+}
+
+uint64_t head_sum(int32_t x, int32_t z, uint64_t input) {
+  const std::array<uint64_t, 4> head{kGraphVersion, static_cast<uint64_t>(x),
+                                     static_cast<uint64_t>(z), input};
+  return hash_span(std::span<const uint64_t>(head));
+}
+
+uint64_t sum_of(uint64_t head, std::span<const uint32_t> first,
+                std::span<const format::Region> regions, std::span<const uint32_t> part_component,
+                std::span<const uint32_t> class_first,
+                std::span<const format::ZoneComponent> components,
+                std::span<const format::RegionLink> links) {
+  head = chained(part_component, chained(regions, chained(first, head)));
+  return chained(links, chained(components, chained(class_first, head)));
+}
+
+uint64_t sum_of(uint64_t head, std::span<const format::RegionLink> east,
+                std::span<const format::RegionLink> south) {
+  return chained(south, chained(east, head));
+}
+
+uint64_t sum_of(uint64_t world_hash, std::span<const format::GraphZone> zones,
+                std::span<const uint32_t> class_first,
+                std::span<const format::GraphComponent> components,
+                std::span<const uint32_t> component_of) {
+  const uint64_t head = chained(class_first, chained(zones, head_sum(0, 0, world_hash)));
+  return chained(component_of, chained(components, head));
+}
+
+// Offsets from 0 to `end`, none before the last.
+bool is_ascending(std::span<const uint32_t> offsets, size_t end) {
+  return !offsets.empty() && offsets.front() == 0 && offsets.back() == end &&
+         std::is_sorted(offsets.begin(), offsets.end());
+}
+
+bool in_order(std::span<const format::RegionLink> links) {
+  return std::adjacent_find(links.begin(), links.end(),
+                            [](const format::RegionLink& p, const format::RegionLink& q) {
+                              return std::pair(p.a(), p.b()) >= std::pair(q.a(), q.b());
+                            }) == links.end();
+}
+
+bool leads(const format::RegionLink& link, const RegionZone& from, const RegionZone& to) {
+  return link.a() < from.regions().size() && link.b() < to.regions().size() &&
+         (link.classes() & ~uint32_t{from.regions()[link.a()].classes()}) == 0 &&
+         (link.classes() & ~uint32_t{to.regions()[link.b()].classes()}) == 0;
+}
+
+bool is_place(double feet, int32_t cell_x, int32_t cell_z) {
+  return std::fabs(feet) <= kHighestFeet && cell_x >= 0 && cell_z >= 0 && cell_x < kMostCells &&
+         cell_z < kMostCells;
+}
+
+// Where each class's components begin: as many as there are classes, one more, and in all.
+bool are_classes(std::span<const uint32_t> class_first, size_t components) {
+  return class_first.size() >= 2 && class_first.size() <= kMaxAvatarClasses + 1 &&
+         is_ascending(class_first, components);
+}
+
+}  // namespace
+
+flatbuffers::DetachedBuffer region_zone_bytes(int32_t x, int32_t z, uint64_t input,
+                                              const RegionTables& t) {
+  flatbuffers::FlatBufferBuilder builder(t.regions.size() * 32 + t.components.size() * 32 +
+                                         t.links.size() * 12 + 1024);
+  const uint64_t sum = sum_of(head_sum(x, z, input), t.first, t.regions, t.part_component,
+                              t.class_first, t.components, t.links);
+  const auto first = builder.CreateVector(t.first);
+  const auto regions = builder.CreateVectorOfStructs(t.regions);
+  const auto part_component = builder.CreateVector(t.part_component);
+  const auto class_first = builder.CreateVector(t.class_first);
+  const auto components = builder.CreateVectorOfStructs(t.components);
+  const auto links = builder.CreateVectorOfStructs(t.links);
+  builder.Finish(format::CreateZoneRegions(builder, kGraphVersion, x, z, input, sum, first, regions,
+                                           part_component, class_first, components, links),
+                 kRegionIdentifier);
+  return builder.Release();
+}
+
+flatbuffers::DetachedBuffer link_zone_bytes(int32_t x, int32_t z, uint64_t input,
+                                            const std::vector<format::RegionLink>& east,
+                                            const std::vector<format::RegionLink>& south) {
+  flatbuffers::FlatBufferBuilder builder((east.size() + south.size()) * 12 + 256);
+  const uint64_t sum = sum_of(head_sum(x, z, input), east, south);
+  const auto over_east = builder.CreateVectorOfStructs(east);
+  const auto over_south = builder.CreateVectorOfStructs(south);
+  builder.Finish(
+      format::CreateZoneLinks(builder, kGraphVersion, x, z, input, sum, over_east, over_south),
+      kLinkIdentifier);
+  return builder.Release();
+}
+
+bool RegionZone::is_sound(const format::RegionLink& link) const {
+  if (link.a() >= link.b() || !leads(link, *this, *this) || link.classes() == 0) return false;
+  for (uint32_t left = link.classes(); left != 0; left &= left - 1) {
+    const auto c = static_cast<uint32_t>(std::countr_zero(left));
+    if (component(link.a(), c) != component(link.b(), c)) return false;
+  }
+  return true;
+}
+
+// What is checked here need not be checked by any look-up.
+const char* RegionZone::fault() const {
+  if (!is_ascending(first_, regions_.size())) return "its levels are out of order";
+  if (!are_classes(class_first_, components_.size())) return "its components are out of order";
+  uint64_t parts = 0;
+  for (uint32_t level = 0; level < level_count(); ++level) {
+    for (uint32_t r = first_[level]; r < first_[level + 1]; ++r) {
+      const format::Region& region = regions_[r];
+      if (region.level() != level || region.key() >= kTileCells * kTileCells ||
+          region.classes() == 0 || region.classes() >> class_count() != 0 ||
+          region.first_part() != parts) {
+        return "a region makes no sense";
+      }
+      parts += static_cast<uint64_t>(std::popcount(region.classes()));
+    }
+  }
+  if (parts != part_component_.size()) return "its regions miscount their classes";
+  for (const format::Region& region : regions_) {
+    uint32_t part = region.first_part();
+    for (uint32_t left = region.classes(); left != 0; left &= left - 1) {
+      const auto [first, last] = class_components(static_cast<uint32_t>(std::countr_zero(left)));
+      const uint32_t of = part_component_[part++];
+      if (of < first || of >= last) return "a region is of a component of another class";
+    }
+  }
+  for (uint32_t c = 0; c < class_count(); ++c) {
+    for (uint32_t i = class_first_[c]; i < class_first_[c + 1]; ++i) {
+      const format::ZoneComponent& of = components_[i];
+      if (of.first_region() >= regions_.size() ||
+          (regions_[of.first_region()].classes() >> c & 1) == 0 ||
+          component(of.first_region(), c) != i || of.cells() == 0 || of.regions() == 0 ||
+          of.regions() > regions_.size() || !is_place(of.feet(), of.cell_x(), of.cell_z())) {
+        return "a component makes no sense";
+      }
+    }
+  }
+  if (!in_order(links_)) return "its links are out of order";
+  for (const format::RegionLink& link : links_) {
+    if (!is_sound(link)) return "a link makes no sense";
+  }
+  return nullptr;
+}
+
+Result<void> RegionZone::attach(const std::string& name) {
+  auto root =
+      checked_root<format::ZoneRegions>(bytes(), kRegionIdentifier, name, "a file of regions");
+  if (!root) return root.error();
+  root_ = *root;
+  if (!root_->first() || !root_->regions() || !root_->part_component() || !root_->class_first() ||
+      !root_->components() || !root_->links() || !is_aligned(*root_->components())) {
+    return bad_file(name, "an array is missing");
+  }
+  first_ = numbers(*root_->first());
+  regions_ = structs(*root_->regions());
+  part_component_ = numbers(*root_->part_component());
+  class_first_ = numbers(*root_->class_first());
+  components_ = structs(*root_->components());
+  links_ = structs(*root_->links());
+  const uint64_t head = head_sum(root_->x(), root_->z(), root_->input());
+  if (root_->sum() !=
+      sum_of(head, first_, regions_, part_component_, class_first_, components_, links_)) {
+    return bad_file(name, "its sum is wrong");
+  }
+  if (const char* what = fault()) return bad_file(name, what);
+  return {};
+}
+
+Result<void> LinkZone::attach(const std::string& name) {
+  auto root = checked_root<format::ZoneLinks>(bytes(), kLinkIdentifier, name, "a file of links");
+  if (!root) return root.error();
+  root_ = *root;
+  if (!root_->east() || !root_->south()) return bad_file(name, "an array is missing");
+  east_ = structs(*root_->east());
+  south_ = structs(*root_->south());
+  const uint64_t head = head_sum(root_->x(), root_->z(), root_->input());
+  if (root_->sum() != sum_of(head, east_, south_)) return bad_file(name, "its sum is wrong");
+  const auto is_empty = [](const format::RegionLink& link) { return link.classes() == 0; };
+  if (!in_order(east_) || !in_order(south_) || std::any_of(east_.begin(), east_.end(), is_empty) ||
+      std::any_of(south_.begin(), south_.end(), is_empty)) {
+    return bad_file(name, "its links are out of order");
+  }
+  return {};
+}
+
+bool LinkZone::fits(const RegionZone& own, const RegionZone* east, const RegionZone* south) const {
+  const auto all_lead = [&](std::span<const format::RegionLink> links, const RegionZone* to) {
+    if (to == nullptr) return links.empty();
+    return std::all_of(links.begin(), links.end(),
+                       [&](const format::RegionLink& link) { return leads(link, own, *to); });
+  };
+  return all_lead(east_, east) && all_lead(south_, south);
+}
+
+bool is_of_slot(const RegionZone& regions, const WorldData& world, size_t slot) {
+  const format::ZoneEntry& entry = world.slots[slot]->entry;
+  return regions.root().x() == entry.x() && regions.root().z() == entry.z() &&
+         regions.level_count() == entry.levels() &&
+         regions.class_count() == world.summary.classes.size();
+}
+
+int32_t slot_at(const WorldData& world, int32_t x, int32_t z) {
+  if (x < 0 || z < 0 || x >= world.zones_x || z >= world.zones_z) return -1;
+  return world.slot_of_zone[static_cast<size_t>(z * world.zones_x + x)];
+}
+
+std::string region_file_name(int32_t x, int32_t z) {
+  return "zone_" + std::to_string(x) + "_" + std::to_string(z) + ".thr";
+}
+
+std::string link_file_name(int32_t x, int32_t z) {
+  return "zone_" + std::to_string(x) + "_" + std::to_string(z) + ".thl";
+}
+
+const RegionZone* GraphData::zone(const WorldData& of_world, size_t slot) const {
+  const Slot& own = *slots[slot];
+  std::call_once(own.once, [&] {
+    if (own.zone || path.empty()) return;
+    const format::GraphZone& entry = own.entry;
+    const std::string name = path + "/" + region_file_name(entry.x(), entry.z());
+    auto map =
+        map_listed(name, entry.region_bytes(), entry.region_hash(), "the graph index's", kRemedy);
+    if (!map) {
+      own.error = map.error().message;
+      return;
+    }
+    auto zone = RegionZone::from_file(std::move(*map), name);
+    if (!zone) {
+      own.error = zone.error().message;
+      return;
+    }
+    const size_t found = (*zone)->components().size();
+    bool fits = is_of_slot(**zone, of_world, slot) &&
+                (*zone)->regions().size() == entry.regions() && found == entry.components();
+    // While a bake makes the components of the world, there are none to name.
+    for (uint32_t c = 0; fits && !component_of.empty() && c < (*zone)->class_count(); ++c) {
+      const auto [first, last] = (*zone)->class_components(c);
+      for (uint32_t i = first; i < last; ++i) {
+        fits =
+            fits && component_of[entry.first_component() + i] < class_first[c + 1] - class_first[c];
+      }
+    }
+    if (!fits) {
+      own.error = bad_file(name, "belongs to another world").message;
+      return;
+    }
+    own.zone = std::move(*zone);
+  });
+  return own.zone.get();
+}
+
+Result<void> GraphData::check_links(const WorldData& of_world, size_t slot) const {
+  const format::GraphZone& entry = slots[slot]->entry;
+  std::array<const RegionZone*, 3> zones{};  // this, east, south
+  const std::array<int32_t, 3> around{static_cast<int32_t>(slot),
+                                      slot_at(of_world, entry.x() + 1, entry.z()),
+                                      slot_at(of_world, entry.x(), entry.z() + 1)};
+  for (size_t i = 0; i < zones.size(); ++i) {
+    if (around[i] < 0) continue;
+    zones[i] = zone(of_world, static_cast<size_t>(around[i]));
+    if (zones[i] == nullptr) {
+      return Error{Errc::kBadFile, slots[static_cast<size_t>(around[i])]->error};
+    }
+  }
+  const std::string name = path + "/" + link_file_name(entry.x(), entry.z());
+  auto map = map_listed(name, entry.link_bytes(), entry.link_hash(), "the graph index's", kRemedy);
+  if (!map) return Error{Errc::kBadFile, map.error().message};
+  const auto links = LinkZone::from_file(std::move(*map), name);
+  if (!links) return links.error();
+  if ((*links)->root().x() != entry.x() || (*links)->root().z() != entry.z() ||
+      !(*links)->fits(*zones[0], zones[1], zones[2])) {
+    return bad_file(name, "belongs to another world");
+  }
+  return {};
+}
+
+void GraphData::show(const WorldData& of_world) {
+  const WorldSummary& of = of_world.summary;
+  const auto middle = [&](int32_t cell) {
+    const int64_t units = (int64_t{cell} << kUnitBits) + kUnitsPerCell / 2;
+    return (static_cast<double>(units) + 0.5) * (of.cell / kUnitsPerCell);  // as place_at
+  };
+  by_class.assign(class_first.size() - 1, {});
+  for (size_t c = 0; c < by_class.size(); ++c) {
+    for (uint32_t i = class_first[c]; i < class_first[c + 1]; ++i) {
+      const format::GraphComponent& from = components[i];
+      by_class[c].push_back(
+          {static_cast<double>(from.cells()) * (of.cell * of.cell),
+           from.regions(),
+           {{of.origin.x + middle(from.cell_x()), from.feet(), of.origin.z + middle(from.cell_z())},
+            from.level() + 1}});
+    }
+  }
+  summary.regions = summary.links = 0;
+  for (const auto& slot : slots) {
+    summary.regions += slot->entry.regions();
+    summary.links += slot->entry.links();
+  }
+  summary.bytes =
+      summary.regions * sizeof(format::Region) + summary.links * sizeof(format::RegionLink);
+}
+
+std::vector<uint8_t> write_graph_index(const GraphData& graph, uint64_t world_hash) {
+  flatbuffers::FlatBufferBuilder builder;
+  std::vector<format::GraphZone> zones;
+  for (const auto& slot : graph.slots) zones.push_back(slot->entry);
+  builder.Finish(
+      format::CreateGraphIndexDirect(
+          builder, kGraphVersion, world_hash,
+          sum_of(world_hash, zones, graph.class_first, graph.components, graph.component_of),
+          &zones, &graph.class_first, &graph.components, &graph.component_of),
+      kIndexIdentifier);
+  return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
+}
+
+Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> bytes,
+                                                    const std::string& name, const WorldData& world,
+                                                    uint64_t world_hash) {
+  auto found =
+      checked_root<format::GraphIndex>(bytes, kIndexIdentifier, name, "the index of a graph");
+  if (!found) return found.error();
+  const format::GraphIndex& root = **found;
+  if (root.world() != world_hash) return bad_file(name, "belongs to another bake of this world");
+  if (!root.zones() || !root.class_first() || !root.components() || !root.component_of() ||
+      !is_aligned(*root.zones()) || !is_aligned(*root.components())) {
+    return bad_file(name, "an array is missing");
+  }
+  const auto class_first = numbers(*root.class_first());
+  const auto component_of = numbers(*root.component_of());
+  if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first,
+                           structs(*root.components()), component_of)) {
+    return bad_file(name, "its sum is wrong");
+  }
+  if (root.zones()->size() != world.slots.size() ||
+      class_first.size() != world.summary.classes.size() + 1 ||
+      !are_classes(class_first, root.components()->size())) {
+    return bad_file(name, "its arrays do not fit together");
+  }
+  auto graph = std::make_shared<GraphData>();
+  uint64_t components = 0;
+  for (size_t s = 0; s < world.slots.size(); ++s) {
+    const format::GraphZone& entry = *root.zones()->Get(static_cast<uint32_t>(s));
+    const format::ZoneEntry& of = world.slots[s]->entry;
+    if (entry.x() != of.x() || entry.z() != of.z() || entry.first_component() != components) {
+      return bad_file(name, "zone " + std::to_string(s) + " makes no sense");
+    }
+    components += entry.components();
+    graph->slots.push_back(std::make_unique<GraphData::Slot>());
+    graph->slots.back()->entry = entry;
+  }
+  if (components != root.component_of()->size()) {
+    return bad_file(name, "its zones miscount their components");
+  }
+  graph->class_first.assign(class_first.begin(), class_first.end());
+  for (const format::GraphComponent* of : *root.components()) {
+    if (of->cells() == 0 || of->regions() == 0 || of->level() >= world.level_count ||
+        !is_place(of->feet(), of->cell_x(), of->cell_z()) || of->cell_x() >= world.width ||
+        of->cell_z() >= world.depth) {
+      return bad_file(name, "a component makes no sense");
+    }
+    graph->components.push_back(*of);
+  }
+  graph->component_of.assign(component_of.begin(), component_of.end());
+  graph->show(world);
+  return graph;
+}
+
+}  // namespace throng

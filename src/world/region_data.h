@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <flatbuffers/flatbuffers.h>
+
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "throng/graph.h"
+#include "throng/result.h"
+#include "world/regions_generated.h"
+#include "world/zone_data.h"
+#include "world/zone_file.h"
+
+/// The accessibility graph in memory: files of zones, mapped, or owned after they were made, and
+/// what is known of the whole world. See docs/design/003-graph.md.
+namespace throng {
+
+inline constexpr uint32_t kGraphVersion = 1;
+inline constexpr const char* kGraphIndexName = "graph.thm";
+
+/// Regions of one zone and what links them within it.
+struct RegionTables {
+  std::vector<uint32_t> first;  // levels + 1
+  std::vector<format::Region> regions;
+  std::vector<uint32_t> part_component;
+  std::vector<uint32_t> class_first;  // classes + 1
+  std::vector<format::ZoneComponent> components;
+  std::vector<format::RegionLink> links;
+};
+
+/// A file of regions after the verifier and the checks of its numbers.
+class RegionZone : public ZoneFile<RegionZone> {
+ public:
+  [[nodiscard]] const format::ZoneRegions& root() const { return *root_; }
+  [[nodiscard]] uint32_t level_count() const { return static_cast<uint32_t>(first_.size()) - 1; }
+  [[nodiscard]] uint32_t class_count() const {
+    return static_cast<uint32_t>(class_first_.size()) - 1;
+  }
+  [[nodiscard]] std::span<const format::Region> regions() const { return regions_; }
+  /// Regions of a level of the zone: [first, last).
+  [[nodiscard]] std::pair<uint32_t, uint32_t> level_regions(uint32_t level) const {
+    return {first_[level], first_[level + 1]};
+  }
+  [[nodiscard]] std::span<const format::ZoneComponent> components() const { return components_; }
+  /// Components of a class: [first, last).
+  [[nodiscard]] std::pair<uint32_t, uint32_t> class_components(uint32_t avatar_class) const {
+    return {class_first_[avatar_class], class_first_[avatar_class + 1]};
+  }
+  [[nodiscard]] std::span<const format::RegionLink> links() const { return links_; }
+  /// Component of a region for a class that has a part in it.
+  [[nodiscard]] uint32_t component(uint32_t region, uint32_t avatar_class) const {
+    const format::Region& of = regions_[region];
+    const uint32_t below = of.classes() & ((uint32_t{1} << avatar_class) - 1);
+    return part_component_[of.first_part() + static_cast<uint32_t>(std::popcount(below))];
+  }
+
+ private:
+  friend class ZoneFile<RegionZone>;
+  Result<void> attach(const std::string& name);
+  [[nodiscard]] const char* fault() const;
+  [[nodiscard]] bool is_sound(const format::RegionLink& link) const;
+
+  const format::ZoneRegions* root_ = nullptr;
+  std::span<const uint32_t> first_;
+  std::span<const format::Region> regions_;
+  std::span<const uint32_t> part_component_;
+  std::span<const uint32_t> class_first_;
+  std::span<const format::ZoneComponent> components_;
+  std::span<const format::RegionLink> links_;
+};
+
+/// A file of links over the eastern and the southern border of a zone, after the checks that it
+/// allows by itself: fits() is the rest.
+class LinkZone : public ZoneFile<LinkZone> {
+ public:
+  [[nodiscard]] const format::ZoneLinks& root() const { return *root_; }
+  [[nodiscard]] std::span<const format::RegionLink> east() const { return east_; }
+  [[nodiscard]] std::span<const format::RegionLink> south() const { return south_; }
+  /// Do all links lead from regions of `own` to regions of its neighbours, for classes that both
+  /// have? A neighbour that is not there is null.
+  [[nodiscard]] bool fits(const RegionZone& own, const RegionZone* east,
+                          const RegionZone* south) const;
+
+ private:
+  friend class ZoneFile<LinkZone>;
+  Result<void> attach(const std::string& name);
+
+  const format::ZoneLinks* root_ = nullptr;
+  std::span<const format::RegionLink> east_, south_;
+};
+
+/// What Graph points to. Its zones are those of the world, slot by slot.
+struct GraphData {
+  struct Slot {
+    format::GraphZone entry;
+    mutable std::once_flag once;
+    mutable std::unique_ptr<RegionZone> zone;
+    mutable std::string error;  // why it could not be used
+  };
+
+  World world;
+  std::string path;  // of the folder; empty: in memory
+  std::vector<std::unique_ptr<Slot>> slots;
+  std::vector<uint32_t> class_first;  // classes + 1
+  std::vector<format::GraphComponent> components;
+  std::vector<uint32_t> component_of;            // of components of zones: within their class
+  std::vector<std::vector<Component>> by_class;  // `components` as they are shown
+  GraphSummary summary;
+
+  /// The regions of a slot, opened and checked at the first touch; null if they cannot be used.
+  [[nodiscard]] const RegionZone* zone(const WorldData& of_world, size_t slot) const;
+  /// Opens and checks the links of a slot, and the regions that they join. Fails with kBadFile.
+  [[nodiscard]] Result<void> check_links(const WorldData& of_world, size_t slot) const;
+  /// Fills `by_class` and the summary's counts from the rest.
+  void show(const WorldData& of_world);
+};
+
+/// True if regions are of this zone of the world, as far as counts and coordinates tell.
+bool is_of_slot(const RegionZone& regions, const WorldData& world, size_t slot);
+
+/// Slot of a zone of the world, or -1.
+int32_t slot_at(const WorldData& world, int32_t x, int32_t z);
+
+std::string region_file_name(int32_t x, int32_t z);
+std::string link_file_name(int32_t x, int32_t z);
+
+flatbuffers::DetachedBuffer region_zone_bytes(int32_t x, int32_t z, uint64_t input,
+                                              const RegionTables& tables);
+flatbuffers::DetachedBuffer link_zone_bytes(int32_t x, int32_t z, uint64_t input,
+                                            const std::vector<format::RegionLink>& east,
+                                            const std::vector<format::RegionLink>& south);
+
+/// `world_hash` is that of the world's manifest.
+std::vector<uint8_t> write_graph_index(const GraphData& graph, uint64_t world_hash);
+/// Everything but the zones, for a world whose manifest has this hash. Fails with kBadFile and
+/// `name`.
+Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> bytes,
+                                                    const std::string& name, const WorldData& world,
+                                                    uint64_t world_hash);
+
+}  // namespace throng

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include "world/region_data.h"
+
+// Files of regions and links that pass the checks must answer every look-up without reading past
+// their bytes. The input is tried as a file, and as the numbers of one whose sum is right.
+namespace throng {
+namespace {
+
+volatile uint64_t seen = 0;
+
+void ask(const RegionZone& zone) {
+  for (uint32_t level = 0; level < zone.level_count(); ++level) {
+    const auto [first, last] = zone.level_regions(level);
+    for (uint32_t r = first; r < last; ++r) {
+      for (uint32_t c = 0; c < zone.class_count(); ++c) {
+        if ((zone.regions()[r].classes() >> c & 1) == 0) continue;
+        const auto [begin, end] = zone.class_components(c);
+        const uint32_t of = zone.component(r, c);
+        if (of < begin || of >= end) std::abort();
+        seen = seen + zone.components()[of].cells();
+      }
+    }
+  }
+  for (const format::RegionLink& link : zone.links()) {
+    seen = seen + zone.regions()[link.a()].key() + zone.regions()[link.b()].key();
+  }
+}
+
+void try_regions(flatbuffers::DetachedBuffer bytes) {
+  const auto zone = RegionZone::from_bytes(std::move(bytes), "fuzz");
+  if (!zone) return;
+  ask(**zone);
+  std::vector<format::RegionLink> links((*zone)->links().begin(), (*zone)->links().end());
+  const auto between = LinkZone::from_bytes(link_zone_bytes(0, 0, 0, links, {}), "fuzz");
+  if (between && !(*between)->fits(**zone, zone->get(), nullptr)) std::abort();
+}
+
+void try_links(flatbuffers::DetachedBuffer bytes) {
+  const auto zone = LinkZone::from_bytes(std::move(bytes), "fuzz");
+  if (!zone) return;
+  for (const auto links : {(*zone)->east(), (*zone)->south()}) {
+    for (const format::RegionLink& link : links) seen = seen + link.a() + link.b();
+  }
+}
+
+template <class T>
+std::vector<T> take(const uint8_t*& at, const uint8_t* end, size_t count) {
+  std::vector<T> values(std::min(count, static_cast<size_t>(end - at) / sizeof(T)));
+  if (!values.empty()) std::memcpy(values.data(), at, values.size() * sizeof(T));
+  at += values.size() * sizeof(T);
+  return values;
+}
+
+// As the numbers of an index, of a world with the zones and classes that it names.
+void try_index(const uint8_t* bytes, size_t size) {
+  const uint8_t *at = bytes + 6, *end = bytes + size;
+  GraphData graph;
+  WorldData world;
+  for (const format::GraphZone& entry : take<format::GraphZone>(at, end, bytes[0])) {
+    graph.slots.push_back(std::make_unique<GraphData::Slot>());
+    graph.slots.back()->entry = entry;
+    world.slots.push_back(std::make_unique<WorldData::Slot>());
+    world.slots.back()->entry = format::ZoneEntry(entry.x(), entry.z(), 1, 1, 0, 0);
+  }
+  graph.class_first = take<uint32_t>(at, end, bytes[1]);
+  graph.components = take<format::GraphComponent>(at, end, bytes[2]);
+  graph.component_of = take<uint32_t>(at, end, bytes[3]);
+  world.summary.classes.resize(std::max<size_t>(graph.class_first.size(), 1) - 1);
+  world.level_count = bytes[4];
+  world.width = world.depth = 1000;
+  const auto found = read_graph_index(write_graph_index(graph, 7), "fuzz", world, 7);
+  if (!found) return;
+  for (const auto& of_class : (*found)->by_class) {
+    for (const Component& component : of_class) seen = seen + component.regions;
+  }
+}
+
+}  // namespace
+}  // namespace throng
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
+  using namespace throng;
+  const auto owned = [&] {
+    auto* copy = new uint8_t[size];
+    std::copy_n(bytes, size, copy);
+    return flatbuffers::DetachedBuffer(nullptr, false, copy, size, copy, size);
+  };
+  try_regions(owned());
+  try_links(owned());
+  (void)read_graph_index({bytes, size}, "fuzz", WorldData{}, 0);
+  if (size < 6) return 0;
+  // The first bytes say how long the arrays are.
+  const uint8_t *at = bytes + 6, *end = bytes + size;
+  RegionTables t;
+  t.first = take<uint32_t>(at, end, bytes[0]);
+  t.regions = take<format::Region>(at, end, bytes[1]);
+  t.part_component = take<uint32_t>(at, end, bytes[2]);
+  t.class_first = take<uint32_t>(at, end, bytes[3]);
+  t.components = take<format::ZoneComponent>(at, end, bytes[4]);
+  t.links = take<format::RegionLink>(at, end, bytes[5]);
+  try_regions(region_zone_bytes(0, 0, 0, t));
+  try_index(bytes, size);
+  return 0;
+}

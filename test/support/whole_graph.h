@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "graph/tile_regions.h"
+#include "throng/world.h"
+
+/// The graph of a world made at once, tile by tile, as if it had no zones: the oracle of the two
+/// passes over zones and of their files.
+namespace throng::test {
+
+struct WholeGraph {
+  struct Component {
+    uint64_t cells = 0, regions = 0;
+    uint32_t first_region = 0;
+  };
+
+  std::vector<Region> regions;                     // in order of levels
+  std::vector<RegionLink> links;                   // a < b, by a, then b
+  std::vector<std::vector<int64_t>> component;     // per class and region; -1: it has no part there
+  std::vector<std::vector<Component>> components;  // per class, the largest first
+};
+
+/// All zones must be usable.
+WholeGraph whole_graph(const World& world);
+
+}  // namespace throng::test

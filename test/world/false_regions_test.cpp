@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "baked.h"
+#include "core/random.h"
+#include "graph/graph_passes.h"
+#include "scratch_folder.h"
+#include "world/region_data.h"
+#include "worlds.h"
+
+// Files of regions and links that are not true: refused by name, or used without reading beyond
+// them. Their sums are made right, so that it is the other checks that see it.
+namespace throng {
+namespace {
+
+// Keeps the bytes of the zones' files.
+class FilesInMemory : public GraphFiles {
+ public:
+  std::unique_ptr<RegionZone> keep_regions(int32_t, int32_t, uint64_t) override { return nullptr; }
+  std::unique_ptr<LinkZone> keep_links(int32_t, int32_t, uint64_t) override { return nullptr; }
+  Result<void> write(const std::string& name, std::span<const uint8_t> bytes) override {
+    files.emplace_back(name, std::vector<uint8_t>(bytes.begin(), bytes.end()));
+    return write_file(folder.path() + "/" + name, bytes);
+  }
+
+  test::ScratchFolder folder;
+  std::vector<std::pair<std::string, std::vector<uint8_t>>> files;
+};
+
+flatbuffers::DetachedBuffer owned(std::span<const uint8_t> bytes) {
+  auto* copy = new uint8_t[bytes.size()];
+  std::copy(bytes.begin(), bytes.end(), copy);
+  return {nullptr, false, copy, bytes.size(), copy, bytes.size()};
+}
+
+struct Made {
+  World world;
+  std::shared_ptr<GraphData> graph;
+  std::vector<std::vector<uint8_t>> regions, links;
+};
+
+Made make_small(FilesInMemory& files) {
+  Made made;
+  made.world = test::bake(test::builtin({.name = "garage", .size = 60, .levels = 2}), 0.2);
+  // The passes read the files back from where they have put them.
+  auto* world = const_cast<WorldData*>(made.world.data().get());
+  world->path = files.folder.path();
+  Context context;
+  auto graph = make_graph(*world, &files, 1, context);
+  world->path.clear();
+  EXPECT_TRUE(graph) << graph.error().message;
+  if (!graph) return made;
+  made.graph = graph->graph;
+  for (const auto& [name, bytes] : files.files) {
+    (name.ends_with(".thr") ? made.regions : made.links).push_back(bytes);
+  }
+  return made;
+}
+
+RegionTables tables_of(const RegionZone& zone) {
+  RegionTables t;
+  const auto& root = zone.root();
+  t.first.assign(root.first()->begin(), root.first()->end());
+  t.part_component.assign(root.part_component()->begin(), root.part_component()->end());
+  t.class_first.assign(root.class_first()->begin(), root.class_first()->end());
+  t.regions.assign(zone.regions().begin(), zone.regions().end());
+  t.components.assign(zone.components().begin(), zone.components().end());
+  t.links.assign(zone.links().begin(), zone.links().end());
+  return t;
+}
+
+// One number changed at random, near or far.
+template <class T>
+void change(std::vector<T>& values, uint64_t seed) {
+  if (values.empty()) return;
+  auto* words = reinterpret_cast<uint8_t*>(values.data());
+  const size_t at = random_below(seed, 1, 0, values.size() * sizeof(T));
+  words[at] = static_cast<uint8_t>(random_below(seed, 2, 0, 2) == 0
+                                       ? words[at] + 1 - 2 * random_below(seed, 3, 0, 2)
+                                       : random_u64(seed, 4, 0));
+}
+
+// Everything that may be asked of it.
+uint64_t use(const RegionZone& zone) {
+  uint64_t sum = 0;
+  for (uint32_t level = 0; level < zone.level_count(); ++level) {
+    const auto [first, last] = zone.level_regions(level);
+    for (uint32_t r = first; r < last; ++r) {
+      for (uint32_t c = 0; c < zone.class_count(); ++c) {
+        if ((zone.regions()[r].classes() >> c & 1) == 0) continue;
+        const auto [begin, end] = zone.class_components(c);
+        EXPECT_GE(zone.component(r, c), begin);
+        EXPECT_LT(zone.component(r, c), end);
+        sum += zone.components()[zone.component(r, c)].cells();
+      }
+    }
+  }
+  for (const format::RegionLink& link : zone.links()) {
+    sum += zone.regions()[link.a()].key() + zone.regions()[link.b()].key();
+  }
+  return sum;
+}
+
+TEST(FalseRegions, AreRefusedByNameOrUsedWithoutACrash) {
+  FilesInMemory files;
+  const Made made = make_small(files);
+  size_t refused = 0, used = 0;
+  for (uint64_t seed = 0; seed < 4000; ++seed) {
+    const auto zone = RegionZone::from_bytes(owned(made.regions[seed % made.regions.size()]), "it");
+    ASSERT_TRUE(zone);
+    RegionTables t = tables_of(**zone);
+    for (uint64_t k = 0; k <= seed % 2; ++k) {
+      const uint64_t n = seed * 2 + k;
+      switch (random_below(n, 0, 0, 6)) {
+        case 0:
+          change(t.first, n);
+          break;
+        case 1:
+          change(t.regions, n);
+          break;
+        case 2:
+          change(t.part_component, n);
+          break;
+        case 3:
+          change(t.class_first, n);
+          break;
+        case 4:
+          change(t.components, n);
+          break;
+        default:
+          change(t.links, n);
+      }
+    }
+    const auto found = RegionZone::from_bytes(region_zone_bytes(0, 0, 0, t), "it");
+    if (found) {
+      used += use(**found) > 0 ? 1 : 0;
+      continue;
+    }
+    EXPECT_EQ(found.error().message.substr(0, 4), "it: ");
+    ++refused;
+  }
+  EXPECT_GT(refused, 1500u);
+  EXPECT_GT(used, 200u);
+}
+
+TEST(FalseRegions, ChangedBytesAndCutFilesAreRefusedByTheSum) {
+  FilesInMemory files;
+  const Made made = make_small(files);
+  size_t refused = 0, filling = 0;
+  const auto expect_refused = [&](const std::vector<uint8_t>& bytes, bool regions) {
+    const bool sound = regions ? static_cast<bool>(RegionZone::from_bytes(owned(bytes), "it"))
+                               : static_cast<bool>(LinkZone::from_bytes(owned(bytes), "it"));
+    ++(sound ? filling : refused);
+  };
+  for (const auto* kind : {&made.regions, &made.links}) {
+    const bool regions = kind == &made.regions;
+    for (uint64_t seed = 0; seed < 800; ++seed) {
+      std::vector<uint8_t> bytes = (*kind)[seed % kind->size()];
+      bytes[random_below(seed, 0, 0, bytes.size())] ^=
+          static_cast<uint8_t>(1 + random_below(seed, 1, 0, 255));
+      expect_refused(bytes, regions);
+    }
+    const std::vector<uint8_t>& whole = kind->front();
+    for (size_t size = 0; size < whole.size(); size += 1 + size / 5) {
+      std::vector<uint8_t> cut(whole.begin(), whole.begin() + static_cast<int64_t>(size));
+      if (cut.empty()) cut.push_back(0);
+      expect_refused(cut, regions);
+    }
+  }
+  EXPECT_GT(refused, 1500u);
+  EXPECT_LT(filling, 60u);  // What fills up words, or makes another way to the same numbers.
+  EXPECT_FALSE(RegionZone::from_bytes(owned(made.links[0]), "it"));
+  EXPECT_FALSE(LinkZone::from_bytes(owned(made.regions[0]), "it"));
+}
+
+TEST(FalseRegions, LinksThatLeadNowhereDoNotFit) {
+  FilesInMemory files;
+  const Made made = make_small(files);
+  const WorldData& world = *made.world.data();
+  size_t fitting = 0, refused = 0;
+  for (uint64_t seed = 0; seed < 3000; ++seed) {
+    const size_t s = seed % made.links.size();
+    const auto links = LinkZone::from_bytes(owned(made.links[s]), "it");
+    ASSERT_TRUE(links);
+    const auto& entry = world.slots[s]->entry;
+    const auto zone = [&](int32_t x, int32_t z) -> const RegionZone* {
+      const int32_t slot = slot_at(world, x, z);
+      return slot < 0 ? nullptr : made.graph->zone(world, static_cast<size_t>(slot));
+    };
+    const RegionZone* own = zone(entry.x(), entry.z());
+    const RegionZone *to_east = zone(entry.x() + 1, entry.z()),
+                     *to_south = zone(entry.x(), entry.z() + 1);
+    ASSERT_NE(own, nullptr);
+    EXPECT_TRUE((*links)->fits(*own, to_east, to_south));
+    std::vector<format::RegionLink> east((*links)->east().begin(), (*links)->east().end());
+    std::vector<format::RegionLink> south((*links)->south().begin(), (*links)->south().end());
+    change(random_below(seed, 5, 0, 2) == 0 ? east : south, seed);
+    const auto found = LinkZone::from_bytes(link_zone_bytes(0, 0, 0, east, south), "it");
+    if (!found || !(*found)->fits(*own, to_east, to_south)) {
+      ++refused;
+      continue;
+    }
+    for (const format::RegionLink& link : (*found)->east()) {
+      ASSERT_LT(link.a(), own->regions().size());
+      ASSERT_LT(link.b(), to_east->regions().size());
+      ASSERT_EQ(link.classes() & ~uint32_t{own->regions()[link.a()].classes()}, 0u);
+    }
+    ++fitting;
+  }
+  EXPECT_GT(refused, 500u);
+  EXPECT_GT(fitting, 300u);
+}
+
+TEST(FalseRegions, AFalseIndexIsRefusedOrNamesWhatIsThere) {
+  FilesInMemory files;
+  const Made made = make_small(files);
+  const WorldData& world = *made.world.data();
+  const std::vector<uint8_t> whole = write_graph_index(*made.graph, 7);
+  ASSERT_TRUE(read_graph_index(whole, "it", world, 7));
+  EXPECT_FALSE(read_graph_index(whole, "it", world, 8));  // Of another bake.
+  for (size_t size = 0; size < whole.size(); size += 1 + size / 5) {
+    EXPECT_FALSE(read_graph_index(std::span(whole).first(size), "it", world, 7)) << size;
+  }
+  size_t refused = 0, used = 0;
+  for (uint64_t seed = 0; seed < 2000; ++seed) {
+    const auto own = read_graph_index(whole, "it", world, 7);
+    GraphData& graph = **own;
+    std::vector<format::GraphZone> zones;
+    for (const auto& slot : graph.slots) zones.push_back(slot->entry);
+    switch (random_below(seed, 0, 0, 4)) {
+      case 0:
+        change(zones, seed);
+        break;
+      case 1:
+        change(graph.class_first, seed);
+        break;
+      case 2:
+        change(graph.components, seed);
+        break;
+      default:
+        change(graph.component_of, seed);
+    }
+    for (size_t s = 0; s < zones.size(); ++s) graph.slots[s]->entry = zones[s];
+    const auto found = read_graph_index(write_graph_index(graph, 7), "it", world, 7);
+    if (!found) {
+      EXPECT_EQ(found.error().message.substr(0, 4), "it: ");
+      ++refused;
+      continue;
+    }
+    (*found)->path = files.folder.path();
+    bool usable = true;
+    for (size_t s = 0; s < world.slots.size(); ++s) {
+      const RegionZone* zone = (*found)->zone(world, s);
+      usable = usable && zone != nullptr;
+      for (uint32_t c = 0; zone != nullptr && c < zone->class_count(); ++c) {
+        const auto [first, last] = zone->class_components(c);
+        for (uint32_t i = first; i < last; ++i) {
+          const uint32_t of =
+              (*found)->component_of[(*found)->slots[s]->entry.first_component() + i];
+          ASSERT_LT(of, (*found)->by_class[c].size());
+        }
+      }
+    }
+    ++(usable ? used : refused);
+  }
+  EXPECT_GT(refused, 500u);
+  EXPECT_GT(used, 200u);
+}
+
+}  // namespace
+}  // namespace throng

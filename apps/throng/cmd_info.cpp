@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "throng/flight.h"
+#include "throng/graph.h"
 #include "throng/world.h"
 
 // throng info: what a baked world holds, and whether its files are intact.
@@ -101,8 +102,8 @@ int info(const Session& session, const InfoOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
   if (options.check) {
-    const Result<void> intact = world->check_all();
-    if (!intact) return fail(intact.error());
+    if (auto intact = world->check_all(); !intact) return fail(intact.error());
+    if (auto intact = Graph::check_files(*world); !intact) return fail(intact.error());
   }
   const WorldSummary summary = world->summary();
   std::optional<AirSummary> air;

@@ -87,6 +87,10 @@ int region(Session& session, const RegionOptions& options) {
   }
   const Result<Graph> graph = Graph::make(*world, {.workers = options.threads}, session.context);
   if (!graph) return fail(graph.error());
+  if (!options.at.empty()) {
+    const auto usable = graph->check_at({options.at[0], options.at[1], options.at[2]});
+    if (!usable) return fail(usable.error());
+  }
   const GraphSummary summary = graph->summary();
   Json classes = Json::array();
   std::string text =
@@ -101,6 +105,7 @@ int region(Session& session, const RegionOptions& options) {
                 {"regions", summary.regions},
                 {"links", summary.links},
                 {"bytes", summary.bytes},
+                {"on_disk", summary.on_disk},
                 {"seconds", summary.seconds},
                 {"classes", classes}},
                text);

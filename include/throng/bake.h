@@ -37,18 +37,23 @@ struct BakeReport {
   uint64_t zones = 0;        ///< In which anybody can stand.
   uint64_t zones_baked = 0;  ///< Zones with triangles, whether or not anybody can stand there.
   uint64_t zones_kept = 0;   ///< The rest of them: their input has not changed.
-  uint64_t tiles = 0;        ///< Tiles with at least one level.
+  /// Zones whose links over their eastern and southern border were made again: those baked and
+  /// those to the west and north of them. Into a folder only, as graph_bytes.
+  uint64_t zones_relinked = 0;
+  uint64_t tiles = 0;  ///< Tiles with at least one level.
   uint64_t level_tiles = 0;
   uint64_t constant_level_tiles = 0;  ///< Whose floor is stored as a constant or a plane.
   uint64_t spans = 0;                 ///< Solid spans after merging, of the zones baked.
   uint64_t bytes = 0;                 ///< Of all zone files.
   uint64_t air_zones = 0;             ///< Zones with an air file: those with matter.
   uint64_t air_bytes = 0;             ///< Of all air files.
+  uint64_t graph_bytes = 0;           ///< Of all files of regions and links.
   std::vector<double> walkable_area;  ///< Per class. [m^2]
   double seconds_columns = 0;
   double seconds_levels = 0;
   double seconds_clearance = 0;
   double seconds_air = 0;
+  double seconds_graph = 0;
   double seconds_write = 0;
   double seconds_total = 0;  ///< Wall clock.
 };
@@ -57,11 +62,11 @@ struct BakeReport {
 [[nodiscard]] THRONG_API Result<World> bake_world(const Scene& scene, const BakeConfig& config,
                                                   Context& context, BakeReport* report = nullptr);
 
-/// Bakes into a folder: one file a zone and a manifest, written beside `path` and renamed at the
-/// end, so that a failed or cancelled bake leaves what was there before. Where a world is there,
-/// only the zones whose input has changed are baked, on its grid if the scene still begins on it;
-/// where a bake was killed, its zones are taken over. Memory: the scene and a few zones, whatever
-/// the size of the world.
+/// Bakes into a folder: files of each zone, a manifest, and the graph's index, written beside
+/// `path` and renamed at the end, so that a failed or cancelled bake leaves what was there before.
+/// Where a world is there, only the zones whose input has changed are baked, on its grid if the
+/// scene still begins on it; where a bake was killed, its zones are taken over. Memory: the scene
+/// and a few zones, whatever the size of the world.
 [[nodiscard]] THRONG_API Result<BakeReport> bake_world_to(const std::string& path,
                                                           const Scene& scene,
                                                           const BakeConfig& config,

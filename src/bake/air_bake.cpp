@@ -258,7 +258,8 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
   auto bytes = air_zone_bytes(zone_x, zone_z, key, tree);
   const std::span<const uint8_t> view(bytes.data(), bytes.size());
   if (folder_ != nullptr) {
-    if (auto ok = folder_->write_air(zone_x, zone_z, view); !ok) return ok.error();
+    if (auto ok = folder_->write_file_of_zone(air_file_name(zone_x, zone_z), view); !ok)
+      return ok.error();
     add(zone_x, zone_z, view, nullptr);
     return {};
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "bake/graph_bake.h"
 #include "bake/world_bake.h"
 #include "bake/world_folder.h"
 #include "bake/zone_bake.h"
@@ -84,9 +85,13 @@ Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
   if (!folder) return folder.error();
   std::vector<std::unique_ptr<Zone>> none;
   BakeReport report;
+  const auto start = Clock::now();
   auto world = bake_zones(scene, config, context, report, &*folder, none);
   if (!world) return world.error();
-  if (auto ok = folder->finish(**world); !ok) return ok.error();
+  const auto graph = bake_graph(*folder, **world, config.workers, context, report);
+  if (!graph) return graph.error();
+  if (auto ok = folder->finish(**world, **graph); !ok) return ok.error();
+  report.seconds_total = seconds_since(start);
   return report;
 }
 

@@ -208,31 +208,44 @@ Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
   return {};
 }
 
-std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) {
-  const std::string file = air_file_name(x, z);
+template <class File>
+std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t input) {
   for (const bool is_part : {true, false}) {
-    if (!is_part && old_ == nullptr) break;  // not to be used, or not to be read
-    const fs::path from = (is_part ? part_ : fs::path(path_)) / file;
+    if (!is_part && old_ == nullptr) continue;  // Nothing of it is to be kept.
+    const fs::path from = (is_part ? part_ : fs::path(path_)) / name;
     auto map = FileMap::open(from.string());
     if (!map) continue;
-    auto zone = AirZone::from_file(std::move(*map), from.string());
-    if (!zone || (*zone)->root().input() != input) continue;
+    auto file = File::from_file(std::move(*map), from.string());
+    if (!file || (*file)->root().input() != input) continue;
     if (!is_part) {
       std::error_code error;
-      fs::remove(part_ / file, error);
-      fs::create_hard_link(from, part_ / file, error);
-      if (error && !write_file((part_ / file).string(), (*zone)->bytes())) continue;
+      fs::remove(part_ / name, error);
+      fs::create_hard_link(from, part_ / name, error);
+      if (error && !write_file((part_ / name).string(), (*file)->bytes())) continue;
     }
-    return std::move(*zone);
+    return std::move(*file);
   }
   return nullptr;
 }
 
-Result<void> WorldFolder::write_air(int32_t x, int32_t z, std::span<const uint8_t> bytes) {
-  return write_file((part_ / air_file_name(x, z)).string(), bytes);
+std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) {
+  return keep_file<AirZone>(air_file_name(x, z), input);
 }
 
-Result<void> WorldFolder::finish(const WorldData& world) {
+std::unique_ptr<RegionZone> WorldFolder::keep_regions(int32_t x, int32_t z, uint64_t input) {
+  return keep_file<RegionZone>(region_file_name(x, z), input);
+}
+
+std::unique_ptr<LinkZone> WorldFolder::keep_links(int32_t x, int32_t z, uint64_t input) {
+  return keep_file<LinkZone>(link_file_name(x, z), input);
+}
+
+Result<void> WorldFolder::write_file_of_zone(const std::string& name,
+                                             std::span<const uint8_t> bytes) {
+  return write_file((part_ / name).string(), bytes);
+}
+
+Result<void> WorldFolder::finish(const WorldData& world, const GraphData& graph) {
   std::set<std::string> names;
   if (world.air != nullptr) {
     for (const auto& slot : world.air->slots) {
@@ -240,7 +253,11 @@ Result<void> WorldFolder::finish(const WorldData& world) {
     }
   }
   for (const auto& slot : world.slots) {
-    names.insert(zone_file_name(slot->entry.x(), slot->entry.z()));
+    const int32_t x = slot->entry.x(), z = slot->entry.z();
+    for (const std::string& name :
+         {zone_file_name(x, z), region_file_name(x, z), link_file_name(x, z)}) {
+      names.insert(name);
+    }
   }
   std::error_code error;
   std::vector<fs::path> stale;  // Of killed bakes of other scenes, and what they left half written.
@@ -250,10 +267,13 @@ Result<void> WorldFolder::finish(const WorldData& world) {
   }
   for (const fs::path& file : stale) fs::remove_all(file, error);
   const std::vector<uint8_t> manifest = write_manifest(world);
+  const uint64_t hash = hash_bytes(manifest.data(), manifest.size());
   if (world.air != nullptr) {
-    const auto air = write_air_manifest(*world.air, hash_bytes(manifest.data(), manifest.size()));
+    const auto air = write_air_manifest(*world.air, hash);
     if (auto ok = write_file((part_ / kAirManifest).string(), air); !ok) return ok.error();
   }
+  const auto index = write_graph_index(graph, hash);
+  if (auto ok = write_file((part_ / kGraphIndexName).string(), index); !ok) return ok.error();
   if (auto ok = write_file((part_ / kManifest).string(), manifest); !ok) return ok.error();
   if (!exchange(part_, path_, path_ + ".old")) {
     return Error{Errc::kIo, path_ + ": cannot be written: " + std::strerror(errno)};

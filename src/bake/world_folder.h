@@ -15,6 +15,7 @@
 #include "throng/bake.h"
 #include "throng/result.h"
 #include "world/air_data.h"
+#include "world/region_data.h"
 #include "world/zone_data.h"
 
 /// The folder of a world while it is baked: zones are taken over from the world that is there and
@@ -56,15 +57,20 @@ class WorldFolder {
   Result<void> write(const format::ZoneEntry& entry, uint64_t input,
                      std::span<const uint8_t> bytes);
 
-  /// The air file of a zone that need not be baked, of the killed bake or the old world; it is then
-  /// in the new world. Air files carry their input and their sum, so no journal tells of them.
+  /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake
+  /// or the old world; it is then in the new world. These files carry their input and a sum, so no
+  /// journal tells of them. Null if there is none with this input.
   std::unique_ptr<AirZone> keep_air(int32_t x, int32_t z, uint64_t input);
-  /// Adds an air file. Fails with kIo.
-  Result<void> write_air(int32_t x, int32_t z, std::span<const uint8_t> bytes);
+  std::unique_ptr<RegionZone> keep_regions(int32_t x, int32_t z, uint64_t input);
+  std::unique_ptr<LinkZone> keep_links(int32_t x, int32_t z, uint64_t input);
+  /// Adds such a file. Fails with kIo.
+  Result<void> write_file_of_zone(const std::string& name, std::span<const uint8_t> bytes);
+  /// The folder of the world in the making: the files of all zones added are there.
+  [[nodiscard]] std::string part() const { return part_.string(); }
 
-  /// Writes the manifest, and that of the air if there is any, and puts the world in its place.
-  /// Fails with kIo.
-  Result<void> finish(const WorldData& world);
+  /// Writes the manifest, and that of the air if there is any, and the index of the graph, and
+  /// puts the world in its place. Fails with kIo.
+  Result<void> finish(const WorldData& world, const GraphData& graph);
 
  private:
   struct Done;
@@ -77,6 +83,8 @@ class WorldFolder {
   explicit WorldFolder(std::string path);
   void read_old();
   Result<void> read_part();
+  template <class File>
+  std::unique_ptr<File> keep_file(const std::string& name, uint64_t input);
 
   std::string path_;
   std::filesystem::path part_;  // empty: finished or moved from

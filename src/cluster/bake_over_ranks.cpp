@@ -13,6 +13,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "bake/graph_bake.h"
 #include "bake/world_bake.h"
 #include "bake/world_folder.h"
 #include "cluster/ranks.h"
@@ -347,13 +348,20 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     const auto world = bake->world(*facts, report);
     if (!world) return world.error();
     // By this rank alone, on its own threads: the others have parted.
-    if (auto ok = bake->add_air(&*folder, **world, context, report); !ok) {
-      if (ok.error().code != Errc::kCancelled) return ok.error();
+    const auto failed = [&](const Error& error, const char* finished) {
+      if (error.code != Errc::kCancelled) return error;
       ranks.abandon();
       folder->leave();
-      return told_to_stop(ranks, path, "all zones' ground and some of their air are finished");
+      return told_to_stop(ranks, path, finished);
+    };
+    if (auto ok = bake->add_air(&*folder, **world, context, report); !ok) {
+      return failed(ok.error(), "all zones' ground and some of their air are finished");
     }
-    if (auto ok = folder->finish(**world); !ok) return ok.error();
+    const auto graph = bake_graph(*folder, **world, own.workers, context, report);
+    if (!graph) {
+      return failed(graph.error(), "all zones and some of their regions and links are finished");
+    }
+    if (auto ok = folder->finish(**world, **graph); !ok) return ok.error();
     report.seconds_total = seconds_since(start);
   }
   return report;

@@ -6,6 +6,7 @@ python3 program_test.py build/release/throng"""
 import json
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -173,14 +174,40 @@ class Program(unittest.TestCase):
         self.assertEqual([entry.name for entry in self.path.iterdir()], ["walk.csv"])
 
     def test_a_changed_byte_of_a_world_is_found_and_its_file_named(self):
+        for kind in (".thz", ".thr", ".thl", "graph.thm"):
+            copy = self.path / "copy.throng"
+            subprocess.run(["cp", "-r", self.world, copy], check=True)
+            zone = max((entry for entry in copy.iterdir() if entry.name.endswith(kind)),
+                       key=lambda entry: entry.stat().st_size)
+            content = bytearray(zone.read_bytes())
+            content[len(content) // 2] ^= 0x10
+            zone.chmod(0o644)
+            zone.write_bytes(content)
+            self.assert_refused(self.run_throng("info", copy, "--check"), zone.name)
+            if kind != ".thl":  # Nobody reads the links but a bake.
+                at = ("region", copy, "--at", "14,0,8")
+                self.assert_refused(self.run_throng(*at), zone.name, "bake the world again")
+            shutil.rmtree(copy)
+
+    def test_regions_are_told_from_the_bakes_files_or_made_where_there_are_none(self):
+        def region(world):
+            done = self.run_throng("region", world, "--at", "14,0,8", "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return json.loads(done.stdout)
         copy = self.path / "copy.throng"
         subprocess.run(["cp", "-r", self.world, copy], check=True)
-        zone = max(copy.iterdir(), key=lambda entry: entry.stat().st_size)
-        content = bytearray(zone.read_bytes())
-        content[len(content) // 2] ^= 0x10
-        zone.chmod(0o644)
-        zone.write_bytes(content)
-        self.assert_refused(self.run_throng("info", copy, "--check"), zone.name)
+        on_disk = region(copy)
+        self.assertTrue(on_disk.pop("on_disk"))
+        for entry in copy.iterdir():
+            if entry.suffix in (".thr", ".thl") or entry.name == "graph.thm":
+                entry.unlink()
+        made = region(copy)
+        self.assertFalse(made.pop("on_disk"))
+        self.assertGreater(on_disk["classes"][0]["components"], 0)
+        self.assertEqual(on_disk["classes"][0]["at"], 0)
+        for report in (on_disk, made):
+            del report["seconds"]
+        self.assertEqual(on_disk, made)
 
     def test_the_experiment_of_caacd_is_the_same_for_any_threads_and_writes_what_it_is_asked_for(self):
         def study(*more):

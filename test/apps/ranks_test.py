@@ -54,9 +54,10 @@ def child_of_rank(parent, rank):
     return None
 
 
-def kill_a_rank(folder, rank, ranks, air_files=0, options=()):
-    """Bakes until some zones are done, or some air files, kills one rank; the words that were said, and the zones in
-    the journal. Rank 0 makes the air alone, and has made it before Open MPI tells it to stop: it is told here."""
+def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=()):
+    """Bakes until some zones are done, or some files of a kind that rank 0 makes alone, kills one rank; the words that
+    were said, and the zones in the journal. Rank 0 has made all of them before Open MPI tells it to stop: it is told
+    here."""
     world = folder / "killed.throng"
     part = folder / "killed.throng.part"
     journal = part / "journal"
@@ -65,10 +66,10 @@ def kill_a_rank(folder, rank, ranks, air_files=0, options=()):
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while process.poll() is None:
             if journal.exists() and journal.stat().st_size >= 5 * RECORD and \
-                    len(list(part.glob("*.tha"))) >= air_files:
+                    len(list(part.glob(f"*.{kind}"))) >= files:
                 killed, first = child_of_rank(process.pid, rank), child_of_rank(process.pid, 0)
                 os.kill(killed, signal.SIGKILL)
-                if air_files and rank != 0:
+                if files and rank != 0:
                     os.kill(first, signal.SIGTERM)
                 break
             time.sleep(0.0005)
@@ -86,10 +87,12 @@ def test_bytes(folder, reference):
         assert not ours(done.stderr), done.stderr
         report = json.loads(done.stdout)  # One object, from one rank.
         assert report["zones_kept"] == 0 and report["zones_baked"] == reference["report"]["zones_baked"]
+        assert report["zones_relinked"] == report["zones"] == reference["report"]["zones"]
         assert report["walkable_area"] == reference["report"]["walkable_area"]
         assert content(world) == reference["content"], f"{ranks} ranks: other bytes than one process"
         again = run([*MPIRUN, "-n", str(ranks), *bake_words(world)])
-        assert json.loads(again.stdout)["zones_baked"] == 0, again.stdout
+        again_report = json.loads(again.stdout)
+        assert again_report["zones_baked"] == again_report["zones_relinked"] == 0, again.stdout
         assert content(world) == reference["content"], f"{ranks} ranks: other bytes when all is kept"
         shutil.rmtree(world)
 
@@ -127,7 +130,7 @@ def test_air(folder):
     assert content(world) == one, "other bytes of air than by one process"
     shutil.rmtree(world)
     for rank in (1, 0):
-        err, finished = kill_a_rank(folder, rank, 2, air_files=3, options=fly)
+        err, finished = kill_a_rank(folder, rank, 2, files=3, options=fly)
         assert finished == report["zones_baked"], f"{finished} zones: the air was not yet due"
         said = ours(err)
         assert all("another rank has died" in line and "goes on from there" in line for line in said), err
@@ -137,6 +140,24 @@ def test_air(folder):
         assert json.loads(done.stdout)["zones_kept"] == finished, done.stdout
         assert content(folder / "killed.throng") == one, "other bytes of air than undisturbed"
         shutil.rmtree(folder / "killed.throng")
+
+
+def test_graph(folder, reference):
+    """Regions and links are made last, by rank 0."""
+    total = reference["report"]["zones_baked"]
+    for rank, kind in ((1, "thr"), (0, "thr"), (1, "thl"), (0, "thl")):
+        err, finished = kill_a_rank(folder, rank, 2, files=3, kind=kind)
+        assert finished == total, f"{finished} zones: the graph was not yet due"
+        said = ours(err)
+        assert all("another rank has died" in line and "goes on from there" in line for line in said), err
+        assert rank == 0 or said, err
+        world = folder / "killed.throng"
+        words = bake_words(world) if rank == 0 else [*MPIRUN, "-n", "2", *bake_words(world)]
+        report = json.loads(run(words).stdout)
+        assert report["zones_kept"] == total, report
+        assert report["zones_relinked"] <= total - (3 if kind == "thl" else 0), report
+        assert content(world) == reference["content"], "other bytes than undisturbed"
+        shutil.rmtree(world)
 
 
 def test_refusals(folder):
@@ -183,8 +204,9 @@ def main():
         test_bytes(folder, reference)
         test_death(folder, reference)
         test_air(folder)
+        test_graph(folder, reference)
         test_refusals(folder)
-        print("equal bytes by 1, 2 and 3 ranks, and after each of three deaths")
+        print("equal bytes by 1, 2 and 3 ranks, and after each death")
 
 
 main()

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "scratch_folder.h"
 #include "throng/bake.h"
@@ -72,6 +73,9 @@ TEST_F(ChangedZones, NothingChangedNothingIsBaked) {
   const BakeReport second = bake("w", field());
   EXPECT_EQ(second.zones_baked, 0u);
   EXPECT_EQ(second.zones_kept, 20u);
+  EXPECT_EQ(first.zones_relinked, 20u);
+  EXPECT_EQ(second.zones_relinked, 0u);
+  EXPECT_EQ(second.graph_bytes, first.graph_bytes);
   EXPECT_EQ(read(at("w")), before);
   EXPECT_EQ(second.walkable_area, first.walkable_area);
   EXPECT_EQ(second.constant_level_tiles, first.constant_level_tiles);
@@ -98,10 +102,11 @@ TEST_F(ChangedZones, ATouchedTriangleIsBakedWhereItIsSeenAndNowhereElse) {
   struct Touch {
     double x, z, wide, deep;
     uint64_t zones;  // by hand
+    uint64_t links;  // zones whose links are made again: these, and those to the west and north
   };
-  for (const Touch& touch :
-       {Touch{6, 6, 0.5, 0.5, 1}, Touch{12.4, 6, 0.2, 0.2, 2}, Touch{12.5, 12.5, 0.3, 0.3, 4},
-        Touch{20, 20, 0.5, 12, 2}, Touch{3, 30, 58, 0.5, 5}, Touch{30, 45, 1, 1, 1}}) {
+  for (const Touch& touch : {Touch{6, 6, 0.5, 0.5, 1, 1}, Touch{12.4, 6, 0.2, 0.2, 2, 2},
+                             Touch{12.5, 12.5, 0.3, 0.3, 4, 4}, Touch{20, 20, 0.5, 12, 2, 5},
+                             Touch{3, 30, 58, 0.5, 5, 10}, Touch{30, 45, 1, 1, 1, 3}}) {
     Scene scene = field();
     bake("w", scene);
     const double x1 = touch.x + touch.wide, z1 = touch.z + touch.deep;
@@ -115,8 +120,75 @@ TEST_F(ChangedZones, ATouchedTriangleIsBakedWhereItIsSeenAndNowhereElse) {
     const BakeReport report = bake("w", scene);
     EXPECT_EQ(report.zones_baked, touch.zones) << touch.x << ", " << touch.z;
     EXPECT_EQ(report.zones_kept, 20 - touch.zones);
+    EXPECT_EQ(report.zones_relinked, touch.links) << touch.x << ", " << touch.z;
     bake("new", scene, {.cell = 0.2, .zone = kZone, .old_zones = OldZones::kBakeAgain});
     EXPECT_EQ(read(at("w")), read(at("new")));
+  }
+}
+
+// Which files a touched triangle makes anew: those that are kept are the old ones, linked.
+TEST_F(ChangedZones, ATouchedTriangleLeavesAllOtherFilesAsTheyAre) {
+  Scene scene = field();
+  bake("w", scene);
+  fs::copy(at("w"), at("old"), fs::copy_options::recursive | fs::copy_options::create_hard_links);
+  scene.add_triangle({30, 1, 45}, {30, 1, 46}, {31, 1, 45});  // zone (2, 3)
+  bake("w", scene);
+  std::set<std::string> made;
+  for (const auto& entry : fs::directory_iterator(at("w"))) {
+    const std::string name = entry.path().filename().string();
+    if (!fs::equivalent(entry.path(), at("old") + "/" + name)) made.insert(name);
+  }
+  EXPECT_EQ(made,
+            (std::set<std::string>{"manifest.thm", "graph.thm", "zone_2_3.thz", "zone_2_3.thr",
+                                   "zone_2_3.thl", "zone_1_3.thl", "zone_2_2.thl"}));
+}
+
+// The ground is the same to the millimetre, but a class steps higher: other links.
+TEST_F(ChangedZones, AnotherStepMakesOtherRegions) {
+  bake("w", field());
+  BakeConfig config = kConfig;
+  for (AvatarClass& avatar : config.classes) avatar.step *= 0.9;
+  EXPECT_EQ(bake("w", field(), config).zones_relinked, 20u);
+  bake("new", field(), config);
+  EXPECT_EQ(read(at("w")), read(at("new")));
+}
+
+// What is under the ground is no matter to anybody: the zone is baked, its bytes are the same.
+TEST_F(ChangedZones, ATriangleThatChangesNothingRelinksNothing) {
+  Scene scene = field();
+  bake("w", scene);
+  const Folder before = read(at("w"));
+  const double x0 = kCorner + 3.2 * 2, z0 = kCorner;
+  scene.add_quad({x0, 0, z0}, {x0, 0, z0 + 3.2}, {x0 + 3.2, 0, z0 + 3.2}, {x0 + 3.2, 0, z0});
+  const BakeReport report = bake("w", scene);
+  EXPECT_EQ(report.zones_baked, 1u);
+  EXPECT_EQ(report.zones_relinked, 0u);
+  Folder after = read(at("w"));
+  EXPECT_EQ(after["zone_0_0.thz"], before.at("zone_0_0.thz"));
+  EXPECT_NE(after["manifest.thm"], before.at("manifest.thm"));
+}
+
+// Files of regions and links are believed as far as they go: they carry their input and a sum.
+TEST_F(ChangedZones, ABakeKilledBetweenItsPassesGoesOn) {
+  bake("w", field());
+  const Folder whole = read(at("w"));
+  for (const char* left : {".thz", ".thr", ".thl"}) {  // How far it came.
+    fs::rename(at("w"), at("w.part"));
+    fs::remove(at("w.part/manifest.thm"));
+    fs::remove(at("w.part/graph.thm"));
+    for (const auto& [name, bytes] : whole) {
+      const bool links = name.ends_with(".thl"), regions = name.ends_with(".thr");
+      if ((links && left != std::string(".thl")) || (regions && left == std::string(".thz"))) {
+        fs::remove(at("w.part/") + name);
+      }
+    }
+    std::ofstream(at("w.part/zone_1_1.thr.part"), std::ios::binary) << "half";
+    fs::remove(at("w.part/zone_1_1.thl"));
+    std::ofstream(at("w.part/zone_1_1.thl"), std::ios::binary) << whole.at("zone_1_1.thr");
+    const BakeReport report = bake("w", field());
+    EXPECT_EQ(report.zones_baked, 20u);  // No journal: the ground is baked again.
+    EXPECT_EQ(report.zones_relinked, left == std::string(".thl") ? 1u : 20u);
+    EXPECT_EQ(read(at("w")), whole);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
+#include "world/node_data.h"
 #include "world/region_data.h"
 #include "world/zone_data.h"
 #include "worlds.h"
@@ -159,7 +160,6 @@ TEST(FuzzSeeds, TheZoneIsOfThisVersion) {
   EXPECT_GT((*zone)->root().words()->size(), 400u);
 }
 
-// A zone that lies about its content but carries the right checksum, as an attacker would make it.
 TEST(FuzzSeeds, RegionsAndLinksAreOfThisVersion) {
   const auto map = [](const char* name) {
     auto file = FileMap::open(std::string(THRONG_TEST_DATA "/../fuzz/seeds/regions/") + name);
@@ -170,6 +170,16 @@ TEST(FuzzSeeds, RegionsAndLinksAreOfThisVersion) {
   EXPECT_TRUE(LinkZone::from_file(map("small.thl"), "small.thl"));
 }
 
+// Of the built-in cube at cells of 0.2 m, baked with --nodes.
+TEST(FuzzSeeds, TheNodesAreOfThisVersion) {
+  auto file = FileMap::open(THRONG_TEST_DATA "/../fuzz/seeds/nodes/small.thn");
+  ASSERT_TRUE(file);
+  const auto zone = NodeZone::from_file(*std::move(file), "small.thn");
+  ASSERT_TRUE(zone) << zone.error().message;
+  EXPECT_GT((*zone)->nodes().size(), 0u);
+}
+
+// A zone that lies about its content but carries the right checksum, as an attacker would make it.
 TEST_F(ZoneFiles, AFlippedByteBehindTheChecksumIsRefusedOrHarmless) {
   const auto whole = as_zone(zone_);
   ASSERT_TRUE(whole) << whole.error().message;

@@ -84,7 +84,7 @@ TEST(PlainCrowd, RingsChangePlacesBecauseTheImpatientTurnTogether) {
   for (const bool patient : {true, false}) {
     PlainConfig config;
     config.patient = patient;
-    PlainCrowd crowd(ring_bodies(150, 12), config);
+    PlainCrowd crowd(ring_bodies(70, 6), config);
     while (!have_arrived(crowd) && crowd.time() < 60) {
       crowd.step();
       ASSERT_EQ(crowd.overlaps(), 0u);

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/disjoint_sets.h"
 #include "core/hash.h"
-#include "graph/disjoint_sets.h"
 #include "graph/zone_regions.h"
 #include "world/place.h"
 

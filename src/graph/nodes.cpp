@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/disjoint_sets.h"
 #include "core/hash.h"
 #include "core/random.h"
 #include "throng/patch.h"
@@ -213,18 +214,7 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
 std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>* of_node) const {
   THRONG_ASSERT(data_);
   const uint32_t count = data_->node_count;
-  std::vector<uint32_t> root(count);
-  std::iota(root.begin(), root.end(), uint32_t{0});
-  const auto find = [&](uint32_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
-  // The root of a part is its first node, so numbers do not depend on the order of unions.
-  const auto join = [&](uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    root[std::max(a, b)] = std::min(a, b);
-  };
+  DisjointSets sets(count);
   const uint32_t bit =
       avatar_class >= 0 && avatar_class < kMaxAvatarClasses ? 1u << avatar_class : 0u;
   std::vector<uint8_t> stands(count, 0);
@@ -239,12 +229,12 @@ std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>*
       stands[first + n] = 1;
       const uint32_t parent = nodes[n].parent();
       const bool inside = parent != UINT32_MAX && (nodes[parent].classes() & bit) != 0;
-      if (inside) join(first + n, first + parent);
+      if (inside) sets.join(first + n, first + parent);
       area[first + n] = inside ? 0 : nodes[n].area();
       for (const format::Arc& arc : zone->arcs(n)) {
         if ((arc.classes() & bit) == 0) continue;
         const uint32_t to = data_->target(s, *zone, arc);
-        if (goes_back(*data_, first + n, to, arc)) join(first + n, to);
+        if (goes_back(*data_, first + n, to, arc)) sets.join(first + n, to);
       }
     }
   }
@@ -252,7 +242,7 @@ std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>*
   std::vector<uint32_t> part(count, UINT32_MAX);
   for (uint32_t n = 0; n < count; ++n) {
     if (stands[n] == 0) continue;
-    const uint32_t r = find(n);
+    const uint32_t r = sets.find(n);
     if (r == n) {
       part[n] = static_cast<uint32_t>(parts.size());
       parts.push_back({.area = 0, .nodes = 0, .node = n});

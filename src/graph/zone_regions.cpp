@@ -4,8 +4,8 @@
 
 #include <bit>
 
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
-#include "graph/disjoint_sets.h"
 #include "graph/ground_parts.h"
 #include "graph/tile_regions.h"
 #include "world/place.h"

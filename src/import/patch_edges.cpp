@@ -3,9 +3,9 @@
 #include "import/patch_edges.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
+#include "core/disjoint_sets.h"
 #include "core/hash.h"
 
 namespace throng {
@@ -30,26 +30,6 @@ uint64_t hash_of(const std::array<Vec3d, 4>& curve) {
 bool opposite(const std::array<Vec3d, 4>& a, const std::array<Vec3d, 4>& b) {
   return a[0] == b[3] && a[1] == b[2] && a[2] == b[1] && a[3] == b[0];
 }
-
-// Union-find; the smallest member is a group's root, so numbers depend on nothing but the groups.
-class Groups {
- public:
-  explicit Groups(size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), uint32_t{0});
-  }
-  uint32_t root(uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
 
 uint32_t start_of(PatchSide side) { return 4 * side.patch + side.edge; }
 uint32_t end_of(PatchSide side) { return 4 * side.patch + (side.edge + 1) % 4; }
@@ -85,7 +65,7 @@ void bind_equal_edges(PatchSet& set, uint32_t first) {
 }
 
 std::vector<uint32_t> weld_corners(const PatchSet& set) {
-  Groups groups(4 * set.size());
+  DisjointSets groups(4 * set.size());
   for (uint32_t p = 0; p < set.size(); ++p) {
     for (uint32_t e = 0; e < 4; ++e) {
       const PatchEdge& edge = set.edges[p][e];
@@ -103,7 +83,7 @@ std::vector<uint32_t> weld_corners(const PatchSet& set) {
     }
   }
   std::vector<uint32_t> corner(4 * set.size());
-  for (uint32_t i = 0; i < corner.size(); ++i) corner[i] = groups.root(i);
+  for (uint32_t i = 0; i < corner.size(); ++i) corner[i] = groups.find(i);
   return corner;
 }
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
+#include "core/disjoint_sets.h"
 #include "core/random.h"
 #include "import/builtin_table.h"
 #include "import/world_shapes.h"
@@ -31,21 +31,6 @@ struct Level {
   std::vector<uint8_t> across_z;
 };
 
-struct Sets {
-  std::vector<uint32_t> parent;
-  uint32_t root(uint32_t a) {
-    while (parent[a] != a) a = parent[a] = parent[parent[a]];
-    return a;
-  }
-  bool join(uint32_t a, uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a == b) return false;
-    parent[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-};
-
 bool in_room(int32_t n, int32_t i, int32_t j) {
   const auto inside = [&](int32_t from) {
     return i >= from && i < from + 3 && j >= from && j < from + 3;
@@ -56,8 +41,7 @@ bool in_room(int32_t n, int32_t i, int32_t j) {
 Level carve(int32_t n, uint64_t seed, uint64_t stream) {
   const auto un = static_cast<size_t>(n);
   Level level{n, std::vector<uint8_t>((un + 1) * un, 1), std::vector<uint8_t>((un + 1) * un, 1)};
-  Sets sets{std::vector<uint32_t>(un * un)};
-  std::iota(sets.parent.begin(), sets.parent.end(), 0u);
+  DisjointSets sets(un * un);
   struct Edge {
     uint64_t key;
     int32_t i, j, axis;

@@ -21,10 +21,12 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void join(uint32_t a, uint32_t b) {
+  /// False if they were one set already.
+  bool join(uint32_t a, uint32_t b) {
     a = find(a);
     b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
+    return a != b;
   }
 
  private:

@@ -14,12 +14,6 @@ namespace {
 
 constexpr const char* kZoneIdentifier = "THAZ";
 constexpr const char* kManifestIdentifier = "THAM";
-constexpr const char* kRemedy = "bake the world again";
-
-Error bad_file(const std::string& name, const std::string& what) {
-  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
-}
-
 uint64_t sum_of(uint64_t input, const AirTree& tree) {
   const uint64_t head[] = {input, static_cast<uint64_t>(tree.side),
                            static_cast<uint64_t>(tree.base), tree.roots};
@@ -75,24 +69,15 @@ AirData::ZoneAir AirData::zone(int32_t x, int32_t z) const {
   const Slot& entry = *slots[static_cast<size_t>(slot)];
   std::call_once(entry.once, [&] {
     if (entry.zone || path.empty()) return;
-    const std::string name = path + "/" + air_file_name(entry.entry.x(), entry.entry.z());
-    auto map =
-        map_listed(name, entry.entry.bytes(), entry.entry.hash(), "the air manifest's", kRemedy);
-    if (!map) {
-      entry.error = map.error().message;
-      return;
-    }
-    auto zone = AirZone::from_file(std::move(*map), name);
-    if (!zone) {
-      entry.error = zone.error().message;
-      return;
-    }
-    if ((*zone)->root().x() != entry.entry.x() || (*zone)->root().z() != entry.entry.z() ||
-        (*zone)->tree().side < zone_side) {
-      entry.error = bad_file(name, "belongs to another world").message;
-      return;
-    }
-    entry.zone = std::move(*zone);
+    const format::AirEntry& listed = entry.entry;
+    entry.open({.name = path + "/" + air_file_name(listed.x(), listed.z()),
+                .bytes = listed.bytes(),
+                .hash = listed.hash(),
+                .whose = "the air manifest's"},
+               [&](const AirZone& zone) {
+                 return zone.root().x() == listed.x() && zone.root().z() == listed.z() &&
+                        zone.tree().side >= zone_side;
+               });
   });
   if (entry.zone == nullptr) return {};
   return {true, &entry.zone->tree()};

@@ -76,11 +76,8 @@ struct AirShape {
 
 /// What WorldData::air points to.
 struct AirData {
-  struct Slot {
+  struct Slot : ZoneSlot<AirZone> {
     format::AirEntry entry;
-    mutable std::once_flag once;
-    mutable std::unique_ptr<AirZone> zone;
-    mutable std::string error;  // why it could not be used
   };
 
   AirShape shape;

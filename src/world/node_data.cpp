@@ -18,12 +18,7 @@ constexpr double kFarthest = 1e9;  // [m]
 constexpr const char* kRemedy = "bake the world again with --nodes";
 
 Error bad_nodes(const std::string& name, const std::string& what) {
-  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
-}
-
-template <class T>
-std::span<const T> structs(const flatbuffers::Vector<const T*>& values) {
-  return {reinterpret_cast<const T*>(values.Data()), values.size()};
+  return bad_file(name, what, kRemedy);
 }
 
 bool ascending(const flatbuffers::Vector<double>& edges, double low, double high) {
@@ -143,33 +138,27 @@ const NodeZone* NodeData::zone(size_t slot) const {
   const Slot& entry = *slots[slot];
   std::call_once(entry.once, [&] {
     if (entry.zone || path.empty()) return;
-    const std::string name = path + "/" + node_file_name(entry.entry.x(), entry.entry.z());
-    auto map = map_listed(name, entry.entry.bytes(), entry.entry.hash(), "the index's", kRemedy);
-    if (!map) {
-      entry.error = map.error().message;
-      return;
-    }
-    auto zone = NodeZone::from_file(std::move(*map), name);
-    if (!zone) {
-      entry.error = zone.error().message;
-      return;
-    }
-    const NodeZone& found = **zone;
-    bool belongs = found.x() == entry.entry.x() && found.z() == entry.entry.z() &&
-                   found.nodes().size() == entry.entry.nodes();
-    for (const format::FarNode& far : found.far()) {
-      const size_t other = slot_at(far.x(), far.z());
-      belongs = belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
-    }
-    for (const format::NodePatch& patch : found.patches()) {
-      belongs = belongs && (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier) ||
-                            (patch.source() < world.level_tile_count() && patch.depth() == 6));
-    }
-    if (!belongs) {
-      entry.error = bad_nodes(name, "belongs to another world").message;
-      return;
-    }
-    entry.zone = std::move(*zone);
+    const format::NodeZoneEntry& listed = entry.entry;
+    entry.open({.name = path + "/" + node_file_name(listed.x(), listed.z()),
+                .bytes = listed.bytes(),
+                .hash = listed.hash(),
+                .whose = "the index's",
+                .remedy = kRemedy},
+               [&](const NodeZone& found) {
+                 bool belongs = found.x() == listed.x() && found.z() == listed.z() &&
+                                found.nodes().size() == listed.nodes();
+                 for (const format::FarNode& far : found.far()) {
+                   const size_t other = slot_at(far.x(), far.z());
+                   belongs =
+                       belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
+                 }
+                 for (const format::NodePatch& patch : found.patches()) {
+                   belongs = belongs &&
+                             (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier) ||
+                              (patch.source() < world.level_tile_count() && patch.depth() == 6));
+                 }
+                 return belongs;
+               });
   });
   return entry.zone.get();
 }

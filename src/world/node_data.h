@@ -63,12 +63,9 @@ class NodeZone : public ZoneFile<NodeZone> {
 /// What Nodes points to.
 struct NodeData {
   using AreaList = std::vector<std::pair<uint32_t, double>>;
-  struct Slot {
+  struct Slot : ZoneSlot<NodeZone> {
     format::NodeZoneEntry entry;
     uint32_t first_node = 0;  // of all
-    mutable std::once_flag once;
-    mutable std::unique_ptr<NodeZone> zone;
-    mutable std::string error;  // why the zone could not be used
   };
 
   NodeSummary summary;

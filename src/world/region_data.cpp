@@ -16,18 +16,9 @@ namespace {
 constexpr const char* kRegionIdentifier = "THRZ";
 constexpr const char* kLinkIdentifier = "THLZ";
 constexpr const char* kIndexIdentifier = "THGI";
-constexpr const char* kRemedy = "bake the world again";
 constexpr double kHighestFeet = 2'200'000;  // [m]: more than 32 bits of mm tell
 constexpr int32_t kMostCells = 1 << 20;     // along a side of the grid
 
-Error bad_file(const std::string& name, const std::string& what) {
-  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
-}
-
-template <class T>
-std::span<const T> structs(const flatbuffers::Vector<const T*>& values) {
-  return {reinterpret_cast<const T*>(values.Data()), values.size()};
-}
 std::span<const uint32_t> numbers(const flatbuffers::Vector<uint32_t>& values) {
   return {reinterpret_cast<const uint32_t*>(values.Data()), values.size()};
 }
@@ -273,34 +264,24 @@ const RegionZone* GraphData::zone(const WorldData& of_world, size_t slot) const 
   std::call_once(own.once, [&] {
     if (own.zone || path.empty()) return;
     const format::GraphZone& entry = own.entry;
-    const std::string name = path + "/" + region_file_name(entry.x(), entry.z());
-    auto map =
-        map_listed(name, entry.region_bytes(), entry.region_hash(), "the graph index's", kRemedy);
-    if (!map) {
-      own.error = map.error().message;
-      return;
-    }
-    auto zone = RegionZone::from_file(std::move(*map), name);
-    if (!zone) {
-      own.error = zone.error().message;
-      return;
-    }
-    const size_t found = (*zone)->components().size();
-    bool fits = is_of_slot(**zone, of_world, slot) &&
-                (*zone)->regions().size() == entry.regions() && found == entry.components();
-    // While a bake makes the components of the world, there are none to name.
-    for (uint32_t c = 0; fits && !component_of.empty() && c < (*zone)->class_count(); ++c) {
-      const auto [first, last] = (*zone)->class_components(c);
-      for (uint32_t i = first; i < last; ++i) {
-        fits =
-            fits && component_of[entry.first_component() + i] < class_first[c + 1] - class_first[c];
-      }
-    }
-    if (!fits) {
-      own.error = bad_file(name, "belongs to another world").message;
-      return;
-    }
-    own.zone = std::move(*zone);
+    own.open({.name = path + "/" + region_file_name(entry.x(), entry.z()),
+              .bytes = entry.region_bytes(),
+              .hash = entry.region_hash(),
+              .whose = "the graph index's"},
+             [&](const RegionZone& found) {
+               bool fits = is_of_slot(found, of_world, slot) &&
+                           found.regions().size() == entry.regions() &&
+                           found.components().size() == entry.components();
+               // While a bake makes the components of the world, there are none to name.
+               for (uint32_t c = 0; fits && !component_of.empty() && c < found.class_count(); ++c) {
+                 const auto [first, last] = found.class_components(c);
+                 for (uint32_t i = first; i < last; ++i) {
+                   fits = fits && component_of[entry.first_component() + i] <
+                                      class_first[c + 1] - class_first[c];
+                 }
+               }
+               return fits;
+             });
   });
   return own.zone.get();
 }
@@ -319,10 +300,11 @@ Result<void> GraphData::check_links(const WorldData& of_world, size_t slot) cons
     }
   }
   const std::string name = path + "/" + link_file_name(entry.x(), entry.z());
-  auto map = map_listed(name, entry.link_bytes(), entry.link_hash(), "the graph index's", kRemedy);
-  if (!map) return Error{Errc::kBadFile, map.error().message};
-  const auto links = LinkZone::from_file(std::move(*map), name);
-  if (!links) return links.error();
+  const auto links = open_listed<LinkZone>({.name = name,
+                                            .bytes = entry.link_bytes(),
+                                            .hash = entry.link_hash(),
+                                            .whose = "the graph index's"});
+  if (!links) return Error{Errc::kBadFile, links.error().message};
   if ((*links)->root().x() != entry.x() || (*links)->root().z() != entry.z() ||
       !(*links)->fits(*zones[0], zones[1], zones[2])) {
     return bad_file(name, "belongs to another world");

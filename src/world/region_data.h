@@ -98,11 +98,8 @@ class LinkZone : public ZoneFile<LinkZone> {
 
 /// What Graph points to. Its zones are those of the world, slot by slot.
 struct GraphData {
-  struct Slot {
+  struct Slot : ZoneSlot<RegionZone> {
     format::GraphZone entry;
-    mutable std::once_flag once;
-    mutable std::unique_ptr<RegionZone> zone;
-    mutable std::string error;  // why it could not be used
   };
 
   World world;

@@ -16,12 +16,6 @@ constexpr uint32_t kArea = 4096;
 constexpr int32_t kHighest = 1'050'000'000;  // [mm]: more than is baked, differences fit 32 bits
 constexpr int32_t kMostCells = 1 << 20;      // along a side
 
-constexpr const char* kRemedy = "bake the world again";
-
-Error bad_file(const std::string& name, const std::string& what) {
-  return {Errc::kBadFile, name + ": " + what + "; " + kRemedy};
-}
-
 // Legal cells of a class on a level, or none if its sets do not lie within `words`.
 std::optional<uint32_t> legal_cells(const format::Clearance& entry,
                                     std::span<const uint64_t> words) {
@@ -136,25 +130,18 @@ LevelView Zone::view(uint32_t index) const {
 
 void WorldData::open_zone(const Slot& entry) const {
   if (entry.zone || path.empty()) return;
-  const std::string name = path + "/" + zone_file_name(entry.entry.x(), entry.entry.z());
-  auto map = map_listed(name, entry.entry.bytes(), entry.entry.hash(), "the manifest's", kRemedy);
-  if (!map) {
-    entry.error = map.error().message;
-    return;
-  }
-  auto zone = Zone::from_file(std::move(*map), name);
-  if (!zone) {
-    entry.error = zone.error().message;
-    return;
-  }
-  const format::Zone& root = (*zone)->root();
-  if (root.tiles_per_side() != tiles_per_zone || root.class_count() != summary.classes.size() ||
-      (*zone)->level_count() != entry.entry.levels() || root.x() != entry.entry.x() ||
-      root.z() != entry.entry.z()) {
-    entry.error = bad_file(name, "belongs to another world").message;
-    return;
-  }
-  entry.zone = std::move(*zone);
+  const format::ZoneEntry& listed = entry.entry;
+  entry.open({.name = path + "/" + zone_file_name(listed.x(), listed.z()),
+              .bytes = listed.bytes(),
+              .hash = listed.hash(),
+              .whose = "the manifest's"},
+             [&](const Zone& zone) {
+               const format::Zone& root = zone.root();
+               return root.tiles_per_side() == tiles_per_zone &&
+                      root.class_count() == summary.classes.size() &&
+                      zone.level_count() == listed.levels() && root.x() == listed.x() &&
+                      root.z() == listed.z();
+             });
 }
 
 // The slow way of zone(): the zone is not there, or the hand has come by.

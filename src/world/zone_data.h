@@ -72,12 +72,9 @@ struct WorldData {
   // Of a zone's memory: not there, or given back; there, but not used since the hand last came by;
   // used since.
   enum class Use : uint8_t { kAway, kIdle, kUsed };
-  struct Slot {
+  struct Slot : ZoneSlot<Zone> {
     format::ZoneEntry entry;
     uint32_t first_level = 0;  // of the world
-    mutable std::once_flag once;
-    mutable std::unique_ptr<Zone> zone;
-    mutable std::string error;  // why the zone could not be used
     mutable std::atomic<Use> use{Use::kAway};
   };
 

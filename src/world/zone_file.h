@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <utility>
@@ -55,18 +56,62 @@ class ZoneFile {
   std::span<const uint8_t> bytes_;
 };
 
-/// Maps the file of a zone that a list (`whose`, as in "the manifest's") names with its size and
-/// XXH3. Fails with kIo or kBadFile; `remedy` says what to do.
-inline Result<FileMap> map_listed(const std::string& name, uint64_t bytes, uint64_t hash,
-                                  const char* whose, const char* remedy) {
-  auto map = FileMap::open(name);
+inline constexpr const char* kUsualRemedy = "bake the world again";
+
+/// What is wrong with a file, and what to do.
+inline Error bad_file(const std::string& name, const std::string& what,
+                      const char* remedy = kUsualRemedy) {
+  return {Errc::kBadFile, name + ": " + what + "; " + remedy};
+}
+
+/// A file as a list names it: with its size and XXH3.
+struct ListedFile {
+  std::string name;
+  uint64_t bytes = 0, hash = 0;
+  const char* whose = "";  // as in "the manifest's"
+  const char* remedy = kUsualRemedy;
+};
+
+/// Maps the file and opens it. Fails with kIo or kBadFile.
+template <class Zone>
+Result<std::unique_ptr<Zone>> open_listed(const ListedFile& file) {
+  auto map = FileMap::open(file.name);
   if (!map) return map.error();
-  if (map->bytes().size() == bytes &&
-      hash_bytes(map->bytes().data(), map->bytes().size()) == hash) {
-    return map;
+  if (map->bytes().size() != file.bytes ||
+      hash_bytes(map->bytes().data(), map->bytes().size()) != file.hash) {
+    return bad_file(file.name,
+                    std::string("its checksum is not ") + file.whose +
+                        " (truncated, damaged or of another bake)",
+                    file.remedy);
   }
-  return Error{Errc::kBadFile, name + ": its checksum is not " + whose +
-                                   " (truncated, damaged or of another bake); " + remedy};
+  return Zone::from_file(std::move(*map), file.name);
+}
+
+/// Where a zone is kept that is opened at its first touch, or why it could not be.
+template <class Zone>
+struct ZoneSlot {
+  mutable std::once_flag once;
+  mutable std::unique_ptr<Zone> zone;
+  mutable std::string error;
+
+  /// What `once` is for, if the zone is on disk. belongs(zone): is it of the world that lists it?
+  template <class Belongs>
+  void open(const ListedFile& file, Belongs belongs) const {
+    auto opened = open_listed<Zone>(file);
+    if (!opened) {
+      error = opened.error().message;
+    } else if (!belongs(**opened)) {
+      error = bad_file(file.name, "belongs to another world", file.remedy).message;
+    } else {
+      zone = std::move(*opened);
+    }
+  }
+};
+
+/// The structs of a vector.
+template <class T>
+std::span<const T> structs(const flatbuffers::Vector<const T*>& values) {
+  return {reinterpret_cast<const T*>(values.Data()), values.size()};
 }
 
 /// The verifier sees to the alignment of a vector's length, 4 bytes, but not of larger elements.

@@ -3,13 +3,13 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
 #include "throng/scene.h"
@@ -17,25 +17,18 @@
 namespace throng {
 namespace {
 
-// A folder of its own for each test, gone afterwards.
 class GlbWriter : public testing::Test {
  protected:
-  GlbWriter()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("throng_glb_" + std::to_string(getpid()) + "_" +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~GlbWriter() override { std::filesystem::remove_all(folder_); }
   [[nodiscard]] std::string path(const std::string& name) const {
-    return (folder_ / name).string();
+    return folder_.path() + "/" + name;
   }
   [[nodiscard]] size_t files() const {
-    return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+    return static_cast<size_t>(
+        std::distance(std::filesystem::directory_iterator(folder_.path()), {}));
   }
 
  private:
-  std::filesystem::path folder_;
+  test::ScratchFolder folder_;
 };
 
 using Triangle = std::array<Vec3d, 3>;

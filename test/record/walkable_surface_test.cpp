@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "baked.h"
+#include "scratch_folder.h"
 #include "throng/scene.h"
 #include "worlds.h"
 
@@ -92,10 +93,9 @@ TEST(WalkableSurface, MergesLevelFloors) {
 
 TEST(WalkableSurface, IsReadBackFromBothFormats) {
   const Scene scene = surface(bake(worlds::two_floors(), 0.1));
+  const test::ScratchFolder folder;
   for (const char* extension : {".glb", ".obj"}) {
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("throng_surface" + std::string(extension)))
-            .string();
+    const std::string path = folder.path() + "/surface" + extension;
     const auto written =
         extension == std::string(".glb") ? write_glb(scene, path) : write_obj(scene, path);
     ASSERT_TRUE(written) << written.error().message;
@@ -107,7 +107,6 @@ TEST(WalkableSurface, IsReadBackFromBothFormats) {
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->triangles.size(), scene.triangles.size());
     EXPECT_NEAR(area_of(*read, false), area_of(scene, false), 1e-3);
-    std::remove(path.c_str());
   }
 }
 

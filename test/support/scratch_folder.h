@@ -3,13 +3,14 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
 
-/// A folder of its own for each test, removed at its end.
+/// A folder of its own for each test, removed at its end. Tests of two builds run side by side.
 namespace throng::test {
 
 class ScratchFolder {
@@ -17,7 +18,8 @@ class ScratchFolder {
   ScratchFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::path(testing::TempDir()) /
-            (std::string("throng_") + test->test_suite_name() + "_" + test->name());
+            (std::string("throng_") + test->test_suite_name() + "_" + test->name() + "_" +
+             std::to_string(getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

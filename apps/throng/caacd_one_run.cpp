@@ -63,10 +63,7 @@ int run_once(Session& session, const StudyConfig& study, const OneRunFiles& file
   const ParameterSet set = study.sets.back();
   SpaceConfig space = study.space;
   space.avatars = study.avatars.back();
-  Model model = study.model;
-  model.mass = set.mass;
-  model.max_speed = set.max_speed;
-  model.max_force = set.max_force;
+  const Model model = with_set(study.model, set);
   Result<Space> made = random_space(space, model);
   if (!made) return fail(made.error());
   Result<Simulation> run = Simulation::create(*std::move(made), model, study.dt);
@@ -79,18 +76,19 @@ int run_once(Session& session, const StudyConfig& study, const OneRunFiles& file
     record.write(rows(*run, run->bodies(), study.dt));
   }
   std::vector<std::vector<Vec3d>> trails(run->bodies().size());
+  std::vector<Body> before;
   bool drawn = files.picture.empty();
   while (run->counts().frames < study.frames) {
     if (session.context.cancel.load()) return fail({Errc::kCancelled, "caacd: cancelled"});
-    const std::vector<Body> before(run->bodies().begin(), run->bodies().end());
-    if (run->counts().frames % 4 == 0) {
-      for (size_t i = 0; i < trails.size(); ++i) trails[i].push_back(before[i].position);
+    if (!drawn && run->counts().frames % 4 == 0) {
+      for (size_t i = 0; i < trails.size(); ++i) trails[i].push_back(run->bodies()[i].position);
     }
     if (!drawn && run->counts().frames >= files.at) {
       if (auto ok = draw(*run, trails, space, set, files.picture); !ok) return fail(ok.error());
       drawn = true;
     }
     if (run->finished()) break;
+    before.assign(run->bodies().begin(), run->bodies().end());
     run->step();
     if (record.is_open()) record.write(rows(*run, before, study.dt));
   }

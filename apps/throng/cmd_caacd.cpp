@@ -200,11 +200,15 @@ int caacd(Session& session, CaacdOptions& options) {
   if (!study) return fail(study.error());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (auto ok = draw(figure_10(*study, options.study.seeds), options.figure10); !ok) {
-    return fail(ok.error());
+  if (!options.figure10.empty()) {
+    if (auto ok = draw(figure_10(*study, options.study.seeds), options.figure10); !ok) {
+      return fail(ok.error());
+    }
   }
-  if (auto ok = draw(figure_11(*study, options.study.seeds), options.figure11); !ok) {
-    return fail(ok.error());
+  if (!options.figure11.empty()) {
+    if (auto ok = draw(figure_11(*study, options.study.seeds), options.figure11); !ok) {
+      return fail(ok.error());
+    }
   }
   constexpr size_t kMostColumns = 5;
   std::string text = fmt::format(
@@ -272,7 +276,8 @@ void add_caacd(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--obstacles", study.space.obstacles, "How many")->capture_default_str();
   command->add_option("--dt", study.dt, "Step of time [frames]")->capture_default_str();
-  command->add_option("--threads", study.workers, "Threads, 0 for all cores");
+  command->add_option("--threads", study.workers, "Threads, 0 for all cores")
+      ->check(CLI::Range(0, 1024));
   command->add_option("--figure10", options->figure10, "Chart of the paper's bad sets and the mean")
       ->type_name("FILE.png");
   command->add_option("--figure11", options->figure11, "Chart of all other sets")

@@ -283,32 +283,32 @@ int path(Session& session, const PathOptions& options) {
   if (!from) return fail(from.error());
   const auto to = place_of(*world, options, *avatar_class, options.to, "--to");
   if (!to) return fail(to.error());
-  auto ground = live_ground(*world, options, *avatar_class);
-  if (!ground) return fail(ground.error());
   Path found;
   Json mesh;
-  const auto start = std::chrono::steady_clock::now();
   double seconds = 0;
-  if (options.is_live()) {
+  const auto timed = [&](auto&& find) {
+    const auto start = std::chrono::steady_clock::now();
+    find();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  if (!options.is_live()) {
+    Result<PathFinder> finder = PathFinder::make(
+        *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
+    if (!finder) return fail(finder.error());
+    mesh = mesh_json(finder->summary());
+    timed([&] { finder->find(*from, *to, found); });
+  }
+  // How near it gets, and why no nearer, only the other one says.
+  if (options.is_live() || found.end == PathEnd::kUnreachable) {
+    auto ground = live_ground(*world, options, *avatar_class);
+    if (!ground) return fail(ground.error());
     for (const auto& [place, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
       if (ground->is_free(place)) continue;
       return fail(
           bad_end(options, place.position, option,
                   "is no place to stand now: a --block stands there, or its ground is closed"));
     }
-  } else {
-    Result<PathFinder> finder = PathFinder::make(
-        *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
-    if (!finder) return fail(finder.error());
-    mesh = mesh_json(finder->summary());
-    const auto began = std::chrono::steady_clock::now();
-    finder->find(*from, *to, found);
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  }
-  // How near it gets, and why no nearer, only the other one says.
-  if (options.is_live() || found.end == PathEnd::kUnreachable) {
-    ground->find(*from, *to, found);
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    timed([&] { ground->find(*from, *to, found); });
   }
   Json json = path_json(options, found, *to, seconds);
   if (!mesh.is_null()) json["mesh"] = mesh;

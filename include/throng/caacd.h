@@ -127,10 +127,11 @@ struct Threat {
 /// Does `a` press more than `b`? The smaller A_tau, then the smaller B_d, then the smaller id.
 [[nodiscard]] THRONG_API bool more_urgent(const Threat& a, const Threat& b);
 
-/// The most urgent threat of all. A body in `others` with the id of `self` is left out.
+/// The most urgent threat of all. A body in `others` with the id of `self` is left out, as is who
+/// is farther away than `reach`.
 [[nodiscard]] THRONG_API Threat greatest_threat(const Body& self, std::span<const Body> others,
                                                 std::span<const Obstacle> obstacles,
-                                                const Model& model);
+                                                const Model& model, double reach = 1e150);
 
 /// No body farther away than this is a threat to `self`, if none is faster than model.max_speed and
 /// none has an alert field beyond `alert`.

@@ -84,8 +84,9 @@ class THRONG_API Simulation {
   [[nodiscard]] const Model& model() const { return model_; }
   /// Of all positions and velocities, bit by bit.
   [[nodiscard]] uint64_t state_hash() const;
-  /// Gives somebody a new target.
-  void send(uint32_t id, Vec3d target);
+  /// Gives somebody a new target. Fails with kNotFound (no such body) or kBadInput. Time: the
+  /// square of the bodies.
+  [[nodiscard]] Result<void> send(uint32_t id, Vec3d target);
 
  private:
   Simulation() = default;
@@ -121,6 +122,8 @@ struct ParameterSet {
 
 /// "2.0/0.4/0.06", as the paper writes it.
 [[nodiscard]] THRONG_API std::string name_of(const ParameterSet& set);
+/// The model with the set's mass, speed and force.
+[[nodiscard]] THRONG_API Model with_set(Model model, const ParameterSet& set);
 
 /// The sets that the paper names: its two bad ones, then its best.
 [[nodiscard]] THRONG_API std::vector<ParameterSet> named_sets();

@@ -173,13 +173,14 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
   }
   const Around around{*own, *east, *south};
   const uint64_t input = link_input(around);
+  const auto fits = [&](const LinkZone& made) {
+    return made.root().x() == entry.x() && made.root().z() == entry.z() &&
+           made.fits(*own->zone, east->zone, south->zone);
+  };
   std::unique_ptr<LinkZone> links;
   if (files_ != nullptr) {
     links = files_->keep_links(entry.x(), entry.z(), input);
-    if (links && (links->root().x() != entry.x() || links->root().z() != entry.z() ||
-                  !links->fits(*own->zone, east->zone, south->zone))) {
-      links = nullptr;
-    }
+    if (links && !fits(*links)) links = nullptr;
   }
   if (links == nullptr) {
     auto bytes = make_links(slot, input, around);
@@ -188,6 +189,11 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
     auto made = LinkZone::from_bytes(*std::move(bytes), name);
     if (!made) return made.error();
     links = std::move(*made);
+    // Regions that were kept may be others than those of today, if their file is forged.
+    if (!fits(*links)) {
+      return bad_file(region_file_name(entry.x(), entry.z()),
+                      "or one beside it, is not of this zone", "bake the world again with --fresh");
+    }
     if (files_ != nullptr) {
       if (auto ok = files_->write(name, links->bytes()); !ok) return ok.error();
     }

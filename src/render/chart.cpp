@@ -34,6 +34,7 @@ struct Frame {
 // The least round step that makes at most `most` ticks.
 double tick_step(double range, double most) {
   double step = round_below(range / most);
+  if (!(step > 0)) return range;  // hardly more than the smallest number
   while (range / step > most + 1e-9) step = round_below(step * 2.5 * (1 + 1e-9));
   return step;
 }
@@ -51,8 +52,10 @@ void draw_axes(Canvas& canvas, const Frame& frame, const Chart& chart) {
               {.size = text, .align = Align::kRight});
   }
   const double x_step = tick_step(frame.x_high - frame.x_low, 12);
-  for (double x = std::ceil(frame.x_low / x_step) * x_step; x <= frame.x_high * (1 + 1e-9);
-       x += x_step) {
+  const double first = std::ceil(frame.x_low / x_step);
+  const double range = frame.x_high - frame.x_low;
+  for (int32_t i = 0; (first + i) * x_step <= frame.x_high + 1e-9 * range; ++i) {
+    const double x = (first + i) * x_step + 0.0;  // never -0
     const Point at = frame.at(x, 0);
     canvas.line(at, {at.x, at.y + 6 * u}, std::max(1.0, u), kFaintInk);
     draw_text(canvas, {at.x, at.y + 12 * u + text}, tick_text(x),

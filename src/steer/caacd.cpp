@@ -50,7 +50,7 @@ Result<void> check_model(const Model& m) {
     bool above;  // More than `least`, not just as much.
   };
   const std::array<Setting, 8> settings{{
-      {"mass", m.mass, 0, kMost, true},
+      {"mass", m.mass, 1e-100, kMost, false},
       {"max_speed", m.max_speed, 0, kMost, true},
       {"max_force", m.max_force, 0, kMost, true},
       {"horizon", m.horizon, 0, kMost, true},
@@ -64,6 +64,7 @@ Result<void> check_model(const Model& m) {
     if ((s.above ? s.value > s.least : s.value >= s.least) && s.value <= s.most) continue;
     const std::string range = s.most < kMost ? s.least == 0.5 ? "from 0.5 to 1" : "from 0 to 1"
                               : s.above      ? "above 0 and finite"
+                              : s.least > 0  ? "1e-100 or more and finite"
                                              : "0 or more and finite";
     return Error{Errc::kBadConfig, std::string("caacd: ") + s.name + " must be " + range};
   }
@@ -136,13 +137,15 @@ bool more_urgent(const Threat& a, const Threat& b) {
 }
 
 Threat greatest_threat(const Body& self, std::span<const Body> others,
-                       std::span<const Obstacle> obstacles, const Model& model) {
+                       std::span<const Obstacle> obstacles, const Model& model, double reach) {
   Threat greatest;
   const auto consider = [&](const Threat& threat) {
     if (threat.level != State::kTolerable && more_urgent(threat, greatest)) greatest = threat;
   };
   for (const Body& other : others) {
-    if (other.id != self.id) consider(threat_of(self, other, model));
+    const Vec3d way = other.position - self.position;
+    if (other.id == self.id || dot(way, way) > reach * reach) continue;
+    consider(threat_of(self, other, model));
   }
   for (const Obstacle& obstacle : obstacles) consider(threat_of(self, obstacle, model));
   return greatest;
@@ -151,6 +154,8 @@ Threat greatest_threat(const Body& self, std::span<const Body> others,
 double threat_reach(const Body& self, double alert, const Model& model) {
   // Eq. 10's other length is at least half of the true one.
   const double joint = (self.fields.alert + alert) * (model.length == Length::kTrue ? 1 : 2);
+  // Who is not in the alert field now is none, whatever will be.
+  if (model.trigger == Trigger::kNear) return joint * (1 + 1e-9);
   return joint + model.horizon * (length(self.velocity) + model.max_speed);
 }
 

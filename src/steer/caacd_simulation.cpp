@@ -96,11 +96,16 @@ void Simulation::find_rivals() {
   }
 }
 
-void Simulation::send(uint32_t id, Vec3d target) {
+Result<void> Simulation::send(uint32_t id, Vec3d target) {
+  if (id >= space_.bodies.size()) {
+    return Error{Errc::kNotFound, "caacd: there is no body " + std::to_string(id)};
+  }
+  if (!is_finite(target)) return Error{Errc::kBadInput, "caacd: a target must be finite"};
   space_.targets[id] = target;
   activities_[id] = Activity::kTravelling;
   claims_[id] = 0;
   find_rivals();
+  return {};
 }
 
 // Who comes first into the neighbourhood of a place that another wants too claims it and keeps it;
@@ -142,15 +147,7 @@ void Simulation::sense(size_t i) {
     return;
   }
   const double reach = threat_reach(self, largest_alert_, model_);
-  Threat greatest;
-  const auto consider = [&](const Threat& threat) {
-    if (threat.level != State::kTolerable && more_urgent(threat, greatest)) greatest = threat;
-  };
-  for (const Body& other : space_.bodies) {
-    if (other.id == self.id || distance2(other.position, self.position) > reach * reach) continue;
-    consider(threat_of(self, other, model_));
-  }
-  for (const Obstacle& obstacle : space_.obstacles) consider(threat_of(self, obstacle, model_));
+  const Threat greatest = greatest_threat(self, space_.bodies, space_.obstacles, model_, reach);
   threats_[i] = greatest;
   if (greatest.level != State::kTolerable) {
     activities_[i] = Activity::kAvoiding;

@@ -22,13 +22,6 @@ struct Outcome {
   uint64_t hash = 0;
 };
 
-Model with_set(Model model, const ParameterSet& set) {
-  model.mass = set.mass;
-  model.max_speed = set.max_speed;
-  model.max_force = set.max_force;
-  return model;
-}
-
 Result<void> check_study(const StudyConfig& c) {
   const bool counts = std::ranges::all_of(c.avatars, [](int32_t n) { return n >= 1 && n <= 2000; });
   if (c.sets.empty() || c.avatars.empty() || !counts || c.seeds < 1 || c.seeds > 100000 ||
@@ -47,7 +40,7 @@ Result<void> check_study(const StudyConfig& c) {
 }
 
 Result<Outcome> run_once(const StudyConfig& config, const Model& model, int32_t avatars,
-                         uint64_t seed) {
+                         uint64_t seed, const Context& context) {
   SpaceConfig space = config.space;
   space.avatars = avatars;
   space.seed = seed;
@@ -55,7 +48,7 @@ Result<Outcome> run_once(const StudyConfig& config, const Model& model, int32_t 
   if (!made) return made.error();
   Result<Simulation> run = Simulation::create(*std::move(made), model, config.dt);
   if (!run) return run.error();
-  while (run->counts().frames < config.frames && !run->finished()) run->step();
+  while (run->counts().frames < config.frames && !run->finished() && !context.cancel) run->step();
   return Outcome{run->counts(), run->state_hash()};
 }
 
@@ -83,6 +76,13 @@ StudyCell sum_up(std::span<const Outcome> outcomes, int32_t avatars) {
 }
 
 }  // namespace
+
+Model with_set(Model model, const ParameterSet& set) {
+  model.mass = set.mass;
+  model.max_speed = set.max_speed;
+  model.max_force = set.max_force;
+  return model;
+}
 
 std::string name_of(const ParameterSet& set) {
   // As many decimals as the paper prints, and more where a number has more.
@@ -126,23 +126,22 @@ Result<Study> run_study(const StudyConfig& config, Context& context) {
   const size_t total = config.sets.size() * counts * seeds;
   std::vector<Outcome> outcomes(total);
   std::vector<std::optional<Error>> errors(total);
-  std::atomic<uint64_t> done = 0;
+  uint64_t done = 0;
   std::mutex report;
   parallel_for(total, config.workers, [&](size_t task) {
     if (context.cancel.load()) return;
     const size_t cell = task / seeds;
     const Model model = with_set(config.model, config.sets[cell / counts]);
-    const auto outcome =
-        run_once(config, model, config.avatars[cell % counts], config.space.seed + task % seeds);
+    const auto outcome = run_once(config, model, config.avatars[cell % counts],
+                                  config.space.seed + task % seeds, context);
     if (outcome) {
       outcomes[task] = *outcome;
     } else {
       errors[task] = outcome.error();
     }
-    const uint64_t now = ++done;
-    if (!context.on_progress) return;
     const std::lock_guard lock(report);
-    context.on_progress({"runs", now, total});
+    ++done;
+    if (context.on_progress) context.on_progress({"runs", done, total});
   });
   if (context.cancel.load()) return Error{Errc::kCancelled, "caacd: cancelled"};
   for (const auto& error : errors) {

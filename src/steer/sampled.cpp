@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "throng/base.h"
+
 namespace throng::steer {
 namespace {
 
@@ -44,6 +46,7 @@ double time_to_touch(Plane at, Plane velocity, double radii) {
 
 Choices choose_velocity(const SampledSettings& settings, Plane velocity, Plane wish, double fastest,
                         std::span<const Neighbour> neighbours) {
+  THRONG_ASSERT(settings.speeds >= 1);
   const double wished = size_of(wish);
   const Plane ahead = wished > 1e-9 ? Plane{wish.x / wished, wish.z / wished} : Plane{1, 0};
   std::vector<std::pair<double, Plane>> tried{{0, wish}, {0, {0, 0}}};

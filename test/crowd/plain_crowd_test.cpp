@@ -40,6 +40,25 @@ TEST(PlainCrowd, NobodyEverTouchesAnotherHoweverDense) {
   }
 }
 
+TEST(PlainCrowd, SeesOverTheBordersOfAPlaneThatRepeatsItself) {
+  for (const double side : {6.0, 12.0, 18.0}) {  // one, two, three times as wide as one sees
+    std::vector<PlainBody> bodies(2);
+    bodies[0].at = {side - 0.4, 1};
+    bodies[1].at = {side / 2 + 0.3, side - 0.7};
+    bodies[0].goal = {side + 4, 1};
+    bodies[1].goal = {side / 2 + 0.3, side + 4};
+    bodies.push_back({.at = {0.4, 1}, .velocity = {}, .goal = {-4, 1}});
+    bodies.push_back({.at = {side / 2 + 0.3, 0.3}, .velocity = {}, .goal = {side / 2 + 0.3, -4}});
+    PlainConfig config;
+    config.side = side;
+    PlainCrowd crowd(bodies, config);
+    for (int step = 0; step < 30; ++step) {
+      crowd.step();
+      ASSERT_EQ(crowd.overlaps(), 0u) << side << ", step " << step;
+    }
+  }
+}
+
 TEST(PlainCrowd, TheCountOfOverlapsSeesThem) {
   std::vector<PlainBody> bodies(3);
   bodies[1].at = {0.59, 0};

@@ -76,7 +76,9 @@ TEST(CaacdSimulation, OneAvatarTurnsToItsTargetBrakesAndStandsThere) {
   EXPECT_LE(length(run.bodies()[0].position - Vec3d{100, 0, 0}), 0.5);
   EXPECT_EQ(run.counts().arrived, 1);
   // Sent on, it goes on.
-  run.send(0, {0, 0, 0});
+  ASSERT_TRUE(run.send(0, {0, 0, 0}));
+  EXPECT_EQ(run.send(99, {0, 0, 0}).error().code, Errc::kNotFound);
+  EXPECT_EQ(run.send(0, {0, 0, NAN}).error().code, Errc::kBadInput);
   EXPECT_FALSE(run.finished());
   walk(run, 4000);
   EXPECT_LE(length(run.bodies()[0].position), 0.5);
@@ -205,7 +207,7 @@ TEST(CaacdSimulation, ACollisionIsAnEntryOfAPair) {
   Simulation run = made(space, best(Trigger::kNever));
   walk(run);
   EXPECT_EQ(run.counts().collisions, 2);
-  run.send(2, {0, 0, 0});
+  ASSERT_TRUE(run.send(2, {0, 0, 0}));
   walk(run);
   EXPECT_EQ(run.counts().collisions, 4);
 }
@@ -249,7 +251,7 @@ TEST(CaacdSimulation, OfTwoBoundForOneTargetExactlyOneGoesFirstAndTheOtherWaits)
     EXPECT_GT(length(run.bodies()[other].position - place), 10);
     EXPECT_EQ(run.counts().collisions, 0);
     // The first one leaves: the other follows.
-    run.send(static_cast<uint32_t>(first), {0, 0, 120});
+    ASSERT_TRUE(run.send(static_cast<uint32_t>(first), {0, 0, 120}));
     walk(run);
     EXPECT_EQ(run.counts().arrived, 2);
     EXPECT_LE(length(run.bodies()[other].position - place), 0.5);
@@ -297,7 +299,7 @@ TEST(CaacdSimulation, EveryChangeOfActivityHappensAndNoOther) {
         if (now == kArrived && random_below(seed, i, k, 40) == 0) {
           const double x = 300 * random_unit(seed, i, 100 + k);
           const double z = 300 * random_unit(seed, i, 200 + k);
-          run.send(k, {x, 0, z});
+          ASSERT_TRUE(run.send(k, {x, 0, z}));
         }
       }
     }

@@ -350,7 +350,7 @@ TEST(Caacd, SettingsOutOfTheirLimitsAreNamed) {
     const auto ok = check_model(model);
     return ok ? std::string("accepted") : ok.error().message;
   };
-  EXPECT_EQ(refused({.mass = 0}), "caacd: mass must be above 0 and finite");
+  EXPECT_EQ(refused({.mass = 1e-101}), "caacd: mass must be 1e-100 or more and finite");
   EXPECT_EQ(refused({.max_speed = NAN}), "caacd: max_speed must be above 0 and finite");
   EXPECT_EQ(refused({.max_force = INFINITY}), "caacd: max_force must be above 0 and finite");
   EXPECT_EQ(refused({.horizon = -1}), "caacd: horizon must be above 0 and finite");

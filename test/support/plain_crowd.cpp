@@ -44,6 +44,8 @@ struct Grid {
     }
     const double across = std::max(high.x - low.x, high.z - low.z);
     width = depth = std::max(1, static_cast<int32_t>(across / sight));
+    // The cell to the left is then the one to the right, too.
+    if (side > 0 && width < 3) width = depth = 1;
     cell = std::max(across / width, sight);
     bodies.resize(static_cast<size_t>(width * depth));
     for (uint32_t i = 0; i < all.size(); ++i) {
@@ -89,8 +91,7 @@ void PlainCrowd::sense() {
     near_[i].clear();
     const int32_t cx = grid.column(bodies_[i].at.x - grid.low.x);
     const int32_t cz = grid.column(bodies_[i].at.z - grid.low.z);
-    // In a plane of less than three cells the same cell would be met twice.
-    const int32_t reach = std::min(1, repeats ? (grid.width - 1) / 2 : 1);
+    const int32_t reach = grid.width > 1 || !repeats ? 1 : 0;
     for (int32_t z = cz - reach; z <= cz + reach; ++z) {
       for (int32_t x = cx - reach; x <= cx + reach; ++x) {
         const bool inside = x >= 0 && z >= 0 && x < grid.width && z < grid.depth;

@@ -56,7 +56,7 @@ class PlainCrowd {
   void sense();
   void steer_all();
   void commit();
-  void settle(const std::vector<steer::Plane>& before);
+  void settle(const std::vector<steer::Plane>& now);
 
   std::vector<PlainBody> bodies_;
   PlainConfig config_;

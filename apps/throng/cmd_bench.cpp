@@ -11,7 +11,7 @@
 #include "command.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
-#include "throng/crowd.h"
+#include "throng/wanderers.h"
 
 // throng bench: how fast this machine bakes the built-in worlds and walks crowds of several sizes,
 // on one thread and on several, in one run.
@@ -79,7 +79,7 @@ Result<CrowdRow> bench_crowd(const World& world, uint32_t avatars, const BenchOp
   CrowdRow row{.avatars = avatars};
   std::vector<uint64_t> hashes;
   for (const int32_t workers : {1, options.threads}) {
-    Result<Crowd> crowd = Crowd::create(world, {.avatars = avatars, .workers = workers});
+    Result<Wanderers> crowd = Wanderers::create(world, {.avatars = avatars, .workers = workers});
     if (!crowd) return crowd.error();
     std::vector<double> seconds;
     for (uint64_t step = 0; step < options.steps; ++step) {

@@ -9,7 +9,7 @@
 
 #include "command.h"
 #include "output_file.h"
-#include "throng/crowd.h"
+#include "throng/wanderers.h"
 #include "throng/world.h"
 
 // throng run: a crowd of wanderers in a baked world, timed, checked and hashed.
@@ -23,7 +23,7 @@ struct RunOptions {
   uint64_t steps = 100;
   uint64_t every = 1;
   uint64_t check_every = 0;
-  CrowdConfig config;
+  WanderConfig config;
 };
 
 // Sums over all steps.
@@ -39,7 +39,7 @@ struct RunTotals {
   uint64_t checks = 0;
   CrowdCheck found;
 
-  void add(const StepReport& report) {
+  void add(const WanderReport& report) {
     moved += report.moved;
     blocked_by_wall += report.blocked_by_wall;
     blocked_by_avatar += report.blocked_by_avatar;
@@ -76,7 +76,7 @@ class TrajectoryWriter {
 
   [[nodiscard]] bool is_open() const { return file_.is_open(); }
 
-  void add(uint64_t step, const Crowd& crowd) {
+  void add(uint64_t step, const Wanderers& crowd) {
     crowd.read(states_);
     text_.clear();
     for (const AvatarState& state : states_) {
@@ -100,7 +100,7 @@ double ns_per_avatar(double seconds, uint32_t avatars) {
   return avatars > 0 ? seconds * 1e9 / avatars : 0;
 }
 
-Json run_json(const RunOptions& options, const Crowd& crowd, const RunTotals& totals) {
+Json run_json(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals) {
   const double steps = std::max<double>(1, static_cast<double>(totals.seconds.size()));
   return {{"world", options.world},
           {"class", options.class_name},
@@ -127,7 +127,7 @@ Json run_json(const RunOptions& options, const Crowd& crowd, const RunTotals& to
           {"peak_bytes", peak_memory()}};
 }
 
-std::string run_text(const RunOptions& options, const Crowd& crowd, const RunTotals& totals) {
+std::string run_text(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals) {
   return fmt::format(
       "{} {} avatars, {} steps of {} s: {:.1f} ns an avatar a step (median)\n"
       "blocked {} times by walls, {} by avatars; waited {} times\n"
@@ -151,7 +151,7 @@ int run(Session& session, RunOptions& options) {
   const Result<int32_t> avatar_class = pick_class(*world, options.class_name);
   if (!avatar_class) return fail(avatar_class.error());
   options.config.avatar_class = *avatar_class;
-  Result<Crowd> crowd = Crowd::create(*world, options.config);
+  Result<Wanderers> crowd = Wanderers::create(*world, options.config);
   if (!crowd) return fail(crowd.error());
 
   TrajectoryWriter trajectories;
@@ -187,7 +187,7 @@ void add_run(CLI::App& parser, Session& session) {
                   "throng bake builtin:garage -o garage.throng\n"
                   "throng run garage.throng --avatars 200 --steps 50 --trajectories walk.csv");
   const auto options = std::make_shared<RunOptions>();
-  CrowdConfig& config = options->config;
+  WanderConfig& config = options->config;
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
   command->add_option("--avatars", config.avatars, "How many")->capture_default_str();
   command->add_option("--steps", options->steps, "How many steps")->capture_default_str();

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "crowd/avatars.h"
-#include "throng/crowd.h"
+#include "throng/wanderers.h"
 #include "throng/world.h"
 
 /// A look at a crowd that shares nothing with the step: exact distances, the world's own look-ups.

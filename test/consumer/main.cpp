@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <throng/bake.h>
-#include <throng/crowd.h>
 #include <throng/scene.h>
+#include <throng/wanderers.h>
 
 #include <cstdio>
 
@@ -16,7 +16,7 @@ int main() {
   const auto world = throng::bake_world(scene, {.cell = 0.1}, context);
   if (!world) return std::fprintf(stderr, "%s\n", world.error().message.c_str()), 1;
 
-  auto crowd = throng::Crowd::create(*world, {.avatars = 50});
+  auto crowd = throng::Wanderers::create(*world, {.avatars = 50});
   if (!crowd) return std::fprintf(stderr, "%s\n", crowd.error().message.c_str()), 1;
   for (int step = 0; step < 100; ++step) crowd->step();
   const throng::CrowdCheck check = crowd->check();

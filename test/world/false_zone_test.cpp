@@ -6,9 +6,9 @@
 
 #include "core/random.h"
 #include "throng/bake.h"
-#include "throng/crowd.h"
 #include "throng/graph.h"
 #include "throng/path.h"
+#include "throng/wanderers.h"
 #include "world/zone_data.h"
 #include "worlds.h"
 
@@ -103,7 +103,7 @@ bool use(const World& world) {
   for (uint64_t n = 0; n < 20; ++n) {
     finder->find(world.random_place(0, 8, n), world.random_place(0, 9, n), path, 100'000);
   }
-  auto crowd = Crowd::create(world, {.avatars = 60, .speed = 20, .workers = 1});
+  auto crowd = Wanderers::create(world, {.avatars = 60, .speed = 20, .workers = 1});
   if (!crowd) {
     EXPECT_TRUE(crowd.error().code == Errc::kBadFile || crowd.error().code == Errc::kLimit);
     EXPECT_FALSE(crowd.error().message.empty());

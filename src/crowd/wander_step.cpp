@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/crowd_step.h"
+#include "crowd/wander_step.h"
 
 #include <algorithm>
 #include <array>

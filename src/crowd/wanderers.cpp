@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/crowd.h"
+#include "throng/wanderers.h"
 
 #include <algorithm>
 #include <atomic>
@@ -14,8 +14,8 @@
 #include "core/stopwatch.h"
 #include "crowd/crowd_blocks.h"
 #include "crowd/crowd_check.h"
-#include "crowd/crowd_step.h"
 #include "crowd/placement.h"
+#include "crowd/wander_step.h"
 #include "world/place.h"
 
 namespace throng {
@@ -42,9 +42,9 @@ std::pair<double, double> random_direction(uint64_t seed, uint64_t id) {
 
 }  // namespace
 
-struct Crowd::State {
+struct Wanderers::State {
   World world;
-  CrowdConfig config;
+  WanderConfig config;
   AvatarClass body;
   CrowdGround ground;
   std::optional<CollisionMap> map;
@@ -60,12 +60,12 @@ struct Crowd::State {
   int64_t max_drift = 0;
 };
 
-Crowd::Crowd(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Crowd::Crowd(Crowd&&) noexcept = default;
-Crowd& Crowd::operator=(Crowd&&) noexcept = default;
-Crowd::~Crowd() = default;
+Wanderers::Wanderers(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Wanderers::Wanderers(Wanderers&&) noexcept = default;
+Wanderers& Wanderers::operator=(Wanderers&&) noexcept = default;
+Wanderers::~Wanderers() = default;
 
-Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
+Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& config) {
   const auto bad = [](const std::string& what) {
     return Error{Errc::kBadConfig, "crowd: " + what};
   };
@@ -135,13 +135,13 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
     avatar.vz = static_cast<int32_t>(std::lround(dz * units));
   }
   state->drift = state->max_drift + 1;  // sort first
-  return Crowd(std::move(state));
+  return Wanderers(std::move(state));
 }
 
-StepReport Crowd::step() {
+WanderReport Wanderers::step() {
   State& s = *state_;
   const auto start = Clock::now();
-  StepReport report;
+  WanderReport report;
   report.step = ++s.step;
   std::atomic<uint64_t> moved{0}, wall{0}, avatar{0}, waited{0};
   StepInput input{.ground = &s.ground,
@@ -185,18 +185,18 @@ StepReport Crowd::step() {
   return report;
 }
 
-CrowdCheck Crowd::check() const {
+CrowdCheck Wanderers::check() const {
   return check_avatars(state_->world, state_->config.avatar_class, state_->avatars.span(),
                        state_->config.workers);
 }
 
-uint64_t Crowd::state_hash() const {
+uint64_t Wanderers::state_hash() const {
   std::vector<Avatar> by_id(state_->avatars.size());
   for (const Avatar& avatar : state_->avatars.span()) by_id[avatar.id] = avatar;
   return hash_span(std::span<const Avatar>(by_id));
 }
 
-void Crowd::read(std::vector<AvatarState>& out) const {
+void Wanderers::read(std::vector<AvatarState>& out) const {
   const State& s = *state_;
   out.resize(s.avatars.size());
   const Vec3d origin = s.world.data()->summary.origin;
@@ -212,9 +212,9 @@ void Crowd::read(std::vector<AvatarState>& out) const {
   }
 }
 
-uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->avatars.size()); }
+uint32_t Wanderers::size() const { return static_cast<uint32_t>(state_->avatars.size()); }
 
-uint64_t Crowd::bytes() const {
+uint64_t Wanderers::bytes() const {
   return (state_->avatars.size() + state_->scratch.size()) * sizeof(Avatar) +
          state_->ground.bytes() + state_->map->bytes() + state_->blocks->bytes();
 }

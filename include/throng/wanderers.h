@@ -5,18 +5,19 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "throng/avatar_state.h"
 #include "throng/base.h"
 #include "throng/context.h"
 #include "throng/result.h"
 #include "throng/world.h"
 
-/// The crowd: avatars that move in a baked world, never into a wall and never into each other.
+/// The crowd without goals: never into a wall and never into each other. A crowd with goals is in
+/// throng/crowd.h.
 namespace throng {
 
-struct CrowdConfig {
+struct WanderConfig {
   uint32_t avatars = 1000;
   int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.
   double dt = 0.1;           ///< Length of a step. [s, > 0]
@@ -26,7 +27,7 @@ struct CrowdConfig {
 };
 
 /// What one step did.
-struct StepReport {
+struct WanderReport {
   uint64_t step = 0;  ///< Number of the step just made, from 1.
   uint64_t moved = 0;
   uint64_t blocked_by_wall = 0;  ///< Straight on was illegal.
@@ -37,34 +38,19 @@ struct StepReport {
   double seconds_total = 0;
 };
 
-/// What an independent look at the present positions found. All zero, always.
-struct CrowdCheck {
-  uint64_t wall_entries = 0;  ///< Avatars on a cell that their class may not stand on.
-  uint64_t overlaps = 0;      ///< Pairs whose discs and heights both overlap.
-};
-
-/// Read-back of one avatar.
-struct AvatarState {
-  uint32_t id = 0;
-  int32_t avatar_class = 0;
-  Vec3d position;        ///< Y at the feet. [m]
-  double heading_x = 0;  ///< Unit vector of the walk.
-  double heading_z = 0;
-};
-
 /// Wanderers: straight on; a random left or right when blocked. Source: [ML06] section 4, [TC00] 3.
 /// Movable, not copyable; two crowds can live side by side.
-class THRONG_API Crowd {
+class THRONG_API Wanderers {
  public:
   /// Places the avatars where they can stand, clear of each other. Fails with kLimit and how many
   /// fit, kNotFound (class), kBadConfig.
-  [[nodiscard]] static Result<Crowd> create(const World& world, const CrowdConfig& config);
-  Crowd(Crowd&&) noexcept;
-  Crowd& operator=(Crowd&&) noexcept;
-  ~Crowd();
+  [[nodiscard]] static Result<Wanderers> create(const World& world, const WanderConfig& config);
+  Wanderers(Wanderers&&) noexcept;
+  Wanderers& operator=(Wanderers&&) noexcept;
+  ~Wanderers();
 
   /// One step. No allocation after the first. Time: linear in the avatars.
-  StepReport step();
+  WanderReport step();
   [[nodiscard]] CrowdCheck check() const;
   /// XXH3 of all avatars in order of id: position, level, heading. Same for any workers.
   [[nodiscard]] uint64_t state_hash() const;
@@ -75,7 +61,7 @@ class THRONG_API Crowd {
 
  private:
   struct State;
-  explicit Crowd(std::unique_ptr<State> state);
+  explicit Wanderers(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

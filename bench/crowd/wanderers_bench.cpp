@@ -7,13 +7,13 @@
 
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
-#include "throng/crowd.h"
+#include "throng/wanderers.h"
 
 namespace {
 
 // Whole steps in a garage of four storeys with about four square metres an avatar; items are
 // avatars.
-void crowd_step(benchmark::State& state) {
+void wander_step(benchmark::State& state) {
   const auto avatars = static_cast<uint32_t>(state.range(0));
   const double size = std::max(60.0, std::ceil(std::sqrt(avatars * 4 / 2.75)));
   const auto scene = throng::make_builtin_world({.name = "garage", .size = size, .levels = 4});
@@ -22,14 +22,14 @@ void crowd_step(benchmark::State& state) {
   const auto world =
       throng::bake_world(*scene, {.cell = 0.1, .classes = {throng::AvatarClass{}}}, context);
   if (!world) return state.SkipWithError(world.error().message.c_str());
-  auto crowd = throng::Crowd::create(
+  auto crowd = throng::Wanderers::create(
       *world, {.avatars = avatars, .workers = static_cast<int32_t>(state.range(1))});
   if (!crowd) return state.SkipWithError(crowd.error().message.c_str());
   for (auto _ : state) benchmark::DoNotOptimize(crowd->step());
   state.SetItemsProcessed(state.iterations() * avatars);
 }
 
-BENCHMARK(crowd_step)
+BENCHMARK(wander_step)
     ->ArgNames({"avatars", "workers"})
     ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})
     ->UseRealTime();

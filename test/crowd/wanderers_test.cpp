@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/crowd.h"
+#include "throng/wanderers.h"
 
 #include <gtest/gtest.h>
 
@@ -31,10 +31,11 @@ World baked(const Scene& scene, BakeConfig config = {}) {
   return std::move(*world);
 }
 
-TEST(Crowd, NobodyEverOverlapsOrEntersAWall) {
+TEST(Wanderers, NobodyEverOverlapsOrEntersAWall) {
   const World world = baked(small_garage());
   for (int32_t avatar_class = 0; avatar_class < 4; ++avatar_class) {
-    auto crowd = Crowd::create(world, {.avatars = 120, .avatar_class = avatar_class, .seed = 5});
+    auto crowd =
+        Wanderers::create(world, {.avatars = 120, .avatar_class = avatar_class, .seed = 5});
     ASSERT_TRUE(crowd) << crowd.error().message;
     uint64_t moved = 0;
     for (int step = 0; step < 400; ++step) {
@@ -47,9 +48,9 @@ TEST(Crowd, NobodyEverOverlapsOrEntersAWall) {
   }
 }
 
-TEST(Crowd, AvatarsChangeFloorsByTheRamp) {
+TEST(Wanderers, AvatarsChangeFloorsByTheRamp) {
   const World world = baked(small_garage());
-  auto crowd = Crowd::create(world, {.avatars = 60, .seed = 3});
+  auto crowd = Wanderers::create(world, {.avatars = 60, .seed = 3});
   ASSERT_TRUE(crowd);
   std::vector<AvatarState> before, after;
   crowd->read(before);
@@ -64,20 +65,20 @@ TEST(Crowd, AvatarsChangeFloorsByTheRamp) {
   EXPECT_GT(down, 0);
 }
 
-TEST(Crowd, SameStateForAnyNumberOfThreads) {
+TEST(Wanderers, SameStateForAnyNumberOfThreads) {
   const World world = baked(small_garage());
   for (int32_t workers : {1, 2, 3, 8}) {
-    auto crowd = Crowd::create(world, {.avatars = 300, .seed = 11, .workers = workers});
+    auto crowd = Wanderers::create(world, {.avatars = 300, .seed = 11, .workers = workers});
     ASSERT_TRUE(crowd);
     for (int step = 0; step < 300; ++step) crowd->step();
     EXPECT_EQ(crowd->state_hash(), 9733546176524071707u) << "workers = " << workers;
   }
 }
 
-TEST(Crowd, TwoCrowdsLiveSideBySide) {
+TEST(Wanderers, TwoCrowdsLiveSideBySide) {
   const World world = baked(small_garage());
-  auto a = Crowd::create(world, {.avatars = 50, .seed = 1});
-  auto b = Crowd::create(world, {.avatars = 50, .seed = 1});
+  auto a = Wanderers::create(world, {.avatars = 50, .seed = 1});
+  auto b = Wanderers::create(world, {.avatars = 50, .seed = 1});
   ASSERT_TRUE(a && b);
   for (int step = 0; step < 50; ++step) {
     a->step();
@@ -86,12 +87,12 @@ TEST(Crowd, TwoCrowdsLiveSideBySide) {
   EXPECT_EQ(a->state_hash(), b->state_hash());
 }
 
-TEST(Crowd, FastAvatarsCheckEveryCellTheyCross) {
+TEST(Wanderers, FastAvatarsCheckEveryCellTheyCross) {
   Scene scene;  // thin walls, 1 m apart: a step of 5 m would jump over them
   scene.add_quad({0, 0, 0}, {0, 0, 20}, {20, 0, 20}, {20, 0, 0});
   for (double x = 2; x < 20; x += 2) scene.add_quad({x, 0, 0}, {x, 2, 0}, {x, 2, 20}, {x, 0, 20});
   const World world = baked(scene);
-  auto crowd = Crowd::create(world, {.avatars = 40, .dt = 1, .speed = 5, .seed = 9});
+  auto crowd = Wanderers::create(world, {.avatars = 40, .dt = 1, .speed = 5, .seed = 9});
   ASSERT_TRUE(crowd) << crowd.error().message;
   std::vector<AvatarState> before, after;
   crowd->read(before);
@@ -102,26 +103,26 @@ TEST(Crowd, FastAvatarsCheckEveryCellTheyCross) {
   }
 }
 
-TEST(Crowd, SaysHowManyFit) {
+TEST(Wanderers, SaysHowManyFit) {
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
   const World world = baked(scene);
-  auto crowd = Crowd::create(world, {.avatars = 100000});
+  auto crowd = Wanderers::create(world, {.avatars = 100000});
   ASSERT_FALSE(crowd);
   EXPECT_EQ(crowd.error().code, Errc::kLimit);
   const int fit = std::stoi(crowd.error().message.substr(7));
   EXPECT_GT(fit, 15);
   EXPECT_LT(fit, 145);
-  EXPECT_TRUE(Crowd::create(world, {.avatars = static_cast<uint32_t>(fit)}));
+  EXPECT_TRUE(Wanderers::create(world, {.avatars = static_cast<uint32_t>(fit)}));
 }
 
-TEST(Crowd, BadSettingsAreRefusedWithASentence) {
+TEST(Wanderers, BadSettingsAreRefusedWithASentence) {
   const World world = baked(small_garage());
-  EXPECT_EQ(Crowd::create(world, {.avatar_class = 9}).error().code, Errc::kNotFound);
-  EXPECT_EQ(Crowd::create(world, {.dt = 0}).error().code, Errc::kBadConfig);
-  EXPECT_EQ(Crowd::create(world, {.dt = NAN}).error().code, Errc::kBadConfig);
-  EXPECT_EQ(Crowd::create(world, {.speed = -1}).error().code, Errc::kBadConfig);
-  EXPECT_EQ(Crowd::create(World{}, {}).error().code, Errc::kBadConfig);
+  EXPECT_EQ(Wanderers::create(world, {.avatar_class = 9}).error().code, Errc::kNotFound);
+  EXPECT_EQ(Wanderers::create(world, {.dt = 0}).error().code, Errc::kBadConfig);
+  EXPECT_EQ(Wanderers::create(world, {.dt = NAN}).error().code, Errc::kBadConfig);
+  EXPECT_EQ(Wanderers::create(world, {.speed = -1}).error().code, Errc::kBadConfig);
+  EXPECT_EQ(Wanderers::create(World{}, {}).error().code, Errc::kBadConfig);
 }
 
 // Gentle slopes of 0.9 m with a step of 0.1 m between that is too steep to stand on: a single row
@@ -144,18 +145,18 @@ Scene washboard(bool along_x) {
 }
 
 // Nobody is in the way, so what the crowd does in passes and by tricks is what the world allows.
-TEST(Crowd, AnAvatarAloneWalksAsTheWorldAllows) {
+TEST(Wanderers, AnAvatarAloneWalksAsTheWorldAllows) {
   const World worlds[] = {baked(small_garage()), baked(washboard(true)), baked(washboard(false))};
   int moved = 0, blocked = 0;
   for (uint64_t seed = 0; seed < 180; ++seed) {
     const World& world = worlds[seed % 5 < 3 ? 0 : seed % 5 - 2];
     const double speed = seed % 3 == 0 ? 2.4 : 0;  // A long step is more than the short cuts take.
-    auto crowd = Crowd::create(world, {.avatars = 1, .speed = speed, .seed = seed});
+    auto crowd = Wanderers::create(world, {.avatars = 1, .speed = speed, .seed = seed});
     ASSERT_TRUE(crowd);
     std::vector<AvatarState> before, after;
     crowd->read(before);
     for (int step = 0; step < 120; ++step) {
-      const StepReport report = crowd->step();
+      const WanderReport report = crowd->step();
       crowd->read(after);
       const AvatarState& a = before[0];
       const AvatarState& b = after[0];

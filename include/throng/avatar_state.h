@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "throng/math.h"
+
+/// What crowds show of their avatars, and what a check of them finds.
+namespace throng {
+
+/// What an independent look at the present positions found. All zero, always.
+struct CrowdCheck {
+  uint64_t wall_entries = 0;  ///< Avatars on a cell that their class may not stand on.
+  uint64_t overlaps = 0;      ///< Pairs whose discs and heights both overlap.
+};
+
+/// Read-back of one avatar.
+struct AvatarState {
+  uint32_t id = 0;
+  int32_t avatar_class = 0;
+  Vec3d position;        ///< Y at the feet. [m]
+  double heading_x = 0;  ///< Unit vector of the walk.
+  double heading_z = 0;
+};
+
+}  // namespace throng

@@ -67,6 +67,7 @@ uint64_t peak_memory();
 /// "1.2 MB", "35 kB".
 std::string human_bytes(uint64_t bytes);
 
+void add_atlas(CLI::App& parser, Session& session);
 void add_bake(CLI::App& parser, Session& session);
 void add_caacd(CLI::App& parser, Session& session);
 void add_export(CLI::App& parser, Session& session);

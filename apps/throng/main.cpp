@@ -6,6 +6,7 @@ int main(int argc, char** argv) {
   using namespace throng::app;
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {
     // One line a command, in the order of --help.
+    add_atlas(parser, session);
     add_bake(parser, session);
     add_caacd(parser, session);
     add_export(parser, session);

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "command.h"
+#include "throng/impostor.h"
+#include "throng/picture.h"
+
+// throng atlas: pictures of a walking character from all sides, for crowds.
+namespace throng::app {
+namespace {
+
+struct AtlasOptions {
+  std::string character;
+  std::string output;
+  std::string images;
+  AtlasFormat format = AtlasFormat::kBc3;
+  AtlasConfig config;
+};
+
+Result<void> write_images(const Atlas& atlas, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return Error{Errc::kIo, fmt::format("{}: cannot make this folder: {}; give --images another "
+                                        "one",
+                                        folder, error.message())};
+  }
+  for (int32_t frame = 0; frame < atlas.shape.frames; ++frame) {
+    const std::string name = fmt::format("{}/frame_{:03}.png", folder, frame);
+    if (auto done = write_png(draw_atlas(atlas, frame), name); !done) return done.error();
+  }
+  return {};
+}
+
+// One row a format: what its colours take, and how near they are to 8 bits a channel.
+struct FormatRow {
+  AtlasFormat format;
+  uint64_t sheet = 0, packed = 0;
+  double psnr = 0;
+};
+
+std::vector<FormatRow> compare_formats(const Atlas& exact) {
+  std::vector<FormatRow> rows;
+  for (int32_t f = 0; f < kAtlasFormats; ++f) {
+    const auto format = static_cast<AtlasFormat>(f);
+    rows.push_back({format, sheet_colour_bytes(exact.shape, format),
+                    packed_colour_bytes(exact, format),
+                    atlas_psnr(exact, convert_atlas(exact, format))});
+  }
+  return rows;
+}
+
+Json json_of(const Atlas& atlas, const std::vector<FormatRow>& rows) {
+  Json clips = Json::array(), formats = Json::array(), parts = Json::object();
+  for (const AtlasClip& clip : atlas.clips) {
+    clips.push_back({{"name", clip.name},
+                     {"frames", clip.frames},
+                     {"seconds", clip.seconds},
+                     {"stride", clip.stride}});
+  }
+  for (const FormatRow& row : rows) {
+    formats.push_back({{"format", word_for(row.format)},
+                       {"sheet_bytes", row.sheet},
+                       {"packed_bytes", row.packed},
+                       {"psnr", std::isfinite(row.psnr) ? Json(row.psnr) : Json(nullptr)}});
+  }
+  for (int32_t p = 0; p < kBodyParts; ++p) {
+    const auto& colour = atlas.part_colour[static_cast<size_t>(p)];
+    parts[word_for(static_cast<BodyPart>(p))] = {colour[0], colour[1], colour[2]};
+  }
+  return {{"directions", 2 * atlas.shape.directions},
+          {"elevations", atlas.shape.elevations},
+          {"frames", atlas.shape.frames},
+          {"pixels", atlas.shape.pixels},
+          {"views", atlas.views.size()},
+          {"height", atlas.shape.height},
+          {"metres_per_texel", atlas.shape.side / atlas.shape.pixels},
+          {"pages", atlas.pages},
+          {"page_width", atlas.width},
+          {"page_height", atlas.height},
+          {"colour_bytes", atlas.colour.size()},
+          {"normal_bytes", atlas.normal.size()},
+          {"mask_bytes", atlas.mask.size()},
+          {"clips", clips},
+          {"part_colours", parts},
+          {"formats", formats}};
+}
+
+std::string text_of(const Atlas& atlas, const std::vector<FormatRow>& rows) {
+  std::string text = fmt::format(
+      "{} frames from {} directions and {} elevations: {} views on {} page{} of {} x {}\n"
+      "{:.2f} m high, {:.1f} mm a texel; colours {}, normals {}, masks {}\n",
+      atlas.shape.frames, 2 * atlas.shape.directions, atlas.shape.elevations, atlas.views.size(),
+      atlas.pages, atlas.pages == 1 ? "" : "s", atlas.width, atlas.height, atlas.shape.height,
+      1000 * atlas.shape.side / atlas.shape.pixels, human_bytes(atlas.colour.size()),
+      human_bytes(atlas.normal.size()), human_bytes(atlas.mask.size()));
+  for (const AtlasClip& clip : atlas.clips) {
+    text +=
+        fmt::format("clip {}: {:.2f} s, {:.2f} m a cycle\n", clip.name, clip.seconds, clip.stride);
+  }
+  text += "colour and alpha   equal squares   packed   PSNR\n";
+  for (const FormatRow& row : rows) {
+    text += fmt::format("{:<18} {:>13} {:>8}   {}\n", word_for(row.format), human_bytes(row.sheet),
+                        human_bytes(row.packed),
+                        std::isfinite(row.psnr) ? fmt::format("{:.1f} dB", row.psnr) : "exact");
+  }
+  return text;
+}
+
+int atlas(Session& session, const AtlasOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Character character;
+  if (options.character.empty()) {
+    character = built_in_character();
+  } else {
+    Result<Character> loaded = load_character(options.character, session.context);
+    if (!loaded) return fail(loaded.error());
+    character = *std::move(loaded);
+  }
+  const Result<Atlas> exact = build_atlas(character, options.config, session.context);
+  if (!exact) {
+    const std::string whose = options.character.empty() ? "" : options.character + ": ";
+    return fail({exact.error().code, whose + exact.error().message});
+  }
+  const Atlas kept = convert_atlas(*exact, options.format, options.config.workers);
+  if (!options.output.empty()) {
+    if (auto done = save_atlas(kept, options.output); !done) return fail(done.error());
+  }
+  if (!options.images.empty()) {
+    if (auto done = write_images(kept, options.images); !done) return fail(done.error());
+  }
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::vector<FormatRow> rows = compare_formats(*exact);
+  Json json = json_of(kept, rows);
+  json["triangles"] = character.triangles.size();
+  json["bones"] = character.bones.size();
+  json["format"] = word_for(options.format);
+  json["seconds"] = seconds;
+  print_result(session, json, text_of(kept, rows));
+  return kDone;
+}
+
+}  // namespace
+
+void add_atlas(CLI::App& parser, Session& session) {
+  CLI::App* command =
+      add_command(parser, session, "atlas", "Draw a walking character from all sides, for crowds",
+                  "throng atlas -o people.atlas --images views");
+  const auto options = std::make_shared<AtlasOptions>();
+  AtlasConfig& config = options->config;
+  command
+      ->add_option(
+          "character", options->character,
+          "Character with a skeleton (glb, gltf, fbx, dae); a built-in figure if not given")
+      ->type_name("CHARACTER.glb");
+  command->add_option("-o,--output", options->output, "Atlas to write")
+      ->required()
+      ->type_name("FILE.atlas");
+  command
+      ->add_option("--clip", config.clips,
+                   "Clip to draw, by its name or last word; may be repeated")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--frames", config.frames, "Frames of each clip, 1 or even")
+      ->capture_default_str();
+  command->add_option("--directions", config.directions, "Directions over half a turn, mirrored")
+      ->capture_default_str();
+  command->add_option("--elevations", config.elevations, "Elevations from the horizon up")
+      ->capture_default_str();
+  command->add_option("--pixels", config.pixels, "Side of a view [texels]")->capture_default_str();
+  command->add_option("--height", config.height, "Height of the figure, 0: the file's own [m]")
+      ->capture_default_str();
+  command->add_option("--format", options->format, "rgba8, rgb5a1, bc1 or bc3")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, AtlasFormat>{{"rgba8", AtlasFormat::kRgba8},
+                                             {"rgb5a1", AtlasFormat::kRgb5a1},
+                                             {"bc1", AtlasFormat::kBc1},
+                                             {"bc3", AtlasFormat::kBc3}},
+          CLI::ignore_case))
+      ->default_str("bc3");
+  command->add_option("--images", options->images, "Folder for a picture of each frame")
+      ->type_name("DIR");
+  command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  command->callback([&session, options] { session.exit_code = atlas(session, *options); });
+}
+
+}  // namespace throng::app

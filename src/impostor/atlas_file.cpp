@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "impostor/atlas_file.h"
+
+#include <flatbuffers/flatbuffers.h>
+
+#include <bit>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/file_map.h"
+#include "core/hash.h"
+#include "impostor/atlas_generated.h"
+#include "impostor/atlas_size.h"
+#include "impostor/view_packer.h"
+#include "throng/impostor.h"
+
+namespace throng {
+namespace {
+
+constexpr const char* kIdentifier = "THIA";
+constexpr uint32_t kVersion = 1;
+
+// Of all that an atlas says.
+uint64_t sum_of(const Atlas& atlas) {
+  std::vector<uint64_t> words;
+  const auto add_number = [&](auto value) { words.push_back(static_cast<uint64_t>(value)); };
+  const auto add_double = [&](double value) { words.push_back(std::bit_cast<uint64_t>(value)); };
+  const AtlasShape& s = atlas.shape;
+  for (const int32_t value : {s.pixels, s.directions, s.elevations, s.frames, atlas.width,
+                              atlas.height, atlas.pages, static_cast<int32_t>(atlas.format)}) {
+    add_number(value);
+  }
+  for (const double value : {s.side, s.centre, s.height}) add_double(value);
+  for (const AtlasClip& clip : atlas.clips) {
+    words.push_back(hash_bytes(clip.name.data(), clip.name.size()));
+    add_number(clip.first_frame);
+    add_number(clip.frames);
+    add_double(clip.seconds);
+    add_double(clip.stride);
+  }
+  for (const AtlasView& v : atlas.views) {
+    for (const uint16_t value : {v.page, v.x, v.y, v.width, v.height, v.left, v.top}) {
+      add_number(value);
+    }
+  }
+  for (const auto& colour : atlas.part_colour) {
+    for (const uint8_t value : colour) add_number(value);
+  }
+  uint64_t sum = hash_span(std::span<const uint64_t>(words));
+  for (const auto* bytes : {&atlas.colour, &atlas.normal, &atlas.mask}) {
+    sum = hash_span(std::span<const uint8_t>(*bytes), sum);
+  }
+  return sum;
+}
+
+Error bad(const std::string& path, const std::string& what) {
+  return {Errc::kBadFile, path + ": " + what + "; make it again with throng atlas"};
+}
+
+// Every number that is used as an index or as a divisor.
+bool is_sound(const Atlas& atlas) {
+  const AtlasShape& s = atlas.shape;
+  const bool shape = s.pixels >= 8 && s.pixels <= 256 && s.directions >= 2 && s.directions <= 64 &&
+                     s.elevations >= 1 && s.elevations <= 32 && s.frames >= 1 &&
+                     s.frames <= 16 * 64 && std::isfinite(s.side) && s.side > 0 &&
+                     std::isfinite(s.centre) && std::isfinite(s.height) && s.height > 0;
+  const bool pages = atlas.width >= 4 && atlas.width <= kPageWidth && atlas.width % 4 == 0 &&
+                     atlas.height >= 4 && atlas.height <= kPageHeight && atlas.height % 4 == 0 &&
+                     atlas.pages >= 1 && atlas.pages <= kMostPages;
+  if (!shape || !pages || atlas.views.size() != s.view(s.frames, 0, 0)) return false;
+  for (const AtlasView& v : atlas.views) {
+    const bool inside = v.page < atlas.pages && v.x + v.width <= atlas.width &&
+                        v.y + v.height <= atlas.height && v.left < s.pixels && v.top < s.pixels &&
+                        v.width >= 1 && v.height >= 1;
+    if (!inside) return false;
+  }
+  int32_t frames = 0;
+  for (const AtlasClip& clip : atlas.clips) {
+    const bool sound = clip.first_frame == frames && clip.frames >= 1 &&
+                       clip.frames <= s.frames - frames && std::isfinite(clip.seconds) &&
+                       clip.seconds >= 0 && std::isfinite(clip.stride);
+    if (!sound) return false;
+    frames += clip.frames;
+  }
+  if (frames != s.frames) return false;
+  const size_t texels = texel_count(atlas);
+  return atlas.colour.size() == colour_bytes(atlas.format, texels) &&
+         atlas.normal.size() == normal_bytes(atlas.format, texels) && atlas.mask.size() == texels;
+}
+
+}  // namespace
+
+Result<void> save_atlas(const Atlas& atlas, const std::string& path) {
+  THRONG_ASSERT(is_sound(atlas));
+  flatbuffers::FlatBufferBuilder builder(atlas.colour.size() + atlas.normal.size() +
+                                         atlas.mask.size() + (1 << 16));
+  std::vector<format::AtlasView> views;
+  views.reserve(atlas.views.size());
+  for (const AtlasView& v : atlas.views) {
+    views.emplace_back(v.page, v.x, v.y, v.width, v.height, v.left, v.top);
+  }
+  std::vector<flatbuffers::Offset<format::AtlasClip>> clips;
+  for (const AtlasClip& clip : atlas.clips) {
+    clips.push_back(format::CreateAtlasClip(builder, builder.CreateString(clip.name),
+                                            clip.first_frame, clip.frames, clip.seconds,
+                                            clip.stride));
+  }
+  std::vector<uint8_t> parts;
+  for (const auto& colour : atlas.part_colour)
+    parts.insert(parts.end(), colour.begin(), colour.end());
+  const AtlasShape& s = atlas.shape;
+  const auto clips_at = builder.CreateVector(clips);
+  const auto views_at = builder.CreateVectorOfStructs(views);
+  const auto parts_at = builder.CreateVector(parts);
+  const auto colour_at = builder.CreateVector(atlas.colour);
+  const auto normal_at = builder.CreateVector(atlas.normal);
+  const auto mask_at = builder.CreateVector(atlas.mask);
+  builder.Finish(format::CreateAtlasFile(builder, kVersion, sum_of(atlas), s.pixels, s.directions,
+                                         s.elevations, s.frames, s.side, s.centre, s.height,
+                                         static_cast<uint8_t>(atlas.format), atlas.width,
+                                         atlas.height, atlas.pages, clips_at, views_at, parts_at,
+                                         colour_at, normal_at, mask_at),
+                 kIdentifier);
+  return write_file(path, {builder.GetBufferPointer(), builder.GetSize()});
+}
+
+Result<Atlas> load_atlas(const std::string& path) {
+  const Result<FileMap> map = FileMap::open(path);
+  if (!map) return map.error();
+  return read_atlas(map->bytes(), path);
+}
+
+Result<Atlas> read_atlas(std::span<const uint8_t> bytes, const std::string& path) {
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  if (bytes.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes.data(), kIdentifier) ||
+      !verifier.VerifyBuffer<format::AtlasFile>(kIdentifier)) {
+    return bad(path, "not an atlas, or truncated");
+  }
+  const format::AtlasFile& file = *flatbuffers::GetRoot<format::AtlasFile>(bytes.data());
+  if (file.version() != kVersion) {
+    return bad(path, "atlas version " + std::to_string(file.version()) + ", this program reads " +
+                         std::to_string(kVersion));
+  }
+  if (file.format() >= kAtlasFormats || file.part_colour()->size() != 3 * kBodyParts) {
+    return bad(path, "its numbers make no sense");
+  }
+  Atlas atlas;
+  atlas.shape = {.pixels = file.pixels(),
+                 .directions = file.directions(),
+                 .elevations = file.elevations(),
+                 .frames = file.frames(),
+                 .side = file.side(),
+                 .centre = file.centre(),
+                 .height = file.figure()};
+  atlas.format = static_cast<AtlasFormat>(file.format());
+  atlas.width = file.width();
+  atlas.height = file.height();
+  atlas.pages = file.pages();
+  for (const format::AtlasClip* clip : *file.clips()) {
+    atlas.clips.push_back({.name = clip->name()->str(),
+                           .first_frame = clip->first_frame(),
+                           .frames = clip->frames(),
+                           .seconds = clip->seconds(),
+                           .stride = clip->stride()});
+  }
+  for (const format::AtlasView* v : *file.views()) {
+    atlas.views.push_back(
+        {v->page(), v->x(), v->y(), v->width(), v->height(), v->left(), v->top()});
+  }
+  for (size_t i = 0; i < 3 * kBodyParts; ++i) {
+    atlas.part_colour[i / 3][i % 3] = file.part_colour()->Get(static_cast<uint32_t>(i));
+  }
+  const auto copy = [](const flatbuffers::Vector<uint8_t>& from) {
+    return std::vector<uint8_t>(from.begin(), from.end());
+  };
+  atlas.colour = copy(*file.colour());
+  atlas.normal = copy(*file.normal());
+  atlas.mask = copy(*file.mask());
+  if (file.sum() != sum_of(atlas)) return bad(path, "its checksum is wrong (damaged)");
+  if (!is_sound(atlas)) return bad(path, "its numbers make no sense");
+  return atlas;
+}
+
+}  // namespace throng

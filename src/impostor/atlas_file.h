@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "throng/impostor.h"
+#include "throng/result.h"
+
+namespace throng {
+
+/// load_atlas from bytes; `name` is for its sentences.
+[[nodiscard]] Result<Atlas> read_atlas(std::span<const uint8_t> bytes, const std::string& name);
+
+}  // namespace throng

@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.h"
+#include "impostor/figure_raster.h"
+#include "impostor/gait.h"
+#include "impostor/srgb.h"
+#include "impostor/view_packer.h"
+#include "throng/impostor.h"
+
+// [TC00] keeps views as equal squares, most of which are empty. Here a view keeps its own rectangle
+// in blocks of four texels (what block compression and two mipmap levels need), and the rectangles
+// share pages: its section 5 names this as what to do next.
+namespace throng {
+namespace {
+
+Result<void> check(const AtlasConfig& config) {
+  const auto bad = [](const std::string& what) {
+    return Error{Errc::kBadConfig, "atlas: " + what};
+  };
+  if (config.clips.empty() || config.clips.size() > 16) return bad("need 1 to 16 clips");
+  const bool even = config.frames == 1 || config.frames % 2 == 0;
+  if (!(config.frames >= 1 && config.frames <= 64 && even)) {
+    return bad("frames " + std::to_string(config.frames) +
+               ": need 1, or an even number up to 64 (a mirrored view is half a cycle on)");
+  }
+  if (!(config.directions >= 2 && config.directions <= 64)) {
+    return bad("directions " + std::to_string(config.directions) + ": need 2 to 64");
+  }
+  if (!(config.elevations >= 1 && config.elevations <= 32)) {
+    return bad("elevations " + std::to_string(config.elevations) + ": need 1 to 32");
+  }
+  if (!(config.pixels >= 8 && config.pixels <= 256)) {
+    return bad("pixels " + std::to_string(config.pixels) + ": need 8 to 256 a side of a view");
+  }
+  if (!(config.height >= 0 && config.height <= 100) || config.workers < 0) {
+    return bad("need a height of 0 to 100 m, and workers >= 0");
+  }
+  return {};
+}
+
+// What is left of a view once its empty rows and columns are gone, with one empty texel around.
+AtlasView trim(const FigureView& view) {
+  int32_t x0 = view.pixels, y0 = view.pixels, x1 = -1, y1 = -1;
+  for (int32_t i = 0; i < view.pixels * view.pixels; ++i) {
+    if (view.colour[static_cast<size_t>(i)][3] == 0) continue;
+    const int32_t x = i % view.pixels, y = i / view.pixels;
+    x0 = std::min(x0, x), x1 = std::max(x1, x);
+    y0 = std::min(y0, y), y1 = std::max(y1, y);
+  }
+  AtlasView out{.width = 4, .height = 4};
+  if (x1 < 0) return out;
+  out.left = static_cast<uint16_t>(std::max(0, x0 - 1));
+  out.top = static_cast<uint16_t>(std::max(0, y0 - 1));
+  out.width = static_cast<uint16_t>((x1 + 2 - out.left + 3) / 4 * 4);
+  out.height = static_cast<uint16_t>((y1 + 2 - out.top + 3) / 4 * 4);
+  return out;
+}
+
+struct Texels {
+  std::vector<std::array<uint8_t, 4>> colour;
+  std::vector<std::array<uint8_t, 2>> normal;
+  std::vector<uint8_t> mask;
+};
+
+// Empty texels beside covered ones take the mean of their colours and normals, twice: filters and
+// blocks then see no edge where only alpha has one.
+void bleed(Texels& texels, int32_t width, int32_t height) {
+  std::vector<uint8_t> known(texels.colour.size());
+  for (size_t i = 0; i < known.size(); ++i) known[i] = texels.colour[i][3] != 0;
+  for (int32_t round = 0; round < 2; ++round) {
+    const std::vector<uint8_t> before = known;
+    for (int32_t y = 0; y < height; ++y) {
+      for (int32_t x = 0; x < width; ++x) {
+        const auto here = static_cast<size_t>(y * width + x);
+        if (before[here] != 0) continue;
+        std::array<int32_t, 5> sum{};
+        int32_t count = 0;
+        for (int32_t n = 0; n < 9; ++n) {
+          const int32_t nx = x + n % 3 - 1, ny = y + n / 3 - 1;
+          if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
+          const auto there = static_cast<size_t>(ny * width + nx);
+          if (before[there] == 0) continue;
+          for (size_t c = 0; c < 3; ++c) sum[c] += texels.colour[there][c];
+          for (size_t c = 0; c < 2; ++c) sum[3 + c] += texels.normal[there][c];
+          texels.mask[here] = texels.mask[there];
+          ++count;
+        }
+        if (count == 0) continue;
+        for (size_t c = 0; c < 3; ++c) {
+          texels.colour[here][c] = static_cast<uint8_t>((sum[c] + count / 2) / count);
+        }
+        for (size_t c = 0; c < 2; ++c) {
+          texels.normal[here][c] = static_cast<uint8_t>((sum[3 + c] + count / 2) / count);
+        }
+        known[here] = 1;
+      }
+    }
+  }
+}
+
+Texels cut_out(const FigureView& view, const AtlasView& part) {
+  Texels out;
+  const auto count = static_cast<size_t>(part.width) * part.height;
+  out.colour.assign(count, {0, 0, 0, 0});
+  out.normal.assign(count, {128, 128});
+  out.mask.assign(count, 0);
+  for (int32_t y = 0; y < part.height && part.top + y < view.pixels; ++y) {
+    for (int32_t x = 0; x < part.width && part.left + x < view.pixels; ++x) {
+      const auto from = static_cast<size_t>((part.top + y) * view.pixels + part.left + x);
+      const auto to = static_cast<size_t>(y * part.width + x);
+      out.colour[to] = view.colour[from];
+      out.normal[to] = view.normal[from];
+      out.mask[to] = view.mask[from];
+    }
+  }
+  bleed(out, part.width, part.height);
+  return out;
+}
+
+void paste(const Texels& texels, const AtlasView& view, Atlas& atlas) {
+  for (int32_t y = 0; y < view.height; ++y) {
+    for (int32_t x = 0; x < view.width; ++x) {
+      const auto from = static_cast<size_t>(y * view.width + x);
+      const size_t to =
+          (static_cast<size_t>(view.page) * static_cast<size_t>(atlas.height) + view.y + y) *
+              static_cast<size_t>(atlas.width) +
+          view.x + x;
+      std::copy_n(texels.colour[from].data(), 4, &atlas.colour[to * 4]);
+      std::copy_n(texels.normal[from].data(), 2, &atlas.normal[to * 2]);
+      atlas.mask[to] = texels.mask[from];
+    }
+  }
+}
+
+void find_part_colours(Atlas& atlas) {
+  std::array<Vec3d, kBodyParts> sum;
+  std::array<uint64_t, kBodyParts> count{};
+  for (size_t i = 0; i < atlas.mask.size(); ++i) {
+    const uint8_t* texel = &atlas.colour[i * 4];
+    if (texel[3] < 128) continue;
+    const auto part = static_cast<size_t>(atlas.mask[i] >> 5);
+    sum[part] = sum[part] +
+                Vec3d{decode_colour(texel[0]), decode_colour(texel[1]), decode_colour(texel[2])};
+    ++count[part];
+  }
+  for (size_t part = 0; part < kBodyParts; ++part) {
+    if (count[part] == 0) continue;
+    const Vec3d mean = sum[part] * (1.0 / static_cast<double>(count[part]));
+    atlas.part_colour[part] = {encode_colour(mean.x), encode_colour(mean.y), encode_colour(mean.z)};
+  }
+}
+
+// All frames of all clips, on the spot, feet at 0, in metres.
+struct Poses {
+  std::vector<PosedMesh> frames;
+  std::vector<AtlasClip> clips;
+  double height = 0, radius = 0;  // Radius of the ball around (0, height / 2, 0) that holds all.
+};
+
+Result<Poses> pose_frames(const Character& character, const AtlasConfig& config) {
+  Poses poses;
+  Box3d first_clip;
+  for (const std::string& word : config.clips) {
+    const Result<size_t> clip = find_clip(character, word);
+    if (!clip) return clip.error();
+    const ClipPlace place = place_of_clip(character, *clip);
+    poses.clips.push_back({.name = character.clips[*clip].name,
+                           .first_frame = static_cast<int32_t>(poses.frames.size()),
+                           .frames = config.frames,
+                           .seconds = character.clips[*clip].seconds,
+                           .stride = stride_of_clip(character, *clip, place)});
+    for (int32_t f = 0; f < config.frames; ++f) {
+      pose_in_place(character, *clip, place, static_cast<double>(f) / config.frames,
+                    poses.frames.emplace_back());
+      for (const Vec3d& p : poses.frames.back().positions) {
+        if (poses.clips.size() == 1) first_clip.add(p);
+      }
+    }
+  }
+  const double own_height = first_clip.max.y - first_clip.min.y;
+  if (!(own_height > 1e-9 && own_height < 1e9)) {
+    return Error{Errc::kBadInput,
+                 "atlas: the character has no height in its first clip; "
+                 "check its mesh and its skeleton"};
+  }
+  const double scale = config.height > 0 ? config.height / own_height : 1;
+  poses.height = own_height * scale;
+  for (PosedMesh& mesh : poses.frames) {
+    for (Vec3d& p : mesh.positions) {
+      p = Vec3d{p.x, p.y - first_clip.min.y, p.z} * scale;
+      poses.radius = std::max(poses.radius, length(p - Vec3d{0, 0.5 * poses.height, 0}));
+    }
+  }
+  for (AtlasClip& clip : poses.clips) clip.stride *= scale;
+  return poses;
+}
+
+}  // namespace
+
+Result<Atlas> build_atlas(const Character& character, const AtlasConfig& config, Context& context) {
+  if (auto sound = check(config); !sound) return sound.error();
+  Result<Poses> poses = pose_frames(character, config);
+  if (!poses) return poses.error();
+
+  Atlas atlas;
+  atlas.clips = std::move(poses->clips);
+  // Two texels of air on each side: the border of a view, and half a sample of rounding.
+  const double side = 2 * poses->radius * config.pixels / (config.pixels - 4);
+  atlas.shape = {.pixels = config.pixels,
+                 .directions = config.directions,
+                 .elevations = config.elevations,
+                 .frames = static_cast<int32_t>(poses->frames.size()),
+                 .side = side,
+                 .centre = 0.5 * poses->height,
+                 .height = poses->height};
+  const size_t count = atlas.shape.view(atlas.shape.frames, 0, 0);
+  atlas.views.resize(count);
+  std::vector<Texels> texels(count);
+  const auto workers = static_cast<size_t>(worker_count(config.workers));
+  std::vector<FigureRaster> rasters(workers, FigureRaster(character, config.pixels));
+  std::vector<FigureView> views(workers);
+  std::atomic<uint64_t> done = 0;
+  std::mutex telling;
+  parallel_for_worker(count, config.workers, [&](size_t index, int32_t worker) {
+    if (context.cancel) return;
+    const auto w = static_cast<size_t>(worker);
+    const auto column = static_cast<int32_t>(index) % config.directions;
+    const auto row = static_cast<int32_t>(index) / config.directions % config.elevations;
+    const auto frame = index / static_cast<size_t>(config.directions * config.elevations);
+    FigureCamera camera = figure_camera(column, config.directions, row, config.elevations);
+    camera.centre = {0, atlas.shape.centre, 0};
+    camera.side = side;
+    rasters[w].draw(poses->frames[frame], camera, views[w]);
+    atlas.views[index] = trim(views[w]);
+    texels[index] = cut_out(views[w], atlas.views[index]);
+    if (++done % 64 == 0 && context.on_progress) {
+      const std::lock_guard lock(telling);
+      context.on_progress({.stage = "draw", .done = done, .total = count});
+    }
+  });
+  if (context.cancel) return Error{Errc::kCancelled, "atlas: cancelled"};
+
+  const PageSize size = pack_views(atlas.views);
+  if (size.pages > kMostPages) {
+    return Error{Errc::kLimit, "atlas: " + std::to_string(size.pages) + " pages, more than " +
+                                   std::to_string(kMostPages) +
+                                   "; take fewer frames, directions or pixels"};
+  }
+  atlas.width = size.width;
+  atlas.height = size.height;
+  atlas.pages = size.pages;
+  const auto texel_count = static_cast<size_t>(size.width) * static_cast<size_t>(size.height) *
+                           static_cast<size_t>(size.pages);
+  atlas.colour.assign(texel_count * 4, 0);
+  atlas.normal.assign(texel_count * 2, 128);
+  atlas.mask.assign(texel_count, 0);
+  for (size_t i = 0; i < count; ++i) paste(texels[i], atlas.views[i], atlas);
+  find_part_colours(atlas);
+  return atlas;
+}
+
+}  // namespace throng

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/trig.h"
+
+/// The arithmetic of choosing a view, for one avatar and for arrays of them. Angles are 65536 steps
+/// a turn, so that sums wrap by themselves.
+namespace throng {
+
+/// An angle in turns as steps; any finite turns in [-1e4, 1e4].
+inline uint32_t angle_steps(float turns) {
+  return static_cast<uint32_t>(static_cast<int32_t>(turns * 65536.0F)) & 0xffffU;
+}
+
+/// Which of `sectors` sectors of a turn holds the direction to the eye as the avatar sees it.
+inline uint32_t view_sector(float x, float z, uint32_t heading, uint32_t sectors) {
+  const uint32_t seen = (angle_steps(turns_of(x, z)) - heading) & 0xffffU;
+  return seen * sectors >> 16;
+}
+
+/// Which of `rows` rows, from the horizon to straight above.
+inline uint32_t view_row(float flat, float rise, uint32_t rows) {
+  const float above = rise > 0 ? rise : 0;
+  // The angle from `flat` towards `rise` is at most a quarter turn.
+  const uint32_t row = angle_steps(turns_of(above, flat)) * 4 * rows >> 16;
+  return row < rows ? row : rows - 1;
+}
+
+}  // namespace throng

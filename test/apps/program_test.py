@@ -3,11 +3,13 @@
 """The program's manners: exit codes, one sentence, one JSON object, whole files or none.
 
 python3 program_test.py build/release/throng"""
+import base64
 import json
 import pathlib
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -244,6 +246,65 @@ class Program(unittest.TestCase):
                               (("--avatars", "5", "--seeds", "1", "--dt", "0"), "dt")):
             self.assert_refused(self.run_throng("caacd", *words), *named)
         self.assertEqual(list(self.path.iterdir()), [])
+
+    def write_character(self, name, bones, clip=True):
+        """A triangle that follows `bones` joints in a row, as a glTF file of text."""
+        weights = [struct.pack("<4H", *(min(4 * vertex + k, bones - 1) for k in range(4))) for vertex in range(3)]
+        parts = [struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 2, 0), struct.pack("<9f", *([0, 0, 1] * 3)), b"".join(weights),
+                 struct.pack("<12f", *([0.25] * 12)), struct.pack("<2f", 0, 1), struct.pack("<8f", *([0, 0, 0, 1] * 2)),
+                 b"".join(struct.pack("<16f", *(1 if i % 5 == 0 else i == 12 and -float(joint) for i in range(16))) for joint in range(bones))]
+        kinds = [("VEC3", 5126, 3), ("VEC3", 5126, 3), ("VEC4", 5123, 3), ("VEC4", 5126, 3), ("SCALAR", 5126, 2), ("VEC4", 5126, 2), ("MAT4", 5126, bones)]
+        views, accessors, at = [], [], 0
+        for part, (kind, component, count) in zip(parts, kinds):
+            views.append({"buffer": 0, "byteOffset": at, "byteLength": len(part)})
+            accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": count, "type": kind})
+            at += len(part)
+        accessors[0].update(min=[0, 0, 0], max=[1, 2, 0])
+        data = base64.b64encode(b"".join(parts)).decode()
+        document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+                    "nodes": [{"mesh": 0, "skin": 0}] + [{"name": f"joint{i}", **({"children": [i + 2]} if i + 1 < bones else {})} for i in range(bones)],
+                    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1, "JOINTS_0": 2, "WEIGHTS_0": 3}}]}],
+                    "skins": [{"joints": list(range(1, bones + 1)), "inverseBindMatrices": 6}],
+                    "buffers": [{"byteLength": at, "uri": "data:application/octet-stream;base64," + data}], "bufferViews": views, "accessors": accessors}
+        if clip:
+            document["animations"] = [{"name": "Walk", "samplers": [{"input": 4, "output": 5}],
+                                       "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}]}]
+        (self.path / name).write_text(json.dumps(document))
+
+    def test_an_atlas_is_the_same_for_any_threads_and_tells_its_formats(self):
+        small = ("--frames", "4", "--directions", "4", "--elevations", "2", "--pixels", "16")
+        done = self.run_throng("atlas", "-o", "one.atlas", *small, "--threads", "1", "--images", "views", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(done.stdout)
+        self.assertEqual((told["directions"], told["views"], told["frames"]), (8, 32, 4))
+        self.assertEqual([row["format"] for row in told["formats"]], ["rgba8", "rgb5a1", "bc1", "bc3"])
+        self.assertEqual(told["formats"][1]["sheet_bytes"], 32 * 16 * 16 * 2)
+        self.assertGreater(told["clips"][0]["stride"], 1)
+        self.assertEqual(self.run_throng("atlas", "-o", "two.atlas", *small, "--threads", "2").returncode, 0)
+        self.assertEqual((self.path / "one.atlas").read_bytes(), (self.path / "two.atlas").read_bytes())
+        self.assertEqual(len(list((self.path / "views").glob("*.png"))), 4)
+        self.write_character("three.gltf", 3)
+        done = self.run_throng("atlas", "three.gltf", "-o", "three.atlas", *small, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["bones"], 3)
+
+    def test_characters_that_cannot_be_drawn_are_refused_in_one_sentence(self):
+        self.write_character("many.gltf", 300)
+        self.write_character("still.gltf", 3, clip=False)
+        self.write_character("three.gltf", 3)
+        box = pathlib.Path(__file__).parent.parent / "data/box.glb"
+        self.assert_refused(self.run_throng("atlas", "many.gltf", "-o", "x.atlas"), "many.gltf", "300 bones", "256")
+        self.assert_refused(self.run_throng("atlas", "still.gltf", "-o", "x.atlas"), "still.gltf", "no clip")
+        self.assert_refused(self.run_throng("atlas", "three.gltf", "--clip", "Swim", "-o", "x.atlas"), "three.gltf", "Swim", "Walk")
+        self.assert_refused(self.run_throng("atlas", box, "-o", "x.atlas"), "box.glb", "skeleton")
+        self.assert_refused(self.run_throng("atlas", "missing.glb", "-o", "x.atlas"), "missing.glb")
+        self.assert_refused(self.run_throng("atlas", "-o", "x.atlas", "--pixels", "1"), "pixels 1", "8 to 256")
+        self.assert_refused(self.run_throng("atlas", "-o", "x.atlas", "--frames", "5"), "frames 5", "even")
+        self.assert_refused(self.run_throng("atlas", "-o", "x.atlas", "--format", "gif"), "--format")
+        self.assert_refused(self.run_throng("atlas", "-o", "nowhere/x.atlas", "--pixels", "8"), "nowhere/x.atlas")
+        (self.path / "cut.gltf").write_text((self.path / "three.gltf").read_text()[:400])
+        self.assert_refused(self.run_throng("atlas", "cut.gltf", "-o", "x.atlas"), "cut.gltf")
+        self.assertEqual(list(self.path.glob("*.atlas*")), [])
 
     def test_interrupting_a_bake_leaves_nothing_half_written(self):
         process = subprocess.Popen([PROGRAM, "bake", "builtin:city,size=1500", "-o", "city.throng", "--threads", "1"],

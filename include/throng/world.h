@@ -63,6 +63,7 @@ struct WorldSummary {
   uint64_t source_triangles = 0;
   std::vector<AvatarClass> classes;
   std::vector<double> walkable_area;  ///< Per class. [m^2]
+  uint64_t hash = 0;                  ///< XXH3 of the manifest; 0 if it was not read from a folder.
 };
 
 struct WorldConfig {

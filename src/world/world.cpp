@@ -59,6 +59,7 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
   (*world)->path = path;
   (*world)->budget = config.resident_bytes;
   (*world)->manifest_hash = hash_bytes(map->bytes().data(), map->bytes().size());
+  (*world)->summary.hash = (*world)->manifest_hash;
   const std::string air_name = path + "/" + kAirManifest;
   if (const auto air_map = FileMap::open(air_name)) {
     auto air = read_air_manifest(air_map->bytes(), air_name, **world, (*world)->manifest_hash);

@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "record/frame_codec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "record/bit_stream.h"
+
+// A frame is: who has gone, who has come, and for everybody else by how much position and heading
+// differ from going on as in the frame before. A difference is written with a Golomb-Rice code
+// whose parameter follows the size of the same avatar's last differences, so that those who stand
+// cost a bit a number, whatever the others do. One large difference is likely to be the only one,
+// so the parameter is slow to believe in it. Who turns is expected to go on as fast. [Ric79]
+namespace throng {
+namespace {
+
+constexpr double kFarthest = 2e6;    // [m]: millimetres fit 32 bits
+constexpr double kWidest = 65.0;     // [m]: millimetres fit 16 bits
+constexpr uint32_t kLeastBits = 13;  // of one who has come
+
+// Differences wrap, so that no bytes can overflow anything.
+int32_t minus(int32_t a, int32_t b) {
+  return static_cast<int32_t>(static_cast<uint32_t>(a) - static_cast<uint32_t>(b));
+}
+int32_t plus(int32_t a, int32_t b) {
+  return static_cast<int32_t>(static_cast<uint32_t>(a) + static_cast<uint32_t>(b));
+}
+
+// The Rice parameter for numbers of this mean (in 1/16): the logarithm of 0.69 times it.
+uint32_t rice_parameter(uint16_t mean) {
+  const uint32_t scaled = mean * 11u >> 8;
+  return scaled == 0 ? 0 : static_cast<uint32_t>(std::bit_width(scaled)) - 1;
+}
+
+void follow(uint16_t& mean, uint32_t value) {
+  const uint32_t most = std::min(mean * 2u + 32, 64000u);
+  const auto now = static_cast<int32_t>(std::min(std::min(value, 4000u) * 16, most));
+  mean = static_cast<uint16_t>(mean + (now - mean) / 4);
+}
+
+// After a turn by so much: the steps of the new direction.
+void expect_turned(Track& track, int32_t turn) {
+  const double x = track.by[0], z = track.by[2];
+  const double size = std::sqrt(x * x + z * z);
+  if (std::abs(turn) < 2 || !(size < 1e6)) return;
+  const Heading heading = heading_of(track.heading);
+  track.by[0] = static_cast<int32_t>(std::floor(heading.x * size + 0.5));
+  track.by[2] = static_cast<int32_t>(std::floor(heading.z * size + 0.5));
+}
+
+int32_t expected(const Track& track, size_t axis) { return plus(track.at[axis], track.by[axis]); }
+
+void move_to(Track& track, size_t axis, int32_t value) {
+  track.by[axis] = minus(value, track.at[axis]);
+  track.at[axis] = value;
+}
+
+Error bad_avatar(uint64_t id, const char* what) {
+  return {Errc::kBadInput, "recording: avatar " + std::to_string(id) + " " + what};
+}
+
+}  // namespace
+
+uint8_t heading_code(Heading heading) {
+  const double x = heading.x, z = heading.z;
+  const double size = std::fabs(x) + std::fabs(z);
+  if (!(size > 0 && size < 1e30)) return 64;  // no direction: along z
+  // Around a square instead of a circle: no sine, the same bytes everywhere.
+  double turn = 0;
+  if (x >= 0 && z >= 0) turn = z / size;
+  if (x < 0 && z >= 0) turn = 1 - x / size;
+  if (x < 0 && z < 0) turn = 2 - z / size;
+  if (x >= 0 && z < 0) turn = 3 + x / size;
+  return static_cast<uint8_t>(static_cast<int32_t>(turn * 64 + 0.5) & 255);
+}
+
+Heading heading_of(uint8_t code) {
+  const double part = (code & 63) / 64.0;
+  const double size = std::sqrt((1 - part) * (1 - part) + part * part);
+  const auto a = static_cast<float>((1 - part) / size), b = static_cast<float>(part / size);
+  switch (code >> 6) {
+    case 0:
+      return {a, b};
+    case 1:
+      return {-b, a};
+    case 2:
+      return {-a, -b};
+    default:
+      return {b, -a};
+  }
+}
+
+// The frame as tracks in order of id, into wanted_.
+Result<void> FrameEncoder::quantise(const FrameView& frame) {
+  const size_t count = frame.ids.size();
+  if (frame.classes.size() != count || frame.positions.size() != count ||
+      frame.radii.size() != count || frame.headings.size() != count || count >= kMostAvatars) {
+    return Error{Errc::kBadInput,
+                 "recording: a frame needs as many classes, positions, radii and headings as ids, "
+                 "fewer than 2^28"};
+  }
+  order_.resize(count);
+  std::iota(order_.begin(), order_.end(), 0u);
+  if (!std::is_sorted(frame.ids.begin(), frame.ids.end())) {
+    std::sort(order_.begin(), order_.end(),
+              [&](uint32_t a, uint32_t b) { return frame.ids[a] < frame.ids[b]; });
+  }
+  wanted_.resize(count);
+  for (size_t k = 0; k < count; ++k) {
+    const uint32_t i = order_[k];
+    Track& track = wanted_[k];
+    track.id = frame.ids[i];
+    if (k > 0 && wanted_[k - 1].id == track.id) return bad_avatar(track.id, "is there twice");
+    if (track.id == UINT64_MAX) return bad_avatar(track.id, "has a number too large");
+    const Vec3d& p = frame.positions[i];
+    const double metres[3] = {p.x, p.y, p.z};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      if (!(std::fabs(metres[axis]) < kFarthest)) {
+        return bad_avatar(track.id, "is farther than 2000 km off, or nowhere");
+      }
+      track.at[axis] = static_cast<int32_t>(std::floor(metres[axis] * 1000 + 0.5));
+    }
+    const double radius = frame.radii[i];
+    if (!(radius >= 0 && radius <= kWidest)) {
+      return bad_avatar(track.id, "has no radius between 0 and 65 m");
+    }
+    track.radius = static_cast<uint16_t>(radius * 1000 + 0.5);
+    track.avatar_class = frame.classes[i];
+    track.heading = heading_code(frame.headings[i]);
+    track.by = {};
+    track.mean = {};
+  }
+  return {};
+}
+
+Result<void> FrameEncoder::encode(const FrameView& frame, std::vector<uint8_t>& bytes) {
+  if (auto ok = quantise(frame); !ok) return ok;
+  // Who has gone (places in tracks_) and who has come (places in wanted_). A body that changes goes
+  // and comes.
+  removed_.clear();
+  added_.clear();
+  for (size_t a = 0, b = 0; a < tracks_.size() || b < wanted_.size();) {
+    const bool gone = b == wanted_.size() || (a < tracks_.size() && tracks_[a].id < wanted_[b].id);
+    const bool come = a == tracks_.size() || (b < wanted_.size() && wanted_[b].id < tracks_[a].id);
+    const bool same = !gone && !come && tracks_[a].radius == wanted_[b].radius &&
+                      tracks_[a].avatar_class == wanted_[b].avatar_class;
+    if (!same && !come) removed_.push_back(static_cast<uint32_t>(a));
+    if (!same && !gone) added_.push_back(static_cast<uint32_t>(b));
+    a += come ? 0 : 1;
+    b += gone ? 0 : 1;
+  }
+
+  BitWriter out(bytes);
+  out.put_gamma(removed_.size());
+  uint32_t next = 0;
+  for (const uint32_t place : removed_) {
+    out.put_gamma(place - next);
+    next = place + 1;
+  }
+  out.put_gamma(added_.size());
+  Track last;
+  uint64_t next_id = 0;
+  for (const uint32_t place : added_) {
+    const Track& track = wanted_[place];
+    out.put_gamma(track.id - next_id);
+    next_id = track.id + 1;
+    const bool alike = track.avatar_class == last.avatar_class && track.radius == last.radius;
+    out.put(alike ? 0 : 1, 1);
+    if (!alike) {
+      out.put(track.avatar_class, 8);
+      out.put(track.radius, 16);
+    }
+    for (size_t axis = 0; axis < 3; ++axis) {
+      out.put_gamma(zigzag(minus(track.at[axis], last.at[axis])));
+    }
+    out.put(track.heading, 8);
+    last = track;
+  }
+
+  // Everybody else, in order of id; tracks_ becomes what wanted_ is.
+  size_t gone = 0, come = 0;
+  next_.resize(wanted_.size());
+  for (size_t a = 0, b = 0; b < wanted_.size(); ++b) {
+    if (come < added_.size() && added_[come] == b) {
+      ++come;
+      next_[b] = wanted_[b];
+      continue;
+    }
+    while (gone < removed_.size() && removed_[gone] == a) {
+      ++gone;
+      ++a;
+    }
+    Track& track = next_[b] = tracks_[a++];
+    const auto put = [&](size_t field, int32_t difference) {
+      const uint32_t value = zigzag(difference);
+      out.put_rice(value, rice_parameter(track.mean[field]));
+      follow(track.mean[field], value);
+    };
+    const auto turn = static_cast<int8_t>(wanted_[b].heading - track.heading);
+    put(3, turn);
+    track.heading = wanted_[b].heading;
+    expect_turned(track, turn);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      put(axis, minus(wanted_[b].at[axis], expected(track, axis)));
+      move_to(track, axis, wanted_[b].at[axis]);
+    }
+  }
+  out.align();
+  tracks_.swap(next_);
+  return {};
+}
+
+bool FrameDecoder::decode(std::span<const uint8_t> bytes, uint32_t avatars) {
+  BitReader in(bytes);
+  const uint64_t removed = in.get_gamma();
+  if (!in.ok() || removed > tracks_.size()) return false;
+  // Those who stay, pushed together.
+  kept_.clear();
+  uint64_t next = 0;
+  for (uint64_t r = 0; r < removed; ++r) {
+    const uint64_t gap = in.get_gamma();
+    if (!in.ok() || gap >= tracks_.size() - next) return false;
+    kept_.insert(kept_.end(), tracks_.begin() + static_cast<ptrdiff_t>(next),
+                 tracks_.begin() + static_cast<ptrdiff_t>(next + gap));
+    next += gap + 1;
+  }
+  kept_.insert(kept_.end(), tracks_.begin() + static_cast<ptrdiff_t>(next), tracks_.end());
+
+  const uint64_t come = in.get_gamma();
+  if (!in.ok() || come > in.left() / kLeastBits || kept_.size() + come != avatars) return false;
+  added_.clear();
+  Track last;
+  uint64_t next_id = 0;
+  for (uint64_t k = 0; k < come; ++k) {
+    Track track;
+    track.id = next_id + in.get_gamma();
+    if (!in.ok() || track.id < next_id || track.id == UINT64_MAX) return false;
+    next_id = track.id + 1;
+    track.avatar_class = last.avatar_class;
+    track.radius = last.radius;
+    if (in.get(1) != 0) {
+      track.avatar_class = static_cast<uint8_t>(in.get(8));
+      track.radius = static_cast<uint16_t>(in.get(16));
+    }
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const uint64_t value = in.get_gamma();
+      track.at[axis] = plus(last.at[axis], unzigzag(static_cast<uint32_t>(value)));
+    }
+    track.heading = static_cast<uint8_t>(in.get(8));
+    added_.push_back(track);
+    last = track;
+  }
+  if (!in.ok() || kept_.size() > in.left() / 4) return false;
+
+  tracks_.clear();
+  size_t a = 0, b = 0;
+  while (a < kept_.size() || b < added_.size()) {
+    const bool fresh = a == kept_.size() || (b < added_.size() && added_[b].id < kept_[a].id);
+    if (!fresh && b < added_.size() && added_[b].id == kept_[a].id) return false;
+    if (fresh) {
+      tracks_.push_back(added_[b++]);
+      continue;
+    }
+    Track track = kept_[a++];
+    const auto get = [&](size_t field) {
+      const uint32_t value = in.get_rice(rice_parameter(track.mean[field]));
+      follow(track.mean[field], value);
+      return unzigzag(value);
+    };
+    const auto turn = static_cast<int8_t>(get(3));
+    track.heading = static_cast<uint8_t>(track.heading + turn);
+    expect_turned(track, turn);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      move_to(track, axis, plus(expected(track, axis), get(axis)));
+    }
+    tracks_.push_back(track);
+  }
+  return in.ok();
+}
+
+}  // namespace throng

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <flatbuffers/flatbuffers.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "record/frame_codec.h"
+#include "record/replay_file.h"
+#include "record/replay_generated.h"
+#include "throng/recording.h"
+
+// A chunk is handed to the system in one write and never touched again: whenever the process dies,
+// the file is a row of whole chunks and at most one that is cut off.
+namespace throng {
+namespace {
+
+flatbuffers::DetachedBuffer info_bytes(const RecordingInfo& info) {
+  flatbuffers::FlatBufferBuilder builder;
+  std::vector<flatbuffers::Offset<format::RecordedClass>> classes;
+  for (const RecordedClass& c : info.classes) {
+    classes.push_back(
+        format::CreateRecordedClass(builder, builder.CreateString(c.name), c.height, c.radius));
+  }
+  builder.Finish(format::CreateRecording(builder, kReplayVersion, builder.CreateString(info.world),
+                                         info.world_hash, info.dt, builder.CreateVector(classes),
+                                         builder.CreateString(info.model),
+                                         builder.CreateString(info.settings)),
+                 format::RecordingIdentifier());
+  return builder.Release();
+}
+
+Error bad_config(const std::string& what) { return {Errc::kBadConfig, "recording: " + what}; }
+
+}  // namespace
+
+struct Recorder::State {
+  std::string path;
+  RecorderConfig config;
+  size_t classes = 0;
+  std::FILE* file = nullptr;
+  int reason = 0;  // errno of the first failure
+  FrameEncoder encoder;
+  std::vector<FrameEntry> entries;
+  std::vector<StepHash> hashes;
+  std::vector<uint8_t> bits;   // of the frames of this chunk
+  std::vector<uint8_t> chunk;  // as it is written
+  uint64_t frames = 0, bytes = 0;
+  uint64_t since_key = 0;  // frames
+  bool key = true;         // this chunk begins with a frame that stands alone
+  double last_time = 0;
+  uint64_t last_step = 0, last_hash_step = 0;
+  bool any_hash = false;
+
+  ~State() {
+    if (file != nullptr) std::fclose(file);
+  }
+
+  [[nodiscard]] Error io_error() const {
+    return {Errc::kIo, path + ": cannot write: " + std::strerror(reason) +
+                           "; check the folder, its rights and the free space"};
+  }
+
+  Result<void> write(ChunkHead head, std::initializer_list<std::span<const uint8_t>> parts) {
+    chunk.resize(sizeof head);
+    for (const auto& part : parts) chunk.insert(chunk.end(), part.begin(), part.end());
+    chunk.resize((chunk.size() + 7) & ~size_t{7});
+    head.bytes = chunk.size() - sizeof head;
+    head.sum = hash_bytes(chunk.data() + sizeof head, head.bytes);
+    head.head_sum = head.own_sum();
+    std::memcpy(chunk.data(), &head, sizeof head);
+    if (reason == 0 && std::fwrite(chunk.data(), 1, chunk.size(), file) != chunk.size()) {
+      reason = errno != 0 ? errno : EIO;
+    }
+    if (reason != 0) return io_error();
+    bytes += chunk.size();
+    return {};
+  }
+
+  template <class T>
+  static std::span<const uint8_t> bytes_of(const std::vector<T>& values) {
+    return {reinterpret_cast<const uint8_t*>(values.data()), values.size() * sizeof(T)};
+  }
+
+  Result<void> flush() {
+    if (file == nullptr || (entries.empty() && hashes.empty())) return {};
+    ChunkHead head;
+    head.kind = static_cast<uint32_t>(key ? ChunkKind::kKeyFrames : ChunkKind::kFrames);
+    head.first_frame = frames - entries.size();
+    head.frames = static_cast<uint32_t>(entries.size());
+    head.hashes = static_cast<uint32_t>(hashes.size());
+    head.first_time = entries.empty() ? last_time : entries.front().time;
+    head.last_time = entries.empty() ? last_time : entries.back().time;
+    Result<void> written = write(head, {bytes_of(entries), bytes_of(hashes), bits});
+    entries.clear();
+    hashes.clear();
+    bits.clear();
+    key = since_key >= config.key_frames || frames == 0;
+    if (key) encoder.forget();
+    return written;
+  }
+};
+
+Recorder::Recorder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Recorder::Recorder(Recorder&&) noexcept = default;
+Recorder& Recorder::operator=(Recorder&& other) noexcept {
+  if (state_) (void)state_->flush();
+  state_ = std::move(other.state_);
+  return *this;
+}
+Recorder::~Recorder() {
+  if (state_) (void)state_->flush();
+}
+
+Result<Recorder> Recorder::create(const std::string& path, const RecordingInfo& info,
+                                  const RecorderConfig& config) {
+  constexpr uint32_t kMost = 65536;
+  if (!(info.dt > 0 && info.dt < 1e6)) return bad_config("dt must be above 0");
+  if (info.classes.empty() || info.classes.size() > 256) return bad_config("1 to 256 classes");
+  for (const RecordedClass& c : info.classes) {
+    if (std::isfinite(c.height) && std::isfinite(c.radius)) continue;
+    return bad_config("class " + c.name + " has no finite size");
+  }
+  if (config.chunk_frames < 1 || config.chunk_frames > kMost || config.key_frames < 1 ||
+      config.key_frames > kMost || config.chunk_bytes < 1) {
+    return bad_config("chunks and keys of 1 to 65536 frames, more than 0 bytes");
+  }
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->config = config;
+  state->classes = info.classes.size();
+  state->file = std::fopen(path.c_str(), "wb");
+  if (state->file == nullptr) {
+    state->reason = errno;
+    return state->io_error();
+  }
+  std::setvbuf(state->file, nullptr, _IONBF, 0);
+  ChunkHead head;
+  head.kind = static_cast<uint32_t>(ChunkKind::kRun);
+  const auto bytes = info_bytes(info);
+  if (auto ok = state->write(head, {{bytes.data(), bytes.size()}}); !ok) return ok.error();
+  return Recorder(std::move(state));
+}
+
+Result<void> Recorder::append_hash(uint64_t step, uint64_t state_hash) {
+  State& s = *state_;
+  THRONG_ASSERT(s.file != nullptr);
+  if (s.any_hash && step <= s.last_hash_step) {
+    return Error{Errc::kBadInput, "recording: step " + std::to_string(step) + " after step " +
+                                      std::to_string(s.last_hash_step) + "; steps must grow"};
+  }
+  s.hashes.push_back({step, state_hash});
+  s.last_hash_step = step;
+  s.any_hash = true;
+  if (s.hashes.size() >= size_t{s.config.chunk_frames} * 64) return s.flush();
+  return {};
+}
+
+Result<void> Recorder::append(const FrameView& frame) {
+  State& s = *state_;
+  THRONG_ASSERT(s.file != nullptr);
+  if (!std::isfinite(frame.time) || (s.frames > 0 && !(frame.time > s.last_time))) {
+    return Error{Errc::kBadInput, "recording: the time of step " + std::to_string(frame.step) +
+                                      " is not after that of the frame before"};
+  }
+  if (s.any_hash && frame.step <= s.last_hash_step) {
+    return Error{Errc::kBadInput, "recording: step " + std::to_string(frame.step) + " after step " +
+                                      std::to_string(s.last_hash_step) + "; steps must grow"};
+  }
+  for (size_t i = 0; i < frame.classes.size(); ++i) {
+    if (frame.classes[i] < s.classes) continue;
+    return Error{Errc::kBadInput, "recording: avatar number " + std::to_string(i) + " of step " +
+                                      std::to_string(frame.step) + " is of class " +
+                                      std::to_string(frame.classes[i]) + " of " +
+                                      std::to_string(s.classes)};
+  }
+  const size_t before = s.bits.size();
+  if (auto ok = s.encoder.encode(frame, s.bits); !ok) return ok;
+  if (s.entries.empty() && s.key) s.since_key = 0;
+  s.entries.push_back({frame.step, frame.time, static_cast<uint32_t>(frame.ids.size()),
+                       static_cast<uint32_t>(s.bits.size() - before)});
+  s.hashes.push_back({frame.step, frame.state_hash});
+  s.last_hash_step = frame.step;
+  s.any_hash = true;
+  s.last_time = frame.time;
+  ++s.frames;
+  ++s.since_key;
+  const bool full = s.entries.size() >= s.config.chunk_frames ||
+                    s.bits.size() >= s.config.chunk_bytes || s.since_key >= s.config.key_frames;
+  return full ? s.flush() : Result<void>();
+}
+
+Result<void> Recorder::flush() { return state_->flush(); }
+
+Result<void> Recorder::finish() {
+  State& s = *state_;
+  if (auto ok = s.flush(); !ok) return ok;
+  ChunkHead head;
+  head.kind = static_cast<uint32_t>(ChunkKind::kEnd);
+  head.first_frame = s.frames;
+  head.first_time = head.last_time = s.last_time;
+  if (auto ok = s.write(head, {}); !ok) return ok;
+  if (std::fclose(std::exchange(s.file, nullptr)) != 0) {
+    s.reason = errno != 0 ? errno : EIO;
+    return s.io_error();
+  }
+  return {};
+}
+
+uint64_t Recorder::frames() const { return state_->frames; }
+uint64_t Recorder::bytes() const { return state_->bytes; }
+
+}  // namespace throng

@@ -1,0 +1,377 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/recording.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/random.h"
+#include "record/frame_codec.h"
+#include "scratch_folder.h"
+
+namespace throng {
+namespace {
+
+using test::ScratchFolder;
+
+RecordingInfo two_classes() {
+  return {.world = "garage.throng",
+          .world_hash = 77,
+          .dt = 0.1,
+          .classes = {{.name = "adult"}, {.name = "child", .height = 1.1, .radius = 0.2}},
+          .model = "test",
+          .settings = "{\"seed\": 1}"};
+}
+
+// Walkers, standers and jumpers that come and go, in no order of id.
+std::vector<RecordedFrame> random_run(uint64_t seed, size_t frames, size_t most) {
+  std::vector<RecordedFrame> run;
+  std::vector<uint64_t> here;
+  struct Body {
+    Vec3d at, by;
+  };
+  std::vector<Body> bodies(4 * most);
+  uint64_t counter = 0;
+  const auto unit = [&] { return random_unit(seed, 1, counter++); };
+  for (size_t f = 0; f < frames; ++f) {
+    std::erase_if(here, [&](uint64_t) { return unit() < 0.03; });
+    for (uint64_t id = 0; id < bodies.size() && here.size() < most; ++id) {
+      if (unit() > 0.1 || std::count(here.begin(), here.end(), id) > 0) continue;
+      here.push_back(id);
+      bodies[id].at = {unit() * 100 - 50, unit() * 9, unit() * 2e6 - 1e6};
+      bodies[id].by = {unit() * 0.3 - 0.15, 0, unit() * 0.3 - 0.15};
+    }
+    if (!here.empty()) std::rotate(here.begin(), here.begin() + counter % here.size(), here.end());
+    RecordedFrame frame;
+    frame.time = 0.1 * static_cast<double>(3 * f);
+    frame.step = 3 * f;
+    frame.state_hash = random_u64(seed, 2, f);
+    frame.resize(here.size());
+    for (size_t i = 0; i < here.size(); ++i) {
+      const uint64_t id = here[i];
+      Body& body = bodies[id];
+      if (unit() < 0.02) body.by = {unit() - 0.5, unit() - 0.5, 0};
+      if (unit() < 0.005) body.at = {unit() * 3e6 - 1.5e6, unit() * 3e6 - 1.5e6, 0};
+      if (id % 3 != 0) body.at = body.at + body.by;
+      frame.ids[i] = id * 1'000'003 * (id % 5 == 0 ? 1'000'000'007 : 1);
+      frame.classes[i] = static_cast<uint8_t>((id + (unit() < 0.01 ? 1 : 0)) % 2);
+      frame.positions[i] = body.at;
+      frame.radii[i] = static_cast<float>(0.2 + 0.001 * static_cast<double>(id % 100));
+      frame.headings[i] = {static_cast<float>(body.by.x), static_cast<float>(body.by.z)};
+    }
+    run.push_back(std::move(frame));
+  }
+  return run;
+}
+
+// What must come back: in order of id, to the millimetre.
+void expect_same(const RecordedFrame& wrote, const RecordedFrame& read) {
+  EXPECT_EQ(wrote.time, read.time);
+  EXPECT_EQ(wrote.step, read.step);
+  EXPECT_EQ(wrote.state_hash, read.state_hash);
+  ASSERT_EQ(wrote.size(), read.size());
+  std::vector<size_t> order(wrote.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](size_t a, size_t b) { return wrote.ids[a] < wrote.ids[b]; });
+  for (size_t k = 0; k < order.size(); ++k) {
+    const size_t i = order[k];
+    ASSERT_EQ(wrote.ids[i], read.ids[k]);
+    EXPECT_EQ(wrote.classes[i], read.classes[k]);
+    EXPECT_NEAR(wrote.radii[i], read.radii[k], 0.00051);
+    EXPECT_NEAR(wrote.positions[i].x, read.positions[k].x, 0.000501);
+    EXPECT_NEAR(wrote.positions[i].y, read.positions[k].y, 0.000501);
+    EXPECT_NEAR(wrote.positions[i].z, read.positions[k].z, 0.000501);
+    const Heading a = wrote.headings[i], b = read.headings[k];
+    const double size = std::hypot(a.x, a.z);
+    if (size == 0) continue;
+    EXPECT_GT((a.x * b.x + a.z * b.z) / size, std::cos(0.91 * 3.14159265 / 180));
+  }
+}
+
+void record(const std::string& path, const std::vector<RecordedFrame>& run,
+            const RecorderConfig& config = {}) {
+  auto recorder = Recorder::create(path, two_classes(), config);
+  ASSERT_TRUE(recorder) << recorder.error().message;
+  for (const RecordedFrame& frame : run) {
+    const auto ok = recorder->append(frame.view());
+    ASSERT_TRUE(ok) << ok.error().message;
+  }
+  EXPECT_EQ(recorder->frames(), run.size());
+  ASSERT_TRUE(recorder->finish());
+  EXPECT_EQ(recorder->bytes(), std::filesystem::file_size(path));
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::span<const uint8_t> span_of(const std::string& bytes) {
+  return {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
+}
+
+TEST(Recording, GivesBackWhatWasWrittenInAnyOrderOfReading) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto run = random_run(seed, 90, seed % 4 == 0 ? 3 : 40);
+    record(path, run,
+           {.chunk_frames = static_cast<uint32_t>(1 + seed % 9),
+            .chunk_bytes = seed % 2 == 0 ? 300u : 1u << 18,
+            .key_frames = static_cast<uint32_t>(1 + seed * 7 % 40)});
+    auto replay = Replay::open(path);
+    ASSERT_TRUE(replay) << replay.error().message;
+    EXPECT_EQ(replay->damage(), "");
+    EXPECT_EQ(replay->bytes(), std::filesystem::file_size(path));
+    EXPECT_EQ(replay->info().classes, two_classes().classes);
+    EXPECT_EQ(replay->info().settings, "{\"seed\": 1}");
+    EXPECT_EQ(replay->info().world_hash, 77u);
+    ASSERT_EQ(replay->frame_count(), run.size());
+    RecordedFrame frame;
+    for (uint64_t f = 0; f < run.size(); ++f) {
+      ASSERT_TRUE(replay->read(f, frame));
+      expect_same(run[f], frame);
+    }
+    for (uint64_t k = 0; k < 60; ++k) {
+      const uint64_t f = random_below(seed, 9, k, run.size());
+      const auto ok = replay->read(f, frame);
+      ASSERT_TRUE(ok) << ok.error().message;
+      expect_same(run[f], frame);
+      const auto about = replay->frame_info(f);
+      ASSERT_TRUE(about);
+      EXPECT_EQ(about->avatars, run[f].size());
+      EXPECT_EQ(about->step, run[f].step);
+    }
+  }
+}
+
+TEST(Recording, FindsTheFrameOfATime) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(3, 50, 5);
+  record(path, run, {.chunk_frames = 7});
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay);
+  for (double time = -1; time < 20; time += 0.05) {
+    uint64_t expected = 0;
+    for (uint64_t f = 0; f < run.size(); ++f) {
+      if (run[f].time <= time) expected = f;
+    }
+    const auto found = replay->find(time);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(*found, expected) << time;
+  }
+}
+
+TEST(Recording, KeepsTheHashesOfStepsWithoutFrames) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  {
+    auto recorder = Recorder::create(path, two_classes(), {.chunk_frames = 3, .key_frames = 4});
+    ASSERT_TRUE(recorder);
+    const auto run = random_run(5, 12, 6);
+    for (const RecordedFrame& frame : run) {
+      for (uint64_t s = frame.step == 0 ? 0 : frame.step - 2; s < frame.step; ++s) {
+        ASSERT_TRUE(recorder->append_hash(s, s * 11));
+      }
+      if (frame.step == 9) {
+        ASSERT_TRUE(recorder->flush());
+      }
+      ASSERT_TRUE(recorder->append(frame.view()));
+    }
+    for (uint64_t s = 34; s < 1000; ++s) ASSERT_TRUE(recorder->append_hash(s, s * 11));
+    EXPECT_FALSE(recorder->append_hash(999, 1));
+    ASSERT_TRUE(recorder->finish());
+  }
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay) << replay.error().message;
+  EXPECT_EQ(replay->damage(), "");
+  const auto hashes = replay->step_hashes();
+  ASSERT_TRUE(hashes);
+  ASSERT_EQ(hashes->size(), 1000u);
+  for (uint64_t s = 0; s < 1000; ++s) {
+    EXPECT_EQ((*hashes)[s].step, s);
+    EXPECT_EQ((*hashes)[s].state_hash, s % 3 == 0 && s < 34 ? random_u64(5, 2, s / 3) : s * 11);
+  }
+  RecordedFrame frame;
+  for (uint64_t f = 0; f < 12; ++f) ASSERT_TRUE(replay->read(f, frame));
+}
+
+// A process that dies leaves a beginning of the file: every such beginning, of every length.
+TEST(Recording, OpensFromEveryBeginningOfAFile) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(7, 40, 6);
+  record(path, run, {.chunk_frames = 4, .key_frames = 8});
+  const std::string bytes = bytes_of(path);
+  ASSERT_LT(bytes.size(), 30000u);
+  uint64_t most = 0, opened = 0;
+  for (size_t size = 0; size <= bytes.size(); ++size) {
+    const std::string part = bytes.substr(0, size);
+    auto replay = Replay::from_bytes(span_of(part), "cut");
+    if (!replay) {
+      EXPECT_EQ(opened, 0u) << "opened before, at " << size << ": " << replay.error().message;
+      EXPECT_EQ(replay.error().code, Errc::kBadFile);
+      continue;
+    }
+    ++opened;
+    EXPECT_EQ(replay->damage().empty(), size == bytes.size());
+    EXPECT_GE(replay->frame_count(), most) << "fewer frames in more bytes";
+    most = replay->frame_count();
+    // Whole chunks of four are there as soon as their last byte is.
+    RecordedFrame frame;
+    for (uint64_t f = 0; f < replay->frame_count(); f += size % 50 == 0 ? 1 : 39) {
+      ASSERT_TRUE(replay->read(f, frame));
+      expect_same(run[f], frame);
+    }
+  }
+  EXPECT_EQ(most, run.size());
+}
+
+TEST(Recording, NamesWhatIsCorruptAndReadsTheRest) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(8, 40, 6);
+  record(path, run, {.chunk_frames = 4, .key_frames = 8});
+  const std::string bytes = bytes_of(path);
+  uint64_t partly = 0;
+  for (size_t at = 0; at < bytes.size(); ++at) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
+    auto replay = Replay::from_bytes(span_of(damaged), "damaged");
+    if (!replay) {
+      EXPECT_EQ(replay.error().code, Errc::kBadFile);
+      continue;
+    }
+    uint64_t lost = run.size() - replay->frame_count();
+    RecordedFrame frame;
+    for (uint64_t f = 0; f < replay->frame_count(); ++f) {
+      const auto ok = replay->read(f, frame);
+      if (ok) {
+        expect_same(run[f], frame);
+      } else {
+        ++lost;
+        EXPECT_NE(ok.error().message.find("damaged: the chunk at byte"), std::string::npos);
+      }
+    }
+    EXPECT_TRUE(lost > 0 || !replay->damage().empty()) << "nobody noticed byte " << at;
+    partly += lost > 0 && lost < run.size() ? 1 : 0;
+  }
+  EXPECT_GT(partly, bytes.size() / 2);
+}
+
+TEST(Recording, RefusesFramesThatMakeNoSenseAndGoesOn) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  auto run = random_run(9, 30, 12);
+  run.erase(run.begin(), run.begin() + 22);
+  for (const RecordedFrame& frame : run) ASSERT_GT(frame.size(), 2u);
+  auto recorder = Recorder::create(path, two_classes(), {.chunk_frames = 3, .key_frames = 4});
+  ASSERT_TRUE(recorder);
+  const auto refused = [&](const FrameView& view, const char* word) {
+    const auto bad = recorder->append(view);
+    ASSERT_FALSE(bad) << word;
+    EXPECT_EQ(bad.error().code, Errc::kBadInput);
+    EXPECT_NE(bad.error().message.find(word), std::string::npos) << bad.error().message;
+  };
+  for (const RecordedFrame& good : run) {
+    RecordedFrame bad = good;
+    bad.ids[1] = bad.ids[0];
+    refused(bad.view(), "is there twice");
+    bad = good;
+    bad.positions[0].y = NAN;
+    refused(bad.view(), "nowhere");
+    bad.positions[0] = {0, 0, 2.1e6};
+    refused(bad.view(), "2000 km");
+    bad = good;
+    bad.radii[0] = -1;
+    refused(bad.view(), "radius");
+    bad = good;
+    bad.classes[2] = 2;
+    refused(bad.view(), "of class 2 of 2");
+    bad = good;
+    bad.ids.back() = UINT64_MAX;
+    refused(bad.view(), "too large");
+    bad = good;
+    bad.radii.pop_back();
+    refused(bad.view(), "as many");
+    bad = good;
+    bad.time = NAN;
+    refused(bad.view(), "the time");
+    ASSERT_TRUE(recorder->append(good.view()));
+    refused(good.view(), "the time");
+    bad = good;
+    bad.time += 1;
+    refused(bad.view(), "steps must grow");
+  }
+  ASSERT_TRUE(recorder->finish());
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay);
+  ASSERT_EQ(replay->frame_count(), run.size());
+  RecordedFrame frame;
+  for (uint64_t f = 0; f < run.size(); ++f) {
+    ASSERT_TRUE(replay->read(f, frame));
+    expect_same(run[f], frame);
+  }
+  EXPECT_FALSE(Recorder::create(folder.path() + "/none/x", two_classes()));
+  EXPECT_FALSE(Recorder::create(path, {}));
+  EXPECT_FALSE(Recorder::create(path, two_classes(), {.chunk_frames = 0}));
+  EXPECT_FALSE(Replay::open(folder.path() + "/none"));
+  EXPECT_FALSE(Replay::open(folder.write("empty", "")));
+  EXPECT_FALSE(Replay::open(folder.write("text", "step,id,class,x,y,z,radius\n")));
+}
+
+TEST(Recording, ADestroyedRecorderLeavesAllFrames) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(11, 10, 6);
+  {
+    auto recorder = Recorder::create(path, two_classes());
+    for (const RecordedFrame& frame : run) ASSERT_TRUE(recorder->append(frame.view()));
+  }
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay);
+  EXPECT_EQ(replay->frame_count(), run.size());
+  EXPECT_NE(replay->damage().find("was not finished"), std::string::npos) << replay->damage();
+}
+
+TEST(FrameCodec, HeadingsAreTheNearestOf256) {
+  for (int32_t k = 0; k < 256; ++k) {
+    const Heading h = heading_of(static_cast<uint8_t>(k));
+    EXPECT_EQ(heading_code(h), k);
+    EXPECT_NEAR(h.x * h.x + h.z * h.z, 1, 1e-6);
+  }
+  EXPECT_EQ(heading_code({0, 0}), heading_code({0, 1}));
+  EXPECT_EQ(heading_code({NAN, 1}), heading_code({0, 1}));
+}
+
+// Walkers on straight lines at 1.34 m/s, a frame each tenth of a second, headings theirs.
+TEST(FrameCodec, AWalkerCostsAByteAFrame) {
+  FrameEncoder encoder;
+  std::vector<uint8_t> bytes;
+  RecordedFrame frame;
+  constexpr size_t kWalkers = 1000, kFrames = 100;
+  frame.resize(kWalkers);
+  for (size_t f = 0; f < kFrames; ++f) {
+    for (size_t i = 0; i < kWalkers; ++i) {
+      const double turn = random_unit(1, 1, i) * 6.28;
+      const double way = 0.134 * static_cast<double>(f);
+      frame.ids[i] = i;
+      frame.positions[i] = {way * std::cos(turn) + static_cast<double>(i), 0, way * std::sin(turn)};
+      frame.headings[i] = {static_cast<float>(std::cos(turn)), static_cast<float>(std::sin(turn))};
+      frame.radii[i] = 0.25F;
+    }
+    if (f == 1) bytes.clear();
+    ASSERT_TRUE(encoder.encode(frame.view(), bytes));
+  }
+  EXPECT_LT(bytes.size(), kWalkers * (kFrames - 1));
+}
+
+}  // namespace
+}  // namespace throng

@@ -9,6 +9,8 @@
 
 #include "command.h"
 #include "output_file.h"
+#include "rerun.h"
+#include "run_recorder.h"
 #include "throng/wanderers.h"
 #include "throng/world.h"
 
@@ -20,6 +22,7 @@ struct RunOptions {
   std::string world;
   std::string class_name;
   std::string trajectories;
+  std::string record;
   uint64_t steps = 100;
   uint64_t every = 1;
   uint64_t check_every = 0;
@@ -139,6 +142,14 @@ std::string run_text(const RunOptions& options, const Wanderers& crowd, const Ru
       totals.found.overlaps, crowd.state_hash());
 }
 
+// Every `every`-th step as a frame, of the others the hash alone.
+Result<void> record_step(const RunOptions& options, uint64_t step, const Wanderers& crowd,
+                         std::vector<AvatarState>& states, RunRecorder& recorder) {
+  if (step % options.every != 0) return recorder.add_hash(step, crowd.state_hash());
+  crowd.read(states);
+  return recorder.add(step, crowd.state_hash(), states);
+}
+
 // The class's index, by name or the first; fills in the name.
 Result<int32_t> pick_class(const World& world, std::string& name) {
   if (name.empty()) name = world.summary().classes.front().name;
@@ -161,6 +172,15 @@ int run(Session& session, RunOptions& options) {
     if (!opened) return fail(opened.error());
     trajectories.add(0, *crowd);
   }
+  RunRecorder recorder;
+  std::vector<AvatarState> states;
+  if (!options.record.empty()) {
+    Result<void> ok =
+        recorder.open(options.record, options.world, *world, options.config.dt, kWanderersModel,
+                      wanderers_settings(options.config, options.class_name));
+    if (ok) ok = record_step(options, 0, *crowd, states, recorder);
+    if (!ok) return fail(ok.error());
+  }
   const uint64_t check_every =
       options.check_every > 0 ? options.check_every : std::max<uint64_t>(1, options.steps / 10);
   RunTotals totals;
@@ -168,11 +188,19 @@ int run(Session& session, RunOptions& options) {
     totals.add(crowd->step());
     if (step % check_every == 0 || step == options.steps) totals.add(crowd->check());
     if (trajectories.is_open() && step % options.every == 0) trajectories.add(step, *crowd);
+    if (recorder.is_open()) {
+      const Result<void> ok = record_step(options, step, *crowd, states, recorder);
+      if (!ok) return fail(ok.error());
+    }
     show_progress(session, "walk", step, options.steps);
     if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
   }
   if (trajectories.is_open()) {
     const Result<void> finished = trajectories.finish();
+    if (!finished) return fail(finished.error());
+  }
+  if (recorder.is_open()) {
+    const Result<void> finished = recorder.finish();
     if (!finished) return fail(finished.error());
   }
   print_result(session, run_json(options, *crowd, totals), run_text(options, *crowd, totals));
@@ -198,6 +226,8 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--speed", config.speed, "Walking speed, 0 for the class's own [m/s]");
   command->add_option("--trajectories", options->trajectories, "Write positions to this file")
       ->type_name("FILE.csv");
+  command->add_option("--record", options->record, "Record the run in this file")
+      ->type_name("FILE.replay");
   command->add_option("--every", options->every, "Write each K-th step")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

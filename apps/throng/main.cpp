@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     add_picture(parser, session);
     add_place(parser, session);
     add_region(parser, session);
+    add_replay(parser, session);
     add_run(parser, session);
     add_slices(parser, session);
     add_verify(parser, session);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "throng/base.h"
 #include "throng/context.h"
@@ -10,7 +12,7 @@
 #include "throng/scene.h"
 #include "throng/world.h"
 
-/// Where a class can stand, as triangles for other programs.
+/// Where a class can stand, as triangles or seen from above, for other programs.
 namespace throng {
 
 /// The floor under all legal cells of a class, as the feet follow it: level cells and planes merged
@@ -19,5 +21,20 @@ namespace throng {
 /// zone. Fails with kBadConfig (no such class), kBadFile (a zone cannot be used), kCancelled.
 [[nodiscard]] THRONG_API Result<Scene> walkable_surface(const World& world, int32_t avatar_class,
                                                         Context& context);
+
+/// A piece of the plane that holds together by the sides of cells. Seen from above: x, z.
+struct WalkablePiece {
+  Polygon polygon;  ///< Counter-clockwise, its holes clockwise, in (x, z). Rings may touch.
+  double area = 0;  ///< [m^2]
+};
+
+/// The legal cells of a class whose floors lie from `lowest` to `highest`, all levels laid over
+/// each other, largest piece first. Reads every zone. Fails like walkable_surface, and with kLimit
+/// if the world has more than 2^32 cells.
+[[nodiscard]] THRONG_API Result<std::vector<WalkablePiece>> walkable_pieces(
+    const World& world, int32_t avatar_class, double lowest, double highest, Context& context);
+
+/// Well-known text: POLYGON((x z, ...), (hole)), to the millimetre.
+[[nodiscard]] THRONG_API std::string to_wkt(const Polygon& polygon);
 
 }  // namespace throng

@@ -10,6 +10,7 @@ import re
 import shutil
 import signal
 import struct
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -174,6 +175,94 @@ class Program(unittest.TestCase):
         for line in lines:
             self.assertRegex(line, r"^\d+,\d+,adult(,-?\d+\.\d{4}){4}$")
         self.assertEqual([entry.name for entry in self.path.iterdir()], ["walk.csv"])
+
+    def test_a_recording_holds_what_trajectories_hold_in_every_format(self):
+        done = self.run_throng("run", self.world, "--avatars", 30, "--steps", 12, "--every", 3, "--dt", 0.2, "--trajectories",
+                               "walk.csv", "--record", "walk.replay")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.run_throng("replay", "walk.replay", "--csv", "out.csv", "--txt", "out.txt", "--sqlite", "out.sqlite", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said["frames"], said["most_avatars"], said["positions"], said["complete"]), (5, 30, 150, True))
+        self.assertEqual(said["settings"], {"avatars": 30, "class": "adult", "dt": 0.2, "speed": 0.0, "seed": 1})
+        wrote = [line.split(",") for line in (self.path / "walk.csv").read_text().splitlines()]
+        read = [line.split(",") for line in (self.path / "out.csv").read_text().splitlines()]
+        self.assertEqual([line[:3] for line in wrote], [line[:3] for line in read])
+        positions = {}
+        for a, b in zip(wrote[1:], read[1:]):
+            for k in range(3, 7):
+                self.assertLess(abs(float(a[k]) - float(b[k])), 0.00056)
+            positions[int(a[0]) // 3, int(a[1])] = tuple(float(v) for v in b[3:6])
+        # As PedPy's load_trajectory_from_txt reads it.
+        head, data = [], {}
+        for line in (self.path / "out.txt").read_text().splitlines():
+            if line.startswith("#"):
+                head.append(line)
+                continue
+            number, frame, x, y, z = line.split()
+            data[int(frame), int(number)] = (float(x), float(z), float(y))
+        rates = [float(word) for line in head if "framerate" in line for word in line.split() if word[0].isdigit()]
+        self.assertEqual(len(rates), 1)
+        self.assertAlmostEqual(rates[0], 1 / 0.6)
+        self.assertTrue(any("x/m" in line for line in head))
+        self.assertEqual(data, positions)
+        # As its load_trajectory_from_jupedsim_sqlite and load_walkable_area_from_jupedsim_sqlite read it.
+        base = sqlite3.connect(self.path / "out.sqlite")
+        self.addCleanup(base.close)
+        rows = base.execute("select frame, id, pos_x as x, pos_y as y from trajectory_data").fetchall()
+        self.assertEqual({row[:2]: row[2:] for row in rows}, {key: (x, z) for key, (x, _, z) in positions.items()})
+        about = dict(base.execute("select key, value from metadata"))
+        self.assertAlmostEqual(float(about["fps"]), 1 / 0.6)
+        self.assertEqual(int(about["version"]), 2)
+        (area,), = base.execute("select wkt from geometry").fetchall()
+        self.assertRegex(area, r"^POLYGON \(\((-?\d+\.\d{3} -?\d+\.\d{3}(, |\)(, \()?))+\)$")
+        self.assertEqual(base.execute("select count(*) from frame_data join geometry on geometry_hash = hash").fetchone(), (5,))
+        for x, y in base.execute("select ori_x * ori_x + ori_y * ori_y, 1 from trajectory_data"):
+            self.assertAlmostEqual(x, y, places=5)
+        at = json.loads(self.run_throng("replay", "walk.replay", "--at", 1.3, "--json").stdout)
+        self.assertEqual(at["step"], 6)
+        for avatar in at["avatars"]:
+            self.assertEqual(tuple(avatar["position"]), positions[2, avatar["id"]])
+
+    def test_a_killed_run_leaves_a_recording_that_opens_and_comes_out_the_same(self):
+        for wait in (0.05, 0.2, 0.5):
+            process = subprocess.Popen([PROGRAM, "run", self.world, "--avatars", "50", "--steps", "100000000", "--record",
+                                        "walk.replay"], cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            file = self.path / "walk.replay"
+            deadline = time.monotonic() + 60
+            while (not file.exists() or file.stat().st_size < 4000) and time.monotonic() < deadline:
+                time.sleep(0.01)
+            time.sleep(wait)
+            process.kill()
+            process.communicate()
+            done = self.run_throng("replay", "walk.replay", "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            said = json.loads(done.stdout)
+            self.assertFalse(said["complete"])
+            self.assertGreater(said["frames"], 30)
+            self.assertIn("frames are good", done.stderr)
+            content = file.read_bytes()[:20000]
+            file.write_bytes(content)
+            check = self.run_throng("replay", "walk.replay", "--check")
+            self.assertEqual(check.returncode, 0, check.stderr)
+            self.assertIn("all the same", check.stdout)
+            file.unlink()
+
+    def test_what_is_no_recording_is_refused_in_one_sentence(self):
+        self.assert_refused(self.run_throng("replay", "missing.replay"), "missing.replay")
+        (self.path / "text.replay").write_text("step,id\n")
+        self.assert_refused(self.run_throng("replay", "text.replay"), "text.replay", "not a recording")
+        self.run_throng("run", self.world, "--avatars", 5, "--steps", 5, "--record", "walk.replay")
+        self.assert_refused(self.run_throng("replay", "walk.replay", "--csv", "no/walk.csv"), "no/walk.csv")
+        self.assert_refused(self.run_throng("replay", "walk.replay", "--sqlite", "no/walk.sqlite"), "no/walk.sqlite")
+        self.assert_refused(self.run_throng("replay", "walk.replay", "--heights", 3, 1, "--csv", "x.csv"), "--heights")
+        self.assert_refused(self.run_throng("replay", "walk.replay", "--check", "--world", "none.throng"), "none.throng", "--world")
+        content = bytearray((self.path / "walk.replay").read_bytes())
+        content[70] ^= 1
+        (self.path / "walk.replay").write_bytes(content)
+        self.assert_refused(self.run_throng("replay", "walk.replay"), "walk.replay", "corrupt")
+        self.assert_refused(self.run_throng("run", self.world, "--record", "no/walk.replay"), "no/walk.replay")
+        self.assertEqual(sorted(entry.name for entry in self.path.iterdir()), ["text.replay", "walk.replay"])
 
     def test_a_changed_byte_of_a_world_is_found_and_its_file_named(self):
         for kind in (".thz", ".thr", ".thl", "graph.thm"):

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "rerun.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+namespace throng::app {
+namespace {
+
+// Are all of these there, and of their kind?
+Result<void> need(const Json& settings, std::initializer_list<const char*> keys,
+                  bool (*is_right)(const Json&)) {
+  for (const char* key : keys) {
+    const auto found = settings.find(key);
+    if (found != settings.end() && is_right(*found)) continue;
+    return Error{Errc::kBadFile, fmt::format("the recording's settings have no usable '{}'; record "
+                                             "the run again with this program",
+                                             key)};
+  }
+  return {};
+}
+
+Result<Rerun> rerun_wanderers(const Json& settings, const World& world, int32_t workers) {
+  auto ok =
+      need(settings, {"avatars", "seed"}, [](const Json& j) { return j.is_number_unsigned(); });
+  if (ok) ok = need(settings, {"dt", "speed"}, [](const Json& j) { return j.is_number(); });
+  if (ok) ok = need(settings, {"class"}, [](const Json& j) { return j.is_string(); });
+  if (!ok) return ok.error();
+  WanderConfig config{.avatars = settings.at("avatars"),
+                      .avatar_class = 0,
+                      .dt = settings.at("dt"),
+                      .speed = settings.at("speed"),
+                      .seed = settings.at("seed"),
+                      .workers = workers};
+  const Result<int32_t> avatar_class = class_named(world, settings.at("class"));
+  if (!avatar_class) return avatar_class.error();
+  config.avatar_class = *avatar_class;
+  Result<Wanderers> made = Wanderers::create(world, config);
+  if (!made) return made.error();
+  const auto crowd = std::make_shared<Wanderers>(std::move(*made));
+  return Rerun{.step = [crowd] { crowd->step(); },
+               .state_hash = [crowd] { return crowd->state_hash(); }};
+}
+
+struct Model {
+  const char* name;
+  Result<Rerun> (*rerun)(const Json& settings, const World& world, int32_t workers);
+};
+
+// One line a model: what `throng replay --check` can run again.
+constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers}};
+
+}  // namespace
+
+Json wanderers_settings(const WanderConfig& config, const std::string& class_name) {
+  return {{"avatars", config.avatars},
+          {"class", class_name},
+          {"dt", config.dt},
+          {"speed", config.speed},
+          {"seed", config.seed}};
+}
+
+Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {
+  for (const Model& model : kModels) {
+    if (info.model != model.name) continue;
+    const Json settings = Json::parse(info.settings, nullptr, /*allow_exceptions=*/false);
+    if (!settings.is_object()) break;
+    return model.rerun(settings, world, workers);
+  }
+  return Error{Errc::kBadFile,
+               fmt::format("the recording is of '{}', which this program cannot run again; use the "
+                           "program that recorded it",
+                           info.model)};
+}
+
+Result<World> world_of(const RecordingInfo& info, const std::string& folder) {
+  const std::string& name = folder.empty() ? info.world : folder;
+  Result<World> world = World::open(name);
+  if (!world) {
+    return Error{
+        Errc::kBadFile,
+        fmt::format("{}: the recording's world is not there; name its folder with --world", name)};
+  }
+  const uint64_t hash = world->summary().hash;
+  if (hash == info.world_hash) return world;
+  return Error{Errc::kBadFile,
+               fmt::format("{}: not the world that was recorded (its hash is {:016x}, recorded "
+                           "{:016x}); bake it as it was, or name another folder with --world",
+                           name, hash, info.world_hash)};
+}
+
+}  // namespace throng::app

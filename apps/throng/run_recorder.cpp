@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "run_recorder.h"
+
+#include <utility>
+
+namespace throng::app {
+
+Result<void> RunRecorder::open(const std::string& path, const std::string& world_name,
+                               const World& world, double dt, const std::string& model,
+                               const Json& settings) {
+  const WorldSummary summary = world.summary();
+  RecordingInfo info{.world = world_name,
+                     .world_hash = summary.hash,
+                     .dt = dt,
+                     .classes = {},
+                     .model = model,
+                     .settings = settings.dump()};
+  for (const AvatarClass& avatar : summary.classes) {
+    info.classes.push_back({avatar.name, avatar.height, avatar.radius});
+    radii_.push_back(static_cast<float>(avatar.radius));
+  }
+  auto recorder = Recorder::create(path, info);
+  if (!recorder) return recorder.error();
+  recorder_.emplace(std::move(*recorder));
+  dt_ = dt;
+  return {};
+}
+
+Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,
+                              std::span<const AvatarState> avatars) {
+  frame_.time = static_cast<double>(step) * dt_;
+  frame_.step = step;
+  frame_.state_hash = state_hash;
+  frame_.resize(avatars.size());
+  for (size_t i = 0; i < avatars.size(); ++i) {
+    const AvatarState& state = avatars[i];
+    frame_.ids[i] = state.id;
+    frame_.classes[i] = static_cast<uint8_t>(state.avatar_class);
+    frame_.positions[i] = state.position;
+    frame_.radii[i] = radii_[frame_.classes[i]];
+    frame_.headings[i] = {static_cast<float>(state.heading_x), static_cast<float>(state.heading_z)};
+  }
+  return recorder_->append(frame_.view());
+}
+
+}  // namespace throng::app

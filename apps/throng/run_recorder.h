@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "command.h"
+#include "throng/avatar_state.h"
+#include "throng/recording.h"
+#include "throng/world.h"
+
+/// Records a run of the program, whatever makes its steps.
+namespace throng::app {
+
+class RunRecorder {
+ public:
+  /// `settings` is all that rerun.h needs to run it again.
+  Result<void> open(const std::string& path, const std::string& world_name, const World& world,
+                    double dt, const std::string& model, const Json& settings);
+  [[nodiscard]] bool is_open() const { return recorder_.has_value(); }
+  /// One frame; an avatar's radius is that of its class.
+  Result<void> add(uint64_t step, uint64_t state_hash, std::span<const AvatarState> avatars);
+  /// A step without a frame.
+  Result<void> add_hash(uint64_t step, uint64_t state_hash) {
+    return recorder_->append_hash(step, state_hash);
+  }
+  Result<void> finish() { return recorder_->finish(); }
+  [[nodiscard]] uint64_t bytes() const { return recorder_->bytes(); }
+
+ private:
+  std::optional<Recorder> recorder_;
+  std::vector<float> radii_;
+  double dt_ = 0.1;
+  RecordedFrame frame_;
+};
+
+}  // namespace throng::app

@@ -28,9 +28,9 @@ Json run(const Options& options) {
   config.seed = options.seed;
   const bool circle = options.scene == "circle";
   std::vector<test::PlainBody> bodies =
-      circle ? test::ring_bodies(options.bodies, 60)
-             : test::random_bodies(options.bodies, options.scene == "dense" ? 1 : 4, options.seed,
-                                   config.side);
+      circle ? test::ring_bodies(config, options.bodies, 60)
+             : test::random_bodies(config, options.bodies, options.scene == "dense" ? 1 : 4,
+                                   options.seed, config.side);
   test::PlainCrowd crowd(std::move(bodies), config);
   double progress = 0, last = 0;
   uint64_t steps = 0, counted = 0, overlaps = 0, arrived = 0;
@@ -51,7 +51,7 @@ Json run(const Options& options) {
       ++arrived;
       last = std::max(last, body.arrived);
       if (circle) continue;
-      body.goal = test::next_goal(body, options.seed, i, ++goals[i]);
+      body.goal = test::next_goal(config, body, options.seed, i, ++goals[i]);
       body.arrived = -1;
     }
   }

@@ -5,98 +5,172 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "throng/base.h"
 
 namespace throng::steer {
 namespace {
 
-constexpr int32_t kDirections = 24;
-constexpr double kSoonest = 0.1;  // [s] nothing is more urgent than what touches within this
+float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
-double size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
-
-// The directions around `ahead`, by turning it by 15 degrees again and again.
-struct Fan {
-  std::array<Plane, kDirections> at;
-  explicit Fan(Plane ahead) {
-    const double cosine = (std::sqrt(6.0) + std::sqrt(2.0)) / 4;
-    const double sine = (std::sqrt(6.0) - std::sqrt(2.0)) / 4;
-    for (Plane& direction : at) {
-      direction = ahead;
-      ahead = {ahead.x * cosine - ahead.z * sine, ahead.x * sine + ahead.z * cosine};
-    }
-  }
+// Cosines and sines of multiples of 15 degrees.
+struct Turns {
+  std::array<float, kDirections> cosine, sine;
 };
+constexpr Turns turns() {
+  // cos 0, 15, 30, ... 90; the rest are these.
+  constexpr std::array<double, 7> kCosines = {1,
+                                              0.96592582628906828675,
+                                              0.86602540378443864676,
+                                              0.70710678118654752440,
+                                              0.5,
+                                              0.25881904510252076235,
+                                              0};
+  const auto cosine = [&](size_t k) {  // of k * 15 degrees
+    k %= kDirections;
+    if (k > 12) k = kDirections - k;
+    return k <= 6 ? kCosines[k] : -kCosines[12 - k];
+  };
+  Turns t{};
+  for (size_t k = 0; k < kDirections; ++k) {
+    t.cosine[k] = static_cast<float>(cosine(k));
+    t.sine[k] = static_cast<float>(cosine(k + 18));
+  }
+  return t;
+}
+constexpr Turns kTurns = turns();
 
 }  // namespace
 
-double time_to_touch(Plane at, Plane velocity, double radii) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  // |at + velocity t| = radii, in the form that stays exact where the bodies touch already.
-  const double approach = -(at.x * velocity.x + at.z * velocity.z);
-  if (!(approach > 0)) return kNever;
-  const double apart = std::max(at.x * at.x + at.z * at.z - radii * radii, 0.0);
-  const double speed = velocity.x * velocity.x + velocity.z * velocity.z;
-  const double inside = approach * approach - speed * apart;
-  if (!(inside > 0)) return kNever;
-  return apart / (approach + std::sqrt(inside));
+void NearSet::add(const SampledSettings& settings, const Neighbour& other) {
+  THRONG_ASSERT(size < kMostNear);
+  const float radii = other.radii + settings.gap;
+  x[size] = other.at.x;
+  z[size] = other.at.z;
+  vx[size] = other.velocity.x;
+  vz[size] = other.velocity.z;
+  apart[size++] = std::max(other.at.x * other.at.x + other.at.z * other.at.z - radii * radii, 0.0f);
 }
 
-Choices choose_velocity(const SampledSettings& settings, Plane velocity, Plane wish, double fastest,
-                        std::span<const Neighbour> neighbours) {
-  THRONG_ASSERT(settings.speeds >= 1);
-  const double wished = size_of(wish);
-  const Plane ahead = wished > 1e-9 ? Plane{wish.x / wished, wish.z / wished} : Plane{1, 0};
-  std::vector<std::pair<double, Plane>> tried{{0, wish}, {0, {0, 0}}};
-  const Fan fan(ahead);
-  for (int32_t s = 1; s <= settings.speeds; ++s) {
-    const double speed = fastest * s / settings.speeds;
-    for (const Plane& d : fan.at) tried.push_back({0, {d.x * speed, d.z * speed}});
+Fan fan_around(Plane wish) {
+  const float wished = size_of(wish);
+  const Plane ahead = wished > 1e-6f ? Plane{wish.x / wished, wish.z / wished} : Plane{1, 0};
+  Fan fan;
+  for (size_t k = 0; k < kDirections; ++k) {
+    fan[k] = {ahead.x * kTurns.cosine[k] - ahead.z * kTurns.sine[k],
+              ahead.x * kTurns.sine[k] + ahead.z * kTurns.cosine[k]};
   }
-  const size_t near = std::min(neighbours.size(), static_cast<size_t>(settings.neighbours));
-  const double least_urgent = 1 / (settings.horizon + kSoonest);
-  for (auto& [cost, v] : tried) {
-    const double along = v.x * ahead.x + v.z * ahead.z;
-    const double left = ahead.z * v.x - ahead.x * v.z;
-    cost = (1 - settings.straightness) * size_of({v.x - wish.x, v.z - wish.z}) +
-           settings.straightness * std::max(wished - along, 0.0) +
-           settings.keep * size_of({v.x - velocity.x, v.z - velocity.z}) +
-           settings.right * std::max(left, 0.0);
-    cost /= fastest;
-    double urgency = 0, sum = 0;
-    for (size_t n = 0; n < near; ++n) {
-      // If the other does its share, too, one's own present velocity stands for the rest.
-      const double mine = 1 / settings.share, rest = 1 - mine;
-      const Neighbour& other = neighbours[n];
-      const Plane relative{other.velocity.x - (mine * v.x + rest * velocity.x),
-                           other.velocity.z - (mine * v.z + rest * velocity.z)};
-      const double time = time_to_touch(other.at, relative, other.radii + settings.gap);
-      if (time < settings.horizon) {
-        const double urgent = 1 / (time + kSoonest) - least_urgent;
-        urgency = std::max(urgency, urgent);
-        sum += urgent;
-      }
+  return fan;
+}
+
+Trials trials_of(const Situation& s) {
+  const Fan fan = fan_around(s.wish);
+  const bool wishes = size_of(s.wish) > 1e-6f;
+  Trials trials;
+  for (size_t k = 0; k < kDirections; ++k) {
+    for (size_t i = 0; i < kSpeeds; ++i) {
+      const float part = static_cast<float>(i + 1) / kSpeeds;
+      const Plane full =
+          k == 0 && wishes ? s.wish : Plane{fan[k].x * s.fastest, fan[k].z * s.fastest};
+      trials.x[k * kSpeeds + i] = full.x * part;
+      trials.z[k * kSpeeds + i] = full.z * part;
     }
-    cost += settings.threat * urgency + settings.threats * sum;
   }
-  // The first of equals wins, so the order is that of the trials.
-  std::stable_sort(tried.begin(), tried.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  trials.x[kTrials / 2] = trials.z[kTrials / 2] = 0;
+  return trials;
+}
+
+// |at + velocity t| = radii, solved in the form that stays exact where the bodies touch already:
+// t = apart / (approach + root).
+float nearness(Plane at, Plane velocity, float apart) {
+  const float approach = -(at.x * velocity.x + at.z * velocity.z);
+  const float speed = velocity.x * velocity.x + velocity.z * velocity.z;
+  const float inside = approach * approach - speed * apart;
+  if (!(approach > 0 && inside > 0)) return 0;
+  const float sum = approach + std::sqrt(inside);
+  return sum / (apart + kSoonest * sum);
+}
+
+float nearness_of_wall(float way, float speed) {
+  return speed > 0 ? speed / (way + kSoonest * speed) : 0;
+}
+
+bool wish_is_open(const SampledSettings& settings, const Situation& s) {
+  const float least = 1 / (settings.horizon + kSoonest);
+  for (size_t n = 0; n < s.near.size; ++n) {
+    const Plane relative{s.near.vx[n] - s.wish.x, s.near.vz[n] - s.wish.z};
+    if (nearness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]) > least) return false;
+  }
+  return !s.has_walls ||
+         nearness_of_wall(s.free_way[0], size_of(s.wish)) <= 1 / (settings.wall_horizon + kSoonest);
+}
+
+Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials& trials) {
+  const float wished = size_of(s.wish);
+  const Plane ahead = fan_around(s.wish)[0];
+  const float least = 1 / (settings.horizon + kSoonest);
+  const float least_of_wall = 1 / (settings.wall_horizon + kSoonest);
+  Costs costs;
+  for (size_t t = 0; t < kTrials; ++t) {
+    const Plane v{trials.x[t], trials.z[t]};
+    const float along = v.x * ahead.x + v.z * ahead.z;
+    const float left = ahead.z * v.x - ahead.x * v.z;
+    float cost = (1 - settings.straightness) * size_of({v.x - s.wish.x, v.z - s.wish.z});
+    cost = cost + settings.straightness * std::max(wished - along, 0.0f);
+    cost = cost + settings.keep * size_of({v.x - s.velocity.x, v.z - s.velocity.z});
+    cost = cost + settings.right * std::max(left, 0.0f);
+    cost = cost / s.fastest;
+    float most = 0, sum = 0;
+    for (size_t n = 0; n < s.near.size; ++n) {
+      const Plane relative{s.near.vx[n] - v.x, s.near.vz[n] - v.z};
+      const float near = nearness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]);
+      const float urgent = std::max(near - least, 0.0f);
+      most = std::max(most, urgent);
+      sum = sum + urgent;
+    }
+    cost = cost + settings.threat * most;
+    cost = cost + settings.threats * sum;
+    if (s.has_walls) {
+      const float near = nearness_of_wall(s.free_way[t / kSpeeds], size_of(v));
+      cost = cost + settings.wall * std::max(near - least_of_wall, 0.0f);
+    }
+    costs[t] = cost;
+  }
+  return costs;
+}
+
+Choices best_of(const Costs& costs, const Trials& trials) {
+  Costs left = costs;
   Choices choices;
-  for (size_t i = 0; i < kChoices; ++i) choices[i] = tried[i].second;
+  for (Plane& choice : choices) {
+    const auto best =
+        static_cast<size_t>(std::min_element(left.begin(), left.end()) - left.begin());
+    choice = {trials.x[best], trials.z[best]};
+    left[best] = std::numeric_limits<float>::infinity();
+  }
   return choices;
 }
 
-double next_turn(const Patience& patience, double turn, double progress, double dt) {
-  return progress < patience.content ? std::min(patience.most, turn + patience.rate * dt)
-                                     : std::max(0.0, turn - patience.back * dt);
+Choices choose_velocity(const SampledSettings& settings, const Situation& situation) {
+  const Trials trials = trials_of(situation);
+  return best_of(costs_of(settings, situation, trials), trials);
 }
 
-Plane turned_right(Plane direction, double turn) {
-  const double scale = 1 / (1 + turn * turn);
-  const double cosine = (1 - turn * turn) * scale, sine = 2 * turn * scale;
+Plane wish_towards(Plane way, float speed, float dt, float turn) {
+  const float left = size_of(way);
+  if (left < 1e-6f) return {};
+  const float size = std::min(speed, left / dt) / left;
+  return turned_right({way.x * size, way.z * size}, turn);
+}
+
+float next_turn(const Patience& patience, float turn, float progress, float dt) {
+  return progress < patience.content ? std::min(patience.most, turn + patience.rate * dt)
+                                     : std::max(0.0f, turn - patience.back * dt);
+}
+
+Plane turned_right(Plane direction, float turn) {
+  const float scale = 1 / (1 + turn * turn);
+  const float cosine = (1 - turn * turn) * scale, sine = 2 * turn * scale;
   return {direction.x * cosine - direction.z * sine, direction.x * sine + direction.z * cosine};
 }
 

@@ -3,62 +3,119 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 /// Steering by trying velocities: which of some velocities costs least, by how far it leads from
-/// the wish and how soon the body would touch another. A model of avoidance that knows nothing of
-/// how a crowd stores its avatars. docs/design/008-engine.md has how its settings were found.
+/// the wish and how soon the body would touch another or a wall. A model of avoidance that knows
+/// nothing of how a crowd stores its avatars. docs/design/008-engine.md has how its settings were
+/// found. Here as plainly as it can be written; steer/sampled_kernel.h is the same, bit by bit, for
+/// machines.
 namespace throng::steer {
 
 /// In the plane. [m, m/s]
 struct Plane {
-  double x = 0, z = 0;
+  float x = 0, z = 0;
 };
 
+/// Sources of all numbers: docs/design/008-engine.md.
 struct SampledSettings {
-  double horizon = 2;         ///< Touching later than that is of no concern. [s, > 0]
-  double straightness = 0.8;  ///< Share of "less progress", beside "another velocity", in a cost.
-  double keep = 0.2;          ///< Cost of leaving one's present velocity.
-  double right = 0.1;         ///< Cost of passing on the left.
-  double threat = 0.5;        ///< Cost of the most urgent touch,
-  double threats = 0.02;      ///< and of every one.
-  double share = 1;           ///< How much of the avoiding one does oneself. [0.5 to 1]
-  double gap = 0.02;          ///< Wished between two bodies. [m]
-  int32_t speeds = 4;         ///< Speeds tried in each of the 24 directions. [1 to 8]
-  int32_t neighbours = 10;    ///< The nearest so many are looked at. [1 to 64]
+  float horizon = 2;          ///< Touching later than that is of no concern. [s, > 0]
+  float straightness = 0.8f;  ///< Share of "less progress", beside "another velocity", in a cost.
+  float keep = 0.2f;          ///< Cost of leaving one's present velocity.
+  float right = 0.1f;         ///< Cost of passing on the left.
+  float threat = 0.5f;        ///< Cost of the most urgent touch,
+  float threats = 0.02f;      ///< and of every one.
+  float gap = 0.02f;          ///< Wished between two bodies. [m]
+  float wall = 0.5f;          ///< Cost of walking up to a wall,
+  float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
+  int32_t neighbours = 10;    ///< The nearest so many are looked at. [1 to kMostNear]
 };
+
+inline constexpr size_t kMostNear = 16;
+inline constexpr size_t kDirections = 24;
+inline constexpr size_t kSpeeds = 4;
+/// Velocities that are tried: a direction's speeds beside each other.
+inline constexpr size_t kTrials = kDirections * kSpeeds;
+inline constexpr float kSoonest = 0.1f;  ///< [s] Nothing is more urgent than a touch within this.
 
 struct Neighbour {
   Plane at, velocity;  ///< `at` from the body's own middle.
-  double radii = 0;    ///< Sum of both.
+  float radii = 0;     ///< Sum of both.
 };
 
-/// Velocities in order of their cost, the best first; several, because the best may be taken.
+/// Those whom a body steers by, as arrays. What is not used is zero, which never touches.
+struct NearSet {
+  size_t size = 0;
+  alignas(64) std::array<float, kMostNear> x{}, z{}, vx{}, vz{};
+  alignas(
+      64) std::array<float, kMostNear> apart{};  ///< Squares: distance less radii and gap, >= 0.
+
+  void clear() { *this = {}; }
+  void add(const SampledSettings& settings, const Neighbour& other);
+};
+
+/// What a body steers by.
+struct Situation {
+  Plane velocity;
+  Plane wish;         ///< The velocity if nobody were there. [at most `fastest`]
+  float fastest = 1;  ///< [m/s, > 0]
+  NearSet near;
+  /// How far it is to a wall in each direction of the fan around the wish, if `has_walls`. [m]
+  alignas(64) std::array<float, kDirections> free_way{};
+  bool has_walls = false;
+};
+
+/// Unit vectors, 15 degrees apart, the first along the wish (or X, if there is none).
+using Fan = std::array<Plane, kDirections>;
+Fan fan_around(Plane wish);
+
+/// The velocities that are tried, in order: direction d at speed s is number d * kSpeeds + s. Along
+/// the wish they are parts of the wish; instead of the slowest way back there is standing.
+struct Trials {
+  alignas(64) std::array<float, kTrials> x, z;
+};
+Trials trials_of(const Situation& situation);
+
+/// How near a touch is: 1 / (time until two discs touch that go on as they do + kSoonest), 0 if
+/// they never do. `at` and `velocity`: the other's against one's own. `apart` as in NearSet. [1/s]
+float nearness(Plane at, Plane velocity, float apart);
+/// The same for a wall that is `way` off. [1/s]
+float nearness_of_wall(float way, float speed);
+
+/// True if whoever does as he wishes touches nobody and no wall within their horizons.
+bool wish_is_open(const SampledSettings& settings, const Situation& situation);
+
+/// What each trial costs.
+using Costs = std::array<float, kTrials>;
+Costs costs_of(const SampledSettings& settings, const Situation& situation, const Trials& trials);
+
+/// Trials in order of their cost, the best first, the first of equals first.
 inline constexpr size_t kChoices = 8;
 using Choices = std::array<Plane, kChoices>;
+Choices best_of(const Costs& costs, const Trials& trials);
 
-/// Time until two discs touch that go on as they do: infinity if never, 0 if they touch and
-/// approach. `at` and `velocity`: the other's against one's own. [s]
-double time_to_touch(Plane at, Plane velocity, double radii);
+/// All of that.
+Choices choose_velocity(const SampledSettings& settings, const Situation& situation);
 
-/// `wish`: the velocity if nobody were there. `fastest`: of the body. [m/s, > 0]
-Choices choose_velocity(const SampledSettings& settings, Plane velocity, Plane wish, double fastest,
-                        std::span<const Neighbour> neighbours);
+/// The wish of a body that is bound for a place `way` from its own: at `speed`, but not past it
+/// within `dt`; turned as by turned_right.
+Plane wish_towards(Plane way, float speed, float dt, float turn);
 
 /// Who is not getting on turns to the right, by and by, up to `most`, and back once he is: what a
 /// jam needs to begin to turn as a whole. All as tan(angle / 2), which needs no sines.
 struct Patience {
-  double rate = 0.5;     ///< a second
-  double most = 0.42;    ///< 46 degrees
-  double back = 0.25;    ///< a second
-  double content = 0.3;  ///< Share of the wished speed towards the goal that is getting on.
+  float rate = 0.5f;     ///< a second
+  float most = 0.42f;    ///< 46 degrees
+  float back = 0.25f;    ///< a second
+  float content = 0.3f;  ///< Share of the wished speed towards the goal that is getting on.
 };
 
 /// The next turn of an avatar. `progress`: its speed towards the goal by the wished one.
-double next_turn(const Patience& patience, double turn, double progress, double dt);
+float next_turn(const Patience& patience, float turn, float progress, float dt);
 
 /// `direction` turned to the right (seen from above, X to the right, Z down) by 2 atan(turn).
-Plane turned_right(Plane direction, double turn);
+Plane turned_right(Plane direction, float turn);
 
 }  // namespace throng::steer

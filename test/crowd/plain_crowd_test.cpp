@@ -20,14 +20,12 @@ bool have_arrived(const PlainCrowd& crowd) {
 
 TEST(PlainCrowd, NobodyEverTouchesAnotherHoweverDense) {
   for (const uint64_t seed : {1, 2, 3}) {
-    double side = 0;
-    std::vector<PlainBody> bodies = random_bodies(100, 0.9, seed, side);
-    for (uint32_t i = 0; i < bodies.size(); ++i) {
-      bodies[i].radius = 0.15 + 0.15 * random_unit(seed, 5, i);
-      bodies[i].speed = 0.5 + 2 * random_unit(seed, 6, i);
-    }
     PlainConfig config;
-    config.side = side;
+    std::vector<PlainBody> bodies = random_bodies(config, 100, 0.9, seed, config.side);
+    for (uint32_t i = 0; i < bodies.size(); ++i) {
+      bodies[i].radius = config.to_units(0.15 + 0.15 * random_unit(seed, 5, i));
+      bodies[i].speed = static_cast<float>(0.5 + 2 * random_unit(seed, 6, i));
+    }
     config.seed = seed;
     PlainCrowd crowd(bodies, config);
     double moved = 0;
@@ -42,15 +40,20 @@ TEST(PlainCrowd, NobodyEverTouchesAnotherHoweverDense) {
 
 TEST(PlainCrowd, SeesOverTheBordersOfAPlaneThatRepeatsItself) {
   for (const double side : {6.0, 12.0, 18.0}) {  // one, two, three times as wide as one sees
-    std::vector<PlainBody> bodies(2);
-    bodies[0].at = {side - 0.4, 1};
-    bodies[1].at = {side / 2 + 0.3, side - 0.7};
-    bodies[0].goal = {side + 4, 1};
-    bodies[1].goal = {side / 2 + 0.3, side + 4};
-    bodies.push_back({.at = {0.4, 1}, .velocity = {}, .goal = {-4, 1}});
-    bodies.push_back({.at = {side / 2 + 0.3, 0.3}, .velocity = {}, .goal = {side / 2 + 0.3, -4}});
     PlainConfig config;
-    config.side = side;
+    const auto spot = [&](double x, double z) {
+      return Spot{config.to_units(x), config.to_units(z)};
+    };
+    std::vector<PlainBody> bodies(4);
+    bodies[0].at = spot(side - 0.4, 1);
+    bodies[1].at = spot(side / 2 + 0.3, side - 0.7);
+    bodies[0].goal = spot(side + 4, 1);
+    bodies[1].goal = spot(side / 2 + 0.3, side + 4);
+    bodies[2].at = spot(0.4, 1);
+    bodies[2].goal = spot(-4, 1);
+    bodies[3].at = spot(side / 2 + 0.3, 0.3);
+    bodies[3].goal = spot(side / 2 + 0.3, -4);
+    config.side = config.to_units(side);
     PlainCrowd crowd(bodies, config);
     for (int step = 0; step < 30; ++step) {
       crowd.step();
@@ -61,38 +64,40 @@ TEST(PlainCrowd, SeesOverTheBordersOfAPlaneThatRepeatsItself) {
 
 TEST(PlainCrowd, TheCountOfOverlapsSeesThem) {
   std::vector<PlainBody> bodies(3);
-  bodies[1].at = {0.59, 0};
-  bodies[2].at = {0.59, 0.6};
+  bodies[1].at = {12287, 0};  // two radii less a unit
+  bodies[2].at = {12287, 12288};
   EXPECT_EQ(PlainCrowd(bodies, {}).overlaps(), 1u);
 }
 
 TEST(PlainCrowd, TwoHeadOnPassOnTheRight) {
   std::vector<PlainBody> bodies(2);
-  bodies[0].goal = bodies[1].at = {8, 0};
+  const PlainConfig config;
+  bodies[0].goal = bodies[1].at = {config.to_units(8), 0};
   bodies[1].goal = bodies[0].at;
-  PlainCrowd crowd(bodies, {});
-  double aside = 0;
+  PlainCrowd crowd(bodies, config);
+  int32_t aside = 0;
   while (!have_arrived(crowd) && crowd.time() < 20) {
     crowd.step();
     ASSERT_EQ(crowd.overlaps(), 0u);
     aside = std::max(aside, crowd.bodies()[0].at.z);
   }
   EXPECT_LT(crowd.time(), 9);
-  EXPECT_GT(aside, 0.2);  // its own right
+  EXPECT_GT(aside, config.to_units(0.2));  // its own right
 }
 
 TEST(PlainCrowd, OfTwoBoundForOnePlaceOneArrivesFirst) {
   std::vector<PlainBody> bodies(2);
-  bodies[0].at = {-4, 0};
-  bodies[1].at = {4, 0};
-  PlainCrowd crowd(bodies, {});
+  const PlainConfig config;
+  bodies[0].at = {config.to_units(-4), 0};
+  bodies[1].at = {config.to_units(4), 0};
+  PlainCrowd crowd(bodies, config);
   for (int step = 0; step < 150; ++step) {
     crowd.step();
     ASSERT_EQ(crowd.overlaps(), 0u);
   }
   const auto near = [&](size_t i) {
-    return std::sqrt(crowd.bodies()[i].at.x * crowd.bodies()[i].at.x +
-                     crowd.bodies()[i].at.z * crowd.bodies()[i].at.z) < 0.3;
+    const Spot at = crowd.bodies()[i].at;
+    return nearer_than(at.x, at.z, config.to_units(0.3));
   };
   EXPECT_FALSE(near(0) && near(1));
   EXPECT_TRUE(crowd.bodies()[0].arrived >= 0 || crowd.bodies()[1].arrived >= 0);
@@ -103,7 +108,7 @@ TEST(PlainCrowd, RingsChangePlacesBecauseTheImpatientTurnTogether) {
   for (const bool patient : {true, false}) {
     PlainConfig config;
     config.patient = patient;
-    PlainCrowd crowd(ring_bodies(70, 6), config);
+    PlainCrowd crowd(ring_bodies(config, 70, 6), config);
     while (!have_arrived(crowd) && crowd.time() < 60) {
       crowd.step();
       ASSERT_EQ(crowd.overlaps(), 0u);

@@ -4,92 +4,160 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstring>
 #include <vector>
 
 #include "core/random.h"
+#include "simd_targets.h"
+#include "steer/sampled_kernel.h"
 
 namespace throng::steer {
 namespace {
 
-double size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
+float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
+
+// Seconds until discs touch, by the model's nearness; -1 if never.
+float time_to_touch(Plane at, Plane velocity, float radii) {
+  NearSet near;
+  near.add({.gap = 0}, {at, velocity, radii});
+  const float n = nearness(at, velocity, near.apart[0]);
+  return n > 0 ? 1 / n - kSoonest : -1;
+}
+
+Situation situation(Plane velocity, Plane wish, const std::vector<Neighbour>& others = {},
+                    float fastest = 1.3f) {
+  Situation s{.velocity = velocity, .wish = wish, .fastest = fastest, .near = {}, .free_way = {}};
+  for (const Neighbour& other : others) s.near.add({}, other);
+  return s;
+}
+
+Plane best(const Situation& s) { return choose_velocity({}, s)[0]; }
 
 TEST(SampledSteering, TimesToTouchAreThoseOfDiscs) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  EXPECT_DOUBLE_EQ(time_to_touch({3, 0}, {-1, 0}, 1), 2);
-  EXPECT_DOUBLE_EQ(time_to_touch({5, 3}, {-1, 0}, 5), 1);  // 4, 3, 5
-  EXPECT_DOUBLE_EQ(time_to_touch({0, -6}, {0, 4}, 2), 1);
-  EXPECT_EQ(time_to_touch({3, 2}, {-1, 0}, 1), kNever);   // passes
-  EXPECT_EQ(time_to_touch({3, 1}, {-1, 0}, 1), kNever);   // grazes
-  EXPECT_EQ(time_to_touch({3, 0}, {1, 0}, 1), kNever);    // goes away
-  EXPECT_EQ(time_to_touch({3, 0}, {0, 0}, 1), kNever);    // alike
-  EXPECT_EQ(time_to_touch({0.5, 0}, {-1, 0}, 1), 0);      // touches and approaches
-  EXPECT_EQ(time_to_touch({0.5, 0}, {1, 0}, 1), kNever);  // touches and leaves
-  EXPECT_EQ(time_to_touch({0, 0}, {1, 0}, 1), kNever);    // coincident
+  EXPECT_NEAR(time_to_touch({3, 0}, {-1, 0}, 1), 2, 1e-6);
+  EXPECT_NEAR(time_to_touch({5, 3}, {-1, 0}, 5), 1, 1e-6);  // 4, 3, 5
+  EXPECT_NEAR(time_to_touch({0, -6}, {0, 4}, 2), 1, 1e-6);
+  EXPECT_EQ(time_to_touch({3, 2}, {-1, 0}, 1), -1);            // passes
+  EXPECT_EQ(time_to_touch({3, 1}, {-1, 0}, 1), -1);            // grazes
+  EXPECT_EQ(time_to_touch({3, 0}, {1, 0}, 1), -1);             // goes away
+  EXPECT_EQ(time_to_touch({3, 0}, {0, 0}, 1), -1);             // alike
+  EXPECT_NEAR(time_to_touch({0.5f, 0}, {-1, 0}, 1), 0, 1e-6);  // touches and approaches
+  EXPECT_EQ(time_to_touch({0.5f, 0}, {1, 0}, 1), -1);          // touches and leaves
+  EXPECT_EQ(time_to_touch({0, 0}, {1, 0}, 1), -1);             // coincident
+}
+
+TEST(SampledSteering, NearnessOfAWallIsThatOfTheTimeToReachIt) {
+  EXPECT_NEAR(nearness_of_wall(1, 0.5f), 1 / 2.1, 1e-6);
+  EXPECT_NEAR(nearness_of_wall(0, 0.5f), 10, 1e-4);
+  EXPECT_EQ(nearness_of_wall(0, 0), 0);
 }
 
 TEST(SampledSteering, AloneItDoesWhatItWishes) {
-  const Choices choices = choose_velocity({}, {0.3, 0.9}, {1.1, -0.2}, 1.3, {});
-  EXPECT_EQ(choices[0].x, 1.1);
-  EXPECT_EQ(choices[0].z, -0.2);
-  const Choices still = choose_velocity({}, {0, 0}, {0, 0}, 1.3, {});
-  EXPECT_EQ(size_of(still[0]), 0);
+  const Plane wish = best(situation({0.3f, 0.9f}, {1.1f, -0.2f}));
+  EXPECT_EQ(wish.x, 1.1f);
+  EXPECT_EQ(wish.z, -0.2f);
+  EXPECT_EQ(size_of(best(situation({0, 0}, {0, 0}))), 0);
+  EXPECT_TRUE(wish_is_open({}, situation({0.3f, 0.9f}, {1.1f, -0.2f})));
 }
 
 TEST(SampledSteering, HeadOnItGoesToTheRight) {
-  const std::vector<Neighbour> other{{{1.6, 0}, {-1.3, 0}, 0.6}};
-  const Choices choices = choose_velocity({}, {1.3, 0}, {1.3, 0}, 1.3, other);
-  EXPECT_GT(choices[0].z, 0.1);
-  EXPECT_GT(choices[0].x, 0);
+  const Situation ahead = situation({1.3f, 0}, {1.3f, 0}, {{{1.6f, 0}, {-1.3f, 0}, 0.6f}});
+  EXPECT_FALSE(wish_is_open({}, ahead));
+  EXPECT_GT(best(ahead).z, 0.1f);
+  EXPECT_GT(best(ahead).x, 0);
   // Turned by 90 degrees, so is the answer.
-  const std::vector<Neighbour> below{{{0, 1.6}, {0, -1.3}, 0.6}};
-  const Choices turned = choose_velocity({}, {0, 1.3}, {0, 1.3}, 1.3, below);
-  EXPECT_NEAR(turned[0].x, -choices[0].z, 1e-9);
-  EXPECT_NEAR(turned[0].z, choices[0].x, 1e-9);
+  const Plane turned = best(situation({0, 1.3f}, {0, 1.3f}, {{{0, 1.6f}, {0, -1.3f}, 0.6f}}));
+  EXPECT_NEAR(turned.x, -best(ahead).z, 1e-6);
+  EXPECT_NEAR(turned.z, best(ahead).x, 1e-6);
 }
 
 TEST(SampledSteering, OvertakesAndLetsThoseAheadBe) {
-  const std::vector<Neighbour> slow{{{0.9, 0}, {0.4, 0}, 0.6}};
-  EXPECT_GT(std::fabs(choose_velocity({}, {1.3, 0}, {1.3, 0}, 1.3, slow)[0].z), 0.1);
-  const std::vector<Neighbour> fast{{{0.9, 0}, {1.3, 0}, 0.6}};
-  EXPECT_EQ(choose_velocity({}, {1.3, 0}, {1.3, 0}, 1.3, fast)[0].z, 0);
-  const std::vector<Neighbour> beside{{{0, 1}, {1.3, 0}, 0.6}};
-  EXPECT_EQ(choose_velocity({}, {1.3, 0}, {1.3, 0}, 1.3, beside)[0].x, 1.3);
+  const Plane v{1.3f, 0};
+  EXPECT_GT(std::fabs(best(situation(v, v, {{{0.9f, 0}, {0.4f, 0}, 0.6f}})).z), 0.1f);
+  EXPECT_EQ(best(situation(v, v, {{{0.9f, 0}, {1.3f, 0}, 0.6f}})).z, 0);
+  EXPECT_EQ(best(situation(v, v, {{{0, 1}, {1.3f, 0}, 0.6f}})).x, 1.3f);
+}
+
+TEST(SampledSteering, TurnsAwayFromAWallAheadAndStopsInADeadEnd) {
+  Situation s = situation({1.3f, 0}, {1.3f, 0});
+  s.has_walls = true;
+  s.free_way.fill(5);
+  EXPECT_EQ(best(s).x, 1.3f);
+  for (const size_t k : {0, 1, 2, 22, 23}) s.free_way[k] = 0.2f;
+  EXPECT_FALSE(wish_is_open({}, s));
+  const Plane aside = best(s);
+  EXPECT_GT(std::fabs(aside.z), 0.5f);
+  EXPECT_GT(aside.x, 0);
+  s.free_way.fill(0);
+  EXPECT_EQ(size_of(best(s)), 0);
+}
+
+// Situations of all kinds: crowded, coincident, without a wish, beside walls.
+Situation random_situation(uint64_t seed, uint64_t n) {
+  uint64_t k = 0;
+  const auto number = [&](double most) {
+    return static_cast<float>(most * (2 * random_unit(seed, n, k++) - 1));
+  };
+  const float fastest = 0.2f + std::fabs(number(2));
+  Situation s = situation({number(1), number(1)}, {number(1), number(1)}, {}, fastest);
+  const float size = size_of(s.wish);
+  if (size > fastest) s.wish = {s.wish.x * fastest / size, s.wish.z * fastest / size};
+  if (n % 11 == 0) s.wish = {};
+  const uint64_t others = random_below(seed, n, k++, kMostNear + 1);
+  for (uint64_t i = 0; i < others; ++i) {
+    const Plane at = i == 3 && n % 7 == 0 ? Plane{} : Plane{number(3), number(3)};
+    s.near.add({}, {at, {number(2), number(2)}, 0.1f + static_cast<float>(n % 5) / 4});
+  }
+  s.has_walls = n % 3 == 0;
+  for (float& way : s.free_way) way = std::max(number(1), 0.0f);
+  return s;
 }
 
 TEST(SampledSteering, ChoicesAreFiniteAndNeverFasterThanTheBody) {
   for (uint64_t n = 0; n < 500; ++n) {
-    uint64_t k = 0;
-    const auto number = [&](double most) { return most * (2 * random_unit(7, n, k++) - 1); };
-    std::vector<Neighbour> others(random_below(7, n, k++, 15));
-    for (Neighbour& o : others)
-      o = {{number(3), number(3)}, {number(2), number(2)}, 0.1 + static_cast<double>(n % 5)};
-    if (n % 7 == 0) others.push_back({{0, 0}, {0, 0}, 0.6});
-    const double fastest = 0.2 + std::fabs(number(2));
-    Plane wish{number(1), number(1)};
-    const double size = size_of(wish);
-    if (size > fastest) wish = {wish.x * fastest / size, wish.z * fastest / size};
-    for (const Plane& v : choose_velocity({}, {number(1), number(1)}, wish, fastest, others)) {
-      ASSERT_TRUE(size_of(v) <= fastest * (1 + 1e-12)) << n;
+    const Situation s = random_situation(7, n);
+    for (const Plane& v : choose_velocity({}, s)) {
+      ASSERT_TRUE(size_of(v) <= s.fastest * (1 + 1e-6f)) << n;
     }
   }
 }
 
+TEST(SampledSteering, MachinesFindTheSameBits) {
+  test::for_every_simd_target([&](const char* name) {
+    for (uint64_t n = 0; n < 2000; ++n) {
+      const Situation s = random_situation(9, n);
+      ASSERT_EQ(wish_is_open_fast({}, s), wish_is_open({}, s)) << name << ' ' << n;
+      const Trials expected_trials = trials_of(s);
+      const Costs expected = costs_of({}, s, expected_trials);
+      Trials trials;
+      Costs costs;
+      costs_of_fast({}, s, trials, costs);
+      ASSERT_EQ(std::memcmp(&expected_trials, &trials, sizeof trials), 0) << name << ' ' << n;
+      ASSERT_EQ(std::memcmp(&expected, &costs, sizeof costs), 0) << name << ' ' << n;
+      for (const Plane& choice : best_of(expected, expected_trials)) {
+        const Plane taken = take_best_fast(trials, costs);
+        ASSERT_EQ(std::memcmp(&taken, &choice, sizeof choice), 0) << name << ' ' << n;
+      }
+    }
+  });
+}
+
 TEST(SampledSteering, PatienceTurnsRightWhileOneDoesNotGetOn) {
   const Patience patience;
-  double turn = 0;
-  for (int i = 0; i < 5; ++i) turn = next_turn(patience, turn, 0.1, 0.1);
-  EXPECT_NEAR(turn, 5 * 0.1 * patience.rate, 1e-12);
-  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, -1, 0.1);
+  float turn = 0;
+  for (int i = 0; i < 5; ++i) turn = next_turn(patience, turn, 0.1f, 0.1f);
+  EXPECT_NEAR(turn, 5 * 0.1 * patience.rate, 1e-6);
+  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, -1, 0.1f);
   EXPECT_EQ(turn, patience.most);
-  turn = next_turn(patience, turn, 0.9, 0.1);
-  EXPECT_NEAR(turn, patience.most - 0.1 * patience.back, 1e-12);
-  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, 1, 0.1);
+  turn = next_turn(patience, turn, 0.9f, 0.1f);
+  EXPECT_NEAR(turn, patience.most - 0.1 * patience.back, 1e-6);
+  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, 1, 0.1f);
   EXPECT_EQ(turn, 0);
   const Plane right = turned_right({1, 0}, 1);  // 2 atan(1): a right angle
-  EXPECT_NEAR(right.x, 0, 1e-12);
-  EXPECT_NEAR(right.z, 1, 1e-12);
+  EXPECT_NEAR(right.x, 0, 1e-6);
+  EXPECT_NEAR(right.z, 1, 1e-6);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/random.h"
 
@@ -14,13 +15,12 @@ namespace {
 
 using steer::Plane;
 
-constexpr double kThere = 0.3;  // [m] from its goal a body has arrived
-constexpr double kShorter[] = {0.5, 0.25, 0.1};
+constexpr float kThere = 0.3f;  // [m] from its goal a body has arrived
+constexpr float kShorter[] = {0.5f, 0.25f, 0.1f};
 
-double squared(Plane p) { return p.x * p.x + p.z * p.z; }
-double size_of(Plane p) { return std::sqrt(squared(p)); }
+float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
-double wrapped(double d, double side) {
+int32_t wrapped(int32_t d, int32_t side) {
   if (side <= 0) return d;
   if (d > side / 2) return d - side;
   return d < -side / 2 ? d + side : d;
@@ -28,31 +28,31 @@ double wrapped(double d, double side) {
 
 // Cells as wide as one sees, as many as fit.
 struct Grid {
-  Plane low;
-  double cell = 1;
+  Spot low;
+  int64_t cell = 1;
   int32_t width = 1, depth = 1;
   std::vector<std::vector<uint32_t>> bodies;
 
-  Grid(const std::vector<PlainBody>& all, double sight, double side) {
-    Plane high{side, side};
+  Grid(const std::vector<PlainBody>& all, int32_t sight, int32_t side) {
+    Spot high{side, side};
     if (side <= 0) {
-      low = high = all.empty() ? Plane{} : all[0].at;
+      low = high = all.empty() ? Spot{} : all[0].at;
       for (const PlainBody& b : all) {
         low = {std::min(low.x, b.at.x), std::min(low.z, b.at.z)};
         high = {std::max(high.x, b.at.x), std::max(high.z, b.at.z)};
       }
     }
-    const double across = std::max(high.x - low.x, high.z - low.z);
-    width = depth = std::max(1, static_cast<int32_t>(across / sight));
+    const int32_t across = std::max(high.x - low.x, high.z - low.z);
+    width = depth = std::max(1, across / sight);
     // The cell to the left is then the one to the right, too.
     if (side > 0 && width < 3) width = depth = 1;
-    cell = std::max(across / width, sight);
+    cell = std::max(across / width + 1, sight);
     bodies.resize(static_cast<size_t>(width * depth));
     for (uint32_t i = 0; i < all.size(); ++i) {
       bodies[at(column(all[i].at.x - low.x), column(all[i].at.z - low.z))].push_back(i);
     }
   }
-  [[nodiscard]] int32_t column(double d) const {
+  [[nodiscard]] int32_t column(int32_t d) const {
     return std::clamp(static_cast<int32_t>(d / cell), 0, width - 1);
   }
   [[nodiscard]] size_t at(int32_t x, int32_t z) const { return static_cast<size_t>(z * width + x); }
@@ -60,31 +60,33 @@ struct Grid {
 
 }  // namespace
 
+int32_t PlainConfig::to_units(double metres) const {
+  return static_cast<int32_t>(std::lround(metres / units.unit));
+}
+
 PlainCrowd::PlainCrowd(std::vector<PlainBody> bodies, const PlainConfig& config)
     : bodies_(std::move(bodies)), config_(config) {
   for (const PlainBody& b : bodies_) {
     widest_ = std::max(widest_, b.radius);
-    fastest_ = std::max(fastest_, b.speed);
+    longest_ = std::max(longest_, config.units.stride(b.speed));
   }
   near_.resize(bodies_.size());
   choices_.resize(bodies_.size());
 }
 
-Plane PlainCrowd::between(Plane a, Plane b) const {
+Spot PlainCrowd::between(Spot a, Spot b) const {
   return {wrapped(b.x - a.x, config_.side), wrapped(b.z - a.z, config_.side)};
 }
 
 Plane PlainCrowd::wish_of(const PlainBody& body) const {
-  const Plane way{body.goal.x - body.at.x, body.goal.z - body.at.z};
-  const double left = size_of(way);
-  if (left < 1e-9) return {};
-  const double speed = std::min(body.speed, left / config_.dt);
-  return steer::turned_right({way.x / left * speed, way.z / left * speed}, body.turn);
+  const Plane way = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
+  return steer::wish_towards(way, body.speed, config_.units.dt, body.turn);
 }
 
 void PlainCrowd::sense() {
   // Who could be touched within a step must be seen, however short the sight.
-  const double sight = std::max(config_.sight, 2 * widest_ + 2 * fastest_ * config_.dt);
+  const int32_t sight = std::max(config_.to_units(config_.sight), 2 * widest_ + 2 * longest_);
+  const float most = static_cast<float>(sight) * static_cast<float>(sight);
   const Grid grid(bodies_, sight, config_.side);
   const bool repeats = config_.side > 0;
   for (uint32_t i = 0; i < bodies_.size(); ++i) {
@@ -98,58 +100,72 @@ void PlainCrowd::sense() {
         if (!inside && !repeats) continue;
         for (const uint32_t j :
              grid.bodies[grid.at((x + grid.width) % grid.width, (z + grid.depth) % grid.depth)]) {
-          const Plane at = between(bodies_[i].at, bodies_[j].at);
-          if (j != i && squared(at) < sight * sight) near_[i].push_back({j, at});
+          const Spot at = between(bodies_[i].at, bodies_[j].at);
+          if (j != i && near_square(at.x, at.z) < most) near_[i].push_back({j, at});
         }
       }
     }
     std::sort(near_[i].begin(), near_[i].end(), [](const Near& a, const Near& b) {
-      const double da = squared(a.at), db = squared(b.at);
+      const float da = near_square(a.at.x, a.at.z), db = near_square(b.at.x, b.at.z);
       return da != db ? da < db : a.other < b.other;
     });
   }
 }
 
 void PlainCrowd::steer_all() {
-  std::vector<steer::Neighbour> seen;
   for (uint32_t i = 0; i < bodies_.size(); ++i) {
     const PlainBody& body = bodies_[i];
-    seen.clear();
+    steer::Situation situation{.velocity = body.velocity,
+                               .wish = wish_of(body),
+                               .fastest = body.speed,
+                               .near = {},
+                               .free_way = {}};
     for (const Near& n : near_[i]) {
+      if (situation.near.size == static_cast<size_t>(config_.steering.neighbours)) break;
       const PlainBody& other = bodies_[n.other];
       // Who has arrived makes way for those who would pass, were he not there: they may stand.
       const bool makes_way = body.arrived >= 0 && other.arrived < 0;
-      seen.push_back(
-          {n.at, makes_way ? wish_of(other) : other.velocity, body.radius + other.radius});
+      situation.near.add(
+          config_.steering,
+          {config_.units.metres(n.at.x, n.at.z), makes_way ? wish_of(other) : other.velocity,
+           static_cast<float>(body.radius + other.radius) * config_.units.unit});
     }
-    choices_[i] =
-        steer::choose_velocity(config_.steering, body.velocity, wish_of(body), body.speed, seen);
+    choices_[i] = steer::choose_velocity(config_.steering, situation);
+    // Who meets nobody does as he wishes.
+    if (steer::wish_is_open(config_.steering, situation)) {
+      std::rotate(choices_[i].begin(), choices_[i].end() - 1, choices_[i].end());
+      choices_[i][0] = situation.wish;
+    }
   }
 }
 
 void PlainCrowd::commit() {
   const size_t count = bodies_.size();
-  std::vector<Plane> now(count);
+  std::vector<Spot> now(count);
   for (size_t i = 0; i < count; ++i) now[i] = bodies_[i].at;
   std::vector<uint8_t> decided(count, 0);
-  std::vector<std::optional<Plane>> named(count);
+  std::vector<std::optional<Spot>> named(count);
   // Who stood within this when the step began can be touched in it.
   const auto can_touch = [&](uint32_t i, const Near& n) {
-    const double reach = bodies_[i].radius + bodies_[n.other].radius +
-                         (bodies_[i].speed + bodies_[n.other].speed) * config_.dt;
-    return squared(n.at) < reach * reach;
+    const PlainBody &a = bodies_[i], &b = bodies_[n.other];
+    const int64_t reach = int64_t{a.radius} + b.radius + config_.units.stride(a.speed) +
+                          config_.units.stride(b.speed);
+    return nearer_than(n.at.x, n.at.z, reach);
   };
-  const auto is_clear = [&](uint32_t i, uint32_t j, Plane a, Plane b) {
-    const double radii = bodies_[i].radius + bodies_[j].radius;
-    return squared(between(a, b)) >= radii * radii;
+  const auto is_clear = [&](uint32_t i, uint32_t j, Spot a, Spot b) {
+    const Spot d = between(a, b);
+    return !nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
   };
-  const auto order = [&](uint32_t i) { return random_u64(config_.seed, i, steps_); };
+  const auto order = [&](uint32_t i) {
+    return std::pair(random_u64(config_.seed, i, steps_), i);
+  };
   for (int32_t round = 0; round < config_.rounds; ++round) {
     for (uint32_t i = 0; i < count; ++i) {
       named[i].reset();
       if (decided[i] != 0) continue;
       const auto consider = [&](Plane velocity) {
-        const Plane to{now[i].x + velocity.x * config_.dt, now[i].z + velocity.z * config_.dt};
+        const Spot to{now[i].x + config_.units.way(velocity.x),
+                      now[i].z + config_.units.way(velocity.z)};
         for (const Near& n : near_[i]) {
           if (can_touch(i, n) && !is_clear(i, n.other, to, now[n.other])) return false;
         }
@@ -157,7 +173,7 @@ void PlainCrowd::commit() {
         return true;
       };
       bool found = std::any_of(choices_[i].begin(), choices_[i].end(), consider);
-      for (const double part : kShorter) {
+      for (const float part : kShorter) {
         const Plane best = choices_[i][0];
         found = found || consider({best.x * part, best.z * part});
       }
@@ -177,29 +193,30 @@ void PlainCrowd::commit() {
   settle(now);
 }
 
-void PlainCrowd::settle(const std::vector<Plane>& now) {
+void PlainCrowd::settle(const std::vector<Spot>& now) {
   progress_ = 0;
   ++steps_;
+  const StepUnits& units = config_.units;
   for (size_t i = 0; i < bodies_.size(); ++i) {
     PlainBody& body = bodies_[i];
-    const Plane way{body.goal.x - body.at.x, body.goal.z - body.at.z};
-    const double left = size_of(way);
-    body.velocity = {(now[i].x - body.at.x) / config_.dt, (now[i].z - body.at.z) / config_.dt};
-    const double towards =
-        left > 1e-9 ? (body.velocity.x * way.x + body.velocity.z * way.z) / left : 0;
+    const Plane way = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
+    const float left = size_of(way);
+    body.velocity = {units.velocity(now[i].x - body.at.x), units.velocity(now[i].z - body.at.z)};
+    const float towards =
+        left > 1e-6f ? (body.velocity.x * way.x + body.velocity.z * way.z) / left : 0;
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
     if (config_.patient) {
-      const double content = left > 1 ? towards / body.speed : 1;
-      body.turn = steer::next_turn(config_.patience, body.turn, content, config_.dt);
+      const float content = left > 1 ? towards / body.speed : 1;
+      body.turn = steer::next_turn(config_.patience, body.turn, content, units.dt);
     }
-    const Plane rest{body.goal.x - body.at.x, body.goal.z - body.at.z};
-    if (body.arrived < 0 && squared(rest) < kThere * kThere) body.arrived = time();
+    const Plane rest = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
+    if (body.arrived < 0 && size_of(rest) < kThere) body.arrived = time();
     if (config_.side <= 0) continue;
-    for (double Plane::*axis : {&Plane::x, &Plane::z}) {
-      const double shift = body.at.*axis < 0               ? config_.side
-                           : body.at.*axis >= config_.side ? -config_.side
-                                                           : 0;
+    for (int32_t Spot::*axis : {&Spot::x, &Spot::z}) {
+      const int32_t shift = body.at.*axis < 0               ? config_.side
+                            : body.at.*axis >= config_.side ? -config_.side
+                                                            : 0;
       body.at.*axis += shift;
       body.goal.*axis += shift;
     }
@@ -216,38 +233,45 @@ uint64_t PlainCrowd::overlaps() const {
   uint64_t found = 0;
   for (size_t i = 0; i < bodies_.size(); ++i) {
     for (size_t j = i + 1; j < bodies_.size(); ++j) {
-      // 1 nm: of the torus, where a place just before the border is moved by its side.
-      const double radii = bodies_[i].radius + bodies_[j].radius - (config_.side > 0 ? 1e-9 : 0);
-      found += squared(between(bodies_[i].at, bodies_[j].at)) < radii * radii;
+      const Spot d = between(bodies_[i].at, bodies_[j].at);
+      found += nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
     }
   }
   return found;
 }
 
-Plane next_goal(const PlainBody& body, uint64_t seed, uint32_t index, uint64_t turn) {
-  return {body.at.x + 100 * random_unit(seed, 2 * uint64_t{index}, turn) - 50,
-          body.at.z + 100 * random_unit(seed, 2 * uint64_t{index} + 1, turn) - 50};
+Spot next_goal(const PlainConfig& config, const PlainBody& body, uint64_t seed, uint32_t index,
+               uint64_t turn) {
+  const auto within_50_m = [&](uint64_t stream) {
+    return config.to_units(100 * random_unit(seed, stream, turn) - 50);
+  };
+  return {body.at.x + within_50_m(2 * uint64_t{index}),
+          body.at.z + within_50_m(2 * uint64_t{index} + 1)};
 }
 
-std::vector<PlainBody> random_bodies(uint32_t count, double area, uint64_t seed, double& side) {
-  side = std::sqrt(area * count);
+std::vector<PlainBody> random_bodies(const PlainConfig& config, uint32_t count, double area,
+                                     uint64_t seed, int32_t& side) {
+  side = config.to_units(std::sqrt(area * count));
   std::vector<PlainBody> bodies;
   for (uint64_t n = 0; bodies.size() < count; ++n) {
     PlainBody body;
-    body.at = {side * random_unit(seed, ~uint64_t{0}, 2 * n),
-               side * random_unit(seed, ~uint64_t{0}, 2 * n + 1)};
+    const auto below_side = [&](uint64_t k) {
+      return static_cast<int32_t>(random_below(seed, ~uint64_t{0}, k, static_cast<uint64_t>(side)));
+    };
+    body.at = {below_side(2 * n), below_side(2 * n + 1)};
     const bool clear = std::none_of(bodies.begin(), bodies.end(), [&](const PlainBody& other) {
-      const Plane d{wrapped(other.at.x - body.at.x, side), wrapped(other.at.z - body.at.z, side)};
-      return squared(d) < 4 * body.radius * body.radius;
+      return nearer_than(wrapped(other.at.x - body.at.x, side),
+                         wrapped(other.at.z - body.at.z, side), 2 * int64_t{body.radius});
     });
     if (!clear) continue;
-    body.goal = next_goal(body, seed, static_cast<uint32_t>(bodies.size()), 0);
+    body.goal = next_goal(config, body, seed, static_cast<uint32_t>(bodies.size()), 0);
     bodies.push_back(body);
   }
   return bodies;
 }
 
-std::vector<PlainBody> ring_bodies(uint32_t count, double radius) {
+std::vector<PlainBody> ring_bodies(const PlainConfig& config, uint32_t count, double radius,
+                                   Spot middle) {
   constexpr double kApart = 1.2;  // [m]
   std::vector<PlainBody> bodies;
   for (int32_t ring = 0; bodies.size() < count; ++ring) {
@@ -256,9 +280,10 @@ std::vector<PlainBody> ring_bodies(uint32_t count, double radius) {
     const uint32_t here = std::min(fit, count - static_cast<uint32_t>(bodies.size()));
     for (uint32_t k = 0; k < here; ++k) {
       const double angle = 2 * std::numbers::pi * (k + 0.37 * ring) / here;
+      const Spot from{config.to_units(r * std::cos(angle)), config.to_units(r * std::sin(angle))};
       PlainBody body;
-      body.at = {r * std::cos(angle), r * std::sin(angle)};
-      body.goal = {-body.at.x, -body.at.z};
+      body.at = {middle.x + from.x, middle.z + from.z};
+      body.goal = {middle.x - from.x, middle.z - from.z};
       bodies.push_back(body);
     }
   }

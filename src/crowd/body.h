@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "steer/sampled.h"
+#include "world/walk.h"
+
+/// An avatar of a crowd with goals, as a step touches it.
+namespace throng {
+
+/// One cache line: whoever is looked at is looked at whole. What is asked rarely (goals, corridors)
+/// lies in tables by slot.
+struct Body {
+  enum Flag : uint8_t {
+    kArrived = 1,  // at its goal, once
+    kLast = 2,     // `aim` is the goal itself
+    kDriven = 4,   // from outside: `wish` is given
+    kHasGoal = 8,
+    kLost = 16,  // asks for another way
+  };
+
+  enum State : uint8_t {
+    kFree,       // nobody can be touched in this step: it takes what it names
+    kUndecided,  // it stays, unless a round decides
+    kDecided,
+  };
+
+  int32_t x = 0, z = 0;  // [units]
+  int32_t y = 0;         // feet [mm]
+  uint32_t level = 0;    // of the world
+  steer::Plane velocity, wish;
+  int32_t aim_x = 0, aim_z = 0;  // where it is bound for in a straight line [units]
+  float turn = 0;                // of steer::Patience
+  float speed = 1;               // wished, and the most [m/s]
+  int32_t radius = 0;            // [units]
+  uint32_t slot = 0;
+  uint8_t avatar_class = 0;
+  uint8_t flags = 0;
+  uint16_t height = 0;  // [mm, at most 65 m]
+  uint16_t waited = 0;  // steps since it last got on
+  State state = kFree;
+  uint8_t round = 0;  // of the step in which this place was named, from 1
+
+  [[nodiscard]] GroundPoint point() const { return {x, z}; }
+  [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }
+};
+static_assert(sizeof(Body) == 64 && std::is_trivially_copyable_v<Body>);
+
+}  // namespace throng

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/huge_array.h"
+#include "crowd/body.h"
+#include "crowd/pixel_grid.h"
+
+/// Who is near whom: bodies in order of the square that they stand on.
+namespace throng {
+
+/// The plane in squares, rolled up: square (x, z) is the one of (x mod 2^a, z mod 2^b), so that a
+/// table of as many entries as there are bodies is enough for a world of any size. Whoever looks
+/// around meets bodies from far away, too, and tells them by their distance. What lies in the rows
+/// of squares around a body is no square twice: there are always at least kAround of them.
+class NeighbourGrid {
+ public:
+  static constexpr int32_t kReach = 2;  // squares to each side
+  static constexpr int32_t kAround = 2 * kReach + 1;
+
+  /// Squares at least as wide as half of `sight` units, for a world of width x depth cells.
+  NeighbourGrid(int32_t width, int32_t depth, int64_t sight, size_t bodies);
+
+  /// Sorts by square; on one square the order stays. `sorted` must be as large as `bodies`.
+  void sort(std::span<const Body> bodies, std::span<Body> sorted, int32_t workers);
+
+  /// Bodies of a row of squares around a body: [first, last), in up to two pieces.
+  struct Piece {
+    uint32_t first = 0, last = 0;
+  };
+  using Around = std::array<Piece, 2 * kAround>;
+  /// Those that may be within sight of the square; pieces that are not needed are empty.
+  [[nodiscard]] Around around(uint32_t square) const;
+  [[nodiscard]] uint32_t square(const Body& body) const {
+    const auto x = static_cast<uint32_t>(squares_.pixel(body.x >> kUnitBits));
+    const auto z = static_cast<uint32_t>(squares_.pixel(body.z >> kUnitBits));
+    return ((z & mask_z_) << bits_x_) | (x & mask_x_);
+  }
+
+  /// Places of the sorted bodies, as arrays with room for a vector more.
+  [[nodiscard]] const int32_t* x() const { return x_.data(); }
+  [[nodiscard]] const int32_t* z() const { return z_.data(); }
+  [[nodiscard]] const int32_t* y() const { return y_.data(); }
+  [[nodiscard]] uint64_t bytes() const;
+
+ private:
+  PixelGrid squares_;
+  uint32_t bits_x_ = 0;
+  uint32_t mask_x_ = 0, mask_z_ = 0;
+  std::vector<uint32_t> first_;              // of a square; one more than there are
+  std::vector<std::vector<uint32_t>> next_;  // of a square, a list for each part of the bodies
+  HugeArray<int32_t> x_, z_, y_;
+};
+
+}  // namespace throng

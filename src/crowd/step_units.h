@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "steer/sampled.h"
+
+/// Between velocities and the units of the grid that a body moves by in a step.
+namespace throng {
+
+struct StepUnits {
+  float unit = 1;  ///< [m]
+  float dt = 1;    ///< [s]
+
+  /// What is `units` long. [m]
+  [[nodiscard]] steer::Plane metres(int32_t x, int32_t z) const {
+    return {static_cast<float>(x) * unit, static_cast<float>(z) * unit};
+  }
+  /// Way of a step at a velocity along an axis, to the nearest unit.
+  [[nodiscard]] int32_t way(float velocity) const {
+    return static_cast<int32_t>(std::lrint(velocity * (dt / unit)));
+  }
+  [[nodiscard]] float velocity(int32_t way) const { return static_cast<float>(way) * (unit / dt); }
+  /// No step at a speed is longer. [units]
+  [[nodiscard]] int32_t stride(float speed) const {
+    return static_cast<int32_t>(speed * (dt / unit)) + 2;
+  }
+};
+
+/// Square of a distance in units, as neighbours are ordered by: not exact, but the same everywhere.
+inline float near_square(int32_t x, int32_t z) {
+  return static_cast<float>(x) * static_cast<float>(x) +
+         static_cast<float>(z) * static_cast<float>(z);
+}
+
+/// Are two points of the plane nearer than so many units? Exact.
+inline bool nearer_than(int32_t x, int32_t z, int64_t reach) {
+  return int64_t{x} * x + int64_t{z} * z < reach * reach;
+}
+
+}  // namespace throng

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "crowd/crowd_ground.h"
+#include "steer/sampled.h"
+
+/// What the ground lets a body of a class do.
+namespace throng {
+
+class StrideGround {
+ public:
+  StrideGround(const CrowdGround& ground, int32_t step_mm) : ground_(&ground), step_mm_(step_mm) {}
+
+  /// Where a step ended.
+  struct Landing {
+    uint32_t level = 0;
+    int32_t y = 0;  // feet [mm]
+  };
+  /// The conservative move of algorithm 1 ([ML06]) from one point to another: every cell between is
+  /// legal, and no step is too high. False: there is a wall.
+  bool move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
+
+  /// False only if no wall is within `reach` cells: a quick look that does not see everything.
+  [[nodiscard]] bool may_have_walls(uint32_t level, int32_t x, int32_t z, int32_t reach) const;
+
+  /// How far it is to a wall along a unit vector, at most `most`. [units]
+  [[nodiscard]] float free_way(uint32_t level, GroundPoint from, steer::Plane direction,
+                               float most) const;
+
+ private:
+  [[nodiscard]] bool box_is_plain(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
+                                  int32_t z1) const;
+
+  const CrowdGround* ground_;
+  int32_t step_mm_;
+};
+
+}  // namespace throng

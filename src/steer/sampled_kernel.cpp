@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "steer/sampled_kernel.h"
+
+#include <algorithm>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "steer/sampled_kernel.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+// Every operation is one of sampled.cpp's, in its order, and none is fused: the bits are the same.
+HWY_BEFORE_NAMESPACE();
+namespace throng::steer {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, kMostNear>;
+using V = hn::Vec<D>;
+static_assert(kTrials % kMostNear == 0);
+
+HWY_INLINE V times(V a, float b) { return hn::Mul(a, hn::Set(D(), b)); }
+
+HWY_INLINE V size_of(V x, V z) { return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(z, z))); }
+
+struct Touch {
+  V approach, inside;
+  hn::Mask<D> happens;
+};
+
+HWY_INLINE Touch touch(V x, V z, V vx, V vz, V apart) {
+  const D d;
+  const V zero = hn::Zero(d);
+  Touch t;
+  t.approach = hn::Neg(hn::Add(hn::Mul(x, vx), hn::Mul(z, vz)));
+  const V speed = hn::Add(hn::Mul(vx, vx), hn::Mul(vz, vz));
+  t.inside = hn::Sub(hn::Mul(t.approach, t.approach), hn::Mul(speed, apart));
+  t.happens = hn::And(hn::Gt(t.approach, zero), hn::Gt(t.inside, zero));
+  return t;
+}
+
+HWY_INLINE V nearness(const Touch& t, V apart) {
+  const V sum = hn::Add(t.approach, hn::Sqrt(hn::Max(t.inside, hn::Zero(D()))));
+  const V near = hn::Div(sum, hn::Add(apart, hn::Mul(hn::Set(D(), kSoonest), sum)));
+  return hn::IfThenElseZero(t.happens, near);
+}
+
+bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
+  const D d;
+  const V least = hn::Set(d, 1 / (settings.horizon + kSoonest));
+  for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
+    const V vx = hn::Sub(hn::Load(d, &s.near.vx[n]), hn::Set(d, s.wish.x));
+    const V vz = hn::Sub(hn::Load(d, &s.near.vz[n]), hn::Set(d, s.wish.z));
+    const V apart = hn::Load(d, &s.near.apart[n]);
+    const Touch t = touch(hn::Load(d, &s.near.x[n]), hn::Load(d, &s.near.z[n]), vx, vz, apart);
+    if (hn::AllFalse(d, t.happens)) continue;
+    if (!hn::AllFalse(d, hn::Gt(nearness(t, apart), least))) return false;
+  }
+  if (!s.has_walls) return true;
+  const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
+  return nearness_of_wall(s.free_way[0], wished) <= 1 / (settings.wall_horizon + kSoonest);
+}
+
+void CostsOf(const SampledSettings& settings, const Situation& s, Trials& trials, Costs& costs) {
+  const D d;
+  const V zero = hn::Zero(d);
+  trials = trials_of(s);
+  const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
+  const bool wishes = wished > 1e-6f;
+  const Plane ahead = wishes ? Plane{s.wish.x / wished, s.wish.z / wished} : Plane{1, 0};
+  // The first of the fan, which is `ahead` but for a sum with 0.
+  const V ahead_x = hn::Set(d, ahead.x * 1.0f - ahead.z * 0.0f);
+  const V ahead_z = hn::Set(d, ahead.x * 0.0f + ahead.z * 1.0f);
+  const V least = hn::Set(d, 1 / (settings.horizon + kSoonest));
+  const float least_of_wall = 1 / (settings.wall_horizon + kSoonest);
+  const V fastest = hn::Set(d, s.fastest);
+  alignas(64) std::array<float, kTrials> free_way;
+  if (s.has_walls) {
+    for (size_t t = 0; t < kTrials; ++t) free_way[t] = s.free_way[t / kSpeeds];
+  }
+  for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
+    const V x = hn::Load(d, &trials.x[t]), z = hn::Load(d, &trials.z[t]);
+    const V along = hn::Add(hn::Mul(x, ahead_x), hn::Mul(z, ahead_z));
+    const V left = hn::Sub(hn::Mul(ahead_z, x), hn::Mul(ahead_x, z));
+    V cost = hn::Mul(hn::Set(d, 1 - settings.straightness),
+                     size_of(hn::Sub(x, hn::Set(d, s.wish.x)), hn::Sub(z, hn::Set(d, s.wish.z))));
+    const V lost = hn::Max(hn::Sub(hn::Set(d, wished), along), zero);
+    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.straightness), lost));
+    const V changed =
+        size_of(hn::Sub(x, hn::Set(d, s.velocity.x)), hn::Sub(z, hn::Set(d, s.velocity.z)));
+    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.keep), changed));
+    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.right), hn::Max(left, zero)));
+    cost = hn::Div(cost, fastest);
+    V most = zero, sum = zero;
+    for (size_t n = 0; n < s.near.size; ++n) {
+      const V apart = hn::Set(d, s.near.apart[n]);
+      const Touch to =
+          touch(hn::Set(d, s.near.x[n]), hn::Set(d, s.near.z[n]),
+                hn::Sub(hn::Set(d, s.near.vx[n]), x), hn::Sub(hn::Set(d, s.near.vz[n]), z), apart);
+      if (hn::AllFalse(d, to.happens)) continue;
+      const V urgent = hn::Max(hn::Sub(nearness(to, apart), least), zero);
+      most = hn::Max(most, urgent);
+      sum = hn::Add(sum, urgent);
+    }
+    cost = hn::Add(cost, times(most, settings.threat));
+    cost = hn::Add(cost, times(sum, settings.threats));
+    if (s.has_walls) {
+      const V speed = size_of(x, z);
+      const V way = hn::Load(d, &free_way[t]);
+      const V near = hn::Div(speed, hn::Add(way, hn::Mul(hn::Set(d, kSoonest), speed)));
+      const V urgent = hn::Max(
+          hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), near), hn::Set(d, least_of_wall)), zero);
+      cost = hn::Add(cost, times(urgent, settings.wall));
+    }
+    hn::Store(cost, d, &costs[t]);
+  }
+}
+
+Plane TakeBest(const Trials& trials, Costs& costs) {
+  const D d;
+  V least = hn::LoadU(d, costs.data());
+  for (size_t t = hn::Lanes(d); t < kTrials; t += hn::Lanes(d)) {
+    least = hn::Min(least, hn::LoadU(d, &costs[t]));
+  }
+  const V lowest = hn::MinOfLanes(d, least);
+  for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
+    const intptr_t lane = hn::FindFirstTrue(d, hn::Eq(hn::LoadU(d, &costs[t]), lowest));
+    if (lane < 0) continue;
+    const size_t best = t + static_cast<size_t>(lane);
+    costs[best] = std::numeric_limits<float>::infinity();
+    return {trials.x[best], trials.z[best]};
+  }
+  return {};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace throng::steer
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace throng::steer {
+
+HWY_EXPORT(WishIsOpen);
+HWY_EXPORT(CostsOf);
+HWY_EXPORT(TakeBest);
+
+bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation) {
+  return HWY_DYNAMIC_DISPATCH(WishIsOpen)(settings, situation);
+}
+void costs_of_fast(const SampledSettings& settings, const Situation& situation, Trials& trials,
+                   Costs& costs) {
+  HWY_DYNAMIC_DISPATCH(CostsOf)(settings, situation, trials, costs);
+}
+Plane take_best_fast(const Trials& trials, Costs& costs) {
+  return HWY_DYNAMIC_DISPATCH(TakeBest)(trials, costs);
+}
+
+}  // namespace throng::steer
+#endif

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/crowd_engine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "baked.h"
+#include "core/random.h"
+#include "plain_crowd.h"
+#include "simd_targets.h"
+#include "world/place.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+// An engine on level ground, and the same bodies in the step as the tests have it.
+struct Pair {
+  test::PlainCrowd plain;
+  CrowdEngine engine;
+  uint64_t steps = 0;
+
+  // Steps both and says who differs first.
+  std::string step() {
+    plain.step();
+    EngineCounts counts;
+    CrowdEngine::Times times;
+    engine.step(steps++, counts, times);
+    std::vector<const Body*> by_slot(engine.bodies().size());
+    for (const Body& body : engine.bodies()) by_slot[body.slot] = &body;
+    for (size_t i = 0; i < by_slot.size(); ++i) {
+      const test::PlainBody& p = plain.bodies()[i];
+      const Body& b = *by_slot[i];
+      if (b.x != p.at.x || b.z != p.at.z || b.turn != p.turn ||
+          b.has(Body::kArrived) != (p.arrived >= 0)) {
+        return "body " + std::to_string(i) + " in step " + std::to_string(steps);
+      }
+    }
+    return "";
+  }
+};
+
+struct LevelGround {
+  World world;
+  CrowdGround ground;
+
+  explicit LevelGround(double side)
+      : world(test::bake(worlds::flat(side), 0.1)),
+        ground(*CrowdGround::make(*world.data(), 0, 400)) {}
+
+  [[nodiscard]] Pair pair(const std::vector<test::PlainBody>& bodies,
+                          const test::PlainConfig& config, int32_t workers) const {
+    const WorldData& data = *world.data();
+    int32_t widest = 0;
+    float fastest = 0;
+    for (const test::PlainBody& b : bodies) {
+      widest = std::max(widest, b.radius);
+      fastest = std::max(fastest, b.speed);
+    }
+    CrowdEngine engine({.units = config.units,
+                        .sight = config.sight,
+                        .rounds = config.rounds,
+                        .patient = config.patient,
+                        .seed = config.seed,
+                        .workers = workers,
+                        .steering = config.steering,
+                        .patience = config.patience},
+                       {StrideGround(ground, 400)}, data.width, data.depth, widest, fastest);
+    for (size_t i = 0; i < bodies.size(); ++i) {
+      const test::PlainBody& p = bodies[i];
+      Body body;
+      body.x = p.at.x;
+      body.z = p.at.z;
+      const auto tile = data.tile_levels(p.at.x >> (kUnitBits + 6), p.at.z >> (kUnitBits + 6));
+      EXPECT_EQ(tile.last, tile.first + 1) << "level ground has one level";
+      body.level = tile.first;
+      body.y = ground.feet(body.level, body.point());
+      body.aim_x = p.goal.x;
+      body.aim_z = p.goal.z;
+      body.speed = p.speed;
+      body.radius = p.radius;
+      body.slot = static_cast<uint32_t>(i);
+      body.height = 1750;
+      body.flags = Body::kHasGoal | Body::kLast;
+      engine.add(body);
+    }
+    return {test::PlainCrowd(bodies, config), std::move(engine)};
+  }
+};
+
+std::vector<test::PlainBody> scattered(const test::PlainConfig& config, uint32_t count, double area,
+                                       uint64_t seed, test::Spot corner) {
+  int32_t side = 0;
+  std::vector<test::PlainBody> bodies = random_bodies(config, count, area, seed, side);
+  for (uint32_t i = 0; i < count; ++i) {
+    test::PlainBody& b = bodies[i];
+    b.at = {b.at.x + corner.x, b.at.z + corner.z};
+    b.goal = {
+        corner.x + static_cast<int32_t>(random_below(seed, 1, i, static_cast<uint64_t>(side))),
+        corner.z + static_cast<int32_t>(random_below(seed, 2, i, static_cast<uint64_t>(side)))};
+    b.radius = config.to_units(0.15 + 0.15 * random_unit(seed, 5, i));
+    b.speed = static_cast<float>(0.5 + random_unit(seed, 6, i));
+  }
+  return bodies;
+}
+
+TEST(CrowdEngine, DoesWhatThePlainStepDoes) {
+  const LevelGround ground(60);
+  const test::PlainConfig config;
+  const test::Spot corner{config.to_units(15), config.to_units(15)};
+  for (const double area : {4.0, 1.0, 0.7}) {
+    for (const uint64_t seed : {1, 2}) {
+      Pair pair = ground.pair(scattered(config, 300, area, seed, corner), config, 2);
+      for (int step = 0; step < 60; ++step) ASSERT_EQ(pair.step(), "") << area << ' ' << seed;
+    }
+  }
+}
+
+TEST(CrowdEngine, RingsDoWhatThePlainStepDoes) {
+  const LevelGround ground(60);
+  const test::PlainConfig config;
+  const test::Spot middle{config.to_units(30), config.to_units(30)};
+  Pair pair = ground.pair(ring_bodies(config, 120, 8, middle), config, 1);
+  for (int step = 0; step < 300; ++step) ASSERT_EQ(pair.step(), "");
+}
+
+TEST(CrowdEngine, EveryMachineDoesTheSame) {
+  const LevelGround ground(40);
+  const test::PlainConfig config;
+  const test::Spot corner{config.to_units(12), config.to_units(12)};
+  test::for_every_simd_target([&](const char* name) {
+    for (const int32_t workers : {1, 3}) {
+      Pair pair = ground.pair(scattered(config, 150, 1, 7, corner), config, workers);
+      for (int step = 0; step < 20; ++step) ASSERT_EQ(pair.step(), "") << name << ' ' << workers;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace throng

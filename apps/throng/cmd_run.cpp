@@ -10,11 +10,12 @@
 #include "command.h"
 #include "output_file.h"
 #include "rerun.h"
+#include "run_crowd.h"
 #include "run_recorder.h"
 #include "throng/wanderers.h"
 #include "throng/world.h"
 
-// throng run: a crowd of wanderers in a baked world, timed, checked and hashed.
+// throng run: a crowd in a baked world, timed, checked and hashed: of wanderers, or with goals.
 namespace throng::app {
 namespace {
 
@@ -27,6 +28,7 @@ struct RunOptions {
   uint64_t every = 1;
   uint64_t check_every = 0;
   WanderConfig config;
+  CrowdRun crowd;  // its goals are empty: wanderers
 };
 
 // Sums over all steps.
@@ -79,7 +81,8 @@ class TrajectoryWriter {
 
   [[nodiscard]] bool is_open() const { return file_.is_open(); }
 
-  void add(uint64_t step, const Wanderers& crowd) {
+  template <class Avatars>
+  void add(uint64_t step, const Avatars& crowd) {
     crowd.read(states_);
     text_.clear();
     for (const AvatarState& state : states_) {
@@ -142,18 +145,91 @@ std::string run_text(const RunOptions& options, const Wanderers& crowd, const Ru
       totals.found.overlaps, crowd.state_hash());
 }
 
-// Every `every`-th step as a frame, of the others the hash alone.
-Result<void> record_step(const RunOptions& options, uint64_t step, const Wanderers& crowd,
-                         std::vector<AvatarState>& states, RunRecorder& recorder) {
-  if (step % options.every != 0) return recorder.add_hash(step, crowd.state_hash());
-  crowd.read(states);
-  return recorder.add(step, crowd.state_hash(), states);
-}
+// Where a run is written to, step by step.
+class Sinks {
+ public:
+  explicit Sinks(const RunOptions& options) : options_(options) {}
+
+  Result<void> open(const World& world, const std::string& model, const Json& settings) {
+    if (!options_.trajectories.empty()) {
+      const auto number = static_cast<size_t>(options_.config.avatar_class);
+      auto ok = trajectories_.open(options_.trajectories, world.summary().classes[number]);
+      if (!ok) return ok;
+    }
+    if (options_.record.empty()) return {};
+    return recorder_.open(options_.record, options_.world, world, options_.config.dt, model,
+                          settings);
+  }
+  // Of the steps between frames the recorder gets the hash alone.
+  template <class Avatars>
+  Result<void> add(uint64_t step, const Avatars& crowd) {
+    const bool is_due = step % options_.every == 0;
+    if (trajectories_.is_open() && is_due) trajectories_.add(step, crowd);
+    if (!recorder_.is_open()) return {};
+    if (!is_due) return recorder_.add_hash(step, crowd.state_hash());
+    crowd.read(states_);
+    return recorder_.add(step, crowd.state_hash(), states_);
+  }
+  Result<void> finish() {
+    if (trajectories_.is_open()) {
+      auto ok = trajectories_.finish();
+      if (!ok) return ok;
+    }
+    return recorder_.is_open() ? recorder_.finish() : Result<void>();
+  }
+
+ private:
+  const RunOptions& options_;
+  TrajectoryWriter trajectories_;
+  RunRecorder recorder_;
+  std::vector<AvatarState> states_;
+};
 
 // The class's index, by name or the first; fills in the name.
 Result<int32_t> pick_class(const World& world, std::string& name) {
   if (name.empty()) name = world.summary().classes.front().name;
   return class_named(world, name);
+}
+
+int run_with_goals(Session& session, const World& world, RunOptions& options) {
+  CrowdRun& run = options.crowd;
+  run.world_name = options.world;
+  run.class_name = options.class_name;
+  run.avatars = options.config.avatars;
+  run.speed = options.config.speed;
+  run.config.dt = options.config.dt;
+  run.config.seed = options.config.seed;
+  run.config.workers = options.config.workers;
+  if (auto ok = read_goals(run); !ok) return fail(ok.error());
+  Sinks sinks(options);
+  if (auto ok = sinks.open(world, kCrowdModel, crowd_settings(run)); !ok) return fail(ok.error());
+  auto crowd = GoalCrowd::make(world, run, session.context);
+  if (!crowd) return fail(crowd.error());
+  const auto shown = [&](uint64_t step) { return sinks.add(step, crowd->crowd()); };
+  return run_crowd(session, run, *crowd, shown, [&] { return sinks.finish(); });
+}
+
+int run_wanderers(Session& session, const World& world, const RunOptions& options) {
+  Result<Wanderers> crowd = Wanderers::create(world, options.config);
+  if (!crowd) return fail(crowd.error());
+  Sinks sinks(options);
+  auto ok =
+      sinks.open(world, kWanderersModel, wanderers_settings(options.config, options.class_name));
+  if (ok) ok = sinks.add(0, *crowd);
+  if (!ok) return fail(ok.error());
+  RunTotals totals;
+  for (uint64_t step = 1; step <= options.steps; ++step) {
+    totals.add(crowd->step());
+    if (step % options.check_every == 0 || step == options.steps) totals.add(crowd->check());
+    ok = sinks.add(step, *crowd);
+    if (!ok) return fail(ok.error());
+    show_progress(session, "walk", step, options.steps);
+    if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
+  }
+  ok = sinks.finish();
+  if (!ok) return fail(ok.error());
+  print_result(session, run_json(options, *crowd, totals), run_text(options, *crowd, totals));
+  return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
 }
 
 int run(Session& session, RunOptions& options) {
@@ -162,58 +238,20 @@ int run(Session& session, RunOptions& options) {
   const Result<int32_t> avatar_class = pick_class(*world, options.class_name);
   if (!avatar_class) return fail(avatar_class.error());
   options.config.avatar_class = *avatar_class;
-  Result<Wanderers> crowd = Wanderers::create(*world, options.config);
-  if (!crowd) return fail(crowd.error());
-
-  TrajectoryWriter trajectories;
-  if (!options.trajectories.empty()) {
-    const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
-    const Result<void> opened = trajectories.open(options.trajectories, avatar);
-    if (!opened) return fail(opened.error());
-    trajectories.add(0, *crowd);
-  }
-  RunRecorder recorder;
-  std::vector<AvatarState> states;
-  if (!options.record.empty()) {
-    Result<void> ok =
-        recorder.open(options.record, options.world, *world, options.config.dt, kWanderersModel,
-                      wanderers_settings(options.config, options.class_name));
-    if (ok) ok = record_step(options, 0, *crowd, states, recorder);
-    if (!ok) return fail(ok.error());
-  }
-  const uint64_t check_every =
-      options.check_every > 0 ? options.check_every : std::max<uint64_t>(1, options.steps / 10);
-  RunTotals totals;
-  for (uint64_t step = 1; step <= options.steps; ++step) {
-    totals.add(crowd->step());
-    if (step % check_every == 0 || step == options.steps) totals.add(crowd->check());
-    if (trajectories.is_open() && step % options.every == 0) trajectories.add(step, *crowd);
-    if (recorder.is_open()) {
-      const Result<void> ok = record_step(options, step, *crowd, states, recorder);
-      if (!ok) return fail(ok.error());
-    }
-    show_progress(session, "walk", step, options.steps);
-    if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
-  }
-  if (trajectories.is_open()) {
-    const Result<void> finished = trajectories.finish();
-    if (!finished) return fail(finished.error());
-  }
-  if (recorder.is_open()) {
-    const Result<void> finished = recorder.finish();
-    if (!finished) return fail(finished.error());
-  }
-  print_result(session, run_json(options, *crowd, totals), run_text(options, *crowd, totals));
-  return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
+  if (options.check_every == 0) options.check_every = std::max<uint64_t>(1, options.steps / 10);
+  options.crowd.steps = options.steps;
+  options.crowd.check_every = options.check_every;
+  return options.crowd.goals.empty() ? run_wanderers(session, *world, options)
+                                     : run_with_goals(session, *world, options);
 }
 
 }  // namespace
 
 void add_run(CLI::App& parser, Session& session) {
-  CLI::App* command =
-      add_command(parser, session, "run", "Walk a crowd through a baked world",
-                  "throng bake builtin:garage -o garage.throng\n"
-                  "throng run garage.throng --avatars 200 --steps 50 --trajectories walk.csv");
+  CLI::App* command = add_command(
+      parser, session, "run", "Walk a crowd through a baked world",
+      "throng bake builtin:garage -o garage.throng\n"
+      "throng run garage.throng --avatars 200 --steps 50 --goals random --trajectories walk.csv");
   const auto options = std::make_shared<RunOptions>();
   WanderConfig& config = options->config;
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
@@ -224,6 +262,18 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--threads", config.workers, "Threads, 0 for all cores");
   command->add_option("--class", options->class_name, "Avatar class (the world's first)");
   command->add_option("--speed", config.speed, "Walking speed, 0 for the class's own [m/s]");
+  command
+      ->add_option("--goals", options->crowd.goals,
+                   "Walk to goals and avoid each other: 'random', or a file of lines x,y,z")
+      ->type_name("random|FILE");
+  command
+      ->add_option("--near", options->crowd.near, "Random goals within so many metres, 0: anywhere")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--radius", options->crowd.radius,
+                      "Of bodies with goals, 0 for the class's own [m]");
+  command->add_flag("--labels", options->crowd.config.labels,
+                    "Label corners: faster ways, for small worlds");
+  command->add_flag("--zones", options->crowd.config.zones, "Ways by zones: for large worlds");
   command->add_option("--trajectories", options->trajectories, "Write positions to this file")
       ->type_name("FILE.csv");
   command->add_option("--record", options->record, "Record the run in this file")

@@ -45,13 +45,47 @@ Result<Rerun> rerun_wanderers(const Json& settings, const World& world, int32_t 
                .state_hash = [crowd] { return crowd->state_hash(); }};
 }
 
+Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t workers) {
+  auto ok =
+      need(settings, {"avatars", "seed"}, [](const Json& j) { return j.is_number_unsigned(); });
+  if (ok) {
+    ok = need(settings, {"dt", "speed", "radius", "near"},
+              [](const Json& j) { return j.is_number(); });
+  }
+  if (ok) {
+    ok = need(settings, {"class", "goals", "goals_text"},
+              [](const Json& j) { return j.is_string(); });
+  }
+  if (ok) ok = need(settings, {"labels", "zones"}, [](const Json& j) { return j.is_boolean(); });
+  if (!ok) return ok.error();
+  CrowdRun run;
+  run.class_name = settings.at("class");
+  run.goals = settings.at("goals");
+  run.goals_text = settings.at("goals_text");
+  run.near = settings.at("near");
+  run.avatars = settings.at("avatars");
+  run.speed = settings.at("speed");
+  run.radius = settings.at("radius");
+  run.config.dt = settings.at("dt");
+  run.config.seed = settings.at("seed");
+  run.config.labels = settings.at("labels");
+  run.config.zones = settings.at("zones");
+  run.config.workers = workers;
+  Context context;
+  Result<GoalCrowd> made = GoalCrowd::make(world, run, context);
+  if (!made) return made.error();
+  const auto crowd = std::make_shared<GoalCrowd>(std::move(*made));
+  return Rerun{.step = [crowd] { crowd->step(); },
+               .state_hash = [crowd] { return crowd->crowd().state_hash(); }};
+}
+
 struct Model {
   const char* name;
   Result<Rerun> (*rerun)(const Json& settings, const World& world, int32_t workers);
 };
 
 // One line a model: what `throng replay --check` can run again.
-constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers}};
+constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers}, {kCrowdModel, rerun_crowd}};
 
 }  // namespace
 
@@ -61,6 +95,13 @@ Json wanderers_settings(const WanderConfig& config, const std::string& class_nam
           {"dt", config.dt},
           {"speed", config.speed},
           {"seed", config.seed}};
+}
+
+Json crowd_settings(const CrowdRun& run) {
+  return {{"avatars", run.avatars},       {"class", run.class_name}, {"goals", run.goals},
+          {"goals_text", run.goals_text}, {"near", run.near},        {"dt", run.config.dt},
+          {"speed", run.speed},           {"radius", run.radius},    {"labels", run.config.labels},
+          {"zones", run.config.zones},    {"seed", run.config.seed}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "command.h"
+#include "run_crowd.h"
 #include "throng/recording.h"
 #include "throng/wanderers.h"
 #include "throng/world.h"
@@ -22,6 +23,9 @@ struct Rerun {
 inline constexpr const char* kWanderersModel = "wanderers";
 /// What a recording of wanderers keeps. Threads never change a result.
 [[nodiscard]] Json wanderers_settings(const WanderConfig& config, const std::string& class_name);
+
+inline constexpr const char* kCrowdModel = "crowd";
+[[nodiscard]] Json crowd_settings(const CrowdRun& run);
 
 /// Fails with kBadFile: a model or settings that this program does not know.
 [[nodiscard]] Result<Rerun> make_rerun(const RecordingInfo& info, const World& world,

@@ -19,7 +19,9 @@ struct Body {
     kLast = 2,     // `aim` is the goal itself
     kDriven = 4,   // from outside: `wish` is given
     kHasGoal = 8,
-    kLost = 16,  // asks for another way
+    kLost = 16,         // asks for another way
+    kJustArrived = 32,  // until the step is over
+    kStranded = 64,     // no way leads to its goal; until the step is over
   };
 
   enum State : uint8_t {

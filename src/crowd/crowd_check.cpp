@@ -13,18 +13,16 @@
 
 namespace throng {
 
-CrowdCheck check_avatars(const World& world, int32_t avatar_class, std::span<const Avatar> avatars,
-                         int32_t workers) {
+CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies, int32_t workers) {
   const WorldData& data = *world.data();
-  const AvatarClass& body = data.summary.classes[static_cast<size_t>(avatar_class)];
   const double unit = data.summary.cell / kUnitsPerCell;
 
   std::atomic<uint64_t> wall_entries{0}, overlaps{0};
-  parallel_ranges(avatars.size(), 1024, workers, [&](size_t begin, size_t end) {
+  parallel_ranges(bodies.size(), 1024, workers, [&](size_t begin, size_t end) {
     uint64_t found = 0;
     for (size_t i = begin; i < end; ++i) {
-      const Avatar& a = avatars[i];
-      const GroundLevel level = ground_level(data, a.level, avatar_class);
+      const CheckedBody& a = bodies[i];
+      const GroundLevel level = ground_level(data, a.level, a.avatar_class);
       const auto [cx, cz] = std::pair{a.x >> kUnitBits, a.z >> kUnitBits};
       const auto tile = data.tile_levels(cx >> 6, cz >> 6);
       const bool on_tile = a.level >= tile.first && a.level < tile.last;
@@ -37,26 +35,28 @@ CrowdCheck check_avatars(const World& world, int32_t avatar_class, std::span<con
     wall_entries += found;
   });
 
-  // Avatars in order of a column of squares one body wide, then along it: partners are near in the
-  // list.
-  const double width = 2 * body.radius;
+  // Bodies in order of a column of squares as wide as the widest, then along it: partners are near
+  // in the list.
+  double width = 0;
+  for (const CheckedBody& body : bodies) width = std::max(width, 2 * body.radius);
   struct Entry {
     int64_t column;
-    double x, z, y;
+    double x, z, y, radius, height;
   };
-  std::vector<Entry> entries(avatars.size());
-  for (size_t i = 0; i < avatars.size(); ++i) {
-    const Avatar& a = avatars[i];
+  std::vector<Entry> entries(bodies.size());
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    const CheckedBody& a = bodies[i];
     const double x = a.x * unit;
-    entries[i] = {static_cast<int64_t>(std::floor(x / width)), x, a.z * unit, a.y * 1e-3};
+    entries[i] = {
+        static_cast<int64_t>(std::floor(x / width)), x, a.z * unit, a.y * 1e-3, a.radius, a.height};
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.column != b.column ? a.column < b.column : a.z < b.z;
   });
   const auto clash = [&](const Entry& a, const Entry& b) {
     const double dx = a.x - b.x, dz = a.z - b.z;
-    const double reach = width - 1e-9;
-    return dx * dx + dz * dz < reach * reach && std::fabs(a.y - b.y) < body.height;
+    const double reach = a.radius + b.radius - 1e-9;
+    return dx * dx + dz * dz < reach * reach && a.y < b.y + b.height && b.y < a.y + a.height;
   };
   parallel_ranges(entries.size(), 1024, workers, [&](size_t begin, size_t end) {
     uint64_t found = 0;
@@ -66,7 +66,7 @@ CrowdCheck check_avatars(const World& world, int32_t avatar_class, std::span<con
            j < entries.size() && entries[j].column == a.column && entries[j].z - a.z < width; ++j) {
         found += clash(a, entries[j]);
       }
-      const Entry key{a.column + 1, 0, a.z - width, 0};
+      const Entry key{a.column + 1, 0, a.z - width, 0, 0, 0};
       auto next =
           std::lower_bound(entries.begin(), entries.end(), key, [](const Entry& p, const Entry& q) {
             return p.column != q.column ? p.column < q.column : p.z < q.z;

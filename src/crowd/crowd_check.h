@@ -2,16 +2,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <span>
 
-#include "crowd/avatars.h"
-#include "throng/wanderers.h"
+#include "throng/avatar_state.h"
 #include "throng/world.h"
 
 /// A look at a crowd that shares nothing with the step: exact distances, the world's own look-ups.
 namespace throng {
 
-CrowdCheck check_avatars(const World& world, int32_t avatar_class, std::span<const Avatar> avatars,
-                         int32_t workers);
+struct CheckedBody {
+  int32_t x = 0, z = 0;  // [units]
+  int32_t y = 0;         // feet [mm]
+  uint32_t level = 0;
+  int32_t avatar_class = 0;
+  double radius = 0, height = 0;  // [m]
+};
+
+CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies, int32_t workers);
 
 }  // namespace throng

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <mutex>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/random.h"
@@ -56,18 +58,31 @@ struct Nearest {
 
 }  // namespace
 
-CrowdEngine::CrowdEngine(const EngineConfig& config, std::vector<StrideGround> grounds,
-                         int32_t width, int32_t depth, int32_t widest, float fastest)
-    : config_(config),
-      grounds_(std::move(grounds)),
-      width_(width),
-      depth_(depth),
-      widest_(widest),
-      longest_(config.units.stride(fastest)) {
-  // Who could be touched within a step must be seen, however short the sight.
-  const auto sight = static_cast<int32_t>(std::lround(config.sight / double{config.units.unit}));
-  sight_ = std::max(sight, 2 * widest_ + 2 * longest_);
+void EngineCounts::add(const EngineCounts& other) {
+  contested += other.contested;
+  open += other.open;
+  stood += other.stood;
+  arrived += other.arrived;
+  progress += other.progress;
+}
+
+CrowdEngine::CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes)
+    : config_(config), grounds_(classes), width_(width), depth_(depth) {
   workers_.resize(static_cast<size_t>(worker_count(config.workers)));
+}
+
+void CrowdEngine::set_ground(size_t avatar_class, const StrideGround& ground) {
+  grounds_[avatar_class] = ground;
+}
+
+void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
+  config_.units.dt = dt;
+  widest_ = widest;
+  longest_ = config_.units.stride(fastest);
+  // Who could be touched within a step must be seen, however short the sight.
+  const auto sight = static_cast<int32_t>(std::lround(config_.sight / double{config_.units.unit}));
+  sight_ = std::max(sight, 2 * widest_ + 2 * longest_);
+  if (bodies_.size() > 0) grid_.emplace(width_, depth_, sight_, bodies_.size());
 }
 
 void CrowdEngine::reserve(size_t bodies) {
@@ -84,14 +99,15 @@ void CrowdEngine::add(const Body& body) {
   bodies_[size_++] = body;
 }
 
-void CrowdEngine::step(uint64_t step, EngineCounts& counts, Times& times) {
+void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts, Times& times) {
   if (size_ == 0) return;
   auto start = Clock::now();
   const auto lap = [&](double& seconds) {
     seconds += seconds_since(start);
     start = Clock::now();
   };
-  wish_all();
+  wish_all(before);
+  lap(times.plan);
   grid_->sort({bodies_.data(), size_}, {spare_.data(), size_}, config_.workers);
   std::swap(bodies_, spare_);
   lap(times.sort);
@@ -103,10 +119,13 @@ void CrowdEngine::step(uint64_t step, EngineCounts& counts, Times& times) {
   lap(times.settle);
 }
 
-void CrowdEngine::wish_all() {
-  parallel_ranges(size_, 4 * kGrain, config_.workers, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      Body& b = bodies_[i];
+void CrowdEngine::wish_all(const Before& before) {
+  const size_t pieces = (size_ + kGrain - 1) / kGrain;
+  parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
+    const size_t begin = piece * kGrain;
+    const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
+    if (before) before(bodies, worker);
+    for (Body& b : bodies) {
       if (b.has(Body::kDriven)) continue;
       b.wish = b.has(Body::kHasGoal)
                    ? steer::wish_towards(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z),
@@ -120,6 +139,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
   for (Worker& worker : workers_) {
     worker.others.clear();
     worker.contests.clear();
+    worker.counts = {};
   }
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
   parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t w) {
@@ -139,14 +159,14 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
           worker.entries.resize(most * 2);
         }
       }
-      decide(static_cast<uint32_t>(i), worker, around, counts);
+      decide(static_cast<uint32_t>(i), worker, around);
     }
   });
+  for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
 // Sense, steer, and name a place if nobody can object.
-void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
-                         EngineCounts& counts) {
+void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
   Body& body = bodies_[i];
   const Places places{grid_->x(), grid_->z(), grid_->y()};
   const auto sight = static_cast<float>(sight_);
@@ -214,7 +234,7 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   body.state = Body::kFree;
   place.round = 0;
   if (open && alone) {
-    counts.free_ways.fetch_add(1, std::memory_order_relaxed);
+    ++worker.counts.open;
     if (try_place(body, body.x + config_.units.way(body.wish.x),
                   body.z + config_.units.way(body.wish.z), place)) {
       return;
@@ -249,7 +269,7 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
     body.state = Body::kUndecided;  // walls all around: it stays
     return;
   }
-  counts.contested.fetch_add(1, std::memory_order_relaxed);
+  ++worker.counts.contested;
   body.state = Body::kUndecided;
   contest.body = i;
   contest.first = first_other;
@@ -338,9 +358,9 @@ bool CrowdEngine::holds(const Contest& contest, const Worker& worker, uint8_t ro
 }
 
 void CrowdEngine::settle_all(EngineCounts& counts) {
+  std::mutex adding;
   parallel_ranges(size_, 4 * kGrain, config_.workers, [&](size_t begin, size_t end) {
-    int64_t progress = 0;
-    uint64_t stood = 0, arrived = 0;
+    EngineCounts here;
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
       const Plane way = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
@@ -354,12 +374,12 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         b.level = place.level;
       } else {
         b.velocity = {};
-        ++stood;
+        ++here.stood;
       }
       if (!b.has(Body::kHasGoal) || b.has(Body::kDriven)) continue;
       const float left = size_of(way);
       const float towards = left > 1e-6f ? (b.velocity.x * way.x + b.velocity.z * way.z) / left : 0;
-      progress += std::lrint(towards / b.speed * 1e6f);
+      here.progress += std::lrint(towards / b.speed * 1e6f);
       const bool near_goal = left <= 1 && b.has(Body::kLast);
       const float content = near_goal ? 1 : towards / b.speed;
       if (config_.patient) {
@@ -370,13 +390,12 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
                      : uint16_t{0};
       const Plane rest = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
       if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kThere) {
-        b.flags |= Body::kArrived;
-        ++arrived;
+        b.flags |= Body::kArrived | Body::kJustArrived;
+        ++here.arrived;
       }
     }
-    counts.progress += progress;
-    counts.stood += stood;
-    counts.arrived += arrived;
+    const std::lock_guard lock(adding);
+    counts.add(here);
   });
 }
 

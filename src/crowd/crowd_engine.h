@@ -3,8 +3,8 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,21 +31,25 @@ struct EngineConfig {
   steer::Patience patience;
 };
 
+/// What a step did, summed over all bodies.
 struct EngineCounts {
-  std::atomic<uint64_t> contested{0};  // could touch somebody
-  std::atomic<uint64_t> free_ways{0};  // had an open wish and nobody in reach
-  std::atomic<uint64_t> stood{0};      // found no place to go, or stay by choice
-  std::atomic<uint64_t> arrived{0};    // in this step
-  std::atomic<int64_t> progress{0};    // sum of the speeds towards aims by those wished, millionths
+  uint64_t contested = 0;  // could touch somebody
+  uint64_t open = 0;       // had nobody in reach and nothing in the way of the wish
+  uint64_t stood = 0;
+  uint64_t arrived = 0;  // in this step
+  int64_t progress = 0;  // speeds towards aims by those wished, millionths
+
+  void add(const EngineCounts& other);
 };
 
 class CrowdEngine {
  public:
-  /// Grounds by class; a world of width x depth cells. Bodies may not be wider than `widest` units
-  /// nor faster than `fastest`.
-  CrowdEngine(const EngineConfig& config, std::vector<StrideGround> grounds, int32_t width,
-              int32_t depth, int32_t widest, float fastest);
+  /// For a world of width x depth cells and classes; grounds of those that are used must be set.
+  CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes);
 
+  void set_ground(size_t avatar_class, const StrideGround& ground);
+  /// No body may be wider than so many units, nor faster. Before the first body that is.
+  void fit(int32_t widest, float fastest, float dt);
   /// Makes room for so many. Bodies stay.
   void reserve(size_t bodies);
   [[nodiscard]] std::span<Body> bodies() const { return {bodies_.data(), size_}; }
@@ -54,11 +58,14 @@ class CrowdEngine {
   void shrink(size_t size) { size_ = size; }
 
   struct Times {
-    double sort = 0, steer = 0, commit = 0, settle = 0;  // [s]
+    double plan = 0, sort = 0, steer = 0, commit = 0, settle = 0;  // [s]
   };
-  /// One step. `step`: its number, for the order of claims.
-  void step(uint64_t step, EngineCounts& counts, Times& times);
+  /// One step. `step`: its number, for the order of claims. `before` is called for all bodies
+  /// first, some at a time, on any worker.
+  using Before = std::function<void(std::span<Body>, int32_t worker)>;
+  void step(uint64_t step, const Before& before, EngineCounts& counts, Times& times);
   [[nodiscard]] uint64_t bytes() const;
+  [[nodiscard]] const StepUnits& units() const { return config_.units; }
 
   /// Heights of two bodies' feet between which, and of what they can rise in a step, they could
   /// touch. [mm]
@@ -80,12 +87,12 @@ class CrowdEngine {
     std::vector<uint32_t> entries;
     std::vector<uint32_t> others;
     std::vector<Contest> contests;
+    EngineCounts counts;
   };
 
-  void wish_all();
+  void wish_all(const Before& before);
   void decide_all(EngineCounts& counts);
-  void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
-              EngineCounts& counts);
+  void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   void commit(uint64_t step);
   void settle_all(EngineCounts& counts);
   void name(const Contest& contest, const Worker& worker, uint8_t round);
@@ -96,9 +103,9 @@ class CrowdEngine {
   bool try_place(const Body& body, int32_t x, int32_t z, Body& place) const;
 
   EngineConfig config_;
-  std::vector<StrideGround> grounds_;
+  std::vector<StrideGround> grounds_;  // by class
   int32_t width_, depth_;
-  int32_t widest_, longest_, sight_;
+  int32_t widest_ = 0, longest_ = 0, sight_ = 0;
   size_t size_ = 0;
   HugeArray<Body> bodies_;
   HugeArray<Body> spare_;  // while sorting: where from; then: where to

@@ -26,18 +26,35 @@ std::pair<int32_t, int32_t> nth_legal(const uint64_t* legal, uint32_t rank) {
 
 }  // namespace
 
+StandingDraw::StandingDraw(const CrowdGround& ground, uint64_t seed)
+    : ground_(&ground), seed_(seed), before_{0} {
+  for (const auto& record : ground.records()) {
+    before_.push_back(before_.back() + record.legal_cells);
+  }
+}
+
+StandingDraw::Stand StandingDraw::draw(uint64_t n) const {
+  const uint64_t pick = random_below(seed_, 0x706c6163, n, before_.back());
+  const uint64_t within = random_u64(seed_, 0x77697468, n);
+  const auto level = static_cast<uint32_t>(std::upper_bound(before_.begin(), before_.end(), pick) -
+                                           before_.begin() - 1);
+  const auto [x, z] =
+      nth_legal(ground_->legal(level), static_cast<uint32_t>(pick - before_[level]));
+  const auto& record = ground_->records()[level];
+  const auto unit = [](uint64_t bits) { return static_cast<int64_t>(bits & (kUnitsPerCell - 1)); };
+  return {level,
+          {(int64_t{record.tile_x * 64 + x} << kUnitBits) + unit(within),
+           (int64_t{record.tile_z * 64 + z} << kUnitBits) + unit(within >> 32)}};
+}
+
 std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,
                                   CollisionMap& map) {
   const auto& records = ground.records();
-  std::vector<uint64_t> before{0};
-  for (const auto& record : records) before.push_back(before.back() + record.legal_cells);
+  const StandingDraw standing(ground, seed);
   std::vector<Avatar> avatars;
-  if (before.back() == 0) return avatars;
+  if (standing.is_empty()) return avatars;
   avatars.reserve(count);
-  const auto try_place = [&](uint32_t level, int32_t x, int32_t z, int32_t u, int32_t v) {
-    const auto& record = records[level];
-    const GroundPoint p{(int64_t{record.tile_x * 64 + x} << kUnitBits) + u,
-                        (int64_t{record.tile_z * 64 + z} << kUnitBits) + v};
+  const auto try_place = [&](uint32_t level, GroundPoint p) {
     const int32_t y = ground.feet(level, p);
     const CollisionMap::Mark mark = map.mark(p, y);
     if (!map.is_free(mark)) return false;
@@ -53,14 +70,8 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
   uint64_t draw = 0;
   uint32_t failed = 0, drawn = 0;
   while (avatars.size() < count) {
-    const uint64_t pick = random_below(seed, 0x706c6163, draw, before.back());
-    const uint64_t within = random_u64(seed, 0x77697468, draw);
-    ++draw;
-    const auto level = static_cast<uint32_t>(std::upper_bound(before.begin(), before.end(), pick) -
-                                             before.begin() - 1);
-    const auto [x, z] = nth_legal(ground.legal(level), static_cast<uint32_t>(pick - before[level]));
-    failed += !try_place(level, x, z, static_cast<int32_t>(within & (kUnitsPerCell - 1)),
-                         static_cast<int32_t>((within >> 32) & (kUnitsPerCell - 1)));
+    const StandingDraw::Stand stand = standing.draw(draw++);
+    failed += !try_place(stand.level, stand.point);
     if (++drawn < 4096) continue;
     if (failed > drawn * 9 / 10) break;
     failed = drawn = 0;
@@ -70,7 +81,10 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
     for (int32_t z = 0; z < 64 && avatars.size() < count; ++z) {
       uint64_t row = ground.legal(level)[z];
       for (; row != 0 && avatars.size() < count; row &= row - 1) {
-        try_place(level, std::countr_zero(row), z, kUnitsPerCell / 2, kUnitsPerCell / 2);
+        const int64_t x = records[level].tile_x * 64 + std::countr_zero(row);
+        const int64_t cell_z = records[level].tile_z * 64 + z;
+        try_place(level, {(x << kUnitBits) + kUnitsPerCell / 2,
+                          (cell_z << kUnitBits) + kUnitsPerCell / 2});
       }
     }
   }

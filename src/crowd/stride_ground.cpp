@@ -78,6 +78,17 @@ bool StrideGround::may_have_walls(uint32_t level, int32_t x, int32_t z, int32_t 
   return !box_is_plain(first, x0, z0, x + reach, z + reach);
 }
 
+bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
+                        float most) const {
+  const auto dx = static_cast<float>(to.x - from.x), dz = static_cast<float>(to.z - from.z);
+  const float far = std::sqrt(dx * dx + dz * dz);
+  if (far > most) {
+    const float part = most / far;
+    to = {from.x + std::lrint(dx * part), from.z + std::lrint(dz * part)};
+  }
+  return walk(*ground_, level, from, to, step_mm_) && (far > most || level == end);
+}
+
 float StrideGround::free_way(uint32_t level, GroundPoint from, steer::Plane direction,
                              float most) const {
   const GroundPoint to{from.x + std::lrint(direction.x * most),

@@ -13,6 +13,7 @@ namespace throng {
 
 class StrideGround {
  public:
+  StrideGround() = default;  ///< Of no class: to be set.
   StrideGround(const CrowdGround& ground, int32_t step_mm) : ground_(&ground), step_mm_(step_mm) {}
 
   /// Where a step ended.
@@ -27,6 +28,11 @@ class StrideGround {
   /// False only if no wall is within `reach` cells: a quick look that does not see everything.
   [[nodiscard]] bool may_have_walls(uint32_t level, int32_t x, int32_t z, int32_t reach) const;
 
+  /// Is the straight way from a point to another legal, or its first `most` units? Where it is all
+  /// looked at, it must end on `end`.
+  [[nodiscard]] bool sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
+                          float most) const;
+
   /// How far it is to a wall along a unit vector, at most `most`. [units]
   [[nodiscard]] float free_way(uint32_t level, GroundPoint from, steer::Plane direction,
                                float most) const;
@@ -35,8 +41,8 @@ class StrideGround {
   [[nodiscard]] bool box_is_plain(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
                                   int32_t z1) const;
 
-  const CrowdGround* ground_;
-  int32_t step_mm_;
+  const CrowdGround* ground_ = nullptr;
+  int32_t step_mm_ = 0;
 };
 
 }  // namespace throng

@@ -186,8 +186,13 @@ WanderReport Wanderers::step() {
 }
 
 CrowdCheck Wanderers::check() const {
-  return check_avatars(state_->world, state_->config.avatar_class, state_->avatars.span(),
-                       state_->config.workers);
+  const State& s = *state_;
+  std::vector<CheckedBody> bodies;
+  bodies.reserve(s.avatars.size());
+  for (const Avatar& a : s.avatars.span()) {
+    bodies.push_back({a.x, a.z, a.y, a.level, s.config.avatar_class, s.body.radius, s.body.height});
+  }
+  return check_bodies(s.world, bodies, s.config.workers);
 }
 
 uint64_t Wanderers::state_hash() const {

@@ -29,7 +29,7 @@ struct Pair {
     plain.step();
     EngineCounts counts;
     CrowdEngine::Times times;
-    engine.step(steps++, counts, times);
+    engine.step(steps++, {}, counts, times);
     std::vector<const Body*> by_slot(engine.bodies().size());
     for (const Body& body : engine.bodies()) by_slot[body.slot] = &body;
     for (size_t i = 0; i < by_slot.size(); ++i) {
@@ -69,7 +69,9 @@ struct LevelGround {
                         .workers = workers,
                         .steering = config.steering,
                         .patience = config.patience},
-                       {StrideGround(ground, 400)}, data.width, data.depth, widest, fastest);
+                       data.width, data.depth, 1);
+    engine.set_ground(0, StrideGround(ground, 400));
+    engine.fit(widest, fastest, config.units.dt);
     for (size_t i = 0; i < bodies.size(); ++i) {
       const test::PlainBody& p = bodies[i];
       Body body;

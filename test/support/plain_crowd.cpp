@@ -156,9 +156,7 @@ void PlainCrowd::commit() {
     const Spot d = between(a, b);
     return !nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
   };
-  const auto order = [&](uint32_t i) {
-    return std::pair(random_u64(config_.seed, i, steps_), i);
-  };
+  const auto order = [&](uint32_t i) { return std::pair(random_u64(config_.seed, i, steps_), i); };
   for (int32_t round = 0; round < config_.rounds; ++round) {
     for (uint32_t i = 0; i < count; ++i) {
       named[i].reset();

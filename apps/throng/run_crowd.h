@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "throng/crowd.h"
+#include "throng/world.h"
+
+/// throng run with goals.
+namespace throng::app {
+
+struct CrowdRun {
+  std::string world_name;
+  std::string class_name;
+  std::string goals;       // random, or a file of places
+  std::string goals_text;  // what the file holds
+  double near = 0;         // random goals are within so many metres; 0: anywhere
+  uint32_t avatars = 1000;
+  uint64_t steps = 100;
+  uint64_t check_every = 1;
+  double speed = 0, radius = 0;
+  CrowdConfig config;
+};
+
+/// Fills in goals_text. Fails with kNotFound.
+Result<void> read_goals(CrowdRun& run);
+
+/// A crowd whose avatars get goals, one after the other. The same run, the same steps.
+class GoalCrowd {
+ public:
+  static Result<GoalCrowd> make(const World& world, const CrowdRun& run, Context& context);
+  CrowdReport step();
+  [[nodiscard]] const Crowd& crowd() const { return crowd_; }
+
+ private:
+  GoalCrowd(const World& world, const CrowdRun& run, int32_t avatar_class, Crowd&& crowd);
+  Result<void> read_places();
+  [[nodiscard]] Place goal(uint32_t slot, uint64_t nth, const Vec3d& from) const;
+  void give(std::span<const AvatarId> ids);
+
+  World world_;
+  CrowdRun run_;
+  int32_t avatar_class_;
+  Crowd crowd_;
+  std::vector<Place> places_;    // goals of a file
+  std::vector<uint64_t> given_;  // goals, by slot
+  std::vector<AvatarState> states_;
+  std::vector<Place> goals_;
+};
+
+/// Walks the crowd and prints what came of it. `shown` is called at the start and after each step,
+/// `finished` before anything is printed.
+int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd,
+              const std::function<Result<void>(uint64_t step)>& shown,
+              const std::function<Result<void>()>& finished);
+
+}  // namespace throng::app

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "throng/avatar_state.h"
+#include "throng/base.h"
+#include "throng/context.h"
+#include "throng/path.h"
+#include "throng/result.h"
+#include "throng/world.h"
+
+/// The crowd: avatars with goals that find their ways through a baked world and avoid each other,
+/// never into a wall and never into each other.
+namespace throng {
+
+/// Names an avatar of a crowd; zero names none. An id is never given twice.
+struct AvatarId {
+  uint32_t slot1 = 0;  ///< Slot plus one.
+  uint32_t generation = 0;
+  explicit operator bool() const { return slot1 != 0; }
+  friend bool operator==(AvatarId, AvatarId) = default;
+};
+
+/// How avatars get from where they are to their goals.
+enum class CrowdWays {
+  kPaths,     ///< Shortest ways over the ground, corner by corner.
+  kStraight,  ///< Straight on; walls are avoided, not gone around.
+};
+
+struct CrowdConfig {
+  double dt = 0.1;  ///< Length of a step. [s, > 0, <= 1]
+  uint64_t seed = 1;
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  CrowdWays ways = CrowdWays::kPaths;
+  bool labels = false;  ///< PathConfig::labels: for small worlds and many long ways.
+  bool zones = false;   ///< PathConfig::zones: for large worlds and long ways.
+  double sight = 5;     ///< Who is farther away is not avoided yet. [m, 1 to 50]
+  int32_t rounds = 3;   ///< In which claims are settled, a step. [1 to 100]
+  bool patient = true;  ///< Who does not get on turns aside by and by.
+};
+
+/// Someone to add.
+struct AvatarSpawn {
+  Place place = {};  ///< Feet on the ground of the class.
+  int32_t avatar_class = 0;
+  double radius = 0;  ///< Of the body, 0 for the class's. Walls are kept away by the class's. [m]
+  double speed = 0;   ///< Wished, and the most, 0 for the class's. [m/s]
+};
+
+/// What one step did.
+struct CrowdReport {
+  uint64_t step = 0;       ///< Number of the step just made, from 1.
+  uint64_t avatars = 0;    ///< All there are.
+  uint64_t stood = 0;      ///< Did not move.
+  uint64_t contested = 0;  ///< Could have touched somebody, so went through the rounds.
+  uint64_t arrived = 0;    ///< Came within 0.3 m of their goals, in this step.
+  uint64_t planned = 0;    ///< Got a way, or another one.
+  uint64_t no_way = 0;     ///< Of these, found that none leads to the goal: it is dropped.
+  double progress = 0;     ///< Mean speed towards the next corner by the wished one. [-1 to 1]
+  double seconds_plan = 0;
+  double seconds_sort = 0;
+  double seconds_steer = 0;
+  double seconds_commit = 0;
+  double seconds_settle = 0;
+  double seconds_total = 0;
+};
+
+/// Sense, steer, claim, commit. Sources: [CAACD] for what avatars do, docs/design/008-engine.md for
+/// how, and why nobody ever touches anybody. Movable, not copyable; two crowds can live side by
+/// side. One thread at a time.
+class THRONG_API Crowd {
+ public:
+  /// An empty crowd. Fails with kBadConfig.
+  [[nodiscard]] static Result<Crowd> create(const World& world, const CrowdConfig& config);
+  Crowd(Crowd&&) noexcept;
+  Crowd& operator=(Crowd&&) noexcept;
+  ~Crowd();
+
+  /// Adds avatars in order; who could not stand at his place, or would touch somebody there, is
+  /// left out and gets no id. The first of a class reads its ground and makes its path finder.
+  /// Fails with kNotFound (class), kBadConfig (radius, speed), kBadFile, kCancelled; then nobody
+  /// was added.
+  [[nodiscard]] Result<std::vector<AvatarId>> add(std::span<const AvatarSpawn> spawns,
+                                                  Context& context);
+  /// Adds `count` avatars alike at random places, uniform over where the class can stand. Fails as
+  /// `add` does, and with kLimit and how many fit; then nobody was added.
+  [[nodiscard]] Result<std::vector<AvatarId>> scatter(uint32_t count, const AvatarSpawn& like,
+                                                      Context& context);
+  /// Takes avatars away. Ids of nobody are left out.
+  void remove(std::span<const AvatarId> ids);
+
+  /// Where they are bound for, one for each id: places of their class. An avatar keeps to its goal
+  /// when it has arrived, and makes way. Nowhere: it stands. Ids of nobody are left out.
+  void set_goals(std::span<const AvatarId> ids, std::span<const Place> goals);
+  /// Velocities wished by the caller instead of goals, until a goal is set; longer ones than an
+  /// avatar's speed are cut. Avoidance and the rule of no overlaps stay. [m/s along X and Z]
+  void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
+
+  /// One step. No allocation once it is warm. Time: linear in the avatars.
+  CrowdReport step();
+
+  /// Overlaps and walls entered, found by an independent look.
+  [[nodiscard]] CrowdCheck check() const;
+  /// XXH3 of all avatars in order of slot: position, level, velocity, state. Same for any workers.
+  [[nodiscard]] uint64_t state_hash() const;
+  /// All avatars in order of their slots, into `out` (resized). AvatarState::id is the slot.
+  void read(std::vector<AvatarState>& out) const;
+  /// Who arrived in the last step, in order of slot.
+  [[nodiscard]] std::span<const AvatarId> arrived() const;
+  /// Whose goals were dropped in the last step, because no way leads there, in order of slot.
+  [[nodiscard]] std::span<const AvatarId> stranded() const;
+  [[nodiscard]] bool is_alive(AvatarId id) const;
+  [[nodiscard]] uint32_t size() const;
+  [[nodiscard]] uint64_t bytes() const;  ///< Memory held by the crowd itself, without path finders.
+
+ private:
+  struct State;
+  explicit Crowd(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace throng

@@ -1,0 +1,453 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/crowd.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "core/check_class.h"
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "crowd/crowd_check.h"
+#include "crowd/crowd_engine.h"
+#include "crowd/crowd_ground.h"
+#include "crowd/placement.h"
+#include "crowd/routes.h"
+#include "crowd/standing_map.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+constexpr uint32_t kNobody = UINT32_MAX;
+constexpr double kMostSpeed = 100;   // [m/s]
+constexpr double kMostRadius = 100;  // [m]
+constexpr double kMostHeight = 65;   // [m]
+constexpr int32_t kMostSubSteps = 1000;
+constexpr double kLook = 3;  // [m] of a leg, to see whether it is open
+
+Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
+
+// What a class needs that somebody is of.
+struct ClassParts {
+  CrowdGround ground;
+  std::optional<StandingDraw> standing;
+  std::vector<PathFinder> finders;  // one a worker
+  std::vector<Path> paths;
+};
+
+}  // namespace
+
+struct Crowd::State {
+  World world;
+  CrowdConfig config;
+  CrowdEngine engine;
+  std::vector<std::unique_ptr<ClassParts>> classes;
+  double unit = 0;  // [m]
+  int32_t widest = 0, narrowest = INT32_MAX;
+  float fastest = 0;
+  int32_t sub_steps = 1;
+  uint64_t step = 0, sub_step = 0;
+  uint64_t scattered = 0;  // draws of `scatter`
+
+  // By slot.
+  std::vector<uint32_t> generation;
+  std::vector<Route> routes;
+  std::vector<uint32_t> free_slots;
+  mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
+  mutable bool where_is_old = false;
+  std::vector<AvatarId> arrived, stranded;
+
+  State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine)
+      : world(a_world), config(a_config), engine(std::move(an_engine)) {}
+
+  [[nodiscard]] const AvatarClass& body_class(int32_t number) const {
+    return world.data()->summary.classes[static_cast<size_t>(number)];
+  }
+  [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
+  [[nodiscard]] Body* body(AvatarId id) const;
+  void find_bodies() const;
+  Result<void> open_class(int32_t number, Context& context);
+  Result<Body> body_of(const AvatarSpawn& spawn) const;
+  void make_room(const Body& body);
+  AvatarId add(Body body);
+  void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
+  void list(std::vector<AvatarId>& ids, Body::Flag flag);
+};
+
+Crowd::Crowd(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Crowd::Crowd(Crowd&&) noexcept = default;
+Crowd& Crowd::operator=(Crowd&&) noexcept = default;
+Crowd::~Crowd() = default;
+
+Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
+  if (!world.data()) return bad_config("there is no world");
+  if (!(config.dt > 0 && config.dt <= 1)) return bad_config("dt must be above 0 and at most 1 s");
+  if (config.workers < 0) return bad_config("workers must be 0 (all cores) or more");
+  if (!(config.sight >= 1 && config.sight <= 50)) return bad_config("sight must be 1 to 50 m");
+  if (!(config.rounds >= 1 && config.rounds <= 100)) return bad_config("rounds must be 1 to 100");
+  if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
+  const WorldData& data = *world.data();
+  const double unit = data.summary.cell / kUnitsPerCell;
+  CrowdEngine engine({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                      .sight = static_cast<float>(config.sight),
+                      .rounds = config.rounds,
+                      .patient = config.patient,
+                      .seed = config.seed,
+                      .workers = config.workers,
+                      .steering = {},
+                      .patience = {}},
+                     data.width, data.depth, data.summary.classes.size());
+  auto state = std::make_unique<State>(world, config, std::move(engine));
+  state->unit = unit;
+  state->classes.resize(data.summary.classes.size());
+  return Crowd(std::move(state));
+}
+
+void Crowd::State::find_bodies() const {
+  if (!where_is_old) return;
+  std::fill(where.begin(), where.end(), kNobody);
+  const std::span<const Body> bodies = engine.bodies();
+  for (size_t i = 0; i < bodies.size(); ++i) where[bodies[i].slot] = static_cast<uint32_t>(i);
+  where_is_old = false;
+}
+
+Body* Crowd::State::body(AvatarId id) const {
+  if (!id || id.slot1 > generation.size() || generation[id.slot1 - 1] != id.generation) {
+    return nullptr;
+  }
+  find_bodies();
+  const uint32_t i = where[id.slot1 - 1];
+  return i == kNobody ? nullptr : &engine.bodies()[i];
+}
+
+Result<void> Crowd::State::open_class(int32_t number, Context& context) {
+  if (auto ok = check_class(world.data()->summary.classes, number, "crowd"); !ok) return ok;
+  std::unique_ptr<ClassParts>& parts = classes[static_cast<size_t>(number)];
+  if (parts) return {};
+  auto made = std::make_unique<ClassParts>();
+  const int32_t step_height = step_mm(body_class(number));
+  auto ground = CrowdGround::make(*world.data(), number, step_height);
+  if (!ground) return ground.error();
+  made->ground = std::move(*ground);
+  made->standing.emplace(made->ground, config.seed);
+  if (config.ways == CrowdWays::kPaths) {
+    auto finder = PathFinder::make(world,
+                                   {.avatar_class = number,
+                                    .workers = config.workers,
+                                    .labels = config.labels,
+                                    .zones = config.zones},
+                                   context);
+    if (!finder) return finder.error();
+    made->finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
+    made->paths.resize(made->finders.size());
+  }
+  parts = std::move(made);
+  engine.set_ground(static_cast<size_t>(number), StrideGround(parts->ground, step_height));
+  return {};
+}
+
+Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
+  const AvatarClass& avatar = body_class(spawn.avatar_class);
+  const double radius = spawn.radius > 0 ? spawn.radius : avatar.radius;
+  const double speed = spawn.speed > 0 ? spawn.speed : avatar.speed;
+  if (!(spawn.radius >= 0 && radius <= std::min(kMostRadius, 4000 * 2048 * unit / 2))) {
+    return bad_config("radius must be 0 (the class's) to 100 m, and at most 4000 cells");
+  }
+  if (!(spawn.speed >= 0 && speed <= kMostSpeed)) {
+    return bad_config("speed must be 0 (the class's) to 100 m/s");
+  }
+  if (avatar.height > kMostHeight) {
+    return bad_config("class " + avatar.name + " is higher than 65 m");
+  }
+  Body body;
+  body.speed = static_cast<float>(speed);
+  body.radius = static_cast<int32_t>(std::ceil(radius / unit - 1e-9));
+  body.height = static_cast<uint16_t>(std::ceil(avatar.height * 1000 - 1e-6));
+  body.avatar_class = static_cast<uint8_t>(spawn.avatar_class);
+  if (speed * config.dt > kMostSubSteps * radius) {
+    return bad_config("speed times dt is over 1000 radii; take shorter steps");
+  }
+  return body;
+}
+
+// Nobody moves further than the smallest radius at a time, so nobody passes through another.
+void Crowd::State::make_room(const Body& body) {
+  if (body.radius <= widest && body.speed <= fastest && body.radius >= narrowest) return;
+  widest = std::max(widest, body.radius);
+  narrowest = std::min(narrowest, body.radius);
+  fastest = std::max(fastest, body.speed);
+  const double way = fastest * config.dt / unit;
+  sub_steps = std::clamp(static_cast<int32_t>(std::ceil(way / narrowest - 1e-9)), 1, 1 << 20);
+  engine.fit(widest, fastest, static_cast<float>(config.dt / sub_steps));
+}
+
+AvatarId Crowd::State::add(Body body) {
+  find_bodies();
+  if (free_slots.empty()) {
+    body.slot = static_cast<uint32_t>(generation.size());
+    generation.push_back(1);
+    routes.emplace_back();
+    where.push_back(kNobody);
+  } else {
+    body.slot = free_slots.back();
+    free_slots.pop_back();
+  }
+  where[body.slot] = static_cast<uint32_t>(engine.bodies().size());
+  make_room(body);
+  engine.add(body);
+  return id_of(body.slot);
+}
+
+Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Context& context) {
+  State& s = *state_;
+  std::vector<Body> bodies;
+  int32_t widest = s.widest;
+  for (const AvatarSpawn& spawn : spawns) {
+    if (auto ok = s.open_class(spawn.avatar_class, context); !ok) return ok.error();
+    auto body = s.body_of(spawn);
+    if (!body) return body.error();
+    bodies.push_back(*body);
+    widest = std::max(widest, body->radius);
+  }
+  StandingMap map(s.engine.bodies(), widest, spawns.size());
+  std::vector<AvatarId> ids(spawns.size());
+  for (size_t i = 0; i < spawns.size(); ++i) {
+    Body& body = bodies[i];
+    const auto point = ground_point(*s.world.data(), spawns[i].place);
+    if (!point) continue;
+    const CrowdGround& ground = s.classes[static_cast<size_t>(spawns[i].avatar_class)]->ground;
+    body.x = static_cast<int32_t>(point->x);
+    body.z = static_cast<int32_t>(point->z);
+    body.level = spawns[i].place.level1 - 1;
+    if (!ground.is_legal(body.level, point->cell_x() & 63, point->cell_z() & 63)) continue;
+    body.y = ground.feet(body.level, *point);
+    if (map.add_if_clear(body)) ids[i] = s.add(body);
+  }
+  return ids;
+}
+
+Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& like,
+                                             Context& context) {
+  State& s = *state_;
+  if (auto ok = s.open_class(like.avatar_class, context); !ok) return ok.error();
+  const auto body = s.body_of(like);
+  if (!body) return body.error();
+  const ClassParts& parts = *s.classes[static_cast<size_t>(like.avatar_class)];
+  StandingMap map(s.engine.bodies(), std::max(s.widest, body->radius), count);
+  std::vector<Body> placed;
+  placed.reserve(count);
+  // Until nine draws of ten fail over a while.
+  uint64_t failed = 0, drawn = 0;
+  while (placed.size() < count && !parts.standing->is_empty()) {
+    const StandingDraw::Stand stand = parts.standing->draw(s.scattered++);
+    Body here = *body;
+    here.x = static_cast<int32_t>(stand.point.x);
+    here.z = static_cast<int32_t>(stand.point.z);
+    here.level = stand.level;
+    here.y = parts.ground.feet(stand.level, stand.point);
+    if (map.add_if_clear(here)) {
+      placed.push_back(here);
+    } else {
+      ++failed;
+    }
+    if (++drawn % 4096 != 0) continue;
+    if (failed > 4096 * 99 / 100) break;
+    failed = 0;
+  }
+  if (placed.size() < count) {
+    return Error{Errc::kLimit, "crowd: " + std::to_string(placed.size()) + " avatars of class " +
+                                   s.body_class(like.avatar_class).name +
+                                   " find room at random places, " + std::to_string(count) +
+                                   " were asked for; ask for fewer or take a larger world"};
+  }
+  s.engine.reserve(s.engine.bodies().size() + count);
+  std::vector<AvatarId> ids;
+  ids.reserve(count);
+  for (const Body& b : placed) ids.push_back(s.add(b));
+  return ids;
+}
+
+void Crowd::remove(std::span<const AvatarId> ids) {
+  State& s = *state_;
+  for (const AvatarId id : ids) {
+    Body* body = s.body(id);
+    if (body == nullptr) continue;
+    Body& last = s.engine.bodies().back();
+    s.where[last.slot] = s.where[body->slot];
+    s.where[body->slot] = kNobody;
+    ++s.generation[body->slot];
+    s.free_slots.push_back(body->slot);
+    *body = last;
+    s.engine.shrink(s.engine.bodies().size() - 1);
+  }
+}
+
+void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goals) {
+  THRONG_ASSERT(ids.size() == goals.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    Body* body = s.body(ids[i]);
+    if (body == nullptr) continue;
+    body->flags = 0;
+    body->turn = 0;
+    body->waited = 0;
+    const auto point = ground_point(*s.world.data(), goals[i]);
+    if (!point) continue;
+    Route& route = s.routes[body->slot];
+    route = {};
+    route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z),
+                  goals[i].level1 - 1};
+    body->aim_x = route.goal.x;
+    body->aim_z = route.goal.z;
+    body->flags = s.config.ways == CrowdWays::kPaths ? Body::kHasGoal | Body::kLost
+                                                     : Body::kHasGoal | Body::kLast;
+  }
+}
+
+void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities) {
+  THRONG_ASSERT(ids.size() == velocities.size());
+  for (size_t i = 0; i < ids.size(); ++i) {
+    Body* body = state_->body(ids[i]);
+    if (body == nullptr) continue;
+    const Vec3d& v = velocities[i];
+    double size = std::sqrt(v.x * v.x + v.z * v.z);
+    if (!std::isfinite(size)) size = INFINITY;
+    const double part = size > body->speed ? body->speed / size : 1;
+    body->flags = Body::kDriven;
+    body->turn = 0;
+    body->wish = part > 0
+                     ? steer::Plane{static_cast<float>(v.x * part), static_cast<float>(v.z * part)}
+                     : steer::Plane{};
+  }
+}
+
+// Follows ways, and asks for those that are missing.
+void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned) {
+  const auto reach = static_cast<float>(kLook / unit);
+  uint64_t asked = 0;
+  for (Body& body : bodies) {
+    if (!body.has(Body::kHasGoal)) continue;
+    ClassParts& parts = *classes[body.avatar_class];
+    Route& route = routes[body.slot];
+    if (!body.has(Body::kLost)) {
+      const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
+      follow(body, route, ground, sub_step + body.slot, reach);
+    }
+    if (!body.has(Body::kLost)) continue;
+    ++asked;
+    const auto w = static_cast<size_t>(worker);
+    if (!throng::plan(world, parts.finders[w], parts.paths[w], body, route)) {
+      body.flags = Body::kStranded;
+    }
+  }
+  if (asked > 0) planned.fetch_add(asked, std::memory_order_relaxed);
+}
+
+void Crowd::State::list(std::vector<AvatarId>& ids, Body::Flag flag) {
+  for (Body& body : engine.bodies()) {
+    if (!body.has(flag)) continue;
+    body.flags = static_cast<uint8_t>(body.flags & ~flag);
+    ids.push_back(id_of(body.slot));
+  }
+  std::sort(ids.begin(), ids.end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
+}
+
+CrowdReport Crowd::step() {
+  State& s = *state_;
+  const auto start = Clock::now();
+  CrowdReport report;
+  report.step = ++s.step;
+  report.avatars = s.engine.bodies().size();
+  s.arrived.clear();
+  s.stranded.clear();
+  EngineCounts counts;
+  CrowdEngine::Times times;
+  std::atomic<uint64_t> planned{0};
+  const CrowdEngine::Before before = [&](std::span<Body> bodies, int32_t worker) {
+    s.plan(bodies, worker, planned);
+  };
+  const bool has_ways = s.config.ways == CrowdWays::kPaths;
+  for (int32_t i = 0; i < s.sub_steps; ++i) {
+    s.engine.step(s.sub_step++, has_ways ? before : CrowdEngine::Before(), counts, times);
+  }
+  s.where_is_old = true;
+  if (counts.arrived > 0) s.list(s.arrived, Body::kJustArrived);
+  if (planned > 0) s.list(s.stranded, Body::kStranded);
+  const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
+  report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
+  report.contested = counts.contested;
+  report.arrived = s.arrived.size();
+  report.planned = planned;
+  report.no_way = s.stranded.size();
+  report.progress = static_cast<double>(counts.progress) * 1e-6 / moves;
+  report.seconds_plan = times.plan;
+  report.seconds_sort = times.sort;
+  report.seconds_steer = times.steer;
+  report.seconds_commit = times.commit;
+  report.seconds_settle = times.settle;
+  report.seconds_total = seconds_since(start);
+  return report;
+}
+
+CrowdCheck Crowd::check() const {
+  const State& s = *state_;
+  std::vector<CheckedBody> bodies;
+  bodies.reserve(s.engine.bodies().size());
+  for (const Body& b : s.engine.bodies()) {
+    bodies.push_back({b.x, b.z, b.y, b.level, b.avatar_class, b.radius * s.unit,
+                      s.body_class(b.avatar_class).height});
+  }
+  return check_bodies(s.world, bodies, s.config.workers);
+}
+
+uint64_t Crowd::state_hash() const {
+  const State& s = *state_;
+  s.find_bodies();
+  std::vector<Body> by_slot;
+  for (const uint32_t i : s.where) {
+    if (i == kNobody) continue;
+    Body body = s.engine.bodies()[i];
+    body.state = Body::kFree;  // of the step, not of the avatar
+    body.round = 0;
+    by_slot.push_back(body);
+  }
+  return hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
+}
+
+void Crowd::read(std::vector<AvatarState>& out) const {
+  const State& s = *state_;
+  s.find_bodies();
+  out.clear();
+  const Vec3d origin = s.world.data()->summary.origin;
+  for (const uint32_t i : s.where) {
+    if (i == kNobody) continue;
+    const Body& b = s.engine.bodies()[i];
+    const double size = std::hypot(b.velocity.x, b.velocity.z);
+    out.push_back(
+        {.id = b.slot,
+         .avatar_class = b.avatar_class,
+         .position = {origin.x + (b.x + 0.5) * s.unit, b.y * 1e-3, origin.z + (b.z + 0.5) * s.unit},
+         .heading_x = size > 0 ? b.velocity.x / size : 0,
+         .heading_z = size > 0 ? b.velocity.z / size : 1});
+  }
+}
+
+std::span<const AvatarId> Crowd::arrived() const { return state_->arrived; }
+std::span<const AvatarId> Crowd::stranded() const { return state_->stranded; }
+bool Crowd::is_alive(AvatarId id) const { return state_->body(id) != nullptr; }
+uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->engine.bodies().size()); }
+
+uint64_t Crowd::bytes() const {
+  const State& s = *state_;
+  uint64_t bytes = s.engine.bytes() + s.routes.capacity() * sizeof(Route) +
+                   (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4;
+  for (const auto& parts : s.classes) bytes += parts ? parts->ground.bytes() : 0;
+  return bytes;
+}
+
+}  // namespace throng

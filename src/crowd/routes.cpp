@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/routes.h"
+
+#include <algorithm>
+
+#include "crowd/step_units.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+constexpr uint64_t kLookEvery = 16;  // steps
+
+void turn_to(Body& body, const Route& route) {
+  const Spot& corner = route.corners[route.next];
+  body.aim_x = corner.x;
+  body.aim_z = corner.z;
+  const bool last = route.whole && route.next + 1 == route.count;
+  body.flags = static_cast<uint8_t>(last ? body.flags | Body::kLast : body.flags & ~Body::kLast);
+}
+
+}  // namespace
+
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach) {
+  const auto sees = [&](const Spot& spot) {
+    return ground.sees(body.level, body.point(), {spot.x, spot.z}, spot.level, reach);
+  };
+  const float square = near_square(body.aim_x - body.x, body.aim_z - body.z);
+  if (!body.has(Body::kLast) && square < reach * reach / 4) {
+    const bool at_end = route.next + 1 == route.count;
+    const bool there = square < 16;  // a few units: as near as steps come
+    if (!at_end && (there || sees(route.corners[route.next + 1u]))) {
+      ++route.next;
+      turn_to(body, route);
+      return;
+    }
+    if (at_end) {  // Corners are used up; the rest of the way is a new one.
+      body.flags |= Body::kLost;
+      return;
+    }
+  }
+  if (nth % kLookEvery == 0 && !sees(route.corners[route.next])) body.flags |= Body::kLost;
+}
+
+bool plan(const World& world, PathFinder& finder, Path& path, Body& body, Route& route) {
+  const WorldData& data = *world.data();
+  const auto place_of = [&](const Spot& spot) {
+    const GroundLevel level = ground_level(data, spot.level, body.avatar_class);
+    return place_at(data, level, {spot.x, spot.z});
+  };
+  body.flags = static_cast<uint8_t>(body.flags & ~Body::kLost);
+  finder.find(place_of({body.x, body.z, body.level}), place_of(route.goal), path);
+  if (path.end != PathEnd::kReached) return false;
+  if (path.points.size() < 2) {  // It stands on its goal.
+    route.corners[0] = route.goal;
+    route.count = 1;
+    route.next = 0;
+    route.whole = true;
+    turn_to(body, route);
+    return true;
+  }
+  const size_t legs = path.points.size() - 1;
+  route.count = static_cast<uint8_t>(std::min(legs, Route::kCorners));
+  route.next = 0;
+  route.whole = legs <= Route::kCorners;
+  for (size_t i = 0; i < route.count; ++i) {
+    const Place& place = path.points[i + 1];
+    const GroundPoint point = to_ground(data, place.position.x, place.position.z);
+    route.corners[i] = {static_cast<int32_t>(point.x), static_cast<int32_t>(point.z),
+                        place.level1 - 1};
+  }
+  turn_to(body, route);
+  return true;
+}
+
+}  // namespace throng

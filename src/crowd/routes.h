@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "crowd/body.h"
+#include "crowd/stride_ground.h"
+#include "throng/path.h"
+#include "throng/world.h"
+
+/// Where avatars are bound for, and the corners that lead there.
+namespace throng {
+
+/// A place of the ground.
+struct Spot {
+  int32_t x = 0, z = 0;  // [units]
+  uint32_t level = 0;
+};
+
+/// The next corners of a way; when they are used up, the rest is asked for anew, from where one is
+/// by then.
+struct Route {
+  static constexpr size_t kCorners = 6;
+  Spot goal;
+  std::array<Spot, kCorners> corners;
+  uint8_t count = 0, next = 0;
+  bool whole = false;  // the last corner is the goal
+};
+
+/// Turns to the next corner where it can be seen, and marks whoever has lost his way. `nth`: of
+/// steps and slots, so that not everybody looks around in the same step. `reach`: how far one looks
+/// along a leg. [units]
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach);
+
+/// Asks for a way from where the body is. False: none leads to the goal.
+bool plan(const World& world, PathFinder& finder, Path& path, Body& body, Route& route);
+
+}  // namespace throng

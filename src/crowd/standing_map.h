@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "crowd/body.h"
+
+/// Who stands where, for those who are to be added.
+namespace throng {
+
+/// Squares as wide as the widest body, in a table that squares share; a list each.
+class StandingMap {
+ public:
+  /// With these bodies, none wider than `widest` units, and room for `more`.
+  StandingMap(std::span<const Body> bodies, int32_t widest, size_t more);
+  /// Adds a body if it touches nobody.
+  bool add_if_clear(const Body& body);
+
+ private:
+  static constexpr uint32_t kEnd = UINT32_MAX;
+  struct Entry {
+    int32_t x, z, y, radius;
+    uint16_t height;
+    uint32_t next;
+  };
+  [[nodiscard]] size_t square(int64_t x, int64_t z) const;
+  void add(const Body& body);
+
+  int64_t width_;
+  std::vector<uint32_t> first_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace throng

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/crowd.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "baked.h"
+#include "simd_targets.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+Crowd made(const World& world, const CrowdConfig& config = {}) {
+  auto crowd = Crowd::create(world, config);
+  EXPECT_TRUE(crowd) << crowd.error().message;
+  return std::move(*crowd);
+}
+
+std::vector<AvatarId> scattered(Crowd& crowd, uint32_t count, const AvatarSpawn& like = {}) {
+  Context context;
+  auto ids = crowd.scatter(count, like, context);
+  EXPECT_TRUE(ids) << ids.error().message;
+  return ids ? *ids : std::vector<AvatarId>();
+}
+
+AvatarId added(Crowd& crowd, const Place& place, const AvatarSpawn& like = {}) {
+  Context context;
+  AvatarSpawn spawn = like;
+  spawn.place = place;
+  auto ids = crowd.add(std::span(&spawn, 1), context);
+  EXPECT_TRUE(ids) << ids.error().message;
+  return ids ? ids->front() : AvatarId{};
+}
+
+std::vector<Place> random_goals(const World& world, size_t count, uint64_t seed) {
+  std::vector<Place> goals;
+  for (size_t i = 0; i < count; ++i) goals.push_back(world.random_place(0, seed, i));
+  return goals;
+}
+
+Vec3d position(const Crowd& crowd, AvatarId id) {
+  std::vector<AvatarState> states;
+  crowd.read(states);
+  for (const AvatarState& state : states) {
+    if (state.id + 1 == id.slot1) return state.position;
+  }
+  ADD_FAILURE() << "nobody of that id";
+  return {};
+}
+
+// Steps until the avatar arrives, at most so many times. Returns how many it took.
+int steps_to_arrive(Crowd& crowd, AvatarId id, int most) {
+  for (int step = 1; step <= most; ++step) {
+    crowd.step();
+    for (const AvatarId there : crowd.arrived()) {
+      if (there == id) return step;
+    }
+  }
+  return most + 1;
+}
+
+void expect_no_faults(const Crowd& crowd) {
+  const CrowdCheck check = crowd.check();
+  EXPECT_EQ(check.wall_entries, 0u);
+  EXPECT_EQ(check.overlaps, 0u);
+}
+
+TEST(Crowd, NobodyEntersAWallOrAnotherInBuiltInWorlds) {
+  uint64_t moved = 0;
+  for (const char* name : {"garage", "church", "stairs", "maze", "bridge"}) {
+    const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
+    Crowd crowd = made(world);
+    const auto ids = scattered(crowd, 150);
+    crowd.set_goals(ids, random_goals(world, ids.size(), 5));
+    for (int step = 0; step < 120; ++step) {
+      const CrowdReport report = crowd.step();
+      moved += report.avatars - report.stood;
+      if (step % 10 == 9) expect_no_faults(crowd);
+    }
+  }
+  EXPECT_GT(moved, 5u * 120 * 150 / 3);
+}
+
+TEST(Crowd, SameStateForAnyWorkersAndMachines) {
+  const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
+  test::for_every_simd_target([&](const char* name) {
+    for (const int32_t workers : {1, 2, 5}) {
+      Crowd crowd = made(world, {.workers = workers});
+      const auto ids = scattered(crowd, 300);
+      crowd.set_goals(ids, random_goals(world, ids.size(), 5));
+      for (int step = 0; step < 40; ++step) crowd.step();
+      ASSERT_EQ(crowd.state_hash(), 614051830885778603u) << name << ' ' << workers;
+    }
+  });
+}
+
+TEST(Crowd, AnAvatarWalksThroughADoorAndUpStairs) {
+  const World door = test::bake(worlds::doorway(1.0), 0.1);
+  Crowd crowd = made(door);
+  const AvatarId id = added(crowd, door.random_place(0, 1, 0));
+  const Place goal = door.random_place(0, 1, 3);
+  const Vec3d from = position(crowd, id);
+  crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
+  const double far = std::hypot(goal.position.x - from.x, goal.position.z - from.z);
+  EXPECT_LT(steps_to_arrive(crowd, id, 600), 10 * (far / 1.3 + 10));
+  expect_no_faults(crowd);
+
+  const World stairs = test::bake(worlds::steps(0.2, 0.4, 10), 0.1);
+  Crowd climbers = made(stairs);
+  Place low, high;
+  for (uint64_t n = 0; n < 100; ++n) {
+    const Place place = stairs.random_place(0, 2, n);
+    if (!low || place.position.y < low.position.y) low = place;
+    if (!high || place.position.y > high.position.y) high = place;
+  }
+  ASSERT_GT(high.position.y - low.position.y, 1);
+  const AvatarId climber = added(climbers, low);
+  climbers.set_goals(std::span(&climber, 1), std::span(&high, 1));
+  EXPECT_LT(steps_to_arrive(climbers, climber, 400), 400);
+  EXPECT_NEAR(position(climbers, climber).y, high.position.y, 0.45);
+}
+
+TEST(Crowd, WhoseGoalCannotBeReachedIsTold) {
+  Scene scene = worlds::flat(20);
+  scene.add_box({8, 0, 8}, {12, 1.5, 12});
+  const World world = test::bake(scene, 0.1);
+  const Place low = world.find_place(0, {4, 0, 4}, 0.5);
+  const Place high = world.find_place(0, {10, 1.5, 10}, 0.5);
+  ASSERT_TRUE(low && high);
+  Crowd crowd = made(world);
+  const AvatarId id = added(crowd, low);
+  crowd.set_goals(std::span(&id, 1), std::span(&high, 1));
+  EXPECT_EQ(crowd.step().no_way, 1u);
+  ASSERT_EQ(crowd.stranded().size(), 1u);
+  EXPECT_EQ(crowd.stranded()[0], id);
+  crowd.step();
+  EXPECT_TRUE(crowd.stranded().empty());
+}
+
+TEST(Crowd, FloorsAboveEachOtherDoNotMindEachOther) {
+  const World world = test::bake(worlds::two_floors(), 0.1);
+  Crowd crowd = made(world);
+  std::vector<AvatarId> ids;
+  const std::vector<Place> goals{world.find_place(0, {9, 0, 4}, 0.5),
+                                 world.find_place(0, {6, 3, 4}, 0.5)};
+  for (const Vec3d& at : {Vec3d{6, 0, 4}, Vec3d{9, 3, 4}}) {  // one below the other
+    ids.push_back(added(crowd, world.find_place(0, at, 0.5)));
+    ASSERT_TRUE(ids.back());
+  }
+  crowd.set_goals(ids, goals);
+  for (int step = 0; step < 15; ++step) EXPECT_GT(crowd.step().progress, 0.99);
+}
+
+TEST(Crowd, IdsAreNeverGivenTwiceAndOldOnesNameNobody) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  const auto ids = scattered(crowd, 50);
+  crowd.remove(std::span(ids).first(25));
+  EXPECT_EQ(crowd.size(), 25u);
+  EXPECT_FALSE(crowd.is_alive(ids[3]));
+  EXPECT_TRUE(crowd.is_alive(ids[30]));
+  const auto more = scattered(crowd, 30);
+  for (const AvatarId id : more) EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 0);
+  const auto goals = random_goals(world, ids.size(), 1);
+  crowd.set_goals(ids, goals);  // half of them are nobody's
+  crowd.remove(ids);
+  crowd.remove(ids);
+  EXPECT_EQ(crowd.size(), 30u);
+  for (int step = 0; step < 20; ++step) crowd.step();
+  expect_no_faults(crowd);
+  crowd.remove(more);
+  EXPECT_EQ(crowd.size(), 0u);
+  EXPECT_EQ(crowd.step().avatars, 0u);
+}
+
+TEST(Crowd, NobodyIsAddedWhereHeWouldTouchOrCannotStand) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  const Place place = world.find_place(0, {10, 0, 10}, 0.5);
+  EXPECT_TRUE(added(crowd, place));
+  EXPECT_FALSE(added(crowd, place));
+  EXPECT_FALSE(added(crowd, world.find_place(0, {10.3, 0, 10}, 0.5)));
+  EXPECT_TRUE(added(crowd, world.find_place(0, {10.6, 0, 10}, 0.5)));
+  EXPECT_FALSE(added(crowd, {}));
+  EXPECT_FALSE(added(crowd, {{1e9, 0, 1e9}, 1}));
+  EXPECT_FALSE(added(crowd, {{NAN, 0, 5}, 1}));
+  Context context;
+  const auto none = crowd.scatter(100000, {}, context);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, Errc::kLimit);
+  EXPECT_EQ(crowd.size(), 2u);
+}
+
+TEST(Crowd, WhoIsDrivenGoesWhereHeIsToldAndOthersMakeWay) {
+  const World world = test::bake(worlds::flat(30), 0.1);
+  Crowd crowd = made(world);
+  const AvatarId player = added(crowd, world.find_place(0, {5, 0, 15}, 0.5));
+  const AvatarId other = added(crowd, world.find_place(0, {10, 0, 15}, 0.5));
+  const Vec3d east{50, 0, 0};  // cut to the speed of the class
+  crowd.set_velocities(std::span(&player, 1), std::span(&east, 1));
+  const Place goal = world.find_place(0, {2, 0, 15}, 0.5);
+  crowd.set_goals(std::span(&other, 1), std::span(&goal, 1));
+  for (int step = 0; step < 60; ++step) {
+    crowd.step();
+    expect_no_faults(crowd);
+  }
+  EXPECT_GT(position(crowd, player).x, 5 + 6 * 1.2);
+  const Vec3d nonsense{NAN, 0, INFINITY};
+  crowd.set_velocities(std::span(&player, 1), std::span(&nonsense, 1));
+  const Vec3d before = position(crowd, player);
+  crowd.step();
+  EXPECT_NEAR(position(crowd, player).x, before.x, 0.3);
+}
+
+TEST(Crowd, FastAndSmallOnesDoNotPassThroughOthers) {
+  const World world = test::bake(worlds::flat(30), 0.1);
+  Crowd crowd = made(world, {.dt = 0.5});
+  const auto slow = scattered(crowd, 60, {.speed = 0.5});
+  const auto fast = scattered(crowd, 60, {.radius = 0.1, .speed = 8});
+  crowd.set_goals(slow, random_goals(world, slow.size(), 1));
+  crowd.set_goals(fast, random_goals(world, fast.size(), 2));
+  for (int step = 0; step < 40; ++step) {
+    crowd.step();
+    expect_no_faults(crowd);
+  }
+}
+
+TEST(Crowd, BadSettingsAreNamed) {
+  const World world = test::bake(worlds::flat(10), 0.1);
+  const auto refused = [&](const CrowdConfig& config) {
+    const auto crowd = Crowd::create(world, config);
+    return crowd ? std::string("accepted") : crowd.error().message;
+  };
+  EXPECT_EQ(refused({.dt = 0}), "crowd: dt must be above 0 and at most 1 s");
+  EXPECT_EQ(refused({.dt = NAN}), "crowd: dt must be above 0 and at most 1 s");
+  EXPECT_EQ(refused({.workers = -1}), "crowd: workers must be 0 (all cores) or more");
+  EXPECT_EQ(refused({.labels = true, .zones = true}), "crowd: choose labels or zones, not both");
+  EXPECT_EQ(refused({.sight = 0}), "crowd: sight must be 1 to 50 m");
+  EXPECT_EQ(refused({.rounds = 0}), "crowd: rounds must be 1 to 100");
+  EXPECT_FALSE(Crowd::create({}, {}));
+  Crowd crowd = made(world);
+  Context context;
+  const auto spawn = [&](const AvatarSpawn& like) {
+    const auto ids = crowd.scatter(1, like, context);
+    return ids ? std::string("accepted") : ids.error().message;
+  };
+  EXPECT_EQ(spawn({.speed = -1}), "crowd: speed must be 0 (the class's) to 100 m/s");
+  EXPECT_EQ(spawn({.radius = NAN}),
+            "crowd: radius must be 0 (the class's) to 100 m, and at most 4000 cells");
+  EXPECT_NE(spawn({.avatar_class = 9}), "accepted");
+}
+
+}  // namespace
+}  // namespace throng

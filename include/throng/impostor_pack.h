@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "throng/base.h"
+#include "throng/impostor.h"
+#include "throng/math.h"
+
+/// From arrays of avatars to what a graphics card draws: who is seen, and by which view. Processor
+/// only; the same bytes for any number of threads.
+namespace throng {
+
+/// An eye that looks at a point. Y is up.
+struct EyeCamera {
+  Vec3d eye{0, 1.7, 5};
+  Vec3d target{0, 1, 0};
+  double field_of_view = 0.8;  ///< Top to bottom. [rad, > 0, < 3]
+  double aspect = 16.0 / 9;    ///< Width by height. [> 0]
+  double nearest = 0.2;        ///< What is nearer is not seen. [m, > 0]
+  double furthest = 10000;     ///< What is further is not seen. [m, > nearest]
+};
+
+/// Borrowed arrays, one entry an avatar, positions relative to a point of the caller's: near enough
+/// that a float holds them (a kilometre to 0.06 mm).
+struct ImpostorArrays {
+  std::span<const float> x, y, z;     ///< Where the feet are. [m]
+  std::span<const uint16_t> heading;  ///< From +Z towards +X. [65536 a turn]
+  std::span<const uint16_t> phase;    ///< Of the clip's cycle, see walk_phase. [65536 a cycle]
+  std::span<const uint16_t> look;     ///< Any number: which clothes to wear. [< 2048]
+};
+
+/// Sixteen bytes for the card. `view`: AtlasShape::view in bits 0 to 19, mirrored in bit 20, look
+/// in bits 21 to 31.
+struct ImpostorInstance {
+  float x = 0, y = 0, z = 0;
+  uint32_t view = 0;
+};
+
+struct PackConfig {
+  EyeCamera camera;  ///< Relative to the same point as the arrays.
+  size_t clip = 0;   ///< Index into Atlas::clips.
+  /// All are seen from this direction, as by the sun; not from the eye. Points away from them.
+  std::optional<Vec3d> from_direction;
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+};
+
+/// Writes the avatars whose ball of half a view's side, as seen by the camera, may be in the
+/// picture, in order of index, and returns how many. Linear time. All spans of `avatars` must have
+/// one length, at most 2^31 - 1, and `out` no less.
+THRONG_API size_t pack_impostors(const Atlas& atlas, const ImpostorArrays& avatars,
+                                 const PackConfig& config, std::span<ImpostorInstance> out);
+
+/// The axes of a camera: unit vectors.
+struct CameraAxes {
+  Vec3d right, up, forward;
+};
+[[nodiscard]] THRONG_API CameraAxes camera_axes(const EyeCamera& camera);
+
+}  // namespace throng

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "impostor/pack_loops.h"
+
+#include <cmath>
+
+#include "impostor/choose_view.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "impostor/pack_loops.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+// Plain loops without a branch, compiled once for each set of vector instructions: the compiler
+// makes vector code of them, and the numbers are those of choose_view.
+HWY_BEFORE_NAMESPACE();
+namespace throng {
+namespace HWY_NAMESPACE {
+
+void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
+  for (size_t i = 0; i < in.count; ++i) {
+    const float px = in.x[i], py = in.y[i] + s.centre, pz = in.z[i];
+    float least = s.planes[0].x * px + s.planes[0].y * py + s.planes[0].z * pz + s.planes[0].offset;
+    for (size_t k = 1; k < 6; ++k) {
+      const PackPlane& p = s.planes[k];
+      const float inside = p.x * px + p.y * py + p.z * pz + p.offset;
+      least = inside < least ? inside : least;
+    }
+    block.seen[i] = least >= 0 ? 1 : 0;
+    block.to_x[i] = s.fixed ? s.to_x : s.eye_x - px;
+    block.to_y[i] = s.fixed ? s.to_y : s.eye_y - py;
+    block.to_z[i] = s.fixed ? s.to_z : s.eye_z - pz;
+  }
+}
+
+void FindViews(const PackShared& shared, const PackInput& input, PackBlock& block) {
+  const PackShared s = shared;  // A copy: nobody else's writes can change it in the loop.
+  const PackInput in = input;
+  FindSeen(s, in, block);
+  for (size_t i = 0; i < in.count; ++i) {
+    const float x = block.to_x[i], y = block.to_y[i], z = block.to_z[i];
+    const uint32_t sector = view_sector(x, z, in.heading[i], 2 * s.directions);
+    const uint32_t row = view_row(std::sqrt(x * x + z * z), y, s.rows);
+    const uint32_t mirrored = sector >= s.directions ? 1 : 0;
+    const uint32_t column = mirrored != 0 ? 2 * s.directions - 1 - sector : sector;
+    uint32_t frame = (in.phase[i] * s.frames + 32768) >> 16;
+    frame = frame >= s.frames ? frame - s.frames : frame;
+    const uint32_t half = frame + s.frames / 2;
+    const uint32_t other = half >= s.frames ? half - s.frames : half;
+    frame = (mirrored != 0 ? other : frame) + s.first_frame;
+    block.view[i] = ((frame * s.rows + row) * s.directions + column) | mirrored << 20 |
+                    static_cast<uint32_t>(in.look[i]) << 21;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace throng
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace throng {
+
+HWY_EXPORT(FindViews);
+
+void find_views(const PackShared& shared, const PackInput& input, PackBlock& block) {
+  HWY_DYNAMIC_DISPATCH(FindViews)(shared, input, block);
+}
+
+}  // namespace throng
+#endif

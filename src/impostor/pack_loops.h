@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+/// The inner loops of packing: a block of avatars at a time, in arrays that the first cache holds.
+namespace throng {
+
+inline constexpr size_t kPackBlock = 1024;
+
+/// Inside: x * px + y * py + z * pz + offset >= 0.
+struct PackPlane {
+  float x = 0, y = 0, z = 0, offset = 0;
+};
+
+/// Everything about a picture that is the same for all avatars.
+struct PackShared {
+  std::array<PackPlane, 6> planes;
+  float eye_x = 0, eye_y = 0, eye_z = 0;
+  bool fixed = false;                  ///< Seen from one direction, not from the eye.
+  float to_x = 0, to_y = 0, to_z = 0;  ///< That direction.
+  float centre = 0;                    ///< Of a view over the feet.
+  uint32_t directions = 0, rows = 0, frames = 0, first_frame = 0;
+};
+
+/// The same entries of each array of the avatars.
+struct PackInput {
+  const float *x, *y, *z;
+  const uint16_t *heading, *phase, *look;
+  size_t count;  ///< [<= kPackBlock]
+};
+
+struct PackBlock {
+  alignas(64) std::array<float, kPackBlock> to_x, to_y, to_z;
+  alignas(64) std::array<uint32_t, kPackBlock> view;  ///< ImpostorInstance::view.
+  alignas(64) std::array<uint32_t, kPackBlock> seen;  ///< 1 if in the picture, else 0.
+};
+
+/// Fills `view` and `seen`.
+void find_views(const PackShared& shared, const PackInput& input, PackBlock& block);
+
+}  // namespace throng

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <vector>
+
+#include "core/random.h"
+#include "simd_targets.h"
+#include "throng/impostor_pack.h"
+
+namespace throng {
+namespace {
+
+struct Avatars {
+  std::vector<float> x, y, z;
+  std::vector<uint16_t> heading, phase, look;
+  [[nodiscard]] ImpostorArrays view() const { return {x, y, z, heading, phase, look}; }
+};
+
+// Around the eye, some very near and some on round coordinates.
+Avatars random_avatars(size_t count, double spread) {
+  Avatars a;
+  for (size_t i = 0; i < count; ++i) {
+    const auto coordinate = [&](uint64_t k) {
+      const double value = (random_unit(5, i, k) * 2 - 1) * spread;
+      return static_cast<float>(i % 7 == 0 ? std::round(value) : value);
+    };
+    a.x.push_back(coordinate(0));
+    a.y.push_back(coordinate(1) * 0.1F);
+    a.z.push_back(coordinate(2));
+    a.heading.push_back(static_cast<uint16_t>(random_u64(5, i, 3)));
+    a.phase.push_back(static_cast<uint16_t>(random_u64(5, i, 4)));
+    a.look.push_back(static_cast<uint16_t>(i % 2048));
+  }
+  return a;
+}
+
+Atlas atlas_of(int32_t directions, int32_t elevations) {
+  Atlas atlas;
+  atlas.shape = {.pixels = 64,
+                 .directions = directions,
+                 .elevations = elevations,
+                 .frames = 14,
+                 .side = 2,
+                 .centre = 0.875,
+                 .height = 1.75};
+  atlas.clips = {{.name = "Walk", .first_frame = 0, .frames = 10, .seconds = 1, .stride = 1.5},
+                 {.name = "Idle", .first_frame = 10, .frames = 4, .seconds = 4, .stride = 0}};
+  return atlas;
+}
+
+std::vector<ImpostorInstance> pack(const Atlas& atlas, const Avatars& avatars,
+                                   const PackConfig& config) {
+  std::vector<ImpostorInstance> out(avatars.x.size());
+  out.resize(pack_impostors(atlas, avatars.view(), config, out));
+  return out;
+}
+
+// One by one, by choose_view.
+TEST(PackImpostors, ShowsEachAvatarByTheViewThatIsChosenForItAlone) {
+  const Avatars avatars = random_avatars(5000, 40);
+  for (const int32_t directions : {16, 5}) {
+    for (const size_t clip : {0, 1}) {
+      const Atlas atlas = atlas_of(directions, 8);
+      PackConfig config;
+      config.clip = clip;
+      config.camera.eye = {3, 12, 30};
+      const auto packed = pack(atlas, avatars, config);
+      ASSERT_GT(packed.size(), 500U);
+      ASSERT_LT(packed.size(), 4500U);
+      size_t i = 0;
+      for (const ImpostorInstance& instance : packed) {
+        while (avatars.x[i] != instance.x || avatars.z[i] != instance.z) ++i;  // In order.
+        ASSERT_LT(i, avatars.x.size());
+        const Vec3d to_eye{3.0F - avatars.x[i], 12.0F - (avatars.y[i] + 0.875F),
+                           30.0F - avatars.z[i]};
+        const ViewChoice choice =
+            choose_view(atlas.shape, atlas.clips[clip], to_eye, avatars.heading[i] / 65536.0,
+                        avatars.phase[i] / 65536.0);
+        EXPECT_EQ(instance.view & 0xfffff,
+                  atlas.shape.view(choice.frame, choice.row, choice.column));
+        EXPECT_EQ(instance.view >> 20 & 1, choice.mirrored ? 1U : 0U);
+        EXPECT_EQ(instance.view >> 21, avatars.look[i]);
+        ++i;
+      }
+    }
+  }
+}
+
+// Is a point in the picture? By projecting it.
+bool in_picture(const EyeCamera& camera, Vec3d p) {
+  const CameraAxes axes = camera_axes(camera);
+  const Vec3d d = p - camera.eye;
+  const double depth = dot(d, axes.forward), up = std::tan(0.5 * camera.field_of_view);
+  return depth >= camera.nearest && depth <= camera.furthest &&
+         std::fabs(dot(d, axes.up)) <= depth * up &&
+         std::fabs(dot(d, axes.right)) <= depth * up * camera.aspect;
+}
+
+TEST(PackImpostors, NobodyWhoIsSeenIsLeftOutAndFewWhoAreNotAreKept) {
+  const Atlas atlas = atlas_of(16, 8);
+  const Avatars avatars = random_avatars(4000, 60);
+  size_t seen = 0, kept = 0;
+  for (uint64_t n = 0; n < 12; ++n) {
+    PackConfig config;
+    config.camera.eye = {random_unit(9, n, 0) * 20, random_unit(9, n, 1) * 20, 5};
+    config.camera.target = {random_unit(9, n, 2) * 20 - 10, 0, random_unit(9, n, 3) * 20 - 10};
+    config.camera.aspect = n % 3 == 0 ? 0.5 : 1.8;
+    config.camera.field_of_view = n % 2 == 0 ? 0.3 : 1.5;
+    config.camera.furthest = n % 4 == 0 ? 30 : 1000;
+    if (n == 11) config.camera.target = config.camera.eye - Vec3d{0, 5, 0};
+    std::map<std::pair<float, float>, bool> is_kept;
+    for (const ImpostorInstance& i : pack(atlas, avatars, config)) is_kept[{i.x, i.z}] = true;
+    kept += is_kept.size();
+    for (size_t i = 0; i < avatars.x.size(); ++i) {
+      bool inside = false;
+      for (uint64_t s = 0; s < 60 && !inside; ++s) {
+        const Vec3d off = {random_unit(s, 1, 0) * 2 - 1, random_unit(s, 1, 1) * 2 - 1,
+                           random_unit(s, 1, 2) * 2 - 1};
+        const Vec3d p{avatars.x[i], avatars.y[i] + 0.875, avatars.z[i]};
+        inside = in_picture(config.camera, p + off * (1 / std::max(1.0, length(off))));
+      }
+      seen += inside ? 1 : 0;
+      EXPECT_TRUE(!inside || is_kept.count({avatars.x[i], avatars.z[i]}) == 1) << i;
+    }
+  }
+  EXPECT_GT(seen, 1000U);
+  EXPECT_LT(kept, seen + seen / 5);
+}
+
+TEST(PackImpostors, SameBytesForAnyNumberOfWorkersAndNoAvatarsAtAll) {
+  const Atlas atlas = atlas_of(16, 8);
+  const Avatars avatars = random_avatars(40001, 100);
+  PackConfig config;
+  config.camera.eye = {0, 60, 90};
+  config.workers = 1;
+  const auto one = pack(atlas, avatars, config);
+  ASSERT_GT(one.size(), 100U);
+  for (const int32_t workers : {2, 3, 8, 0}) {
+    config.workers = workers;
+    const auto many = pack(atlas, avatars, config);
+    ASSERT_EQ(many.size(), one.size());
+    EXPECT_EQ(std::memcmp(many.data(), one.data(), one.size() * sizeof one[0]), 0) << workers;
+  }
+  EXPECT_TRUE(pack(atlas, Avatars{}, config).empty());
+}
+
+TEST(PackImpostors, SameBytesForAnyVectorInstructions) {
+  const Atlas atlas = atlas_of(16, 8);
+  const Avatars avatars = random_avatars(3000, 50);
+  PackConfig config;
+  config.camera.eye = {0, 20, 60};
+  const auto best = pack(atlas, avatars, config);
+  test::for_every_simd_target([&](const char* target) {
+    const auto other = pack(atlas, avatars, config);
+    ASSERT_EQ(other.size(), best.size()) << target;
+    EXPECT_EQ(std::memcmp(other.data(), best.data(), best.size() * sizeof best[0]), 0) << target;
+  });
+}
+
+TEST(PackImpostors, FromTheSunAllShowTheSideThatItSees) {
+  const Atlas atlas = atlas_of(16, 8);
+  Avatars avatars = random_avatars(500, 10);
+  for (uint16_t& heading : avatars.heading) heading = 0;
+  PackConfig config;
+  config.camera.eye = {0, 5, 30};
+  config.from_direction = Vec3d{1, 1, 0};  // From +X, half way up.
+  for (const ImpostorInstance& i : pack(atlas, avatars, config)) {
+    const uint32_t view = i.view & 0xfffff;
+    EXPECT_EQ(view % 16, 8U);
+    EXPECT_EQ(view / 16 % 8, 4U);
+  }
+}
+
+}  // namespace
+}  // namespace throng

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 namespace throng::app {
@@ -34,6 +35,7 @@ bool parse(std::string_view text, T& value) {
 
 struct CsvRow {
   uint64_t step = 0;
+  uint64_t id = 0;
   PictureAvatar avatar;
 };
 
@@ -48,6 +50,10 @@ Result<CsvRow> parse_row(const std::string& where, std::string_view line) {
   if (!parse(fields[0], row.step)) {
     return Error{Errc::kBadFile,
                  fmt::format("{}: step is '{}'; write a whole number", where, fields[0])};
+  }
+  if (!parse(fields[1], row.id)) {
+    return Error{Errc::kBadFile,
+                 fmt::format("{}: id is '{}'; write a whole number", where, fields[1])};
   }
   Vec3d& p = row.avatar.position;
   const std::pair<const char*, double*> numbers[] = {
@@ -64,16 +70,15 @@ Result<CsvRow> parse_row(const std::string& where, std::string_view line) {
   return row;
 }
 
-}  // namespace
-
-Result<std::vector<PictureAvatar>> read_avatars(const std::string& path) {
+// Calls take(row) for each line of the file.
+template <class Take>
+Result<void> read_rows(const std::string& path, Take take) {
   std::ifstream file(path);
   if (!file) {
     return Error{Errc::kBadFile,
                  fmt::format("{}: cannot read; write one with throng run --trajectories", path)};
   }
-  std::vector<PictureAvatar> avatars;
-  uint64_t last = 0, number = 0;
+  uint64_t number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
     if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -85,14 +90,53 @@ Result<std::vector<PictureAvatar>> read_avatars(const std::string& path) {
     if (line.empty()) continue;
     const Result<CsvRow> row = parse_row(fmt::format("{}:{}", path, number), line);
     if (!row) return row.error();
-    if (row->step > last) avatars.clear();
-    if (row->step >= last) avatars.push_back(row->avatar);
-    last = std::max(last, row->step);
+    take(*row);
   }
   if (number == 0) {
     return Error{Errc::kBadFile, fmt::format("{}:1: the file is empty; write {}", path, kColumns)};
   }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<PictureAvatar>> read_avatars(const std::string& path) {
+  std::vector<PictureAvatar> avatars;
+  uint64_t last = 0;
+  const auto done = read_rows(path, [&](const CsvRow& row) {
+    if (row.step > last) avatars.clear();
+    if (row.step >= last) avatars.push_back(row.avatar);
+    last = std::max(last, row.step);
+  });
+  if (!done) return done.error();
   return avatars;
+}
+
+Result<std::vector<CsvWalker>> read_walkers(const std::string& path) {
+  std::unordered_map<uint64_t, CsvWalker> known;
+  std::vector<uint64_t> order;
+  uint64_t last = 0;
+  const auto done = read_rows(path, [&](const CsvRow& row) {
+    if (row.step > last) order.clear();
+    if (row.step < last) return;
+    last = row.step;
+    order.push_back(row.id);
+    const auto [it, is_new] = known.try_emplace(row.id);
+    CsvWalker& walker = it->second;
+    const Vec3d before = is_new ? row.avatar.position : walker.position;
+    walker.id = row.id;
+    walker.position = row.avatar.position;
+    const Vec3d moved = row.avatar.position - before;
+    walker.last_move = std::hypot(moved.x, moved.z);
+    walker.walked += walker.last_move;
+    // Where it stands still it looks where it went.
+    if (walker.last_move > 1e-6) walker.heading = Vec3d{moved.x, 0, moved.z};
+  });
+  if (!done) return done.error();
+  std::vector<CsvWalker> walkers;
+  walkers.reserve(order.size());
+  for (const uint64_t id : order) walkers.push_back(known[id]);
+  return walkers;
 }
 
 }  // namespace throng::app

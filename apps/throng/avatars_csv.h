@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,5 +15,17 @@ namespace throng::app {
 /// The avatars of the last step in a file with the columns step,id,class,x,y,z,radius. Fails with
 /// kBadFile, the line and what to write there.
 [[nodiscard]] Result<std::vector<PictureAvatar>> read_avatars(const std::string& path);
+
+/// An avatar of the last step, and what the steps before say of it.
+struct CsvWalker {
+  uint64_t id = 0;
+  Vec3d position;        ///< Feet. [m]
+  Vec3d heading;         ///< Along its last move; 0 if it never moved.
+  double last_move = 0;  ///< Over the ground, since the step before in the file. [m]
+  double walked = 0;     ///< Over the ground, since its first line. [m]
+};
+
+/// As read_avatars.
+[[nodiscard]] Result<std::vector<CsvWalker>> read_walkers(const std::string& path);
 
 }  // namespace throng::app

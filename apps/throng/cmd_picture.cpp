@@ -11,6 +11,7 @@
 
 #include "avatars_csv.h"
 #include "command.h"
+#include "scene_picture.h"
 #include "throng/nodes.h"
 #include "throng/picture.h"
 
@@ -27,6 +28,7 @@ struct PictureOptions {
   std::string path;
   std::vector<double> area;
   bool nodes = false;
+  ScenePictureOptions scene;
   PictureConfig config;
   NodePictureConfig node_config;
 };
@@ -87,6 +89,17 @@ int picture(Session& session, PictureOptions& options) {
     if (!index) return fail(index.error());
     options.config.avatar_class = *index;
   }
+  if (!options.scene.camera.empty()) {
+    options.scene.avatars = options.avatars;
+    options.scene.avatar_class = options.config.avatar_class;
+    options.scene.width = options.config.width;
+    return draw_scene_picture(session, *world, options.scene, options.output);
+  }
+  if (options.scene.needs_camera()) {
+    return fail({Errc::kBadConfig,
+                 "--atlas, --crowd, --height, --source and --view-angle draw what an eye sees: add "
+                 "--camera X,Y,Z,TX,TY,TZ"});
+  }
   std::vector<PictureAvatar> avatars;
   if (!options.avatars.empty()) {
     Result<std::vector<PictureAvatar>> read = read_avatars(options.avatars);
@@ -121,7 +134,9 @@ int picture(Session& session, PictureOptions& options) {
 void add_picture(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(parser, session, "picture", "Draw a world and the crowd in it",
                                   "throng bake builtin:garage -o garage.throng\n"
-                                  "throng picture garage.throng -o garage.png");
+                                  "throng picture garage.throng -o garage.png\n"
+                                  "throng picture garage.throng --source builtin:garage "
+                                  "--crowd 300 --camera 40,14,46,22,2,22 -o seen.png");
   const auto options = std::make_shared<PictureOptions>();
   command->add_option("world", options->world, "World folder")
       ->required()
@@ -148,6 +163,7 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_option("--width", options->config.width, "Width of the picture [px]")
       ->capture_default_str();
   command->add_option("--title", options->config.title, "Title; the folder's name if not given");
+  add_scene_picture_options(command, options->scene);
   command->callback([&session, options] { session.exit_code = picture(session, *options); });
 }
 

@@ -29,6 +29,20 @@ class AvatarsCsv : public testing::Test {
   std::string path_ = testing::TempDir() + "throng_avatars.csv";
 };
 
+TEST_F(AvatarsCsv, WalkersKnowWhereTheyCameFrom) {
+  ASSERT_TRUE(read(kHead + "0,1,adult,1,2,3,0.25\n0,2,adult,0,0,0,0.25\n4,2,adult,0,0,0,0.25\n" +
+                   "4,1,adult,1,2,5,0.25\n8,1,adult,4,3,1,0.25\n8,2,adult,0,0,0,0.25\n"));
+  const auto walkers = read_walkers(path_);
+  ASSERT_TRUE(walkers) << walkers.error().message;
+  ASSERT_EQ(walkers->size(), 2u);
+  EXPECT_EQ((*walkers)[0].id, 1u);
+  EXPECT_EQ((*walkers)[0].heading, (Vec3d{3, 0, -4}));
+  EXPECT_DOUBLE_EQ((*walkers)[0].last_move, 5);
+  EXPECT_DOUBLE_EQ((*walkers)[0].walked, 7);
+  EXPECT_EQ((*walkers)[1].heading, (Vec3d{}));
+  EXPECT_EQ((*walkers)[1].walked, 0);
+}
+
 TEST_F(AvatarsCsv, TheLastStepCounts) {
   const auto avatars = read(kHead + "0,1,adult,1,2,3,0.25\n9,1,adult,1.5,2.5,-3.5,0.25\n" +
                             "9,2,giant,4,5,6,0.4\r\n\n10,7,adult,-1.25,0,8,0.3\n");

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <string>
+#include <utility>
+
+#include "throng/math.h"
+
+/// Names that OpenGL hands out, given back when their owner goes. A context must be current.
+namespace throng {
+
+template <void (*kDelete)(GLuint)>
+class GlName {
+ public:
+  GlName() = default;
+  explicit GlName(GLuint name) : name_(name) {}
+  GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlName& operator=(GlName&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~GlName() {
+    if (name_ != 0) kDelete(name_);
+  }
+  [[nodiscard]] GLuint get() const { return name_; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+inline void delete_texture(GLuint name) { glDeleteTextures(1, &name); }
+inline void delete_buffer(GLuint name) { glDeleteBuffers(1, &name); }
+inline void delete_array(GLuint name) { glDeleteVertexArrays(1, &name); }
+inline void delete_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+inline void delete_renderbuffer(GLuint name) { glDeleteRenderbuffers(1, &name); }
+inline void delete_program(GLuint name) { glDeleteProgram(name); }
+
+using GlTexture = GlName<delete_texture>;
+using GlBuffer = GlName<delete_buffer>;
+using GlVertexArray = GlName<delete_array>;
+using GlFramebuffer = GlName<delete_framebuffer>;
+using GlRenderbuffer = GlName<delete_renderbuffer>;
+
+/// A linked pair of shaders.
+class GlProgram {
+ public:
+  GlProgram() = default;
+  /// The sources are ours: one that does not compile is a fault of this library or of the driver,
+  /// which fault() tells.
+  GlProgram(const std::string& vertex, const std::string& fragment);
+  void use() const { glUseProgram(name_.get()); }
+  [[nodiscard]] bool is_linked() const { return name_.get() != 0; }
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+  void set(const char* uniform, int value) const;
+  void set(const char* uniform, float value) const;
+  void set(const char* uniform, Vec3d value) const;
+  void set_size(const char* uniform, float width, float height) const;
+  void set_matrix(const char* uniform, const float* sixteen) const;
+  void set_colours(const char* uniform, const float* triples, int count) const;
+
+ private:
+  [[nodiscard]] GLint place(const char* uniform) const;
+  GlName<delete_program> name_;
+  std::string fault_;
+};
+
+GlTexture make_texture();
+GlBuffer make_buffer();
+GlVertexArray make_vertex_array();
+GlFramebuffer make_framebuffer();
+GlRenderbuffer make_renderbuffer();
+
+}  // namespace throng

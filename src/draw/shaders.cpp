@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "draw/shaders.h"
+
+namespace throng::shaders {
+namespace {
+
+constexpr const char* kHead = R"(#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2DArray;
+precision highp usampler2D;
+precision highp sampler2DShadow;
+uniform mat4 clip_from_world;
+uniform vec3 eye;
+uniform vec3 to_sun;
+)";
+
+// A low sun in a clear sky: warm light, blue shade, and haze that takes far things into the sky.
+constexpr const char* kLight = R"(
+uniform float haze;  // Per metre.
+const vec3 kSun = vec3(1.45, 1.28, 1.02);
+const vec3 kSkyLight = vec3(0.34, 0.42, 0.54);
+const vec3 kGroundLight = vec3(0.22, 0.20, 0.18);
+vec3 sky_colour(vec3 towards) {
+  float high = clamp(towards.y, 0.0, 1.0);
+  return mix(vec3(0.70, 0.77, 0.83), vec3(0.20, 0.40, 0.72), 1.0 - (1.0 - high) * (1.0 - high));
+}
+vec3 lit(vec3 albedo, vec3 normal, float in_sun) {
+  float sun = max(dot(normal, to_sun), 0.0) * in_sun;
+  vec3 around = mix(kGroundLight, kSkyLight, 0.5 + 0.5 * normal.y);
+  return albedo * (kSun * sun + around);
+}
+vec4 shown(vec3 colour, vec3 from_eye) {
+  float far = length(from_eye);
+  float share = 1.0 - exp(-haze * far);
+  vec3 hazy = mix(colour, sky_colour(vec3(0.0)), share);
+  return vec4(sqrt(clamp(hazy, 0.0, 1.0)), 1.0);
+}
+)";
+
+// How much of the sun reaches a point: nine looks at the sun's depth picture.
+constexpr const char* kSunlit = R"(
+uniform mat4 sun_from_world;
+uniform sampler2DShadow sun_depth;
+uniform float sun_texel;
+float sunlit(vec3 p) {
+  vec4 c = sun_from_world * vec4(p, 1.0);
+  vec3 at = c.xyz * 0.5 + 0.5;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  float sum = 0.0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x)
+      sum += textureLod(sun_depth, vec3(at.xy + vec2(x, y) * sun_texel, at.z), 0.0);
+  return sum / 9.0;
+}
+)";
+
+// Which avatar and which corner a vertex is, and the rectangle that shows it. Pulled from textures
+// by number: no attributes to step per instance, which software drivers do slowly.
+constexpr const char* kPull = R"(
+uniform usampler2D instances;
+uniform usampler2D views;
+uniform int first;
+uniform float side;    // Of a view [m].
+uniform float centre;  // Over the feet [m].
+uniform float pixels;  // Along a view's side.
+uniform vec2 page;     // [texels]
+struct Corner {
+  vec3 feet;
+  vec2 offset;  // From the middle of the view, right and up [m].
+  vec3 texel;   // x, y, page.
+  float flip;   // -1: left and right are exchanged.
+  uint look;
+};
+Corner pull() {
+  int number = gl_VertexID / 6 + first, corner = gl_VertexID % 6;
+  uvec4 data = texelFetch(instances, ivec2(number & 2047, number >> 11), 0);
+  int view = int(data.w & 0xfffffu) * 2;
+  uvec4 place = texelFetch(views, ivec2(view & 1023, view >> 10), 0);
+  uvec4 part = texelFetch(views, ivec2((view & 1023) + 1, view >> 10), 0);
+  // Two triangles: corners 0 1 2, 2 1 3.
+  int k = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
+  vec2 at = vec2(float(k & 1), float(k >> 1)) * vec2(place.zw);
+  Corner c;
+  c.feet = uintBitsToFloat(data.xyz);
+  c.flip = (data.w >> 20 & 1u) == 1u ? -1.0 : 1.0;
+  c.offset = (vec2(part.xy) + at - 0.5 * pixels) * vec2(c.flip, -1.0) * (side / pixels);
+  c.texel = vec3((vec2(place.xy) + at) / page, float(part.z));
+  c.look = data.w >> 21;
+  return c;
+}
+)";
+
+}  // namespace
+
+std::string sky_vertex() {
+  return std::string(kHead) + R"(
+uniform vec3 right, up, forward;  // Scaled to the edges of the picture.
+out vec3 towards;
+void main() {
+  vec2 at = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 4.0 - 1.0;
+  towards = forward + right * at.x + up * at.y;
+  gl_Position = vec4(at, 1.0, 1.0);
+}
+)";
+}
+
+std::string sky_fragment() {
+  return std::string(kHead) + kLight + R"(
+in vec3 towards;
+out vec4 colour;
+void main() { colour = vec4(sqrt(sky_colour(normalize(towards))), 1.0); }
+)";
+}
+
+std::string scene_vertex() {
+  return std::string(kHead) + R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal_tint;
+out vec3 world;
+flat out vec3 normal;
+flat out float tint;
+void main() {
+  world = position;
+  normal = normal_tint.xyz;
+  tint = normal_tint.w;
+  gl_Position = clip_from_world * vec4(position, 1.0);
+}
+)";
+}
+
+// Flat colours: what one may stand on is light, walls vary a little from part to part.
+std::string scene_fragment() {
+  return std::string(kHead) + kLight + kSunlit + R"(
+in vec3 world;
+flat in vec3 normal;
+flat in float tint;
+uniform float bias;
+out vec4 colour;
+void main() {
+  vec3 from_eye = world - eye;
+  vec3 n = normalize(normal);
+  if (dot(n, from_eye) > 0.0) n = -n;
+  vec3 wall = mix(vec3(0.62, 0.52, 0.42), vec3(0.56, 0.57, 0.58), max(tint, 0.0));
+  vec3 floor_colour = vec3(0.42, 0.41, 0.39);
+  if (tint < 0.0) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
+  vec3 albedo = mix(wall, floor_colour, smoothstep(0.5, 0.8, abs(n.y)));
+  float in_sun = dot(n, to_sun) > 0.0 ? sunlit(world + n * bias) : 0.0;
+  colour = shown(lit(albedo, n, in_sun), from_eye);
+}
+)";
+}
+
+std::string depth_vertex() {
+  return std::string(kHead) + R"(
+layout(location = 0) in vec3 position;
+void main() { gl_Position = clip_from_world * vec4(position, 1.0); }
+)";
+}
+
+std::string depth_fragment() { return std::string(kHead) + "void main() {}\n"; }
+
+std::string impostor_vertex() {
+  return std::string(kHead) + kSunlit + kPull + R"(
+out vec3 texel;
+out vec3 world;
+flat out vec3 right, up, towards;
+flat out uint look;
+flat out float in_sun;
+out float height;
+void main() {
+  Corner c = pull();
+  vec3 middle = c.feet + vec3(0.0, centre, 0.0);
+  towards = normalize(eye - middle);
+  float flat_length = length(towards.xz);
+  right = flat_length > 1e-4 ? vec3(towards.z, 0.0, -towards.x) / flat_length : vec3(1.0, 0.0, 0.0);
+  up = cross(towards, right);
+  world = middle + right * c.offset.x + up * c.offset.y;
+  height = c.offset.y + centre;
+  right *= c.flip;  // As the texels' normals have it.
+  texel = c.texel;
+  look = c.look;
+  in_sun = sunlit(middle + to_sun * 0.9);  // In front of its own shadow.
+  gl_Position = clip_from_world * vec4(world, 1.0);
+}
+)";
+}
+
+std::string impostor_fragment() {
+  return std::string(kHead) + kLight + R"(
+in vec3 texel;
+in vec3 world;
+flat in vec3 right, up, towards;
+flat in uint look;
+flat in float in_sun;
+in float height;
+uniform sampler2DArray albedo;
+uniform sampler2DArray detail;
+uniform vec3 wardrobe[72];   // Twelve colours for each body part.
+uniform vec3 part_colour[6]; // What the atlas has.
+uniform float side;          // Of a view [m].
+out vec4 colour;
+void main() {
+  vec4 stored = texture(albedo, texel);
+  if (stored.a < 0.5) discard;
+  ivec3 size = textureSize(detail, 0);
+  vec4 d = texelFetch(detail, ivec3(vec2(size.xy) * texel.xy, int(texel.z)), 0);
+  // Where the body is, not the card that shows it: so it is cut where it meets a wall or a stair.
+  // A texel knows its place to 7 cm, so it comes 5 cm nearer, or soles would sink into the ground.
+  uint mask = uint(d.z * 255.0 + 0.5);
+  float in_front = (float(mask & 31u) - 16.0) / 30.0 * side + 0.05;
+  vec4 clip = clip_from_world * vec4(world + towards * in_front, 1.0);
+  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
+  vec2 side_ways = (d.xy * 255.0 - 128.0) / 127.0;
+  vec3 n = normalize(right * side_ways.x + up * side_ways.y +
+                     towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
+  uint part = mask >> 5;
+  vec3 own = stored.rgb * stored.rgb;
+  if (part > 0u) {
+    uint k = (look * (5u + 2u * part) + (look >> 4u) * 7u + part * 3u) % 12u;
+    // The part's own light and dark stay, its hue does not.
+    const vec3 kBright = vec3(0.30, 0.59, 0.11);
+    float relief = clamp(dot(own, kBright) / dot(part_colour[part], kBright), 0.4, 1.7);
+    own = min(wardrobe[part * 12u + k] * relief, 0.95);
+  }
+  float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));  // Less light near the ground.
+  colour = shown(lit(own, n, in_sun) * shade, world - eye);
+}
+)";
+}
+
+// The card that the sun sees, in the sun's depth picture.
+std::string shadow_vertex() {
+  return std::string(kHead) + kPull + R"(
+uniform vec3 sun_right, sun_up;
+out vec3 texel;
+void main() {
+  Corner c = pull();
+  vec3 middle = c.feet + vec3(0.0, centre, 0.0);
+  texel = c.texel;
+  gl_Position = clip_from_world *
+                vec4(middle + sun_right * c.offset.x + sun_up * c.offset.y, 1.0);
+}
+)";
+}
+
+std::string shadow_fragment() {
+  return std::string(kHead) + R"(
+in vec3 texel;
+uniform sampler2DArray albedo;
+void main() {
+  if (texture(albedo, texel).a < 0.5) discard;
+}
+)";
+}
+
+}  // namespace throng::shaders

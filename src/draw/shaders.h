@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+/// The shaders: OpenGL ES 3.0, which is WebGL 2. Colours are linear until the last line.
+namespace throng::shaders {
+
+std::string sky_vertex();
+std::string sky_fragment();
+std::string scene_vertex();
+std::string scene_fragment();
+std::string depth_vertex();  ///< Of the scene, as the sun sees it.
+std::string depth_fragment();
+std::string impostor_vertex();
+std::string impostor_fragment();
+std::string shadow_vertex();  ///< Of impostors, as the sun sees them.
+std::string shadow_fragment();
+
+}  // namespace throng::shaders

@@ -146,6 +146,15 @@ Result<Scene> scene_of(Session& session, const World& world, const ScenePictureO
 
 int draw_scene_picture(Session& session, const World& world, const ScenePictureOptions& options,
                        const std::string& output) {
+  const std::vector<double>& c = options.camera;
+  const Vec3d origin{std::round(c[3]), std::round(c[4]), std::round(c[5])};
+  DrawingConfig config;
+  config.camera.eye = Vec3d{c[0], c[1], c[2]} - origin;
+  config.camera.target = Vec3d{c[3], c[4], c[5]} - origin;
+  config.camera.field_of_view = options.view_angle * std::numbers::pi / 180;
+  config.width = options.width;
+  config.height = options.height > 0 ? options.height : options.width * 9 / 16;
+  if (auto sound = Drawing::check(config); !sound) return fail(sound.error());
   Result<Drawing> drawing = Drawing::create();
   if (!drawing) return fail(drawing.error());
   const Result<std::vector<CsvWalker> > walkers = walkers_of(world, options);
@@ -155,8 +164,6 @@ int draw_scene_picture(Session& session, const World& world, const ScenePictureO
   const Result<std::vector<Atlas> > atlases = atlases_of(session, options);
   if (!atlases) return fail(atlases.error());
 
-  const std::vector<double>& c = options.camera;
-  const Vec3d origin{std::round(c[3]), std::round(c[4]), std::round(c[5])};
   if (auto set = drawing->set_scene(*scene, origin); !set) return fail(set.error());
   for (const Atlas& atlas : *atlases) {
     if (auto added = drawing->add_atlas(atlas); !added) return fail(added.error());
@@ -168,12 +175,6 @@ int draw_scene_picture(Session& session, const World& world, const ScenePictureO
                       .clip = key.second,
                       .avatars = {g.x, g.y, g.z, g.heading, g.phase, g.look}});
   }
-  DrawingConfig config;
-  config.camera.eye = Vec3d{c[0], c[1], c[2]} - origin;
-  config.camera.target = Vec3d{c[3], c[4], c[5]} - origin;
-  config.camera.field_of_view = options.view_angle * std::numbers::pi / 180;
-  config.width = options.width;
-  config.height = options.height > 0 ? options.height : options.width * 9 / 16;
   DrawingReport report;
   const Result<Image> image = drawing->draw(crowds, config, &report);
   if (!image) return fail(image.error());

@@ -58,6 +58,8 @@ class THRONG_API Drawing {
   [[nodiscard]] Result<void> set_scene(const Scene& scene, Vec3d origin);
   /// Keeps a copy of an atlas. Fails with kLimit: pages larger than the card's textures.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
+  /// Fails with kBadConfig if draw() would.
+  [[nodiscard]] static Result<void> check(const DrawingConfig& config);
   /// Fails with kBadConfig, or kLimit: a picture larger than the card draws.
   [[nodiscard]] Result<Image> draw(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                                    DrawingReport* report = nullptr);

@@ -31,31 +31,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Result<void> check(const DrawingConfig& c) {
-  const EyeCamera& camera = c.camera;
-  const auto finite = [](Vec3d v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  };
-  const bool sound = c.width >= 16 && c.width <= 8192 && c.height >= 16 && c.height <= 8192 &&
-                     c.samples >= 1 && c.samples <= 4 && c.workers >= 0;
-  if (!sound) {
-    return Error{Errc::kBadConfig, "drawing: need 16 to 8192 pixels a side and 1 to 4 samples"};
-  }
-  if (!finite(camera.eye) || !finite(camera.target) || camera.eye == camera.target) {
-    return Error{Errc::kBadConfig, "drawing: the camera's eye and target must be two points"};
-  }
-  if (!(camera.field_of_view > 0.01 && camera.field_of_view < 3 && camera.nearest > 0 &&
-        camera.furthest > camera.nearest)) {
-    return Error{Errc::kBadConfig,
-                 "drawing: need a field of view of 0.01 to 3 rad, and "
-                 "0 < nearest < furthest"};
-  }
-  if (!finite(c.to_sun) || !(c.to_sun.y > 0)) {
-    return Error{Errc::kBadConfig, "drawing: the sun must be over the horizon"};
-  }
-  return {};
-}
-
 // A run of instances of one crowd, in the one upload.
 struct Run {
   size_t atlas = 0;
@@ -262,6 +237,31 @@ Result<Drawing> Drawing::create() {
   Drawing drawing(std::move(state));
   if (auto made = drawing.state_->make_programs(); !made) return made.error();
   return drawing;
+}
+
+Result<void> Drawing::check(const DrawingConfig& c) {
+  const EyeCamera& camera = c.camera;
+  const auto finite = [](Vec3d v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  const bool sound = c.width >= 16 && c.width <= 8192 && c.height >= 16 && c.height <= 8192 &&
+                     c.samples >= 1 && c.samples <= 4 && c.workers >= 0;
+  if (!sound) {
+    return Error{Errc::kBadConfig, "drawing: need 16 to 8192 pixels a side and 1 to 4 samples"};
+  }
+  if (!finite(camera.eye) || !finite(camera.target) || camera.eye == camera.target) {
+    return Error{Errc::kBadConfig, "drawing: the camera's eye and target must be two points"};
+  }
+  if (!(camera.field_of_view > 0.01 && camera.field_of_view < 3 && camera.nearest > 0 &&
+        camera.furthest > camera.nearest)) {
+    return Error{Errc::kBadConfig,
+                 "drawing: need a field of view of 0.01 to 3 rad, and "
+                 "0 < nearest < furthest"};
+  }
+  if (!finite(c.to_sun) || !(c.to_sun.y > 0)) {
+    return Error{Errc::kBadConfig, "drawing: the sun must be over the horizon"};
+  }
+  return {};
 }
 
 std::string Drawing::renderer() const {

@@ -5,6 +5,7 @@
 python3 program_test.py build/release/throng"""
 import base64
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -394,6 +395,36 @@ class Program(unittest.TestCase):
         (self.path / "cut.gltf").write_text((self.path / "three.gltf").read_text()[:400])
         self.assert_refused(self.run_throng("atlas", "cut.gltf", "-o", "x.atlas"), "cut.gltf")
         self.assertEqual(list(self.path.glob("*.atlas*")), [])
+
+    def test_gl_what_an_eye_sees_is_drawn_without_a_window(self):
+        done = self.run_throng("picture", self.world, "--crowd", "40", "--camera", "30,12,40,20,2,20", "--width", "320",
+                               "-o", "seen.png", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(done.stdout)
+        self.assertEqual((told["width"], told["height"], told["avatars"]), (320, 180, 40))
+        self.assertGreater(told["drawn"], 20)
+        self.assertEqual((self.path / "seen.png").read_bytes()[:4], b"\x89PNG")
+        done = self.run_throng("run", self.world, "--avatars", "30", "--steps", "20", "--trajectories", "walk.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.run_throng("atlas", "-o", "a.atlas", "--frames", "4", "--pixels", "16").returncode, 0)
+        done = self.run_throng("picture", self.world, "--avatars", "walk.csv", "--atlas", "a.atlas", "--source", "builtin:garage,levels=2",
+                               "--camera", "30,12,40,20,2,20", "--width", "320", "--height", "240", "-o", "walk.png", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["avatars"], 30)
+
+    def test_gl_pictures_that_cannot_be_drawn_are_refused_in_one_sentence(self):
+        camera = ("--camera", "30,12,40,20,2,20", "-o", "x.png")
+        self.assert_refused(self.run_throng("picture", self.world, "--crowd", "5", "-o", "x.png"), "--camera")
+        self.assert_refused(self.run_throng("picture", self.world, "--camera", "1,2,3", "-o", "x.png"), "--camera")
+        self.assert_refused(self.run_throng("picture", self.world, "--camera", "1,2,3,1,2,3", "-o", "x.png"), "eye and target")
+        self.assert_refused(self.run_throng("picture", self.world, *camera, "--atlas", "missing.atlas"), "missing.atlas")
+        (self.path / "bad.atlas").write_text("not an atlas")
+        self.assert_refused(self.run_throng("picture", self.world, *camera, "--atlas", "bad.atlas"), "bad.atlas", "throng atlas")
+        self.assert_refused(self.run_throng("picture", self.world, *camera, "--width", "9000"), "8192")
+        nothing = dict(os.environ, __EGL_VENDOR_LIBRARY_FILENAMES=str(self.path / "none.json"))
+        done = subprocess.run([PROGRAM, "picture", self.world, *camera], cwd=self.path, capture_output=True, text=True, check=False, env=nothing)
+        self.assert_refused(done, "EGL", "install")
+        self.assertFalse((self.path / "x.png").exists())
 
     def test_interrupting_a_bake_leaves_nothing_half_written(self):
         process = subprocess.Popen([PROGRAM, "bake", "builtin:city,size=1500", "-o", "city.throng", "--threads", "1"],

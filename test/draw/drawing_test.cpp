@@ -1,0 +1,324 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "impostor/view_packer.h"
+#include "throng/builtin_worlds.h"
+#include "throng_draw/draw.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace throng {
+namespace {
+
+struct Avatars {
+  std::vector<float> x, y, z;
+  std::vector<uint16_t> heading, phase, look;
+  void add(Vec3d p, double heading_turns, double phase_turns, uint16_t clothes) {
+    const auto steps = [](double turns) {
+      return static_cast<uint16_t>(static_cast<int64_t>(std::floor(turns * 65536)) & 0xffff);
+    };
+    x.push_back(static_cast<float>(p.x));
+    y.push_back(static_cast<float>(p.y));
+    z.push_back(static_cast<float>(p.z));
+    heading.push_back(steps(heading_turns));
+    phase.push_back(steps(phase_turns));
+    look.push_back(clothes);
+  }
+  [[nodiscard]] DrawnCrowd crowd(size_t atlas = 0) const {
+    return {.atlas = atlas, .clip = 0, .avatars = {x, y, z, heading, phase, look}};
+  }
+};
+
+Drawing made_drawing() {
+  Result<Drawing> drawing = Drawing::create();
+  EXPECT_TRUE(drawing) << drawing.error().message;
+  return *std::move(drawing);
+}
+
+// Sixteen blocks of four texels a view, white or black: eleven bits that are the view's number, and
+// in the lowest row a white one at the left and a black one at the right.
+constexpr int32_t kWhiteBit = 12, kBlackBit = 15;
+
+Atlas coded_atlas() {
+  Atlas atlas;
+  atlas.shape = {.pixels = 16,
+                 .directions = 16,
+                 .elevations = 8,
+                 .frames = 10,
+                 .side = 2,
+                 .centre = 1,
+                 .height = 2};
+  atlas.clips = {{.name = "Walk", .first_frame = 0, .frames = 10, .seconds = 1, .stride = 1.5}};
+  atlas.views.assign(1280, {.width = 16, .height = 16});
+  const PageSize size = pack_views(atlas.views);
+  atlas.width = size.width, atlas.height = size.height, atlas.pages = size.pages;
+  const auto texels = static_cast<size_t>(size.width * size.height * size.pages);
+  atlas.colour.assign(texels * 4, 255);
+  atlas.normal.assign(texels * 2, 128);
+  atlas.mask.assign(texels, 16);
+  for (size_t i = 0; i < atlas.views.size(); ++i) {
+    const AtlasView& v = atlas.views[i];
+    for (int32_t t = 0; t < 256; ++t) {
+      const int32_t bit = t / 64 * 4 + t % 16 / 4;
+      if ((i >> bit & 1) != 0 || bit == kWhiteBit) continue;
+      const auto at =
+          static_cast<size_t>((v.page * size.height + v.y + t / 16) * size.width + v.x + t % 16);
+      for (size_t c = 0; c < 3; ++c) atlas.colour[at * 4 + c] = 0;
+    }
+  }
+  return atlas;
+}
+
+// [TC00]: all 32 directions, 8 elevations and 10 frames, through the processor, the card's textures
+// and shaders, down to the pixels.
+TEST(GlDrawing, EveryDirectionElevationAndFrameShowsTheRightView) {
+  Drawing drawing = made_drawing();
+  const Atlas atlas = coded_atlas();
+  ASSERT_TRUE(drawing.add_atlas(atlas));
+  int32_t checked = 0;
+  for (int32_t row = 0; row < 8; ++row) {
+    const double elevation = (row + 0.5) / 32 * 2 * std::numbers::pi;
+    DrawingConfig config;
+    config.width = 1280;
+    config.height = 720;
+    config.samples = 1;
+    config.avatar_shadows = false;
+    const Vec3d towards{std::sin(0.7) * std::cos(elevation), std::sin(elevation),
+                        std::cos(0.7) * std::cos(elevation)};
+    config.camera.target = {5, 3, -8};
+    config.camera.eye = config.camera.target + towards * 400.0;
+    config.camera.field_of_view = 0.15;
+    config.to_sun = towards;
+    const CameraAxes axes = camera_axes(config.camera);
+    // 320 avatars in a plane across the view, further apart than cards are wide.
+    Avatars avatars;
+    std::vector<Vec3d> middles;
+    for (int32_t i = 0; i < 320; ++i) {
+      const int32_t sector = i % 32, frame = i / 32;
+      const Vec3d middle = config.camera.target + axes.right * ((i % 20 - 9.5) * 3.0) +
+                           axes.up * ((i / 20 - 7.5) * 3.0);
+      const Vec3d to_eye = config.camera.eye - middle;
+      const double azimuth = std::atan2(to_eye.x, to_eye.z) / (2 * std::numbers::pi);
+      middles.push_back(middle);
+      avatars.add(middle - Vec3d{0, 1, 0}, azimuth - (sector + 0.5) / 32, frame / 10.0, 0);
+    }
+    const DrawnCrowd crowd = avatars.crowd();
+    const auto image = drawing.draw({&crowd, 1}, config);
+    ASSERT_TRUE(image) << image.error().message;
+    const double scale = 360 / std::tan(0.5 * config.camera.field_of_view);
+    for (int32_t i = 0; i < 320; ++i) {
+      const auto green_at = [&](int32_t bit) {
+        // Up and right of a card that faces the eye.
+        const Vec3d d =
+            (config.camera.eye - middles[i]) * (1 / length(config.camera.eye - middles[i]));
+        const double flat = std::hypot(d.x, d.z);
+        const Vec3d right{d.z / flat, 0, -d.x / flat}, up = cross(d, right);
+        const Vec3d p = middles[i] + right * ((bit % 4 - 1.5) * 0.5) +
+                        up * ((1.5 - bit / 4) * 0.5) - config.camera.eye;
+        const double depth = dot(p, axes.forward);
+        const auto px = static_cast<int32_t>(640 + dot(p, axes.right) / depth * scale);
+        const auto py = static_cast<int32_t>(360 - dot(p, axes.up) / depth * scale);
+        return image->rgb[static_cast<size_t>(py * 1280 + px) * 3 + 1];
+      };
+      const int32_t sector = i % 32, frame = i / 32;
+      const bool mirrored = sector >= 16;
+      const auto bit_at = [&](int32_t bit) { return mirrored ? bit / 4 * 4 + 3 - bit % 4 : bit; };
+      const int32_t white = green_at(bit_at(kWhiteBit)), black = green_at(bit_at(kBlackBit));
+      ASSERT_GT(white, black + 40) << "row " << row << " avatar " << i;
+      size_t code = 0;
+      for (int32_t bit = 0; bit < 11; ++bit) {
+        if (green_at(bit_at(bit)) > (white + black) / 2) code |= size_t{1} << bit;
+      }
+      EXPECT_EQ(code, atlas.shape.view(mirrored ? (frame + 5) % 10 : frame, row,
+                                       mirrored ? 31 - sector : sector))
+          << "row " << row << " sector " << sector << " frame " << frame;
+      ++checked;
+    }
+  }
+  EXPECT_EQ(checked, 32 * 8 * 10);
+}
+
+const Atlas& people() {
+  static const Atlas atlas = [] {
+    AtlasConfig config;
+    config.frames = 4;
+    config.pixels = 48;
+    Context context;
+    auto built = build_atlas(built_in_character(), config, context);
+    return *std::move(built);
+  }();
+  return atlas;
+}
+
+Scene stage_with_wall() {
+  Scene scene;
+  scene.add_box({-8, -0.5, -8}, {8, 0, 8});
+  scene.add_box({-3, 0, 1}, {3, 1.0, 1.3});
+  return scene;
+}
+
+DrawingConfig stage_config() {
+  DrawingConfig config;
+  config.width = 320;
+  config.height = 180;
+  config.camera.eye = {4, 4, 11};
+  config.camera.target = {0, 0.8, 0};
+  return config;
+}
+
+Avatars people_on_stage() {
+  Avatars avatars;
+  for (int32_t i = 0; i < 24; ++i) {
+    avatars.add({i % 6 * 2.2 - 5.5, 0, i / 6 * 2.4 - 5.0}, i * 0.137, i * 0.31,
+                static_cast<uint16_t>(i * 85));
+  }
+  return avatars;
+}
+
+// Exact on one machine's llvmpipe; others' vector instructions may round a pixel otherwise.
+TEST(GlDrawing, AStageLooksAsItDid) {
+  Drawing drawing = made_drawing();
+  ASSERT_TRUE(drawing.set_scene(stage_with_wall(), {}));
+  ASSERT_TRUE(drawing.add_atlas(people()));
+  const Avatars avatars = people_on_stage();
+  const DrawnCrowd crowd = avatars.crowd();
+  const auto image = drawing.draw({&crowd, 1}, stage_config());
+  ASSERT_TRUE(image) << image.error().message;
+  const std::string golden = THRONG_TEST_DATA "/stage.png";
+  if (std::getenv("THRONG_WRITE_GOLDEN") != nullptr) {
+    ASSERT_TRUE(write_png(*image, golden));
+  }
+  int width = 0, height = 0, channels = 0;
+  stbi_uc* expected = stbi_load(golden.c_str(), &width, &height, &channels, 3);
+  ASSERT_NE(expected, nullptr) << golden;
+  ASSERT_EQ(width, 320);
+  ASSERT_EQ(height, 180);
+  int64_t off = 0, far_off = 0;
+  for (size_t i = 0; i < image->rgb.size(); ++i) {
+    const int32_t difference = std::abs(image->rgb[i] - expected[i]);
+    off += difference;
+    far_off += difference > 32 ? 1 : 0;
+  }
+  stbi_image_free(expected);
+  EXPECT_LT(static_cast<double>(off), 0.2 * static_cast<double>(image->rgb.size()));
+  EXPECT_LT(static_cast<double>(far_off), 0.002 * static_cast<double>(image->rgb.size()));
+}
+
+size_t pixels_that_differ(const Image& a, const Image& b) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.rgb.size(); i += 3) {
+    count += std::abs(a.rgb[i] - b.rgb[i]) + std::abs(a.rgb[i + 1] - b.rgb[i + 1]) > 24 ? 1 : 0;
+  }
+  return count;
+}
+
+// The card stands askew, the body upright: who is behind a wall must be cut by it in a straight
+// line, and nothing of him may be seen in front of it.
+TEST(GlDrawing, AWallHidesWhoIsBehindItAndNothingElse) {
+  Drawing drawing = made_drawing();
+  ASSERT_TRUE(drawing.add_atlas(people()));
+  DrawingConfig config = stage_config();
+  config.avatar_shadows = false;
+  const auto seen_at = [&](Vec3d place, double wall_height) {
+    Scene scene;
+    scene.add_box({-8, -0.5, -8}, {8, 0, 8});
+    scene.add_box({-3, 0, 1}, {3, wall_height, 1.3});
+    EXPECT_TRUE(drawing.set_scene(scene, {}));
+    Avatars avatars;
+    avatars.add(place, 0.1, 0, 100);
+    const DrawnCrowd crowd = avatars.crowd();
+    const auto with = drawing.draw({&crowd, 1}, config);
+    const auto without = drawing.draw({}, config);
+    EXPECT_TRUE(with && without);
+    return pixels_that_differ(*with, *without);
+  };
+  const size_t in_front = seen_at({0, 0, 2.2}, 3), behind_low = seen_at({0, 0, 0.4}, 1.0),
+               no_wall = seen_at({0, 0, 0.4}, 0.01), behind_high = seen_at({0, 0, 0.4}, 3.5);
+  EXPECT_GT(in_front, 150U);
+  EXPECT_GT(no_wall, 150U);
+  EXPECT_EQ(behind_high, 0U);
+  EXPECT_GT(behind_low, no_wall / 5);
+  EXPECT_LT(behind_low, no_wall * 4 / 5);
+}
+
+TEST(GlDrawing, ShadowsFallOnTheGround) {
+  Drawing drawing = made_drawing();
+  ASSERT_TRUE(drawing.set_scene(stage_with_wall(), {}));
+  ASSERT_TRUE(drawing.add_atlas(people()));
+  Avatars avatars;
+  avatars.add({0, 0, 4}, 0.3, 0, 100);
+  const DrawnCrowd crowd = avatars.crowd();
+  DrawingConfig config = stage_config();
+  config.to_sun = {-1, 1, 0};
+  const auto with = drawing.draw({&crowd, 1}, config);
+  config.avatar_shadows = false;
+  const auto without = drawing.draw({&crowd, 1}, config);
+  ASSERT_TRUE(with && without);
+  EXPECT_GT(pixels_that_differ(*with, *without), 60U);
+}
+
+TEST(GlDrawing, TheSamePictureTwiceIsTheSameBytesAndTwoDrawingsDoNotDisturbEachOther) {
+  Drawing one = made_drawing(), two = made_drawing();
+  for (Drawing* drawing : {&one, &two}) {
+    ASSERT_TRUE(drawing->set_scene(stage_with_wall(), {}));
+    ASSERT_TRUE(drawing->add_atlas(people()));
+  }
+  const Avatars avatars = people_on_stage();
+  const DrawnCrowd crowd = avatars.crowd();
+  DrawingConfig config = stage_config();
+  DrawingReport report;
+  config.workers = 1;
+  const auto first = one.draw({&crowd, 1}, config, &report);
+  ASSERT_TRUE(two.draw({}, config));
+  config.workers = 2;
+  const auto second = one.draw({&crowd, 1}, config);
+  const auto other = two.draw({&crowd, 1}, config);
+  ASSERT_TRUE(first && second && other);
+  EXPECT_EQ(first->rgb, second->rgb);
+  EXPECT_EQ(first->rgb, other->rgb);
+  EXPECT_EQ(report.avatars, 24U);
+  EXPECT_GT(report.drawn, 18U);
+}
+
+TEST(GlDrawing, ABuiltInWorldIsDrawnAndBadSettingsAreRefused) {
+  Drawing drawing = made_drawing();
+  EXPECT_FALSE(drawing.renderer().empty());
+  BuiltinWorldConfig world;
+  world.name = "stairs";
+  const auto scene = make_builtin_world(world);
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_TRUE(drawing.set_scene(*scene, {1, 0, 1}));
+  DrawingConfig good = stage_config();
+  const auto image = drawing.draw({}, good);
+  ASSERT_TRUE(image) << image.error().message;
+  const auto refused = [&](auto change) {
+    DrawingConfig config = good;
+    change(config);
+    const auto none = drawing.draw({}, config);
+    EXPECT_FALSE(none);
+    return none ? Errc::kOk : none.error().code;
+  };
+  using Config = DrawingConfig&;
+  EXPECT_EQ(refused([](Config c) { c.width = 8; }), Errc::kBadConfig);
+  EXPECT_EQ(refused([](Config c) { c.samples = 5; }), Errc::kBadConfig);
+  EXPECT_EQ(refused([](Config c) { c.camera.target = c.camera.eye; }), Errc::kBadConfig);
+  EXPECT_EQ(refused([](Config c) { c.camera.eye.x = NAN; }), Errc::kBadConfig);
+  EXPECT_EQ(refused([](Config c) { c.camera.field_of_view = 3.2; }), Errc::kBadConfig);
+  EXPECT_EQ(refused([](Config c) { c.to_sun = {1, 0, 0}; }), Errc::kBadConfig);
+}
+
+}  // namespace
+}  // namespace throng

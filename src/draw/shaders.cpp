@@ -202,10 +202,11 @@ uniform vec3 part_colour[6]; // What the atlas has.
 uniform float side;          // Of a view [m].
 out vec4 colour;
 void main() {
-  vec4 stored = texture(albedo, texel);
-  if (stored.a < 0.5) discard;
-  ivec3 size = textureSize(detail, 0);
-  vec4 d = texelFetch(detail, ivec3(vec2(size.xy) * texel.xy, int(texel.z)), 0);
+  if (texture(albedo, texel).a < 0.5) discard;  // Filtered: a smooth outline.
+  // Not filtered: a texel is of one part, and its colour says nothing of the part beside it.
+  ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z));
+  vec4 stored = texelFetch(albedo, at, 0);
+  vec4 d = texelFetch(detail, at, 0);
   // Where the body is, not the card that shows it: so it is cut where it meets a wall or a stair.
   // A texel knows its place to 7 cm, so it comes 5 cm nearer, or soles would sink into the ground.
   uint mask = uint(d.z * 255.0 + 0.5);

@@ -169,6 +169,7 @@ void add_atlas(CLI::App& parser, Session& session) {
       ->add_option("--clip", config.clips,
                    "Clip to draw, by its name or last word; may be repeated")
       ->type_name("NAME")
+      ->allow_extra_args(false)
       ->capture_default_str();
   command->add_option("--frames", config.frames, "Frames of each clip, 1 or even")
       ->capture_default_str();

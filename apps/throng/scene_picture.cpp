@@ -34,7 +34,8 @@ void add_scene_picture_options(CLI::App* command, ScenePictureOptions& options) 
   command
       ->add_option("--atlas", options.atlases,
                    "With --camera: who walks, made by throng atlas; may be repeated")
-      ->type_name("FILE.atlas");
+      ->type_name("FILE.atlas")
+      ->allow_extra_args(false);
   command->add_option("--crowd", options.crowd,
                       "With --camera: place so many avatars, if no --avatars are given");
   command->add_option("--height", options.height, "With --camera: height of the picture [px]");

@@ -314,6 +314,9 @@ Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingCon
   const Matrix sun_from_world =
       parallel_view(sun_right, sun_up, to_sun, middle, reach, 2 * scene_radius + reach);
   const Matrix clip_from_world = perspective(camera);
+  // Little of it over the scene, whatever its size, and the sky's colour at the end of the plain.
+  const auto haze = static_cast<float>(
+      0.15 / std::max({150.0, scene_radius, length(camera.target - camera.eye)}));
 
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -332,7 +335,7 @@ Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingCon
     program.set_matrix("sun_from_world", sun_from_world.data());
     program.set("eye", camera.eye);
     program.set("to_sun", to_sun);
-    program.set("haze", static_cast<float>(0.25 / std::max(150.0, scene_radius)));
+    program.set("haze", haze);
     program.set("instances", 3);
     program.set("sun_depth", 4);
     program.set("sun_texel", 1.0F / kSunPixels);

@@ -374,9 +374,10 @@ class Program(unittest.TestCase):
         self.assertEqual((self.path / "one.atlas").read_bytes(), (self.path / "two.atlas").read_bytes())
         self.assertEqual(len(list((self.path / "views").glob("*.png"))), 4)
         self.write_character("three.gltf", 3)
-        done = self.run_throng("atlas", "three.gltf", "-o", "three.atlas", *small, "--json")
+        done = self.run_throng("atlas", "--clip", "Walk", "--clip", "walk", "three.gltf", "-o", "three.atlas", *small, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(json.loads(done.stdout)["bones"], 3)
+        told = json.loads(done.stdout)
+        self.assertEqual((told["bones"], len(told["clips"])), (3, 2))
 
     def test_characters_that_cannot_be_drawn_are_refused_in_one_sentence(self):
         self.write_character("many.gltf", 300)

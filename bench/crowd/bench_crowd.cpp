@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+// What a step of a crowd with goals costs: the random scene of the table, on a plane. One JSON
+// object.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/random.h"
+#include "throng/bake.h"
+#include "throng/crowd.h"
+#include "throng/scene.h"
+
+namespace {
+
+using namespace throng;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  uint32_t avatars = 10000;
+  double area = 4;  // for each [m2]
+  double near = 50;
+  uint64_t warm = 50, steps = 50;
+  uint64_t seed = 1;
+  int32_t threads = 0;
+  double radius = 0.3, speed = 1.3;
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : values[values.size() / 2];
+}
+
+Json fail(const Error& error) { return {{"error", error.message}}; }
+
+Json run(const Options& o) {
+  constexpr double kRim = 2;  // [m] where no goals are
+  const double side = std::sqrt(o.area * o.avatars) + 2 * kRim;
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, side}, {side, 0, side}, {side, 0, 0});
+  Context context;
+  BakeConfig bake;
+  bake.cell = 0.5;
+  bake.classes.resize(1);
+  const auto world = bake_world(scene, bake, context);
+  if (!world) return fail(world.error());
+  auto crowd =
+      Crowd::create(*world, {.seed = o.seed, .workers = o.threads, .ways = CrowdWays::kStraight});
+  if (!crowd) return fail(crowd.error());
+  const auto ids = crowd->scatter(o.avatars, {.radius = o.radius, .speed = o.speed}, context);
+  if (!ids) return fail(ids.error());
+  std::vector<uint64_t> given(o.avatars, 0);
+  std::vector<AvatarState> states;
+  std::vector<Place> goals;
+  const auto give = [&](std::span<const AvatarId> to) {
+    if (to.empty()) return;
+    crowd->read(states);
+    goals.clear();
+    for (const AvatarId id : to) {
+      const uint32_t slot = id.slot1 - 1;
+      const auto along = [&](double from, uint64_t stream) {
+        const double low = std::max(kRim, from - o.near),
+                     high = std::min(side - kRim, from + o.near);
+        return low + (high - low) * random_unit(o.seed, 2 * uint64_t{slot} + stream, given[slot]);
+      };
+      const Vec3d& p = states[slot].position;
+      goals.push_back(world->find_place(0, {along(p.x, 0), 0, along(p.z, 1)}, 1));
+      ++given[slot];
+    }
+    crowd->set_goals(to, goals);
+  };
+  give(*ids);
+  CrowdReport sum;
+  std::vector<double> seconds;
+  double progress = 0;
+  CrowdCheck found;
+  for (uint64_t step = 1; step <= o.warm + o.steps; ++step) {
+    const CrowdReport r = crowd->step();
+    give(crowd->arrived());
+    if (step % 50 == 0) {
+      const CrowdCheck check = crowd->check();
+      found.overlaps += check.overlaps;
+      found.wall_entries += check.wall_entries;
+    }
+    if (step <= o.warm) continue;
+    seconds.push_back(r.seconds_total);
+    progress += r.progress;
+    sum.contested += r.contested;
+    sum.stood += r.stood;
+    sum.seconds_plan += r.seconds_plan;
+    sum.seconds_sort += r.seconds_sort;
+    sum.seconds_steer += r.seconds_steer;
+    sum.seconds_commit += r.seconds_commit;
+    sum.seconds_settle += r.seconds_settle;
+  }
+  const double each = 1e9 / o.avatars;
+  const double all = each / static_cast<double>(o.steps);
+  return {
+      {"avatars", o.avatars},
+      {"area", o.area},
+      {"threads", o.threads},
+      {"ns", median(seconds) * each},
+      {"ns_plan", sum.seconds_plan * all},
+      {"ns_sort", sum.seconds_sort * all},
+      {"ns_steer", sum.seconds_steer * all},
+      {"ns_commit", sum.seconds_commit * all},
+      {"ns_settle", sum.seconds_settle * all},
+      {"contested", static_cast<double>(sum.contested) / o.avatars / static_cast<double>(o.steps)},
+      {"progress", progress / static_cast<double>(o.steps)},
+      {"overlaps", found.overlaps},
+      {"wall_entries", found.wall_entries},
+      {"bytes_an_avatar", static_cast<double>(crowd->bytes()) / o.avatars},
+      {"state_hash", crowd->state_hash()}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App parser{"What a step of a crowd with goals costs"};
+  Options options;
+  parser.add_option("--avatars", options.avatars)->check(CLI::Range(1, 10000000));
+  parser.add_option("--area", options.area)->check(CLI::Range(0.3, 1000.0));
+  parser.add_option("--near", options.near)->check(CLI::Range(1.0, 1e6));
+  parser.add_option("--warm", options.warm);
+  parser.add_option("--steps", options.steps)->check(CLI::PositiveNumber);
+  parser.add_option("--seed", options.seed);
+  parser.add_option("--threads", options.threads)->check(CLI::Range(0, 1024));
+  parser.add_option("--radius", options.radius)->check(CLI::Range(0.05, 10.0));
+  CLI11_PARSE(parser, argc, argv);
+  const Json result = run(options);
+  std::puts(result.dump().c_str());
+  return result.contains("error") ? 2 : 0;
+}

@@ -86,6 +86,16 @@ int main(int argc, char** argv) {
   parser.add_option("--rounds", options.config.rounds)
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
+  steer::SampledSettings& steering = options.config.steering;
+  parser.add_option("--threat", steering.threat)->capture_default_str();
+  parser.add_option("--horizon", steering.horizon)->capture_default_str();
+  parser.add_option("--keep", steering.keep)->capture_default_str();
+  parser.add_option("--straightness", steering.straightness)->capture_default_str();
+  parser.add_option("--right", steering.right)->capture_default_str();
+  parser.add_option("--gap", steering.gap)->capture_default_str();
+  parser.add_option("--neighbours", steering.neighbours)
+      ->check(CLI::Range(size_t{1}, steer::kMostNear))
+      ->capture_default_str();
   parser.add_flag("!--no-patience", options.config.patient);
   CLI11_PARSE(parser, argc, argv);
   std::puts(run(options).dump().c_str());

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/stopwatch.h"
+#include "crowd/first_come.h"
 #include "crowd/sense_kernel.h"
 #include "steer/sampled_kernel.h"
 
@@ -24,6 +25,7 @@ using steer::Plane;
 constexpr size_t kGrain = 256;  // bodies that are worth handing to another thread
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;  // [m] from its goal a body has arrived
+constexpr float kEnough = 18;   // bodies, to find the nearest among
 constexpr uint16_t kNever = UINT16_MAX;
 
 float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
@@ -34,27 +36,15 @@ bool clash(const Body& a, const Body& at_a, const Body& b, const Body& at_b) {
          at_a.y < at_b.y + b.height && at_b.y < at_a.y + a.height;
 }
 
-// The nearest so many, in order of distance and then of slot.
-struct Nearest {
-  size_t most;
-  size_t size = 0;
-  std::array<float, steer::kMostNear> square;
-  std::array<uint32_t, steer::kMostNear> entry;
+// On its last leg, and not there yet?
+bool is_bound(const Body& body) {
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven;
+  return (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
+}
 
-  void add(float far, uint32_t who, const Body* bodies) {
-    const auto before = [&](size_t n) {  // does the n-th stay before `who`?
-      return square[n] < far || (square[n] == far && bodies[entry[n]].slot < bodies[who].slot);
-    };
-    if (size == most && before(size - 1)) return;
-    size_t n = size < most ? size++ : size - 1;
-    for (; n > 0 && !before(n - 1); --n) {
-      square[n] = square[n - 1];
-      entry[n] = entry[n - 1];
-    }
-    square[n] = far;
-    entry[n] = who;
-  }
-};
+Bound bound(const Body& body) {
+  return {body.x, body.z, body.aim_x, body.aim_z, body.radius, body.slot};
+}
 
 }  // namespace
 
@@ -95,6 +85,7 @@ void CrowdEngine::reserve(size_t bodies) {
 }
 
 void CrowdEngine::add(const Body& body) {
+  highest_ = std::max<int32_t>(highest_, body.height);
   if (size_ == bodies_.size()) reserve(std::max<size_t>(1024, 2 * size_));
   bodies_[size_++] = body;
 }
@@ -152,12 +143,6 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       if (here != square) {
         square = here;
         around = grid_->around(square);
-        size_t most = kSeenSpare;
-        for (const auto& p : around) most += p.last - p.first;
-        if (worker.squares.size() < most) {
-          worker.squares.resize(most * 2);
-          worker.entries.resize(most * 2);
-        }
       }
       decide(static_cast<uint32_t>(i), worker, around);
     }
@@ -165,51 +150,79 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
   for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
-// Sense, steer, and name a place if nobody can object.
-void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
-  Body& body = bodies_[i];
-  const Places places{grid_->x(), grid_->z(), grid_->y()};
-  const auto sight = static_cast<float>(sight_);
-  const Eye eye{.x = body.x,
-                .z = body.z,
-                .y = body.y,
-                .most = sight * sight,
-                .tall = body.height + 2 * kMostRise};
-  size_t seen = 0;
-  for (const auto& p : around) {
-    if (p.first == p.last) continue;
-    seen += find_seen(places, p.first, p.last, eye, &worker.squares[seen], &worker.entries[seen]);
-  }
-  // Nobody farther away can be touched; the exact test follows.
-  const auto touch =
-      static_cast<float>(body.radius + config_.units.stride(body.speed) + widest_ + longest_ + 1) *
-      1.0001f;
-  const auto first_other = static_cast<uint32_t>(worker.others.size());
-  Nearest nearest{
-      .most = static_cast<size_t>(config_.steering.neighbours), .square = {}, .entry = {}};
-  for (size_t n = 0; n < seen; ++n) {
-    const uint32_t j = worker.entries[n];
-    if (j == i) continue;
-    const Body& other = bodies_[j];
-    if (worker.squares[n] < touch * touch) {
-      const int64_t reach = int64_t{body.radius} + other.radius + config_.units.stride(body.speed) +
-                            config_.units.stride(other.speed);
-      const int32_t rise = body.y - other.y;
-      const bool near = rise < other.height + 2 * kMostRise && -rise < body.height + 2 * kMostRise;
-      if (near && nearer_than(other.x - body.x, other.z - body.z, reach))
-        worker.others.push_back(j);
+// Appends whom the body could touch to `others`, and takes in what it steers by.
+void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
+                        bool lists_others) {
+  const Body& body = bodies_[i];
+  size_t around_us = 0;
+  for (const auto& p : around) around_us += p.last - p.first;
+  if (worker.squares.size() < around_us + kSeenSpare) {
+    for (auto* entries : {&worker.entries, &worker.touched}) {
+      entries->resize(2 * (around_us + kSeenSpare));
     }
-    if (std::abs(places.y[j] - body.y) < body.height)
-      nearest.add(worker.squares[n], j, bodies_.data());
+    worker.squares.resize(worker.entries.size());
   }
-
-  steer::Situation situation{.velocity = body.velocity,
-                             .wish = body.wish,
-                             .fastest = body.speed,
-                             .near = {},
-                             .free_way = {}};
-  for (size_t n = 0; n < nearest.size; ++n) {
-    const Body& other = bodies_[nearest.entry[n]];
+  const Places places{grid_->x(), grid_->z(), grid_->y()};
+  // Nobody farther away than this can be touched; the exact test follows.
+  const int32_t stride = config_.units.stride(body.speed);
+  const float touch = static_cast<float>(body.radius + stride + widest_ + longest_ + 1) * 1.0001f;
+  // In a dense crowd the nearest are near: if enough are within less, nobody farther matters.
+  const float sight = static_cast<float>(sight_) * static_cast<float>(sight_);
+  const float across = grid_->width() * NeighbourGrid::kAround;
+  const float enough =
+      across * across * kEnough / (3 * static_cast<float>(around_us));  // 3 of the circle's pi
+  const auto wanted = static_cast<size_t>(config_.steering.neighbours);
+  Eye eye{.x = body.x,
+          .z = body.z,
+          .y = body.y,
+          .self = i,
+          .most = std::min(sight, enough),
+          .tall = body.height,
+          .touch = lists_others ? touch * touch : 0,
+          .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMostRise};
+  SeenLists lists;
+  const auto look = [&] {
+    lists = {worker.squares.data(), worker.entries.data(), worker.touched.data()};
+    for (const auto& p : around) {
+      if (p.first != p.last) find_seen(places, p.first, p.last, eye, lists);
+    }
+  };
+  look();
+  if (lists.seen < wanted && eye.most < sight) {
+    eye.most = sight;
+    look();
+  }
+  for (size_t n = 0; n < lists.touches; ++n) {
+    const uint32_t j = lists.touched[n];
+    const Body& other = bodies_[j];
+    const int64_t reach =
+        int64_t{body.radius} + other.radius + stride + config_.units.stride(other.speed);
+    const int32_t rise = body.y - other.y;
+    const bool near = rise < other.height + 2 * kMostRise && -rise < body.height + 2 * kMostRise;
+    if (near && nearer_than(other.x - body.x, other.z - body.z, reach)) worker.others.push_back(j);
+  }
+  size_t nearest = keep_nearest(lists, wanted);
+  if (nearest > wanted) {  // Some are equally far: of these the first slots.
+    const auto key = [&](uint32_t j) {
+      return std::pair(near_square(bodies_[j].x - body.x, bodies_[j].z - body.z), bodies_[j].slot);
+    };
+    std::sort(lists.entries, lists.entries + nearest,
+              [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+    nearest = wanted;
+  }
+  steer::Situation& situation = worker.situation;
+  situation.velocity = body.velocity;
+  situation.wish = body.wish;
+  situation.fastest = body.speed;
+  situation.near.size = 0;
+  const bool may_wait = is_bound(body);
+  for (size_t n = 0; n < nearest; ++n) {
+    const Body& other = bodies_[lists.entries[n]];
+    if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
+      situation.wish = wish_of_waiting(
+          config_.units.metres(body.aim_x - body.x, body.aim_z - body.z), body.speed,
+          static_cast<float>(body.radius + other.radius) * config_.units.unit);
+    }
     // Who has arrived makes way for those who would pass, were he not there: they may stand.
     const bool makes_way = body.has(Body::kArrived) && !other.has(Body::kArrived);
     situation.near.add(config_.steering,
@@ -217,64 +230,82 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
                         makes_way ? other.wish : other.velocity,
                         static_cast<float>(body.radius + other.radius) * config_.units.unit});
   }
+}
+
+// Along the wish, or in all other directions.
+void CrowdEngine::look_for_walls(const Body& body, steer::Situation& situation,
+                                 bool ahead_only) const {
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float look = body.speed * config_.steering.wall_horizon;
-  const auto look_cells = static_cast<int32_t>(look / config_.units.unit) / kUnitsPerCell + 1;
+  const float look = body.speed * config_.steering.wall_horizon / config_.units.unit;
   const GroundPoint from = body.point();
-  situation.has_walls = ground.may_have_walls(body.level, from.cell_x(), from.cell_z(), look_cells);
-  steer::Fan fan;
-  if (situation.has_walls) {
-    fan = steer::fan_around(body.wish);
-    situation.free_way[0] =
-        ground.free_way(body.level, from, fan[0], look / config_.units.unit) * config_.units.unit;
+  if (ahead_only) {
+    const auto cells = static_cast<int32_t>(look) / kUnitsPerCell + 1;
+    situation.has_walls = ground.may_have_walls(body.level, from.cell_x(), from.cell_z(), cells);
   }
-  const bool open = steer::wish_is_open_fast(config_.steering, situation);
-  const bool alone = first_other == worker.others.size();
-  Body& place = spare_[i];
-  body.state = Body::kFree;
-  place.round = 0;
-  if (open && alone) {
-    ++worker.counts.open;
-    if (try_place(body, body.x + config_.units.way(body.wish.x),
-                  body.z + config_.units.way(body.wish.z), place)) {
-      return;
-    }
+  if (!situation.has_walls) return;
+  const steer::Fan fan = steer::fan_around(situation.wish);
+  const size_t first = ahead_only ? 0 : 1, last = ahead_only ? 1 : steer::kDirections;
+  for (size_t k = first; k < last; ++k) {
+    situation.free_way[k] = ground.free_way(body.level, from, fan[k], look) * config_.units.unit;
   }
-  if (situation.has_walls) {
-    for (size_t k = 1; k < steer::kDirections; ++k) {
-      situation.free_way[k] =
-          ground.free_way(body.level, from, fan[k], look / config_.units.unit) * config_.units.unit;
-    }
-  }
+}
+
+void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Contest& contest) {
   steer::Trials trials;
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
-  Contest contest;
   contest.ways = 0;
+  contest.has_all = true;
   const auto add_way = [&](Plane v) {
     contest.way[contest.ways++] = {config_.units.way(v.x), config_.units.way(v.z)};
   };
-  Plane best = body.wish;
-  if (open) add_way(body.wish);
+  Plane best = situation.wish;
+  if (open) add_way(best);
   while (contest.ways < steer::kChoices) {
     const Plane choice = steer::take_best_fast(trials, costs);
     if (contest.ways == 0) best = choice;
     add_way(choice);
   }
   for (const float part : kShorter) add_way({best.x * part, best.z * part});
-  if (alone) {
-    for (const Contest::Way& way : contest.way) {
-      if (try_place(body, body.x + way.x, body.z + way.z, place)) return;
-    }
-    body.state = Body::kUndecided;  // walls all around: it stays
+}
+
+// Sense, steer, and name a place if nobody can object.
+void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+  Body& body = bodies_[i];
+  Body& place = spare_[i];
+  place.round = 0;
+  Contest contest;
+  contest.body = i;
+  contest.first = static_cast<uint32_t>(worker.others.size());
+  sense(i, worker, around, true);
+  contest.last = static_cast<uint32_t>(worker.others.size());
+  const bool alone = contest.first == contest.last;
+  look_for_walls(body, worker.situation, true);
+  const bool open = steer::wish_is_open_fast(config_.steering, worker.situation);
+  worker.counts.contested += alone ? 0 : 1;
+  bool named = false;
+  if (open) {
+    contest.ways = 1;
+    contest.has_all = false;
+    const Plane wish = worker.situation.wish;
+    contest.way[0] = {config_.units.way(wish.x), config_.units.way(wish.z)};
+    named = try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place) &&
+            (alone || is_clear(contest, worker, place, /*somebody_moved=*/false));
+    worker.counts.open += named ? 1 : 0;
+  }
+  if (!named) {
+    look_for_walls(body, worker.situation, false);
+    find_ways(worker.situation, open, contest);
+  }
+  if (!alone) {
+    body.state = Body::kUndecided;
+    worker.contests.push_back(contest);
     return;
   }
-  ++worker.counts.contested;
-  body.state = Body::kUndecided;
-  contest.body = i;
-  contest.first = first_other;
-  contest.last = static_cast<uint32_t>(worker.others.size());
-  worker.contests.push_back(contest);
+  for (uint32_t w = 0; !named && w < contest.ways; ++w) {
+    named = try_place(body, body.x + contest.way[w].x, body.z + contest.way[w].z, place);
+  }
+  body.state = named ? Body::kFree : Body::kUndecided;  // walls all around: it stays
 }
 
 // Where a body would stand after a step, if the ground lets it.
@@ -293,11 +324,16 @@ bool CrowdEngine::try_place(const Body& body, int32_t x, int32_t z, Body& place)
 
 template <class Do>
 void CrowdEngine::for_contests(Do act) {
-  for (const Worker& worker : workers_) {
-    parallel_ranges(worker.contests.size(), kGrain / 4, config_.workers,
-                    [&](size_t begin, size_t end) {
-                      for (size_t c = begin; c < end; ++c) act(worker.contests[c], worker);
-                    });
+  constexpr size_t kPiece = 64;
+  for (Worker& owner : workers_) {
+    const size_t count = owner.contests.size();
+    parallel_for_worker((count + kPiece - 1) / kPiece, config_.workers,
+                        [&](size_t piece, int32_t worker) {
+                          const size_t last = std::min(count, (piece + 1) * kPiece);
+                          for (size_t c = piece * kPiece; c < last; ++c) {
+                            act(owner.contests[c], owner, workers_[static_cast<size_t>(worker)]);
+                          }
+                        });
   }
 }
 
@@ -307,40 +343,61 @@ void CrowdEngine::for_contests(Do act) {
 void CrowdEngine::commit(uint64_t step) {
   for (int32_t r = 1; r <= config_.rounds; ++r) {
     const auto round = static_cast<uint8_t>(r);
-    for_contests([&](const Contest& c, const Worker& worker) {
-      if (bodies_[c.body].state == Body::kUndecided) name(c, worker, round);
+    for_contests([&](Contest& c, const Worker& owner, Worker& scratch) {
+      if (bodies_[c.body].state == Body::kUndecided) name(c, owner, scratch, round);
     });
-    for_contests([&](const Contest& c, const Worker& worker) {
-      if (spare_[c.body].round != round || !holds(c, worker, round, step)) return;
+    for_contests([&](const Contest& c, const Worker& owner, Worker&) {
+      if (spare_[c.body].round != round || !holds(c, owner, round, step)) return;
       bodies_[c.body].state = Body::kDecided;
     });
   }
 }
 
-// The first of his ways that is open and clear of where everybody stands now.
-void CrowdEngine::name(const Contest& contest, const Worker& worker, uint8_t round) {
+// Is a place clear of where everybody stands now?
+bool CrowdEngine::is_clear(const Contest& contest, const Worker& owner, const Body& place,
+                           bool somebody_moved) const {
+  for (uint32_t n = contest.first; n < contest.last; ++n) {
+    const uint32_t j = owner.others[n];
+    const Body& other = bodies_[j];
+    const bool moved = somebody_moved && other.state == Body::kDecided;
+    if (clash(bodies_[contest.body], place, other, moved ? spare_[j] : other)) return false;
+  }
+  return true;
+}
+
+// The first of his ways that is open and clear.
+void CrowdEngine::name(Contest& contest, const Worker& owner, Worker& scratch, uint8_t round) {
   const Body& body = bodies_[contest.body];
   Body place;
-  for (uint32_t w = 0; w < contest.ways; ++w) {
-    if (!try_place(body, body.x + contest.way[w].x, body.z + contest.way[w].z, place)) continue;
-    bool clear = true;
-    for (uint32_t n = contest.first; clear && n < contest.last; ++n) {
-      const uint32_t j = worker.others[n];
-      const Body& other = bodies_[j];
-      clear = !clash(body, place, other, other.state == Body::kDecided ? spare_[j] : other);
+  const auto try_way = [&](uint32_t w) {
+    if (!try_place(body, body.x + contest.way[w].x, body.z + contest.way[w].z, place) ||
+        !is_clear(contest, owner, place, /*somebody_moved=*/true)) {
+      return false;
     }
-    if (!clear) continue;
     Body& named = spare_[contest.body];
     named.x = place.x;
     named.z = place.z;
     named.y = place.y;
     named.level = place.level;
     named.round = round;
-    return;
+    return true;
+  };
+  uint32_t tried = 0;
+  for (; tried < contest.ways; ++tried) {
+    if (try_way(tried)) return;
+  }
+  if (contest.has_all) return;
+  // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
+  sense(contest.body, scratch, grid_->around(grid_->square(body)), /*lists_others=*/false);
+  look_for_walls(body, scratch.situation, true);
+  look_for_walls(body, scratch.situation, false);
+  find_ways(scratch.situation, /*open=*/true, contest);
+  for (; tried < contest.ways; ++tried) {
+    if (try_way(tried)) return;
   }
 }
 
-bool CrowdEngine::holds(const Contest& contest, const Worker& worker, uint8_t round,
+bool CrowdEngine::holds(const Contest& contest, const Worker& owner, uint8_t round,
                         uint64_t step) const {
   const Body& body = bodies_[contest.body];
   const auto order = [&](const Body& b) {
@@ -348,7 +405,7 @@ bool CrowdEngine::holds(const Contest& contest, const Worker& worker, uint8_t ro
   };
   const auto mine = order(body);
   for (uint32_t n = contest.first; n < contest.last; ++n) {
-    const uint32_t j = worker.others[n];
+    const uint32_t j = owner.others[n];
     if (spare_[j].round == round && clash(body, spare_[contest.body], bodies_[j], spare_[j]) &&
         order(bodies_[j]) > mine) {
       return false;

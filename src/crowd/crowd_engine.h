@@ -69,14 +69,16 @@ class CrowdEngine {
 
   /// Heights of two bodies' feet between which, and of what they can rise in a step, they could
   /// touch. [mm]
-  static constexpr int32_t kMostRise = 900;
+  static constexpr int32_t kMostRise = 450;
 
  private:
-  // Somebody who could touch others: whom, and where he would go, the best first.
+  // Somebody who could touch others: whom, and where he would go, the best first; if the first is
+  // open, the others are found when they are needed.
   struct Contest {
     uint32_t body;
     uint32_t first, last;  // of `others`
     uint32_t ways;
+    bool has_all;
     struct Way {
       int32_t x, z;
     };
@@ -84,19 +86,25 @@ class CrowdEngine {
   };
   struct Worker {
     std::vector<float> squares;
-    std::vector<uint32_t> entries;
+    std::vector<uint32_t> entries, touched;
     std::vector<uint32_t> others;
     std::vector<Contest> contests;
+    steer::Situation situation;
     EngineCounts counts;
   };
 
   void wish_all(const Before& before);
   void decide_all(EngineCounts& counts);
   void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
+  void look_for_walls(const Body& body, steer::Situation& situation, bool ahead_only) const;
+  void find_ways(const steer::Situation& situation, bool open, Contest& contest);
   void commit(uint64_t step);
   void settle_all(EngineCounts& counts);
-  void name(const Contest& contest, const Worker& worker, uint8_t round);
-  [[nodiscard]] bool holds(const Contest& contest, const Worker& worker, uint8_t round,
+  void name(Contest& contest, const Worker& owner, Worker& scratch, uint8_t round);
+  [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner, const Body& place,
+                              bool somebody_moved) const;
+  [[nodiscard]] bool holds(const Contest& contest, const Worker& owner, uint8_t round,
                            uint64_t step) const;
   template <class Do>
   void for_contests(Do act);
@@ -106,6 +114,7 @@ class CrowdEngine {
   std::vector<StrideGround> grounds_;  // by class
   int32_t width_, depth_;
   int32_t widest_ = 0, longest_ = 0, sight_ = 0;
+  int32_t highest_ = 0;  // of all bodies there ever were [mm]
   size_t size_ = 0;
   HugeArray<Body> bodies_;
   HugeArray<Body> spare_;  // while sorting: where from; then: where to

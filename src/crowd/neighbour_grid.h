@@ -36,6 +36,8 @@ class NeighbourGrid {
   using Around = std::array<Piece, 2 * kAround>;
   /// Those that may be within sight of the square; pieces that are not needed are empty.
   [[nodiscard]] Around around(uint32_t square) const;
+  /// Of a square. [units]
+  [[nodiscard]] float width() const { return static_cast<float>(squares_.units()); }
   [[nodiscard]] uint32_t square(const Body& body) const {
     const auto x = static_cast<uint32_t>(squares_.pixel(body.x >> kUnitBits));
     const auto z = static_cast<uint32_t>(squares_.pixel(body.z >> kUnitBits));

@@ -15,15 +15,28 @@ struct Places {
 
 struct Eye {
   int32_t x, z, y;
-  float most;    ///< Square of how far it sees. [units^2]
-  int32_t tall;  ///< Whoever is as much higher or lower is on another floor. [mm]
+  uint32_t self;       ///< Entry that is left out.
+  float most;          ///< Square of how far it sees. [units^2]
+  int32_t tall;        ///< Whoever is as much higher or lower is on another floor. [mm]
+  float touch;         ///< Square of how far it could touch somebody. [units^2]
+  int32_t touch_tall;  ///< Whoever is as much higher or lower cannot be touched. [mm]
 };
 
-/// Writes those of [first, last) that are within sight: near_square of the way there, and which.
-/// Room for all and kSeenSpare more is needed. Returns how many. Whoever looks is among them if he
-/// is one of the entries.
-size_t find_seen(const Places& places, uint32_t first, uint32_t last, const Eye& eye,
-                 float* squares, uint32_t* entries);
+/// Lists with room for all who could be in them and kSeenSpare more.
+struct SeenLists {
+  float* squares;     ///< near_square of the ways to those who are in sight,
+  uint32_t* entries;  ///< who they are,
+  uint32_t* touched;  ///< and who could be touched.
+  size_t seen = 0, touches = 0;
+};
 inline constexpr size_t kSeenSpare = 64;
+
+/// Appends those of [first, last).
+void find_seen(const Places& places, uint32_t first, uint32_t last, const Eye& eye,
+               SeenLists& lists);
+
+/// Keeps the nearest so many of those in sight, in order of entries, and all that are as near as
+/// the farthest of them. Returns how many.
+size_t keep_nearest(SeenLists& lists, size_t most);
 
 }  // namespace throng

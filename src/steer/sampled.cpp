@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "throng/base.h"
-
 namespace throng::steer {
 namespace {
 
@@ -41,16 +39,6 @@ constexpr Turns turns() {
 constexpr Turns kTurns = turns();
 
 }  // namespace
-
-void NearSet::add(const SampledSettings& settings, const Neighbour& other) {
-  THRONG_ASSERT(size < kMostNear);
-  const float radii = other.radii + settings.gap;
-  x[size] = other.at.x;
-  z[size] = other.at.z;
-  vx[size] = other.velocity.x;
-  vz[size] = other.velocity.z;
-  apart[size++] = std::max(other.at.x * other.at.x + other.at.z * other.at.z - radii * radii, 0.0f);
-}
 
 Fan fan_around(Plane wish) {
   const float wished = size_of(wish);
@@ -120,16 +108,13 @@ Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials
     cost = cost + settings.keep * size_of({v.x - s.velocity.x, v.z - s.velocity.z});
     cost = cost + settings.right * std::max(left, 0.0f);
     cost = cost / s.fastest;
-    float most = 0, sum = 0;
+    float most = 0;
     for (size_t n = 0; n < s.near.size; ++n) {
       const Plane relative{s.near.vx[n] - v.x, s.near.vz[n] - v.z};
       const float near = nearness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]);
-      const float urgent = std::max(near - least, 0.0f);
-      most = std::max(most, urgent);
-      sum = sum + urgent;
+      most = std::max(most, near - least);
     }
     cost = cost + settings.threat * most;
-    cost = cost + settings.threats * sum;
     if (s.has_walls) {
       const float near = nearness_of_wall(s.free_way[t / kSpeeds], size_of(v));
       cost = cost + settings.wall * std::max(near - least_of_wall, 0.0f);

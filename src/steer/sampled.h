@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+
+#include "throng/base.h"
 
 /// Steering by trying velocities: which of some velocities costs least, by how far it leads from
 /// the wish and how soon the body would touch another or a wall. A model of avoidance that knows
@@ -25,12 +28,11 @@ struct SampledSettings {
   float straightness = 0.8f;  ///< Share of "less progress", beside "another velocity", in a cost.
   float keep = 0.2f;          ///< Cost of leaving one's present velocity.
   float right = 0.1f;         ///< Cost of passing on the left.
-  float threat = 0.5f;        ///< Cost of the most urgent touch,
-  float threats = 0.02f;      ///< and of every one.
+  float threat = 0.5f;        ///< Cost of the most urgent touch.
   float gap = 0.02f;          ///< Wished between two bodies. [m]
   float wall = 0.5f;          ///< Cost of walking up to a wall,
   float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
-  int32_t neighbours = 10;    ///< The nearest so many are looked at. [1 to kMostNear]
+  int32_t neighbours = 8;     ///< The nearest so many are looked at. [1 to kMostNear]
 };
 
 inline constexpr size_t kMostNear = 16;
@@ -45,15 +47,23 @@ struct Neighbour {
   float radii = 0;     ///< Sum of both.
 };
 
-/// Those whom a body steers by, as arrays. What is not used is zero, which never touches.
+/// Those whom a body steers by, as arrays.
 struct NearSet {
   size_t size = 0;
   alignas(64) std::array<float, kMostNear> x{}, z{}, vx{}, vz{};
   alignas(
       64) std::array<float, kMostNear> apart{};  ///< Squares: distance less radii and gap, >= 0.
 
-  void clear() { *this = {}; }
-  void add(const SampledSettings& settings, const Neighbour& other);
+  void add(const SampledSettings& settings, const Neighbour& other) {
+    THRONG_ASSERT(size < kMostNear);
+    const float radii = other.radii + settings.gap;
+    x[size] = other.at.x;
+    z[size] = other.at.z;
+    vx[size] = other.velocity.x;
+    vz[size] = other.velocity.z;
+    apart[size++] =
+        std::max(other.at.x * other.at.x + other.at.z * other.at.z - radii * radii, 0.0f);
+  }
 };
 
 /// What a body steers by.

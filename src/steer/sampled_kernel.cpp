@@ -3,6 +3,8 @@
 #include "steer/sampled_kernel.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -55,15 +57,49 @@ bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
     const V apart = hn::Load(d, &s.near.apart[n]);
     const Touch t = touch(hn::Load(d, &s.near.x[n]), hn::Load(d, &s.near.z[n]), vx, vz, apart);
     if (hn::AllFalse(d, t.happens)) continue;
-    if (!hn::AllFalse(d, hn::Gt(nearness(t, apart), least))) return false;
+    const auto here = hn::FirstN(d, s.near.size - n);
+    if (!hn::AllFalse(d, hn::And(here, hn::Gt(nearness(t, apart), least)))) return false;
   }
   if (!s.has_walls) return true;
   const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
   return nearness_of_wall(s.free_way[0], wished) <= 1 / (settings.wall_horizon + kSoonest);
 }
 
+// Those whom no velocity up to `fastest` can touch within the horizon cost nothing: they are left
+// out. The distance to a touch shrinks fastest at first, so it takes at least (distance - radii) /
+// (speed towards each other) seconds; with some room for rounding.
+struct Relevant {
+  alignas(64) std::array<float, 2 * kMostNear> x, z, vx, vz, apart;  // room for a vector more
+};
+size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& near) {
+  const D d;
+  const V horizon = hn::Set(d, settings.horizon * 1.001f), fastest = hn::Set(d, s.fastest * 1.001f);
+  size_t size = 0;
+  for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
+    const V x = hn::Load(d, &s.near.x[n]), z = hn::Load(d, &s.near.z[n]);
+    const V vx = hn::Load(d, &s.near.vx[n]), vz = hn::Load(d, &s.near.vz[n]);
+    const V apart = hn::Load(d, &s.near.apart[n]);
+    const V square = hn::Add(hn::Mul(x, x), hn::Mul(z, z));
+    const V far = hn::Sqrt(square);
+    const V radii = hn::Sqrt(hn::Max(hn::Sub(square, apart), hn::Zero(d)));
+    const V gap = hn::Sub(hn::Sub(far, radii), hn::Set(d, 1e-3f));
+    const V leaves = hn::Add(hn::Mul(x, vx), hn::Mul(z, vz));
+    const V closing = hn::Sub(hn::Mul(fastest, far), leaves);
+    const auto here = hn::FirstN(d, s.near.size - n);
+    const auto matters = hn::And(here, hn::Lt(hn::Mul(gap, far), hn::Mul(horizon, closing)));
+    hn::CompressStore(x, matters, d, &near.x[size]);
+    hn::CompressStore(z, matters, d, &near.z[size]);
+    hn::CompressStore(vx, matters, d, &near.vx[size]);
+    hn::CompressStore(vz, matters, d, &near.vz[size]);
+    size += hn::CompressStore(apart, matters, d, &near.apart[size]);
+  }
+  return size;
+}
+
 void CostsOf(const SampledSettings& settings, const Situation& s, Trials& trials, Costs& costs) {
   const D d;
+  Relevant near;
+  const size_t count = CopyNear(settings, s, near);
   const V zero = hn::Zero(d);
   trials = trials_of(s);
   const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
@@ -92,25 +128,22 @@ void CostsOf(const SampledSettings& settings, const Situation& s, Trials& trials
     cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.keep), changed));
     cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.right), hn::Max(left, zero)));
     cost = hn::Div(cost, fastest);
-    V most = zero, sum = zero;
-    for (size_t n = 0; n < s.near.size; ++n) {
-      const V apart = hn::Set(d, s.near.apart[n]);
+    V most = zero;
+    for (size_t n = 0; n < count; ++n) {
+      const V apart = hn::Set(d, near.apart[n]);
       const Touch to =
-          touch(hn::Set(d, s.near.x[n]), hn::Set(d, s.near.z[n]),
-                hn::Sub(hn::Set(d, s.near.vx[n]), x), hn::Sub(hn::Set(d, s.near.vz[n]), z), apart);
+          touch(hn::Set(d, near.x[n]), hn::Set(d, near.z[n]), hn::Sub(hn::Set(d, near.vx[n]), x),
+                hn::Sub(hn::Set(d, near.vz[n]), z), apart);
       if (hn::AllFalse(d, to.happens)) continue;
-      const V urgent = hn::Max(hn::Sub(nearness(to, apart), least), zero);
-      most = hn::Max(most, urgent);
-      sum = hn::Add(sum, urgent);
+      most = hn::Max(most, hn::Sub(nearness(to, apart), least));
     }
     cost = hn::Add(cost, times(most, settings.threat));
-    cost = hn::Add(cost, times(sum, settings.threats));
     if (s.has_walls) {
       const V speed = size_of(x, z);
       const V way = hn::Load(d, &free_way[t]);
-      const V near = hn::Div(speed, hn::Add(way, hn::Mul(hn::Set(d, kSoonest), speed)));
+      const V close = hn::Div(speed, hn::Add(way, hn::Mul(hn::Set(d, kSoonest), speed)));
       const V urgent = hn::Max(
-          hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), near), hn::Set(d, least_of_wall)), zero);
+          hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), close), hn::Set(d, least_of_wall)), zero);
       cost = hn::Add(cost, times(urgent, settings.wall));
     }
     hn::Store(cost, d, &costs[t]);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/random.h"
+#include "crowd/first_come.h"
 
 namespace throng::test {
 namespace {
@@ -125,6 +126,15 @@ void PlainCrowd::steer_all() {
       const PlainBody& other = bodies_[n.other];
       // Who has arrived makes way for those who would pass, were he not there: they may stand.
       const bool makes_way = body.arrived >= 0 && other.arrived < 0;
+      const auto bound = [](const PlainBody& b, uint32_t slot) {
+        return Bound{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
+      };
+      if (body.arrived < 0 && other.arrived < 0 &&
+          goes_first(bound(other, n.other), bound(body, i))) {
+        situation.wish = wish_of_waiting(
+            config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,
+            static_cast<float>(body.radius + other.radius) * config_.units.unit);
+      }
       situation.near.add(
           config_.steering,
           {config_.units.metres(n.at.x, n.at.z), makes_way ? wish_of(other) : other.velocity,

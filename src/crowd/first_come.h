@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "crowd/step_units.h"
+
+/// Who goes first of those who are bound for one place.
+namespace throng {
+
+/// A body on its last leg, not there yet.
+struct Bound {
+  int32_t x = 0, z = 0;          // [units]
+  int32_t aim_x = 0, aim_z = 0;  // [units]
+  int32_t radius = 0;            // [units]
+  uint32_t slot = 0;
+
+  [[nodiscard]] int64_t left() const {  // square of the way [units^2]
+    const int64_t dx = int64_t{aim_x} - x, dz = int64_t{aim_z} - z;
+    return dx * dx + dz * dz;
+  }
+};
+
+/// Must `self` wait for `other`? Their goals have no room for both, and the other is nearer to his.
+inline bool goes_first(const Bound& other, const Bound& self) {
+  if (!nearer_than(other.aim_x - self.aim_x, other.aim_z - self.aim_z,
+                   int64_t{other.radius} + self.radius)) {
+    return false;
+  }
+  const int64_t his = other.left(), mine = self.left();
+  return his < mine || (his == mine && other.slot < self.slot);
+}
+
+/// The wish of who waits for another: to leave him room, then to stand. `way`: to one's own goal.
+/// `room`: sum of the radii. [m]
+inline steer::Plane wish_of_waiting(steer::Plane way, float speed, float room) {
+  const float left = std::sqrt(way.x * way.x + way.z * way.z);
+  if (left >= 2 * room || left < 1e-6f) return {};
+  const float back = -0.5f * speed / left;
+  return {way.x * back, way.z * back};
+}
+
+}  // namespace throng

@@ -249,6 +249,31 @@ class Program(unittest.TestCase):
             self.assertIn("all the same", check.stdout)
             file.unlink()
 
+    def test_a_crowd_with_goals_arrives_and_its_recording_comes_out_the_same(self):
+        done = self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--goals", "random", "--record", "goals.replay", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said["wall_entries"], said["overlaps"]), (0, 0))
+        self.assertGreater(said["progress"], 0.5)
+        self.assertGreaterEqual(said["planned"], 40)
+        again = self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--goals", "random", "--threads", 1, "--json")
+        self.assertEqual(json.loads(again.stdout)["state_hash"], said["state_hash"])
+        check = self.run_throng("replay", "goals.replay", "--check")
+        self.assertEqual(check.returncode, 0, check.stderr)
+        self.assertIn("all the same", check.stdout)
+
+    def test_goals_of_a_file_are_walked_to_and_bad_ones_named(self):
+        self.run_throng("run", self.world, "--avatars", 1, "--steps", 1, "--trajectories", "at.csv")
+        at = (self.path / "at.csv").read_text().splitlines()[-1].split(",")[3:6]
+        (self.path / "goals.csv").write_text("# the only one\n{},{},{}\n".format(*at))
+        done = self.run_throng("run", self.world, "--avatars", 3, "--steps", 20, "--goals", "goals.csv", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["goals"], "goals.csv")
+        for text, words in (("1,2\n", "goals.csv:1"), ("1e6,0,0\n", "within 2 m"), ("", "no goals")):
+            (self.path / "goals.csv").write_text(text)
+            self.assert_refused(self.run_throng("run", self.world, "--goals", "goals.csv"), words)
+        self.assert_refused(self.run_throng("run", self.world, "--goals", "missing.csv"), "missing.csv")
+
     def test_what_is_no_recording_is_refused_in_one_sentence(self):
         self.assert_refused(self.run_throng("replay", "missing.replay"), "missing.replay")
         (self.path / "text.replay").write_text("step,id\n")

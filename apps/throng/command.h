@@ -78,6 +78,7 @@ void add_picture(CLI::App& parser, Session& session);
 void add_place(CLI::App& parser, Session& session);
 void add_region(CLI::App& parser, Session& session);
 void add_replay(CLI::App& parser, Session& session);
+void add_report(CLI::App& parser, Session& session);
 void add_run(CLI::App& parser, Session& session);
 void add_slices(CLI::App& parser, Session& session);
 void add_verify(CLI::App& parser, Session& session);

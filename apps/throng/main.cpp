@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
     add_place(parser, session);
     add_region(parser, session);
     add_replay(parser, session);
+    add_report(parser, session);
     add_run(parser, session);
     add_slices(parser, session);
     add_verify(parser, session);

@@ -59,6 +59,8 @@ struct Image {
 /// One slice as [ML06] figures 9 and 10 draw it: darker is higher.
 [[nodiscard]] THRONG_API Image draw_slice(const SliceSet& slices, size_t index);
 
+/// The bytes of a PNG file; empty if there is no memory for them.
+[[nodiscard]] THRONG_API std::vector<uint8_t> png_bytes(const Image& image);
 /// Fails with kIo; writes beside and renames.
 [[nodiscard]] THRONG_API Result<void> write_png(const Image& image, const std::string& path);
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <string>
+#include <vector>
 
 #include "core/part_file.h"
 #include "throng/picture.h"
@@ -21,7 +22,24 @@ void write_bytes(void* file, void* data, int size) {
   static_cast<PartFile*>(file)->write(data, static_cast<size_t>(size));
 }
 
+void append_bytes(void* bytes, void* data, int size) {
+  const auto* from = static_cast<const uint8_t*>(data);
+  auto& to = *static_cast<std::vector<uint8_t>*>(bytes);
+  to.insert(to.end(), from, from + size);
+}
+
 }  // namespace
+
+std::vector<uint8_t> png_bytes(const Image& image) {
+  THRONG_ASSERT(image.rgb.size() ==
+                static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * 3);
+  std::vector<uint8_t> bytes;
+  if (stbi_write_png_to_func(append_bytes, &bytes, image.width, image.height, 3, image.rgb.data(),
+                             image.width * 3) == 0) {
+    bytes.clear();
+  }
+  return bytes;
+}
 
 Result<void> write_png(const Image& image, const std::string& path) {
   THRONG_ASSERT(image.rgb.size() ==

@@ -4,6 +4,7 @@
 
 python3 program_test.py build/release/throng"""
 import base64
+import base64
 import json
 import os
 import pathlib
@@ -273,6 +274,34 @@ class Program(unittest.TestCase):
             (self.path / "goals.csv").write_text(text)
             self.assert_refused(self.run_throng("run", self.world, "--goals", "goals.csv"), words)
         self.assert_refused(self.run_throng("run", self.world, "--goals", "missing.csv"), "missing.csv")
+
+    def test_a_report_is_one_page_that_holds_its_pictures(self):
+        self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--record", "walk.replay")
+        done = self.run_throng("report", "walk.replay", "-o", "report.html", "--line", "20,0,20,30", "--line", "1,1,9,1,0", "--png",
+                               "pic", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said["frames"], said["positions"], said["left"], len(said["lines"])), (61, 61 * 40, 0, 2))
+        self.assertGreater(said["mean_speed"], 0.5)
+        page = (self.path / "report.html").read_text(encoding="ascii")
+        pictures = sorted(entry for entry in self.path.iterdir() if entry.suffix == ".png")
+        self.assertEqual(len(pictures), 4 + 2 * said["storeys"])
+        held = {base64.b64decode(data) for data in re.findall(r'src="data:image/png;base64,([^"]*)"', page)}
+        self.assertEqual(held, {picture.read_bytes() for picture in pictures})
+        self.assertNotRegex(page, r"(src|href)=\"(?!data:)")
+        self.assertEqual(page.count("<tr>"), page.count("</tr>"))
+        for word in ("wanderers", "seed", "adult", "complete", "mean speed"):
+            self.assertIn(word, page)
+        again = self.run_throng("report", "walk.replay", "-o", "again.html", "--line", "20,0,20,30", "--line", "1,1,9,1,0")
+        self.assertEqual(again.returncode, 0)
+        self.assertEqual((self.path / "again.html").read_text(), page)
+        for words, *named in ((("--line", "1,2,3"), "--line 1,2,3", "X0,Z0,X1,Z1"), (("--line", "1,2,3,4,"), "--line"),
+                              (("--line", "1,2,1,2"), "line 1", "two different ends"), (("--cell", "0"), "cell"),
+                              (("--cell", "1e-5"), "larger cells"), (("--png", "no/pic"), "no/pic")):
+            self.assert_refused(self.run_throng("report", "walk.replay", "-o", "bad.html", *words), *named)
+        self.assert_refused(self.run_throng("report", "missing.replay", "-o", "bad.html"), "missing.replay")
+        self.assert_refused(self.run_throng("report", "walk.replay", "-o", "no/bad.html"), "no/bad.html")
+        self.assertFalse((self.path / "bad.html").exists())
 
     def test_what_is_no_recording_is_refused_in_one_sentence(self):
         self.assert_refused(self.run_throng("replay", "missing.replay"), "missing.replay")

@@ -151,14 +151,19 @@ class Sinks {
   explicit Sinks(const RunOptions& options) : options_(options) {}
 
   Result<void> open(const World& world, const std::string& model, const Json& settings) {
+    const bool other_bodies = !options_.crowd.goals.empty() && options_.crowd.radius > 0;
     if (!options_.trajectories.empty()) {
-      const auto number = static_cast<size_t>(options_.config.avatar_class);
-      auto ok = trajectories_.open(options_.trajectories, world.summary().classes[number]);
+      AvatarClass avatar =
+          world.summary().classes[static_cast<size_t>(options_.config.avatar_class)];
+      if (other_bodies) avatar.radius = options_.crowd.radius;
+      auto ok = trajectories_.open(options_.trajectories, avatar);
       if (!ok) return ok;
     }
     if (options_.record.empty()) return {};
-    return recorder_.open(options_.record, options_.world, world, options_.config.dt, model,
-                          settings);
+    auto ok =
+        recorder_.open(options_.record, options_.world, world, options_.config.dt, model, settings);
+    if (ok && other_bodies) recorder_.set_radius(options_.crowd.radius);
+    return ok;
   }
   // Of the steps between frames the recorder gets the hash alone.
   template <class Avatars>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "run_recorder.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace throng::app {
@@ -25,6 +26,10 @@ Result<void> RunRecorder::open(const std::string& path, const std::string& world
   recorder_.emplace(std::move(*recorder));
   dt_ = dt;
   return {};
+}
+
+void RunRecorder::set_radius(double radius) {
+  std::fill(radii_.begin(), radii_.end(), static_cast<float>(radius));
 }
 
 Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,

@@ -226,6 +226,18 @@ class Program(unittest.TestCase):
         for avatar in at["avatars"]:
             self.assertEqual(tuple(avatar["position"]), positions[2, avatar["id"]])
 
+    def test_a_recording_of_a_crowd_with_goals_comes_out_the_same_and_has_its_bodies(self):
+        done = self.run_throng("run", self.world, "--avatars", 40, "--steps", 25, "--goals", "random", "--radius", 0.2, "--every", 2,
+                               "--record", "walk.replay", "--trajectories", "walk.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.run_throng("replay", "walk.replay", "--check", "--json", "--threads", 1)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["same"], 26)
+        at = json.loads(self.run_throng("replay", "walk.replay", "--at", 2, "--json").stdout)
+        for avatar in at["avatars"]:
+            self.assertAlmostEqual(avatar["radius"], 0.2)
+        self.assertTrue((self.path / "walk.csv").read_text().endswith(",0.2000\n"))
+
     def test_a_killed_run_leaves_a_recording_that_opens_and_comes_out_the_same(self):
         for wait in (0.05, 0.2, 0.5):
             process = subprocess.Popen([PROGRAM, "run", self.world, "--avatars", "50", "--steps", "100000000", "--record",
@@ -297,7 +309,7 @@ class Program(unittest.TestCase):
         self.assertEqual((self.path / "again.html").read_text(), page)
         for words, *named in ((("--line", "1,2,3"), "--line 1,2,3", "X0,Z0,X1,Z1"), (("--line", "1,2,3,4,"), "--line"),
                               (("--line", "1,2,1,2"), "line 1", "two different ends"), (("--cell", "0"), "cell"),
-                              (("--cell", "1e-5"), "larger cells"), (("--png", "no/pic"), "no/pic")):
+                              (("--cell", "0.002"), "larger cells"), (("--png", "no/pic"), "no/pic")):
             self.assert_refused(self.run_throng("report", "walk.replay", "-o", "bad.html", *words), *named)
         self.assert_refused(self.run_throng("report", "missing.replay", "-o", "bad.html"), "missing.replay")
         self.assert_refused(self.run_throng("report", "walk.replay", "-o", "no/bad.html"), "no/bad.html")

@@ -283,18 +283,18 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   look_for_walls(body, worker.situation, true);
   const bool open = steer::wish_is_open_fast(config_.steering, worker.situation);
   worker.counts.contested += alone ? 0 : 1;
-  bool named = false;
-  if (open) {
-    contest.ways = 1;
-    contest.has_all = false;
-    const Plane wish = worker.situation.wish;
-    contest.way[0] = {config_.units.way(wish.x), config_.units.way(wish.z)};
-    named = try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place) &&
-            (alone || is_clear(contest, worker, place, /*somebody_moved=*/false));
-    worker.counts.open += named ? 1 : 0;
-  }
+  // The best of his ways is enough as long as nobody objects to it.
+  if (!open) look_for_walls(body, worker.situation, false);
+  const Plane best =
+      open ? worker.situation.wish : steer::best_fast(config_.steering, worker.situation);
+  contest.ways = 1;
+  contest.has_all = false;
+  contest.way[0] = {config_.units.way(best.x), config_.units.way(best.z)};
+  bool named = try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place) &&
+               (alone || is_clear(contest, worker, place, /*somebody_moved=*/false));
+  worker.counts.open += named && open ? 1 : 0;
   if (!named) {
-    look_for_walls(body, worker.situation, false);
+    if (open) look_for_walls(body, worker.situation, false);
     find_ways(worker.situation, open, contest);
   }
   if (!alone) {
@@ -390,8 +390,9 @@ void CrowdEngine::name(Contest& contest, const Worker& owner, Worker& scratch, u
   // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
   sense(contest.body, scratch, grid_->around(grid_->square(body)), /*lists_others=*/false);
   look_for_walls(body, scratch.situation, true);
+  const bool open = steer::wish_is_open_fast(config_.steering, scratch.situation);
   look_for_walls(body, scratch.situation, false);
-  find_ways(scratch.situation, /*open=*/true, contest);
+  find_ways(scratch.situation, open, contest);
   for (; tried < contest.ways; ++tried) {
     if (try_way(tried)) return;
   }

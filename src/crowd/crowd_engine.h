@@ -72,8 +72,8 @@ class CrowdEngine {
   static constexpr int32_t kMostRise = 450;
 
  private:
-  // Somebody who could touch others: whom, and where he would go, the best first; if the first is
-  // open, the others are found when they are needed.
+  // Somebody who could touch others: whom, and where he would go, the best first; the others are
+  // found when they are needed.
   struct Contest {
     uint32_t body;
     uint32_t first, last;  // of `others`

@@ -96,58 +96,103 @@ size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& n
   return size;
 }
 
-void CostsOf(const SampledSettings& settings, const Situation& s, Trials& trials, Costs& costs) {
-  const D d;
-  Relevant near;
-  const size_t count = CopyNear(settings, s, near);
-  const V zero = hn::Zero(d);
-  trials = trials_of(s);
-  const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
-  const bool wishes = wished > 1e-6f;
-  const Plane ahead = wishes ? Plane{s.wish.x / wished, s.wish.z / wished} : Plane{1, 0};
-  // The first of the fan, which is `ahead` but for a sum with 0.
-  const V ahead_x = hn::Set(d, ahead.x * 1.0f - ahead.z * 0.0f);
-  const V ahead_z = hn::Set(d, ahead.x * 0.0f + ahead.z * 1.0f);
-  const V least = hn::Set(d, 1 / (settings.horizon + kSoonest));
-  const float least_of_wall = 1 / (settings.wall_horizon + kSoonest);
-  const V fastest = hn::Set(d, s.fastest);
-  alignas(64) std::array<float, kTrials> free_way;
-  if (s.has_walls) {
-    for (size_t t = 0; t < kTrials; ++t) free_way[t] = s.free_way[t / kSpeeds];
+// What trials cost, some at a time: first without the others, then with them.
+class Pricing {
+ public:
+  Pricing(const SampledSettings& settings, const Situation& s)
+      : settings_(settings), s_(s), trials_(trials_of(s)), count_(CopyNear(settings, s, near_)) {
+    wished_ = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
+    ahead_ = wished_ > 1e-6f ? Plane{s.wish.x / wished_, s.wish.z / wished_} : Plane{1, 0};
   }
-  for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
-    const V x = hn::Load(d, &trials.x[t]), z = hn::Load(d, &trials.z[t]);
+  [[nodiscard]] const Trials& trials() const { return trials_; }
+
+  HWY_INLINE V alone(size_t t) const {
+    const D d;
+    const V zero = hn::Zero(d);
+    const V x = hn::Load(d, &trials_.x[t]), z = hn::Load(d, &trials_.z[t]);
+    const V ahead_x = hn::Set(d, ahead_.x), ahead_z = hn::Set(d, ahead_.z);
     const V along = hn::Add(hn::Mul(x, ahead_x), hn::Mul(z, ahead_z));
     const V left = hn::Sub(hn::Mul(ahead_z, x), hn::Mul(ahead_x, z));
-    V cost = hn::Mul(hn::Set(d, 1 - settings.straightness),
-                     size_of(hn::Sub(x, hn::Set(d, s.wish.x)), hn::Sub(z, hn::Set(d, s.wish.z))));
-    const V lost = hn::Max(hn::Sub(hn::Set(d, wished), along), zero);
-    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.straightness), lost));
+    V cost = hn::Mul(hn::Set(d, 1 - settings_.straightness),
+                     size_of(hn::Sub(x, hn::Set(d, s_.wish.x)), hn::Sub(z, hn::Set(d, s_.wish.z))));
+    const V lost = hn::Max(hn::Sub(hn::Set(d, wished_), along), zero);
+    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings_.straightness), lost));
     const V changed =
-        size_of(hn::Sub(x, hn::Set(d, s.velocity.x)), hn::Sub(z, hn::Set(d, s.velocity.z)));
-    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.keep), changed));
-    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings.right), hn::Max(left, zero)));
-    cost = hn::Div(cost, fastest);
+        size_of(hn::Sub(x, hn::Set(d, s_.velocity.x)), hn::Sub(z, hn::Set(d, s_.velocity.z)));
+    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings_.keep), changed));
+    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings_.right), hn::Max(left, zero)));
+    return hn::Div(cost, hn::Set(d, s_.fastest));
+  }
+
+  HWY_INLINE V among_others(size_t t, V cost) const {
+    const D d;
+    const V zero = hn::Zero(d);
+    const V x = hn::Load(d, &trials_.x[t]), z = hn::Load(d, &trials_.z[t]);
+    const V least = hn::Set(d, 1 / (settings_.horizon + kSoonest));
     V most = zero;
-    for (size_t n = 0; n < count; ++n) {
-      const V apart = hn::Set(d, near.apart[n]);
+    for (size_t n = 0; n < count_; ++n) {
+      const V apart = hn::Set(d, near_.apart[n]);
       const Touch to =
-          touch(hn::Set(d, near.x[n]), hn::Set(d, near.z[n]), hn::Sub(hn::Set(d, near.vx[n]), x),
-                hn::Sub(hn::Set(d, near.vz[n]), z), apart);
+          touch(hn::Set(d, near_.x[n]), hn::Set(d, near_.z[n]), hn::Sub(hn::Set(d, near_.vx[n]), x),
+                hn::Sub(hn::Set(d, near_.vz[n]), z), apart);
       if (hn::AllFalse(d, to.happens)) continue;
       most = hn::Max(most, hn::Sub(nearness(to, apart), least));
     }
-    cost = hn::Add(cost, times(most, settings.threat));
-    if (s.has_walls) {
-      const V speed = size_of(x, z);
-      const V way = hn::Load(d, &free_way[t]);
-      const V close = hn::Div(speed, hn::Add(way, hn::Mul(hn::Set(d, kSoonest), speed)));
-      const V urgent = hn::Max(
-          hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), close), hn::Set(d, least_of_wall)), zero);
-      cost = hn::Add(cost, times(urgent, settings.wall));
-    }
-    hn::Store(cost, d, &costs[t]);
+    cost = hn::Add(cost, times(most, settings_.threat));
+    if (!s_.has_walls) return cost;
+    alignas(64) std::array<float, kMostNear> ways;
+    for (size_t n = 0; n < hn::Lanes(d); ++n) ways[n] = s_.free_way[(t + n) / kSpeeds];
+    const V speed = size_of(x, z);
+    const V close =
+        hn::Div(speed, hn::Add(hn::Load(d, ways.data()), hn::Mul(hn::Set(d, kSoonest), speed)));
+    const V least_of_wall = hn::Set(d, 1 / (settings_.wall_horizon + kSoonest));
+    const V urgent =
+        hn::Max(hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), close), least_of_wall), zero);
+    return hn::Add(cost, times(urgent, settings_.wall));
   }
+
+ private:
+  const SampledSettings& settings_;
+  const Situation& s_;
+  const Trials trials_;
+  Relevant near_;
+  size_t count_;
+  float wished_;
+  Plane ahead_;
+};
+
+void CostsOf(const SampledSettings& settings, const Situation& s, Trials& trials, Costs& costs) {
+  const D d;
+  const Pricing pricing(settings, s);
+  trials = pricing.trials();
+  for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
+    hn::Store(pricing.among_others(t, pricing.alone(t)), d, &costs[t]);
+  }
+}
+
+// Others only add to a cost: trials that cost more than the best so far without them are left out.
+// The wish is in the first trials, and what is near it in those and in the last, so these come
+// first.
+Plane Best(const SampledSettings& settings, const Situation& s) {
+  const D d;
+  const size_t lanes = hn::Lanes(d), pieces = kTrials / lanes;
+  const Pricing pricing(settings, s);
+  float lowest = std::numeric_limits<float>::infinity();
+  size_t best = 0;
+  for (size_t n = 0; n < pieces; ++n) {
+    const size_t piece = n % 2 == 0 ? n / 2 : pieces - 1 - n / 2;
+    const size_t t = piece * lanes;
+    const V alone = pricing.alone(t);
+    if (hn::AllFalse(d, hn::Le(alone, hn::Set(d, lowest)))) continue;
+    const V cost = pricing.among_others(t, alone);
+    const float least = hn::GetLane(hn::MinOfLanes(d, cost));
+    if (least > lowest) continue;
+    const intptr_t lane = hn::FindFirstTrue(d, hn::Eq(cost, hn::Set(d, least)));
+    const size_t here = t + static_cast<size_t>(lane);
+    if (least < lowest || here < best) best = here;
+    lowest = least;
+  }
+  return {pricing.trials().x[best], pricing.trials().z[best]};
 }
 
 Plane TakeBest(const Trials& trials, Costs& costs) {
@@ -176,10 +221,14 @@ namespace throng::steer {
 
 HWY_EXPORT(WishIsOpen);
 HWY_EXPORT(CostsOf);
+HWY_EXPORT(Best);
 HWY_EXPORT(TakeBest);
 
 bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation) {
   return HWY_DYNAMIC_DISPATCH(WishIsOpen)(settings, situation);
+}
+Plane best_fast(const SampledSettings& settings, const Situation& situation) {
+  return HWY_DYNAMIC_DISPATCH(Best)(settings, situation);
 }
 void costs_of_fast(const SampledSettings& settings, const Situation& situation, Trials& trials,
                    Costs& costs) {

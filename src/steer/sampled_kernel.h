@@ -8,6 +8,8 @@
 namespace throng::steer {
 
 bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation);
+/// The cheapest trial: what take_best_fast gives first. Most trials need not be looked at for that.
+Plane best_fast(const SampledSettings& settings, const Situation& situation);
 /// Costs of trials_of(situation), which it leaves in `trials`.
 void costs_of_fast(const SampledSettings& settings, const Situation& situation, Trials& trials,
                    Costs& costs);

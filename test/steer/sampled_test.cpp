@@ -136,6 +136,9 @@ TEST(SampledSteering, MachinesFindTheSameBits) {
       costs_of_fast({}, s, trials, costs);
       ASSERT_EQ(std::memcmp(&expected_trials, &trials, sizeof trials), 0) << name << ' ' << n;
       ASSERT_EQ(std::memcmp(&expected, &costs, sizeof costs), 0) << name << ' ' << n;
+      const Plane best = best_fast({}, s);
+      const Plane first = best_of(expected, expected_trials)[0];
+      ASSERT_EQ(std::memcmp(&best, &first, sizeof best), 0) << name << ' ' << n;
       for (const Plane& choice : best_of(expected, expected_trials)) {
         const Plane taken = take_best_fast(trials, costs);
         ASSERT_EQ(std::memcmp(&taken, &choice, sizeof choice), 0) << name << ' ' << n;

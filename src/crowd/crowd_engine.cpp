@@ -25,7 +25,7 @@ using steer::Plane;
 constexpr size_t kGrain = 256;  // bodies that are worth handing to another thread
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;  // [m] from its goal a body has arrived
-constexpr float kEnough = 18;   // bodies, to find the nearest among
+constexpr float kEnough = 14;   // bodies, to find the nearest among
 constexpr uint16_t kNever = UINT16_MAX;
 
 float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
@@ -183,9 +183,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   SeenLists lists;
   const auto look = [&] {
     lists = {worker.squares.data(), worker.entries.data(), worker.touched.data()};
-    for (const auto& p : around) {
-      if (p.first != p.last) find_seen(places, p.first, p.last, eye, lists);
-    }
+    find_seen(places, around, eye, lists);
   };
   look();
   if (lists.seen < wanted && eye.most < sight) {

@@ -10,6 +10,7 @@
 #include "core/huge_array.h"
 #include "crowd/body.h"
 #include "crowd/pixel_grid.h"
+#include "crowd/sense_kernel.h"
 
 /// Who is near whom: bodies in order of the square that they stand on.
 namespace throng {
@@ -29,11 +30,8 @@ class NeighbourGrid {
   /// Sorts by square; on one square the order stays. `sorted` must be as large as `bodies`.
   void sort(std::span<const Body> bodies, std::span<Body> sorted, int32_t workers);
 
-  /// Bodies of a row of squares around a body: [first, last), in up to two pieces.
-  struct Piece {
-    uint32_t first = 0, last = 0;
-  };
-  using Around = std::array<Piece, 2 * kAround>;
+  /// Bodies of the rows of squares around a body, a row in up to two pieces.
+  using Around = std::array<Entries, 2 * kAround>;
   /// Those that may be within sight of the square; pieces that are not needed are empty.
   [[nodiscard]] Around around(uint32_t square) const;
   /// Of a square. [units]

@@ -16,8 +16,8 @@ using DI = hn::CappedTag<int32_t, 16>;
 using DF = hn::RebindToFloat<DI>;
 using DU = hn::RebindToUnsigned<DI>;
 
-void FindSeen(const Places& places, uint32_t first, uint32_t last, const Eye& eye,
-              SeenLists& lists) {
+void FindSeen(const Places& places, std::span<const Entries> around, const Eye& eye,
+              SeenLists& result) {
   const DI d;
   const DF df;
   const DU du;
@@ -25,7 +25,8 @@ void FindSeen(const Places& places, uint32_t first, uint32_t last, const Eye& ey
   const auto most = hn::Set(df, eye.most), touch = hn::Set(df, eye.touch);
   const auto tall = hn::Set(d, eye.tall), touch_tall = hn::Set(d, eye.touch_tall);
   const auto self = hn::Set(du, eye.self);
-  for (uint32_t i = first; i < last; i += static_cast<uint32_t>(hn::Lanes(d))) {
+  SeenLists lists = result;
+  const auto look = [&](uint32_t i, uint32_t last) HWY_ATTR {
     const auto dx = hn::ConvertTo(df, hn::Sub(hn::LoadU(d, places.x + i), x));
     const auto dz = hn::ConvertTo(df, hn::Sub(hn::LoadU(d, places.z + i), z));
     const auto dy = hn::Abs(hn::Sub(hn::LoadU(d, places.y + i), y));
@@ -34,14 +35,21 @@ void FindSeen(const Places& places, uint32_t first, uint32_t last, const Eye& ey
     const auto others = hn::AndNot(hn::Eq(entry, self), hn::FirstN(du, last - i));
     const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, most)), others);
     const auto seen = hn::And(near, hn::RebindMask(du, hn::Lt(dy, tall)));
-    hn::CompressStore(entry, seen, du, lists.entries + lists.seen);
-    lists.seen +=
-        hn::CompressStore(square, hn::RebindMask(df, seen), df, lists.squares + lists.seen);
+    // Compressing into memory is slow on some machines; there is room for a whole vector.
+    hn::StoreU(hn::Compress(entry, seen), du, lists.entries + lists.seen);
+    hn::StoreU(hn::Compress(square, hn::RebindMask(df, seen)), df, lists.squares + lists.seen);
+    lists.seen += hn::CountTrue(du, seen);
     const auto close = hn::And(hn::RebindMask(du, hn::Lt(square, touch)), others);
     const auto touched = hn::And(close, hn::RebindMask(du, hn::Lt(dy, touch_tall)));
-    if (hn::AllFalse(du, touched)) continue;
-    lists.touches += hn::CompressStore(entry, touched, du, lists.touched + lists.touches);
+    if (hn::AllFalse(du, touched)) return;
+    hn::StoreU(hn::Compress(entry, touched), du, lists.touched + lists.touches);
+    lists.touches += hn::CountTrue(du, touched);
+  };
+  const auto lanes = static_cast<uint32_t>(hn::Lanes(d));
+  for (const Entries& piece : around) {
+    for (uint32_t i = piece.first; i < piece.last; i += lanes) look(i, piece.last);
   }
+  result = lists;
 }
 
 // Of each, how many are nearer.
@@ -73,9 +81,9 @@ namespace throng {
 HWY_EXPORT(FindSeen);
 HWY_EXPORT(KeepNearest);
 
-void find_seen(const Places& places, uint32_t first, uint32_t last, const Eye& eye,
+void find_seen(const Places& places, std::span<const Entries> around, const Eye& eye,
                SeenLists& lists) {
-  HWY_DYNAMIC_DISPATCH(FindSeen)(places, first, last, eye, lists);
+  HWY_DYNAMIC_DISPATCH(FindSeen)(places, around, eye, lists);
 }
 size_t keep_nearest(SeenLists& lists, size_t most) {
   return lists.seen <= most ? lists.seen : HWY_DYNAMIC_DISPATCH(KeepNearest)(lists, most);

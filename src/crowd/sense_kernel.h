@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 /// Who is within sight, many at a time.
 namespace throng {
@@ -31,8 +32,13 @@ struct SeenLists {
 };
 inline constexpr size_t kSeenSpare = 64;
 
-/// Appends those of [first, last).
-void find_seen(const Places& places, uint32_t first, uint32_t last, const Eye& eye,
+/// [first, last)
+struct Entries {
+  uint32_t first = 0, last = 0;
+};
+
+/// Appends those of `around`.
+void find_seen(const Places& places, std::span<const Entries> around, const Eye& eye,
                SeenLists& lists);
 
 /// Keeps the nearest so many of those in sight, in order of entries, and all that are as near as

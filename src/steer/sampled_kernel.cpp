@@ -87,11 +87,12 @@ size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& n
     const V closing = hn::Sub(hn::Mul(fastest, far), leaves);
     const auto here = hn::FirstN(d, s.near.size - n);
     const auto matters = hn::And(here, hn::Lt(hn::Mul(gap, far), hn::Mul(horizon, closing)));
-    hn::CompressStore(x, matters, d, &near.x[size]);
-    hn::CompressStore(z, matters, d, &near.z[size]);
-    hn::CompressStore(vx, matters, d, &near.vx[size]);
-    hn::CompressStore(vz, matters, d, &near.vz[size]);
-    size += hn::CompressStore(apart, matters, d, &near.apart[size]);
+    hn::StoreU(hn::Compress(x, matters), d, &near.x[size]);
+    hn::StoreU(hn::Compress(z, matters), d, &near.z[size]);
+    hn::StoreU(hn::Compress(vx, matters), d, &near.vx[size]);
+    hn::StoreU(hn::Compress(vz, matters), d, &near.vz[size]);
+    hn::StoreU(hn::Compress(apart, matters), d, &near.apart[size]);
+    size += hn::CountTrue(d, matters);
   }
   return size;
 }

@@ -238,7 +238,8 @@ void CrowdEngine::look_for_walls(const Body& body, steer::Situation& situation,
   const GroundPoint from = body.point();
   if (ahead_only) {
     const auto cells = static_cast<int32_t>(look) / kUnitsPerCell + 1;
-    situation.has_walls = ground.may_have_walls(body.level, from.cell_x(), from.cell_z(), cells);
+    situation.has_walls =
+        !ground.is_open_around(body.level, body.y, from.cell_x(), from.cell_z(), cells);
   }
   if (!situation.has_walls) return;
   const steer::Fan fan = steer::fan_around(situation.wish);

@@ -61,21 +61,50 @@ bool StrideGround::box_is_plain(uint32_t level, int32_t x0, int32_t z0, int32_t 
   return true;
 }
 
-bool StrideGround::may_have_walls(uint32_t level, int32_t x, int32_t z, int32_t reach) const {
+bool StrideGround::is_plain_around(uint32_t level, int32_t x, int32_t z, int32_t reach) const {
   // Joins lead to the right and down only, so begin at the left upper corner.
   const int32_t x0 = x - reach, z0 = z - reach;
   uint32_t first = level;
   if (x0 >> 6 != x >> 6) {
     const LevelLine& line = ground_->line(first);
-    if ((line.joined[LevelLine::kLeft] >> (z >> 2 & 15) & 1) == 0) return true;
+    if ((line.joined[LevelLine::kLeft] >> (z >> 2 & 15) & 1) == 0) return false;
     first = line.beyond[LevelLine::kLeft];
   }
   if (z0 >> 6 != z >> 6) {
     const LevelLine& line = ground_->line(first);
-    if ((line.joined[LevelLine::kAbove] >> ((x0 & 63) >> 2) & 1) == 0) return true;
+    if ((line.joined[LevelLine::kAbove] >> ((x0 & 63) >> 2) & 1) == 0) return false;
     first = line.beyond[LevelLine::kAbove];
   }
-  return !box_is_plain(first, x0, z0, x + reach, z + reach);
+  return box_is_plain(first, x0, z0, x + reach, z + reach);
+}
+
+bool StrideGround::is_open_around(uint32_t level, int32_t y, int32_t x, int32_t z,
+                                  int32_t reach) const {
+  if (reach > 31) return false;  // of a tile's 64
+  if (is_plain_around(level, x, z, reach)) return true;
+  const int32_t x0 = x - reach, z0 = z - reach, x1 = x + reach, z1 = z + reach;
+  for (int32_t tile_z = z0 >> 6; tile_z <= z1 >> 6; ++tile_z) {
+    for (int32_t tile_x = x0 >> 6; tile_x <= x1 >> 6; ++tile_x) {
+      const int32_t low_x = std::max(x0 - tile_x * 64, 0), high_x = std::min(x1 - tile_x * 64, 63);
+      const int32_t low_z = std::max(z0 - tile_z * 64, 0), high_z = std::min(z1 - tile_z * 64, 63);
+      const uint64_t wanted = (~uint64_t{0} >> (63 - high_x)) & (~uint64_t{0} << low_x);
+      const auto is_open = [&](uint32_t on) {
+        const uint64_t* legal = ground_->legal(on);
+        uint64_t all = wanted;
+        for (int32_t row = low_z; row <= high_z; ++row) all &= legal[row];
+        return all == wanted;
+      };
+      bool open = false;
+      if (tile_x == x >> 6 && tile_z == z >> 6) {
+        open = is_open(level);
+      } else {
+        ground_->for_tile(tile_x, tile_z, y - step_mm_, y + step_mm_,
+                          [&](uint32_t on) { open = open || is_open(on); });
+      }
+      if (!open) return false;
+    }
+  }
+  return true;
 }
 
 bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,

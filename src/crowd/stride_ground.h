@@ -25,8 +25,10 @@ class StrideGround {
   /// legal, and no step is too high. False: there is a wall.
   bool move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
 
-  /// False only if no wall is within `reach` cells: a quick look that does not see everything.
-  [[nodiscard]] bool may_have_walls(uint32_t level, int32_t x, int32_t z, int32_t reach) const;
+  /// Is every cell within `reach` cells legal on a floor near `y`? A quick look, for steering
+  /// alone: it does not ask whether steps lead there.
+  [[nodiscard]] bool is_open_around(uint32_t level, int32_t y, int32_t x, int32_t z,
+                                    int32_t reach) const;
 
   /// Is the straight way from a point to another legal, or its first `most` units? Where it is all
   /// looked at, it must end on `end`.
@@ -38,6 +40,7 @@ class StrideGround {
                                float most) const;
 
  private:
+  [[nodiscard]] bool is_plain_around(uint32_t level, int32_t x, int32_t z, int32_t reach) const;
   [[nodiscard]] bool box_is_plain(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
                                   int32_t z1) const;
 

@@ -61,7 +61,7 @@ struct RecordedClass {
 
 /// What a recording tells about its run.
 struct RecordingInfo {
-  std::string world;        ///< Where it was walked: the folder, as the caller named it.
+  std::string world = {};   ///< Where it was walked: the folder, as the caller named it.
   uint64_t world_hash = 0;  ///< WorldSummary::hash; 0: not known.
   double dt = 0.1;          ///< Length of a step. [s, > 0]
   std::vector<RecordedClass> classes = {};  ///< [1 to 256]

@@ -61,7 +61,7 @@ std::vector<RecordedFrame> random_run(uint64_t seed, size_t frames, size_t most)
       frame.ids[i] = id * 1'000'003 * (id % 5 == 0 ? 1'000'000'007 : 1);
       frame.classes[i] = static_cast<uint8_t>((id + (unit() < 0.01 ? 1 : 0)) % 2);
       frame.positions[i] = body.at;
-      frame.radii[i] = static_cast<float>(0.2 + 0.001 * static_cast<double>(id % 100));
+      frame.radii[i] = static_cast<float>(0.2 + 0.001 * static_cast<double>((id + f / 25) % 100));
       frame.headings[i] = {static_cast<float>(body.by.x), static_cast<float>(body.by.z)};
     }
     run.push_back(std::move(frame));
@@ -201,6 +201,49 @@ TEST(Recording, KeepsTheHashesOfStepsWithoutFrames) {
   }
   RecordedFrame frame;
   for (uint64_t f = 0; f < 12; ++f) ASSERT_TRUE(replay->read(f, frame));
+}
+
+TEST(Recording, MayBeginWithHashesAlone) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  auto run = random_run(5, 4, 6);
+  {
+    auto recorder = Recorder::create(path, two_classes());
+    ASSERT_TRUE(recorder);
+    ASSERT_TRUE(recorder->append_hash(0, 7));
+    ASSERT_TRUE(recorder->flush());
+    for (size_t f = 1; f < run.size(); ++f) ASSERT_TRUE(recorder->append(run[f].view()));
+    ASSERT_TRUE(recorder->finish());
+  }
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay);
+  EXPECT_EQ(replay->damage(), "");
+  ASSERT_EQ(replay->frame_count(), 3u);
+  RecordedFrame frame;
+  for (uint64_t f = 0; f < 3; ++f) {
+    ASSERT_TRUE(replay->read(f, frame));
+    expect_same(run[f + 1], frame);
+  }
+}
+
+// A system that stops may have kept a chunk's head and lost its bytes: all frames told are good.
+TEST(Recording, DoesNotCountALastChunkWhoseBytesAreLost) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(7, 40, 6);
+  record(path, run, {.chunk_frames = 4, .key_frames = 8});
+  std::string bytes = bytes_of(path);
+  bytes.resize(bytes.size() - 64);  // without the chunk that marks the end
+  std::fill(bytes.end() - 40, bytes.end(), '\0');
+  auto replay = Replay::from_bytes(span_of(bytes), "stopped");
+  ASSERT_TRUE(replay);
+  EXPECT_EQ(replay->frame_count(), 36u);
+  EXPECT_NE(replay->damage().find("stopped is corrupt"), std::string::npos) << replay->damage();
+  RecordedFrame frame;
+  for (uint64_t f = 0; f < 36; ++f) {
+    ASSERT_TRUE(replay->read(f, frame));
+    expect_same(run[f], frame);
+  }
 }
 
 // A process that dies leaves a beginning of the file: every such beginning, of every length.

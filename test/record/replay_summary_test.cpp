@@ -218,6 +218,24 @@ TEST(ReplaySummary, AnEvacuationIsTold) {
   EXPECT_EQ(s->maps.at(0).waiting[0], 45);
 }
 
+// The line itself is on its left: who stops on it and goes on is counted once, whichever way; who
+// comes from the right and turns back on it has crossed it twice, once each way.
+TEST(ReplaySummary, WhoStandsOnALineIsNotCountedTwice) {
+  const double along[2][7] = {{-1, 0, 0, 1, 2, 3, 3}, {-1, -1, 0, 0, -1, -1, -1}};
+  for (const double sign : {1.0, -1.0}) {
+    Film run;
+    for (int32_t t = 0; t < 7; ++t) {
+      run.emplace_back(
+          t, std::vector<Body>{{1, {1, 0, sign * along[0][t]}}, {2, {2, 0, sign * along[1][t]}}});
+    }
+    const auto s = summary_of(run, {.lines = {{0, 0, 4, 0}}});
+    ASSERT_TRUE(s);
+    const LineFlow& flow = s->lines[0];
+    EXPECT_EQ(flow.total_forth, 1u);
+    EXPECT_EQ(flow.total_back, sign > 0 ? 0u : 2u);
+  }
+}
+
 TEST(ReplaySummary, RefusesNonsense) {
   const Film run = {{0, {{1, {0, 0, 0}}}}, {1, {{1, {1e5, 0, 1e5}}}}};
   EXPECT_EQ(summary_of(run, {.cell = 0}).error().code, Errc::kBadConfig);

@@ -440,7 +440,9 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       const bool near_goal = left <= 1 && b.has(Body::kLast);
       const float content = near_goal ? 1 : towards / b.speed;
       if (config_.patient) {
-        b.turn = steer::next_turn(config_.patience, b.turn, content, config_.units.dt);
+        const float along =
+            (b.velocity.x * b.wish.x + b.velocity.z * b.wish.z) / (b.speed * b.speed);
+        b.turn = steer::next_turn(config_.patience, b.turn, content, along, config_.units.dt);
       }
       b.waited = content < config_.patience.content
                      ? static_cast<uint16_t>(std::min<int32_t>(b.waited + 1, kNever))

@@ -148,9 +148,12 @@ Plane wish_towards(Plane way, float speed, float dt, float turn) {
   return turned_right({way.x * size, way.z * size}, turn);
 }
 
-float next_turn(const Patience& patience, float turn, float progress, float dt) {
-  return progress < patience.content ? std::min(patience.most, turn + patience.rate * dt)
-                                     : std::max(0.0f, turn - patience.back * dt);
+float next_turn(const Patience& patience, float turn, float progress, float along, float dt) {
+  const bool gets_on =
+      progress >= patience.content || (turn > patience.most && along >= patience.walks);
+  if (gets_on) return std::max(0.0f, turn - patience.back * dt);
+  return turn < patience.most ? std::min(patience.most, turn + patience.rate * dt)
+                              : std::min(patience.farthest, turn + patience.slow * dt);
 }
 
 Plane turned_right(Plane direction, float turn) {

@@ -150,14 +150,29 @@ TEST(SampledSteering, MachinesFindTheSameBits) {
 TEST(SampledSteering, PatienceTurnsRightWhileOneDoesNotGetOn) {
   const Patience patience;
   float turn = 0;
-  for (int i = 0; i < 5; ++i) turn = next_turn(patience, turn, 0.1f, 0.1f);
+  for (int i = 0; i < 5; ++i) turn = next_turn(patience, turn, 0.1f, 0.1f, 0.1f);
   EXPECT_NEAR(turn, 5 * 0.1 * patience.rate, 1e-6);
-  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, -1, 0.1f);
-  EXPECT_EQ(turn, patience.most);
-  turn = next_turn(patience, turn, 0.9f, 0.1f);
+  turn = next_turn(patience, patience.most, 0.9f, 0, 0.1f);
   EXPECT_NEAR(turn, patience.most - 0.1 * patience.back, 1e-6);
-  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, 1, 0.1f);
+  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, 1, 1, 0.1f);
   EXPECT_EQ(turn, 0);
+}
+
+TEST(SampledSteering, WhoIsShutInTurnsAwaySlowlyUntilHeWalks) {
+  const Patience patience;
+  float turn = patience.most;
+  for (int i = 0; i < 10; ++i) turn = next_turn(patience, turn, 0, 0, 0.1f);
+  EXPECT_NEAR(turn, patience.most + patience.slow, 1e-5);
+  for (int i = 0; i < 1000; ++i) turn = next_turn(patience, turn, -0.1f, 0.2f, 0.1f);
+  EXPECT_EQ(turn, patience.farthest);
+  // Away from his goal, but he walks: back, until he can make for it again.
+  turn = next_turn(patience, turn, -0.2f, 0.9f, 0.1f);
+  EXPECT_NEAR(turn, patience.farthest - 0.1 * patience.back, 1e-6);
+  // Along a wish that is turned less it is the goal that counts.
+  EXPECT_GT(next_turn(patience, 0.3f, 0.2f, 0.9f, 0.1f), 0.3f);
+}
+
+TEST(SampledSteering, TurnsAreToTheRight) {
   const Plane right = turned_right({1, 0}, 1);  // 2 atan(1): a right angle
   EXPECT_NEAR(right.x, 0, 1e-6);
   EXPECT_NEAR(right.z, 1, 1e-6);

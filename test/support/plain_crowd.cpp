@@ -208,6 +208,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now) {
   for (size_t i = 0; i < bodies_.size(); ++i) {
     PlainBody& body = bodies_[i];
     const Plane way = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
+    const Plane wish = wish_of(body);
     const float left = size_of(way);
     body.velocity = {units.velocity(now[i].x - body.at.x), units.velocity(now[i].z - body.at.z)};
     const float towards =
@@ -216,7 +217,9 @@ void PlainCrowd::settle(const std::vector<Spot>& now) {
     body.at = now[i];
     if (config_.patient) {
       const float content = left > 1 ? towards / body.speed : 1;
-      body.turn = steer::next_turn(config_.patience, body.turn, content, units.dt);
+      const float along =
+          (body.velocity.x * wish.x + body.velocity.z * wish.z) / (body.speed * body.speed);
+      body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
     }
     const Plane rest = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
     if (body.arrived < 0 && size_of(rest) < kThere) body.arrived = time();

@@ -116,6 +116,15 @@ class THRONG_API Crowd {
   /// Whose goals were dropped in the last step, because no way leads there, in order of slot.
   [[nodiscard]] std::span<const AvatarId> stranded() const;
   [[nodiscard]] bool is_alive(AvatarId id) const;
+
+  /// All that the next steps depend on. Whoever restores it goes on as this crowd would, step by
+  /// step to the bit, with any number of workers. For this machine's order of bytes; [format] may
+  /// change with every version.
+  [[nodiscard]] std::vector<uint8_t> save() const;
+  /// A crowd as it was saved, in the same world with the same settings but for the workers. Fails
+  /// with kBadFile (cut, corrupt, of another world or version), and as `add` does.
+  [[nodiscard]] static Result<Crowd> restore(const World& world, const CrowdConfig& config,
+                                             std::span<const uint8_t> saved, Context& context);
   [[nodiscard]] uint32_t size() const;
   [[nodiscard]] uint64_t bytes() const;  ///< Memory held by the crowd itself, without path finders.
 

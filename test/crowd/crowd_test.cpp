@@ -229,6 +229,54 @@ TEST(Crowd, FastAndSmallOnesDoNotPassThroughOthers) {
   }
 }
 
+TEST(Crowd, ARestoredCrowdGoesOnAsTheSavedOneWould) {
+  const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
+  Crowd crowd = made(world);
+  const auto ids = scattered(crowd, 150);
+  crowd.set_goals(ids, random_goals(world, ids.size(), 5));
+  for (int step = 0; step < 30; ++step) crowd.step();
+  crowd.remove(std::span(ids).first(20));
+  const std::vector<uint8_t> saved = crowd.save();
+  Context context;
+  auto restored = Crowd::restore(world, {.workers = 3}, saved, context);
+  ASSERT_TRUE(restored) << restored.error().message;
+  EXPECT_EQ(restored->state_hash(), crowd.state_hash());
+  for (Crowd* c : {&crowd, &*restored}) {
+    for (int step = 0; step < 30; ++step) c->step();
+    scattered(*c, 10);
+    for (int step = 0; step < 10; ++step) c->step();
+  }
+  EXPECT_EQ(restored->state_hash(), crowd.state_hash());
+  EXPECT_FALSE(restored->is_alive(ids[3]));
+  EXPECT_TRUE(restored->is_alive(ids[30]));
+  expect_no_faults(*restored);
+}
+
+TEST(Crowd, WhatIsNoSavedCrowdIsRefused) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  scattered(crowd, 5);
+  const std::vector<uint8_t> saved = crowd.save();
+  Context context;
+  const auto refused = [&](const World& in, const CrowdConfig& config,
+                           std::span<const uint8_t> bytes) {
+    const auto restored = Crowd::restore(in, config, bytes, context);
+    return restored ? std::string("accepted") : restored.error().message;
+  };
+  EXPECT_EQ(refused(world, {}, saved), "accepted");
+  for (size_t size = 0; size < saved.size(); ++size) {
+    ASSERT_NE(refused(world, {}, std::span(saved).first(size)), "accepted") << size;
+  }
+  for (size_t i = 0; i < saved.size(); ++i) {
+    std::vector<uint8_t> other = saved;
+    other[i] ^= 1;
+    ASSERT_NE(refused(world, {}, other), "accepted") << i;
+  }
+  EXPECT_NE(refused(test::bake(worlds::flat(21), 0.1), {}, saved), "accepted");
+  EXPECT_EQ(refused(world, {.seed = 2}, saved),
+            "crowd: what was saved has other settings; give those that it was made with");
+}
+
 TEST(Crowd, BadSettingsAreNamed) {
   const World world = test::bake(worlds::flat(10), 0.1);
   const auto refused = [&](const CrowdConfig& config) {

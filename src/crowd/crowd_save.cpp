@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "core/hash.h"
+#include "crowd/crowd_state.h"
+#include "throng/crowd.h"
+#include "world/place.h"
+
+// A crowd as bytes: a head, arrays as they are, and a checksum over all of it.
+namespace throng {
+namespace {
+
+constexpr uint64_t kMagic = 0x31305744574f5243;  // "CROWDW01"
+
+struct Head {
+  uint64_t magic = kMagic;
+  uint64_t world = 0;  // hash_of
+  uint64_t seed = 0;
+  double dt = 0, sight = 0;
+  uint64_t step = 0, sub_step = 0, scattered = 0;
+  uint64_t bodies = 0, slots = 0, free_slots = 0;
+  int32_t rounds = 0, ways = 0, patient = 0, reserved = 0;
+};
+static_assert(sizeof(Head) == 13 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 88);
+
+// A world that was never written has no hash of its own.
+uint64_t hash_of(const World& world) {
+  const WorldData& data = *world.data();
+  const Vec3d& origin = data.summary.origin;
+  const double facts[] = {data.summary.cell,
+                          origin.x,
+                          origin.y,
+                          origin.z,
+                          static_cast<double>(data.width),
+                          static_cast<double>(data.depth),
+                          static_cast<double>(data.level_count)};
+  return hash_bytes(facts, sizeof facts, world.summary().hash);
+}
+
+Head head_of(const World& world, const CrowdConfig& config) {
+  Head head;
+  head.world = hash_of(world);
+  head.seed = config.seed;
+  head.dt = config.dt;
+  head.sight = config.sight;
+  head.rounds = config.rounds;
+  head.ways = static_cast<int32_t>(config.ways);
+  head.patient = config.patient ? 1 : 0;
+  return head;
+}
+
+template <class T>
+void put(std::vector<uint8_t>& out, const T* values, size_t count) {
+  const size_t begin = out.size(), bytes = count * sizeof(T);
+  out.resize(begin + bytes);
+  if (bytes > 0) std::memcpy(out.data() + begin, values, bytes);
+}
+
+Error bad(const std::string& what) { return {Errc::kBadFile, "crowd: what was saved " + what}; }
+
+// Would a step with it read what is not there?
+bool is_sound(const Route& route, uint32_t levels) {
+  if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;
+  for (size_t i = 0; i < route.count; ++i) {
+    if (route.corners[i].level >= levels) return false;
+  }
+  return route.goal.level < levels;
+}
+
+bool is_sound(const Body& b, const WorldData& data) {
+  const bool finite = std::isfinite(b.velocity.x + b.velocity.z + b.wish.x + b.wish.z + b.turn) &&
+                      std::isfinite(b.speed);
+  if (!finite || !(b.speed > 0) || b.radius <= 0 || b.avatar_class >= data.summary.classes.size()) {
+    return false;
+  }
+  if (b.x < 0 || b.z < 0 || !in_grid(data, b.point()) || b.level >= data.level_count) return false;
+  const auto tile = data.tile_levels(b.x >> (kUnitBits + 6), b.z >> (kUnitBits + 6));
+  return b.level >= tile.first && b.level < tile.last;
+}
+
+}  // namespace
+
+std::vector<uint8_t> Crowd::save() const {
+  const State& s = *state_;
+  Head head = head_of(s.world, s.config);
+  head.step = s.step;
+  head.sub_step = s.sub_step;
+  head.scattered = s.scattered;
+  head.bodies = s.engine.bodies().size();
+  head.slots = s.generation.size();
+  head.free_slots = s.free_slots.size();
+  std::vector<uint8_t> out;
+  out.reserve(sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
+              head.free_slots * 4 + 8);
+  put(out, &head, 1);
+  put(out, s.engine.bodies().data(), head.bodies);
+  put(out, s.generation.data(), head.slots);
+  put(out, s.routes.data(), head.slots);
+  put(out, s.free_slots.data(), head.free_slots);
+  const uint64_t sum = hash_bytes(out.data(), out.size());
+  put(out, &sum, 1);
+  return out;
+}
+
+Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
+                             std::span<const uint8_t> saved, Context& context) {
+  auto made = create(world, config);
+  if (!made) return made;
+  State& s = *made->state_;
+  const WorldData& data = *s.world.data();
+  Head head;
+  if (saved.size() < sizeof head + 8) return bad("is cut short; save the crowd again");
+  std::memcpy(&head, saved.data(), sizeof head);
+  if (head.magic != kMagic) {
+    return bad("is no crowd of this version; restore it with the program that saved it");
+  }
+  Head expected = head_of(world, config);
+  if (head.world != expected.world) return bad("is of another world; open that one");
+  if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
+      head.rounds != expected.rounds || head.ways != expected.ways ||
+      head.patient != expected.patient) {
+    return bad("has other settings; give those that it was made with");
+  }
+  constexpr uint64_t kMost = uint64_t{1} << 32;
+  if (head.bodies >= kMost || head.slots >= kMost || head.free_slots >= kMost ||
+      saved.size() != sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
+                          head.free_slots * 4 + 8) {
+    return bad("is cut short; save the crowd again");
+  }
+  uint64_t sum = 0;
+  std::memcpy(&sum, saved.data() + saved.size() - 8, 8);
+  if (sum != hash_bytes(saved.data(), saved.size() - 8)) {
+    return bad("is corrupt; save the crowd again");
+  }
+  const uint8_t* at = saved.data() + sizeof head;
+  const auto take = [&](auto* values, size_t count) {
+    const size_t bytes = count * sizeof(*values);
+    if (bytes > 0) std::memcpy(values, at, bytes);
+    at += bytes;
+  };
+  std::vector<Body> bodies(head.bodies);
+  take(bodies.data(), bodies.size());
+  s.generation.resize(head.slots);
+  take(s.generation.data(), s.generation.size());
+  s.routes.resize(head.slots);
+  take(s.routes.data(), s.routes.size());
+  s.free_slots.resize(head.free_slots);
+  take(s.free_slots.data(), s.free_slots.size());
+
+  s.where.assign(head.slots, kNobody);
+  std::vector<bool> taken(head.slots, false);
+  const auto take_slot = [&](uint32_t slot) {
+    const bool is_new = slot < head.slots && !taken[slot];
+    if (is_new) taken[slot] = true;
+    return is_new;
+  };
+  bool sound = head.bodies + head.free_slots == head.slots;
+  for (const uint32_t slot : s.free_slots) sound = sound && take_slot(slot);
+  for (const Body& body : bodies) {
+    sound = sound && is_sound(body, data) && take_slot(body.slot) &&
+            (!body.has(Body::kHasGoal) || is_sound(s.routes[body.slot], data.level_count));
+  }
+  if (!sound) return bad("is not sound; save the crowd again");
+  s.engine.reserve(bodies.size());
+  for (const Body& body : bodies) {
+    if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();
+    s.make_room(body);
+    s.engine.add(body);
+  }
+  s.where_is_old = true;
+  s.step = head.step;
+  s.sub_step = head.sub_step;
+  s.scattered = head.scattered;
+  return made;
+}
+
+}  // namespace throng

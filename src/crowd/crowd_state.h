@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "crowd/crowd_engine.h"
+#include "crowd/crowd_ground.h"
+#include "crowd/placement.h"
+#include "crowd/routes.h"
+#include "throng/crowd.h"
+
+/// What a crowd holds.
+namespace throng {
+
+inline constexpr uint32_t kNobody = UINT32_MAX;
+
+// What a class needs that somebody is of.
+struct ClassParts {
+  CrowdGround ground;
+  std::optional<StandingDraw> standing;
+  std::vector<PathFinder> finders;  // one a worker
+  std::vector<Path> paths;
+};
+
+struct Crowd::State {
+  World world;
+  CrowdConfig config;
+  CrowdEngine engine;
+  std::vector<std::unique_ptr<ClassParts>> classes;
+  double unit = 0;  // [m]
+  int32_t widest = 0, narrowest = INT32_MAX;
+  float fastest = 0;
+  int32_t sub_steps = 1;
+  uint64_t step = 0, sub_step = 0;
+  uint64_t scattered = 0;  // draws of `scatter`
+
+  // By slot.
+  std::vector<uint32_t> generation;
+  std::vector<Route> routes;
+  std::vector<uint32_t> free_slots;
+  mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
+  mutable bool where_is_old = false;
+  std::vector<AvatarId> arrived, stranded;
+
+  State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine)
+      : world(a_world), config(a_config), engine(std::move(an_engine)) {}
+
+  [[nodiscard]] const AvatarClass& body_class(int32_t number) const {
+    return world.data()->summary.classes[static_cast<size_t>(number)];
+  }
+  [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
+  [[nodiscard]] Body* body(AvatarId id) const;
+  void find_bodies() const;
+  Result<void> open_class(int32_t number, Context& context);
+  Result<Body> body_of(const AvatarSpawn& spawn) const;
+  void make_room(const Body& body);
+  AvatarId add(Body body);
+  void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
+  void list(std::vector<AvatarId>& ids, Body::Flag flag);
+};
+
+}  // namespace throng

@@ -114,9 +114,9 @@ Choices choose_velocity(const SampledSettings& settings, const Situation& situat
 Plane wish_towards(Plane way, float speed, float dt, float turn);
 
 /// Who is not getting on turns to the right, by and by, up to `most`, and back once he is: what a
-/// jam needs to begin to turn as a whole. Who still does not turns on, slowly, up to `farthest`: away
-/// from his goal, and so out of a jam that is as dense as bodies can stand. All as tan(angle / 2),
-/// which needs no sines.
+/// jam needs to begin to turn as a whole. Who still does not turns on, slowly, up to `farthest`:
+/// away from his goal, and so out of a jam that is as dense as bodies can stand. All as tan(angle /
+/// 2), which needs no sines.
 struct Patience {
   float rate = 0.5f;      ///< a second
   float most = 0.42f;     ///< 46 degrees
@@ -124,11 +124,11 @@ struct Patience {
   float farthest = 1.2f;  ///< 100 degrees
   float back = 0.25f;     ///< a second
   float content = 0.3f;   ///< Share of the wished speed towards the goal that is getting on.
-  float walks = 0.5f;     ///< Share of the wished speed along the turned wish that is, beyond `most`.
+  float walks = 0.5f;  ///< Share of the wished speed along the turned wish that is, beyond `most`.
 };
 
-/// The next turn of an avatar. `progress`: its speed towards the goal by the wished one; `along`: the
-/// same along its turned wish.
+/// The next turn of an avatar. `progress`: its speed towards the goal by the wished one; `along`:
+/// the same along its turned wish.
 float next_turn(const Patience& patience, float turn, float progress, float along, float dt);
 
 /// `direction` turned to the right (seen from above, X to the right, Z down) by 2 atan(turn).

@@ -120,7 +120,7 @@ Plane wish_towards(Plane way, float speed, float dt, float turn);
 struct Patience {
   float rate = 0.5f;      ///< a second
   float most = 0.42f;     ///< 46 degrees
-  float slow = 0.03f;      ///< a second, beyond `most`
+  float slow = 0.03f;     ///< a second, beyond `most`
   float farthest = 1.2f;  ///< 100 degrees
   float back = 0.25f;     ///< a second
   float content = 0.3f;   ///< Share of the wished speed towards the goal that is getting on.

@@ -19,9 +19,7 @@ struct Body {
     kLast = 2,     // `aim` is the goal itself
     kDriven = 4,   // from outside: `wish` is given
     kHasGoal = 8,
-    kLost = 16,         // asks for another way
-    kJustArrived = 32,  // until the step is over
-    kStranded = 64,     // no way leads to its goal; until the step is over
+    kLost = 16,  // asks for another way
   };
 
   enum State : uint8_t {
@@ -42,7 +40,7 @@ struct Body {
   uint8_t avatar_class = 0;
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
-  uint16_t waited = 0;  // steps since it last got on
+  uint16_t reserved = 0;
   State state = kFree;
   uint8_t round = 0;  // of the step in which this place was named, from 1
 

@@ -245,7 +245,6 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
     if (body == nullptr) continue;
     body->flags = 0;
     body->turn = 0;
-    body->waited = 0;
     const auto point = ground_point(*s.world.data(), goals[i]);
     if (!point) continue;
     Route& route = s.routes[body->slot];
@@ -292,19 +291,12 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     ++asked;
     const auto w = static_cast<size_t>(worker);
     if (!throng::plan(world, parts.finders[w], parts.paths[w], body, route)) {
-      body.flags = Body::kStranded;
+      body.flags = 0;
+      const std::lock_guard lock(stranding);
+      stranded.push_back(id_of(body.slot));
     }
   }
   if (asked > 0) planned.fetch_add(asked, std::memory_order_relaxed);
-}
-
-void Crowd::State::list(std::vector<AvatarId>& ids, Body::Flag flag) {
-  for (Body& body : engine.bodies()) {
-    if (!body.has(flag)) continue;
-    body.flags = static_cast<uint8_t>(body.flags & ~flag);
-    ids.push_back(id_of(body.slot));
-  }
-  std::sort(ids.begin(), ids.end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
 }
 
 CrowdReport Crowd::step() {
@@ -324,10 +316,12 @@ CrowdReport Crowd::step() {
   const bool has_ways = s.config.ways == CrowdWays::kPaths;
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_ways ? before : CrowdEngine::Before(), counts, times);
+    for (const uint32_t slot : s.engine.arrived()) s.arrived.push_back(s.id_of(slot));
   }
   s.where_is_old = true;
-  if (counts.arrived > 0) s.list(s.arrived, Body::kJustArrived);
-  if (planned > 0) s.list(s.stranded, Body::kStranded);
+  for (std::vector<AvatarId>* ids : {&s.arrived, &s.stranded}) {
+    std::sort(ids->begin(), ids->end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
+  }
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
   report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
   report.contested = counts.contested;

@@ -26,7 +26,6 @@ constexpr size_t kGrain = 256;  // bodies that are worth handing to another thre
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;  // [m] from its goal a body has arrived
 constexpr float kEnough = 14;   // bodies, to find the nearest among
-constexpr uint16_t kNever = UINT16_MAX;
 
 float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
@@ -50,9 +49,7 @@ Bound bound(const Body& body) {
 
 void EngineCounts::add(const EngineCounts& other) {
   contested += other.contested;
-  open += other.open;
   stood += other.stood;
-  arrived += other.arrived;
   progress += other.progress;
 }
 
@@ -291,7 +288,6 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   contest.way[0] = {config_.units.way(best.x), config_.units.way(best.z)};
   bool named = try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place) &&
                (alone || is_clear(contest, worker, place, /*somebody_moved=*/false));
-  worker.counts.open += named && open ? 1 : 0;
   if (!named) {
     if (open) look_for_walls(body, worker.situation, false);
     find_ways(worker.situation, open, contest);
@@ -415,6 +411,7 @@ bool CrowdEngine::holds(const Contest& contest, const Worker& owner, uint8_t rou
 }
 
 void CrowdEngine::settle_all(EngineCounts& counts) {
+  arrived_.clear();
   std::mutex adding;
   parallel_ranges(size_, 4 * kGrain, config_.workers, [&](size_t begin, size_t end) {
     EngineCounts here;
@@ -444,13 +441,11 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
             (b.velocity.x * b.wish.x + b.velocity.z * b.wish.z) / (b.speed * b.speed);
         b.turn = steer::next_turn(config_.patience, b.turn, content, along, config_.units.dt);
       }
-      b.waited = content < config_.patience.content
-                     ? static_cast<uint16_t>(std::min<int32_t>(b.waited + 1, kNever))
-                     : uint16_t{0};
       const Plane rest = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
       if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kThere) {
-        b.flags |= Body::kArrived | Body::kJustArrived;
-        ++here.arrived;
+        b.flags |= Body::kArrived;
+        const std::lock_guard lock(adding);
+        arrived_.push_back(b.slot);
       }
     }
     const std::lock_guard lock(adding);
@@ -462,7 +457,9 @@ uint64_t CrowdEngine::bytes() const {
   uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + (grid_ ? grid_->bytes() : 0);
   for (const Worker& worker : workers_) {
     bytes += worker.contests.capacity() * sizeof(Contest) +
-             (worker.squares.capacity() + worker.entries.capacity() + worker.others.capacity()) * 4;
+             (worker.squares.capacity() + worker.entries.capacity() + worker.touched.capacity() +
+              worker.others.capacity()) *
+                 4;
   }
   return bytes;
 }

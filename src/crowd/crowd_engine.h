@@ -34,9 +34,7 @@ struct EngineConfig {
 /// What a step did, summed over all bodies.
 struct EngineCounts {
   uint64_t contested = 0;  // could touch somebody
-  uint64_t open = 0;       // had nobody in reach and nothing in the way of the wish
   uint64_t stood = 0;
-  uint64_t arrived = 0;  // in this step
   int64_t progress = 0;  // speeds towards aims by those wished, millionths
 
   void add(const EngineCounts& other);
@@ -64,8 +62,9 @@ class CrowdEngine {
   /// first, some at a time, on any worker.
   using Before = std::function<void(std::span<Body>, int32_t worker)>;
   void step(uint64_t step, const Before& before, EngineCounts& counts, Times& times);
+  /// Slots of those who arrived in the last step, in no order.
+  [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
-  [[nodiscard]] const StepUnits& units() const { return config_.units; }
 
   /// Heights of two bodies' feet between which, and of what they can rise in a step, they could
   /// touch. [mm]
@@ -120,6 +119,7 @@ class CrowdEngine {
   HugeArray<Body> spare_;  // while sorting: where from; then: where to
   std::optional<NeighbourGrid> grid_;
   std::vector<Worker> workers_;
+  std::vector<uint32_t> arrived_;
 };
 
 }  // namespace throng

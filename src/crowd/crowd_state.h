@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -47,6 +48,7 @@ struct Crowd::State {
   mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
   mutable bool where_is_old = false;
   std::vector<AvatarId> arrived, stranded;
+  std::mutex stranding;
 
   State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine)
       : world(a_world), config(a_config), engine(std::move(an_engine)) {}
@@ -62,7 +64,6 @@ struct Crowd::State {
   void make_room(const Body& body);
   AvatarId add(Body body);
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
-  void list(std::vector<AvatarId>& ids, Body::Flag flag);
 };
 
 }  // namespace throng

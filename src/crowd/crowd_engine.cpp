@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -40,6 +41,9 @@ bool is_bound(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven;
   return (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
+
+// A square of so many cells to each side holds all that is looked at.
+int32_t cells_of(float look) { return static_cast<int32_t>(look) / kUnitsPerCell + 1; }
 
 Bound bound(const Body& body) {
   return {body.x, body.z, body.aim_x, body.aim_z, body.radius, body.slot};
@@ -227,22 +231,42 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   }
 }
 
-// Along the wish, or in all other directions.
-void CrowdEngine::look_for_walls(const Body& body, steer::Situation& situation,
-                                 bool ahead_only) const {
+// A way that is free as far as one looks has no end that would matter.
+float CrowdEngine::metres(float way, float look) const {
+  return way < look ? way * config_.units.unit : std::numeric_limits<float>::infinity();
+}
+
+// Is there a wall near, and how far is it to one along the wish?
+void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) const {
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float look = body.speed * config_.steering.wall_horizon / config_.units.unit;
-  const GroundPoint from = body.point();
-  if (ahead_only) {
-    const auto cells = static_cast<int32_t>(look) / kUnitsPerCell + 1;
-    situation.has_walls =
-        !ground.is_open_around(body.level, body.y, from.cell_x(), from.cell_z(), cells);
-  }
+  const float look = wall_look(body);
+  situation.has_walls = !ground.is_plain_around(body.level, body.point(), cells_of(look));
   if (!situation.has_walls) return;
+  const Plane ahead = steer::fan_around(situation.wish)[0];
+  situation.free_way[0] = metres(ground.free_way(body.level, body.point(), ahead, look), look);
+}
+
+// How far is it in all directions? Only for those whose wish is not open.
+void CrowdEngine::look_around(const Body& body, steer::Situation& situation) const {
+  if (!situation.has_walls) return;
+  const StrideGround& ground = grounds_[body.avatar_class];
+  const float look = wall_look(body);
+  const auto rise = static_cast<int32_t>(look * config_.units.unit * 1000);  // 45 degrees
   const steer::Fan fan = steer::fan_around(situation.wish);
-  const size_t first = ahead_only ? 0 : 1, last = ahead_only ? 1 : steer::kDirections;
-  for (size_t k = first; k < last; ++k) {
-    situation.free_way[k] = ground.free_way(body.level, from, fan[k], look) * config_.units.unit;
+  WallWindow window;
+  switch (ground.look_around(body.level, body.y, body.point(), cells_of(look), rise, window)) {
+    case StrideGround::Around::kOpen:
+      situation.has_walls = false;
+      break;
+    case StrideGround::Around::kWalls:
+      find_free_ways(window, fan, look, situation.free_way);
+      for (float& way : situation.free_way) way = metres(way, look);
+      break;
+    case StrideGround::Around::kSteps:
+      for (size_t k = 1; k < steer::kDirections; ++k) {
+        situation.free_way[k] =
+            metres(ground.free_way(body.level, body.point(), fan[k], look), look);
+      }
   }
 }
 
@@ -276,11 +300,11 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   sense(i, worker, around, true);
   contest.last = static_cast<uint32_t>(worker.others.size());
   const bool alone = contest.first == contest.last;
-  look_for_walls(body, worker.situation, true);
+  look_ahead(body, worker.situation);
   const bool open = steer::wish_is_open_fast(config_.steering, worker.situation);
   worker.counts.contested += alone ? 0 : 1;
   // The best of his ways is enough as long as nobody objects to it.
-  if (!open) look_for_walls(body, worker.situation, false);
+  if (!open) look_around(body, worker.situation);
   const Plane best =
       open ? worker.situation.wish : steer::best_fast(config_.steering, worker.situation);
   contest.ways = 1;
@@ -289,7 +313,7 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   bool named = try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place) &&
                (alone || is_clear(contest, worker, place, /*somebody_moved=*/false));
   if (!named) {
-    if (open) look_for_walls(body, worker.situation, false);
+    if (open) look_around(body, worker.situation);
     find_ways(worker.situation, open, contest);
   }
   if (!alone) {
@@ -384,9 +408,9 @@ void CrowdEngine::name(Contest& contest, const Worker& owner, Worker& scratch, u
   if (contest.has_all) return;
   // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
   sense(contest.body, scratch, grid_->around(grid_->square(body)), /*lists_others=*/false);
-  look_for_walls(body, scratch.situation, true);
+  look_ahead(body, scratch.situation);
   const bool open = steer::wish_is_open_fast(config_.steering, scratch.situation);
-  look_for_walls(body, scratch.situation, false);
+  look_around(body, scratch.situation);
   find_ways(scratch.situation, open, contest);
   for (; tried < contest.ways; ++tried) {
     if (try_way(tried)) return;

@@ -96,7 +96,12 @@ class CrowdEngine {
   void decide_all(EngineCounts& counts);
   void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
-  void look_for_walls(const Body& body, steer::Situation& situation, bool ahead_only) const;
+  [[nodiscard]] float metres(float way, float look) const;
+  void look_ahead(const Body& body, steer::Situation& situation) const;
+  void look_around(const Body& body, steer::Situation& situation) const;
+  [[nodiscard]] float wall_look(const Body& body) const {  // [units]
+    return body.speed * config_.steering.wall_horizon / config_.units.unit;
+  }
   void find_ways(const steer::Situation& situation, bool open, Contest& contest);
   void commit(uint64_t step);
   void settle_all(EngineCounts& counts);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "crowd/crowd_ground.h"
+#include "crowd/wall_kernel.h"
 #include "steer/sampled.h"
 
 /// What the ground lets a body of a class do.
@@ -25,10 +26,20 @@ class StrideGround {
   /// legal, and no step is too high. False: there is a wall.
   bool move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
 
-  /// Is every cell within `reach` cells legal on a floor near `y`? A quick look, for steering
-  /// alone: it does not ask whether steps lead there.
-  [[nodiscard]] bool is_open_around(uint32_t level, int32_t y, int32_t x, int32_t z,
-                                    int32_t reach) const;
+  /// Is all level ground, as far as a quick look tells, up to a square of cells `reach` to each
+  /// side?
+  [[nodiscard]] bool is_plain_around(uint32_t level, GroundPoint from, int32_t reach) const;
+
+  /// What there is around a body, up to a square of cells `reach` to each side.
+  enum class Around : uint8_t {
+    kOpen,   // no walls
+    kWalls,  // as the window has them
+    kSteps,  // steps matter, or it is too far for a window: ask `free_way`
+  };
+  /// For steering alone: on tiles beside its own a floor counts that is up to a step and `rise`
+  /// higher or lower, whether or not steps lead there. [cells, mm]
+  Around look_around(uint32_t level, int32_t y, GroundPoint from, int32_t reach, int32_t rise,
+                     WallWindow& window) const;
 
   /// Is the straight way from a point to another legal, or its first `most` units? Where it is all
   /// looked at, it must end on `end`.
@@ -40,7 +51,7 @@ class StrideGround {
                                float most) const;
 
  private:
-  [[nodiscard]] bool is_plain_around(uint32_t level, int32_t x, int32_t z, int32_t reach) const;
+  WalkStop walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const;
   [[nodiscard]] bool box_is_plain(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
                                   int32_t z1) const;
 

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/wall_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "crowd/wall_kernel.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+// A direction a lane: all go on by half a square at a time. Walls are as thick as bodies, since
+// squares are those on which a body's middle may be, so none is stepped over. In integers, and so
+// the same for every width.
+HWY_BEFORE_NAMESPACE();
+namespace throng {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DI = hn::CappedTag<int32_t, 16>;
+using DF = hn::RebindToFloat<DI>;
+using VI = hn::Vec<DI>;
+
+// Rows of the window by number.
+class Rows {
+ public:
+  HWY_INLINE explicit Rows(const WallWindow& window) : rows_(window.rows.data()) {}
+  HWY_INLINE VI at(VI index) const {
+    const DI d;
+    const auto* rows = reinterpret_cast<const int32_t*>(rows_);
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+    // All fit two vectors: two permutations, where gathering takes a load a lane.
+    const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(d, 15)));
+    return hn::IfThenElse(hn::Gt(index, hn::Set(d, 15)),
+                          hn::TableLookupLanes(hn::Load(d, rows + 16), low),
+                          hn::TableLookupLanes(hn::Load(d, rows), low));
+#else
+    return hn::GatherIndex(d, rows, index);
+#endif
+  }
+
+ private:
+  const uint32_t* rows_;
+};
+
+void FindFreeWays(const WallWindow& window, const steer::Fan& fan, float look, FreeWays& ways) {
+  const DI d;
+  const DF df;
+  constexpr size_t kMost = 32;  // directions, up to a whole vector
+  alignas(64) std::array<steer::Plane, kMost> directions{};
+  std::copy(fan.begin(), fan.end(), directions.begin());
+  alignas(64) std::array<float, kMost> found;
+  const auto spacing = static_cast<float>(window.spacing());
+  const auto steps = static_cast<int32_t>(std::ceil(look / spacing));
+  const Rows rows(window);
+  const VI one = hn::Set(d, 1);
+  for (size_t n = 0; n < fan.size(); n += hn::Lanes(d)) {
+    hn::Vec<DF> dx, dz;
+    hn::LoadInterleaved2(df, &directions[n].x, dx, dz);
+    const VI by_x = hn::NearestInt(hn::Mul(dx, hn::Set(df, spacing)));
+    const VI by_z = hn::NearestInt(hn::Mul(dz, hn::Set(df, spacing)));
+    VI x = hn::Set(d, window.x), z = hn::Set(d, window.z);
+    VI free = one, count = hn::Zero(d);
+    for (int32_t k = 0; k < steps; ++k) {
+      x = hn::Add(x, by_x);
+      z = hn::Add(z, by_z);
+      const VI row = rows.at(hn::ShiftRightSame(z, window.shift));
+      const VI column = hn::ShiftRightSame(x, window.shift);
+      const hn::RebindToUnsigned<DI> du;
+      free = hn::And(free, hn::BitCast(d, hn::Shr(hn::BitCast(du, row), hn::BitCast(du, column))));
+      count = hn::Add(count, free);
+    }
+    const auto way = hn::Mul(hn::ConvertTo(df, count), hn::Set(df, spacing));
+    hn::Store(hn::Min(way, hn::Set(df, look)), df, &found[n]);
+  }
+  std::copy_n(found.begin(), ways.size(), ways.begin());
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace throng
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace throng {
+
+HWY_EXPORT(FindFreeWays);
+
+void find_free_ways(const WallWindow& window, const steer::Fan& fan, float look, FreeWays& ways) {
+  HWY_DYNAMIC_DISPATCH(FindFreeWays)(window, fan, look, ways);
+}
+
+}  // namespace throng
+#endif

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/stride_ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "simd_targets.h"
+#include "throng/bake.h"
+#include "throng/builtin_worlds.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+constexpr int32_t kStep = 400;  // mm
+
+struct Fixture {
+  explicit Fixture(const BuiltinWorldConfig& config) {
+    Context context;
+    const auto scene = make_builtin_world(config);
+    EXPECT_TRUE(scene) << scene.error().message;
+    auto baked = bake_world(*scene, {.cell = 0.1, .classes = {AvatarClass{}}}, context);
+    EXPECT_TRUE(baked) << baked.error().message;
+    world = *baked;
+    ground = *CrowdGround::make(*world.data(), 0, kStep);
+    stride = StrideGround(ground, kStep);
+  }
+  // A body at random, and where it looks.
+  struct Stand {
+    uint32_t level;
+    GroundPoint at;
+    int32_t y;
+  };
+  [[nodiscard]] Stand stand(uint64_t n) const {
+    const Place place = world.random_place(0, 1, n);
+    const GroundPoint at = *ground_point(*world.data(), place);
+    return {place.level1 - 1, at, ground.feet(place.level1 - 1, at)};
+  }
+  World world;
+  CrowdGround ground;
+  StrideGround stride;
+};
+
+const BuiltinWorldConfig kWorlds[] = {{.name = "garage", .size = 60, .levels = 3},
+                                      {.name = "city", .size = 100},
+                                      {.name = "stairs"},
+                                      {.name = "maze", .size = 40}};
+
+double number(uint64_t n, uint64_t stream) { return random_unit(7, stream, n); }
+
+TEST(StrideGround, SeesAsFarAsItCanWalkCellByCell) {
+  for (const BuiltinWorldConfig& config : kWorlds) {
+    const Fixture f(config);
+    uint64_t free = 0, blocked = 0, told_apart = 0;
+    for (uint64_t n = 0; n < 20000; ++n) {
+      const auto s = f.stand(n);
+      const double angle = 2 * M_PI * number(n, 1), far = 8 * kUnitsPerCell * 10 * number(n, 2);
+      const GroundPoint to{s.at.x + std::lround(far * std::cos(angle)),
+                           s.at.z + std::lround(far * std::sin(angle))};
+      uint32_t end = s.level;
+      const bool expected = walk(f.ground, end, s.at, to, kStep);
+      told_apart += f.stride.sees(s.level, s.at, to, end, 1e9f) != expected;
+      ++(expected ? free : blocked);
+      if (!expected) continue;
+      EXPECT_FALSE(f.stride.sees(s.level, s.at, to, end + 1, 1e9f));
+    }
+    EXPECT_GT(free, 1000u) << config.name;
+    EXPECT_GT(blocked, 1000u) << config.name;
+    // Lines through a corner of cells, to the unit, may go around it.
+    EXPECT_LE(told_apart, 2u) << config.name;
+  }
+}
+
+TEST(StrideGround, FreeWaysEndWhereTheCellByCellWalkDoes) {
+  for (const BuiltinWorldConfig& config : kWorlds) {
+    const Fixture f(config);
+    uint64_t ends = 0, told_apart = 0;
+    for (uint64_t n = 0; n < 5000; ++n) {
+      const auto s = f.stand(n);
+      const double angle = 2 * M_PI * number(n, 1);
+      const steer::Plane direction{static_cast<float>(std::cos(angle)),
+                                   static_cast<float>(std::sin(angle))};
+      const float most = 20.0f * kUnitsPerCell;
+      const float way = f.stride.free_way(s.level, s.at, direction, most);
+      const auto at = [&](double size) {
+        return GroundPoint{s.at.x + std::lround(size * direction.x),
+                           s.at.z + std::lround(size * direction.z)};
+      };
+      uint32_t end = s.level;
+      told_apart += !walk(f.ground, end, s.at, at(std::max(way - 8.0, 0.0)), kStep);
+      end = s.level;
+      if (way == most) continue;
+      ++ends;
+      told_apart += walk(f.ground, end, s.at, at(way + 8.0), kStep);
+    }
+    EXPECT_GT(ends, 500u) << config.name;
+    // Where a line grazes a corner of cells, one that ends elsewhere rounds to the other side.
+    EXPECT_LE(told_apart, 15u) << config.name;
+  }
+}
+
+// The window says of each square what may be walked on there, and the ways are those of a plain
+// loop over its squares.
+TEST(WallWindow, WaysAreThoseOfAPlainLoop) {
+  const auto plain = [](const WallWindow& w, steer::Plane d, float look) {
+    const auto by = [&](float part) {
+      return static_cast<int32_t>(std::lrint(part * static_cast<float>(w.spacing())));
+    };
+    int32_t x = w.x, z = w.z, free = 0;
+    while (static_cast<float>(free * w.spacing()) < look) {
+      x += by(d.x);
+      z += by(d.z);
+      if ((w.rows[static_cast<size_t>(z >> w.shift)] >> (x >> w.shift) & 1) == 0) break;
+      ++free;
+    }
+    return std::min(static_cast<float>(free * w.spacing()), look);
+  };
+  test::for_every_simd_target([&](const char* name) {
+    uint64_t short_ways = 0;
+    for (uint64_t n = 0; n < 2000; ++n) {
+      WallWindow window;
+      window.shift = n % 2 == 0 ? kUnitBits : kUnitBits + 1;
+      const auto middle = static_cast<double>(WallWindow::kMiddle << window.shift);
+      window.x = static_cast<int32_t>(middle + (1 << window.shift) * number(n, 3));
+      window.z = static_cast<int32_t>(middle + (1 << window.shift) * number(n, 4));
+      for (size_t row = 0; row < window.rows.size(); ++row) {
+        const uint64_t bits = random_u64(3, n, row);
+        window.rows[row] = static_cast<uint32_t>(bits | bits >> 32 | random_u64(4, n, row));
+      }
+      const double angle = 2 * M_PI * number(n, 5);
+      const steer::Fan fan = steer::fan_around(
+          {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
+      const auto look = static_cast<float>(window.reach() * number(n, 6));
+      FreeWays ways;
+      find_free_ways(window, fan, look, ways);
+      for (size_t k = 0; k < ways.size(); ++k) {
+        ASSERT_EQ(ways[k], plain(window, fan[k], look)) << name << " " << n << " " << k;
+        short_ways += ways[k] < look;
+      }
+    }
+    EXPECT_GT(short_ways, 10000u);
+  });
+}
+
+TEST(StrideGround, WindowsShowTheWaysThatAreFree) {
+  for (const BuiltinWorldConfig& config : kWorlds) {
+    const Fixture f(config);
+    uint64_t open = 0, walls = 0, steps = 0, ways = 0, near = 0;
+    for (uint64_t n = 0; n < 5000; ++n) {
+      const auto s = f.stand(n);
+      const float look = n % 2 == 0 ? 9.1f * kUnitsPerCell : 24.5f * kUnitsPerCell;
+      const auto cells = static_cast<int32_t>(look) / kUnitsPerCell + 1;
+      WallWindow window;
+      const auto around = f.stride.look_around(
+          s.level, s.y, s.at, cells, static_cast<int32_t>(look / kUnitsPerCell * 100), window);
+      open += around == StrideGround::Around::kOpen;
+      walls += around == StrideGround::Around::kWalls;
+      steps += around == StrideGround::Around::kSteps;
+      if (around == StrideGround::Around::kSteps) continue;
+      const steer::Fan fan = steer::fan_around({1, 0.3f});
+      FreeWays found;
+      found.fill(look);
+      if (around == StrideGround::Around::kWalls) {
+        ASSERT_LE(look, window.reach());
+        find_free_ways(window, fan, look, found);
+      }
+      for (size_t k = 0; k < fan.size(); ++k) {
+        const float exact = f.stride.free_way(s.level, s.at, fan[k], look);
+        ++ways;
+        near += std::abs(found[k] - exact) <= 2 * kUnitsPerCell;
+      }
+    }
+    EXPECT_GT(walls, 1000u) << config.name;
+    EXPECT_GT(open, 10u) << config.name;
+    EXPECT_LT(steps, 500u) << config.name;
+    // The others: stairs, and corners that a line passes narrowly.
+    EXPECT_GT(static_cast<double>(near), 0.97 * static_cast<double>(ways)) << config.name;
+  }
+}
+
+}  // namespace
+}  // namespace throng

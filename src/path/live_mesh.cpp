@@ -10,33 +10,13 @@
 
 #include "path/plan_shapes.h"
 #include "path/rects.h"
+#include "path/taken_cells.h"
 #include "world/place.h"
 
 namespace throng {
 namespace {
 
-constexpr double kRounding = 0.003;  // of heights in whole millimetres, and then some [m]
-
 int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
-
-PlanSquare box_of(const std::vector<PlanPoint>& corners) {
-  PlanSquare box{1e300, 1e300, -1e300, -1e300};
-  for (const PlanPoint& p : corners) {
-    box = {std::min(box.x0, p[0]), std::min(box.z0, p[1]), std::max(box.x1, p[0]),
-           std::max(box.z1, p[1])};
-  }
-  return box;
-}
-
-// How a floor rises over a cell. [mm per cell]
-std::pair<int32_t, int32_t> rise_at(const LevelView& view, int32_t x, int32_t z) {
-  return {sheet_slope(
-              x, [&](int32_t i) { return view.sample(i, z); },
-              [&](int32_t i) { return view.has(i, z); }),
-          sheet_slope(
-              z, [&](int32_t k) { return view.sample(x, k); },
-              [&](int32_t k) { return view.has(x, k); })};
-}
 
 }  // namespace
 
@@ -83,19 +63,12 @@ void LiveMesh::set_area_cost(uint8_t kind, double cost) {
 
 ChangeId LiveMesh::add(Change change) {
   const WorldSummary& summary = world().summary;
-  const double radius = summary.classes[static_cast<size_t>(config_.avatar_class)].radius;
-  const PlanSquare box = box_of(change.prism.corners);
-  const double side = summary.cell * kTileCells;
-  const auto tile_of_metre = [&](double at, double origin, int32_t cells) {
-    const double tile = std::floor((at - origin) / side);
-    return static_cast<int32_t>(std::clamp(tile, -1.0, cells / kTileCells + 1.0));
-  };
-  const double around = radius + summary.cell;
+  const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
+  const SquareRange near =
+      tiles_near(world(), change.prism.corners, avatar.radius + summary.cell);
   const auto id = static_cast<ChangeId>(changes_.size() + 1);
-  for (int32_t z = tile_of_metre(box.z0 - around, summary.origin.z, world().depth);
-       z <= tile_of_metre(box.z1 + around, summary.origin.z, world().depth); ++z) {
-    for (int32_t x = tile_of_metre(box.x0 - around, summary.origin.x, world().width);
-         x <= tile_of_metre(box.x1 + around, summary.origin.x, world().width); ++x) {
+  for (int32_t z = near.first_z; z <= near.last_z; ++z) {
+    for (int32_t x = near.first_x; x <= near.last_x; ++x) {
       const auto tile = world().tile_levels(x, z);
       if (tile.first == tile.last) continue;
       change.tiles.push_back(tile_key(x, z));
@@ -216,68 +189,18 @@ void LiveMesh::make(uint32_t index, LiveLevel& level) const {
   cut(level);
 }
 
-PlanPoint LiveMesh::origin_of(const LiveLevel& level) const {
-  const WorldSummary& summary = world().summary;
-  return {summary.origin.x + level.tile_x * kTileCells * summary.cell,
-          summary.origin.z + level.tile_z * kTileCells * summary.cell};
-}
-
-LiveMesh::CellRange LiveMesh::cells_of(const Change& change, const LiveLevel& level,
-                                       double reach) const {
-  const PlanSquare box = box_of(change.prism.corners);
-  const auto [origin_x, origin_z] = origin_of(level);
-  const auto cell = [&](double at, double origin) {
-    return static_cast<int32_t>(
-        std::clamp(std::floor((at - origin) / world().summary.cell), -1.0, kTileCells + 0.0));
-  };
-  return {std::max(cell(box.x0 - reach, origin_x), 0),
-          std::min(cell(box.x1 + reach, origin_x), kTileCells - 1),
-          std::max(cell(box.z0 - reach, origin_z), 0),
-          std::min(cell(box.z1 + reach, origin_z), kTileCells - 1)};
-}
-
 void LiveMesh::take_obstacles(LiveLevel& level) const {
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return;
   const WorldSummary& summary = world().summary;
   const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
-  const double bottom = body_bottom(avatar), reach = avatar.radius + kRounding;
-  const auto [origin_x, origin_z] = origin_of(level);
+  const TileFloor floor{summary, level.ground.view, level.tile_x, level.tile_z};
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || change.is_area) continue;
-    const auto [first_x, last_x, first_z, last_z] = cells_of(change, level, reach);
-    if (first_x > last_x) continue;
-    const uint64_t columns = (~uint64_t{0} >> (63 - (last_x - first_x))) << first_x;
-    for (int32_t z = first_z; z <= last_z; ++z) {
-      uint64_t& row = level.legal[static_cast<size_t>(z)];
-      for (uint64_t left = row & columns; left != 0; left &= left - 1) {
-        const int32_t x = std::countr_zero(left);
-        PlanSquare cell;
-        cell.x0 = origin_x + x * summary.cell;
-        cell.z0 = origin_z + z * summary.cell;
-        cell.x1 = cell.x0 + summary.cell;
-        cell.z1 = cell.z0 + summary.cell;
-        if (!is_nearer(cell, change.prism.corners, reach)) continue;
-        // What the body takes on the cell, from its lowest feet to its highest.
-        const auto [gx, gz] = rise_at(level.ground.view, x, z);
-        const double feet = level.ground.view.sample(x, z) * 1e-3;
-        const double tilt = (std::abs(gx) + std::abs(gz)) * 0.5e-3 + kRounding;
-        const double low = feet - tilt + bottom, high = feet + tilt + avatar.height;
-        const auto meets = [&](double from, double to) { return to > low && from < high; };
-        bool hit = change.triangles.empty() && meets(change.prism.low, change.prism.high);
-        const PlanSquare around{cell.x0 - reach, cell.z0 - reach, cell.x1 + reach, cell.z1 + reach};
-        for (const std::array<Vec3d, 3>& t : change.triangles) {
-          if (hit) break;
-          const std::array<PlanPoint, 3> plan{PlanPoint{t[0].x, t[0].z}, PlanPoint{t[1].x, t[1].z},
-                                              PlanPoint{t[2].x, t[2].z}};
-          if (!is_nearer(cell, plan, reach)) continue;
-          const auto heights = heights_over(around, t);
-          hit = heights && meets(heights->first - kRounding, heights->second + kRounding);
-        }
-        if (hit) row &= ~(uint64_t{1} << x);
-      }
-    }
+    const CellRows taken =
+        taken_cells(floor, avatar, change.prism, change.triangles, level.legal.data());
+    for (size_t z = 0; z < taken.size(); ++z) level.legal[z] &= ~taken[z];
   }
 }
 
@@ -294,10 +217,11 @@ std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return kinds;
   const WorldSummary& summary = world().summary;
+  const TileFloor floor{summary, level.ground.view, level.tile_x, level.tile_z};
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || !change.is_area) continue;
-    const CellRange cells = cells_of(change, level, kRounding);
+    const SquareRange cells = cells_near(floor, change.prism.corners, kHeightRounding);
     for (int32_t z = cells.first_z; z <= cells.last_z; ++z) {
       for (int32_t x = cells.first_x; x <= cells.last_x; ++x) {
         if (!level.is_legal(x, z)) continue;

@@ -116,14 +116,6 @@ class LiveMesh {
   [[nodiscard]] Ground ground() { return {*this}; }
 
  private:
-  // Cells of a tile. Empty: first above last.
-  struct CellRange {
-    int32_t first_x, last_x, first_z, last_z;
-  };
-  // Those that may be as near to a change as `reach`. [m]
-  [[nodiscard]] CellRange cells_of(const Change& change, const LiveLevel& level,
-                                   double reach) const;
-  [[nodiscard]] std::array<double, 2> origin_of(const LiveLevel& level) const;  // of its tile [m]
   void make(uint32_t index, LiveLevel& level) const;
   void take_obstacles(LiveLevel& level) const;
   void cut(LiveLevel& level) const;

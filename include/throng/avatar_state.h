@@ -11,8 +11,9 @@ namespace throng {
 
 /// What an independent look at the present positions found. All zero, always.
 struct CrowdCheck {
-  uint64_t wall_entries = 0;  ///< Avatars on a cell that their class may not stand on.
-  uint64_t overlaps = 0;      ///< Pairs whose discs and heights both overlap.
+  uint64_t wall_entries = 0;      ///< Avatars on a cell that their class may not stand on.
+  uint64_t overlaps = 0;          ///< Pairs whose discs and heights both overlap.
+  uint64_t obstacle_entries = 0;  ///< Pairs of an avatar and an obstacle that its body is in.
 };
 
 /// Read-back of one avatar.

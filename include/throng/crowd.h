@@ -11,6 +11,7 @@
 #include "throng/avatar_state.h"
 #include "throng/base.h"
 #include "throng/context.h"
+#include "throng/crowd_obstacle.h"
 #include "throng/path.h"
 #include "throng/result.h"
 #include "throng/world.h"
@@ -62,6 +63,7 @@ struct CrowdReport {
   uint64_t arrived = 0;    ///< Came within 0.3 m of their goals, in this step.
   uint64_t planned = 0;    ///< Got a way, or another one.
   uint64_t no_way = 0;     ///< Of these, found that none leads to the goal: it is dropped.
+  uint64_t waiting = 0;    ///< Obstacles in whose way somebody stands.
   double progress = 0;     ///< Mean speed towards the next corner by the wished one. [-1 to 1]
   double seconds_plan = 0;
   double seconds_sort = 0;
@@ -94,6 +96,27 @@ class THRONG_API Crowd {
                                                       Context& context);
   /// Takes avatars away. Ids of nobody are left out.
   void remove(std::span<const AvatarId> ids);
+
+  /// Puts up an obstacle: nobody stands where a body of his class could touch it, its bottom above
+  /// his step, until it is removed. It comes up at once or, as a door that closes, before the first
+  /// step at whose beginning nobody stands there. Ways of kStanding ones lead around them; whose
+  /// way is cut asks for another, and whoever has none left is stranded. Fails with kBadInput.
+  /// Time: all avatars, and the cells that it touches.
+  [[nodiscard]] Result<ObstacleId> add_obstacle(const Prism& prism,
+                                                ObstacleKind kind = ObstacleKind::kStanding);
+  /// Where it is to be: by a small step at a time, as it waits while anybody stands within the
+  /// convex hull of here and there. The last order counts. Fails with kBadInput, kNotFound.
+  [[nodiscard]] Result<void> move_obstacle(ObstacleId id, const Prism& prism);
+  /// A door: true closes it, as soon as nobody stands in it; false opens it at once. False for ids
+  /// of none.
+  bool set_obstacle_active(ObstacleId id, bool active);
+  bool remove_obstacle(ObstacleId id);
+  /// Fails with kNotFound.
+  [[nodiscard]] Result<ObstacleState> obstacle(ObstacleId id) const;
+  /// All that are up, in order of slot.
+  [[nodiscard]] std::vector<Prism> obstacles() const;
+  /// Who stood in the way of obstacles that wait when the last step began, in order of slot.
+  [[nodiscard]] std::span<const AvatarId> in_the_way() const;
 
   /// Where they are bound for, one for each id: places of their class. An avatar keeps to its goal
   /// when it has arrived, and makes way. Nowhere: it stands. Ids of nobody are left out.

@@ -20,6 +20,10 @@ struct Prism {
   [[nodiscard]] static Prism box(Vec3d low, Vec3d high) {
     return {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}, low.y, high.y};
   }
+  /// Around an upright cylinder: `middle` is that of its bottom; with 16 corners it reaches 2 % of
+  /// the radius beyond. [m, radius > 0, height > 0, corners 3 to 64]
+  [[nodiscard]] THRONG_API static Prism circle(Vec3d middle, double radius, double height,
+                                               int corners = 16);
 };
 
 /// Fails with kBadInput and what is wrong unless the prism is as it says.

@@ -6,8 +6,20 @@
 #include <string>
 
 #include "core/plan_point.h"
+#include "core/trig.h"
 
 namespace throng {
+
+Prism Prism::circle(Vec3d middle, double radius, double height, int corners) {
+  Prism prism{{}, middle.y, middle.y + height};
+  // Its sides touch the circle; rounding must not let them cut it.
+  const double out = radius / cos_turns(0.5 / corners) * (1 + 1e-9);
+  for (int i = 0; i < corners; ++i) {
+    const double turns = static_cast<double>(i) / corners;
+    prism.corners.push_back({middle.x + out * cos_turns(turns), middle.z + out * sin_turns(turns)});
+  }
+  return prism;
+}
 
 Result<void> check_prism(const Prism& prism) {
   const auto bad = [](const std::string& what) { return Error{Errc::kBadInput, "prism: " + what}; };

@@ -84,7 +84,6 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   auto ground = CrowdGround::make(*world.data(), number, step_height);
   if (!ground) return ground.error();
   made->ground = std::move(*ground);
-  made->standing.emplace(made->ground, config.seed);
   if (config.ways == CrowdWays::kPaths) {
     auto finder = PathFinder::make(world,
                                    {.avatar_class = number,
@@ -97,6 +96,10 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     made->paths.resize(made->finders.size());
   }
   parts = std::move(made);
+  obstacles.open_class(static_cast<size_t>(number), parts->ground);
+  for (uint32_t slot = 0; slot < obstacles.all().size(); ++slot) {
+    tell_ways(slot, static_cast<size_t>(number));
+  }
   engine.set_ground(static_cast<size_t>(number), StrideGround(parts->ground, step_height));
   return {};
 }
@@ -187,7 +190,8 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
   if (auto ok = s.open_class(like.avatar_class, context); !ok) return ok.error();
   const auto body = s.body_of(like);
   if (!body) return body.error();
-  const ClassParts& parts = *s.classes[static_cast<size_t>(like.avatar_class)];
+  ClassParts& parts = *s.classes[static_cast<size_t>(like.avatar_class)];
+  if (!parts.standing) parts.standing.emplace(parts.ground, s.config.seed);
   StandingMap map(s.engine.bodies(), std::max(s.widest, body->radius), count);
   std::vector<Body> placed;
   placed.reserve(count);
@@ -283,14 +287,15 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     if (!body.has(Body::kHasGoal)) continue;
     ClassParts& parts = *classes[body.avatar_class];
     Route& route = routes[body.slot];
+    const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
     if (!body.has(Body::kLost)) {
-      const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
       follow(body, route, ground, sub_step + body.slot, reach);
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;
     const auto w = static_cast<size_t>(worker);
-    if (!throng::plan(world, parts.finders[w], parts.paths[w], body, route)) {
+    LiveGround* live = cuts_ways ? &parts.lives[w] : nullptr;
+    if (!throng::plan(world, parts.finders[w], live, ground, parts.paths[w], body, route)) {
       body.flags = 0;
       const std::lock_guard lock(stranding);
       stranded.push_back(id_of(body.slot));
@@ -307,6 +312,7 @@ CrowdReport Crowd::step() {
   report.avatars = s.engine.bodies().size();
   s.arrived.clear();
   s.stranded.clear();
+  report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.in_the_way);
   EngineCounts counts;
   CrowdEngine::Times times;
   std::atomic<uint64_t> planned{0};
@@ -346,7 +352,7 @@ CrowdCheck Crowd::check() const {
     bodies.push_back({b.x, b.z, b.y, b.level, b.avatar_class, b.radius * s.unit,
                       s.body_class(b.avatar_class).height});
   }
-  return check_bodies(s.world, bodies, s.config.workers);
+  return check_bodies(s.world, bodies, obstacles(), s.config.workers);
 }
 
 uint64_t Crowd::state_hash() const {
@@ -391,6 +397,7 @@ uint64_t Crowd::bytes() const {
   uint64_t bytes = s.engine.bytes() + s.routes.capacity() * sizeof(Route) +
                    (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4;
   for (const auto& parts : s.classes) bytes += parts ? parts->ground.bytes() : 0;
+  bytes += s.obstacles.bytes();
   return bytes;
 }
 

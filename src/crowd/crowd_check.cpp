@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -12,8 +13,72 @@
 #include "world/ground.h"
 
 namespace throng {
+namespace {
 
-CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies, int32_t workers) {
+// Square of the distance of a point from a convex polygon, 0 inside. [m2]
+double square_to(const Prism& prism, double x, double z) {
+  double nearest = 1e300, around = 0;
+  for (size_t i = 0; i < prism.corners.size(); ++i) {
+    const auto& [ax, az] = prism.corners[i];
+    const auto& [bx, bz] = prism.corners[(i + 1) % prism.corners.size()];
+    const double ux = ax - x, uz = az - z, vx = bx - x, vz = bz - z;
+    // The angle under which the side is seen: all of them make a turn for whoever is inside.
+    around += std::atan2(ux * vz - uz * vx, ux * vx + uz * vz);
+    const double wx = bx - ax, wz = bz - az;
+    const double along = -(ux * wx + uz * wz), whole = wx * wx + wz * wz;
+    if (along <= 0 || whole == 0) {
+      nearest = std::min(nearest, ux * ux + uz * uz);
+    } else if (along >= whole) {
+      nearest = std::min(nearest, vx * vx + vz * vz);
+    } else {
+      const double across = ux * wz - uz * wx;
+      nearest = std::min(nearest, across * across / whole);
+    }
+  }
+  return std::fabs(around) > std::numbers::pi ? 0 : nearest;
+}
+
+// Pairs of a body and an obstacle that it is in.
+uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies,
+                      std::span<const Prism> obstacles) {
+  const double unit = data.summary.cell / kUnitsPerCell;
+  const Vec3d& origin = data.summary.origin;
+  struct Entry {
+    double x, z, y, radius, bottom, height;
+  };
+  std::vector<Entry> entries;
+  double widest = 0;
+  for (const CheckedBody& body : bodies) {
+    const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(body.avatar_class)];
+    const double lean = avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180);
+    entries.push_back({origin.x + (body.x + 0.5) * unit, origin.z + (body.z + 0.5) * unit,
+                       body.y * 1e-3, avatar.radius, std::max(avatar.step, lean), avatar.height});
+    widest = std::max(widest, avatar.radius);
+  }
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return a.x < b.x; });
+  uint64_t found = 0;
+  for (const Prism& prism : obstacles) {
+    double x0 = 1e300, x1 = -1e300;
+    for (const auto& [x, z] : prism.corners) {
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+    }
+    auto entry = std::lower_bound(entries.begin(), entries.end(), x0 - widest,
+                                  [](const Entry& e, double x) { return e.x < x; });
+    for (; entry != entries.end() && entry->x <= x1 + widest; ++entry) {
+      const double reach = entry->radius - 1e-9;
+      found += prism.low < entry->y + entry->height && prism.high > entry->y + entry->bottom &&
+               square_to(prism, entry->x, entry->z) < reach * reach;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
+                        std::span<const Prism> obstacles, int32_t workers) {
   const WorldData& data = *world.data();
   const double unit = data.summary.cell / kUnitsPerCell;
 
@@ -78,7 +143,8 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
     }
     overlaps += found;
   });
-  return {wall_entries, overlaps};
+  const uint64_t inside = obstacles.empty() ? 0 : count_inside(data, bodies, obstacles);
+  return {wall_entries, overlaps, inside};
 }
 
 }  // namespace throng

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "throng/avatar_state.h"
+#include "throng/prism.h"
 #include "throng/world.h"
 
 /// A look at a crowd that shares nothing with the step: exact distances, the world's own look-ups.
@@ -19,6 +20,8 @@ struct CheckedBody {
   double radius = 0, height = 0;  // [m]
 };
 
-CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies, int32_t workers);
+/// `obstacles`: what nobody may be in, a body with the radius of its class, from its step up.
+CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
+                        std::span<const Prism> obstacles, int32_t workers);
 
 }  // namespace throng

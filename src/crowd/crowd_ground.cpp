@@ -15,8 +15,6 @@ namespace throng {
 namespace {
 
 constexpr size_t kRows = 64;
-constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
-constexpr uint32_t kAllLegal = 1;
 
 using Heights = CrowdGround::Heights;
 

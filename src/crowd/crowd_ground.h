@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "core/huge_array.h"
@@ -91,6 +92,15 @@ class CrowdGround {
                      static_cast<int32_t>(p.z & (kUnitsPerCell - 1)));
   }
 
+  /// Takes these cells from a level, of all cells that were baked, and no others: none gives back
+  /// what was taken before. Then join the tile. Not while others read.
+  void set_taken(Level level, const CellRows& taken);
+  /// Looks again for what lies level beyond the edges of a tile, from both sides.
+  void join_tile(int32_t x, int32_t z);
+  /// Legal cells of a level that lacks some, as they were baked; null: it lacks none.
+  [[nodiscard]] const CellRows* baked_legal(Level level) const;
+  [[nodiscard]] const LevelView& view(Level level) const { return views_[level]; }
+
   /// 64 rows of legal cells.
   [[nodiscard]] const uint64_t* legal(Level level) const { return rows(lines_[level].legal_set); }
 
@@ -103,7 +113,8 @@ class CrowdGround {
   [[nodiscard]] uint64_t bytes() const {
     const uint64_t level = sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + sizeof(LevelLine);
     return records_.size() * level + tiles_.size() * sizeof(Range) +
-           row_sets_ * 64 * sizeof(uint64_t) + sample_sets_ * 4096 * sizeof(uint16_t);
+           row_sets_ * 64 * sizeof(uint64_t) + sample_sets_ * 4096 * sizeof(uint16_t) +
+           baked_.size() * sizeof(Baked);
   }
   [[nodiscard]] int32_t tiles_x() const { return tiles_x_; }
   [[nodiscard]] int32_t tiles_z() const { return tiles_z_; }
@@ -121,6 +132,16 @@ class CrowdGround {
   // Flags beside the number of the legal set.
   static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
   static constexpr uint32_t kAlone = uint32_t{1} << 30;
+  static constexpr uint32_t kSetBits = kAlone - 1;
+  static constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
+  static constexpr uint32_t kAllLegal = 1;
+
+  // Of a level that lacks cells, before it did.
+  struct Baked {
+    uint32_t legal_word = 0, plain_set = 0;
+    CellRows legal{}, plain{};
+  };
+  void keep_baked(Level level, Baked& baked);
 
   void find_alone(int32_t step_mm);
   void join_blocks();
@@ -130,7 +151,7 @@ class CrowdGround {
     return &tiles_[static_cast<size_t>(z) * static_cast<size_t>(tiles_x_) + static_cast<size_t>(x)];
   }
   [[nodiscard]] const uint64_t* rows(uint32_t word) const {
-    return rows_.data() + size_t{word & (kAlone - 1)} * 64;
+    return rows_.data() + size_t{word & kSetBits} * 64;
   }
 
   int32_t tiles_x_ = 0, tiles_z_ = 0;
@@ -144,6 +165,8 @@ class CrowdGround {
   HugeArray<LevelView> views_;
   HugeArray<uint64_t> rows_;
   uint32_t row_sets_ = 0;
+  std::unordered_map<Level, Baked> baked_;  // looked up only
+  std::vector<uint32_t> spare_sets_;        // given back
   // Floors that are no plane, row by row: each step of an avatar on one reads five of its cells,
   // and out of the zone's blocks that takes a fifth of the step.
   HugeArray<uint16_t> samples_;

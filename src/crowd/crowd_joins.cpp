@@ -47,10 +47,12 @@ void CrowdGround::join_side(Level level, LevelLine::Side side) {
   const LevelLine::Side opposite = along_x ? (back ? LevelLine::kRight : LevelLine::kLeft)
                                            : (back ? LevelLine::kBelow : LevelLine::kAbove);
   const Record& record = records_[level];
+  LevelLine& line = lines_[level];
+  line.beyond[side] = LevelLine::kNone;
+  line.joined[side] = 0;
   const Range* range = tile(record.tile_x + (along_x ? (back ? -1 : 1) : 0),
                             record.tile_z + (along_x ? 0 : (back ? -1 : 1)));
   if (range == nullptr) return;
-  LevelLine& line = lines_[level];
   const auto taken_before = [&](Level other, Cell c, int32_t y) {
     for (Level j = range->first; j < other; ++j) {
       if (heights_[j].low > y || heights_[j].high < y) continue;

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include "core/hash.h"
@@ -14,7 +16,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x31305744574f5243;  // "CROWDW01"
+constexpr uint64_t kMagic = 0x32305744574f5243;  // "CROWDW02"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -23,10 +25,81 @@ struct Head {
   double dt = 0, sight = 0;
   uint64_t step = 0, sub_step = 0, scattered = 0;
   uint64_t bodies = 0, slots = 0, free_slots = 0;
+  uint64_t obstacles = 0, corners = 0, free_obstacles = 0;
   int32_t rounds = 0, ways = 0, patient = 0, reserved = 0;
 };
-static_assert(sizeof(Head) == 13 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 16 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 88);
+
+// An obstacle without its corners: those of `place`, then those of `wanted`.
+struct SavedObstacle {
+  double low = 0, high = 0, wanted_low = 0, wanted_high = 0;
+  uint32_t generation = 0, corners = 0, wanted_corners = 0;
+  uint8_t exists = 0, kind = 0, is_up = 0, wanted_up = 0;
+  uint8_t is_elsewhere = 0;
+  std::array<uint8_t, 7> reserved{};
+};
+static_assert(sizeof(SavedObstacle) == 56 && std::is_trivially_copyable_v<SavedObstacle>);
+
+std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
+                                           std::vector<std::array<double, 2>>& corners) {
+  std::vector<SavedObstacle> saved;
+  for (const CrowdObstacle& o : all) {
+    saved.push_back({.low = o.place.low,
+                     .high = o.place.high,
+                     .wanted_low = o.wanted.low,
+                     .wanted_high = o.wanted.high,
+                     .generation = o.generation,
+                     .corners = static_cast<uint32_t>(o.place.corners.size()),
+                     .wanted_corners = static_cast<uint32_t>(o.wanted.corners.size()),
+                     .exists = o.exists,
+                     .kind = static_cast<uint8_t>(o.kind),
+                     .is_up = o.is_up,
+                     .wanted_up = o.wanted_up,
+                     .is_elsewhere = o.is_elsewhere});
+    for (const Prism* prism : {&o.place, &o.wanted}) {
+      corners.insert(corners.end(), prism->corners.begin(), prism->corners.end());
+    }
+  }
+  return saved;
+}
+
+// None if they are not as a book holds them.
+std::optional<std::vector<CrowdObstacle>> obstacles_of(
+    std::span<const SavedObstacle> saved, std::span<const std::array<double, 2>> corners) {
+  std::vector<CrowdObstacle> obstacles;
+  size_t at = 0;
+  for (const SavedObstacle& s : saved) {
+    if (corners.size() - at < size_t{s.corners} + s.wanted_corners || s.kind > 1) return {};
+    CrowdObstacle& o = obstacles.emplace_back();
+    const auto take = [&](size_t count) {
+      const auto first = corners.begin() + static_cast<ptrdiff_t>(at);
+      at += count;
+      return std::vector(first, first + static_cast<ptrdiff_t>(count));
+    };
+    o.place.corners = take(s.corners);
+    o.wanted.corners = take(s.wanted_corners);
+    o.place.low = s.low;
+    o.place.high = s.high;
+    o.wanted.low = s.wanted_low;
+    o.wanted.high = s.wanted_high;
+    o.generation = s.generation;
+    o.exists = s.exists != 0;
+    o.kind = static_cast<ObstacleKind>(s.kind);
+    o.is_up = s.is_up != 0;
+    o.wanted_up = s.wanted_up != 0;
+    o.is_elsewhere = s.is_elsewhere != 0;
+    if ((o.is_up && !o.wanted_up) || (o.is_elsewhere && !o.is_up)) return {};
+  }
+  return at == corners.size() ? std::optional(std::move(obstacles)) : std::nullopt;
+}
+
+// Bytes of a crowd of such numbers.
+uint64_t size_of(const Head& head) {
+  return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
+         (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
+         head.corners * sizeof(std::array<double, 2>) + 8;
+}
 
 // A world that was never written has no hash of its own.
 uint64_t hash_of(const World& world) {
@@ -94,14 +167,21 @@ std::vector<uint8_t> Crowd::save() const {
   head.bodies = s.engine.bodies().size();
   head.slots = s.generation.size();
   head.free_slots = s.free_slots.size();
+  std::vector<std::array<double, 2>> corners;
+  const std::vector<SavedObstacle> obstacles = saved_obstacles(s.obstacles.all(), corners);
+  head.obstacles = obstacles.size();
+  head.corners = corners.size();
+  head.free_obstacles = s.obstacles.free_slots().size();
   std::vector<uint8_t> out;
-  out.reserve(sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
-              head.free_slots * 4 + 8);
+  out.reserve(size_of(head));
   put(out, &head, 1);
   put(out, s.engine.bodies().data(), head.bodies);
   put(out, s.generation.data(), head.slots);
   put(out, s.routes.data(), head.slots);
   put(out, s.free_slots.data(), head.free_slots);
+  put(out, obstacles.data(), head.obstacles);
+  put(out, corners.data(), head.corners);
+  put(out, s.obstacles.free_slots().data(), head.free_obstacles);
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put(out, &sum, 1);
   return out;
@@ -128,8 +208,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   }
   constexpr uint64_t kMost = uint64_t{1} << 32;
   if (head.bodies >= kMost || head.slots >= kMost || head.free_slots >= kMost ||
-      saved.size() != sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
-                          head.free_slots * 4 + 8) {
+      head.obstacles >= kMost || head.corners >= kMost || head.free_obstacles >= kMost ||
+      saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
   }
   uint64_t sum = 0;
@@ -151,6 +231,12 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   take(s.routes.data(), s.routes.size());
   s.free_slots.resize(head.free_slots);
   take(s.free_slots.data(), s.free_slots.size());
+  std::vector<SavedObstacle> obstacles(head.obstacles);
+  take(obstacles.data(), obstacles.size());
+  std::vector<std::array<double, 2>> corners(head.corners);
+  take(corners.data(), corners.size());
+  std::vector<uint32_t> free_obstacles(head.free_obstacles);
+  take(free_obstacles.data(), free_obstacles.size());
 
   s.where.assign(head.slots, kNobody);
   std::vector<bool> taken(head.slots, false);
@@ -165,7 +251,10 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     sound = sound && is_sound(body, data) && take_slot(body.slot) &&
             (!body.has(Body::kHasGoal) || is_sound(s.routes[body.slot], data.level_count));
   }
+  auto all = obstacles_of(obstacles, corners);
+  sound = sound && all && s.obstacles.restore(std::move(*all), std::move(free_obstacles));
   if (!sound) return bad("is not sound; save the crowd again");
+  s.ground_changed();
   s.engine.reserve(bodies.size());
   for (const Body& body : bodies) {
     if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();

@@ -12,9 +12,11 @@
 
 #include "crowd/crowd_engine.h"
 #include "crowd/crowd_ground.h"
+#include "crowd/obstacle_book.h"
 #include "crowd/placement.h"
 #include "crowd/routes.h"
 #include "throng/crowd.h"
+#include "throng/live_ground.h"
 
 /// What a crowd holds.
 namespace throng {
@@ -24,8 +26,9 @@ inline constexpr uint32_t kNobody = UINT32_MAX;
 // What a class needs that somebody is of.
 struct ClassParts {
   CrowdGround ground;
-  std::optional<StandingDraw> standing;
-  std::vector<PathFinder> finders;  // one a worker
+  std::optional<StandingDraw> standing;  // none: the ground has changed since
+  std::vector<PathFinder> finders;       // one a worker
+  std::vector<LiveGround> lives;         // one a worker, once an obstacle was in the way of ways
   std::vector<Path> paths;
 };
 
@@ -40,6 +43,8 @@ struct Crowd::State {
   int32_t sub_steps = 1;
   uint64_t step = 0, sub_step = 0;
   uint64_t scattered = 0;  // draws of `scatter`
+  ObstacleBook obstacles;
+  bool cuts_ways = false;  // an obstacle that ways lead around is up
 
   // By slot.
   std::vector<uint32_t> generation;
@@ -47,11 +52,14 @@ struct Crowd::State {
   std::vector<uint32_t> free_slots;
   mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
   mutable bool where_is_old = false;
-  std::vector<AvatarId> arrived, stranded;
+  std::vector<AvatarId> arrived, stranded, in_the_way;
   std::mutex stranding;
 
   State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine)
-      : world(a_world), config(a_config), engine(std::move(an_engine)) {}
+      : world(a_world),
+        config(a_config),
+        engine(std::move(an_engine)),
+        obstacles(a_world, a_world.data()->summary.classes.size()) {}
 
   [[nodiscard]] const AvatarClass& body_class(int32_t number) const {
     return world.data()->summary.classes[static_cast<size_t>(number)];
@@ -63,6 +71,15 @@ struct Crowd::State {
   Result<Body> body_of(const AvatarSpawn& spawn) const;
   void make_room(const Body& body);
   AvatarId add(Body body);
+  /// Those obstacles that wait and in whose way nobody stands come up or move on. Returns how many
+  /// still wait.
+  size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_way);
+  /// Tells the ways of a class, or of all, what an obstacle is to them by now.
+  void tell_ways(uint32_t slot, size_t number);
+  void tell_ways(uint32_t slot);
+  void cut_ways(std::span<const uint32_t> slots);
+  /// The grounds are to be as the obstacles are.
+  void ground_changed();
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
 };
 

@@ -43,14 +43,55 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
   if (nth % kLookEvery == 0 && !sees(route.corners[route.next])) body.flags |= Body::kLost;
 }
 
-bool plan(const World& world, PathFinder& finder, Path& path, Body& body, Route& route) {
+bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
+  // Is a part of the leg on the inner side of all four sides? (Liang and Barsky)
+  const auto crosses = [&](double ax, double az, double bx, double bz) {
+    double from = 0, to = 1;
+    const auto cut = [&](double at, double way, double low, double high) {
+      if (way == 0) return at >= low && at <= high;
+      const double t0 = (low - at) / way, t1 = (high - at) / way;
+      from = std::max(from, std::min(t0, t1));
+      to = std::min(to, std::max(t0, t1));
+      return from <= to;
+    };
+    return cut(ax, bx - ax, box.x0, box.x1) && cut(az, bz - az, box.z0, box.z1);
+  };
+  double x = body.x, z = body.z;
+  for (size_t i = route.next; i < route.count; ++i) {
+    const Spot& corner = route.corners[i];
+    if (crosses(x, z, corner.x, corner.z)) return true;
+    x = corner.x;
+    z = corner.z;
+  }
+  return false;
+}
+
+bool plan(const World& world, PathFinder& finder, LiveGround* live, const StrideGround& ground,
+          Path& path, Body& body, Route& route) {
   const WorldData& data = *world.data();
   const auto place_of = [&](const Spot& spot) {
     const GroundLevel level = ground_level(data, spot.level, body.avatar_class);
     return place_at(data, level, {spot.x, spot.z});
   };
   body.flags = static_cast<uint8_t>(body.flags & ~Body::kLost);
-  finder.find(place_of({body.x, body.z, body.level}), place_of(route.goal), path);
+  const Place from = place_of({body.x, body.z, body.level}), to = place_of(route.goal);
+  const auto spot_of = [&](const Place& place) {
+    const GroundPoint point = to_ground(data, place.position.x, place.position.z);
+    return Spot{static_cast<int32_t>(point.x), static_cast<int32_t>(point.z), place.level1 - 1};
+  };
+  const auto is_open = [&] {
+    Spot at = spot_of(path.points[0]);
+    for (size_t i = 1; i < path.points.size(); ++i) {
+      const Spot next = spot_of(path.points[i]);
+      StrideGround::Landing end;
+      const bool arrives = ground.move(at.level, 0, {at.x, at.z}, {next.x, next.z}, end);
+      if (!arrives || end.level != next.level) return false;
+      at = next;
+    }
+    return true;
+  };
+  finder.find(from, to, path);
+  if (live != nullptr && path.end == PathEnd::kReached && !is_open()) live->find(from, to, path);
   if (path.end != PathEnd::kReached) return false;
   if (path.points.size() < 2) {  // It stands on its goal.
     route.corners[0] = route.goal;
@@ -65,10 +106,7 @@ bool plan(const World& world, PathFinder& finder, Path& path, Body& body, Route&
   route.next = 0;
   route.whole = legs <= Route::kCorners;
   for (size_t i = 0; i < route.count; ++i) {
-    const Place& place = path.points[i + 1];
-    const GroundPoint point = to_ground(data, place.position.x, place.position.z);
-    route.corners[i] = {static_cast<int32_t>(point.x), static_cast<int32_t>(point.z),
-                        place.level1 - 1};
+    route.corners[i] = spot_of(path.points[i + 1]);
   }
   turn_to(body, route);
   return true;

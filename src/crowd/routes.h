@@ -8,6 +8,7 @@
 
 #include "crowd/body.h"
 #include "crowd/stride_ground.h"
+#include "throng/live_ground.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -35,7 +36,17 @@ struct Route {
 /// along a leg. [units]
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach);
 
-/// Asks for a way from where the body is. False: none leads to the goal.
-bool plan(const World& world, PathFinder& finder, Path& path, Body& body, Route& route);
+/// Asks for a way from where the body is. False: none leads to the goal. With `live`, obstacles are
+/// up: they only take away, so a way of the finder's on which none lies is still the shortest, and
+/// only where one does the live ground is asked.
+bool plan(const World& world, PathFinder& finder, LiveGround* live, const StrideGround& ground,
+          Path& path, Body& body, Route& route);
+
+/// A rectangle of the plane. [units]
+struct PlanBox {
+  double x0 = 0, z0 = 0, x1 = 0, z1 = 0;
+};
+/// Do the corners that a body is bound for lead through a box?
+bool leads_through(const Body& body, const Route& route, const PlanBox& box);
 
 }  // namespace throng

@@ -192,7 +192,7 @@ CrowdCheck Wanderers::check() const {
   for (const Avatar& a : s.avatars.span()) {
     bodies.push_back({a.x, a.z, a.y, a.level, s.config.avatar_class, s.body.radius, s.body.height});
   }
-  return check_bodies(s.world, bodies, s.config.workers);
+  return check_bodies(s.world, bodies, {}, s.config.workers);
 }
 
 uint64_t Wanderers::state_hash() const {

@@ -64,8 +64,7 @@ void LiveMesh::set_area_cost(uint8_t kind, double cost) {
 ChangeId LiveMesh::add(Change change) {
   const WorldSummary& summary = world().summary;
   const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
-  const SquareRange near =
-      tiles_near(world(), change.prism.corners, avatar.radius + summary.cell);
+  const SquareRange near = tiles_near(world(), change.prism.corners, avatar.radius + summary.cell);
   const auto id = static_cast<ChangeId>(changes_.size() + 1);
   for (int32_t z = near.first_z; z <= near.last_z; ++z) {
     for (int32_t x = near.first_x; x <= near.last_x; ++x) {

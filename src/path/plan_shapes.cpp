@@ -37,6 +37,7 @@ bool is_nearer(const PlanSquare& square, std::span<const PlanPoint> polygon, dou
   const std::array<PlanPoint, 4> corners{
       PlanPoint{square.x0, square.z0}, PlanPoint{square.x1, square.z0},
       PlanPoint{square.x1, square.z1}, PlanPoint{square.x0, square.z1}};
+  if (polygon.size() > 2 && holds(polygon, corners[0])) return true;
   const double limit = distance * distance;
   for (size_t i = 0; i < polygon.size(); ++i) {
     const PlanPoint a = polygon[i], b = polygon[(i + 1) % polygon.size()];
@@ -48,7 +49,7 @@ bool is_nearer(const PlanSquare& square, std::span<const PlanPoint> polygon, dou
       if (cross(a, b, corners[k], corners[(k + 1) % 4])) return true;
     }
   }
-  return polygon.size() > 2 && holds(polygon, corners[0]);
+  return false;
 }
 
 std::optional<std::pair<double, double>> heights_over(const PlanSquare& square,

@@ -106,8 +106,7 @@ CellRows taken_cells(const TileFloor& floor, const AvatarClass& avatar, const Pr
                                             PlanPoint{t[2].x, t[2].z}};
         if (!is_nearer(cell, plan, reach)) continue;
         const auto heights = heights_over(around, t);
-        hit =
-            heights && meets(heights->first - kHeightRounding, heights->second + kHeightRounding);
+        hit = heights && meets(heights->first - kHeightRounding, heights->second + kHeightRounding);
       }
       if (hit) taken[static_cast<size_t>(z)] |= uint64_t{1} << x;
     }

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <string>
+
+#include "core/parallel.h"
+#include "crowd/crowd_state.h"
+#include "path/taken_cells.h"
+#include "throng/crowd.h"
+
+// Obstacles that are put up, moved and taken away while a crowd walks. Between two steps all stand;
+// an obstacle comes only where nobody does, so the rule that nobody enters a wall holds on.
+namespace throng {
+namespace {
+
+Error gone() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
+
+}  // namespace
+
+Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind) {
+  if (auto ok = check_prism(prism); !ok) return ok.error();
+  State& s = *state_;
+  const uint32_t slot = s.obstacles.add(prism, kind, /*wanted_up=*/true);
+  s.settle_obstacles(std::span(&slot, 1), nullptr);
+  return ObstacleId{slot + 1, s.obstacles.at(slot).generation};
+}
+
+Result<void> Crowd::move_obstacle(ObstacleId id, const Prism& prism) {
+  if (auto ok = check_prism(prism); !ok) return ok.error();
+  State& s = *state_;
+  if (s.obstacles.find(id) == nullptr) return gone();
+  const uint32_t slot = id.slot1 - 1;
+  s.obstacles.ask_to_be_at(slot, prism);
+  s.settle_obstacles(std::span(&slot, 1), nullptr);
+  return {};
+}
+
+bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
+  State& s = *state_;
+  if (s.obstacles.find(id) == nullptr) return false;
+  const uint32_t slot = id.slot1 - 1;
+  const bool was_up = s.obstacles.at(slot).is_up;
+  s.obstacles.ask_to_be_up(slot, active);
+  s.settle_obstacles(std::span(&slot, 1), nullptr);
+  if (was_up && !active) {
+    s.ground_changed();
+    s.tell_ways(slot);
+  }
+  return true;
+}
+
+bool Crowd::remove_obstacle(ObstacleId id) {
+  State& s = *state_;
+  if (!set_obstacle_active(id, false)) return false;
+  const uint32_t slot = id.slot1 - 1;
+  for (size_t c = 0; c < s.classes.size(); ++c) {
+    if (!s.classes[c]) continue;
+    for (LiveGround& live : s.classes[c]->lives) {
+      live.remove(s.obstacles.at(slot).of_class[c].change);
+    }
+  }
+  s.obstacles.remove(slot);
+  return true;
+}
+
+Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
+  const CrowdObstacle* found = state_->obstacles.find(id);
+  if (found == nullptr) return gone();
+  return ObstacleState{found->place, found->is_up, found->waits(), found->kind};
+}
+
+std::vector<Prism> Crowd::obstacles() const {
+  std::vector<Prism> prisms;
+  for (const CrowdObstacle& obstacle : state_->obstacles.all()) {
+    if (obstacle.exists && obstacle.is_up) prisms.push_back(obstacle.place);
+  }
+  return prisms;
+}
+
+std::span<const AvatarId> Crowd::in_the_way() const { return state_->in_the_way; }
+
+size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
+                                      std::vector<AvatarId>* in_their_way) {
+  if (in_their_way != nullptr) in_their_way->clear();
+  if (slots.empty()) return 0;
+  const auto found = obstacles.in_the_way(slots, engine.bodies(), config.workers);
+  size_t waiting = 0;
+  std::vector<uint32_t> settled;
+  for (const uint32_t slot : slots) {
+    if (!obstacles.at(slot).waits()) continue;
+    const auto first = std::lower_bound(found.begin(), found.end(), std::pair(slot, uint32_t{0}));
+    if (first != found.end() && first->first == slot) {
+      ++waiting;
+      continue;
+    }
+    obstacles.settle(slot);
+    settled.push_back(slot);
+  }
+  if (in_their_way != nullptr) {
+    for (const auto& [slot, i] : found) in_their_way->push_back(id_of(engine.bodies()[i].slot));
+    const auto before = [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; };
+    std::sort(in_their_way->begin(), in_their_way->end(), before);
+    in_their_way->erase(std::unique(in_their_way->begin(), in_their_way->end()),
+                        in_their_way->end());
+  }
+  if (settled.empty()) return waiting;
+  ground_changed();
+  for (const uint32_t slot : settled) tell_ways(slot);
+  cut_ways(settled);
+  return waiting;
+}
+
+void Crowd::State::ground_changed() {
+  obstacles.take_cells();
+  cuts_ways = false;
+  for (const CrowdObstacle& obstacle : obstacles.all()) {
+    cuts_ways |= obstacle.exists && obstacle.is_up && obstacle.kind == ObstacleKind::kStanding;
+  }
+  for (const auto& parts : classes) {
+    if (parts) parts->standing.reset();
+  }
+}
+
+void Crowd::State::tell_ways(uint32_t slot) {
+  for (size_t c = 0; c < classes.size(); ++c) tell_ways(slot, c);
+}
+
+void Crowd::State::tell_ways(uint32_t slot, size_t number) {
+  CrowdObstacle& obstacle = obstacles.at(slot);
+  if (config.ways != CrowdWays::kPaths || obstacle.kind != ObstacleKind::kStanding) return;
+  if (!obstacle.exists || !classes[number]) return;
+  std::vector<LiveGround>& lives = classes[number]->lives;
+  if (obstacle.is_up && lives.empty()) {
+    auto made = LiveGround::make(world, {.avatar_class = static_cast<int32_t>(number)});
+    THRONG_ASSERT(made);  // The class is one of the world's.
+    lives.assign(static_cast<size_t>(worker_count(config.workers)), *made);
+  }
+  CrowdObstacle::OfClass& of_class = obstacle.of_class[number];
+  ChangeId change = of_class.change;
+  const bool is_new =
+      obstacle.is_up && (change == 0 || of_class.change_version != obstacle.version);
+  for (LiveGround& ground : lives) {
+    if (!is_new) {
+      ground.set_active(change, obstacle.is_up);
+      continue;
+    }
+    ground.remove(change);
+    auto added = ground.add_obstacle(obstacle.place);
+    THRONG_ASSERT(added);  // The prism was checked, and copies number alike.
+    of_class.change = *added;
+    of_class.change_version = obstacle.version;
+  }
+}
+
+// Whose way leads over what some obstacles have just taken asks for another.
+void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
+  if (config.ways != CrowdWays::kPaths) return;
+  const WorldData& data = *world.data();
+  double widest_class = 0;
+  for (const AvatarClass& avatar : data.summary.classes) {
+    widest_class = std::max(widest_class, taking_reach(avatar));
+  }
+  std::vector<PlanBox> boxes;
+  for (const uint32_t slot : slots) {
+    const CrowdObstacle& obstacle = obstacles.at(slot);
+    if (obstacle.kind != ObstacleKind::kStanding) continue;
+    PlanBox box{1e300, 1e300, -1e300, -1e300};
+    const double around = widest_class + data.summary.cell;
+    for (const auto& [x, z] : obstacle.place.corners) {
+      box = {std::min(box.x0, x - around), std::min(box.z0, z - around),
+             std::max(box.x1, x + around), std::max(box.z1, z + around)};
+    }
+    const Vec3d& origin = data.summary.origin;
+    boxes.push_back({(box.x0 - origin.x) / unit, (box.z0 - origin.z) / unit,
+                     (box.x1 - origin.x) / unit, (box.z1 - origin.z) / unit});
+  }
+  if (boxes.empty()) return;
+  const std::span<Body> bodies = engine.bodies();
+  parallel_ranges(bodies.size(), 4096, config.workers, [&](size_t begin, size_t end) {
+    for (Body& body : bodies.subspan(begin, end - begin)) {
+      if (!body.has(Body::kHasGoal) || body.has(Body::kLost)) continue;
+      const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const PlanBox& box) {
+        return leads_through(body, routes[body.slot], box);
+      });
+      if (is_cut) body.flags |= Body::kLost;
+    }
+  });
+}
+
+}  // namespace throng

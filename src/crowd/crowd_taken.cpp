@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <bit>
+
+#include "crowd/crowd_ground.h"
+
+// Cells that obstacles take, and give back. What was baked is kept aside while a level lacks some
+// of it, so that it comes back to the bit.
+namespace throng {
+namespace {
+
+constexpr size_t kRows = 64;
+
+}  // namespace
+
+void CrowdGround::keep_baked(Level level, Baked& baked) {
+  LevelLine& line = lines_[level];
+  const uint32_t set = line.legal_set & kSetBits;
+  baked.legal_word = line.legal_set;
+  baked.plain_set = line.plain_set;
+  std::copy_n(legal(level), kRows, baked.legal.begin());
+  std::copy_n(plain(level), kRows, baked.plain.begin());
+  if (set != kAllLegal) return;
+  // The rows of all cells are shared by many levels: this one needs its own.
+  uint32_t own = row_sets_;
+  if (spare_sets_.empty()) {
+    ++row_sets_;
+  } else {
+    own = spare_sets_.back();
+    spare_sets_.pop_back();
+  }
+  if (line.plain_set == set) line.plain_set = own;
+  line.legal_set = own | (line.legal_set & ~kSetBits);
+}
+
+void CrowdGround::set_taken(Level level, const CellRows& taken) {
+  const bool any = std::any_of(taken.begin(), taken.end(), [](uint64_t row) { return row != 0; });
+  auto kept = baked_.find(level);
+  if (kept == baked_.end()) {
+    if (!any || (lines_[level].legal_set & kSetBits) == kNoneLegal) return;
+    kept = baked_.try_emplace(level).first;
+    keep_baked(level, kept->second);
+  }
+  const Baked& baked = kept->second;
+  LevelLine& line = lines_[level];
+  const auto write = [&](uint32_t set, const CellRows& rows) {
+    uint64_t* to = rows_.data() + size_t{set & kSetBits} * kRows;
+    for (size_t z = 0; z < kRows; ++z) to[z] = rows[z] & ~taken[z];
+  };
+  // A cell is plain if it is legal and as high as those beside it, legal or not.
+  write(line.legal_set, baked.legal);
+  if (line.plain_set != kNoneLegal) write(line.plain_set, baked.plain);
+  uint32_t cells = 0;
+  for (size_t z = 0; z < kRows; ++z) {
+    cells += static_cast<uint32_t>(std::popcount(legal(level)[z]));
+  }
+  records_[level].legal_cells = cells;
+  line.plain = full_blocks(plain(level));
+  if (any) return;
+  if (line.legal_set != baked.legal_word) spare_sets_.push_back(line.legal_set & kSetBits);
+  line.legal_set = baked.legal_word;
+  line.plain_set = baked.plain_set;
+  baked_.erase(kept);
+}
+
+const CellRows* CrowdGround::baked_legal(Level level) const {
+  const auto kept = baked_.find(level);
+  return kept == baked_.end() ? nullptr : &kept->second.legal;
+}
+
+void CrowdGround::join_tile(int32_t x, int32_t z) {
+  const auto join = [&](int32_t tile_x, int32_t tile_z, LevelLine::Side side) {
+    const Range* range = tile(tile_x, tile_z);
+    for (Level i = range ? range->first : 0; range && i < range->last; ++i) join_side(i, side);
+  };
+  for (const auto side :
+       {LevelLine::kLeft, LevelLine::kRight, LevelLine::kAbove, LevelLine::kBelow}) {
+    join(x, z, side);
+  }
+  join(x - 1, z, LevelLine::kRight);
+  join(x + 1, z, LevelLine::kLeft);
+  join(x, z - 1, LevelLine::kBelow);
+  join(x, z + 1, LevelLine::kAbove);
+}
+
+}  // namespace throng

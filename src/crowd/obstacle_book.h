@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "crowd/body.h"
+#include "crowd/crowd_ground.h"
+#include "throng/crowd_obstacle.h"
+#include "throng/live_ground.h"
+#include "throng/world.h"
+
+/// The obstacles of a crowd, and what each takes from the grounds of the classes.
+namespace throng {
+
+/// Cells of a level.
+struct LevelCells {
+  uint32_t level = 0;
+  CellRows rows{};
+};
+
+struct CrowdObstacle {
+  uint32_t generation = 1;
+  bool exists = false;
+  ObstacleKind kind = ObstacleKind::kStanding;
+  bool is_up = false, wanted_up = false;
+  bool is_elsewhere = false;  // it is up, but asked to be at `wanted`
+  Prism place, wanted;
+  uint32_t version = 0;  // of `place`
+
+  // By class, empty for those that nobody is of.
+  struct OfClass {
+    std::vector<uint32_t> levels;   // from which it takes cells, while it is up
+    std::vector<LevelCells> swept;  // that must be clear before it may come up or move on
+    ChangeId change = 0;            // of the class's live grounds, made for `change_version`
+    uint32_t change_version = 0;
+  };
+  std::vector<OfClass> of_class;
+
+  [[nodiscard]] bool waits() const { return exists && ((wanted_up && !is_up) || is_elsewhere); }
+};
+
+/// The smallest convex prism around two.
+Prism hull_of(const Prism& a, const Prism& b);
+
+class ObstacleBook {
+ public:
+  ObstacleBook(World world, size_t classes);
+
+  /// Of a class that somebody is of from now on; what is up is taken from its ground at once.
+  void open_class(size_t number, CrowdGround& ground);
+
+  /// [check_prism] It waits until it is settled.
+  uint32_t add(const Prism& prism, ObstacleKind kind, bool wanted_up);
+  /// Null for those that are gone.
+  [[nodiscard]] const CrowdObstacle* find(ObstacleId id) const;
+  [[nodiscard]] std::span<const CrowdObstacle> all() const { return obstacles_; }
+  [[nodiscard]] CrowdObstacle& at(uint32_t slot) { return obstacles_[slot]; }
+
+  void ask_to_be_at(uint32_t slot, const Prism& prism);
+  void ask_to_be_up(uint32_t slot, bool up);
+  void remove(uint32_t slot);
+
+  /// Those of some obstacles that wait.
+  [[nodiscard]] std::vector<uint32_t> waiting() const;
+  /// Who stands where some of them would come or pass: (obstacle, index of the body), in order.
+  [[nodiscard]] std::vector<std::pair<uint32_t, uint32_t>> in_the_way(
+      std::span<const uint32_t> slots, std::span<const Body> bodies, int32_t workers) const;
+  /// It is where it waited to be. Then take_cells.
+  void settle(uint32_t slot);
+  /// Brings the grounds up to date with all that was settled, asked down or removed.
+  void take_cells();
+
+  /// In the order in which they are given again: the last first.
+  [[nodiscard]] std::span<const uint32_t> free_slots() const { return free_slots_; }
+  /// Before any class is opened. [not sound: false]
+  bool restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots);
+  [[nodiscard]] uint64_t bytes() const;
+
+ private:
+  struct Taker {
+    uint32_t slot;
+    CellRows rows;
+  };
+  struct ClassGround {
+    CrowdGround* ground = nullptr;                            // null: nobody is of the class
+    std::unordered_map<uint32_t, std::vector<Taker>> takers;  // by level; looked up only
+    std::vector<uint32_t> touched;                            // levels, with doubles
+  };
+  [[nodiscard]] std::vector<LevelCells> cells_under(size_t number, const Prism& prism) const;
+  void find_swept(uint32_t slot);
+  void put_up(uint32_t slot, size_t number);
+  void take_down(uint32_t slot, size_t number);
+
+  World world_;
+  std::vector<ClassGround> classes_;
+  std::vector<CrowdObstacle> obstacles_;
+  std::vector<uint32_t> free_slots_;
+};
+
+}  // namespace throng

@@ -1,0 +1,508 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "baked.h"
+#include "core/random.h"
+#include "crowd/crowd_check.h"
+#include "simd_targets.h"
+#include "throng/crowd.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+Crowd made(const World& world, const CrowdConfig& config = {}) {
+  auto crowd = Crowd::create(world, config);
+  EXPECT_TRUE(crowd) << crowd.error().message;
+  return std::move(*crowd);
+}
+
+std::vector<AvatarId> scattered(Crowd& crowd, uint32_t count, const AvatarSpawn& like = {}) {
+  Context context;
+  auto ids = crowd.scatter(count, like, context);
+  EXPECT_TRUE(ids) << ids.error().message;
+  return ids ? *ids : std::vector<AvatarId>();
+}
+
+AvatarId added(Crowd& crowd, const Place& place) {
+  Context context;
+  const AvatarSpawn spawn{.place = place};
+  auto ids = crowd.add(std::span(&spawn, 1), context);
+  EXPECT_TRUE(ids) << ids.error().message;
+  return ids ? ids->front() : AvatarId{};
+}
+
+ObstacleId put_up(Crowd& crowd, const Prism& prism, ObstacleKind kind = ObstacleKind::kStanding) {
+  const auto id = crowd.add_obstacle(prism, kind);
+  EXPECT_TRUE(id) << id.error().message;
+  return id ? *id : ObstacleId{};
+}
+
+bool is_up(const Crowd& crowd, ObstacleId id) { return crowd.obstacle(id)->is_up; }
+bool waits(const Crowd& crowd, ObstacleId id) { return crowd.obstacle(id)->waits; }
+
+void send(Crowd& crowd, AvatarId id, const Place& goal) {
+  crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
+}
+
+Vec3d position(const Crowd& crowd, AvatarId id) {
+  std::vector<AvatarState> states;
+  crowd.read(states);
+  for (const AvatarState& state : states) {
+    if (state.id + 1 == id.slot1) return state.position;
+  }
+  ADD_FAILURE() << "nobody of that id";
+  return {};
+}
+
+bool is_free(const Crowd& crowd) {
+  const CrowdCheck found = crowd.check();
+  return found.wall_entries + found.overlaps + found.obstacle_entries == 0;
+}
+
+// A square of 24 m, cut by a wall at x = 12 with openings of 2 m at z = 4 and z = 20.
+World two_ways() {
+  Scene scene = worlds::flat(24);
+  scene.add_box({11.9, 0, 0}, {12.1, 3, 3});
+  scene.add_box({11.9, 0, 5}, {12.1, 3, 19});
+  scene.add_box({11.9, 0, 21}, {12.1, 3, 24});
+  return test::bake(scene, 0.1);
+}
+
+constexpr Vec3d kNearDoor{12, 0, 4}, kFarDoor{12, 0, 20};
+Prism crate_at(const Vec3d& middle, double half = 1.2) {
+  return Prism::box({middle.x - half, middle.y, middle.z - half},
+                    {middle.x + half, middle.y + 1, middle.z + half});
+}
+
+// ---- What it is to walkers.
+
+TEST(CrowdObstacles, PeopleTakeTheOtherWayWhileACrateStandsInTheFirst) {
+  const World world = two_ways();
+  const Place from = world.find_place(0, {4, 0, 4}, 0.5), to = world.find_place(0, {20, 0, 4}, 0.5);
+  Crowd crowd = made(world);
+  const auto steps_through = [&](const Vec3d& door) {
+    const AvatarId id = added(crowd, from);
+    send(crowd, id, to);
+    bool passed = false;
+    int steps = 0;
+    for (bool there = false; !there && steps < 1000; ++steps) {
+      crowd.step();
+      EXPECT_TRUE(is_free(crowd));
+      const Vec3d at = position(crowd, id);
+      passed |= std::hypot(at.x - door.x, at.z - door.z) < 1;
+      there = !crowd.arrived().empty();
+    }
+    EXPECT_TRUE(passed);
+    crowd.remove(std::span(&id, 1));
+    return steps;
+  };
+  const int straight = steps_through(kNearDoor);
+  const ObstacleId crate = put_up(crowd, crate_at(kNearDoor));
+  EXPECT_TRUE(is_up(crowd, crate));
+  const int around = steps_through(kFarDoor);
+  EXPECT_GT(around, straight + 100);
+  EXPECT_LT(around, 400);
+  EXPECT_TRUE(crowd.remove_obstacle(crate));
+  EXPECT_EQ(steps_through(kNearDoor), straight);
+}
+
+TEST(CrowdObstacles, WhoIsOnTheWayTurnsBackWhenADoorAheadCloses) {
+  const World world = two_ways();
+  Crowd crowd = made(world);
+  const AvatarId id = added(crowd, world.find_place(0, {2, 0, 4}, 0.5));
+  const ObstacleId door = put_up(crowd, crate_at(kNearDoor));
+  crowd.set_obstacle_active(door, false);
+  send(crowd, id, world.find_place(0, {20, 0, 4}, 0.5));
+  for (int step = 0; step < 10; ++step) crowd.step();
+  EXPECT_LT(std::fabs(position(crowd, id).z - 4), 0.3);
+  EXPECT_TRUE(crowd.set_obstacle_active(door, true));
+  EXPECT_TRUE(is_up(crowd, door));
+  EXPECT_EQ(crowd.step().planned, 1u) << "it notices at once, 7 m before the door";
+  int steps = 0;
+  for (bool there = false; !there && steps < 1000; ++steps) {
+    crowd.step();
+    there = !crowd.arrived().empty();
+    ASSERT_TRUE(is_free(crowd));
+  }
+  EXPECT_LT(steps, 400);
+}
+
+TEST(CrowdObstacles, WhoHasNoWayLeftIsStranded) {
+  const World world = two_ways();
+  Crowd crowd = made(world);
+  const AvatarId id = added(crowd, world.find_place(0, {4, 0, 12}, 0.5));
+  send(crowd, id, world.find_place(0, {20, 0, 12}, 0.5));
+  crowd.step();
+  EXPECT_TRUE(crowd.stranded().empty());
+  put_up(crowd, crate_at(kNearDoor));
+  crowd.step();
+  EXPECT_TRUE(crowd.stranded().empty());
+  put_up(crowd, crate_at(kFarDoor));
+  EXPECT_EQ(crowd.step().no_way, 1u);
+  ASSERT_EQ(crowd.stranded().size(), 1u);
+  EXPECT_EQ(crowd.stranded()[0], id);
+  // A goal under an obstacle is none either.
+  const Place here = world.find_place(0, {8, 0, 22}, 0.5);
+  put_up(crowd, crate_at({8, 0, 22}));
+  send(crowd, id, here);
+  EXPECT_EQ(crowd.step().no_way, 1u);
+}
+
+TEST(CrowdObstacles, ADoorWaitsForWhoStandsInItAndOpensAtOnce) {
+  const World world = two_ways();
+  Crowd crowd = made(world);
+  const AvatarId id = added(crowd, world.find_place(0, kNearDoor, 0.5));
+  const AvatarId other = added(crowd, world.find_place(0, {20, 0, 20}, 0.5));
+  ASSERT_TRUE(id && other);
+  const ObstacleId door = put_up(crowd, crate_at(kNearDoor, 0.5));
+  EXPECT_FALSE(is_up(crowd, door));
+  EXPECT_TRUE(waits(crowd, door));
+  for (int step = 0; step < 20; ++step) {
+    EXPECT_EQ(crowd.step().waiting, 1u);
+    ASSERT_EQ(crowd.in_the_way().size(), 1u);
+    EXPECT_EQ(crowd.in_the_way()[0], id);
+    ASSERT_TRUE(is_free(crowd));
+  }
+  send(crowd, id, world.find_place(0, {6, 0, 4}, 0.5));
+  int steps = 0;
+  for (; !is_up(crowd, door) && steps < 100; ++steps) {
+    crowd.step();
+    ASSERT_TRUE(is_free(crowd));
+  }
+  EXPECT_GT(steps, 3);
+  EXPECT_LT(steps, 20);
+  EXPECT_EQ(crowd.step().waiting, 0u);
+  EXPECT_TRUE(crowd.in_the_way().empty());
+  EXPECT_FALSE(added(crowd, world.find_place(0, kNearDoor, 0.5))) << "it is closed";
+  EXPECT_TRUE(crowd.set_obstacle_active(door, false));
+  EXPECT_FALSE(is_up(crowd, door));
+  EXPECT_TRUE(added(crowd, world.find_place(0, kNearDoor, 0.5)));
+  // Asked to close and to open again before it could: it is open.
+  crowd.set_obstacle_active(door, true);
+  EXPECT_TRUE(waits(crowd, door));
+  crowd.set_obstacle_active(door, false);
+  EXPECT_EQ(crowd.step().waiting, 0u);
+}
+
+TEST(CrowdObstacles, ACartDoesNotJumpOverAnybody) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  const AvatarId id = added(crowd, world.find_place(0, {10, 0, 10}, 0.5));
+  const auto cart_at = [](double x) { return Prism::circle({x, 0, 10}, 0.5, 1); };
+  const ObstacleId cart = put_up(crowd, cart_at(5), ObstacleKind::kMoving);
+  EXPECT_TRUE(is_up(crowd, cart));
+  ASSERT_TRUE(crowd.move_obstacle(cart, cart_at(15)));
+  EXPECT_TRUE(waits(crowd, cart));
+  crowd.step();
+  EXPECT_NEAR(crowd.obstacle(cart)->prism.corners[0][0], 5.5, 0.02) << "it stays where it is";
+  ASSERT_EQ(crowd.in_the_way().size(), 1u);
+  EXPECT_EQ(crowd.in_the_way()[0], id);
+  ASSERT_TRUE(crowd.move_obstacle(cart, cart_at(8)));
+  EXPECT_NEAR(crowd.obstacle(cart)->prism.corners[0][0], 8.5, 0.02);
+  EXPECT_FALSE(waits(crowd, cart));
+  crowd.remove(std::span(&id, 1));
+  ASSERT_TRUE(crowd.move_obstacle(cart, cart_at(15)));
+  EXPECT_FALSE(waits(crowd, cart));
+  EXPECT_TRUE(added(crowd, world.find_place(0, {8, 0, 10}, 0.5)));
+  EXPECT_FALSE(added(crowd, world.find_place(0, {15, 0, 10}, 0.5)));
+}
+
+TEST(CrowdObstacles, WaysDoNotMindCartsButWalkersDo) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  const AvatarId id = added(crowd, world.find_place(0, {4, 0, 10}, 0.5));
+  put_up(crowd, Prism::circle({10, 0, 10.1}, 0.4, 1), ObstacleKind::kMoving);
+  send(crowd, id, world.find_place(0, {16, 0, 10}, 0.5));
+  bool there = false;
+  for (int step = 0; step < 300 && !there; ++step) {
+    crowd.step();
+    ASSERT_TRUE(is_free(crowd));
+    there = !crowd.arrived().empty();
+  }
+  EXPECT_TRUE(there);
+}
+
+// ---- Heights, borders, sizes.
+
+TEST(CrowdObstacles, OnlyWhatABodyCouldTouchIsInTheWay) {
+  const World world = test::bake(worlds::two_floors(), 0.1);  // the deck is at 3
+  Crowd crowd = made(world);
+  const Place low = world.find_place(0, {8, 0, 4}, 0.5), high = world.find_place(0, {8, 3, 4}, 0.5);
+  ASSERT_TRUE(low && high);
+  const auto stand = [&](double bottom, double top) {
+    const ObstacleId id = put_up(crowd, Prism::box({7.8, bottom, 3.8}, {8.2, top, 4.2}));
+    EXPECT_TRUE(is_up(crowd, id));
+    std::string who;
+    for (const Place& place : {low, high}) {
+      const AvatarId avatar = added(crowd, place);
+      who += avatar ? '1' : '0';
+      crowd.remove(std::span(&avatar, 1));
+    }
+    EXPECT_TRUE(crowd.remove_obstacle(id));
+    return who;
+  };
+  EXPECT_EQ(stand(0, 1), "01");
+  EXPECT_EQ(stand(3, 4), "10");
+  EXPECT_EQ(stand(0, 4), "00");
+  EXPECT_EQ(stand(1.7, 1.9), "01") << "heads are at 1.75";
+  EXPECT_EQ(stand(1.8, 2.7), "11") << "above the heads";
+  EXPECT_EQ(stand(0, 0.3), "11") << "below the step";
+  EXPECT_EQ(stand(0, 0.45), "01");
+  EXPECT_EQ(stand(-5, -0.1), "11");
+}
+
+TEST(CrowdObstacles, TinyOnesOnBordersAndHugeOnesCountToo) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  const double radius = world.summary().classes[0].radius;
+  const Vec3d origin = world.summary().origin;
+  // A pin on the corner of four tiles.
+  const double x = origin.x + 6.4, z = origin.z + 6.4;
+  const ObstacleId pin = put_up(crowd, {{{x, z}, {x + 1e-5, z}, {x, z + 1e-5}}, 0, 1});
+  for (const double side : {-1.0, 1.0}) {
+    const double far = radius + 0.25, near = radius - 0.02;
+    EXPECT_FALSE(added(crowd, world.find_place(0, {x + side * near, 0, z}, 0.5)));
+    EXPECT_FALSE(added(crowd, world.find_place(0, {x, 0, z + side * near}, 0.5)));
+    const AvatarId id = added(crowd, world.find_place(0, {x + side * far, 0, z}, 0.5));
+    EXPECT_TRUE(id);
+    crowd.remove(std::span(&id, 1));
+  }
+  EXPECT_TRUE(crowd.remove_obstacle(pin));
+  const ObstacleId all = put_up(crowd, Prism::box({-1e6, -1, -1e6}, {1e6, 50, 1e6}));
+  EXPECT_TRUE(is_up(crowd, all));
+  Context context;
+  EXPECT_FALSE(crowd.scatter(1, {}, context));
+  EXPECT_TRUE(crowd.remove_obstacle(all));
+  scattered(crowd, 50);
+  const ObstacleId away = put_up(crowd, Prism::box({1e6, -1, 1e6}, {2e6, 50, 2e6}));
+  EXPECT_TRUE(is_up(crowd, away)) << "beyond the world nobody is in the way";
+  const ObstacleId again = put_up(crowd, Prism::box({-1e6, -1, -1e6}, {1e6, 50, 1e6}));
+  EXPECT_FALSE(is_up(crowd, again));
+  crowd.step();
+  EXPECT_EQ(crowd.in_the_way().size(), 50u);
+}
+
+TEST(CrowdObstacles, WhatIsNoPrismOrNoObstacleIsRefusedWithASentence) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  const auto refused = [&](const Prism& prism) {
+    const auto id = crowd.add_obstacle(prism);
+    return id ? std::string("accepted") : id.error().message;
+  };
+  const std::string not_convex =
+      "prism: its corners are not those of a convex polygon, in order; cut it into convex ones";
+  EXPECT_EQ(refused({{{1, 1}, {2, 1}}, 0, 1}), "prism: it has 2 corners, give it 3 to 64");
+  EXPECT_EQ(refused({{{1, 1}, {2, 1}, {3, 1}}, 0, 1}), not_convex);
+  EXPECT_EQ(refused({{{1, 1}, {1, 1}, {1, 1}}, 0, 1}), not_convex);
+  EXPECT_EQ(refused({{{0, 0}, {2, 0}, {1, 0.2}, {1, 2}}, 0, 1}), not_convex);
+  EXPECT_EQ(refused({{{1, 1}, {2, NAN}, {3, 3}}, 0, 1}), "prism: corner 1 is not a place on Earth");
+  EXPECT_EQ(refused({{{1, 1}, {2, 1}, {2, 2}}, 1, 1}),
+            "prism: its bottom must lie below its top, both finite");
+  EXPECT_EQ(refused({{{1, 1}, {2, 1}, {2, 2}}, 0, INFINITY}),
+            "prism: its bottom must lie below its top, both finite");
+  EXPECT_TRUE(crowd.obstacles().empty());
+  const ObstacleId id = put_up(crowd, crate_at({5, 0, 5}));
+  EXPECT_FALSE(crowd.move_obstacle(id, {}));
+  EXPECT_EQ(crowd.obstacles().size(), 1u);
+  EXPECT_TRUE(crowd.remove_obstacle(id));
+  EXPECT_FALSE(crowd.remove_obstacle(id));
+  EXPECT_FALSE(crowd.set_obstacle_active(id, true));
+  EXPECT_FALSE(crowd.obstacle(id));
+  EXPECT_FALSE(crowd.obstacle({}));
+  EXPECT_FALSE(crowd.obstacle({7, 1}));
+  ASSERT_FALSE(crowd.move_obstacle(id, crate_at({5, 0, 5})));
+  EXPECT_EQ(crowd.move_obstacle(id, crate_at({5, 0, 5})).error().message,
+            "crowd: there is no obstacle of that id");
+  const ObstacleId next = put_up(crowd, crate_at({5, 0, 5}));
+  EXPECT_FALSE(next == id);
+  EXPECT_FALSE(crowd.obstacle(id));
+}
+
+// ---- The look of check() at obstacles can fail.
+
+TEST(CrowdObstacles, TheCheckCountsWhoIsInAnObstacle) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  const double unit = 0.1 / 2048, radius = world.summary().classes[0].radius;
+  const Vec3d origin = world.summary().origin;
+  const auto entries = [&](double x, double z, double feet, const Prism& prism) {
+    const CheckedBody body{.x = static_cast<int32_t>((x - origin.x) / unit),
+                           .z = static_cast<int32_t>((z - origin.z) / unit),
+                           .y = static_cast<int32_t>(feet * 1000),
+                           .level = 0,
+                           .avatar_class = 0,
+                           .radius = radius,
+                           .height = 1.75};
+    return check_bodies(world, std::span(&body, 1), std::span(&prism, 1), 1).obstacle_entries;
+  };
+  const Prism box = Prism::box({5, 0, 5}, {7, 1, 7});
+  Prism other_way = box;
+  std::reverse(other_way.corners.begin(), other_way.corners.end());
+  for (const Prism& prism : {box, other_way}) {
+    EXPECT_EQ(entries(6, 6, 0, prism), 1u);
+    EXPECT_EQ(entries(5 - radius + 0.001, 6, 0, prism), 1u);
+    EXPECT_EQ(entries(5 - radius - 0.001, 6, 0, prism), 0u);
+    EXPECT_EQ(entries(6, 7 + radius - 0.001, 0, prism), 1u);
+    EXPECT_EQ(entries(6, 7 + radius + 0.001, 0, prism), 0u);
+    const double corner = radius / std::sqrt(2.0);
+    EXPECT_EQ(entries(7 + corner - 0.001, 7 + corner - 0.001, 0, prism), 1u);
+    EXPECT_EQ(entries(7 + corner + 0.001, 7 + corner + 0.001, 0, prism), 0u);
+    EXPECT_EQ(entries(6, 6, 0.59, prism), 1u);
+    EXPECT_EQ(entries(6, 6, 0.61, prism), 0u) << "a step up";
+    EXPECT_EQ(entries(6, 6, -1.74, prism), 1u);
+    EXPECT_EQ(entries(6, 6, -1.76, prism), 0u);
+  }
+}
+
+// ---- Many of them, while many walk.
+
+// Puts up, moves, shuts, opens and takes away at random; looks after every step.
+struct Chaos {
+  Crowd& crowd;
+  const World& world;
+  uint64_t seed;
+  std::vector<ObstacleId> ids;
+  uint64_t n = 0, came_up = 0, moved = 0;
+
+  double draw() { return random_unit(seed, 77, n++); }
+
+  Prism prism(const Vec3d& at) {
+    const double low = at.y - 0.2 + draw() * draw() * 2, high = low + 0.2 + 2.5 * draw();
+    const double size = 0.05 + 1.5 * draw() * draw();
+    if (draw() < 0.5) {
+      return Prism::box({at.x - size, low, at.z - size * draw()}, {at.x + size, high, at.z + size});
+    }
+    return Prism::circle({at.x, low, at.z}, size, high - low, 3 + static_cast<int>(20 * draw()));
+  }
+  Vec3d somewhere() { return world.random_place(0, seed, n++).position; }
+  Prism shifted(Prism p) {
+    const double dx = 0.4 * draw() - 0.2, dz = 0.4 * draw() - 0.2;
+    for (auto& [x, z] : p.corners) {
+      x += dx;
+      z += dz;
+    }
+    return p;
+  }
+
+  void act() {
+    for (int k = 0; k < 3; ++k) {
+      if (ids.size() < 40) {
+        const auto kind = draw() < 0.6 ? ObstacleKind::kStanding : ObstacleKind::kMoving;
+        ids.push_back(put_up(crowd, prism(somewhere()), kind));
+        came_up += is_up(crowd, ids.back()) ? 1 : 0;
+      }
+      const size_t i = static_cast<size_t>(draw() * static_cast<double>(ids.size()));
+      const double what = draw();
+      if (what < 0.5) {
+        const Prism before = crowd.obstacle(ids[i])->prism;
+        ASSERT_TRUE(crowd.move_obstacle(ids[i], shifted(before)));
+        moved += crowd.obstacle(ids[i])->waits ? 0 : 1;
+      } else if (what < 0.65) {
+        crowd.set_obstacle_active(ids[i], draw() < 0.5);
+      } else if (what < 0.8) {
+        EXPECT_TRUE(crowd.remove_obstacle(ids[i]));
+        ids.erase(ids.begin() + static_cast<ptrdiff_t>(i));
+      }
+    }
+  }
+};
+
+TEST(CrowdObstacles, NobodyEntersOneWhileTheyComeMoveAndGo) {
+  uint64_t avatar_steps = 0, came_up = 0, moved = 0, waited = 0, walked = 0;
+  for (const char* name : {"garage", "church", "stairs", "bridge"}) {
+    const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
+    Crowd crowd = made(world);
+    auto ids = scattered(crowd, 120);
+    const auto thin = scattered(crowd, 20, {.radius = 0.15, .speed = 2});
+    ids.insert(ids.end(), thin.begin(), thin.end());
+    const auto children = scattered(crowd, 20, {.avatar_class = 1});
+    ids.insert(ids.end(), children.begin(), children.end());
+    Chaos chaos{crowd, world, 11, {}};
+    for (int step = 0; step < 120; ++step) {
+      if (step % 40 == 0) {
+        std::vector<Place> goals;
+        for (size_t i = 0; i < ids.size(); ++i) {
+          const int32_t of = i < 140 ? 0 : 1;
+          goals.push_back(world.random_place(of, 5 + static_cast<uint64_t>(step), i));
+        }
+        crowd.set_goals(ids, goals);
+      }
+      chaos.act();
+      const CrowdReport report = crowd.step();
+      const CrowdCheck found = crowd.check();
+      ASSERT_EQ(found.wall_entries, 0u) << name << ' ' << step;
+      ASSERT_EQ(found.overlaps, 0u) << name << ' ' << step;
+      ASSERT_EQ(found.obstacle_entries, 0u) << name << ' ' << step;
+      avatar_steps += report.avatars;
+      walked += report.avatars - report.stood;
+      waited += report.waiting;
+    }
+    came_up += chaos.came_up;
+    moved += chaos.moved;
+  }
+  EXPECT_EQ(avatar_steps, 4u * 160 * 120);
+  EXPECT_GT(walked, avatar_steps / 4);
+  EXPECT_GT(came_up, 100u);
+  EXPECT_GT(moved, 200u);
+  EXPECT_GT(waited, 50u);
+}
+
+TEST(CrowdObstacles, SameStateForAnyWorkersAndMachines) {
+  const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
+  uint64_t first = 0;
+  test::for_every_simd_target([&](const char* name) {
+    for (const int32_t workers : {1, 2, 4}) {
+      Crowd crowd = made(world, {.workers = workers});
+      const auto ids = scattered(crowd, 200);
+      std::vector<Place> goals;
+      for (size_t i = 0; i < ids.size(); ++i) goals.push_back(world.random_place(0, 5, i));
+      crowd.set_goals(ids, goals);
+      Chaos chaos{crowd, world, 5, {}};
+      for (int step = 0; step < 30; ++step) {
+        chaos.act();
+        crowd.step();
+      }
+      if (first == 0) first = crowd.state_hash();
+      ASSERT_EQ(crowd.state_hash(), first) << name << ' ' << workers;
+    }
+  });
+}
+
+TEST(CrowdObstacles, ARestoredCrowdHasThemAsTheSavedOne) {
+  const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
+  Crowd crowd = made(world);
+  const auto ids = scattered(crowd, 150);
+  std::vector<Place> goals;
+  for (size_t i = 0; i < ids.size(); ++i) goals.push_back(world.random_place(0, 5, i));
+  crowd.set_goals(ids, goals);
+  Chaos chaos{crowd, world, 21, {}};
+  for (int step = 0; step < 30; ++step) {
+    chaos.act();
+    crowd.step();
+  }
+  EXPECT_GT(crowd.step().waiting, 0u);
+  const std::vector<uint8_t> saved = crowd.save();
+  Context context;
+  auto restored = Crowd::restore(world, {.workers = 3}, saved, context);
+  ASSERT_TRUE(restored) << restored.error().message;
+  EXPECT_EQ(restored->obstacles().size(), crowd.obstacles().size());
+  EXPECT_EQ(restored->save(), saved);
+  Chaos other{*restored, world, 21, chaos.ids, chaos.n};
+  for (int step = 0; step < 30; ++step) {
+    chaos.act();
+    other.act();
+    const uint64_t waiting = crowd.step().waiting;
+    ASSERT_EQ(restored->step().waiting, waiting);
+    ASSERT_EQ(restored->state_hash(), crowd.state_hash()) << step;
+    ASSERT_EQ(other.ids, chaos.ids);
+  }
+  EXPECT_TRUE(is_free(*restored));
+}
+
+}  // namespace
+}  // namespace throng

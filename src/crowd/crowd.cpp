@@ -94,6 +94,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     if (!finder) return finder.error();
     made->finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
     made->paths.resize(made->finders.size());
+    made->detours.resize(made->finders.size());
   }
   parts = std::move(made);
   obstacles.open_class(static_cast<size_t>(number), parts->ground);
@@ -295,7 +296,8 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     ++asked;
     const auto w = static_cast<size_t>(worker);
     LiveGround* live = cuts_ways ? &parts.lives[w] : nullptr;
-    if (!throng::plan(world, parts.finders[w], live, ground, parts.paths[w], body, route)) {
+    if (!throng::plan(world, parts.finders[w], live, ground, parts.paths[w], parts.detours[w], body,
+                      route)) {
       body.flags = 0;
       const std::lock_guard lock(stranding);
       stranded.push_back(id_of(body.slot));

@@ -30,6 +30,7 @@ struct ClassParts {
   std::vector<PathFinder> finders;       // one a worker
   std::vector<LiveGround> lives;         // one a worker, once an obstacle was in the way of ways
   std::vector<Path> paths;
+  std::vector<DetourScratch> detours;
 };
 
 struct Crowd::State {

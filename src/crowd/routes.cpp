@@ -67,7 +67,7 @@ bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
 }
 
 bool plan(const World& world, PathFinder& finder, LiveGround* live, const StrideGround& ground,
-          Path& path, Body& body, Route& route) {
+          Path& path, DetourScratch& scratch, Body& body, Route& route) {
   const WorldData& data = *world.data();
   const auto place_of = [&](const Spot& spot) {
     const GroundLevel level = ground_level(data, spot.level, body.avatar_class);
@@ -79,19 +79,10 @@ bool plan(const World& world, PathFinder& finder, LiveGround* live, const Stride
     const GroundPoint point = to_ground(data, place.position.x, place.position.z);
     return Spot{static_cast<int32_t>(point.x), static_cast<int32_t>(point.z), place.level1 - 1};
   };
-  const auto is_open = [&] {
-    Spot at = spot_of(path.points[0]);
-    for (size_t i = 1; i < path.points.size(); ++i) {
-      const Spot next = spot_of(path.points[i]);
-      StrideGround::Landing end;
-      const bool arrives = ground.move(at.level, 0, {at.x, at.z}, {next.x, next.z}, end);
-      if (!arrives || end.level != next.level) return false;
-      at = next;
-    }
-    return true;
-  };
   finder.find(from, to, path);
-  if (live != nullptr && path.end == PathEnd::kReached && !is_open()) live->find(from, to, path);
+  if (live != nullptr && path.end == PathEnd::kReached) {
+    lead_around(data, *live, ground, path, scratch);
+  }
   if (path.end != PathEnd::kReached) return false;
   if (path.points.size() < 2) {  // It stands on its goal.
     route.corners[0] = route.goal;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "crowd/body.h"
+#include "crowd/detours.h"
 #include "crowd/stride_ground.h"
 #include "throng/live_ground.h"
 #include "throng/path.h"
@@ -37,10 +38,9 @@ struct Route {
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach);
 
 /// Asks for a way from where the body is. False: none leads to the goal. With `live`, obstacles are
-/// up: they only take away, so a way of the finder's on which none lies is still the shortest, and
-/// only where one does the live ground is asked.
+/// up: see lead_around.
 bool plan(const World& world, PathFinder& finder, LiveGround* live, const StrideGround& ground,
-          Path& path, Body& body, Route& route);
+          Path& path, DetourScratch& scratch, Body& body, Route& route);
 
 /// A rectangle of the plane. [units]
 struct PlanBox {

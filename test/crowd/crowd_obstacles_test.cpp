@@ -133,6 +133,32 @@ TEST(CrowdObstacles, WhoIsOnTheWayTurnsBackWhenADoorAheadCloses) {
   EXPECT_LT(steps, 400);
 }
 
+TEST(CrowdObstacles, OfTwoDoorsThatTakeTurnsTheOpenOneIsTaken) {
+  const World world = two_ways();
+  Crowd crowd = made(world);
+  const AvatarId id = added(crowd, world.find_place(0, {4, 0, 12}, 0.5));
+  const Place ends[] = {world.find_place(0, {20, 0, 12}, 0.5),
+                        world.find_place(0, {4, 0, 12}, 0.5)};
+  const ObstacleId doors[] = {put_up(crowd, crate_at(kNearDoor)),
+                              put_up(crowd, crate_at(kFarDoor))};
+  for (size_t turn = 0; turn < 6; ++turn) {
+    const Vec3d open = turn % 4 < 2 ? kNearDoor : kFarDoor;
+    EXPECT_TRUE(crowd.set_obstacle_active(doors[0], turn % 4 >= 2));
+    EXPECT_TRUE(crowd.set_obstacle_active(doors[1], turn % 4 < 2));
+    send(crowd, id, ends[turn % 2]);
+    bool passed = false, there = false;
+    for (int step = 0; step < 500 && !there; ++step) {
+      crowd.step();
+      ASSERT_TRUE(crowd.stranded().empty());
+      ASSERT_TRUE(is_free(crowd));
+      const Vec3d at = position(crowd, id);
+      passed |= std::hypot(at.x - open.x, at.z - open.z) < 1;
+      there = !crowd.arrived().empty();
+    }
+    EXPECT_TRUE(passed && there) << turn;
+  }
+}
+
 TEST(CrowdObstacles, WhoHasNoWayLeftIsStranded) {
   const World world = two_ways();
   Crowd crowd = made(world);

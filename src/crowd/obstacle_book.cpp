@@ -129,34 +129,38 @@ std::vector<uint32_t> ObstacleBook::waiting() const {
 std::vector<std::pair<uint32_t, uint32_t>> ObstacleBook::in_the_way(std::span<const uint32_t> slots,
                                                                     std::span<const Body> bodies,
                                                                     int32_t workers) const {
-  // By class: the levels that are asked for, then who asks.
-  std::vector<std::vector<uint8_t>> is_asked(classes_.size());
-  bool any = false;
+  struct Asked {
+    uint32_t slot;
+    const CellRows* rows;
+  };
+  // By class and level: which of the lists says who asks for it, plus one.
+  std::vector<std::vector<uint32_t>> list_of(classes_.size());
+  std::vector<std::vector<Asked>> lists;
   for (const uint32_t slot : slots) {
     for (size_t c = 0; c < classes_.size(); ++c) {
       for (const LevelCells& cells : obstacles_[slot].of_class[c].swept) {
-        if (is_asked[c].empty()) is_asked[c].resize(world_.data()->level_count);
-        is_asked[c][cells.level] = 1;
-        any = true;
+        if (list_of[c].empty()) list_of[c].resize(world_.data()->level_count);
+        uint32_t& list = list_of[c][cells.level];
+        if (list == 0) {
+          lists.emplace_back();
+          list = static_cast<uint32_t>(lists.size());
+        }
+        lists[list - 1].push_back({slot, &cells.rows});
       }
     }
   }
   std::vector<std::pair<uint32_t, uint32_t>> found;
-  if (!any) return found;
+  if (lists.empty()) return found;
   std::mutex adding;
   parallel_ranges(bodies.size(), 4096, workers, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Body& body = bodies[i];
-      if (is_asked[body.avatar_class].empty() || is_asked[body.avatar_class][body.level] == 0) {
-        continue;
-      }
-      const int32_t x = body.point().cell_x(), z = body.point().cell_z();
-      for (const uint32_t slot : slots) {
-        for (const LevelCells& cells : obstacles_[slot].of_class[body.avatar_class].swept) {
-          if (cells.level != body.level || !has(cells.rows, x, z)) continue;
-          const std::lock_guard lock(adding);
-          found.emplace_back(slot, static_cast<uint32_t>(i));
-        }
+      const std::vector<uint32_t>& list = list_of[body.avatar_class];
+      if (list.empty() || list[body.level] == 0) continue;
+      for (const Asked& asked : lists[list[body.level] - 1]) {
+        if (!has(*asked.rows, body.point().cell_x(), body.point().cell_z())) continue;
+        const std::lock_guard lock(adding);
+        found.emplace_back(asked.slot, static_cast<uint32_t>(i));
       }
     }
   });

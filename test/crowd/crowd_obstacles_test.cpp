@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "baked.h"
+#include "core/hash.h"
 #include "core/random.h"
 #include "crowd/crowd_check.h"
 #include "simd_targets.h"
@@ -528,6 +530,36 @@ TEST(CrowdObstacles, ARestoredCrowdHasThemAsTheSavedOne) {
     ASSERT_EQ(other.ids, chaos.ids);
   }
   EXPECT_TRUE(is_free(*restored));
+}
+
+TEST(CrowdObstacles, SavedNonsenseIsRefusedOrHarmless) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  Crowd crowd = made(world);
+  put_up(crowd, crate_at({5, 0, 5}));
+  const ObstacleId cart = put_up(crowd, Prism::circle({10, 0, 10}, 0.5, 1), ObstacleKind::kMoving);
+  const AvatarId id = added(crowd, world.find_place(0, {12, 0, 10}, 0.5));
+  ASSERT_TRUE(crowd.move_obstacle(cart, Prism::circle({12, 0, 10}, 0.5, 1)));
+  EXPECT_TRUE(crowd.remove_obstacle(put_up(crowd, crate_at({15, 0, 5}))));
+  crowd.remove(std::span(&id, 1));
+  std::vector<uint8_t> saved = crowd.save();
+  uint64_t accepted = 0, refused = 0;
+  Context context;
+  for (size_t bit = 0; bit < (saved.size() - 8) * 8; ++bit) {
+    saved[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+    const uint64_t sum = hash_bytes(saved.data(), saved.size() - 8);
+    std::memcpy(saved.data() + saved.size() - 8, &sum, 8);
+    auto restored = Crowd::restore(world, {}, saved, context);
+    if (restored) {
+      restored->step();
+      ++accepted;
+    } else {
+      EXPECT_EQ(restored.error().code, Errc::kBadFile);
+      ++refused;
+    }
+    saved[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+  }
+  EXPECT_GT(accepted, 100u) << "a corner that moved a little";
+  EXPECT_GT(refused, 100u);
 }
 
 }  // namespace

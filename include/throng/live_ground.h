@@ -81,7 +81,7 @@ class THRONG_API LiveGround {
   bool advance(uint64_t max_nodes, Path& path);
 
  private:
-  friend class FlowField;
+  friend class FlowPoints;
   struct State;
   explicit LiveGround(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "path/live_search.h"
+#include "throng/context.h"
+#include "throng/live_ground.h"
+#include "throng/path.h"
+
+/// The distances that a FlowField shows, apart from the ground: one table serves many workers, each
+/// with a copy of the ground of its own.
+namespace throng {
+
+class FlowPoints {
+ public:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  /// Searches outwards from all goals that are places of the class, up to `most` metres' cost. None
+  /// if it was cancelled; without any points if no goal is a place.
+  static std::optional<FlowPoints> make(LiveGround& ground, std::span<const Place> goals,
+                                        double most, Context& context);
+  [[nodiscard]] bool empty() const { return points_.empty(); }
+
+  // `ground` is that of which they were made, or a copy of it, here and below.
+  /// As FlowField::distance, next, way.
+  [[nodiscard]] double distance(LiveGround& ground, const Place& place) const;
+  [[nodiscard]] Place next(LiveGround& ground, const Place& place) const;
+  void way(LiveGround& ground, const Place& place, Path& path) const;
+
+  [[nodiscard]] size_t size() const { return points_.size(); }
+  [[nodiscard]] uint64_t bytes() const { return points_.size() * sizeof(Point); }
+
+ private:
+  static constexpr uint32_t kNoPoint = UINT32_MAX;
+  // A goal, or a point just inside a rectangle by which the way to a goal leaves it.
+  struct Point {
+    LiveStop stop;
+    uint32_t next = kNoPoint;  // on the way; none at a goal
+    double cost = 0;           // [cells]
+  };
+
+  static bool before(const Point& a, const Point& b);
+  [[nodiscard]] std::pair<uint32_t, double> leave_by(LiveMesh& mesh, const LiveStop& stop) const;
+  [[nodiscard]] LiveStop across(LiveMesh& mesh, const Point& point) const;
+
+  // By level and rectangle, so that those of one lie together.
+  std::vector<Point> points_;
+  double most_ = kNever;  // [cells]
+};
+
+}  // namespace throng

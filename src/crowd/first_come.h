@@ -23,12 +23,13 @@ struct Bound {
 };
 
 /// Must `self` wait for `other`? Their goals have no room for both, and the other is nearer to his.
+/// Only near the goal: a column that is bound for one place walks.
 inline bool goes_first(const Bound& other, const Bound& self) {
-  if (!nearer_than(other.aim_x - self.aim_x, other.aim_z - self.aim_z,
-                   int64_t{other.radius} + self.radius)) {
-    return false;
-  }
+  constexpr int64_t kNear = 6;  // times what both need
+  const int64_t room = int64_t{other.radius} + self.radius;
+  if (!nearer_than(other.aim_x - self.aim_x, other.aim_z - self.aim_z, room)) return false;
   const int64_t his = other.left(), mine = self.left();
+  if (mine > kNear * kNear * room * room) return false;
   return his < mine || (his == mine && other.slot < self.slot);
 }
 

@@ -152,8 +152,9 @@ float next_turn(const Patience& patience, float turn, float progress, float alon
   const bool gets_on =
       progress >= patience.content || (turn > patience.most && along >= patience.walks);
   if (gets_on) return std::max(0.0f, turn - patience.back * dt);
-  return turn < patience.most ? std::min(patience.most, turn + patience.rate * dt)
-                              : std::min(patience.farthest, turn + patience.slow * dt);
+  if (turn < patience.most) return std::min(patience.most, turn + patience.rate * dt);
+  const float next = turn + patience.slow * dt;
+  return next < patience.farthest ? next : 0;
 }
 
 Plane turned_right(Plane direction, float turn) {

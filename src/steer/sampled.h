@@ -115,8 +115,8 @@ Plane wish_towards(Plane way, float speed, float dt, float turn);
 
 /// Who is not getting on turns to the right, by and by, up to `most`, and back once he is: what a
 /// jam needs to begin to turn as a whole. Who still does not turns on, slowly, up to `farthest`:
-/// away from his goal, and so out of a jam that is as dense as bodies can stand. All as tan(angle /
-/// 2), which needs no sines.
+/// away from his goal, and so out of a jam that is as dense as bodies can stand; if that led
+/// nowhere either, as in a corner, he begins again. All as tan(angle / 2), which needs no sines.
 struct Patience {
   float rate = 0.5f;      ///< a second
   float most = 0.42f;     ///< 46 degrees

@@ -21,6 +21,7 @@ struct AvatarState {
   uint32_t id = 0;
   int32_t avatar_class = 0;
   Vec3d position;        ///< Y at the feet. [m]
+  double radius = 0;     ///< Of the body. [m]
   double heading_x = 0;  ///< Unit vector of the walk.
   double heading_z = 0;
 };

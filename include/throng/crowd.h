@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "throng/context.h"
 #include "throng/crowd_obstacle.h"
 #include "throng/path.h"
+#include "throng/prism.h"
 #include "throng/result.h"
 #include "throng/world.h"
 
@@ -27,6 +29,9 @@ struct AvatarId {
   explicit operator bool() const { return slot1 != 0; }
   friend bool operator==(AvatarId, AvatarId) = default;
 };
+
+/// A region that many are bound for, see Crowd::add_target. 0 is none.
+using TargetId = uint16_t;
 
 /// How avatars get from where they are to their goals.
 enum class CrowdWays {
@@ -60,11 +65,11 @@ struct CrowdReport {
   uint64_t avatars = 0;    ///< All there are.
   uint64_t stood = 0;      ///< Did not move.
   uint64_t contested = 0;  ///< Could have touched somebody, so went through the rounds.
-  uint64_t arrived = 0;    ///< Came within 0.3 m of their goals, in this step.
-  uint64_t planned = 0;    ///< Got a way, or another one.
-  uint64_t no_way = 0;     ///< Of these, found that none leads to the goal: it is dropped.
-  uint64_t waiting = 0;    ///< Obstacles in whose way somebody stands.
-  double progress = 0;     ///< Mean speed towards the next corner by the wished one. [-1 to 1]
+  uint64_t arrived = 0;  ///< Came within 0.3 m of their goals, or into their targets, in this step.
+  uint64_t planned = 0;  ///< Got a way, or another one.
+  uint64_t no_way = 0;   ///< Of these, found that none leads to the goal: it is dropped.
+  uint64_t waiting = 0;  ///< Obstacles in whose way somebody stands.
+  double progress = 0;   ///< Mean speed towards the next corner by the wished one. [-1 to 1]
   double seconds_plan = 0;
   double seconds_sort = 0;
   double seconds_steer = 0;
@@ -121,6 +126,24 @@ class THRONG_API Crowd {
   /// Where they are bound for, one for each id: places of their class. An avatar keeps to its goal
   /// when it has arrived, and makes way. Nowhere: it stands. Ids of nobody are left out.
   void set_goals(std::span<const AvatarId> ids, std::span<const Place> goals);
+  /// Makes a region, the union of prisms, that many can be bound for: one search outwards from it
+  /// serves all ([FlowField]). Whoever's middle is inside has arrived. Fails with kBadInput (a
+  /// prism that is none), kBadConfig (CrowdWays::kStraight), kLimit (65535 targets) or kCancelled.
+  /// Time: the ground of all classes that are in use. Targets stay.
+  [[nodiscard]] Result<TargetId> add_target(std::span<const Prism> areas, Context& context);
+  /// Whom are bound for a target, each for where he is nearest, instead of a goal. Ids of nobody
+  /// are left out. [target: of this crowd]
+  void set_targets(std::span<const AvatarId> ids, TargetId target);
+  /// How far it is on foot from where an avatar is to a target: in the mean 1 to 2 % above the
+  /// least. Infinite where no way leads there, or there is no such avatar. [m]
+  [[nodiscard]] double distance(AvatarId id, TargetId target) const;
+  /// Up to some `most` places inside a target where a class can stand, evenly spread. Fails as
+  /// `add` does.
+  [[nodiscard]] Result<std::vector<Place>> places(TargetId target, int32_t avatar_class,
+                                                  size_t most, Context& context);
+  /// Wished speeds from now on, one for each id. Ids of nobody are left out. [m/s, > 0 to 100]
+  void set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds);
+
   /// Velocities wished by the caller instead of goals, until a goal is set; longer ones than an
   /// avatar's speed are cut. Avoidance and the rule of no overlaps stay. [m/s along X and Z]
   void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
@@ -134,6 +157,8 @@ class THRONG_API Crowd {
   [[nodiscard]] uint64_t state_hash() const;
   /// All avatars in order of their slots, into `out` (resized). AvatarState::id is the slot.
   void read(std::vector<AvatarState>& out) const;
+  /// One avatar; none if there is no such.
+  [[nodiscard]] std::optional<AvatarState> read(AvatarId id) const;
   /// Who arrived in the last step, in order of slot.
   [[nodiscard]] std::span<const AvatarId> arrived() const;
   /// Whose goals were dropped in the last step, because no way leads there, in order of slot.

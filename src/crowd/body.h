@@ -40,7 +40,7 @@ struct Body {
   uint8_t avatar_class = 0;
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
-  uint16_t reserved = 0;
+  uint16_t target = 0;  // TargetId: it is bound for a region
   State state = kFree;
   uint8_t round = 0;  // of the step in which this place was named, from 1
 

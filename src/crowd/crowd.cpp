@@ -102,6 +102,10 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     tell_ways(slot, static_cast<size_t>(number));
   }
   engine.set_ground(static_cast<size_t>(number), StrideGround(parts->ground, step_height));
+  if (auto ok = find_flows(number, context); !ok) {
+    parts.reset();
+    return ok;
+  }
   return {};
 }
 
@@ -249,6 +253,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
     Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
     body->flags = 0;
+    body->target = 0;
     body->turn = 0;
     const auto point = ground_point(*s.world.data(), goals[i]);
     if (!point) continue;
@@ -273,6 +278,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
     if (!std::isfinite(size)) size = INFINITY;
     const double part = size > body->speed ? body->speed / size : 1;
     body->flags = Body::kDriven;
+    body->target = 0;
     body->turn = 0;
     body->wish = part > 0
                      ? steer::Plane{static_cast<float>(v.x * part), static_cast<float>(v.z * part)}
@@ -286,7 +292,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
   uint64_t asked = 0;
   for (Body& body : bodies) {
     if (!body.has(Body::kHasGoal)) continue;
-    ClassParts& parts = *classes[body.avatar_class];
+    const ClassParts& parts = *classes[body.avatar_class];
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
     if (!body.has(Body::kLost)) {
@@ -294,10 +300,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;
-    const auto w = static_cast<size_t>(worker);
-    LiveGround* live = cuts_ways ? &parts.lives[w] : nullptr;
-    if (!throng::plan(world, parts.finders[w], live, ground, parts.paths[w], parts.detours[w], body,
-                      route)) {
+    if (!plan_way(body, route, ground, worker)) {
       body.flags = 0;
       const std::lock_guard lock(stranding);
       stranded.push_back(id_of(body.slot));
@@ -315,6 +318,7 @@ CrowdReport Crowd::step() {
   s.arrived.clear();
   s.stranded.clear();
   report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.in_the_way);
+  s.renew_flows();
   EngineCounts counts;
   CrowdEngine::Times times;
   std::atomic<uint64_t> planned{0};
@@ -327,6 +331,7 @@ CrowdReport Crowd::step() {
     for (const uint32_t slot : s.engine.arrived()) s.arrived.push_back(s.id_of(slot));
   }
   s.where_is_old = true;
+  s.arrive_in_targets();
   for (std::vector<AvatarId>* ids : {&s.arrived, &s.stranded}) {
     std::sort(ids->begin(), ids->end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
   }
@@ -371,22 +376,29 @@ uint64_t Crowd::state_hash() const {
   return hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
 }
 
+AvatarState Crowd::State::state_of(const Body& b) const {
+  const Vec3d origin = world.data()->summary.origin;
+  const double size = std::hypot(b.velocity.x, b.velocity.z);
+  return {.id = b.slot,
+          .avatar_class = b.avatar_class,
+          .position = {origin.x + (b.x + 0.5) * unit, b.y * 1e-3, origin.z + (b.z + 0.5) * unit},
+          .radius = b.radius * unit,
+          .heading_x = size > 0 ? b.velocity.x / size : 0,
+          .heading_z = size > 0 ? b.velocity.z / size : 1};
+}
+
 void Crowd::read(std::vector<AvatarState>& out) const {
   const State& s = *state_;
   s.find_bodies();
   out.clear();
-  const Vec3d origin = s.world.data()->summary.origin;
   for (const uint32_t i : s.where) {
-    if (i == kNobody) continue;
-    const Body& b = s.engine.bodies()[i];
-    const double size = std::hypot(b.velocity.x, b.velocity.z);
-    out.push_back(
-        {.id = b.slot,
-         .avatar_class = b.avatar_class,
-         .position = {origin.x + (b.x + 0.5) * s.unit, b.y * 1e-3, origin.z + (b.z + 0.5) * s.unit},
-         .heading_x = size > 0 ? b.velocity.x / size : 0,
-         .heading_z = size > 0 ? b.velocity.z / size : 1});
+    if (i != kNobody) out.push_back(s.state_of(s.engine.bodies()[i]));
   }
+}
+
+std::optional<AvatarState> Crowd::read(AvatarId id) const {
+  const Body* body = state_->body(id);
+  return body == nullptr ? std::nullopt : std::optional(state_->state_of(*body));
 }
 
 std::span<const AvatarId> Crowd::arrived() const { return state_->arrived; }

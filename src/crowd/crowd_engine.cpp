@@ -39,7 +39,8 @@ bool clash(const Body& a, const Body& at_a, const Body& b, const Body& at_b) {
 // On its last leg, and not there yet?
 bool is_bound(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven;
-  return (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
+  // A region has room for many.
+  return body.target == 0 && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
 // A square of so many cells to each side holds all that is looked at.

@@ -53,6 +53,7 @@ bool Crowd::remove_obstacle(ObstacleId id) {
   State& s = *state_;
   if (!set_obstacle_active(id, false)) return false;
   const uint32_t slot = id.slot1 - 1;
+  s.flows_are_old = true;
   for (size_t c = 0; c < s.classes.size(); ++c) {
     if (!s.classes[c]) continue;
     for (LiveGround& live : s.classes[c]->lives) {
@@ -135,6 +136,7 @@ void Crowd::State::tell_ways(uint32_t slot, size_t number) {
     THRONG_ASSERT(made);  // The class is one of the world's.
     lives.assign(static_cast<size_t>(worker_count(config.workers)), *made);
   }
+  flows_are_old = true;
   CrowdObstacle::OfClass& of_class = obstacle.of_class[number];
   ChangeId change = of_class.change;
   const bool is_new =

@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x32305744574f5243;  // "CROWDW02"
+constexpr uint64_t kMagic = 0x33305744574f5243;  // "CROWDW03"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -26,9 +26,10 @@ struct Head {
   uint64_t step = 0, sub_step = 0, scattered = 0;
   uint64_t bodies = 0, slots = 0, free_slots = 0;
   uint64_t obstacles = 0, corners = 0, free_obstacles = 0;
+  uint64_t target_values = 0;  // doubles
   int32_t rounds = 0, ways = 0, patient = 0, reserved = 0;
 };
-static_assert(sizeof(Head) == 16 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 17 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 88);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
@@ -98,7 +99,7 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
 uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
-         head.corners * sizeof(std::array<double, 2>) + 8;
+         head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -156,6 +157,43 @@ bool is_sound(const Body& b, const WorldData& data) {
   return b.level >= tile.first && b.level < tile.last;
 }
 
+// Targets as numbers: how many prisms, of each how many corners, low, high and the corners.
+std::vector<double> values_of(const std::vector<Target>& targets) {
+  std::vector<double> out;
+  for (const Target& target : targets) {
+    out.push_back(static_cast<double>(target.prisms.size()));
+    for (const Prism& prism : target.prisms) {
+      out.insert(out.end(), {static_cast<double>(prism.corners.size()), prism.low, prism.high});
+      for (const auto& corner : prism.corners) out.insert(out.end(), corner.begin(), corner.end());
+    }
+  }
+  return out;
+}
+
+// False: they are not what values_of writes.
+bool add_targets(Crowd& crowd, std::span<const double> values, Context& context) {
+  const auto count = [&](size_t at, double least, double most) {
+    return at < values.size() && values[at] >= least && values[at] <= most;
+  };
+  for (size_t at = 0; at < values.size();) {
+    if (!count(at, 1, 1e6)) return false;
+    std::vector<Prism> prisms(std::min(static_cast<size_t>(values[at++]), values.size()));
+    for (Prism& prism : prisms) {
+      if (!count(at, 3, 64)) return false;
+      const auto corners = static_cast<size_t>(values[at]);
+      if (values.size() - at < 3 + 2 * corners) return false;
+      prism.low = values[at + 1];
+      prism.high = values[at + 2];
+      at += 3;
+      for (size_t c = 0; c < corners; ++c, at += 2) {
+        prism.corners.push_back({values[at], values[at + 1]});
+      }
+    }
+    if (!crowd.add_target(prisms, context)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<uint8_t> Crowd::save() const {
@@ -172,6 +210,8 @@ std::vector<uint8_t> Crowd::save() const {
   head.obstacles = obstacles.size();
   head.corners = corners.size();
   head.free_obstacles = s.obstacles.free_slots().size();
+  const std::vector<double> targets = values_of(s.targets);
+  head.target_values = targets.size();
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put(out, &head, 1);
@@ -182,6 +222,7 @@ std::vector<uint8_t> Crowd::save() const {
   put(out, obstacles.data(), head.obstacles);
   put(out, corners.data(), head.corners);
   put(out, s.obstacles.free_slots().data(), head.free_obstacles);
+  put(out, targets.data(), targets.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put(out, &sum, 1);
   return out;
@@ -209,7 +250,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   constexpr uint64_t kMost = uint64_t{1} << 32;
   if (head.bodies >= kMost || head.slots >= kMost || head.free_slots >= kMost ||
       head.obstacles >= kMost || head.corners >= kMost || head.free_obstacles >= kMost ||
-      saved.size() != size_of(head)) {
+      head.target_values >= kMost || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
   }
   uint64_t sum = 0;
@@ -237,6 +278,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   take(corners.data(), corners.size());
   std::vector<uint32_t> free_obstacles(head.free_obstacles);
   take(free_obstacles.data(), free_obstacles.size());
+  std::vector<double> targets(head.target_values);
+  take(targets.data(), targets.size());
 
   s.where.assign(head.slots, kNobody);
   std::vector<bool> taken(head.slots, false);
@@ -253,6 +296,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   }
   auto all = obstacles_of(obstacles, corners);
   sound = sound && all && s.obstacles.restore(std::move(*all), std::move(free_obstacles));
+  sound = sound && add_targets(*made, targets, context);
+  for (const Body& body : bodies) sound = sound && body.target <= s.targets.size();
   if (!sound) return bad("is not sound; save the crowd again");
   s.ground_changed();
   s.engine.reserve(bodies.size());

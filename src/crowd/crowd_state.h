@@ -15,6 +15,8 @@
 #include "crowd/obstacle_book.h"
 #include "crowd/placement.h"
 #include "crowd/routes.h"
+#include "crowd/target.h"
+#include "path/flow_points.h"
 #include "throng/crowd.h"
 #include "throng/live_ground.h"
 
@@ -28,9 +30,10 @@ struct ClassParts {
   CrowdGround ground;
   std::optional<StandingDraw> standing;  // none: the ground has changed since
   std::vector<PathFinder> finders;       // one a worker
-  std::vector<LiveGround> lives;         // one a worker, once an obstacle was in the way of ways
+  std::vector<LiveGround> lives;         // one a worker, once ways mind obstacles or targets
   std::vector<Path> paths;
   std::vector<DetourScratch> detours;
+  std::vector<FlowPoints> flows;  // by target
 };
 
 struct Crowd::State {
@@ -53,6 +56,8 @@ struct Crowd::State {
   std::vector<uint32_t> free_slots;
   mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
   mutable bool where_is_old = false;
+  std::vector<Target> targets;  // TargetId less one
+  bool flows_are_old = false;   // the ground has changed since
   std::vector<AvatarId> arrived, stranded, in_the_way;
   std::mutex stranding;
 
@@ -81,6 +86,12 @@ struct Crowd::State {
   void cut_ways(std::span<const uint32_t> slots);
   /// The grounds are to be as the obstacles are.
   void ground_changed();
+  /// What a class lacks of the targets.
+  Result<void> find_flows(int32_t number, Context& context);
+  bool plan_way(Body& body, Route& route, const StrideGround& ground, int32_t worker);
+  void renew_flows();
+  void arrive_in_targets();
+  [[nodiscard]] AvatarState state_of(const Body& body) const;
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
 };
 

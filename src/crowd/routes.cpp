@@ -66,23 +66,18 @@ bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
   return false;
 }
 
-bool plan(const World& world, PathFinder& finder, LiveGround* live, const StrideGround& ground,
-          Path& path, DetourScratch& scratch, Body& body, Route& route) {
-  const WorldData& data = *world.data();
-  const auto place_of = [&](const Spot& spot) {
-    const GroundLevel level = ground_level(data, spot.level, body.avatar_class);
-    return place_at(data, level, {spot.x, spot.z});
-  };
+Place place_of(const WorldData& world, const Body& body, const Spot& spot) {
+  const GroundLevel level = ground_level(world, spot.level, body.avatar_class);
+  return place_at(world, level, {spot.x, spot.z});
+}
+
+Spot spot_of(const WorldData& world, const Place& place) {
+  const GroundPoint point = to_ground(world, place.position.x, place.position.z);
+  return {static_cast<int32_t>(point.x), static_cast<int32_t>(point.z), place.level1 - 1};
+}
+
+bool take_way(const WorldData& world, const Path& path, Body& body, Route& route) {
   body.flags = static_cast<uint8_t>(body.flags & ~Body::kLost);
-  const Place from = place_of({body.x, body.z, body.level}), to = place_of(route.goal);
-  const auto spot_of = [&](const Place& place) {
-    const GroundPoint point = to_ground(data, place.position.x, place.position.z);
-    return Spot{static_cast<int32_t>(point.x), static_cast<int32_t>(point.z), place.level1 - 1};
-  };
-  finder.find(from, to, path);
-  if (live != nullptr && path.end == PathEnd::kReached) {
-    lead_around(data, *live, ground, path, scratch);
-  }
   if (path.end != PathEnd::kReached) return false;
   if (path.points.size() < 2) {  // It stands on its goal.
     route.corners[0] = route.goal;
@@ -97,7 +92,7 @@ bool plan(const World& world, PathFinder& finder, LiveGround* live, const Stride
   route.next = 0;
   route.whole = legs <= Route::kCorners;
   for (size_t i = 0; i < route.count; ++i) {
-    route.corners[i] = spot_of(path.points[i + 1]);
+    route.corners[i] = spot_of(world, path.points[i + 1]);
   }
   turn_to(body, route);
   return true;

@@ -37,10 +37,12 @@ struct Route {
 /// along a leg. [units]
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach);
 
-/// Asks for a way from where the body is. False: none leads to the goal. With `live`, obstacles are
-/// up: see lead_around.
-bool plan(const World& world, PathFinder& finder, LiveGround* live, const StrideGround& ground,
-          Path& path, DetourScratch& scratch, Body& body, Route& route);
+/// Where a body stands, where it is bound for.
+Place place_of(const WorldData& world, const Body& body, const Spot& spot);
+Spot spot_of(const WorldData& world, const Place& place);
+
+/// Takes the next corners of a way that was found, from where the body is. False: none was.
+bool take_way(const WorldData& world, const Path& path, Body& body, Route& route);
 
 /// A rectangle of the plane. [units]
 struct PlanBox {

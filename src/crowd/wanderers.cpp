@@ -205,10 +205,13 @@ void Wanderers::read(std::vector<AvatarState>& out) const {
   const State& s = *state_;
   out.resize(s.avatars.size());
   const Vec3d origin = s.world.data()->summary.origin;
+  const double radius =
+      s.world.data()->summary.classes[static_cast<size_t>(s.config.avatar_class)].radius;
   for (const Avatar& avatar : s.avatars.span()) {
     AvatarState& state = out[avatar.id];
     state.id = avatar.id;
     state.avatar_class = s.config.avatar_class;
+    state.radius = radius;
     state.position = {origin.x + (avatar.x + 0.5) * s.unit, avatar.y * 1e-3,
                       origin.z + (avatar.z + 0.5) * s.unit};
     const double size = std::hypot(avatar.vx, avatar.vz);

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "core/parallel.h"
+#include "crowd/crowd_state.h"
+#include "throng/crowd.h"
+
+// What a crowd does about regions that many are bound for.
+namespace throng {
+namespace {
+
+constexpr size_t kMostTargets = UINT16_MAX;
+constexpr size_t kGoals = 4096;  // places of a region that ways lead to, about
+constexpr size_t kGrain = 4096;  // bodies
+
+}  // namespace
+
+Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& context) {
+  State& s = *state_;
+  if (s.config.ways != CrowdWays::kPaths) {
+    return Error{Errc::kBadConfig, "crowd: who goes straight on knows no targets; give goals"};
+  }
+  if (areas.empty()) return Error{Errc::kBadInput, "crowd: a target needs at least one prism"};
+  for (const Prism& prism : areas) {
+    if (auto ok = check_prism(prism); !ok) return ok.error();
+  }
+  if (s.targets.size() >= kMostTargets) {
+    return Error{Errc::kLimit, "crowd: it has 65535 targets; use those that it has again"};
+  }
+  s.targets.emplace_back(*s.world.data(), areas);
+  for (size_t c = 0; c < s.classes.size(); ++c) {
+    if (!s.classes[c]) continue;
+    auto ok = s.find_flows(static_cast<int32_t>(c), context);
+    if (ok) continue;
+    s.targets.pop_back();
+    for (const auto& parts : s.classes) {
+      if (parts && parts->flows.size() > s.targets.size()) parts->flows.pop_back();
+    }
+    return ok.error();
+  }
+  return static_cast<TargetId>(s.targets.size());
+}
+
+Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
+  ClassParts& parts = *classes[static_cast<size_t>(number)];
+  if (parts.lives.empty() && !targets.empty()) {
+    auto live = LiveGround::make(world, {.avatar_class = number, .slope_cost = 0});
+    if (!live) return live.error();
+    parts.lives.assign(static_cast<size_t>(worker_count(config.workers)), *live);
+  }
+  while (parts.flows.size() < targets.size()) {
+    const Target& target = targets[parts.flows.size()];
+    const std::vector<Place> goals =
+        places_inside(*world.data(), parts.ground, target.regions, kGoals);
+    auto flow = FlowPoints::make(parts.lives[0], goals, FlowPoints::kNever, context);
+    if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
+    parts.flows.push_back(std::move(*flow));
+  }
+  return {};
+}
+
+void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
+  State& s = *state_;
+  THRONG_ASSERT(target >= 1 && target <= s.targets.size());
+  for (const AvatarId id : ids) {
+    Body* body = s.body(id);
+    if (body == nullptr) continue;
+    s.routes[body->slot] = {};
+    body->turn = 0;
+    body->target = target;
+    body->aim_x = body->x;
+    body->aim_z = body->z;
+    body->flags = Body::kHasGoal | Body::kLost;
+  }
+}
+
+double Crowd::distance(AvatarId id, TargetId target) const {
+  State& s = *state_;
+  THRONG_ASSERT(target >= 1 && target <= s.targets.size());
+  s.renew_flows();
+  const Body* body = s.body(id);
+  if (body == nullptr) return std::numeric_limits<double>::infinity();
+  ClassParts& parts = *s.classes[body->avatar_class];
+  const Place place = place_of(*s.world.data(), *body, {body->x, body->z, body->level});
+  return parts.flows[target - 1u].distance(parts.lives[0], place);
+}
+
+Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, size_t most,
+                                         Context& context) {
+  State& s = *state_;
+  THRONG_ASSERT(target >= 1 && target <= s.targets.size());
+  if (auto ok = s.open_class(avatar_class, context); !ok) return ok.error();
+  return places_inside(*s.world.data(), s.classes[static_cast<size_t>(avatar_class)]->ground,
+                       s.targets[target - 1u].regions, std::max<size_t>(1, most));
+}
+
+void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds) {
+  THRONG_ASSERT(ids.size() == speeds.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    THRONG_ASSERT(speeds[i] > 0 && speeds[i] <= 100);
+    Body* body = s.body(ids[i]);
+    if (body == nullptr) continue;
+    body->speed = static_cast<float>(speeds[i]);
+    s.make_room(*body);
+  }
+}
+
+// A way from where the body is to its target or goal. False: there is none.
+bool Crowd::State::plan_way(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
+  const auto w = static_cast<size_t>(worker);
+  const WorldData& data = *world.data();
+  ClassParts& parts = *classes[body.avatar_class];
+  Path& path = parts.paths[w];
+  const Spot here{body.x, body.z, body.level};
+  const Place from = place_of(data, body, here);
+  if (body.target != 0) {
+    parts.flows[body.target - 1u].way(parts.lives[w], from, path);
+    route.goal = here;  // if it stands there already
+  } else {
+    const Place to = place_of(data, body, route.goal);
+    parts.finders[w].find(from, to, path);
+    if (cuts_ways && path.end == PathEnd::kReached) {
+      lead_around(data, parts.lives[w], ground, path, parts.detours[w]);
+    }
+  }
+  return take_way(data, path, body, route);
+}
+
+// The rectangles that flows name are of the ground as it was.
+void Crowd::State::renew_flows() {
+  if (!flows_are_old) return;
+  flows_are_old = false;
+  Context context;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    if (!classes[c] || classes[c]->flows.empty()) continue;
+    classes[c]->flows.clear();
+    const auto ok = find_flows(static_cast<int32_t>(c), context);
+    THRONG_ASSERT(ok);  // It was possible before, and nobody cancels it.
+  }
+  for (Body& body : engine.bodies()) {
+    if (body.target != 0 && body.has(Body::kHasGoal)) body.flags |= Body::kLost;
+  }
+}
+
+void Crowd::State::arrive_in_targets() {
+  if (targets.empty()) return;
+  parallel_ranges(engine.bodies().size(), kGrain, config.workers, [&](size_t begin, size_t end) {
+    for (Body& body : engine.bodies().subspan(begin, end - begin)) {
+      if (body.target == 0 || !body.has(Body::kHasGoal) || body.has(Body::kArrived) ||
+          !targets[body.target - 1u].contains(body)) {
+        continue;
+      }
+      body.flags |= Body::kArrived;
+      const std::lock_guard lock(stranding);
+      arrived.push_back(id_of(body.slot));
+    }
+  });
+}
+
+}  // namespace throng

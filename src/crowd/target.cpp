@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/target.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+int32_t millimetres(double metres) {
+  return static_cast<int32_t>(std::clamp(std::round(metres * 1000), -2e9, 2e9));
+}
+
+}  // namespace
+
+TargetRegion::TargetRegion(const WorldData& world, const Prism& prism)
+    : low_(millimetres(prism.low)), high_(millimetres(prism.high)) {
+  const double scale = kUnitsPerCell / world.summary.cell;
+  const Vec3d& origin = world.summary.origin;
+  const size_t count = prism.corners.size();
+  bounds_ = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  double area2 = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const auto& [ax, az] = prism.corners[i];
+    const auto& [bx, bz] = prism.corners[(i + 1) % count];
+    const double x = (ax - origin.x) * scale, z = (az - origin.z) * scale;
+    sides_.push_back({x, z, (bx - ax) * scale, (bz - az) * scale});
+    area2 += (ax - prism.corners[0][0]) * (bz - prism.corners[0][1]) -
+             (bx - prism.corners[0][0]) * (az - prism.corners[0][1]);
+    bounds_.x0 = std::min(bounds_.x0, x);
+    bounds_.z0 = std::min(bounds_.z0, z);
+    bounds_.x1 = std::max(bounds_.x1, x);
+    bounds_.z1 = std::max(bounds_.z1, z);
+  }
+  if (area2 >= 0) return;
+  for (Side& side : sides_) side = {side.x, side.z, -side.dx, -side.dz};
+}
+
+bool TargetRegion::contains(int32_t x, int32_t z, int32_t y) const {
+  if (y < low_ || y > high_) return false;
+  const double px = x + 0.5, pz = z + 0.5;
+  if (px < bounds_.x0 || px > bounds_.x1 || pz < bounds_.z0 || pz > bounds_.z1) return false;
+  return std::all_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+    return side.dx * (pz - side.z) - side.dz * (px - side.x) >= 0;
+  });
+}
+
+Target::Target(const WorldData& world, std::span<const Prism> areas)
+    : prisms(areas.begin(), areas.end()) {
+  for (const Prism& prism : prisms) regions.emplace_back(world, prism);
+}
+
+bool Target::contains(const Body& body) const {
+  return std::any_of(regions.begin(), regions.end(),
+                     [&](const TargetRegion& r) { return r.contains(body.x, body.z, body.y); });
+}
+
+std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
+                                 std::span<const TargetRegion> regions, size_t most) {
+  const auto cell_of = [](double units, int32_t cells) {
+    return static_cast<int32_t>(
+        std::clamp<double>(std::floor(units / kUnitsPerCell), 0, cells - 1));
+  };
+  const auto for_cells = [&](int32_t stride, auto visit) {
+    for (const TargetRegion& region : regions) {
+      const int32_t x0 = cell_of(region.bounds().x0, world.width),
+                    x1 = cell_of(region.bounds().x1, world.width),
+                    z0 = cell_of(region.bounds().z0, world.depth),
+                    z1 = cell_of(region.bounds().z1, world.depth);
+      for (int32_t tz = z0 >> 6; tz <= z1 >> 6; ++tz) {
+        for (int32_t tx = x0 >> 6; tx <= x1 >> 6; ++tx) {
+          ground.for_tile(tx, tz, region.low(), region.high(), [&](uint32_t level) {
+            for (int32_t z = std::max(z0, tz * 64); z <= std::min(z1, tz * 64 + 63); ++z) {
+              if (z % stride != 0) continue;
+              for (int32_t x = std::max(x0, tx * 64); x <= std::min(x1, tx * 64 + 63); ++x) {
+                if (x % stride != 0 || !ground.is_legal(level, x & 63, z & 63)) continue;
+                const GroundPoint middle{(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
+                                         (int64_t{z} << kUnitBits) + kUnitsPerCell / 2};
+                const auto mx = static_cast<int32_t>(middle.x), mz = static_cast<int32_t>(middle.z);
+                const int32_t feet = ground.feet(level, middle);
+                if (region.contains(mx, mz, feet)) visit(level, middle, feet);
+              }
+            }
+          });
+        }
+      }
+    }
+  };
+  // As coarse as it takes; a narrow region that a coarse raster misses is looked at more closely.
+  double area = 0;
+  for (const TargetRegion& r : regions) {
+    area += (r.bounds().x1 - r.bounds().x0) * (r.bounds().z1 - r.bounds().z0);
+  }
+  const double cells = area / kUnitsPerCell / kUnitsPerCell;
+  auto stride = static_cast<int32_t>(
+      std::clamp(std::ceil(std::sqrt(cells / static_cast<double>(most))), 1.0, 1e6));
+  std::vector<Place> places;
+  for (;; stride = std::max(1, stride / 2)) {
+    for_cells(stride, [&](uint32_t level, GroundPoint p, int32_t feet) {
+      const double unit = world.summary.cell / kUnitsPerCell;
+      const Vec3d& origin = world.summary.origin;
+      places.push_back({{origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet * 1e-3,
+                         origin.z + (static_cast<double>(p.z) + 0.5) * unit},
+                        level + 1});
+    });
+    if (!places.empty() || stride == 1) return places;
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "crowd/body.h"
+#include "crowd/crowd_ground.h"
+#include "throng/prism.h"
+#include "throng/world.h"
+
+/// Regions that many are bound for.
+namespace throng {
+
+/// A prism as bodies know places. Whoever's middle is in it, on its border too, is inside.
+class TargetRegion {
+ public:
+  TargetRegion(const WorldData& world, const Prism& prism);
+  [[nodiscard]] bool contains(int32_t x, int32_t z, int32_t y) const;
+
+  /// Points whose cells may be inside. [units, of the world]
+  struct Bounds {
+    double x0, z0, x1, z1;
+  };
+  [[nodiscard]] const Bounds& bounds() const { return bounds_; }
+  [[nodiscard]] int32_t low() const { return low_; }    // [mm]
+  [[nodiscard]] int32_t high() const { return high_; }  // [mm]
+
+ private:
+  // Inside is on the left of each side. [units]
+  struct Side {
+    double x, z, dx, dz;
+  };
+  std::vector<Side> sides_;
+  Bounds bounds_{};
+  int32_t low_ = 0, high_ = 0;
+};
+
+struct Target {
+  std::vector<Prism> prisms;
+  std::vector<TargetRegion> regions;
+
+  Target(const WorldData& world, std::span<const Prism> areas);
+  [[nodiscard]] bool contains(const Body& body) const;
+};
+
+/// Legal cells whose middles are inside, by region, level and row: all, or every n-th of a row and
+/// every n-th row, so that they are not many more than `most`. Y at the feet.
+std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
+                                 std::span<const TargetRegion> regions, size_t most);
+
+}  // namespace throng

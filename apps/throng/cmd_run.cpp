@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <vector>
 
 #include "command.h"
-#include "output_file.h"
 #include "rerun.h"
 #include "run_crowd.h"
-#include "run_recorder.h"
+#include "run_scenario.h"
+#include "run_sinks.h"
 #include "throng/wanderers.h"
 #include "throng/world.h"
 
@@ -22,10 +21,9 @@ namespace {
 struct RunOptions {
   std::string world;
   std::string class_name;
-  std::string trajectories;
-  std::string record;
+  SinkOptions sinks;
+  std::string visits;
   uint64_t steps = 100;
-  uint64_t every = 1;
   uint64_t check_every = 0;
   WanderConfig config;
   CrowdRun crowd;  // its goals are empty: wanderers
@@ -67,39 +65,6 @@ struct RunTotals {
     const size_t n = sorted.size();
     return n == 0 ? 0 : (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
   }
-};
-
-// One line an avatar: step,id,class,x,y,z,radius.
-class TrajectoryWriter {
- public:
-  Result<void> open(const std::string& path, const AvatarClass& avatar) {
-    avatar_ = avatar;
-    Result<void> opened = file_.open(path);
-    if (opened) file_.write("step,id,class,x,y,z,radius\n");
-    return opened;
-  }
-
-  [[nodiscard]] bool is_open() const { return file_.is_open(); }
-
-  template <class Avatars>
-  void add(uint64_t step, const Avatars& crowd) {
-    crowd.read(states_);
-    text_.clear();
-    for (const AvatarState& state : states_) {
-      const Vec3d& p = state.position;
-      fmt::format_to(std::back_inserter(text_), "{},{},{},{:.4f},{:.4f},{:.4f},{:.4f}\n", step,
-                     state.id, avatar_.name, p.x, p.y, p.z, avatar_.radius);
-    }
-    file_.write({text_.data(), text_.size()});
-  }
-
-  Result<void> finish() { return file_.finish(); }
-
- private:
-  OutputFile file_;
-  AvatarClass avatar_;
-  std::vector<AvatarState> states_;
-  fmt::memory_buffer text_;
 };
 
 double ns_per_avatar(double seconds, uint32_t avatars) {
@@ -145,51 +110,6 @@ std::string run_text(const RunOptions& options, const Wanderers& crowd, const Ru
       totals.found.overlaps, crowd.state_hash());
 }
 
-// Where a run is written to, step by step.
-class Sinks {
- public:
-  explicit Sinks(const RunOptions& options) : options_(options) {}
-
-  Result<void> open(const World& world, const std::string& model, const Json& settings) {
-    const bool other_bodies = !options_.crowd.goals.empty() && options_.crowd.radius > 0;
-    if (!options_.trajectories.empty()) {
-      AvatarClass avatar =
-          world.summary().classes[static_cast<size_t>(options_.config.avatar_class)];
-      if (other_bodies) avatar.radius = options_.crowd.radius;
-      auto ok = trajectories_.open(options_.trajectories, avatar);
-      if (!ok) return ok;
-    }
-    if (options_.record.empty()) return {};
-    auto ok =
-        recorder_.open(options_.record, options_.world, world, options_.config.dt, model, settings);
-    if (ok && other_bodies) recorder_.set_radius(options_.crowd.radius);
-    return ok;
-  }
-  // Of the steps between frames the recorder gets the hash alone.
-  template <class Avatars>
-  Result<void> add(uint64_t step, const Avatars& crowd) {
-    const bool is_due = step % options_.every == 0;
-    if (trajectories_.is_open() && is_due) trajectories_.add(step, crowd);
-    if (!recorder_.is_open()) return {};
-    if (!is_due) return recorder_.add_hash(step, crowd.state_hash());
-    crowd.read(states_);
-    return recorder_.add(step, crowd.state_hash(), states_);
-  }
-  Result<void> finish() {
-    if (trajectories_.is_open()) {
-      auto ok = trajectories_.finish();
-      if (!ok) return ok;
-    }
-    return recorder_.is_open() ? recorder_.finish() : Result<void>();
-  }
-
- private:
-  const RunOptions& options_;
-  TrajectoryWriter trajectories_;
-  RunRecorder recorder_;
-  std::vector<AvatarState> states_;
-};
-
 // The class's index, by name or the first; fills in the name.
 Result<int32_t> pick_class(const World& world, std::string& name) {
   if (name.empty()) name = world.summary().classes.front().name;
@@ -206,8 +126,10 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
   run.config.seed = options.config.seed;
   run.config.workers = options.config.workers;
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
-  Sinks sinks(options);
-  if (auto ok = sinks.open(world, kCrowdModel, crowd_settings(run)); !ok) return fail(ok.error());
+  Sinks sinks(options.sinks);
+  if (auto ok = sinks.open(world, options.world, run.config.dt, kCrowdModel, crowd_settings(run));
+      !ok)
+    return fail(ok.error());
   auto crowd = GoalCrowd::make(world, run, session.context);
   if (!crowd) return fail(crowd.error());
   const auto shown = [&](uint64_t step) { return sinks.add(step, crowd->crowd()); };
@@ -217,9 +139,9 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
 int run_wanderers(Session& session, const World& world, const RunOptions& options) {
   Result<Wanderers> crowd = Wanderers::create(world, options.config);
   if (!crowd) return fail(crowd.error());
-  Sinks sinks(options);
-  auto ok =
-      sinks.open(world, kWanderersModel, wanderers_settings(options.config, options.class_name));
+  Sinks sinks(options.sinks);
+  auto ok = sinks.open(world, options.world, options.config.dt, kWanderersModel,
+                       wanderers_settings(options.config, options.class_name));
   if (ok) ok = sinks.add(0, *crowd);
   if (!ok) return fail(ok.error());
   RunTotals totals;
@@ -235,6 +157,27 @@ int run_wanderers(Session& session, const World& world, const RunOptions& option
   if (!ok) return fail(ok.error());
   print_result(session, run_json(options, *crowd, totals), run_text(options, *crowd, totals));
   return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
+}
+
+int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
+  // What the file says is not said again; a world's options are none of a scenario's.
+  for (const char* name : {"--avatars", "--dt", "--class", "--speed", "--goals", "--near",
+                           "--radius", "--labels", "--zones"}) {
+    if (command.count(name) == 0) continue;
+    return fail({Errc::kBadConfig,
+                 fmt::format("{} goes with a world; write it into {}", name, options.world)});
+  }
+  ScenarioRun run{.file = options.world,
+                  .text = {},
+                  .steps = {},
+                  .seed = {},
+                  .check_every = options.check_every,
+                  .workers = options.config.workers,
+                  .visits = options.visits,
+                  .sinks = options.sinks};
+  if (command.count("--steps") > 0) run.steps = options.steps;
+  if (command.count("--seed") > 0) run.seed = options.config.seed;
+  return run_scenario(session, run);
 }
 
 int run(Session& session, RunOptions& options) {
@@ -254,12 +197,14 @@ int run(Session& session, RunOptions& options) {
 
 void add_run(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(
-      parser, session, "run", "Walk a crowd through a baked world",
+      parser, session, "run", "Walk a crowd through a baked world, or run a scenario",
       "throng bake builtin:garage -o garage.throng\n"
       "throng run garage.throng --avatars 200 --steps 50 --goals random --trajectories walk.csv");
   const auto options = std::make_shared<RunOptions>();
   WanderConfig& config = options->config;
-  command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
+  command->add_option("world", options->world, "World folder, or a scenario file")
+      ->required()
+      ->type_name("WORLD|SCENARIO.toml");
   command->add_option("--avatars", config.avatars, "How many")->capture_default_str();
   command->add_option("--steps", options->steps, "How many steps")->capture_default_str();
   command->add_option("--dt", config.dt, "Length of a step [s]")->capture_default_str();
@@ -279,16 +224,28 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_flag("--labels", options->crowd.config.labels,
                     "Label corners: faster ways, for small worlds");
   command->add_flag("--zones", options->crowd.config.zones, "Ways by zones: for large worlds");
-  command->add_option("--trajectories", options->trajectories, "Write positions to this file")
+  command->add_option("--trajectories", options->sinks.trajectories, "Write positions to this file")
       ->type_name("FILE.csv");
-  command->add_option("--record", options->record, "Record the run in this file")
+  command->add_option("--record", options->sinks.record, "Record the run in this file")
       ->type_name("FILE.replay");
-  command->add_option("--every", options->every, "Write each K-th step")
+  command->add_option("--every", options->sinks.every, "Write each K-th step")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option("--check-every", options->check_every,
                       "Look for walls entered and overlaps each K-th step, 0 for ten times a run");
-  command->callback([&session, options] { session.exit_code = run(session, *options); });
+  command->add_option("--visits", options->visits, "Of a scenario: write who came and went")
+      ->type_name("FILE.csv");
+  command->callback([&session, options, command] {
+    if (is_scenario_file(options->world)) {
+      session.exit_code = run_file(session, *command, *options);
+      return;
+    }
+    if (!options->visits.empty()) {
+      session.exit_code = fail({Errc::kBadConfig, "--visits goes with a scenario file"});
+      return;
+    }
+    session.exit_code = run(session, *options);
+  });
 }
 
 }  // namespace throng::app

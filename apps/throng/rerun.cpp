@@ -7,6 +7,8 @@
 #include <memory>
 #include <utility>
 
+#include "run_scenario.h"
+
 namespace throng::app {
 namespace {
 
@@ -79,13 +81,37 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
                .state_hash = [crowd] { return crowd->crowd().state_hash(); }};
 }
 
+Result<Rerun> rerun_scenario(const Json& settings, const World& world, int32_t workers) {
+  const auto scenario = recorded_scenario(settings);
+  if (!scenario) return scenario.error();
+  Context context;
+  auto made = Simulation::make(world, *scenario, workers, context);
+  if (!made) return made.error();
+  const auto simulation = std::make_shared<Simulation>(std::move(*made));
+  // Whatever fails leaves the state behind that of the recording, which the hash shows.
+  return Rerun{.step = [simulation] { (void)simulation->step(); },
+               .state_hash = [simulation] { return simulation->state_hash(); }};
+}
+
+// The world that a scenario had baked for itself; none if it opened a folder.
+Result<World> own_world(const RecordingInfo& info) {
+  const Json settings = Json::parse(info.settings, nullptr, /*allow_exceptions=*/false);
+  const auto scenario = recorded_scenario(settings);
+  if (!scenario) return scenario.error();
+  if (!scenario->world.empty()) return World();
+  Context context;
+  return open_world(*scenario, context);
+}
+
 struct Model {
   const char* name;
   Result<Rerun> (*rerun)(const Json& settings, const World& world, int32_t workers);
 };
 
 // One line a model: what `throng replay --check` can run again.
-constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers}, {kCrowdModel, rerun_crowd}};
+constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers},
+                             {kCrowdModel, rerun_crowd},
+                             {kScenarioModel, rerun_scenario}};
 
 }  // namespace
 
@@ -118,6 +144,10 @@ Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t 
 }
 
 Result<World> world_of(const RecordingInfo& info, const std::string& folder) {
+  if (folder.empty() && info.model == kScenarioModel) {
+    auto world = own_world(info);
+    if (!world || world->data() != nullptr) return world;
+  }
   const std::string& name = folder.empty() ? info.world : folder;
   Result<World> world = World::open(name);
   if (!world) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "run_recorder.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace throng::app {
@@ -19,17 +18,12 @@ Result<void> RunRecorder::open(const std::string& path, const std::string& world
                      .settings = settings.dump()};
   for (const AvatarClass& avatar : summary.classes) {
     info.classes.push_back({avatar.name, avatar.height, avatar.radius});
-    radii_.push_back(static_cast<float>(avatar.radius));
   }
   auto recorder = Recorder::create(path, info);
   if (!recorder) return recorder.error();
   recorder_.emplace(std::move(*recorder));
   dt_ = dt;
   return {};
-}
-
-void RunRecorder::set_radius(double radius) {
-  std::fill(radii_.begin(), radii_.end(), static_cast<float>(radius));
 }
 
 Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,
@@ -43,7 +37,7 @@ Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,
     frame_.ids[i] = state.id;
     frame_.classes[i] = static_cast<uint8_t>(state.avatar_class);
     frame_.positions[i] = state.position;
-    frame_.radii[i] = radii_[frame_.classes[i]];
+    frame_.radii[i] = static_cast<float>(state.radius);
     frame_.headings[i] = {static_cast<float>(state.heading_x), static_cast<float>(state.heading_z)};
   }
   return recorder_->append(frame_.view());

@@ -21,9 +21,7 @@ class RunRecorder {
   Result<void> open(const std::string& path, const std::string& world_name, const World& world,
                     double dt, const std::string& model, const Json& settings);
   [[nodiscard]] bool is_open() const { return recorder_.has_value(); }
-  /// From now on all bodies have this radius, not that of their classes. [m]
-  void set_radius(double radius);
-  /// One frame; an avatar's radius is that of its class unless set_radius said otherwise.
+  /// One frame.
   Result<void> add(uint64_t step, uint64_t state_hash, std::span<const AvatarState> avatars);
   /// A step without a frame.
   Result<void> add_hash(uint64_t step, uint64_t state_hash) {
@@ -34,7 +32,6 @@ class RunRecorder {
 
  private:
   std::optional<Recorder> recorder_;
-  std::vector<float> radii_;
   double dt_ = 0.1;
   RecordedFrame frame_;
 };

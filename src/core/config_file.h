@@ -58,6 +58,7 @@ class ConfigReader {
   void fail(const ConfigNode& at, const std::string& why);
 
   [[nodiscard]] const ConfigNode* find(const char* key) const { return table_.find(key); }
+  [[nodiscard]] const ConfigNode& table() const { return table_; }
   [[nodiscard]] bool ok() const { return message_.empty(); }
   [[nodiscard]] Error error() const { return {Errc::kBadFile, message_}; }
 

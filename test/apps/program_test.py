@@ -4,7 +4,6 @@
 
 python3 program_test.py build/release/throng"""
 import base64
-import base64
 import json
 import os
 import pathlib
@@ -19,6 +18,7 @@ import tempfile
 import time
 import unittest
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else pathlib.Path("throng")
 
 
@@ -286,6 +286,60 @@ class Program(unittest.TestCase):
             (self.path / "goals.csv").write_text(text)
             self.assert_refused(self.run_throng("run", self.world, "--goals", "goals.csv"), words)
         self.assert_refused(self.run_throng("run", self.world, "--goals", "missing.csv"), "missing.csv")
+
+    def scenario(self):
+        """The example of the documentation."""
+        text = (ROOT / "docs" / "scenarios.md").read_text()
+        file = self.path / "hall.toml"
+        file.write_text(re.search(r"^```toml\n(.*?)^```$", text, re.MULTILINE | re.DOTALL).group(1))
+        return file
+
+    def test_the_scenario_of_the_documentation_runs_and_comes_out_the_same(self):
+        file = self.scenario()
+        done = self.run_throng("run", file, "--json", "--record", "hall.replay", "--visits", "visits.csv",
+                               "--check-every", 1)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual((result["wall_entries"], result["overlaps"], result["stranded"]), (0, 0, 0))
+        self.assertEqual(result["left"], result["entered"])
+        self.assertGreater(result["entered"], 150)
+        self.assertEqual(sum(e["left"] for e in result["exits"].values()), result["left"])
+        lines = (self.path / "visits.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "person,source,profile,journey,speed,entered,started,left,exit")
+        self.assertEqual(len(lines), result["entered"] + 1)
+        for threads in (1, 2):
+            again = self.run_throng("replay", "hall.replay", "--check", "--threads", threads)
+            self.assertEqual(again.returncode, 0, again.stderr + again.stdout)
+            self.assertIn("all the same", again.stdout)
+        other = json.loads(self.run_throng("run", file, "--seed", 2, "--steps", 50, "--json").stdout)
+        self.assertNotEqual(other["state_hash"], result["state_hash"])
+
+    def test_the_schema_of_scenarios_knows_the_keys_that_the_program_knows(self):
+        schema = json.loads((ROOT / "docs" / "scenario.schema.json").read_text())["properties"]
+        tables = {name: part["items"]["properties"] for name, part in schema.items() if part.get("type") == "array"}
+        tables.update({name: schema[name]["properties"] for name in ("plane", "builtin")})
+        tables["stages"] = tables["journey"]["stages"]["items"]["properties"]
+        text = self.scenario().read_text()
+        text += '\n[[link]]\nname = "lift"\nfrom = "hall"\nto = "hall"\nseconds = 1\n[[density]]\nname = "map"\nbox = [0, 0, 1, 1]\n'
+        text += '[[class]]\nname = "adult"\n'
+        wrong = {name: text.replace(f"[[{name}]]", f"[[{name}]]\nnonsense = 1", 1) for name in tables}
+        wrong["plane"] = text.replace("[plane]", "[plane]\nnonsense = 1")
+        wrong["builtin"] = '[builtin]\nname = "cube"\nnonsense = 1\n'
+        wrong["stages"] = text.replace("{ go =", "{ nonsense = 1, go =", 1)
+        wrong["top"], tables["top"] = "nonsense = 1\n" + text, schema
+        for name, body in wrong.items():
+            (self.path / "wrong.toml").write_text(body)
+            done = self.run_throng("run", "wrong.toml")
+            self.assert_refused(done, "wrong.toml:", "unknown key 'nonsense'")
+            known = done.stderr.strip().split("known are ")[1].split(", ")
+            self.assertEqual(sorted(known), sorted(tables[name]), name)
+
+    def test_options_of_worlds_are_refused_for_scenarios_and_the_other_way_round(self):
+        file = self.scenario()
+        self.assert_refused(self.run_throng("run", file, "--avatars", 3), "--avatars", "hall.toml")
+        self.assert_refused(self.run_throng("run", self.world, "--visits", "v.csv"), "--visits")
+        self.assert_refused(self.run_throng("run", "none.toml"), "none.toml", "cannot be read")
+        self.assertFalse((self.path / "v.csv").exists())
 
     def test_a_report_is_one_page_that_holds_its_pictures(self):
         self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--record", "walk.replay")

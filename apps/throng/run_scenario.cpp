@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "run_scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "output_file.h"
+
+namespace throng::app {
+namespace {
+
+// Who has left, by the area that he left by.
+struct Exit {
+  uint64_t left = 0;
+  double first = 0, last = 0;  // [s]
+};
+
+struct Outcome {
+  std::map<std::string, Exit> exits;
+  double last = 0;       // [s]
+  double mean_time = 0;  // from setting off to leaving [s]
+};
+
+Outcome outcome_of(const Scenario& scenario, const Simulation& simulation) {
+  Outcome out;
+  uint64_t left = 0;
+  for (const Visit& visit : simulation.visits()) {
+    if (visit.left < 0) continue;
+    Exit& exit = out.exits[scenario.areas[static_cast<size_t>(visit.exit)].name];
+    if (exit.left++ == 0) exit.first = visit.left;
+    exit.first = std::min(exit.first, visit.left);
+    exit.last = std::max(exit.last, visit.left);
+    out.last = std::max(out.last, visit.left);
+    out.mean_time += visit.left - visit.started;
+    ++left;
+  }
+  if (left > 0) out.mean_time /= static_cast<double>(left);
+  return out;
+}
+
+template <class Things>
+std::string name_in(const Things& things, int32_t index) {
+  return index < 0 ? "" : things[static_cast<size_t>(index)].name;
+}
+
+Result<void> write_visits(const std::string& path, const Scenario& scenario,
+                          const Simulation& simulation) {
+  OutputFile file;
+  if (auto ok = file.open(path); !ok) return ok;
+  file.write("person,source,profile,journey,speed,entered,started,left,exit\n");
+  const auto time = [](double t) { return t < 0 ? std::string() : fmt::format("{:.3f}", t); };
+  for (const Visit& v : simulation.visits()) {
+    if (v.entered < 0) continue;
+    file.write(fmt::format(
+        "{},{},{},{},{:.4f},{},{},{},{}\n", v.person, name_in(scenario.sources, v.source),
+        name_in(scenario.profiles, v.profile), name_in(scenario.journeys, v.journey), v.speed,
+        time(v.entered), time(v.started), time(v.left), name_in(scenario.areas, v.exit)));
+  }
+  return file.finish();
+}
+
+struct Totals {
+  uint64_t steps = 0, most = 0, checks = 0;
+  double avatar_steps = 0, seconds = 0, progress = 0;
+  CrowdCheck found;
+  SimulationReport last;
+};
+
+void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
+           const Simulation& simulation, const Totals& t) {
+  const Outcome outcome = outcome_of(scenario, simulation);
+  const double ns = t.avatar_steps > 0 ? t.seconds * 1e9 / t.avatar_steps : 0;
+  const double progress = t.avatar_steps > 0 ? t.progress / t.avatar_steps : 0;
+  Json exits = Json::object();
+  std::string lines;
+  for (const auto& [name, exit] : outcome.exits) {
+    exits[name] = {{"left", exit.left}, {"first", exit.first}, {"last", exit.last}};
+    lines += fmt::format("  {:<16} {:6} people, {:.1f} to {:.1f} s\n", name, exit.left, exit.first,
+                         exit.last);
+  }
+  print_result(
+      session,
+      {{"scenario", run.file},
+       {"steps", t.steps},
+       {"seconds", t.last.time},
+       {"dt", scenario.dt},
+       {"seed", scenario.seed},
+       {"threads", run.workers},
+       {"entered", t.last.entered},
+       {"left", t.last.left},
+       {"still_here", simulation.crowd().size()},
+       {"outside", t.last.outside},
+       {"in_links", t.last.in_links},
+       {"stranded", t.last.stranded},
+       {"most_at_a_time", t.most},
+       {"last_left", outcome.last},
+       {"mean_time", outcome.mean_time},
+       {"exits", exits},
+       {"progress", progress},
+       {"ns_per_avatar_step_mean", ns},
+       {"checks", t.checks},
+       {"wall_entries", t.found.wall_entries},
+       {"overlaps", t.found.overlaps},
+       {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
+       {"peak_bytes", peak_memory()}},
+      fmt::format("{}: {:.1f} s, {} people came, {} left, {} are still here\n{}"
+                  "the last left after {:.1f} s; a way took {:.1f} s in the mean\n"
+                  "{} stranded, {} found no room to come in; {:.0f} ns an avatar a step\n"
+                  "{} checks: {} wall entries, {} overlaps\nstate {:016x}\n",
+                  run.file, t.last.time, t.last.entered, t.last.left, simulation.crowd().size(),
+                  lines, outcome.last, outcome.mean_time, t.last.stranded, t.last.outside, ns,
+                  t.checks, t.found.wall_entries, t.found.overlaps, simulation.state_hash()));
+}
+
+Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& scenario,
+                    Simulation& simulation, Sinks& sinks) {
+  Totals t;
+  const uint64_t steps =
+      run.steps.value_or(static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9)));
+  const uint64_t check_every =
+      run.check_every > 0 ? run.check_every : std::max<uint64_t>(1, steps / 10);
+  t.last.entered = simulation.crowd().size();
+  const auto check = [&] {
+    const CrowdCheck found = simulation.crowd().check();
+    ++t.checks;
+    t.found.wall_entries += found.wall_entries;
+    t.found.overlaps += found.overlaps;
+  };
+  if (auto ok = sinks.add(0, simulation); !ok) return ok.error();
+  while (t.steps < steps && (run.steps || !simulation.is_over())) {
+    const auto report = simulation.step();
+    if (!report) return report.error();
+    ++t.steps;
+    t.last = *report;
+    const auto avatars = static_cast<double>(report->crowd.avatars);
+    t.most = std::max(t.most, report->crowd.avatars);
+    t.avatar_steps += avatars;
+    t.seconds += report->crowd.seconds_total;
+    t.progress += report->crowd.progress * avatars;
+    if (t.steps % check_every == 0) check();
+    if (auto ok = sinks.add(t.steps, simulation); !ok) return ok.error();
+    show_progress(session, "run", t.steps, steps);
+    if (session.context.cancel) return Error{Errc::kCancelled, "run: interrupted"};
+  }
+  check();
+  if (auto ok = sinks.finish(); !ok) return ok.error();
+  return t;
+}
+
+Result<int> try_run(Session& session, ScenarioRun& run) {
+  std::ifstream file(run.file, std::ios::binary);
+  if (!file) return Error{Errc::kNotFound, run.file + ": cannot be read"};
+  run.text.assign(std::istreambuf_iterator<char>(file), {});
+  auto scenario = parse_scenario(run.text, run.file);
+  if (!scenario) return scenario.error();
+  if (run.seed) scenario->seed = *run.seed;
+  const auto world = open_world(*scenario, session.context);
+  if (!world) return world.error();
+  auto simulation = Simulation::make(*world, *scenario, run.workers, session.context);
+  if (!simulation) return simulation.error();
+  Sinks sinks(run.sinks);
+  const Json settings = {{"scenario", run.text}, {"file", run.file}, {"seed", scenario->seed}};
+  auto ok = sinks.open(*world, scenario->world.empty() ? run.file : scenario->world, scenario->dt,
+                       kScenarioModel, settings);
+  if (!ok) return ok.error();
+  const auto totals = walk(session, run, *scenario, *simulation, sinks);
+  if (!totals) return totals.error();
+  if (!run.visits.empty()) {
+    if (ok = write_visits(run.visits, *scenario, *simulation); !ok) return ok.error();
+  }
+  print(session, run, *scenario, *simulation, *totals);
+  return totals->found.wall_entries + totals->found.overlaps == 0 ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+bool is_scenario_file(const std::string& name) {
+  return (name.ends_with(".toml") || name.ends_with(".json")) &&
+         !std::filesystem::is_directory(name);
+}
+
+int run_scenario(Session& session, ScenarioRun& run) {
+  const Result<int> code = try_run(session, run);
+  return code ? *code : fail(code.error());
+}
+
+Result<Scenario> recorded_scenario(const Json& settings) {
+  const auto text = settings.find("scenario"), file = settings.find("file"),
+             seed = settings.find("seed");
+  const bool is_right = text != settings.end() && text->is_string() && file != settings.end() &&
+                        file->is_string() && seed != settings.end() && seed->is_number_unsigned();
+  if (!is_right) {
+    return Error{Errc::kBadFile,
+                 "the recording's settings hold no scenario; record the run again "
+                 "with this program"};
+  }
+  auto scenario = parse_scenario(text->get<std::string>(), file->get<std::string>());
+  if (scenario) scenario->seed = *seed;
+  return scenario;
+}
+
+}  // namespace throng::app

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "command.h"
+#include "run_sinks.h"
+#include "throng/scenario.h"
+#include "throng/simulation.h"
+
+/// throng run with a scenario file.
+namespace throng::app {
+
+struct ScenarioRun {
+  std::string file;
+  std::string text;               // what the file holds
+  std::optional<uint64_t> steps;  // instead of the scenario's seconds
+  std::optional<uint64_t> seed;   // instead of the scenario's
+  uint64_t check_every = 0;       // 0: ten times a run
+  int32_t workers = 0;
+  std::string visits;  // CSV of who came and went; empty: none
+  SinkOptions sinks;
+};
+
+/// Is that a scenario's file, and not a world's folder?
+[[nodiscard]] bool is_scenario_file(const std::string& name);
+
+/// Runs it and prints what came of it. Returns the exit code.
+int run_scenario(Session& session, ScenarioRun& run);
+
+inline constexpr const char* kScenarioModel = "scenario";
+
+/// The scenario of a recording's settings. Fails with kBadFile.
+[[nodiscard]] Result<Scenario> recorded_scenario(const Json& settings);
+
+}  // namespace throng::app

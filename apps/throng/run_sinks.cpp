@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "run_sinks.h"
+
+#include <iterator>
+
+namespace throng::app {
+
+Result<void> Sinks::open(const World& world, const std::string& world_name, double dt,
+                         const std::string& model, const Json& settings) {
+  for (const AvatarClass& avatar : world.summary().classes) class_names_.push_back(avatar.name);
+  if (!options_.trajectories.empty()) {
+    if (auto ok = trajectories_.open(options_.trajectories); !ok) return ok;
+    trajectories_.write("step,id,class,x,y,z,radius\n");
+  }
+  if (options_.record.empty()) return {};
+  return recorder_.open(options_.record, world_name, world, dt, model, settings);
+}
+
+void Sinks::write_trajectories(uint64_t step) {
+  text_.clear();
+  for (const AvatarState& state : states_) {
+    const Vec3d& p = state.position;
+    fmt::format_to(std::back_inserter(text_), "{},{},{},{:.4f},{:.4f},{:.4f},{:.4f}\n", step,
+                   state.id, class_names_[static_cast<size_t>(state.avatar_class)], p.x, p.y, p.z,
+                   state.radius);
+  }
+  trajectories_.write({text_.data(), text_.size()});
+}
+
+Result<void> Sinks::finish() {
+  if (trajectories_.is_open()) {
+    if (auto ok = trajectories_.finish(); !ok) return ok;
+  }
+  return recorder_.is_open() ? recorder_.finish() : Result<void>();
+}
+
+}  // namespace throng::app

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "output_file.h"
+#include "run_recorder.h"
+#include "throng/avatar_state.h"
+#include "throng/world.h"
+
+/// Where a run is written to, step by step.
+namespace throng::app {
+
+struct SinkOptions {
+  std::string trajectories;  // CSV; empty: none
+  std::string record;        // a recording; empty: none
+  uint64_t every = 1;        // frame
+};
+
+class Sinks {
+ public:
+  explicit Sinks(const SinkOptions& options) : options_(options) {}
+
+  /// `settings` is all that rerun.h needs to run it again.
+  Result<void> open(const World& world, const std::string& world_name, double dt,
+                    const std::string& model, const Json& settings);
+  /// Of the steps between frames the recorder gets the hash alone.
+  template <class Avatars>
+  Result<void> add(uint64_t step, const Avatars& avatars) {
+    const bool is_due = step % options_.every == 0;
+    if (is_due && (trajectories_.is_open() || recorder_.is_open())) avatars.read(states_);
+    if (trajectories_.is_open() && is_due) write_trajectories(step);
+    if (!recorder_.is_open()) return {};
+    if (!is_due) return recorder_.add_hash(step, avatars.state_hash());
+    return recorder_.add(step, avatars.state_hash(), states_);
+  }
+  Result<void> finish();
+
+ private:
+  // One line an avatar: step,id,class,x,y,z,radius.
+  void write_trajectories(uint64_t step);
+
+  SinkOptions options_;
+  OutputFile trajectories_;
+  RunRecorder recorder_;
+  std::vector<std::string> class_names_;
+  std::vector<AvatarState> states_;
+  fmt::memory_buffer text_;
+};
+
+}  // namespace throng::app

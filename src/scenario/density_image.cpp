@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "scenario/density_image.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "core/plan_point.h"
+#include "core/read_file.h"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace throng {
+namespace {
+
+constexpr int kMostPixels = 16384;  // of a side
+
+bool is_inside(const Prism& prism, const PlanPoint& p) {
+  bool left = false, right = false;
+  for (size_t i = 0; i < prism.corners.size(); ++i) {
+    const double side = turn(prism.corners[i], prism.corners[(i + 1) % prism.corners.size()], p);
+    left = left || side > 0;
+    right = right || side < 0;
+  }
+  return !(left && right);
+}
+
+}  // namespace
+
+Result<void> read_density_image(const std::string& path, DensityMap& map) {
+  const auto bytes = read_file(path);
+  if (!bytes) return bytes.error();
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes->data());
+  const auto size = static_cast<int>(std::min<size_t>(bytes->size(), INT32_MAX));
+  int width = 0, height = 0, channels = 0;
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
+    return Error{Errc::kBadFile, path + ": is no PNG; save the picture as one"};
+  }
+  if (width > kMostPixels || height > kMostPixels) {
+    return Error{Errc::kBadFile, path + ": is larger than 16384 pixels a side; make it smaller"};
+  }
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(data, size, &width, &height, &channels, 1), stbi_image_free);
+  if (!pixels) return Error{Errc::kBadFile, path + ": is a damaged PNG; save it again"};
+  map.width = width;
+  map.height = height;
+  map.weights.assign(pixels.get(),
+                     pixels.get() + static_cast<size_t>(width) * static_cast<size_t>(height));
+  return {};
+}
+
+void paint_density(DensityMap& map, std::span<const Prism> prisms, uint8_t weight) {
+  const double dx = (map.x1 - map.x0) / map.width, dz = (map.z1 - map.z0) / map.height;
+  for (int32_t row = 0; row < map.height; ++row) {
+    for (int32_t column = 0; column < map.width; ++column) {
+      const PlanPoint middle{map.x0 + (column + 0.5) * dx, map.z0 + (row + 0.5) * dz};
+      const bool painted = std::any_of(prisms.begin(), prisms.end(),
+                                       [&](const Prism& p) { return is_inside(p, middle); });
+      if (!painted) continue;
+      map.weights[static_cast<size_t>(row) * static_cast<size_t>(map.width) +
+                  static_cast<size_t>(column)] = weight;
+    }
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "core/logarithm.h"
+#include "core/random.h"
+#include "core/trig.h"
+#include "throng/scenario.h"
+
+namespace throng {
+namespace {
+
+constexpr uint64_t kTries = 64;
+
+double draw_once(const Distribution& d, uint64_t seed, uint64_t stream, uint64_t n) {
+  const double u = random_unit(seed, stream, n);
+  switch (d.kind) {
+    case Distribution::Kind::kFixed:
+      return d.a;
+    case Distribution::Kind::kUniform:
+      return d.a + (d.b - d.a) * u;
+    case Distribution::Kind::kExponential:
+      return -d.a * log_of(1 - u);
+    case Distribution::Kind::kNormal:
+      break;
+  }
+  // [BM58]
+  const double angle = random_unit(seed ^ 0x6e6f726d616cULL, stream, n);
+  return d.a + d.b * std::sqrt(-2 * log_of(1 - u)) * cos_turns(angle);
+}
+
+}  // namespace
+
+double draw(const Distribution& distribution, uint64_t seed, uint64_t stream, uint64_t n) {
+  double value = distribution.a;
+  for (uint64_t k = 0; k < kTries; ++k) {
+    value = draw_once(distribution, seed, stream, n * kTries + k);
+    if (value >= distribution.low && value <= distribution.high) return value;
+  }
+  return std::clamp(value, distribution.low, distribution.high);
+}
+
+}  // namespace throng

@@ -1,0 +1,650 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <span>
+
+#include "core/config_file.h"
+#include "core/read_file.h"
+#include "core/trig.h"
+#include "scenario/density_image.h"
+#include "throng/scenario.h"
+
+namespace throng {
+namespace {
+
+constexpr double kFar = 1e6;   // [m]
+constexpr double kLong = 1e9;  // [s]
+constexpr int kCircleSides = 32;
+constexpr double kMostStages = 10000;  // of a journey
+
+using Kind = ConfigNode::Kind;
+
+// One table of the file, with what names mean that stand in it.
+class Reader : public ConfigReader {
+ public:
+  Reader(const std::string& file, const ConfigNode& table, const std::string& what)
+      : ConfigReader(file, table, what) {}
+
+  void distribution(const char* key, Distribution& out, double low, double high);
+  void distribution_of(const ConfigNode& node, const std::string& key, Distribution& out,
+                       double low, double high);
+  template <class Thing>
+  int32_t named(const ConfigNode& node, const std::vector<Thing>& things, const char* what);
+  /// A name or a list of names.
+  template <class Thing>
+  void names(const ConfigNode& node, const std::vector<Thing>& things, const char* what,
+             std::vector<int32_t>& out);
+  /// A name, or a table of weights by name.
+  template <class Thing>
+  void choices(const char* key, const std::vector<Thing>& things, std::vector<Choice>& out);
+  bool corners(const ConfigNode& node, const char* key, std::vector<std::array<double, 2>>& out);
+  void count(const char* key, uint64_t& value, double low, double high);
+};
+
+bool is_number(const ConfigNode& node) {
+  return node.kind == Kind::kNumber && std::isfinite(node.number);
+}
+
+void Reader::distribution(const char* key, Distribution& out, double low, double high) {
+  if (const ConfigNode* node = find(key); node != nullptr)
+    distribution_of(*node, key, out, low, high);
+}
+
+// A number, or { uniform = [a, b] }, { normal = [mean, deviation] }, { exponential = mean }, the
+// last two with within = [low, high].
+void Reader::distribution_of(const ConfigNode& node, const std::string& key, Distribution& out,
+                             double low, double high) {
+  const auto in_limits = [&](double value) { return value >= low && value <= high; };
+  const auto limits = [&] { return fmt::format("{} must be within {} to {}", key, low, high); };
+  if (is_number(node)) {
+    out = Distribution::fixed(node.number);
+    if (!in_limits(node.number)) fail(node, limits());
+    return;
+  }
+  const std::string wrong = fmt::format(
+      "{} must be a number, {{ uniform = [low, high] }}, {{ normal = [mean, deviation] }} or "
+      "{{ exponential = mean }}",
+      key);
+  if (node.kind != Kind::kTable || node.entries.empty()) return fail(node, wrong);
+  const auto pair = [&](const ConfigNode& list, double& a, double& b) {
+    const bool good = list.kind == Kind::kArray && list.items.size() == 2 &&
+                      is_number(list.items[0]) && is_number(list.items[1]);
+    if (!good) return fail(list, fmt::format("{}: give two numbers", key));
+    a = list.items[0].number;
+    b = list.items[1].number;
+  };
+  out.low = low;
+  out.high = high;
+  bool has_kind = false, has_within = false;
+  for (const auto& [name, value] : node.entries) {
+    if (name == "within") {
+      has_within = true;
+      pair(value, out.low, out.high);
+      if (!(out.low < out.high) || !in_limits(out.low) || !in_limits(out.high)) {
+        fail(value, limits());
+      }
+      continue;
+    }
+    if (has_kind) return fail(value, wrong);
+    has_kind = true;
+    if (name == "uniform") {
+      out.kind = Distribution::Kind::kUniform;
+      pair(value, out.a, out.b);
+      if (!(out.a <= out.b) || !in_limits(out.a) || !in_limits(out.b)) fail(value, limits());
+    } else if (name == "normal") {
+      out.kind = Distribution::Kind::kNormal;
+      pair(value, out.a, out.b);
+      if (!in_limits(out.a)) fail(value, limits());
+      if (!(out.b >= 0)) fail(value, fmt::format("{}: a deviation is not below 0", key));
+    } else if (name == "exponential" && is_number(value)) {
+      out.kind = Distribution::Kind::kExponential;
+      out.a = value.number;
+      if (!in_limits(out.a) || !(out.a > 0)) fail(value, limits());
+    } else {
+      return fail(value, wrong);
+    }
+  }
+  if (!has_kind) return fail(node, wrong);
+  if (has_within && out.kind == Distribution::Kind::kUniform) {
+    fail(node, fmt::format("{}: a uniform number has its limits already", key));
+  }
+}
+
+template <class Thing>
+int32_t Reader::named(const ConfigNode& node, const std::vector<Thing>& things, const char* what) {
+  if (node.kind != Kind::kString) {
+    fail(node, fmt::format("give the name of {} in quotes", what));
+    return 0;
+  }
+  for (size_t i = 0; i < things.size(); ++i) {
+    if (things[i].name == node.text) return static_cast<int32_t>(i);
+  }
+  std::string known;
+  for (const Thing& thing : things) known += (known.empty() ? "" : ", ") + thing.name;
+  fail(node, fmt::format("there is no {} named '{}'; there are: {}", what, node.text,
+                         known.empty() ? "none" : known));
+  return 0;
+}
+
+template <class Thing>
+void Reader::names(const ConfigNode& node, const std::vector<Thing>& things, const char* what,
+                   std::vector<int32_t>& out) {
+  if (node.kind != Kind::kArray) {
+    out.push_back(named(node, things, what));
+    return;
+  }
+  for (const ConfigNode& item : node.items) out.push_back(named(item, things, what));
+  if (out.empty())
+    fail(node, fmt::format("the list of names is empty; name at least one {}", what));
+}
+
+template <class Thing>
+void Reader::choices(const char* key, const std::vector<Thing>& things, std::vector<Choice>& out) {
+  const ConfigNode* node = find(key);
+  if (node == nullptr) return;
+  if (node->kind != Kind::kTable) {
+    out.push_back({named(*node, things, key), 1});
+    return;
+  }
+  for (const auto& [name, value] : node->entries) {
+    ConfigNode text;
+    text.kind = Kind::kString;
+    text.line = value.line;
+    text.text = name;
+    if (!is_number(value) || !(value.number > 0)) {
+      fail(value, fmt::format("{}: the weight of '{}' must be a number above 0", key, name));
+    }
+    out.push_back({named(text, things, key), value.number});
+  }
+  if (out.empty()) fail(*node, fmt::format("{}: the table is empty", key));
+}
+
+bool Reader::corners(const ConfigNode& node, const char* key,
+                     std::vector<std::array<double, 2>>& out) {
+  bool good = node.kind == Kind::kArray;
+  for (size_t i = 0; good && i < node.items.size(); ++i) {
+    const ConfigNode& p = node.items[i];
+    good = p.kind == Kind::kArray && p.items.size() == 2 && is_number(p.items[0]) &&
+           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kFar &&
+           std::fabs(p.items[1].number) <= kFar;
+    if (good) out.push_back({p.items[0].number, p.items[1].number});
+  }
+  if (!good) fail(node, fmt::format("{} must be a list of [x, z]", key));
+  return good;
+}
+
+void Reader::count(const char* key, uint64_t& value, double low, double high) {
+  const ConfigNode* node = find(key);
+  double number = 0;
+  this->number(key, number, low, high);
+  if (node == nullptr || !ok()) return;
+  if (number != std::floor(number)) fail(*node, fmt::format("{} must be a whole number", key));
+  value = static_cast<uint64_t>(number);
+}
+
+// All tables of the file, in the order in which they name each other.
+class File {
+ public:
+  File(const std::string& name, const ConfigNode& root)
+      : name_(name), folder_(std::filesystem::path(name).parent_path().string()), root_(root) {}
+
+  Result<Scenario> read() {
+    read_top();
+    each("area", [&](Reader& r) { read_area(r); });
+    each("density", [&](Reader& r) { read_density(r); });
+    each("profile", [&](Reader& r) { read_profile(r); });
+    each("queue", [&](Reader& r) { read_queue(r); });
+    each("link", [&](Reader& r) { read_link(r); });
+    each("journey", [&](Reader& r) { read_journey(r); });
+    each("source", [&](Reader& r) { read_source(r); });
+    if (!error_.message.empty()) return error_;
+    return std::move(out_);
+  }
+
+ private:
+  void each(const char* key, const std::function<void(Reader&)>& visit) {
+    if (!error_.message.empty()) return;
+    ConfigReader top(name_, root_, "scenario");
+    for (const ConfigNode* table : top.tables(key)) {
+      Reader reader(name_, *table, title(key, *table));
+      if (reader.ok()) visit(reader);
+      keep(reader);
+    }
+    keep(top);
+  }
+  void keep(const ConfigReader& reader) {
+    if (!reader.ok() && error_.message.empty()) error_ = reader.error();
+  }
+  static std::string title(const std::string& key, const ConfigNode& table) {
+    const ConfigNode* name = table.find("name");
+    return name != nullptr && name->kind == Kind::kString ? fmt::format("{} '{}'", key, name->text)
+                                                          : key;
+  }
+  [[nodiscard]] std::string path(const std::string& relative) const {
+    return (std::filesystem::path(folder_) / relative).string();
+  }
+  template <class Thing>
+  void name_of(Reader& r, const std::vector<Thing>& others, std::string& name) {
+    r.require("name");
+    r.text("name", name);
+    if (!r.ok()) return;
+    if (name.empty()) r.fail(*r.find("name"), "the name is empty");
+    for (const Thing& other : others) {
+      if (other.name == name) r.fail(*r.find("name"), "the name stands here twice");
+    }
+  }
+
+  void read_top();
+  void read_plane(const ConfigNode& table);
+  void read_area(Reader& r);
+  void read_density(Reader& r);
+  void read_profile(Reader& r);
+  void read_queue(Reader& r);
+  void read_link(Reader& r);
+  void read_journey(Reader& r);
+  void read_stage(Reader& r, Journey& journey);
+  void read_source(Reader& r);
+  void heights(Reader& r, double& low, double& high);
+
+  std::string name_, folder_;
+  const ConfigNode& root_;
+  Scenario out_;
+  Error error_;
+};
+
+void File::read_top() {
+  Reader r(name_, root_, "scenario");
+  r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
+          "area", "density", "profile", "queue", "link", "journey", "source"});
+  r.text("world", out_.world);
+  if (!out_.world.empty()) out_.world = path(out_.world);
+  if (const ConfigNode* model = r.find("model"); model != nullptr) {
+    std::vector<const ConfigNode*> files = {model};
+    if (model->kind == Kind::kArray) {
+      files.clear();
+      for (const ConfigNode& item : model->items) files.push_back(&item);
+    }
+    for (const ConfigNode* file : files) {
+      if (file->kind != Kind::kString) r.fail(*file, "model must be a file's name in quotes");
+      out_.models.push_back(path(file->text));
+    }
+  }
+  r.number("cell", out_.cell, 0.02, 5);
+  r.number("seconds", out_.seconds, 0, kLong);
+  r.number("dt", out_.dt, 1e-3, 1);
+  r.count("seed", out_.seed, 0, 9007199254740992.0);
+  std::string ways = "corners";
+  r.text("ways", ways);
+  if (const ConfigNode* node = r.find("ways");
+      node != nullptr && ways != "corners" && ways != "labels" && ways != "zones") {
+    r.fail(*node, "ways must be \"corners\", \"labels\" or \"zones\"");
+  }
+  out_.labels = ways == "labels";
+  out_.zones = ways == "zones";
+  keep(r);
+  if (const ConfigNode* table = r.find("builtin"); table != nullptr) {
+    Reader b(name_, *table, "builtin");
+    BuiltinWorldConfig config;
+    double levels = 0;
+    b.only({"name", "size", "levels", "seed"});
+    b.require("name");
+    b.text("name", config.name);
+    b.number("size", config.size, 0, 1e6);
+    b.number("levels", levels, 0, 1000);
+    b.count("seed", config.seed, 0, 9007199254740992.0);
+    config.levels = static_cast<int32_t>(levels);
+    out_.builtins.push_back(config);
+    keep(b);
+  }
+  if (const ConfigNode* table = r.find("plane"); table != nullptr) read_plane(*table);
+  const int ways_in = (out_.world.empty() ? 0 : 1) + (out_.models.empty() ? 0 : 1) +
+                      (out_.builtins.empty() ? 0 : 1) + (out_.planes.empty() ? 0 : 1);
+  if (ways_in != 1) {
+    r.fail(root_, "give one of: world (a baked folder), model (files), [builtin], [plane]");
+    keep(r);
+  }
+  each("class", [&](Reader& c) {
+    AvatarClass avatar;
+    c.only({"name", "height", "radius", "step", "max_slope", "speed"});
+    name_of(c, out_.classes, avatar.name);
+    c.number("height", avatar.height, 0.1, 30);
+    c.number("radius", avatar.radius, 0.01, 5);
+    c.number("step", avatar.step, 0, 15);
+    c.number("max_slope", avatar.max_slope, 0, 89);
+    c.number("speed", avatar.speed, 0.01, 100);
+    out_.classes.push_back(avatar);
+  });
+  if (!out_.classes.empty() && !out_.world.empty()) {
+    r.fail(root_, "the classes of a baked world are baked in; drop [[class]], or bake a model");
+    keep(r);
+  }
+}
+
+void File::read_plane(const ConfigNode& table) {
+  Reader r(name_, table, "plane");
+  PlaneConfig plane;
+  r.only({"floor", "holes", "obstacles", "height"});
+  r.require("floor");
+  r.number("height", plane.obstacle_height, 0.01, 1000);
+  if (const ConfigNode* floor = r.find("floor"); floor != nullptr) {
+    r.corners(*floor, "floor", plane.ground.outer);
+  }
+  const auto rings = [&](const char* key, auto add) {
+    const ConfigNode* node = r.find(key);
+    if (node == nullptr) return;
+    if (node->kind != Kind::kArray) return r.fail(*node, fmt::format("{} must be a list", key));
+    for (const ConfigNode& item : node->items) {
+      Ring ring;
+      r.corners(item, key, ring);
+      add(ring);
+    }
+  };
+  rings("holes", [&](const Ring& ring) { plane.ground.holes.push_back(ring); });
+  rings("obstacles", [&](const Ring& ring) { plane.obstacles.push_back({ring, {}}); });
+  out_.planes.push_back(std::move(plane));
+  keep(r);
+}
+
+void File::heights(Reader& r, double& low, double& high) {
+  low = -kFar;
+  high = kFar;
+  double y[2] = {};
+  if (!r.numbers("y", y, 2)) return;
+  if (!(y[0] < y[1])) return r.fail(*r.find("y"), "y must be [low, high], low below high");
+  low = y[0];
+  high = y[1];
+}
+
+// Tables of one name are one area.
+void File::read_area(Reader& r) {
+  r.only({"name", "box", "polygon", "circle", "y"});
+  r.require("name");
+  std::string name;
+  r.text("name", name);
+  Prism prism;
+  heights(r, prism.low, prism.high);
+  const auto shapes = (r.find("box") != nullptr ? 1 : 0) + (r.find("polygon") != nullptr ? 1 : 0) +
+                      (r.find("circle") != nullptr ? 1 : 0);
+  if (!r.ok()) return;
+  if (shapes != 1) {
+    return r.fail(*r.find("name"),
+                  "give it one shape: box, polygon or circle; several tables of "
+                  "one name make one area");
+  }
+  double v[4] = {};
+  if (const ConfigNode* polygon = r.find("polygon"); polygon != nullptr) {
+    r.corners(*polygon, "polygon", prism.corners);
+  } else if (r.find("box") != nullptr) {
+    r.numbers("box", v, 4);
+    prism.corners = {{v[0], v[1]}, {v[2], v[1]}, {v[2], v[3]}, {v[0], v[3]}};
+  } else {
+    r.numbers("circle", v, 3);
+    for (int i = 0; i < kCircleSides; ++i) {
+      const double turns = (i + 0.5) / kCircleSides;
+      prism.corners.push_back({v[0] + v[2] * cos_turns(turns), v[1] + v[2] * sin_turns(turns)});
+    }
+    if (!(v[2] > 0)) r.fail(*r.find("circle"), "circle must be [x, z, radius], radius above 0");
+  }
+  if (!r.ok()) return;
+  if (auto ok = check_prism(prism); !ok) return r.fail(*r.find("name"), ok.error().message);
+  for (ScenarioArea& area : out_.areas) {
+    if (area.name == name) return area.prisms.push_back(prism);
+  }
+  out_.areas.push_back({name, {prism}});
+}
+
+void File::read_density(Reader& r) {
+  DensityMap map;
+  r.only({"name", "box", "y", "image", "paint", "pixel"});
+  name_of(r, out_.densities, map.name);
+  r.require("box");
+  heights(r, map.low, map.high);
+  double box[4] = {};
+  if (!r.numbers("box", box, 4)) return;
+  map.x0 = box[0];
+  map.z0 = box[1];
+  map.x1 = box[2];
+  map.z1 = box[3];
+  if (!(map.x0 < map.x1 && map.z0 < map.z1)) {
+    return r.fail(*r.find("box"), "box must be [x0, z0, x1, z1], low corner first");
+  }
+  const ConfigNode* image = r.find("image");
+  const ConfigNode* paint = r.find("paint");
+  if ((image == nullptr) == (paint == nullptr)) {
+    return r.fail(*r.find("box"), "give it an image, or areas in a list 'paint'");
+  }
+  if (image != nullptr) {
+    std::string file;
+    r.text("image", file);
+    if (!r.ok()) return;
+    if (auto ok = read_density_image(path(file), map); !ok) {
+      return r.fail(*image, ok.error().message);
+    }
+  } else {
+    double pixel = 0.5;
+    r.number("pixel", pixel, 0.01, 1000);
+    const double columns = std::ceil((map.x1 - map.x0) / pixel),
+                 rows = std::ceil((map.z1 - map.z0) / pixel);
+    if (!(columns * rows <= 1 << 26)) {
+      return r.fail(*r.find("box"), "it has more than 67 million pixels; give a larger 'pixel'");
+    }
+    map.width = static_cast<int32_t>(columns);
+    map.height = static_cast<int32_t>(rows);
+    map.weights.assign(static_cast<size_t>(columns * rows), 0);
+    for (const ConfigNode* layer : r.tables("paint")) {
+      Reader p(name_, *layer, fmt::format("density '{}': paint", map.name));
+      p.only({"area", "weight"});
+      p.require("area");
+      p.require("weight");
+      double weight = 0;
+      p.number("weight", weight, 0, 255);
+      int32_t area = 0;
+      if (p.ok()) area = p.named(*p.find("area"), out_.areas, "area");
+      keep(p);
+      if (!p.ok()) return;
+      paint_density(map, out_.areas[static_cast<size_t>(area)].prisms,
+                    static_cast<uint8_t>(std::lround(weight)));
+    }
+  }
+  if (r.ok() &&
+      std::all_of(map.weights.begin(), map.weights.end(), [](uint8_t w) { return w == 0; })) {
+    r.fail(*r.find("box"), "its weights are all 0; paint where people may be");
+  }
+  out_.densities.push_back(std::move(map));
+}
+
+void File::read_profile(Reader& r) {
+  Profile profile;
+  r.only({"name", "class", "speed", "radius"});
+  name_of(r, out_.profiles, profile.name);
+  r.text("class", profile.avatar_class);
+  r.distribution("speed", profile.speed, 0.01, 100);
+  r.distribution("radius", profile.radius, 0.01, 100);
+  out_.profiles.push_back(profile);
+}
+
+void File::read_queue(Reader& r) {
+  Queue queue;
+  r.only({"name", "line", "spacing", "servers", "service"});
+  name_of(r, out_.queues, queue.name);
+  r.require("line");
+  r.require("service");
+  r.number("spacing", queue.spacing, 0.1, 100);
+  double servers = 1;
+  r.number("servers", servers, 1, 1000);
+  queue.servers = static_cast<int32_t>(servers);
+  r.distribution("service", queue.service, 0, kLong);
+  if (!r.ok()) return;
+  const ConfigNode& line = *r.find("line");
+  bool good = line.kind == Kind::kArray && line.items.size() >= 2;
+  for (size_t i = 0; good && i < line.items.size(); ++i) {
+    const auto& p = line.items[i].items;
+    good = p.size() == 3 && std::all_of(p.begin(), p.end(), is_number);
+    if (good) queue.line.push_back({p[0].number, p[1].number, p[2].number});
+  }
+  if (!good) r.fail(line, "line must be a list of at least two [x, y, z], the head first");
+  out_.queues.push_back(std::move(queue));
+}
+
+void File::read_link(Reader& r) {
+  Link link;
+  r.only({"name", "from", "to", "interval", "capacity", "seconds"});
+  name_of(r, out_.links, link.name);
+  for (const char* key : {"from", "to", "seconds"}) r.require(key);
+  double capacity = 1;
+  r.number("interval", link.interval, 0.01, kLong);
+  r.number("capacity", capacity, 1, 1e6);
+  r.number("seconds", link.seconds, 0, kLong);
+  link.capacity = static_cast<int32_t>(capacity);
+  if (!r.ok()) return;
+  link.from = r.named(*r.find("from"), out_.areas, "area");
+  link.to = r.named(*r.find("to"), out_.areas, "area");
+  out_.links.push_back(link);
+}
+
+void File::read_stage(Reader& r, Journey& journey) {
+  Stage stage;
+  r.only({"go", "spot", "density", "wait", "queue", "link", "leave", "by"});
+  const auto have = [&](const char* key) { return r.find(key) != nullptr; };
+  const int kinds = (have("go") ? 1 : 0) + (have("spot") ? 1 : 0) + (have("wait") ? 1 : 0) +
+                    (have("queue") ? 1 : 0) + (have("link") ? 1 : 0) + (have("leave") ? 1 : 0) +
+                    (have("density") ? 1 : 0);
+  if (!r.ok()) return;
+  if (kinds != 1) {
+    return r.fail(r.table(), "a stage is one of: go, spot, density, wait, queue, link, leave");
+  }
+  if (have("go")) {
+    stage.kind = Stage::Kind::kGo;
+    r.names(*r.find("go"), out_.areas, "area", stage.areas);
+  } else if (have("leave")) {
+    stage.kind = Stage::Kind::kLeave;
+    r.names(*r.find("leave"), out_.areas, "area", stage.areas);
+  } else if (have("spot")) {
+    stage.kind = Stage::Kind::kSpot;
+    r.names(*r.find("spot"), out_.areas, "area", stage.areas);
+  } else if (have("density")) {
+    stage.kind = Stage::Kind::kSpot;
+    stage.density = r.named(*r.find("density"), out_.densities, "density");
+  } else if (have("wait")) {
+    stage.kind = Stage::Kind::kWait;
+    r.distribution("wait", stage.seconds, 0, kLong);
+  } else if (have("queue")) {
+    stage.kind = Stage::Kind::kQueue;
+    stage.queue = r.named(*r.find("queue"), out_.queues, "queue");
+  } else {
+    stage.kind = Stage::Kind::kLink;
+    stage.link = r.named(*r.find("link"), out_.links, "link");
+    stage.areas = {out_.links.empty() ? 0 : out_.links[static_cast<size_t>(stage.link)].from};
+  }
+  if (const ConfigNode* by = r.find("by"); by != nullptr) {
+    std::string how;
+    r.text("by", how);
+    if (how != "nearest" && how != "quickest")
+      r.fail(*by, "by must be \"nearest\" or \"quickest\"");
+    if (stage.kind != Stage::Kind::kGo && stage.kind != Stage::Kind::kLeave) {
+      r.fail(*by, "only go and leave choose among areas");
+    }
+    stage.quickest = how == "quickest";
+  }
+  journey.stages.push_back(std::move(stage));
+}
+
+void File::read_journey(Reader& r) {
+  Journey journey;
+  r.only({"name", "stages", "repeat"});
+  name_of(r, out_.journeys, journey.name);
+  r.require("stages");
+  r.flag("repeat", journey.repeat);
+  for (const ConfigNode* table : r.tables("stages")) {
+    Reader stage(name_, *table,
+                 fmt::format("journey '{}': stage {}", journey.name, journey.stages.size() + 1));
+    if (stage.ok()) read_stage(stage, journey);
+    keep(stage);
+    if (!stage.ok()) return;
+  }
+  if (!r.ok()) return;
+  const ConfigNode& stages = *r.find("stages");
+  if (journey.stages.empty() || static_cast<double>(journey.stages.size()) > kMostStages) {
+    return r.fail(stages, "give it 1 to 10000 stages");
+  }
+  for (size_t i = 0; i + 1 < journey.stages.size(); ++i) {
+    if (journey.stages[i].kind == Stage::Kind::kLeave) {
+      return r.fail(stages, "nothing can follow the stage 'leave'");
+    }
+  }
+  const auto takes_time = [](const Stage& s) {
+    return s.kind != Stage::Kind::kWait || s.seconds.a > 0;
+  };
+  if (journey.repeat && std::none_of(journey.stages.begin(), journey.stages.end(), takes_time)) {
+    return r.fail(stages, "a journey that repeats must take some time");
+  }
+  out_.journeys.push_back(std::move(journey));
+}
+
+void File::read_source(Reader& r) {
+  Source source;
+  r.only({"name", "area", "density", "profile", "journey", "count", "begin", "end", "rate", "rates",
+          "even", "premovement", "group"});
+  name_of(r, out_.sources, source.name);
+  if (const ConfigNode* area = r.find("area"); area != nullptr) {
+    r.names(*area, out_.areas, "area", source.areas);
+  }
+  if (const ConfigNode* density = r.find("density"); density != nullptr) {
+    source.density = r.named(*density, out_.densities, "density");
+  }
+  r.choices("profile", out_.profiles, source.profiles);
+  r.choices("journey", out_.journeys, source.journeys);
+  r.count("count", source.count, 0, 1e7);
+  r.number("begin", source.begin, 0, kLong);
+  r.number("end", source.end, 0, kLong);
+  r.flag("even", source.even);
+  r.distribution("premovement", source.premovement, 0, kLong);
+  source.group = Distribution::fixed(1);
+  r.distribution("group", source.group, 1, 20);
+  if (!r.ok()) return;
+  const ConfigNode& name = *r.find("name");
+  if ((r.find("area") != nullptr) == (r.find("density") != nullptr)) {
+    return r.fail(name, "say where they come from: an area, or a density");
+  }
+  double rate = 0;
+  r.number("rate", rate, 0, 1e6);
+  if (r.find("rate") != nullptr) source.rates = {{source.begin, rate}};
+  if (const ConfigNode* rates = r.find("rates"); rates != nullptr) {
+    std::vector<std::array<double, 2>> list;
+    if (r.find("rate") != nullptr) return r.fail(*rates, "give rate or rates, not both");
+    if (!r.corners(*rates, "rates", list)) return r.fail(*rates, "rates: pairs of time and rate");
+    for (const auto& [from, value] : list) {
+      if (!(value >= 0) || (!source.rates.empty() && !(from > source.rates.back().first))) {
+        return r.fail(*rates,
+                      "rates must be a list of [time, people a second], times ascending, "
+                      "rates not below 0");
+      }
+      source.rates.emplace_back(from, value);
+    }
+  }
+  if (source.rates.empty() && source.count == UINT64_MAX) {
+    return r.fail(name, "say how many: a count, a rate, or both");
+  }
+  out_.sources.push_back(std::move(source));
+}
+
+}  // namespace
+
+Result<Scenario> parse_scenario(const std::string& text, const std::string& name) {
+  const auto root = parse_config(text, name);
+  if (!root) return root.error();
+  return File(name, *root).read();
+}
+
+Result<Scenario> load_scenario(const std::string& path) {
+  const auto text = read_file(path);
+  if (!text) return text.error();
+  return parse_scenario(*text, path);
+}
+
+}  // namespace throng

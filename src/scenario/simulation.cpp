@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/simulation.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "core/hash.h"
+#include "core/random.h"
+#include "scenario/simulation_state.h"
+
+namespace throng {
+namespace {
+
+constexpr size_t kMostPlaces = 16384;  // of an area, to come in or to stand at
+constexpr double kLookEvery = 1;       // [s]
+constexpr double kGroupsEvery = 0.5;   // [s]
+
+}  // namespace
+
+Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+double Simulation::State::unit(Person& p) const {
+  return random_unit(scenario.seed ^ 0x706572736f6eULL, p.number, p.draws++);
+}
+
+Result<Simulation> Simulation::make(const World& world, const Scenario& scenario, int32_t workers,
+                                    Context& context) {
+  auto crowd = Crowd::create(world, {.dt = scenario.dt,
+                                     .seed = scenario.seed,
+                                     .workers = workers,
+                                     .labels = scenario.labels,
+                                     .zones = scenario.zones});
+  if (!crowd) return crowd.error();
+  auto state = std::make_unique<State>(world, scenario, std::move(*crowd));
+  if (auto ok = state->prepare(context); !ok) return ok.error();
+  return Simulation(std::move(state));
+}
+
+// One target for the union of areas.
+Result<TargetId> Simulation::State::target_of(std::span<const int32_t> areas, Context& context) {
+  const auto single = areas.size() == 1 ? static_cast<size_t>(areas[0]) : SIZE_MAX;
+  if (single != SIZE_MAX && area_target[single] != 0) return area_target[single];
+  std::vector<Prism> prisms;
+  for (const int32_t a : areas) {
+    const ScenarioArea& area = scenario.areas[static_cast<size_t>(a)];
+    prisms.insert(prisms.end(), area.prisms.begin(), area.prisms.end());
+  }
+  auto target = crowd.add_target(prisms, context);
+  if (target && single != SIZE_MAX) area_target[single] = *target;
+  return target;
+}
+
+// Where a class can stand in an area; it must be somewhere.
+Result<void> Simulation::State::find_places(int32_t area, int32_t avatar_class,
+                                            const std::string& who, Context& context) {
+  const auto target = target_of({&area, 1}, context);
+  if (!target) return target.error();
+  auto found = crowd.places(*target, avatar_class, kMostPlaces, context);
+  if (!found) return found.error();
+  if (found->empty()) {
+    const std::string& name = kinds[static_cast<size_t>(avatar_class)].name;
+    return Error{Errc::kBadInput, who + ": nobody of class '" + name + "' can stand in area '" +
+                                      scenario.areas[static_cast<size_t>(area)].name +
+                                      "'; move it onto the floor, or make it larger"};
+  }
+  places[{*target, avatar_class}] = std::move(*found);
+  return {};
+}
+
+Result<void> Simulation::State::prepare_stage(const Stage& stage, std::vector<TargetId>& targets,
+                                              Context& context) {
+  if (stage.areas.empty()) return {};
+  if (!stage.quickest) {
+    const auto target = target_of(stage.areas, context);
+    if (!target) return target.error();
+    targets.push_back(*target);
+    return {};
+  }
+  for (const int32_t area : stage.areas) {
+    const auto target = target_of({&area, 1}, context);
+    if (!target) return target.error();
+    targets.push_back(*target);
+  }
+  return {};
+}
+
+Result<void> Simulation::State::prepare(Context& context) {
+  kinds = world.summary().classes;
+  for (const Profile& profile : scenario.profiles) {
+    int32_t index = 0;
+    if (!profile.avatar_class.empty()) {
+      const auto found = world.find_class(profile.avatar_class);
+      if (!found) {
+        std::string known;
+        for (const AvatarClass& c : kinds) known += (known.empty() ? "" : ", ") + c.name;
+        return Error{Errc::kNotFound, "profile '" + profile.name + "': the world has no class '" +
+                                          profile.avatar_class + "'; it has: " + known};
+      }
+      index = *found;
+    }
+    classes.push_back(index);
+  }
+  classes.push_back(0);
+  area_target.assign(scenario.areas.size(), 0);
+  bound.assign(scenario.areas.size(), 0);
+  lines.resize(scenario.queues.size());
+  for (const Link& link : scenario.links) landings.push_back({{}, link.interval});
+  for (const DensityMap& map : scenario.densities) densities.emplace_back(map);
+
+  for (const Journey& journey : scenario.journeys) {
+    auto& stages = stage_targets.emplace_back();
+    for (const Stage& stage : journey.stages) {
+      if (auto ok = prepare_stage(stage, stages.emplace_back(), context); !ok) return ok;
+    }
+  }
+  for (size_t s = 0; s < scenario.sources.size(); ++s) {
+    const Source& source = scenario.sources[s];
+    arrivals.emplace_back(source, scenario.seed, s);
+    std::vector<int32_t> bodies;
+    for (const Choice& choice : source.profiles) {
+      bodies.push_back(classes[static_cast<size_t>(choice.index)]);
+    }
+    if (bodies.empty()) bodies.push_back(0);
+    // All the areas in which one of these may have to find a place.
+    std::vector<std::pair<int32_t, std::string>> wanted;
+    for (const int32_t a : source.areas) wanted.emplace_back(a, "source '" + source.name + "'");
+    for (const Choice& choice : source.journeys) {
+      const Journey& journey = scenario.journeys[static_cast<size_t>(choice.index)];
+      for (const Stage& stage : journey.stages) {
+        const std::string who = "journey '" + journey.name + "'";
+        for (const int32_t a : stage.areas) wanted.emplace_back(a, who);
+        if (stage.link < 0) continue;
+        wanted.emplace_back(scenario.links[static_cast<size_t>(stage.link)].to, who);
+      }
+    }
+    for (const auto& [area, who] : wanted) {
+      for (const int32_t kind : bodies) {
+        if (auto ok = find_places(area, kind, who, context); !ok) return ok;
+      }
+    }
+  }
+  call_in();
+  return let_in(coming, context);
+}
+
+Result<SimulationReport> Simulation::step() {
+  State& s = *state_;
+  Context context;
+  const auto is_due = [&](double every) {
+    const auto steps = std::max<uint64_t>(1, static_cast<uint64_t>(every / s.scenario.dt + 0.5));
+    return s.steps % steps == 0;
+  };
+  s.call_in();
+  s.run_links();
+  if (auto ok = s.let_in(s.coming, context); !ok) return ok.error();
+  if (auto ok = s.let_in(s.riding, context); !ok) return ok.error();
+  s.end_waits();
+  s.move_lines();
+  if (is_due(kLookEvery)) s.look_around();
+  if (is_due(kGroupsEvery)) s.keep_together();
+
+  SimulationReport report;
+  report.crowd = s.crowd.step();
+  ++s.steps;
+  for (const AvatarId id : s.crowd.arrived()) {
+    if (s.is_here(id.slot1 - 1)) s.arrive(s.persons[id.slot1 - 1]);
+  }
+  for (const AvatarId id : s.crowd.stranded()) {
+    if (s.is_here(id.slot1 - 1)) s.persons[id.slot1 - 1].doing = Doing::kStranded;
+  }
+  report.time = s.time();
+  report.entered = s.entered;
+  report.left = s.left;
+  report.outside = s.coming.size();
+  report.in_links = s.riding.size();
+  for (const Person& p : s.persons) {
+    if (p.id && p.doing == Doing::kStranded) ++report.stranded;
+  }
+  return report;
+}
+
+bool Simulation::is_over() const {
+  const State& s = *state_;
+  return s.crowd.size() == 0 && s.coming.empty() && s.riding.empty() &&
+         std::all_of(s.arrivals.begin(), s.arrivals.end(),
+                     [](const Arrivals& a) { return a.is_over(); });
+}
+
+const Crowd& Simulation::crowd() const { return state_->crowd; }
+std::span<const Visit> Simulation::visits() const { return state_->visits; }
+
+void Simulation::read(std::vector<AvatarState>& out) const {
+  state_->crowd.read(out);
+  for (AvatarState& avatar : out) {
+    avatar.id = static_cast<uint32_t>(state_->persons[avatar.id].number);
+  }
+  std::sort(out.begin(), out.end(),
+            [](const AvatarState& a, const AvatarState& b) { return a.id < b.id; });
+}
+
+uint64_t Simulation::state_hash() const {
+  const State& s = *state_;
+  std::vector<uint64_t> words{s.crowd.state_hash(), s.steps,        s.entered, s.left,
+                              s.coming.size(),      s.riding.size()};
+  const auto add = [&](const Person& p) {
+    words.insert(words.end(), {p.number, uint64_t{p.stage} << 8 | static_cast<uint64_t>(p.doing),
+                               std::bit_cast<uint64_t>(p.until), p.draws});
+  };
+  for (const Person& p : s.persons) {
+    if (p.id) add(p);
+  }
+  for (const Coming& c : s.coming) add(c.person);
+  for (const Coming& c : s.riding) add(c.person);
+  for (const WaitingLine& line : s.lines) {
+    words.insert(words.end(), line.people.begin(), line.people.end());
+    for (const double until : line.served) words.push_back(std::bit_cast<uint64_t>(until));
+  }
+  return hash_bytes(words.data(), words.size() * sizeof(uint64_t));
+}
+
+Result<void> Simulation::set_density(const std::string& name, std::span<const uint8_t> weights) {
+  State& s = *state_;
+  for (size_t d = 0; d < s.scenario.densities.size(); ++d) {
+    DensityMap& map = s.scenario.densities[d];
+    if (map.name != name) continue;
+    if (weights.size() != map.weights.size()) {
+      return Error{Errc::kBadInput, "density '" + name + "': it has " +
+                                        std::to_string(map.weights.size()) + " pixels, not " +
+                                        std::to_string(weights.size())};
+    }
+    if (std::all_of(weights.begin(), weights.end(), [](uint8_t w) { return w == 0; })) {
+      return Error{Errc::kBadInput, "density '" + name + "': all weights are 0; nobody could be"};
+    }
+    map.weights.assign(weights.begin(), weights.end());
+    s.densities[d] = DensityDraw(map);
+    return {};
+  }
+  return Error{Errc::kNotFound, "there is no density '" + name + "'"};
+}
+
+}  // namespace throng

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "core/random.h"
+#include "throng/scenario.h"
+
+namespace throng {
+namespace {
+
+const char* const kFull = R"(seconds = 30
+dt = 0.05
+seed = 7
+ways = "labels"
+cell = 0.2
+
+[plane]
+floor = [[0, 0], [20, 0], [20, 10], [0, 10]]
+holes = [[[8, 4], [9, 4], [9, 6], [8, 6]]]
+obstacles = [[[5, 0], [5.2, 0], [5.2, 4], [5, 4]]]
+height = 2.5
+
+[[class]]
+name = "adult"
+radius = 0.19
+
+[[area]]
+name = "in"
+box = [0.5, 1, 3, 9]
+
+[[area]]
+name = "out"
+polygon = [[18, 1], [19.5, 1], [19.5, 4]]
+y = [-1, 1]
+
+[[area]]
+name = "out"
+circle = [18, 7, 1]
+
+[[density]]
+name = "crowd"
+box = [0, 0, 20, 10]
+pixel = 1
+paint = [{ area = "in", weight = 200 }, { area = "out", weight = 10 }]
+
+[[profile]]
+name = "any"
+class = "adult"
+speed = { normal = [1.3, 0.2], within = [0.5, 2] }
+radius = 0.2
+
+[[queue]]
+name = "till"
+line = [[10, 0, 5], [10, 0, 1]]
+spacing = 0.8
+servers = 2
+service = { exponential = 3 }
+
+[[link]]
+name = "lift"
+from = "in"
+to = "out"
+interval = 5
+capacity = 4
+seconds = 8
+
+[[journey]]
+name = "round"
+repeat = true
+stages = [
+  { go = ["in", "out"], by = "quickest" },
+  { spot = "in" },
+  { density = "crowd" },
+  { wait = { uniform = [1, 2] } },
+  { queue = "till" },
+  { link = "lift" },
+]
+
+[[journey]]
+name = "away"
+stages = [{ leave = "out" }]
+
+[[source]]
+name = "first"
+area = "in"
+profile = "any"
+journey = { round = 1, away = 2.5 }
+count = 10
+premovement = 3
+group = { uniform = [1, 3] }
+
+[[source]]
+name = "later"
+density = "crowd"
+rates = [[0, 0.5], [10, 0], [20, 2]]
+begin = 1
+end = 25
+even = true
+)";
+
+TEST(ScenarioFile, reads_every_key) {
+  const auto s = parse_scenario(kFull, "folder/full.toml");
+  ASSERT_TRUE(s) << s.error().message;
+  EXPECT_EQ(s->seconds, 30);
+  EXPECT_EQ(s->dt, 0.05);
+  EXPECT_EQ(s->seed, 7U);
+  EXPECT_TRUE(s->labels);
+  ASSERT_EQ(s->planes.size(), 1U);
+  EXPECT_EQ(s->planes[0].ground.holes.size(), 1U);
+  EXPECT_EQ(s->planes[0].obstacles.size(), 1U);
+  EXPECT_EQ(s->planes[0].obstacle_height, 2.5);
+  ASSERT_EQ(s->classes.size(), 1U);
+  EXPECT_EQ(s->classes[0].radius, 0.19);
+  ASSERT_EQ(s->areas.size(), 2U);
+  EXPECT_EQ(s->areas[1].prisms.size(), 2U);
+  EXPECT_EQ(s->areas[1].prisms[0].low, -1);
+  ASSERT_EQ(s->densities.size(), 1U);
+  EXPECT_EQ(s->densities[0].width, 20);
+  EXPECT_EQ(s->densities[0].weights[size_t{5} * 20 + 1], 200);  // in
+  EXPECT_EQ(s->densities[0].weights[size_t{5} * 20 + 10], 0);
+  EXPECT_EQ(s->densities[0].weights[size_t{7} * 20 + 18], 10);  // out
+  EXPECT_EQ(s->profiles[0].speed.kind, Distribution::Kind::kNormal);
+  EXPECT_EQ(s->profiles[0].speed.high, 2);
+  EXPECT_EQ(s->queues[0].servers, 2);
+  EXPECT_EQ(s->links[0].to, 1);
+  ASSERT_EQ(s->journeys.size(), 2U);
+  ASSERT_EQ(s->journeys[0].stages.size(), 6U);
+  EXPECT_TRUE(s->journeys[0].repeat);
+  EXPECT_TRUE(s->journeys[0].stages[0].quickest);
+  EXPECT_EQ(s->journeys[0].stages[2].density, 0);
+  EXPECT_EQ(s->journeys[0].stages[5].kind, Stage::Kind::kLink);
+  ASSERT_EQ(s->sources.size(), 2U);
+  ASSERT_EQ(s->sources[0].journeys.size(), 2U);
+  for (const Choice& choice : s->sources[0].journeys) {
+    EXPECT_EQ(choice.weight,
+              s->journeys[static_cast<size_t>(choice.index)].name == "away" ? 2.5 : 1);
+  }
+  EXPECT_EQ(s->sources[1].rates.size(), 3U);
+  EXPECT_TRUE(s->sources[1].even);
+}
+
+// A file with one line put in another's place.
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = kFull;
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(ScenarioFile, says_where_and_what_is_wrong) {
+  const struct {
+    const char *from, *to, *says;
+  } cases[] = {
+      {"seconds = 30", "seconds = \"long\"", "full.toml:1: scenario: seconds must be a number"},
+      {"dt = 0.05", "dt = 2", "full.toml:2: scenario: dt = 2 is outside"},
+      {"ways = \"labels\"", "ways = \"magic\"", "full.toml:4: scenario: ways must be"},
+      {"seed = 7", "sead = 7", "full.toml:3: scenario: unknown key 'sead'"},
+      {"[plane]\n", "world = \"x\"\n[plane]\n", "give one of: world"},
+      {"box = [0.5, 1, 3, 9]", "box = [0.5, 1, 3]", "box must be a list of 4 numbers"},
+      {"box = [0.5, 1, 3, 9]", "box = [3, 1, 3, 9]", "area 'in'"},
+      {"polygon = [[18, 1], [19.5, 1], [19.5, 4]]", "polygon = [[18, 1]]", "area 'out'"},
+      {"circle = [18, 7, 1]", "circle = [18, 7, 0]", "radius above 0"},
+      {"{ area = \"in\", weight = 200 }", "{ area = \"inn\", weight = 200 }",
+       "there is no area named 'inn'; there are: in, out"},
+      {"weight = 200 }, { area = \"out\", weight = 10 }", "weight = 0 }", "weights are all 0"},
+      {"speed = { normal = [1.3, 0.2], within = [0.5, 2] }", "speed = { normal = 3 }",
+       "profile 'any': speed: give two numbers"},
+      {"speed = { normal = [1.3, 0.2], within = [0.5, 2] }", "speed = { gamma = 3 }",
+       "speed must be a number, { uniform"},
+      {"speed = { normal = [1.3, 0.2], within = [0.5, 2] }", "speed = 1000",
+       "speed must be within"},
+      {"line = [[10, 0, 5], [10, 0, 1]]", "line = [[10, 0, 5]]", "at least two"},
+      {"from = \"in\"\n", "", "link 'lift': from is missing"},
+      {"{ spot = \"in\" }", "{ spot = \"in\", wait = 3 }",
+       "journey 'round': stage 2: a stage is one"},
+      {"{ spot = \"in\" }", "{ leave = \"in\" }", "nothing can follow"},
+      {"{ queue = \"till\" }", "{ queue = \"tall\" }", "there is no queue named 'tall'"},
+      {"journey = { round = 1, away = 2.5 }", "journey = { round = -1 }",
+       "must be a number above 0"},
+      {"count = 10", "count = 1.5", "count must be a whole number"},
+      {"rates = [[0, 0.5], [10, 0], [20, 2]]", "rates = [[0, 0.5], [0, 1]]", "times ascending"},
+      {"density = \"crowd\"\nrates", "density = \"crowd\"\narea = \"in\"\nrates", "say where they"},
+      {"rates = [[0, 0.5], [10, 0], [20, 2]]", "", "say how many"},
+      {"name = \"later\"", "name = \"first\"", "the name stands here twice"},
+  };
+  for (const auto& c : cases) {
+    const auto s = parse_scenario(changed(c.from, c.to), "full.toml");
+    ASSERT_FALSE(s) << c.to;
+    EXPECT_EQ(s.error().code, Errc::kBadFile);
+    EXPECT_NE(s.error().message.find(c.says), std::string::npos) << s.error().message;
+    EXPECT_EQ(s.error().message.rfind("full.toml:", 0), 0U) << s.error().message;
+  }
+}
+
+TEST(ScenarioFile, names_a_picture_that_is_not_there) {
+  const auto s = parse_scenario(
+      changed(
+          "pixel = 1\npaint = [{ area = \"in\", weight = 200 }, { area = \"out\", weight = 10 }]",
+          "image = \"none.png\""),
+      "somewhere/full.toml");
+  ASSERT_FALSE(s);
+  EXPECT_NE(s.error().message.find("somewhere/none.png"), std::string::npos) << s.error().message;
+}
+
+// Whatever the bytes, an answer comes back.
+TEST(ScenarioFile, survives_damaged_files) {
+  const std::string text = kFull;
+  int refused = 0;
+  constexpr int kFiles = 3000;
+  for (uint64_t n = 0; n < kFiles; ++n) {
+    std::string bad = text;
+    const uint64_t edits = 1 + random_below(1, 0, n, 4);
+    for (uint64_t e = 0; e < edits; ++e) {
+      const size_t at = random_below(2, e, n, bad.size());
+      switch (random_below(3, e, n, 3)) {
+        case 0:
+          bad[at] = static_cast<char>(random_below(4, e, n, 256));
+          break;
+        case 1:
+          bad.erase(at, 1 + random_below(5, e, n, 30));
+          break;
+        default:
+          bad.insert(at, text.substr(random_below(6, e, n, text.size()), 20));
+      }
+    }
+    const auto s = parse_scenario(bad, "damaged.toml");
+    refused += s ? 0 : 1;
+    if (!s) {
+      EXPECT_FALSE(s.error().message.empty());
+    }
+  }
+  EXPECT_GT(refused, kFiles / 2);
+}
+
+}  // namespace
+}  // namespace throng

@@ -1,0 +1,444 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace throng {
+namespace {
+
+// A hall of 20 by 10 m with a wall across that has a door of 3 m.
+const std::string kHall = R"(seconds = 60
+seed = 3
+cell = 0.1
+[plane]
+floor = [[0, 0], [20, 0], [20, 10], [0, 10]]
+obstacles = [[[10, 0], [10.2, 0], [10.2, 4], [10, 4]], [[10, 7], [10.2, 7], [10.2, 10], [10, 10]]]
+[[area]]
+name = "west"
+box = [0.5, 0.5, 8, 9.5]
+[[area]]
+name = "north"
+box = [18, 0.5, 19.5, 2.5]
+[[area]]
+name = "south"
+box = [18, 7.5, 19.5, 9.5]
+)";
+
+struct Hall {
+  Scenario scenario;
+  World world;
+};
+
+Hall read(const std::string& text) {
+  auto scenario = parse_scenario(kHall + text, "hall.toml");
+  EXPECT_TRUE(scenario) << scenario.error().message;
+  Context context;
+  auto world = open_world(*scenario, context);
+  EXPECT_TRUE(world) << world.error().message;
+  return {*scenario, *world};
+}
+
+Simulation made(const Hall& run, int32_t workers = 2) {
+  Context context;
+  auto simulation = Simulation::make(run.world, run.scenario, workers, context);
+  EXPECT_TRUE(simulation) << simulation.error().message;
+  return std::move(*simulation);
+}
+
+// Steps until it is over, at most so long. Looks for overlaps and walls at every step.
+double run_out(Simulation& simulation, double most) {
+  SimulationReport last;
+  do {
+    const auto report = simulation.step();
+    EXPECT_TRUE(report) << report.error().message;
+    last = *report;
+    const CrowdCheck found = simulation.crowd().check();
+    EXPECT_EQ(found.overlaps + found.wall_entries, 0U) << "at " << last.time;
+  } while (!simulation.is_over() && last.time < most);
+  return last.time;
+}
+
+TEST(Simulation, people_come_and_leave_by_the_nearest_exit) {
+  const Hall run = read(R"(
+[[journey]]
+name = "out"
+stages = [{ leave = ["north", "south"] }]
+[[source]]
+name = "all"
+area = "west"
+journey = "out"
+count = 80
+)");
+  Simulation simulation = made(run);
+  EXPECT_EQ(simulation.crowd().size(), 80U);
+  EXPECT_LT(run_out(simulation, 120), 60);
+  ASSERT_EQ(simulation.visits().size(), 80U);
+  std::map<int32_t, int> by_exit;
+  for (const Visit& visit : simulation.visits()) {
+    EXPECT_GT(visit.left, 5);
+    EXPECT_EQ(visit.entered, 0);
+    ++by_exit[visit.exit];
+  }
+  EXPECT_EQ(by_exit[1] + by_exit[2], 80);
+  EXPECT_GT(by_exit[1], 10);
+  EXPECT_GT(by_exit[2], 3);
+}
+
+TEST(Simulation, is_the_same_for_any_workers) {
+  const Hall run = read(R"(
+[[queue]]
+name = "till"
+line = [[15, 0, 1], [15, 0, 9]]
+service = { uniform = [0.5, 1] }
+[[journey]]
+name = "shop"
+stages = [
+  { queue = "till" },
+  { spot = "west" },
+  { wait = 2 },
+  { leave = ["north", "south"], by = "quickest" },
+]
+[[source]]
+name = "stream"
+area = "west"
+journey = "shop"
+rate = 2
+group = { uniform = [1, 3] }
+)");
+  Simulation one = made(run, 1), two = made(run, 2), four = made(run, 4);
+  for (int step = 0; step < 400; ++step) {
+    for (Simulation* s : {&one, &two, &four}) ASSERT_TRUE(s->step());
+    ASSERT_EQ(one.state_hash(), two.state_hash()) << step;
+    ASSERT_EQ(one.state_hash(), four.state_hash()) << step;
+  }
+  EXPECT_GT(one.visits().size(), 60U);
+}
+
+TEST(Simulation, nobody_sets_off_before_his_time) {
+  const Hall run = read(R"(
+[[journey]]
+name = "out"
+stages = [{ leave = "north" }]
+[[source]]
+name = "all"
+area = "west"
+journey = "out"
+count = 30
+premovement = { uniform = [2, 8] }
+)");
+  Simulation simulation = made(run);
+  std::vector<AvatarState> before, now;
+  simulation.read(before);
+  // Who waits makes room for who walks, but stays about where he is.
+  std::map<uint32_t, double> began;
+  while (simulation.crowd().size() == 30) {
+    const auto report = simulation.step();
+    ASSERT_TRUE(report);
+    simulation.read(now);
+    for (size_t i = 0; i < std::min(now.size(), before.size()); ++i) {
+      const Vec3d a = before[i].position, b = now[i].position;
+      const bool moved = std::hypot(a.x - b.x, a.z - b.z) > 1.2;
+      if (moved && now[i].id == before[i].id) began.try_emplace(now[i].id, report->time);
+    }
+  }
+  EXPECT_GT(began.size(), 20U);
+  for (const auto& [person, time] : began) {
+    EXPECT_GE(time, simulation.visits()[person].started) << person;
+    EXPECT_LT(time, simulation.visits()[person].started + 5) << person;
+  }
+}
+
+TEST(Simulation, a_counter_serves_one_after_the_other) {
+  const Hall run = read(R"(
+[[queue]]
+name = "till"
+line = [[13, 0, 5], [19, 0, 5]]
+servers = 1
+service = 2
+[[journey]]
+name = "buy"
+stages = [{ queue = "till" }, { leave = ["north", "south"] }]
+[[source]]
+name = "all"
+area = "west"
+journey = "buy"
+count = 12
+)");
+  Simulation simulation = made(run);
+  const double over = run_out(simulation, 200);
+  EXPECT_LT(over, 120);
+  std::multiset<double> times;
+  for (const Visit& visit : simulation.visits()) times.insert(visit.left);
+  // Each is served for two seconds before the next is.
+  EXPECT_GT(*times.rbegin() - *times.begin(), 11 * 2 - 3);
+}
+
+TEST(Simulation, a_lift_takes_as_many_as_it_holds) {
+  const Hall run = read(R"(
+[[link]]
+name = "lift"
+from = "north"
+to = "south"
+interval = 10
+capacity = 4
+seconds = 5
+[[journey]]
+name = "ride"
+stages = [{ link = "lift" }, { wait = 1 }, { leave = "south" }]
+[[source]]
+name = "all"
+area = "west"
+journey = "ride"
+count = 10
+)");
+  Simulation simulation = made(run);
+  uint64_t most_in = 0;
+  std::set<double> rides;
+  uint64_t before = 0;
+  while (!simulation.is_over()) {
+    const auto report = simulation.step();
+    ASSERT_TRUE(report);
+    ASSERT_LT(report->time, 120);
+    most_in = std::max(most_in, report->in_links);
+    if (report->in_links > before) rides.insert(report->time);
+    before = report->in_links;
+  }
+  EXPECT_EQ(most_in, 4U);
+  EXPECT_GE(rides.size(), 3U);
+  for (const double time : rides) EXPECT_NEAR(std::remainder(time - 0.1, 10), 0, 0.01) << time;
+  for (const Visit& visit : simulation.visits()) EXPECT_GE(visit.left, 16);
+}
+
+TEST(Simulation, groups_stay_together) {
+  const Hall run = read(R"(
+[[profile]]
+name = "mixed"
+speed = { uniform = [0.8, 1.8] }
+[[journey]]
+name = "out"
+stages = [{ go = "north" }, { go = "west" }, { leave = "south" }]
+[[source]]
+name = "all"
+area = "west"
+profile = "mixed"
+journey = "out"
+count = 12
+group = 3
+)");
+  // The same people, each on his own.
+  Hall alone = run;
+  alone.scenario.sources[0].group = Distribution::fixed(1);
+  const auto spread = [](const Hall& of) {
+    Simulation simulation = made(of);
+    std::vector<AvatarState> now;
+    double sum = 0;
+    int count = 0;
+    for (int step = 0; step < 300; ++step) {
+      EXPECT_TRUE(simulation.step());
+      simulation.read(now);
+      std::map<uint32_t, Vec3d> at;
+      for (const AvatarState& a : now) at[a.id] = a.position;
+      for (uint32_t first = 0; first < 12; first += 3) {
+        for (uint32_t k = 1; k < 3; ++k) {
+          if (!at.count(first) || !at.count(first + k)) continue;
+          sum += std::hypot(at[first].x - at[first + k].x, at[first].z - at[first + k].z);
+          ++count;
+        }
+      }
+    }
+    return sum / count;
+  };
+  const double together = spread(run), apart = spread(alone);
+  EXPECT_LT(together, 2.5);
+  EXPECT_GT(apart, together * 1.5);
+}
+
+TEST(Simulation, density_maps_drive_where_people_appear) {
+  const Hall run = read(R"(
+[[density]]
+name = "map"
+box = [0, 0, 20, 10]
+pixel = 1
+paint = [{ area = "west", weight = 10 }, { area = "north", weight = 100 }]
+[[source]]
+name = "all"
+density = "map"
+count = 60
+)");
+  Simulation simulation = made(run);
+  std::vector<AvatarState> states;
+  simulation.read(states);
+  ASSERT_EQ(states.size(), 60U);
+  int north = 0;
+  for (const AvatarState& a : states) {
+    const bool in_north = a.position.x > 17 && a.position.z < 3;
+    EXPECT_TRUE(in_north || a.position.x < 8.5) << a.position.x << " " << a.position.z;
+    north += in_north ? 1 : 0;
+  }
+  // Weight 100 on 2 to 6 m2 against 10 on 72 m2, as far as there is room in the north.
+  EXPECT_GT(north, 4);
+
+  std::vector<uint8_t> nowhere(200, 0), wrong(3, 1);
+  EXPECT_FALSE(simulation.set_density("map", nowhere));
+  EXPECT_FALSE(simulation.set_density("map", wrong));
+  EXPECT_FALSE(simulation.set_density("mop", std::vector<uint8_t>(200, 1)));
+  EXPECT_TRUE(simulation.set_density("map", std::vector<uint8_t>(200, 1)));
+}
+
+TEST(Simulation, who_wants_the_quickest_exit_goes_around_a_crowded_one) {
+  // All start near the north exit.
+  const std::string text = R"(
+[[area]]
+name = "corner"
+box = [12, 0.5, 17, 4]
+[[journey]]
+name = "out"
+stages = [{ leave = ["north", "south"], by = "BY" }]
+[[source]]
+name = "all"
+area = "corner"
+journey = "out"
+count = 60
+)";
+  const auto by_south = [&](const std::string& by) {
+    std::string of = text;
+    const Hall run = read(of.replace(of.find("BY"), 2, by));
+    Simulation simulation = made(run);
+    run_out(simulation, 120);
+    EXPECT_TRUE(simulation.is_over());
+    int south = 0;
+    for (const Visit& visit : simulation.visits()) south += visit.exit == 2 ? 1 : 0;
+    return south;
+  };
+  EXPECT_EQ(by_south("nearest"), 0);
+  EXPECT_GT(by_south("quickest"), 5);
+}
+
+TEST(Simulation, says_what_cannot_be) {
+  const auto why = [](const std::string& text) {
+    const Hall run = read(text);
+    Context context;
+    const auto simulation = Simulation::make(run.world, run.scenario, 1, context);
+    return simulation ? std::string() : simulation.error().message;
+  };
+  EXPECT_NE(why("[[area]]\nname = \"off\"\nbox = [30, 0, 31, 1]\n[[source]]\nname = \"s\"\narea = "
+                "\"off\"\ncount = 1\n")
+                .find("source 's': nobody of class 'adult' can stand in area 'off'"),
+            std::string::npos);
+  EXPECT_NE(why("[[profile]]\nname = \"p\"\nclass = \"wolf\"\n").find("no class 'wolf'"),
+            std::string::npos);
+}
+
+// More than there is room for: the rest waits outside, and comes in when others leave.
+TEST(Simulation, who_finds_no_room_waits_outside) {
+  const Hall run = read(R"(
+[[area]]
+name = "cell"
+box = [1, 1, 2.5, 2.5]
+[[journey]]
+name = "out"
+stages = [{ leave = "north" }]
+[[source]]
+name = "all"
+area = "cell"
+journey = "out"
+count = 60
+)");
+  Simulation simulation = made(run);
+  EXPECT_LT(simulation.crowd().size(), 20U);
+  run_out(simulation, 200);
+  EXPECT_TRUE(simulation.is_over());
+  for (const Visit& visit : simulation.visits()) EXPECT_GE(visit.left, 0) << visit.person;
+}
+
+// In a crowd with targets, too, what was saved goes on to the bit.
+TEST(Crowd, targets_are_saved) {
+  const Hall run = read("");
+  Context context;
+  auto crowd = Crowd::create(run.world, {});
+  ASSERT_TRUE(crowd);
+  const auto ids = crowd->scatter(40, {}, context);
+  ASSERT_TRUE(ids);
+  const auto target = crowd->add_target(run.scenario.areas[1].prisms, context);
+  const auto other = crowd->add_target(run.scenario.areas[2].prisms, context);
+  ASSERT_TRUE(target && other);
+  crowd->set_targets(std::span(*ids).first(20), *target);
+  crowd->set_targets(std::span(*ids).last(20), *other);
+  for (int step = 0; step < 20; ++step) crowd->step();
+  const std::vector<uint8_t> saved = crowd->save();
+  auto again = Crowd::restore(run.world, {}, saved, context);
+  ASSERT_TRUE(again) << again.error().message;
+  uint64_t arrived = 0;
+  for (int step = 0; step < 300; ++step) {
+    arrived += crowd->step().arrived;
+    again->step();
+    ASSERT_EQ(crowd->state_hash(), again->state_hash()) << step;
+  }
+  EXPECT_GT(arrived, 20U);
+}
+
+// Whose way to a target is cut walks around, and back once it is open; the flows are those of now.
+TEST(Crowd, targets_are_reached_around_obstacles) {
+  const Hall run = read("");
+  Context context;
+  auto crowd = Crowd::create(run.world, {});
+  ASSERT_TRUE(crowd);
+  std::vector<AvatarSpawn> spawns;
+  for (int i = 0; i < 20; ++i) {
+    spawns.push_back({run.world.find_place(0, {1.0 + i % 5, 0, 2.0 + i / 5}, 1), 0, 0, 0});
+  }
+  const auto ids = crowd->add(spawns, context);
+  ASSERT_TRUE(ids);
+  const auto target = crowd->add_target(run.scenario.areas[1].prisms, context);
+  ASSERT_TRUE(target);
+  crowd->set_targets(*ids, *target);
+  const double before = crowd->distance((*ids)[0], *target);
+  // All of the door but its south end: z from 4 to 6 of 4 to 7.
+  const auto crate = crowd->add_obstacle(Prism::box({9.5, 0, 3.5}, {10.7, 2, 6}));
+  ASSERT_TRUE(crate);
+  EXPECT_GT(crowd->distance((*ids)[0], *target), before + 1);
+  // And all of it, for a while.
+  const auto door = crowd->add_obstacle(Prism::box({9.9, 0, 5}, {10.3, 2, 7.2}));
+  ASSERT_TRUE(door);
+  EXPECT_FALSE(std::isfinite(crowd->distance((*ids)[0], *target)));
+  crowd->step();
+  EXPECT_EQ(crowd->stranded().size(), ids->size());
+  ASSERT_TRUE(crowd->remove_obstacle(*door));
+  crowd->set_targets(*ids, *target);
+  uint64_t arrived = 0;
+  for (int step = 0; step < 600; ++step) {
+    arrived += crowd->step().arrived;
+    const CrowdCheck found = crowd->check();
+    ASSERT_EQ(found.overlaps + found.wall_entries + found.obstacle_entries, 0U) << step;
+  }
+  EXPECT_EQ(arrived, ids->size());
+}
+
+// A column bound for one place walks there; only near it one waits for the other.
+TEST(Crowd, many_with_one_goal_walk) {
+  const Hall run = read("");
+  Context context;
+  auto crowd = Crowd::create(run.world, {});
+  ASSERT_TRUE(crowd);
+  std::vector<AvatarSpawn> spawns;
+  for (int i = 0; i < 8; ++i) {
+    spawns.push_back({run.world.find_place(0, {1.0 + 0.8 * i, 0, 5.5}, 1), 0, 0, 0});
+  }
+  const auto ids = crowd->add(spawns, context);
+  ASSERT_TRUE(ids);
+  const Place goal = run.world.find_place(0, {17, 0, 5.5}, 1);
+  crowd->set_goals(*ids, std::vector<Place>(ids->size(), goal));
+  double progress = 0;
+  for (int step = 0; step < 50; ++step) progress += crowd->step().progress / 50;
+  EXPECT_GT(progress, 0.9);
+}
+
+}  // namespace
+}  // namespace throng

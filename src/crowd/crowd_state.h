@@ -12,6 +12,7 @@
 
 #include "crowd/crowd_engine.h"
 #include "crowd/crowd_ground.h"
+#include "crowd/detours.h"
 #include "crowd/obstacle_book.h"
 #include "crowd/placement.h"
 #include "crowd/routes.h"

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "crowd/body.h"
-#include "crowd/detours.h"
 #include "crowd/stride_ground.h"
-#include "throng/live_ground.h"
 #include "throng/path.h"
 #include "throng/world.h"
 

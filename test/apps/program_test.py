@@ -320,7 +320,7 @@ class Program(unittest.TestCase):
         tables.update({name: schema[name]["properties"] for name in ("plane", "builtin")})
         tables["stages"] = tables["journey"]["stages"]["items"]["properties"]
         text = self.scenario().read_text()
-        text += '\n[[link]]\nname = "lift"\nfrom = "hall"\nto = "hall"\nseconds = 1\n[[density]]\nname = "map"\nbox = [0, 0, 1, 1]\n'
+        text += '\n[[link]]\nname = "lift"\nfrom = "hall"\nto = "hall"\nseconds = 1\n[[density]]\nname = "map"\nbox = [13, 3, 20, 9]\npaint = [{ area = "hall", weight = 1 }]\n'
         text += '[[class]]\nname = "adult"\n'
         wrong = {name: text.replace(f"[[{name}]]", f"[[{name}]]\nnonsense = 1", 1) for name in tables}
         wrong["plane"] = text.replace("[plane]", "[plane]\nnonsense = 1")

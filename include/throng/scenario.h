@@ -132,6 +132,13 @@ struct Link {
   double seconds = 0;        ///< On the way.
 };
 
+/// Something that is in the way for a time: a crate, a shut door, a barrier.
+struct ScenarioObstacle {
+  std::string name;
+  Prism prism;
+  double begin = 0, end = HUGE_VAL;  ///< Comes then, as soon as nobody stands there; and goes. [s]
+};
+
 struct Scenario {
   // Where: one of these, in this order.
   std::string world;                         ///< A folder; relative paths are the file's.
@@ -153,6 +160,7 @@ struct Scenario {
   std::vector<Source> sources;
   std::vector<Queue> queues;
   std::vector<Link> links;
+  std::vector<ScenarioObstacle> obstacles;
 };
 
 /// Reads a scenario file. Fails with kNotFound, or kBadFile with the line, the key and what is

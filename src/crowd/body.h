@@ -24,6 +24,7 @@ struct Body {
 
   enum State : uint8_t {
     kFree,       // nobody can be touched in this step: it takes what it names
+    kShut,       // nobody, but walls are all around: it stays
     kUndecided,  // it stays, unless a round decides
     kDecided,
   };

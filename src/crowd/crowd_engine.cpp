@@ -325,7 +325,7 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   for (uint32_t w = 0; !named && w < contest.ways; ++w) {
     named = try_place(body, body.x + contest.way[w].x, body.z + contest.way[w].z, place);
   }
-  body.state = named ? Body::kFree : Body::kUndecided;  // walls all around: it stays
+  body.state = named ? Body::kFree : Body::kShut;
 }
 
 // Where a body would stand after a step, if the ground lets it.
@@ -444,7 +444,9 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       Body& b = bodies_[i];
       const Plane way = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
       const Body& place = spare_[i];
-      const bool moves = b.state != Body::kUndecided && (place.x != b.x || place.z != b.z);
+      const bool is_alone = b.state == Body::kFree || b.state == Body::kShut;
+      const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
+      const bool moves = may_move && (place.x != b.x || place.z != b.z);
       if (moves) {
         b.velocity = {config_.units.velocity(place.x - b.x), config_.units.velocity(place.z - b.z)};
         b.x = place.x;
@@ -460,7 +462,8 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       const float towards = left > 1e-6f ? (b.velocity.x * way.x + b.velocity.z * way.z) / left : 0;
       here.progress += std::lrint(towards / b.speed * 1e6f);
       const bool near_goal = left <= 1 && b.has(Body::kLast);
-      const float content = near_goal ? 1 : towards / b.speed;
+      // Nobody is in the way of who is alone, so there is nobody to be turned away from.
+      const float content = near_goal || is_alone ? 1 : towards / b.speed;
       if (config_.patient) {
         const float along =
             (b.velocity.x * b.wish.x + b.velocity.z * b.wish.z) / (b.speed * b.speed);

@@ -30,7 +30,7 @@ struct Head {
   int32_t rounds = 0, ways = 0, patient = 0, reserved = 0;
 };
 static_assert(sizeof(Head) == 17 * 8 && std::is_trivially_copyable_v<Head>);
-static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 88);
+static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
 struct SavedObstacle {

@@ -23,7 +23,7 @@ struct Spot {
 /// The next corners of a way; when they are used up, the rest is asked for anew, from where one is
 /// by then.
 struct Route {
-  static constexpr size_t kCorners = 6;
+  static constexpr size_t kCorners = 12;
   Spot goal;
   std::array<Spot, kCorners> corners;
   uint8_t count = 0, next = 0;

@@ -148,14 +148,14 @@ StrideGround::Around StrideGround::look_around(uint32_t level, int32_t y, Ground
   return Around::kWalls;
 }
 
-// Row by row: of a row the line needs some cells beside each other, which is one look at its bits.
-// Where it passes a corner exactly it takes one of the two ways around it, unlike throng::walk.
+// As throng::walk_far, row by row: of a row the line needs some cells beside each other, which is
+// one look at its bits. Lines through a corner of cells are left to that.
 WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const {
   int32_t x = from.cell_x(), z = from.cell_z();
+  const uint32_t start = level;
   const int32_t end_x = to.cell_x(), end_z = to.cell_z();
   const int32_t sx = to.x > from.x ? 1 : -1, sz = to.z > from.z ? 1 : -1;
-  const double slope =
-      to.z == from.z ? 0 : static_cast<double>(to.x - from.x) / static_cast<double>(to.z - from.z);
+  const auto dx = static_cast<double>(to.x - from.x), dz = static_cast<double>(to.z - from.z);
   CrowdGround::Walk walk = ground_->walk(level);
   const auto step = [&](int32_t nx, int32_t nz) {
     const auto next = step_to(*ground_, level, x, z, nx, nz, step_mm_);
@@ -168,8 +168,15 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
     int32_t last = end_x;
     if (z != end_z) {  // where the line leaves the row
       const int64_t border = int64_t{sz > 0 ? z + 1 : z} << kUnitBits;
-      const double at = static_cast<double>(from.x) + static_cast<double>(border - from.z) * slope;
-      last = static_cast<int32_t>(static_cast<int64_t>(at) >> kUnitBits);
+      // The product is exact, and so is a quotient that is whole.
+      const double at =
+          static_cast<double>(from.x) + static_cast<double>(border - from.z) * dx / dz;
+      const auto whole = static_cast<int64_t>(at);
+      if (static_cast<double>(whole) == at && (whole & (kUnitsPerCell - 1)) == 0 && dx != 0) {
+        level = start;
+        return walk_far(*ground_, level, from, to, step_mm_);
+      }
+      last = static_cast<int32_t>(whole >> kUnitBits);
       last = sx > 0 ? std::clamp(last, x, std::max(x, end_x))
                     : std::clamp(last, std::min(x, end_x), x);
     }

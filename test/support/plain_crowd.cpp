@@ -149,19 +149,20 @@ void PlainCrowd::steer_all() {
   }
 }
 
+// Who stood within this when the step began can be touched in it.
+bool PlainCrowd::can_touch(uint32_t i, const Near& n) const {
+  const PlainBody &a = bodies_[i], &b = bodies_[n.other];
+  const int64_t reach =
+      int64_t{a.radius} + b.radius + config_.units.stride(a.speed) + config_.units.stride(b.speed);
+  return nearer_than(n.at.x, n.at.z, reach);
+}
+
 void PlainCrowd::commit() {
   const size_t count = bodies_.size();
   std::vector<Spot> now(count);
   for (size_t i = 0; i < count; ++i) now[i] = bodies_[i].at;
   std::vector<uint8_t> decided(count, 0);
   std::vector<std::optional<Spot>> named(count);
-  // Who stood within this when the step began can be touched in it.
-  const auto can_touch = [&](uint32_t i, const Near& n) {
-    const PlainBody &a = bodies_[i], &b = bodies_[n.other];
-    const int64_t reach = int64_t{a.radius} + b.radius + config_.units.stride(a.speed) +
-                          config_.units.stride(b.speed);
-    return nearer_than(n.at.x, n.at.z, reach);
-  };
   const auto is_clear = [&](uint32_t i, uint32_t j, Spot a, Spot b) {
     const Spot d = between(a, b);
     return !nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
@@ -216,7 +217,10 @@ void PlainCrowd::settle(const std::vector<Spot>& now) {
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
     if (config_.patient) {
-      const float content = left > 1 ? towards / body.speed : 1;
+      const bool alone = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
+        return can_touch(static_cast<uint32_t>(i), n);
+      });
+      const float content = left > 1 && !alone ? towards / body.speed : 1;
       const float along =
           (body.velocity.x * wish.x + body.velocity.z * wish.z) / (body.speed * body.speed);
       body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);

@@ -63,6 +63,7 @@ class PlainCrowd {
   };
   [[nodiscard]] Spot between(Spot a, Spot b) const;
   [[nodiscard]] steer::Plane wish_of(const PlainBody& body) const;
+  [[nodiscard]] bool can_touch(uint32_t i, const Near& n) const;
   void sense();
   void steer_all();
   void commit();

@@ -103,6 +103,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   }
   engine.set_ground(static_cast<size_t>(number), StrideGround(parts->ground, step_height));
   if (auto ok = find_flows(number, context); !ok) {
+    obstacles.close_class(static_cast<size_t>(number));
     parts.reset();
     return ok;
   }

@@ -27,7 +27,7 @@ struct Head {
   uint64_t bodies = 0, slots = 0, free_slots = 0;
   uint64_t obstacles = 0, corners = 0, free_obstacles = 0;
   uint64_t target_values = 0;  // doubles
-  int32_t rounds = 0, ways = 0, patient = 0, reserved = 0;
+  int32_t rounds = 0, ways = 0, patient = 0, flows_are_old = 0;
 };
 static_assert(sizeof(Head) == 17 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
@@ -200,6 +200,7 @@ std::vector<uint8_t> Crowd::save() const {
   const State& s = *state_;
   Head head = head_of(s.world, s.config);
   head.step = s.step;
+  head.flows_are_old = s.flows_are_old ? 1 : 0;
   head.sub_step = s.sub_step;
   head.scattered = s.scattered;
   head.bodies = s.engine.bodies().size();
@@ -307,6 +308,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     s.engine.add(body);
   }
   s.where_is_old = true;
+  s.flows_are_old = head.flows_are_old != 0;  // opening a class found them as they are now
   s.step = head.step;
   s.sub_step = head.sub_step;
   s.scattered = head.scattered;

@@ -54,7 +54,7 @@ Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
   while (parts.flows.size() < targets.size()) {
     const Target& target = targets[parts.flows.size()];
     const std::vector<Place> goals =
-        places_inside(*world.data(), parts.ground, target.regions, kGoals);
+        places_inside(*world.data(), parts.ground, target.regions, kGoals, &parts.lives[0]);
     auto flow = FlowPoints::make(parts.lives[0], goals, FlowPoints::kNever, context);
     if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
     parts.flows.push_back(std::move(*flow));

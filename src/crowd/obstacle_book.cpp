@@ -55,6 +55,13 @@ void ObstacleBook::open_class(size_t number, CrowdGround& ground) {
   take_cells();
 }
 
+void ObstacleBook::close_class(size_t number) {
+  classes_[number] = {};
+  for (CrowdObstacle& obstacle : obstacles_) {
+    if (obstacle.exists) obstacle.of_class[number] = {};
+  }
+}
+
 uint32_t ObstacleBook::add(const Prism& prism, ObstacleKind kind, bool wanted_up) {
   uint32_t slot = 0;
   if (free_slots_.empty()) {

@@ -54,6 +54,9 @@ class ObstacleBook {
   /// Of a class that somebody is of from now on; what is up is taken from its ground at once.
   void open_class(size_t number, CrowdGround& ground);
 
+  /// Undoes it. The ground is not given back its cells.
+  void close_class(size_t number);
+
   /// [check_prism] It waits until it is settled.
   uint32_t add(const Prism& prism, ObstacleKind kind, bool wanted_up);
   /// Null for those that are gone.

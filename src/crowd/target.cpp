@@ -59,10 +59,23 @@ bool Target::contains(const Body& body) const {
 }
 
 std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
-                                 std::span<const TargetRegion> regions, size_t most) {
+                                 std::span<const TargetRegion> regions, size_t most,
+                                 LiveGround* live) {
   const auto cell_of = [](double units, int32_t cells) {
     return static_cast<int32_t>(
         std::clamp<double>(std::floor(units / kUnitsPerCell), 0, cells - 1));
+  };
+  const auto is_legal = [&](uint32_t level, int32_t x, int32_t z) {
+    const CellRows* baked = live != nullptr ? ground.baked_legal(level) : nullptr;
+    if (baked == nullptr) return ground.is_legal(level, x, z);
+    return (((*baked)[static_cast<size_t>(z)] >> x) & 1) != 0;
+  };
+  const auto place_of = [&](uint32_t level, GroundPoint p, int32_t feet) {
+    const double unit = world.summary.cell / kUnitsPerCell;
+    const Vec3d& origin = world.summary.origin;
+    return Place{{origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet * 1e-3,
+                  origin.z + (static_cast<double>(p.z) + 0.5) * unit},
+                 level + 1};
   };
   const auto for_cells = [&](int32_t stride, auto visit) {
     for (const TargetRegion& region : regions) {
@@ -76,12 +89,14 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
             for (int32_t z = std::max(z0, tz * 64); z <= std::min(z1, tz * 64 + 63); ++z) {
               if (z % stride != 0) continue;
               for (int32_t x = std::max(x0, tx * 64); x <= std::min(x1, tx * 64 + 63); ++x) {
-                if (x % stride != 0 || !ground.is_legal(level, x & 63, z & 63)) continue;
+                if (x % stride != 0 || !is_legal(level, x & 63, z & 63)) continue;
                 const GroundPoint middle{(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
                                          (int64_t{z} << kUnitBits) + kUnitsPerCell / 2};
                 const auto mx = static_cast<int32_t>(middle.x), mz = static_cast<int32_t>(middle.z);
                 const int32_t feet = ground.feet(level, middle);
-                if (region.contains(mx, mz, feet)) visit(level, middle, feet);
+                if (!region.contains(mx, mz, feet)) continue;
+                const Place place = place_of(level, middle, feet);
+                if (live == nullptr || live->is_free(place)) visit(place);
               }
             }
           });
@@ -99,13 +114,7 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
       std::clamp(std::ceil(std::sqrt(cells / static_cast<double>(most))), 1.0, 1e6));
   std::vector<Place> places;
   for (;; stride = std::max(1, stride / 2)) {
-    for_cells(stride, [&](uint32_t level, GroundPoint p, int32_t feet) {
-      const double unit = world.summary.cell / kUnitsPerCell;
-      const Vec3d& origin = world.summary.origin;
-      places.push_back({{origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet * 1e-3,
-                         origin.z + (static_cast<double>(p.z) + 0.5) * unit},
-                        level + 1});
-    });
+    for_cells(stride, [&](const Place& place) { places.push_back(place); });
     if (!places.empty() || stride == 1) return places;
   }
 }

@@ -532,6 +532,93 @@ TEST(CrowdObstacles, ARestoredCrowdHasThemAsTheSavedOne) {
   EXPECT_TRUE(is_free(*restored));
 }
 
+// ---- With targets.
+
+TargetId target_at(Crowd& crowd, const Vec3d& low, const Vec3d& high) {
+  Context context;
+  const Prism box = Prism::box(low, high);
+  const auto target = crowd.add_target(std::span(&box, 1), context);
+  EXPECT_TRUE(target) << target.error().message;
+  return target ? *target : TargetId{};
+}
+
+TEST(CrowdObstacles, WhoAreBoundForATargetTakeTheOtherWayToo) {
+  const World world = two_ways();
+  Crowd crowd = made(world);
+  const TargetId target = target_at(crowd, {18, -1, 2}, {22, 2, 6});
+  const auto ids = scattered(crowd, 40);
+  crowd.set_targets(ids, target);
+  for (int step = 0; step < 10; ++step) crowd.step();
+  const AvatarId first = added(crowd, world.find_place(0, {1, 0, 23}, 0.5));
+  const ObstacleId door = put_up(crowd, crate_at(kNearDoor));
+  uint64_t arrived = 0;
+  for (int step = 0; step < 900; ++step) {
+    crowd.step();
+    ASSERT_TRUE(is_free(crowd)) << step;
+    ASSERT_TRUE(crowd.stranded().empty());
+    arrived += crowd.arrived().size();
+  }
+  EXPECT_FALSE(waits(crowd, door));
+  EXPECT_GT(arrived, 30u);
+  if (!first) return;
+  const double around = crowd.distance(first, target);
+  EXPECT_TRUE(crowd.set_obstacle_active(door, false));
+  EXPECT_LT(crowd.distance(first, target), around + 1e-9);
+  put_up(crowd, crate_at(kFarDoor, 1));
+  EXPECT_GT(crowd.distance(first, target), around);
+}
+
+TEST(CrowdObstacles, RestoredWithTargetsAndForAnyWorkersItIsTheSame) {
+  const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
+  const Vec3d at = world.random_place(0, 3, 3).position;
+  uint64_t first = 0;
+  for (const int32_t workers : {1, 2, 4}) {
+    Crowd crowd = made(world, {.workers = workers});
+    const auto ids = scattered(crowd, 150);
+    const TargetId target =
+        target_at(crowd, {at.x - 4, at.y - 1, at.z - 4}, {at.x + 4, at.y + 2, at.z + 4});
+    put_up(crowd, Prism::circle({at.x + 1, at.y, at.z}, 0.5, 1));
+    put_up(crowd, Prism::circle({at.x - 2, at.y, at.z}, 0.5, 1), ObstacleKind::kMoving);
+    crowd.set_targets(ids, target);
+    Chaos chaos{crowd, world, 33, {}};
+    for (int step = 0; step < 20; ++step) {
+      chaos.act();
+      crowd.step();
+    }
+    Context context;
+    auto restored = Crowd::restore(world, {.workers = workers}, crowd.save(), context);
+    ASSERT_TRUE(restored) << restored.error().message;
+    Chaos other{*restored, world, 33, chaos.ids, chaos.n};
+    for (int step = 0; step < 20; ++step) {
+      // A while without changes, then with.
+      if (step >= 8) chaos.act();
+      if (step >= 8) other.act();
+      crowd.step();
+      restored->step();
+      ASSERT_EQ(restored->state_hash(), crowd.state_hash()) << workers << ' ' << step;
+    }
+    if (first == 0) first = crowd.state_hash();
+    EXPECT_EQ(crowd.state_hash(), first) << workers;
+    EXPECT_TRUE(is_free(crowd));
+  }
+}
+
+TEST(CrowdObstacles, AClassThatCouldNotBeOpenedCanBeLater) {
+  const World world = two_ways();
+  Crowd crowd = made(world);
+  const ObstacleId crate = put_up(crowd, crate_at({6, 0, 6}));
+  target_at(crowd, {18, -1, 2}, {22, 2, 6});
+  Context cancelled;
+  cancelled.cancel = true;
+  EXPECT_FALSE(crowd.scatter(1, {}, cancelled));
+  crowd.step();
+  EXPECT_FALSE(added(crowd, world.find_place(0, {6, 0, 6}, 0.5)));
+  const AvatarId id = added(crowd, world.find_place(0, {9, 0, 6}, 0.5));
+  ASSERT_TRUE(id);
+  EXPECT_TRUE(crowd.remove_obstacle(crate));
+  EXPECT_TRUE(added(crowd, world.find_place(0, {6, 0, 6}, 0.5)));
+}
+
 TEST(CrowdObstacles, SavedNonsenseIsRefusedOrHarmless) {
   const World world = test::bake(worlds::flat(20), 0.1);
   Crowd crowd = made(world);

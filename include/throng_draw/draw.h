@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "throng/impostor.h"
 #include "throng/impostor_pack.h"
@@ -13,10 +15,70 @@
 #include "throng/result.h"
 #include "throng/scene.h"
 
-/// Pictures of a world and its crowd by a graphics library, without a window. A library of its own,
-/// throng_draw: the run-time library needs no graphics. OpenGL ES 3.0, so that a browser can run
-/// the same.
+/// Pictures of a world and its crowd by a graphics library, without a window or in one. A library
+/// of its own, throng_draw: the run-time library needs no graphics. OpenGL ES 3.0, so that a
+/// browser can run the same.
 namespace throng {
+
+/// A scene as a card takes it. Made on any thread: the work that a window must not wait for.
+class THRONG_API PreparedScene {
+ public:
+  /// Corners, normals, and which sides of triangles are edges: those where the surface bends by 25
+  /// degrees or ends. `origin` is the point that everything drawn is relative to. Fails with
+  /// kLimit: more triangles than cards hold.
+  [[nodiscard]] static Result<PreparedScene> make(const Scene& scene, Vec3d origin);
+  PreparedScene(PreparedScene&&) noexcept;
+  PreparedScene& operator=(PreparedScene&&) noexcept;
+  ~PreparedScene();
+  [[nodiscard]] const Box3d& bounds() const;  ///< Relative to the origin.
+  [[nodiscard]] Vec3d origin() const;
+
+ private:
+  friend class Drawing;
+  struct State;
+  explicit PreparedScene(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Red, green, blue and alpha, 8 bits each, red lowest; alpha is not multiplied in.
+using Rgba = uint32_t;
+[[nodiscard]] constexpr Rgba rgba(uint32_t red, uint32_t green, uint32_t blue,
+                                  uint32_t alpha = 255) {
+  return red | green << 8 | blue << 16 | alpha << 24;
+}
+
+struct MarkVertex {
+  float x = 0, y = 0, z = 0;  ///< Relative to the drawing's origin. [m]
+  Rgba colour = 0;
+};
+
+/// What is drawn over the scene to explain it: plain colours, no light.
+struct Marks {
+  std::vector<MarkVertex> triangles;  ///< Three each.
+  std::vector<MarkVertex> lines;      ///< Two each.
+  float line_width = 2;               ///< [px]
+  bool through_walls = false;         ///< What is hidden shows, too, faintly.
+};
+inline constexpr size_t kMarkSlots = 16;
+
+struct PanelVertex {
+  float x = 0, y = 0;  ///< From the picture's upper left corner. [px]
+  float u = 0, v = 0;  ///< Of the panel's texture. [0 to 1]
+  Rgba colour = 0;
+};
+
+/// A run of triangles of a panel that shows only inside a rectangle. [px]
+struct PanelRun {
+  uint32_t first = 0, count = 0;  ///< Indices.
+  int32_t left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// What lies flat over the picture: text, buttons. Borrowed.
+struct PanelView {
+  std::span<const PanelVertex> vertices;
+  std::span<const uint32_t> indices;  ///< Three a triangle.
+  std::span<const PanelRun> runs;
+};
 
 /// Avatars that share an atlas and a clip. Positions are relative to the drawing's origin.
 struct DrawnCrowd {
@@ -31,7 +93,12 @@ struct DrawingConfig {
   int32_t samples = 2;                 ///< Along each side of a pixel. [1 to 4]
   Vec3d to_sun{-0.5, 0.75, 0.45};      ///< Towards the sun, any length. [y > 0]
   bool avatar_shadows = true;          ///< Those of the scene are always there.
-  int32_t workers = 0;                 ///< For packing, 0 for all cores. [>= 0]
+  int32_t sun_pixels = 4096;           ///< Along a side of the sun's picture. [256 to 8192]
+  double edges = 0.5;                  ///< How dark edges of the scene are, 0: not drawn. [0 to 1]
+  /// The scene above this height is left out, for looking into buildings; relative to the origin.
+  /// Avatars are the caller's. [m]
+  double cut_height = std::numeric_limits<double>::infinity();
+  int32_t workers = 0;  ///< For packing, 0 for all cores. [>= 0]
 };
 
 /// What a picture took.
@@ -42,11 +109,15 @@ struct DrawingReport {
   double seconds_draw = 0;  ///< Upload, draw calls and reading back.
 };
 
-/// A drawing without a window. Movable, not copyable; one thread at a time.
+/// Draws. Movable, not copyable; one thread at a time.
 class THRONG_API Drawing {
  public:
-  /// Fails with kNotFound where there is no EGL, or no driver that draws without a window.
+  /// One without a window. Fails with kNotFound where there is no EGL, or no driver that draws
+  /// without a window.
   [[nodiscard]] static Result<Drawing> create();
+  /// One for the window whose OpenGL ES 3.0 context is current on this thread, now and whenever
+  /// this drawing is used; it must outlive the drawing. Fails with kNotFound.
+  [[nodiscard]] static Result<Drawing> create_in_current_context();
   Drawing(Drawing&&) noexcept;
   Drawing& operator=(Drawing&&) noexcept;
   ~Drawing();
@@ -56,13 +127,23 @@ class THRONG_API Drawing {
   /// The triangles to draw, and the point that everything is relative to. Replaces what was there.
   /// Fails with kLimit: more triangles than the card's memory holds.
   [[nodiscard]] Result<void> set_scene(const Scene& scene, Vec3d origin);
+  [[nodiscard]] Result<void> set_scene(const PreparedScene& scene);
+  /// What a slot < kMarkSlots shows from now on; lower slots are drawn first. Fails with kLimit.
+  [[nodiscard]] Result<void> set_marks(size_t slot, const Marks& marks);
+  /// How opaque each texel of the panel's texture is, rows from the top.
+  [[nodiscard]] Result<void> set_panel_texture(int32_t width, int32_t height,
+                                               std::span<const uint8_t> alpha);
   /// Keeps a copy of an atlas. Fails with kLimit: pages larger than the card's textures.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
+  void clear_atlases();  ///< Forgets all: the next one is number 0.
   /// Fails with kBadConfig if draw() would.
   [[nodiscard]] static Result<void> check(const DrawingConfig& config);
   /// Fails with kBadConfig, or kLimit: a picture larger than the card draws.
   [[nodiscard]] Result<Image> draw(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
-                                   DrawingReport* report = nullptr);
+                                   DrawingReport* report = nullptr, const PanelView& panel = {});
+  /// The same into the window of the current context, which is `config.width` by `height` pixels.
+  [[nodiscard]] Result<void> show(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
+                                  DrawingReport* report = nullptr, const PanelView& panel = {});
 
  private:
   struct State;

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -12,20 +13,21 @@
 #include "draw/atlas_textures.h"
 #include "draw/gl_objects.h"
 #include "draw/headless.h"
+#include "draw/mark_mesh.h"
 #include "draw/matrix.h"
+#include "draw/panel_mesh.h"
 #include "draw/scene_mesh.h"
 #include "draw/shaders.h"
 #include "draw/wardrobe.h"
 #include "throng_draw/draw.h"
 
-// A picture in four passes: the sun's depth of scene and avatars, the sky, the scene, the avatars.
-// All instances of a picture go up in one upload: those that the eye sees,
+// A picture in six passes: the sun's depth of scene and avatars, the sky, the scene, the avatars,
+// the marks, the panel. All instances of a picture go up in one upload: those that the eye sees,
 // then the same as the sun sees them.
 namespace throng {
 namespace {
 
 constexpr GLsizei kInstancesWide = 2048;
-constexpr GLsizei kSunPixels = 4096;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -70,24 +72,54 @@ Image reduce(const std::vector<uint8_t>& rgba, int32_t width, int32_t height, in
 
 }  // namespace
 
+struct PreparedScene::State {
+  SceneCorners corners;
+};
+
+PreparedScene::PreparedScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PreparedScene::PreparedScene(PreparedScene&&) noexcept = default;
+PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
+PreparedScene::~PreparedScene() = default;
+
+Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
+  Result<SceneCorners> corners = scene_corners(scene, origin);
+  if (!corners) return corners.error();
+  return PreparedScene(std::make_unique<State>(State{*std::move(corners)}));
+}
+
+const Box3d& PreparedScene::bounds() const { return state_->corners.bounds; }
+Vec3d PreparedScene::origin() const { return state_->corners.origin; }
+
 struct Drawing::State {
-  std::unique_ptr<Headless> context;
-  GlProgram sky, scene, depth, impostor, shadow;
+  std::unique_ptr<Headless> context;  // None: a window's, which its owner keeps current.
+  GlProgram sky, scene, depth, impostor, shadow, mark, panel_program;
   GlVertexArray nothing;  // Vertices by number alone.
   SceneMesh mesh;
+  std::array<MarkMesh, kMarkSlots> marks;
+  PanelMesh panel;
   std::vector<AtlasTextures> atlases;
   std::vector<ImpostorInstance> instances;
   std::vector<Run> seen, thrown;
   GlTexture instance_texture, sun_depth;
   GlFramebuffer sun_frame;
   GLsizei instance_rows = 0;
+  GLsizei sun_pixels = 0;
   Target target;
 
+  void make_current() const {
+    if (context) context->make_current();
+  }
+
   Result<void> make_programs();
+  Result<void> fit_sun(GLsizei pixels);
   Result<void> fit_target(GLsizei width, GLsizei height);
   void pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config, Vec3d to_sun);
   void upload_instances();
-  void draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up) const;
+  void draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up, float cut) const;
+  void draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const;
+  // Everything but the panel, into the target.
+  Result<void> paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
+                     DrawingReport& report);
   void draw_crowd(const GlProgram& program, const std::vector<Run>& runs) const;
 };
 
@@ -97,16 +129,31 @@ Result<void> Drawing::State::make_programs() {
   depth = GlProgram(shaders::depth_vertex(), shaders::depth_fragment());
   impostor = GlProgram(shaders::impostor_vertex(), shaders::impostor_fragment());
   shadow = GlProgram(shaders::shadow_vertex(), shaders::shadow_fragment());
-  for (const GlProgram* program : {&sky, &scene, &depth, &impostor, &shadow}) {
+  mark = GlProgram(shaders::mark_vertex(), shaders::mark_fragment());
+  panel_program = GlProgram(shaders::panel_vertex(), shaders::panel_fragment());
+  for (const GlProgram* program :
+       {&sky, &scene, &depth, &impostor, &shadow, &mark, &panel_program}) {
     if (program->is_linked()) continue;
     const std::string fault = program->fault().substr(0, program->fault().find('\n'));
     return Error{Errc::kNotFound,
                  "drawing: the driver refuses a shader (" + fault + "); use another driver"};
   }
   nothing = make_vertex_array();
+  return {};
+}
+
+Result<void> Drawing::State::fit_sun(GLsizei pixels) {
+  if (sun_pixels == pixels) return {};
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  if (pixels > largest) {
+    return Error{Errc::kLimit, "drawing: this card's textures have at most " +
+                                   std::to_string(largest) + " pixels a side; set sun_pixels"};
+  }
+  sun_pixels = pixels;
   sun_depth = make_texture();
   glBindTexture(GL_TEXTURE_2D, sun_depth.get());
-  glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT24, kSunPixels, kSunPixels);
+  glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT24, pixels, pixels);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
@@ -189,13 +236,14 @@ void Drawing::State::upload_instances() {
                   instances.data());
 }
 
-void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right,
-                                    Vec3d sun_up) const {
+void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up,
+                                    float cut) const {
   glBindFramebuffer(GL_FRAMEBUFFER, sun_frame.get());
-  glViewport(0, 0, kSunPixels, kSunPixels);
+  glViewport(0, 0, sun_pixels, sun_pixels);
   glClear(GL_DEPTH_BUFFER_BIT);
   depth.use();
   depth.set_matrix("clip_from_world", sun_from_world.data());
+  depth.set("cut", cut);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5F, 2.0F);
   mesh.draw();
@@ -218,13 +266,28 @@ void Drawing::State::draw_crowd(const GlProgram& program, const std::vector<Run>
   }
 }
 
+void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const {
+  mark.use();
+  mark.set_matrix("clip_from_world", clip_from_world.data());
+  mark.set_size("half_picture", 0.5F * static_cast<float>(config.width * config.samples),
+                0.5F * static_cast<float>(config.height * config.samples));
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  for (const MarkMesh& mesh_of_slot : marks) {
+    mesh_of_slot.draw(mark, static_cast<float>(config.samples));
+  }
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
 Drawing::Drawing(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Drawing::Drawing(Drawing&&) noexcept = default;
 Drawing& Drawing::operator=(Drawing&&) noexcept = default;
 
 Drawing::~Drawing() {
   if (!state_) return;
-  state_->context->make_current();
+  state_->make_current();
   std::unique_ptr<Headless> last = std::move(state_->context);
   state_.reset();  // Names first, then the context that they are of.
 }
@@ -239,15 +302,27 @@ Result<Drawing> Drawing::create() {
   return drawing;
 }
 
+Result<Drawing> Drawing::create_in_current_context() {
+  Drawing drawing(std::make_unique<State>());
+  if (auto made = drawing.state_->make_programs(); !made) return made.error();
+  return drawing;
+}
+
 Result<void> Drawing::check(const DrawingConfig& c) {
   const EyeCamera& camera = c.camera;
   const auto finite = [](Vec3d v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   };
   const bool sound = c.width >= 16 && c.width <= 8192 && c.height >= 16 && c.height <= 8192 &&
-                     c.samples >= 1 && c.samples <= 4 && c.workers >= 0;
+                     c.samples >= 1 && c.samples <= 4 && c.workers >= 0 && c.sun_pixels >= 256 &&
+                     c.sun_pixels <= 8192 && c.edges >= 0 && c.edges <= 1;
   if (!sound) {
-    return Error{Errc::kBadConfig, "drawing: need 16 to 8192 pixels a side and 1 to 4 samples"};
+    return Error{Errc::kBadConfig,
+                 "drawing: need 16 to 8192 pixels a side, 1 to 4 samples, 256 to 8192 pixels for "
+                 "the sun, and edges of 0 to 1"};
+  }
+  if (std::isnan(c.cut_height)) {
+    return Error{Errc::kBadConfig, "drawing: the height of the cut must be a number"};
   }
   if (!finite(camera.eye) || !finite(camera.target) || camera.eye == camera.target) {
     return Error{Errc::kBadConfig, "drawing: the camera's eye and target must be two points"};
@@ -265,45 +340,64 @@ Result<void> Drawing::check(const DrawingConfig& c) {
 }
 
 std::string Drawing::renderer() const {
-  state_->context->make_current();
+  state_->make_current();
   const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return name == nullptr ? "unknown" : name;
 }
 
 Result<void> Drawing::set_scene(const Scene& scene, Vec3d origin) {
-  state_->context->make_current();
-  return state_->mesh.set(scene, origin);
+  const Result<PreparedScene> prepared = PreparedScene::make(scene, origin);
+  if (!prepared) return prepared.error();
+  return set_scene(*prepared);
+}
+
+Result<void> Drawing::set_scene(const PreparedScene& scene) {
+  state_->make_current();
+  return state_->mesh.set(scene.state_->corners);
+}
+
+Result<void> Drawing::set_marks(size_t slot, const Marks& marks) {
+  THRONG_ASSERT(slot < kMarkSlots);
+  state_->make_current();
+  return state_->marks[slot].set(marks);
+}
+
+Result<void> Drawing::set_panel_texture(int32_t width, int32_t height,
+                                        std::span<const uint8_t> alpha) {
+  state_->make_current();
+  return state_->panel.set_texture(width, height, alpha);
 }
 
 Result<size_t> Drawing::add_atlas(const Atlas& atlas) {
-  state_->context->make_current();
+  state_->make_current();
   Result<AtlasTextures> made = AtlasTextures::make(atlas);
   if (!made) return made.error();
   state_->atlases.push_back(*std::move(made));
   return state_->atlases.size() - 1;
 }
 
-Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingConfig& given,
-                            DrawingReport* report) {
-  if (auto sound = check(given); !sound) return sound.error();
-  DrawingConfig config = given;
-  config.camera.aspect = static_cast<double>(config.width) / config.height;
-  State& state = *state_;
-  state.context->make_current();
+void Drawing::clear_atlases() {
+  state_->make_current();
+  state_->atlases.clear();
+}
+
+Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
+                                   DrawingReport& report) {
   const GLsizei wide = config.width * config.samples, high = config.height * config.samples;
-  if (auto fits = state.fit_target(wide, high); !fits) return fits.error();
+  if (auto fits = fit_target(wide, high); !fits) return fits.error();
+  if (auto fits = fit_sun(config.sun_pixels); !fits) return fits.error();
 
   const Vec3d to_sun = config.to_sun * (1 / length(config.to_sun));
   const auto start = std::chrono::steady_clock::now();
-  state.pack(crowds, config, to_sun);
+  pack(crowds, config, to_sun);
   const double seconds_pack = seconds_since(start);
   const auto draw_start = std::chrono::steady_clock::now();
-  state.upload_instances();
+  upload_instances();
 
   // The sun's picture covers what is near the target, as far as shadows can be told apart.
   const EyeCamera& camera = config.camera;
   const CameraAxes axes = camera_axes(camera);
-  const Box3d& bounds = state.mesh.bounds();
+  const Box3d& bounds = mesh.bounds();
   const double scene_radius = bounds.empty() ? 1 : 0.5 * length(bounds.max - bounds.min) + 1;
   const Vec3d scene_middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
   const double reach = std::min(scene_radius, 1.6 * length(camera.target - camera.eye) + 20);
@@ -322,13 +416,15 @@ Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingCon
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  state.draw_sun_depth(sun_from_world, sun_right, sun_up);
+  const double cut_given = std::min(config.cut_height, 1e9);
+  const auto cut = static_cast<float>(cut_given);
+  draw_sun_depth(sun_from_world, sun_right, sun_up, cut);
 
-  glBindFramebuffer(GL_FRAMEBUFFER, state.target.frame.get());
+  glBindFramebuffer(GL_FRAMEBUFFER, target.frame.get());
   glViewport(0, 0, wide, high);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE4);
-  glBindTexture(GL_TEXTURE_2D, state.sun_depth.get());
+  glBindTexture(GL_TEXTURE_2D, sun_depth.get());
   const auto begin = [&](const GlProgram& program) {
     program.use();
     program.set_matrix("clip_from_world", clip_from_world.data());
@@ -338,40 +434,94 @@ Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingCon
     program.set("haze", haze);
     program.set("instances", 3);
     program.set("sun_depth", 4);
-    program.set("sun_texel", 1.0F / kSunPixels);
+    program.set("sun_texel", 1.0F / static_cast<float>(sun_pixels));
   };
-  begin(state.sky);
+  begin(sky);
   const double up = std::tan(0.5 * camera.field_of_view);
-  state.sky.set("right", axes.right * (up * camera.aspect));
-  state.sky.set("up", axes.up * up);
-  state.sky.set("forward", axes.forward);
+  sky.set("right", axes.right * (up * camera.aspect));
+  sky.set("up", axes.up * up);
+  sky.set("forward", axes.forward);
   glDepthMask(GL_FALSE);
-  glBindVertexArray(state.nothing.get());
+  glBindVertexArray(nothing.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthMask(GL_TRUE);
 
-  begin(state.scene);
-  state.scene.set("bias", static_cast<float>(2.5 * reach / kSunPixels));
-  state.mesh.draw();
+  begin(scene);
+  scene.set("bias", static_cast<float>(2.5 * reach / sun_pixels));
+  scene.set("cut", cut);
+  scene.set("edges", static_cast<float>(config.edges));
+  scene.set("edge_wide", 0.5F * static_cast<float>(config.samples));
+  mesh.draw();
 
-  begin(state.impostor);
+  begin(impostor);
   static const auto kWardrobe = wardrobe();
-  state.impostor.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
-  state.draw_crowd(state.impostor, state.seen);
+  impostor.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
+  draw_crowd(impostor, seen);
 
-  std::vector<uint8_t> rgba(static_cast<size_t>(wide) * static_cast<size_t>(high) * 4);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, wide, high, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  if (report != nullptr) {
-    *report = {.seconds_pack = seconds_pack, .seconds_draw = seconds_since(draw_start)};
-    for (const DrawnCrowd& crowd : crowds) report->avatars += crowd.avatars.x.size();
-    for (const Run& run : state.seen) report->drawn += run.count;
-  }
+  draw_marks(clip_from_world, config);
+
+  report = {.seconds_pack = seconds_pack, .seconds_draw = seconds_since(draw_start)};
+  for (const DrawnCrowd& crowd : crowds) report.avatars += crowd.avatars.x.size();
+  for (const Run& run : seen) report.drawn += run.count;
+  return {};
+}
+
+namespace {
+
+// With the aspect of the picture.
+DrawingConfig completed(const DrawingConfig& given) {
+  DrawingConfig config = given;
+  config.camera.aspect = static_cast<double>(config.width) / config.height;
+  return config;
+}
+
+Result<void> no_driver_error() {
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     return Error{Errc::kLimit, "drawing: the driver failed with error " + std::to_string(error) +
                                    "; make a smaller picture"};
   }
-  return reduce(rgba, config.width, config.height, config.samples);
+  return {};
+}
+
+}  // namespace
+
+Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingConfig& given,
+                            DrawingReport* report, const PanelView& panel) {
+  if (auto sound = check(given); !sound) return sound.error();
+  const DrawingConfig config = completed(given);
+  State& state = *state_;
+  state.make_current();
+  DrawingReport done;
+  if (auto ok = state.paint(crowds, config, done); !ok) return ok.error();
+  state.panel.draw(state.panel_program, panel, config.width, config.height, config.samples);
+  const auto start = std::chrono::steady_clock::now();
+  const GLsizei wide = state.target.width, high = state.target.height;
+  std::vector<uint8_t> texels(static_cast<size_t>(wide) * static_cast<size_t>(high) * 4);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, wide, high, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  done.seconds_draw += seconds_since(start);
+  if (report != nullptr) *report = done;
+  if (auto ok = no_driver_error(); !ok) return ok.error();
+  return reduce(texels, config.width, config.height, config.samples);
+}
+
+Result<void> Drawing::show(std::span<const DrawnCrowd> crowds, const DrawingConfig& given,
+                           DrawingReport* report, const PanelView& panel) {
+  if (auto sound = check(given); !sound) return sound.error();
+  const DrawingConfig config = completed(given);
+  State& state = *state_;
+  state.make_current();
+  DrawingReport done;
+  if (auto ok = state.paint(crowds, config, done); !ok) return ok.error();
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, state.target.frame.get());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBlitFramebuffer(0, 0, state.target.width, state.target.height, 0, 0, config.width,
+                    config.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, config.width, config.height);
+  state.panel.draw(state.panel_program, panel, config.width, config.height, 1);
+  if (report != nullptr) *report = done;
+  return no_driver_error();
 }
 
 }  // namespace throng

@@ -3,17 +3,17 @@
 #pragma once
 
 #include "draw/gl_objects.h"
+#include "draw/scene_corners.h"
 #include "throng/math.h"
 #include "throng/result.h"
-#include "throng/scene.h"
 
 namespace throng {
 
-/// A scene's triangles in the card's memory: 16 bytes a corner.
+/// A scene's triangles in the card's memory.
 class SceneMesh {
  public:
   /// Fails with kLimit.
-  [[nodiscard]] Result<void> set(const Scene& scene, Vec3d origin);
+  [[nodiscard]] Result<void> set(const SceneCorners& scene);
   void draw() const;
   [[nodiscard]] const Box3d& bounds() const {
     return bounds_;

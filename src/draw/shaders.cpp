@@ -117,14 +117,18 @@ void main() { colour = vec4(sqrt(sky_colour(normalize(towards))), 1.0); }
 std::string scene_vertex() {
   return std::string(kHead) + R"(
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec4 normal_tint;
+layout(location = 1) in vec3 face;
+layout(location = 2) in uint edges_tint;
 out vec3 world;
+out vec3 corner;
 flat out vec3 normal;
-flat out float tint;
+flat out uint kind;
 void main() {
   world = position;
-  normal = normal_tint.xyz;
-  tint = normal_tint.w;
+  normal = face;
+  kind = edges_tint;
+  int k = gl_VertexID % 3;
+  corner = vec3(k == 0, k == 1, k == 2);
   gl_Position = clip_from_world * vec4(position, 1.0);
 }
 )";
@@ -134,20 +138,36 @@ void main() {
 std::string scene_fragment() {
   return std::string(kHead) + kLight + kSunlit + R"(
 in vec3 world;
+in vec3 corner;
 flat in vec3 normal;
-flat in float tint;
+flat in uint kind;
 uniform float bias;
+uniform float cut;
+uniform float edges;     // How dark.
+uniform float edge_wide; // [px of this target]
 out vec4 colour;
+// How much of the pixel an edge covers. Far away, where triangles are small, edges fade.
+float edge_cover() {
+  vec3 a_pixel = fwidth(corner);
+  vec3 cover = clamp(edge_wide + 0.5 - corner / max(a_pixel, 1e-6), 0.0, 1.0);
+  cover *= 1.0 - smoothstep(0.05, 0.3, a_pixel);
+  vec3 is_edge = vec3(kind & 1u, kind >> 1u & 1u, kind >> 2u & 1u);
+  cover *= is_edge;
+  return max(cover.x, max(cover.y, cover.z));
+}
 void main() {
+  float edge = edge_cover();
+  if (world.y > cut) discard;
+  float tint = float(kind >> 3u);
   vec3 from_eye = world - eye;
   vec3 n = normalize(normal);
   if (dot(n, from_eye) > 0.0) n = -n;
-  vec3 wall = mix(vec3(0.62, 0.52, 0.42), vec3(0.56, 0.57, 0.58), max(tint, 0.0));
+  vec3 wall = mix(vec3(0.62, 0.52, 0.42), vec3(0.56, 0.57, 0.58), (tint - 1.0) / 30.0);
   vec3 floor_colour = vec3(0.42, 0.41, 0.39);
-  if (tint < 0.0) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
+  if (tint < 0.5) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
   vec3 albedo = mix(wall, floor_colour, smoothstep(0.5, 0.8, abs(n.y)));
   float in_sun = dot(n, to_sun) > 0.0 ? sunlit(world + n * bias) : 0.0;
-  colour = shown(lit(albedo, n, in_sun), from_eye);
+  colour = shown(lit(albedo, n, in_sun) * (1.0 - edges * edge), from_eye);
 }
 )";
 }
@@ -155,11 +175,23 @@ void main() {
 std::string depth_vertex() {
   return std::string(kHead) + R"(
 layout(location = 0) in vec3 position;
-void main() { gl_Position = clip_from_world * vec4(position, 1.0); }
+out float height;
+void main() {
+  height = position.y;
+  gl_Position = clip_from_world * vec4(position, 1.0);
+}
 )";
 }
 
-std::string depth_fragment() { return std::string(kHead) + "void main() {}\n"; }
+std::string depth_fragment() {
+  return std::string(kHead) + R"(
+in float height;
+uniform float cut;
+void main() {
+  if (height > cut) discard;
+}
+)";
+}
 
 std::string impostor_vertex() {
   return std::string(kHead) + kSunlit + kPull + R"(
@@ -253,6 +285,73 @@ uniform sampler2DArray albedo;
 void main() {
   if (texture(albedo, texel).a < 0.5) discard;
 }
+)";
+}
+
+// A line's corners move apart across it, in pixels. All comes a little nearer than the surface that
+// it lies on.
+std::string mark_vertex() {
+  return std::string(kHead) + R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 other;
+layout(location = 2) in vec4 paint;
+layout(location = 3) in float side;
+uniform vec2 half_picture; // [px of this target]
+uniform float half_width;  // [px of this target]
+out vec4 tint;
+void main() {
+  tint = paint;
+  gl_Position = clip_from_world * vec4(position, 1.0);
+  if (side != 0.0) {
+    vec4 end = clip_from_world * vec4(other, 1.0);
+    // What lies behind the eye has no place in the picture: go along the line to just before it.
+    const float kNear = 0.05;
+    if (gl_Position.w < kNear && end.w > kNear)
+      gl_Position = mix(gl_Position, end, (kNear - gl_Position.w) / (end.w - gl_Position.w));
+    if (end.w < kNear && gl_Position.w > kNear)
+      end = mix(end, gl_Position, (kNear - end.w) / (gl_Position.w - end.w));
+    vec2 along = (end.xy / end.w - gl_Position.xy / gl_Position.w) * half_picture;
+    float size = length(along);
+    vec2 across = size > 1e-4 ? vec2(-along.y, along.x) / size : vec2(0.0, 1.0);
+    gl_Position.xy += across * side * half_width / half_picture * gl_Position.w;
+  }
+  gl_Position.z -= 2e-4 * gl_Position.w;
+}
+)";
+}
+
+std::string mark_fragment() {
+  return std::string(kHead) + R"(
+in vec4 tint;
+uniform float opacity;
+out vec4 colour;
+void main() { colour = vec4(tint.rgb, tint.a * opacity); }
+)";
+}
+
+std::string panel_vertex() {
+  return std::string(kHead) + R"(
+layout(location = 0) in vec2 position;
+layout(location = 1) in vec2 texel;
+layout(location = 2) in vec4 paint;
+uniform vec2 picture; // [px]
+out vec2 at;
+out vec4 tint;
+void main() {
+  at = texel;
+  tint = paint;
+  gl_Position = vec4(position / picture * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
+}
+)";
+}
+
+std::string panel_fragment() {
+  return std::string(kHead) + R"(
+in vec2 at;
+in vec4 tint;
+uniform sampler2D letters;
+out vec4 colour;
+void main() { colour = vec4(tint.rgb, tint.a * texture(letters, at).r); }
 )";
 }
 

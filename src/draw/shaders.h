@@ -17,5 +17,9 @@ std::string impostor_vertex();
 std::string impostor_fragment();
 std::string shadow_vertex();  ///< Of impostors, as the sun sees them.
 std::string shadow_fragment();
+std::string mark_vertex();  ///< Of overlays: coloured triangles and lines.
+std::string mark_fragment();
+std::string panel_vertex();
+std::string panel_fragment();
 
 }  // namespace throng::shaders

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "draw/scene_corners.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "core/random.h"
+
+// Models are soups: triangles that share a side have corners of their own there, and sides may be
+// turned either way. So sides are matched by where they are, to a tenth of a millimetre.
+namespace throng {
+namespace {
+
+constexpr size_t kMostTriangles = 40'000'000;  // 1.9 GB.
+constexpr double kWeld = 1e4;                  // Per metre.
+constexpr double kSmooth = 0.906;              // Cosine of 25 degrees.
+
+using Lattice = std::array<int64_t, 3>;
+
+struct Side {
+  uint32_t low = 0, high = 0;  // Welded corners.
+  uint32_t triangle = 0;       // Of those kept.
+  uint8_t opposite = 0;        // The corner that is not on it.
+};
+
+int8_t signed_byte(double value) {
+  return static_cast<int8_t>(std::lround(std::clamp(value, -1.0, 1.0) * 127));
+}
+
+// For each position a number that all positions at the same place share.
+std::vector<uint32_t> weld(const std::vector<Vec3d>& positions) {
+  std::vector<std::pair<Lattice, uint32_t>> sorted(positions.size());
+  for (size_t i = 0; i < positions.size(); ++i) {
+    const Vec3d p = positions[i] * kWeld;
+    sorted[i] = {{std::llround(p.x), std::llround(p.y), std::llround(p.z)},
+                 static_cast<uint32_t>(i)};
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<uint32_t> welded(positions.size());
+  uint32_t number = 0;
+  for (size_t i = 0; i < sorted.size(); ++i) {
+    if (i > 0 && sorted[i].first != sorted[i - 1].first) ++number;
+    welded[sorted[i].second] = number;
+  }
+  return welded;
+}
+
+// Marks the sides at which the surface bends or ends.
+void mark_edges(std::vector<Side>& sides, const std::vector<Vec3d>& normals,
+                std::vector<SceneCorner>& corners) {
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.triangle, a.opposite) <
+           std::tie(b.low, b.high, b.triangle, b.opposite);
+  });
+  for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    const Side& first = sides[begin];
+    bool smooth = true;
+    for (end = begin;
+         end < sides.size() && sides[end].low == first.low && sides[end].high == first.high;
+         ++end) {
+      const double bend = dot(normals[first.triangle], normals[sides[end].triangle]);
+      smooth = smooth && std::abs(bend) > kSmooth;
+    }
+    if (smooth && end - begin > 1) continue;
+    for (size_t i = begin; i < end; ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        corners[size_t{3} * sides[i].triangle + k].edges_tint |=
+            static_cast<uint8_t>(1U << sides[i].opposite);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
+  if (scene.triangles.size() > kMostTriangles) {
+    return Error{Errc::kLimit, "drawing: " + std::to_string(scene.triangles.size()) +
+                                   " triangles, more than " + std::to_string(kMostTriangles) +
+                                   "; draw a part of the model"};
+  }
+  SceneCorners out{.corners = {}, .bounds = {}, .origin = origin};
+  out.corners.reserve(3 * scene.triangles.size() + 6);
+  const std::vector<uint32_t> welded = weld(scene.positions);
+  std::vector<Vec3d> normals;
+  std::vector<Side> sides;
+  size_t part = 0;
+  for (size_t t = 0; t < scene.triangles.size(); ++t) {
+    while (part + 1 < scene.parts.size() && t >= scene.parts[part + 1].first_triangle) ++part;
+    const auto& corner = scene.triangles[t];
+    std::array<Vec3d, 3> p;
+    for (size_t k = 0; k < 3; ++k) p[k] = scene.positions[corner[k]] - origin;
+    Vec3d normal = cross(p[1] - p[0], p[2] - p[0]);
+    const double size = length(normal);
+    if (!(size > 0)) continue;
+    normal = normal * (1 / size);
+    const double tint = random_unit(7, 0, part);  // Parts of a model differ a little.
+    const auto triangle = static_cast<uint32_t>(normals.size());
+    normals.push_back(normal);
+    for (uint8_t k = 0; k < 3; ++k) {
+      out.bounds.add(p[k]);
+      out.corners.push_back(
+          {{static_cast<float>(p[k].x), static_cast<float>(p[k].y), static_cast<float>(p[k].z)},
+           {signed_byte(normal.x), signed_byte(normal.y), signed_byte(normal.z)},
+           static_cast<uint8_t>((1 + std::lround(tint * 30)) << 3)});
+      const uint32_t a = welded[corner[(k + 1U) % 3]], b = welded[corner[(k + 2U) % 3]];
+      sides.push_back({std::min(a, b), std::max(a, b), triangle, k});
+    }
+  }
+  mark_edges(sides, normals, out.corners);
+  if (!out.bounds.empty()) {
+    // A plain just under the lowest point, out to the haze, for the scene to stand on.
+    const double reach = 40 * length(out.bounds.max - out.bounds.min) + 100;
+    const auto middle = (out.bounds.min + out.bounds.max) * 0.5;
+    const double y = out.bounds.min.y - 0.02;
+    const auto corner = [&](double x, double z) {
+      out.corners.push_back({{static_cast<float>(middle.x + x * reach), static_cast<float>(y),
+                              static_cast<float>(middle.z + z * reach)},
+                             {0, 127, 0},
+                             0});
+    };
+    corner(-1, -1), corner(-1, 1), corner(1, 1);
+    corner(-1, -1), corner(1, 1), corner(1, -1);
+  }
+  return out;
+}
+
+}  // namespace throng

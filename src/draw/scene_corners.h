@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "throng/math.h"
+#include "throng/result.h"
+#include "throng/scene.h"
+
+/// A scene's triangles as the card takes them, three corners each, no index: flat normals are not
+/// shared.
+namespace throng {
+
+struct SceneCorner {
+  std::array<float, 3> position{};
+  std::array<int8_t, 3> normal{};
+  /// Bit k: the side opposite to the triangle's corner k is an edge. Higher bits: 0 for the plain
+  /// around the scene, else 1 to 31, the tint of the part.
+  uint8_t edges_tint = 0;
+};
+static_assert(sizeof(SceneCorner) == 16);
+
+struct SceneCorners {
+  std::vector<SceneCorner> corners;
+  Box3d bounds;  ///< Of the scene without the plain, relative to the origin.
+  Vec3d origin;
+};
+
+/// Fails with kLimit.
+[[nodiscard]] Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin);
+
+}  // namespace throng

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
     add_run(parser, session);
     add_slices(parser, session);
     add_verify(parser, session);
+    add_view(parser, session);
     add_world(parser, session);
     add_bench(parser, session);
   });

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view_stage.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+#include "rerun.h"
+#include "throng/bake.h"
+#include "throng/character.h"
+#include "throng/walkable_surface.h"
+#include "user_files.h"
+
+namespace throng::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_sources(const SourceOptions& sources) {
+  return !sources.files.empty() || !sources.scene.empty();
+}
+
+// The built-in figure at a height; kept for the next time, for it takes seconds to make.
+Result<Atlas> figure_of(double height, Context& context) {
+  AtlasConfig config;
+  config.clips = {"Walk", "Idle"};
+  config.height = height;
+  const std::string kept =
+      user_file(UserFolder::kCache, fmt::format("figure-1-{:.0f}mm.atlas", height * 1000));
+  if (!kept.empty()) {
+    if (Result<Atlas> atlas = load_atlas(kept)) return atlas;
+  }
+  Result<Atlas> atlas = build_atlas(built_in_character(), config, context);
+  // A cache that cannot be written costs time, nothing else.
+  if (atlas && !kept.empty() && make_folder_of(kept)) (void)save_atlas(*atlas, kept);
+  return atlas;
+}
+
+Result<std::vector<std::vector<Atlas>>> figures_of(const ViewTarget& target,
+                                                   const std::vector<double>& heights,
+                                                   Context& context) {
+  std::vector<std::vector<Atlas>> of_class;
+  if (!target.atlases.empty()) {
+    auto& all = of_class.emplace_back();
+    for (const std::string& path : target.atlases) {
+      Result<Atlas> atlas = load_atlas(path);
+      if (!atlas) return atlas.error();
+      all.push_back(*std::move(atlas));
+    }
+    return of_class;
+  }
+  for (const double height : heights) {
+    Result<Atlas> atlas = figure_of(height, context);
+    if (!atlas) return atlas.error();
+    of_class.emplace_back().push_back(*std::move(atlas));
+  }
+  return of_class;
+}
+
+std::vector<double> heights_of(const std::vector<AvatarClass>& classes) {
+  std::vector<double> heights;
+  for (const AvatarClass& c : classes) heights.push_back(c.height);
+  return heights;
+}
+
+// Sets the scene: what the options name, or where one can walk.
+Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World& world,
+                       Context& context) {
+  Result<Scene> scene = has_sources(target.sources) ? read_sources(target.sources, context)
+                                                    : walkable_surface(world, 0, context);
+  if (!scene) return scene.error();
+  return parts.set_scene(*scene);
+}
+
+Result<void> show_world(StageParts& parts, const ViewTarget& target, const World& world,
+                        Context& context) {
+  parts.set_world(world);
+  auto figures = figures_of(target, heights_of(world.summary().classes), context);
+  if (!figures) return figures.error();
+  parts.set_atlases(*std::move(figures));
+  if (target.crowd) parts.set_crowd(target.start);
+  return {};
+}
+
+Result<void> load_world(StageParts& parts, const ViewTarget& target, Context& context) {
+  const Result<World> world = World::open(target.path);
+  if (!world) return world.error();
+  if (auto ok = set_scene(parts, target, *world, context); !ok) return ok;
+  return show_world(parts, target, *world, context);
+}
+
+Result<void> load_model(StageParts& parts, ViewTarget target, Context& context) {
+  target.sources.files.insert(target.sources.files.begin(), target.path);
+  const Result<Scene> scene = read_sources(target.sources, context);
+  if (!scene) return scene.error();
+  if (auto ok = parts.set_scene(*scene); !ok) return ok;
+  BakeConfig config;
+  config.cell = target.cell;
+  const Result<World> world = bake_world(*scene, config, context);
+  if (!world) return world.error();
+  return show_world(parts, target, *world, context);
+}
+
+Result<void> load_replay(StageParts& parts, const ViewTarget& target, Context& context) {
+  Result<Replay> replay = Replay::open(target.path);
+  if (!replay) return replay.error();
+  if (replay->frame_count() == 0) {
+    return Error{Errc::kBadFile, target.path + ": holds no frame; record the run again"};
+  }
+  std::vector<double> heights;
+  for (const RecordedClass& c : replay->info().classes) heights.push_back(c.height);
+  const Result<World> world = world_of(replay->info(), target.world);
+  if (!world) return world.error();
+  if (auto ok = set_scene(parts, target, *world, context); !ok) return ok;
+  parts.set_world(*world);
+  auto figures = figures_of(target, heights, context);
+  if (!figures) return figures.error();
+  parts.set_atlases(*std::move(figures));
+  parts.set_replay(*std::move(replay));
+  return {};
+}
+
+}  // namespace
+
+LoadStage stage_of(const ViewTarget& target) {
+  return [target](StageParts& parts, Context& context) -> Result<void> {
+    const fs::path path(target.path);
+    std::error_code none;
+    if (path.extension() == ".replay") return load_replay(parts, target, context);
+    if (fs::exists(path / "manifest.thm", none)) return load_world(parts, target, context);
+    if (path.extension() == ".throng") return World::open(target.path).error();
+    return load_model(parts, target, context);
+  };
+}
+
+std::string short_name(const std::string& path) {
+  const fs::path p(path);
+  return (p.has_filename() ? p : p.parent_path()).filename().string();
+}
+
+}  // namespace throng::app

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "sources.h"
+#include "throng_view/viewer.h"
+
+/// What throng view and throng film show: a baked world, a recording, or a model that is baked now.
+namespace throng::app {
+
+struct ViewTarget {
+  std::string path;                  ///< World folder, FILE.replay, model or builtin:NAME.
+  std::string world;                 ///< Of a recording, if it is not where it was.
+  SourceOptions sources;             ///< What to draw; none: where one can walk.
+  std::vector<std::string> atlases;  ///< Who walks; none: the built-in figure.
+  double cell = 0.1;                 ///< To bake models with. [m]
+  bool crowd = true;                 ///< Start one in a world.
+  CrowdStart start;
+};
+
+/// How to load it; what goes wrong is told when it is loaded.
+[[nodiscard]] LoadStage stage_of(const ViewTarget& target);
+
+/// Last part of a path, for titles.
+[[nodiscard]] std::string short_name(const std::string& path);
+
+}  // namespace throng::app

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "view/ground_pick.h"
+#include "view/viewer_state.h"
+
+// What keys and mouse do: left drag turns, right and middle drag move sideways, the wheel goes
+// nearer, W A S D goes, as in other programs that show three dimensions.
+namespace throng {
+namespace {
+
+constexpr double kClick = 5;        // [px] A pointer that has moved less has clicked.
+constexpr double kFarthest = 3000;  // [m] that a click reaches
+constexpr double kSpeedStep = 1.4142135623730951;
+
+}  // namespace
+
+SightLine Viewer::State::sight_line(double x, double y) const {
+  const EyeCamera camera = rig.camera(aspect);
+  return {camera.eye, pixel_ray(camera, x, y, picture_width, picture_height)};
+}
+
+void Viewer::handle(const ViewEvent& event) {
+  State& s = *state_;
+  const bool taken = s.ui->handle(event);
+  const auto key = static_cast<size_t>(event.key);
+  const auto button = static_cast<size_t>(event.button);
+  switch (event.kind) {
+    case ViewEventKind::kKeyDown:
+      if (taken) return;
+      s.keys[key] = true;
+      s.press(event.key);
+      return;
+    case ViewEventKind::kKeyUp:
+      s.keys[key] = false;
+      return;
+    case ViewEventKind::kMouseDown:
+      if (taken && !s.wishes.grab_mouse) return;
+      s.buttons[button] = true;
+      s.mouse_x = s.pressed_x = event.x;
+      s.mouse_y = s.pressed_y = event.y;
+      s.dragged = false;
+      return;
+    case ViewEventKind::kMouseUp:
+      if (!std::exchange(s.buttons[button], false)) return;
+      if (!s.dragged && event.button == MouseButton::kLeft) s.click();
+      return;
+    case ViewEventKind::kMouseMove: {
+      const double dx = event.x - s.mouse_x, dy = event.y - s.mouse_y;
+      s.mouse_x = event.x;
+      s.mouse_y = event.y;
+      if (std::hypot(event.x - s.pressed_x, event.y - s.pressed_y) > kClick) s.dragged = true;
+      s.drag(dx, dy);
+      return;
+    }
+    case ViewEventKind::kWheel:
+      if (taken) return;
+      s.rig.zoom(event.y, s.mouse_x, s.mouse_y, s.picture_width, s.picture_height);
+      return;
+    case ViewEventKind::kLeave:
+      s.keys.fill(false);
+      s.buttons.fill(false);
+      return;
+    case ViewEventKind::kDrop:
+      s.wishes.open = event.path;
+      return;
+    case ViewEventKind::kText:
+      return;
+  }
+}
+
+void Viewer::set_gamepad(const GamepadState& state) { state_->gamepad = state; }
+
+void Viewer::State::press(Key key) {
+  const auto letter = [key](char upper) { return key == key_of(upper); };
+  if (letter('Q') && held(Key::kControl)) wishes.close = true;
+  if (key == Key::kF1) panel.help = !panel.help;
+  if (key == Key::kF11) wishes.fullscreen = !wishes.fullscreen;
+  if (key == Key::kF12) wishes.save_picture = true;
+  if (key == Key::kTab) panel.settings.panel = !panel.settings.panel;
+  if (key == Key::kSpace) {
+    panel.playing = !panel.playing;
+    // A recording at its end begins again.
+    if (panel.playing && panel.replay && time >= panel.replay->last) {
+      panel.seek = panel.replay->first;
+    }
+  }
+  if (key == Key::kPeriod) step_once();
+  if (key == Key::kComma || letter('M')) {
+    const double by = letter('M') ? kSpeedStep : 1 / kSpeedStep;
+    panel.settings.speed = std::clamp(panel.settings.speed * by, 0.05, 16.0);
+  }
+  if (key == Key::kHome) rig.show(bounds, aspect);
+  if (key == Key::kPageUp) step_cut(panel, 1);
+  if (key == Key::kPageDown) step_cut(panel, -1);
+  if (key == Key::kEnd) panel.is_cut = false;
+  if (letter('1') || letter('2')) {
+    leave_walk();
+    panel.mode = letter('1') ? CameraMode::kOrbit : CameraMode::kFly;
+  }
+  if (letter('3')) begin_walk();
+  if (letter('V')) first_person = !first_person;
+  if (letter('F') && panel.status.picked >= 0) {
+    const size_t i = crowd.now().find(static_cast<uint64_t>(panel.status.picked));
+    if (i < crowd.now().size()) {
+      rig.target = Vec3d{crowd.now().x[i], crowd.now().y[i] + 1.0, crowd.now().z[i]};
+      rig.distance = std::min(rig.distance, 6.0);
+    }
+  }
+  if (key == Key::kEscape) {
+    if (panel.help) {
+      panel.help = false;
+    } else if (panel.mode == CameraMode::kWalk) {
+      leave_walk();
+    } else {
+      panel.status.picked = -1;
+    }
+  }
+}
+
+void Viewer::State::drag(double dx, double dy) {
+  const double height = std::max(1, picture_height);
+  const bool left = buttons[0], right = buttons[1], middle = buttons[2];
+  if (panel.mode == CameraMode::kWalk) {
+    if (wishes.grab_mouse) {
+      rig.turn_head(-dx, -dy, height);
+    } else if (left || right) {
+      rig.orbit(dx, dy, height);
+    }
+    return;
+  }
+  if (!left && !right && !middle) return;
+  if (panel.mode == CameraMode::kFly && (left || right) && !held(Key::kShift)) {
+    rig.turn_head(-dx, -dy, height);
+  } else if (left && !held(Key::kShift)) {
+    rig.orbit(dx, dy, height);
+  } else {
+    rig.pan(dx, dy, height);
+  }
+}
+
+void Viewer::State::click() {
+  if (panel.mode == CameraMode::kWalk) return;
+  const SightLine line = sight_line(pressed_x, pressed_y);
+  const double cut = panel.is_cut ? panel.cut - origin.y : std::numeric_limits<double>::infinity();
+  std::optional<Vec3d> ground;
+  if (panel.has_world) {
+    ground = ground_on(world, {line.eye + origin, line.direction}, cut + origin.y, kFarthest);
+  }
+  if (panel.tool != Tool::kPick) {
+    if (!ground || !panel.has_crowd) return;
+    const double radius = panel.brush_radius;
+    const auto count = static_cast<uint32_t>(panel.brush_count);
+    const bool erases = panel.tool == Tool::kErase;
+    change_crowd([where = *ground, radius, count, erases](CrowdPlayer& player, Context& context) {
+      if (erases) {
+        player.erase(where, radius);
+      } else {
+        player.spawn(where, radius, count, context);
+      }
+    });
+    return;
+  }
+  // Who stands behind the ground that was hit is not seen.
+  const double farthest = ground ? length(*ground - origin - line.eye) + 1 : kFarthest;
+  const size_t i = avatar_on(crowd.now(), panel.class_heights, line, cut, farthest);
+  panel.status.picked =
+      i < crowd.now().size() ? static_cast<int64_t>(crowd.now().ids[i]) : int64_t{-1};
+}
+
+void Viewer::State::move_eye(double seconds) {
+  if (panel.mode == CameraMode::kWalk) return;
+  const auto axis = [&](Key more, Key other_more, Key less, Key other_less) {
+    return (held(more) || held(other_more) ? 1.0 : 0.0) -
+           (held(less) || held(other_less) ? 1.0 : 0.0);
+  };
+  if (held(Key::kControl)) return;
+  double right = axis(key_of('D'), Key::kRight, key_of('A'), Key::kLeft) + gamepad.walk_x;
+  double ahead = axis(key_of('W'), Key::kUp, key_of('S'), Key::kDown) - gamepad.walk_y;
+  double up = axis(key_of('E'), Key::kNone, key_of('Q'), Key::kNone);
+  rig.turn_head(gamepad.look_x * -800 * seconds, gamepad.look_y * -800 * seconds, 800);
+  // Around a town one goes faster than around a room.
+  double speed =
+      panel.mode == CameraMode::kFly ? panel.settings.fly_speed : std::max(2.0, 0.6 * rig.distance);
+  if (held(Key::kShift) || gamepad.hurry) speed *= 3;
+  const double by = speed * seconds;
+  if (panel.mode == CameraMode::kFly) {
+    up -= ahead * std::sin(rig.pitch);  // Ahead is where one looks.
+    ahead *= std::cos(rig.pitch);
+  }
+  rig.go(right * by, up * by, ahead * by);
+}
+
+}  // namespace throng

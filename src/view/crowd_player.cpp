@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view/crowd_player.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/random.h"
+
+namespace throng {
+namespace {
+
+constexpr double kStorey = 4;      // [m] up or down a goal may be
+constexpr uint64_t kTries = 24;    // to find one
+constexpr double kNearGround = 1;  // [m] from the ground a place may be
+
+}  // namespace
+
+CrowdPlayer::CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Crowd&& crowd)
+    : world_(std::move(world)),
+      start_(start),
+      origin_(origin),
+      crowd_(std::move(crowd)),
+      classes_(world_.summary().classes) {
+  double sum = 0;
+  std::vector<double> mix = start.mix;
+  mix.resize(classes_.size(), 0.0);
+  for (const double share : mix) mix_up_to_.push_back(sum += std::max(0.0, share));
+  if (!(sum > 0)) mix_up_to_.assign(classes_.size(), sum = 1);
+  for (double& up_to : mix_up_to_) up_to /= sum;
+}
+
+Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, const CrowdStart& start,
+                                                       int32_t workers, Vec3d origin,
+                                                       Context& context) {
+  const CrowdConfig config{
+      .dt = start.dt, .seed = start.seed, .workers = workers, .zones = start.zones};
+  Result<Crowd> crowd = Crowd::create(world, config);
+  if (!crowd) return crowd.error();
+  std::unique_ptr<CrowdPlayer> player(
+      new CrowdPlayer(std::move(world), start, origin, *std::move(crowd)));
+  const Result<uint32_t> added = player->scatter(start.avatars, context);
+  if (!added) return added.error();
+  return player;
+}
+
+AvatarSpawn CrowdPlayer::spawn_like(uint64_t number) const {
+  const double at = random_unit(start_.seed, 11, number);
+  const auto found = std::upper_bound(mix_up_to_.begin(), mix_up_to_.end(), at);
+  const auto index = std::min<ptrdiff_t>(found - mix_up_to_.begin(),
+                                         static_cast<ptrdiff_t>(mix_up_to_.size()) - 1);
+  const auto avatar_class = static_cast<int32_t>(index);
+  const double base = start_.speed > 0 ? start_.speed : classes_[static_cast<size_t>(index)].speed;
+  // People differ: within a fifth of the speed, as walkers in a street do.
+  const double speed = base * (0.8 + 0.4 * random_unit(start_.seed, 12, number));
+  return {.place = {}, .avatar_class = avatar_class, .radius = 0, .speed = speed};
+}
+
+// Places are drawn for each, and who does not fit is left out, a few times over.
+Result<uint32_t> CrowdPlayer::scatter(uint32_t count, Context& context) {
+  uint32_t added = 0;
+  for (int32_t round = 0; round < 8 && added < count; ++round) {
+    std::vector<AvatarSpawn> spawns;
+    for (uint32_t i = added; i < count; ++i) {
+      const uint64_t number = added_++;
+      AvatarSpawn spawn = spawn_like(number);
+      spawn.place = world_.random_place(spawn.avatar_class, start_.seed + 17, number);
+      if (spawn.place) spawns.push_back(spawn);
+    }
+    if (spawns.empty()) break;
+    const auto ids = crowd_.add(spawns, context);
+    if (!ids) return ids.error();
+    added += add_people(*ids, spawns);
+  }
+  return added;
+}
+
+// Who was left out has no id.
+uint32_t CrowdPlayer::add_people(const std::vector<AvatarId>& ids,
+                                 const std::vector<AvatarSpawn>& spawns) {
+  std::vector<AvatarId> there;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (!ids[i]) continue;
+    const uint32_t slot = ids[i].slot1 - 1;
+    if (people_.size() <= slot) people_.resize(slot + size_t{1});
+    people_[slot] = {
+        .id = ids[i], .avatar_class = spawns[i].avatar_class, .speed = spawns[i].speed};
+    there.push_back(ids[i]);
+  }
+  give_goals(there);
+  return static_cast<uint32_t>(there.size());
+}
+
+Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const {
+  const int32_t avatar_class = people_[slot].avatar_class;
+  const uint64_t stream = uint64_t{slot} << 32 | nth;
+  if (start_.near <= 0) return world_.random_place(avatar_class, start_.seed, stream);
+  for (uint64_t n = 0; n < kTries; ++n) {
+    const auto offset = [&](uint64_t axis) {
+      return start_.near * (2 * random_unit(start_.seed, stream, 2 * n + axis) - 1);
+    };
+    const Place place =
+        world_.find_place(avatar_class, {from.x + offset(0), from.y, from.z + offset(1)}, kStorey);
+    if (place) return place;
+  }
+  return world_.find_place(avatar_class, from, kNearGround);
+}
+
+void CrowdPlayer::give_goals(std::span<const AvatarId> ids) {
+  if (ids.empty()) return;
+  crowd_.read(states_);
+  std::vector<AvatarId> led;
+  goals_.clear();
+  for (const AvatarId id : ids) {
+    const uint32_t slot = id.slot1 - 1;
+    Person& person = people_[slot];
+    if (person.driven) continue;
+    const auto at = std::lower_bound(states_.begin(), states_.end(), slot,
+                                     [](const AvatarState& s, uint32_t i) { return s.id < i; });
+    if (at == states_.end() || at->id != slot) continue;
+    person.goal = goal_of(slot, person.goals_given++, at->position);
+    led.push_back(id);
+    goals_.push_back(person.goal);
+  }
+  crowd_.set_goals(led, goals_);
+}
+
+std::shared_ptr<const Moment> CrowdPlayer::next() {
+  if (!last_) return again();
+  report_ = crowd_.step();
+  time_ += start_.dt;
+  give_goals(crowd_.stranded());
+  give_goals(crowd_.arrived());
+  return again();
+}
+
+std::shared_ptr<const Moment> CrowdPlayer::again() {
+  crowd_.read(states_);
+  const auto moment = std::make_shared<Moment>();
+  moment->time = time_;
+  moment->report = report_;
+  moment->resize(states_.size());
+  for (size_t i = 0; i < states_.size(); ++i) {
+    const AvatarState& s = states_[i];
+    const Vec3d p = s.position - origin_;
+    moment->ids[i] = s.id;
+    moment->classes[i] = static_cast<uint8_t>(s.avatar_class);
+    moment->x[i] = static_cast<float>(p.x);
+    moment->y[i] = static_cast<float>(p.y);
+    moment->z[i] = static_cast<float>(p.z);
+    const double turns = std::atan2(s.heading_x, s.heading_z) / (2 * std::numbers::pi);
+    moment->heading[i] = static_cast<float>(turns - std::floor(turns));
+  }
+  follow(last_ ? *last_ : Moment{}, *moment);
+  last_ = moment;
+  return moment;
+}
+
+void CrowdPlayer::set_count(uint32_t avatars, Context& context) {
+  if (crowd_.size() < avatars) {
+    // A world that is full stays so: the report of the next step shows how many there are.
+    (void)scatter(avatars - crowd_.size(), context);
+    return;
+  }
+  std::vector<AvatarId> gone;
+  crowd_.read(states_);
+  for (size_t i = states_.size(); i-- > 0 && crowd_.size() - gone.size() > avatars;) {
+    if (!people_[states_[i].id].driven) gone.push_back(people_[states_[i].id].id);
+  }
+  crowd_.remove(gone);
+}
+
+uint32_t CrowdPlayer::spawn(Vec3d where, double radius, uint32_t count, Context& context) {
+  std::vector<AvatarSpawn> spawns;
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint64_t number = added_++;
+    AvatarSpawn spawn = spawn_like(number);
+    const double angle = 2 * std::numbers::pi * random_unit(start_.seed, 13, number);
+    const double far = radius * std::sqrt(random_unit(start_.seed, 14, number));
+    const Vec3d at = where + Vec3d{far * std::cos(angle), 0, far * std::sin(angle)};
+    spawn.place = world_.find_place(spawn.avatar_class, at, kNearGround);
+    if (spawn.place) spawns.push_back(spawn);
+  }
+  const auto ids = crowd_.add(spawns, context);
+  return ids ? add_people(*ids, spawns) : 0;
+}
+
+uint32_t CrowdPlayer::erase(Vec3d where, double radius) {
+  crowd_.read(states_);
+  std::vector<AvatarId> gone;
+  for (const AvatarState& s : states_) {
+    const double away = std::hypot(s.position.x - where.x, s.position.z - where.z);
+    if (away > radius || std::abs(s.position.y - where.y) > 2) continue;
+    if (!people_[s.id].driven) gone.push_back(people_[s.id].id);
+  }
+  crowd_.remove(gone);
+  return static_cast<uint32_t>(gone.size());
+}
+
+std::optional<AvatarDetail> CrowdPlayer::detail(uint64_t id) const {
+  if (id >= people_.size() || !crowd_.is_alive(people_[id].id)) return std::nullopt;
+  const Person& person = people_[id];
+  AvatarDetail detail{.id = id,
+                      .avatar_class = person.avatar_class,
+                      .position = {},
+                      .speed = person.speed,
+                      .goal = {},
+                      .goals_given = person.goals_given,
+                      .driven = person.driven};
+  if (person.goal) detail.goal = person.goal.position;
+  return detail;
+}
+
+std::optional<uint64_t> CrowdPlayer::add_driven(Vec3d where, int32_t avatar_class, double speed,
+                                                Context& context) {
+  // The nearest free place of a few around the point.
+  for (uint64_t n = 0; n < 64; ++n) {
+    const double angle = 2.4 * static_cast<double>(n),
+                 far = 0.25 * std::sqrt(static_cast<double>(n));
+    AvatarSpawn spawn{.place = {}, .avatar_class = avatar_class, .radius = 0, .speed = speed};
+    const Vec3d at = where + Vec3d{far * std::cos(angle), 0, far * std::sin(angle)};
+    spawn.place = world_.find_place(avatar_class, at, kNearGround);
+    if (!spawn.place) continue;
+    const auto ids = crowd_.add({&spawn, 1}, context);
+    if (!ids) return std::nullopt;
+    if (!ids->front()) continue;
+    const uint32_t slot = ids->front().slot1 - 1;
+    if (people_.size() <= slot) people_.resize(slot + size_t{1});
+    people_[slot] = {.id = ids->front(),
+                     .avatar_class = avatar_class,
+                     .speed = speed,
+                     .goal = {},
+                     .goals_given = 0,
+                     .driven = true};
+    drive(slot, {});
+    return slot;
+  }
+  return std::nullopt;
+}
+
+void CrowdPlayer::drive(uint64_t id, Vec3d velocity) {
+  if (id < people_.size()) crowd_.set_velocities({&people_[id].id, 1}, {&velocity, 1});
+}
+
+void CrowdPlayer::take_away(uint64_t id) {
+  if (id < people_.size()) crowd_.remove({&people_[id].id, 1});
+}
+
+}  // namespace throng

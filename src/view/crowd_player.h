@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "throng/context.h"
+#include "throng/crowd.h"
+#include "throng/world.h"
+#include "throng_view/viewer.h"
+#include "view/moment_feed.h"
+
+namespace throng {
+
+/// What is known of one avatar.
+struct AvatarDetail {
+  uint64_t id = 0;
+  int32_t avatar_class = 0;
+  Vec3d position;             ///< In the world. [m]
+  double speed = 0;           ///< Wished. [m/s]
+  std::optional<Vec3d> goal;  ///< [m]
+  uint32_t goals_given = 0;
+  bool driven = false;
+};
+
+/// Steps a crowd in which everybody gets one goal after the other. The same start, the same steps,
+/// until somebody meddles.
+class CrowdPlayer final : public MomentSource {
+ public:
+  /// Fails as Crowd::create and Crowd::scatter do, save that a world too small for all is filled
+  /// with as many as fit in a few tries.
+  [[nodiscard]] static Result<std::unique_ptr<CrowdPlayer>> make(World world,
+                                                                 const CrowdStart& start,
+                                                                 int32_t workers, Vec3d origin,
+                                                                 Context& context);
+  std::shared_ptr<const Moment> next() override;
+  std::shared_ptr<const Moment> seek(double) override { return nullptr; }  // Time only goes on.
+
+  std::shared_ptr<const Moment> again() override;
+  /// Adds or takes away avatars until there are so many, or no more fit.
+  void set_count(uint32_t avatars, Context& context);
+  /// Adds `count` avatars within `radius` of a point where they fit. Returns how many.
+  uint32_t spawn(Vec3d where, double radius, uint32_t count, Context& context);
+  /// Takes away who is within `radius` of a point, at its height. Returns how many.
+  uint32_t erase(Vec3d where, double radius);
+  [[nodiscard]] std::optional<AvatarDetail> detail(uint64_t id) const;
+
+  /// One that the caller leads: added at a place near `where`, if there is one.
+  std::optional<uint64_t> add_driven(Vec3d where, int32_t avatar_class, double speed,
+                                     Context& context);
+  /// What it wants to do until told otherwise. [m/s along X and Z]
+  void drive(uint64_t id, Vec3d velocity);
+  void take_away(uint64_t id);
+  [[nodiscard]] uint32_t size() const { return crowd_.size(); }
+  [[nodiscard]] const World& world() const { return world_; }
+
+ private:
+  // By slot.
+  struct Person {
+    AvatarId id = {};
+    int32_t avatar_class = 0;
+    double speed = 0;
+    Place goal = {};
+    uint32_t goals_given = 0;
+    bool driven = false;
+  };
+
+  CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Crowd&& crowd);
+  Result<uint32_t> scatter(uint32_t count, Context& context);
+  uint32_t add_people(const std::vector<AvatarId>& ids, const std::vector<AvatarSpawn>& spawns);
+  void give_goals(std::span<const AvatarId> ids);
+  [[nodiscard]] Place goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const;
+  [[nodiscard]] AvatarSpawn spawn_like(uint64_t number) const;
+
+  World world_;
+  CrowdStart start_;
+  Vec3d origin_;
+  Crowd crowd_;
+  std::vector<AvatarClass> classes_;
+  std::vector<double> mix_up_to_;  // Running sums of the mix, the last is 1.
+  std::vector<Person> people_;     // By slot.
+  std::vector<AvatarState> states_;
+  std::vector<Place> goals_;
+  uint64_t added_ = 0;
+  double time_ = 0;
+  CrowdReport report_;
+  std::shared_ptr<const Moment> last_;
+};
+
+}  // namespace throng

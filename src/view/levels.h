@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "throng/context.h"
+#include "throng/world.h"
+
+namespace throng {
+
+/// Heights of the storeys of a world, lowest first: where much of the ground lies level, two metres
+/// apart or more. Of a landscape there may be one or none. Reads every zone. [m]
+[[nodiscard]] std::vector<double> storey_heights(const World& world, Context& context);
+
+}  // namespace throng

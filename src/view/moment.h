@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "throng/crowd.h"
+#include "throng/impostor.h"
+#include "throng_draw/draw.h"
+
+/// Where everybody is at one time, and what lies between two of these.
+namespace throng {
+
+/// One array entry an avatar, ascending ids, positions relative to the stage's origin.
+struct Moment {
+  double time = 0;
+  std::vector<uint64_t> ids;
+  std::vector<uint8_t> classes;
+  std::vector<float> x, y, z;
+  std::vector<float> heading;  ///< From +Z towards +X. [turns, 0 to 1]
+  std::vector<float> walked;   ///< Since first seen. [m]
+  std::vector<float> pace;     ///< Mean speed of late. [m/s]
+  CrowdReport report = {};     ///< Of the step that led here; empty for recordings.
+
+  [[nodiscard]] size_t size() const { return ids.size(); }
+  void resize(size_t avatars);
+  /// Index of an id, or size().
+  [[nodiscard]] size_t find(uint64_t id) const;
+};
+
+/// Fills in `walked` and `pace` of `now` from the moment before it and softens its headings: a
+/// figure turns, it does not flip. `before` may be empty, or later: then time runs backwards.
+void follow(const Moment& before, Moment& now);
+
+/// Which pictures serve which class: atlases by number, at least one a class.
+struct Figures {
+  std::vector<std::vector<size_t>> of_class;
+  std::vector<Atlas> shapes;  ///< By number of the atlas, without texels.
+};
+
+/// Arrays of a crowd between two moments, grouped as they are drawn.
+class BlendedCrowd {
+ public:
+  /// Everybody of `b`, where he is at `share` of the way from `a`; who is only in `b` stands there.
+  /// Who stands above `cut` is left out.
+  void blend(const Moment& a, const Moment& b, double share, const Figures& figures, double cut);
+  [[nodiscard]] const std::vector<DrawnCrowd>& crowds() const { return crowds_; }
+  /// Leaves out one avatar from the next blend on: through whose eyes one looks. -1: nobody.
+  void hide(int64_t id) { hidden_ = id; }
+
+  /// All of `b` at that time, also those that are not drawn.
+  [[nodiscard]] const Moment& now() const { return now_; }
+
+ private:
+  struct Group {
+    std::vector<float> x, y, z;
+    std::vector<uint16_t> heading, phase, look;
+  };
+  void put(size_t i, const Figures& figures);
+
+  Moment now_;
+  std::map<std::pair<size_t, size_t>, Group> groups_;  // By atlas and clip.
+  std::vector<DrawnCrowd> crowds_;
+  int64_t hidden_ = -1;
+};
+
+}  // namespace throng

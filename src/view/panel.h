@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "throng_view/viewer.h"
+#include "view/camera_rig.h"
+#include "view/crowd_player.h"
+#include "view/replay_player.h"
+#include "view/view_settings.h"
+
+namespace throng {
+
+/// What a click on the ground does.
+enum class Tool : uint8_t { kPick, kSpawn, kErase };
+
+/// Seconds of a frame, by what they went into.
+struct FrameTimes {
+  double frame = 0;  ///< From one frame to the next.
+  double blend = 0, pack = 0, draw = 0, panel = 0;
+};
+
+/// What the panel shows and changes. Its owner acts on what has changed.
+struct PanelState {
+  ViewSettings settings;
+  CameraMode mode = CameraMode::kOrbit;
+  Tool tool = Tool::kPick;
+  double brush_radius = 2;  ///< [m]
+  int32_t brush_count = 20;
+  bool playing = true;
+  bool help = false;
+  double cut = 0;  ///< Height above which the scene is left out, if `is_cut`. [m, world]
+  bool is_cut = false;
+  CrowdStart crowd;  ///< As it would be started again.
+  int32_t avatars_wanted = 0;
+
+  // Shown only.
+  ViewerStatus status;
+  std::string renderer;
+  std::string progress_stage;
+  double progress = -1;
+  Box3d bounds;  ///< In the world.
+  bool has_world = false;
+  bool has_crowd = false;
+  std::optional<ReplaySpan> replay;
+  std::vector<double> storeys;
+  std::vector<std::string> class_names;
+  std::vector<double> class_heights;
+  FrameTimes times;
+  CrowdReport report;
+  std::optional<AvatarDetail> picked;
+  double picked_pace = 0, picked_walked = 0;
+
+  // Asked for in this frame; the owner clears them.
+  bool step = false, restart = false, frame_all = false, set_count = false, walk = false;
+  std::optional<double> seek;
+};
+
+/// Draws all windows of the panel; between Ui::begin and Ui::end.
+void draw_panel(PanelState& state, float scale, int32_t width, int32_t height);
+
+/// Goes a storey up (1) or down (-1) with the cut.
+void step_cut(PanelState& state, int32_t by);
+
+}  // namespace throng

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view/stage_job.h"
+
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "view/levels.h"
+
+namespace throng {
+
+StageJob::StageJob(std::string name, LoadStage load, int32_t workers, Vec3d origin, World world)
+    : name_(std::move(name)), workers_(workers), origin_(origin), world_(std::move(world)) {
+  context_.on_progress = [this](const Progress& progress) {
+    const std::lock_guard lock(mutex_);
+    stage_ = progress.stage;
+    share_ = progress.total > 0
+                 ? static_cast<double>(progress.done) / static_cast<double>(progress.total)
+                 : -1;
+  };
+  thread_ = std::thread([this, load = std::move(load)] { run(load); });
+}
+
+StageJob::~StageJob() {
+  cancel();
+  thread_.join();
+}
+
+void StageJob::run(const LoadStage& load) {
+  Result<void> ok;
+  try {
+    StageParts parts(*this);
+    ok = load(parts, context_);
+    if (ok && crowd_) {
+      context_.on_progress({"ways", 0, 0});
+      auto player = CrowdPlayer::make(world_, *crowd_, workers_, origin_, context_);
+      if (player) {
+        auto feed = std::make_unique<MomentFeed>(*std::move(player));
+        const std::lock_guard lock(mutex_);
+        mail_.feed = std::move(feed);
+      } else {
+        ok = player.error();
+      }
+    }
+  } catch (const std::bad_alloc&) {
+    ok = Error{Errc::kLimit, name_ + ": out of memory; use larger cells or a smaller world"};
+  }
+  const std::lock_guard lock(mutex_);
+  if (!ok && ok.error().code != Errc::kCancelled) error_ = ok.error().message;
+  done_ = true;
+}
+
+StageMail StageJob::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(mail_, {});
+}
+
+std::string StageJob::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
+}
+
+std::pair<std::string, double> StageJob::progress() const {
+  const std::lock_guard lock(mutex_);
+  return {stage_, share_};
+}
+
+Result<void> StageParts::set_scene(const Scene& scene) {
+  StageJob& job = job_;
+  const Box3d bounds = scene.bounds();
+  const Vec3d middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
+  // Whole metres, so that positions relative to it read like those of the world.
+  job.origin_ = {std::round(middle.x), std::round(bounds.empty() ? 0 : bounds.min.y),
+                 std::round(middle.z)};
+  Result<PreparedScene> prepared = PreparedScene::make(scene, job.origin_);
+  if (!prepared) return prepared.error();
+  const std::lock_guard lock(job.mutex_);
+  job.mail_.scene = *std::move(prepared);
+  return {};
+}
+
+void StageParts::set_world(World world) {
+  StageJob& job = job_;
+  job.world_ = world;
+  {
+    const std::lock_guard lock(job.mutex_);
+    job.mail_.world = world;
+  }
+  std::vector<double> storeys = storey_heights(world, job.context_);
+  const std::lock_guard lock(job.mutex_);
+  job.mail_.storeys = std::move(storeys);
+}
+
+void StageParts::set_atlases(std::vector<std::vector<Atlas>> of_class) {
+  for (auto& row : of_class) {
+    for (Atlas& atlas : row) {
+      if (atlas.format != AtlasFormat::kRgba8) atlas = convert_atlas(atlas, AtlasFormat::kRgba8);
+    }
+  }
+  const std::lock_guard lock(job_.mutex_);
+  job_.mail_.atlases = std::move(of_class);
+}
+
+void StageParts::set_crowd(const CrowdStart& start) {
+  const std::lock_guard lock(job_.mutex_);
+  job_.crowd_ = start;
+  job_.mail_.crowd = start;
+}
+
+void StageParts::set_replay(Replay replay) {
+  StageJob& job = job_;
+  const ReplaySpan span = replay_span(replay);
+  std::vector<std::string> names;
+  for (const RecordedClass& c : replay.info().classes) names.push_back(c.name);
+  auto feed =
+      std::make_unique<MomentFeed>(std::make_unique<ReplayPlayer>(std::move(replay), job.origin_));
+  const std::lock_guard lock(job.mutex_);
+  job.mail_.replay = span;
+  job.mail_.class_names = std::move(names);
+  job.mail_.feed = std::move(feed);
+}
+
+}  // namespace throng

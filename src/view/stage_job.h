@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "throng/context.h"
+#include "throng_view/viewer.h"
+#include "view/crowd_player.h"
+#include "view/moment_feed.h"
+#include "view/replay_player.h"
+
+namespace throng {
+
+/// What came of a load so far, and has not been taken yet.
+struct StageMail {
+  std::optional<PreparedScene> scene;
+  std::optional<World> world;
+  std::optional<std::vector<double>> storeys;
+  std::optional<std::vector<std::vector<Atlas>>> atlases;
+  std::optional<ReplaySpan> replay;
+  std::optional<CrowdStart> crowd;
+  std::vector<std::string> class_names;
+  std::unique_ptr<MomentFeed> feed;
+};
+
+/// A load on a thread of its own.
+class StageJob {
+ public:
+  /// A load that sets no scene goes on from the origin and world given.
+  StageJob(std::string name, LoadStage load, int32_t workers, Vec3d origin, World world);
+  StageJob(const StageJob&) = delete;
+  StageJob& operator=(const StageJob&) = delete;
+  ~StageJob();  ///< Cancels and waits.
+
+  [[nodiscard]] StageMail take();
+  void cancel() { context_.cancel = true; }
+  [[nodiscard]] bool done() const { return done_; }
+  [[nodiscard]] std::string error() const;  ///< Of a load that failed, or empty.
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// What it does now and how far it is, -1 if that is not known.
+  [[nodiscard]] std::pair<std::string, double> progress() const;
+
+ private:
+  friend class StageParts;
+  void run(const LoadStage& load);
+
+  std::string name_;
+  int32_t workers_;
+  Context context_;
+  mutable std::mutex mutex_;
+  StageMail mail_;
+  std::string error_, stage_;
+  double share_ = -1;
+  std::atomic<bool> done_ = false;
+  // Of the job's thread.
+  Vec3d origin_;
+  World world_;
+  std::optional<CrowdStart> crowd_;
+  std::thread thread_;
+};
+
+}  // namespace throng

@@ -1,0 +1,352 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng_view/viewer.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "view/camera_rig.h"
+#include "view/ground_pick.h"
+#include "view/moment.h"
+#include "view/moment_feed.h"
+#include "view/panel.h"
+#include "view/stage_job.h"
+#include "view/ui.h"
+#include "view/view_settings.h"
+#include "view/viewer_state.h"
+
+// A frame: take what loads have brought, move the eye, look up where everybody is, draw.
+namespace throng {
+namespace {
+
+constexpr double kMemory = 0.9;  // Of the means of times that the panel shows.
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void mean(double& value, double now) {
+  value = value == 0 ? now : kMemory * value + (1 - kMemory) * now;
+}
+
+}  // namespace
+
+void Viewer::State::take_parts() {
+  if (!job) return;
+  const bool done = job->done();  // Asked first: what comes later is taken in the next frame.
+  StageMail mail = job->take();
+  const auto keep = [&](const Result<void>& ok) {
+    if (!ok) panel.status.error = ok.error().message;
+  };
+  if (mail.scene) {
+    feed.reset();
+    world = {};
+    figures = {};
+    drawing.clear_atlases();
+    panel.has_world = panel.has_crowd = false;
+    panel.replay.reset();
+    panel.storeys.clear();
+    panel.class_names.clear();
+    panel.class_heights.clear();
+    panel.is_cut = false;
+    panel.status.picked = panel.status.driven = -1;
+    origin = mail.scene->origin();
+    bounds = mail.scene->bounds();
+    panel.bounds = {bounds.min + origin, bounds.max + origin};
+    if (bounds.empty()) panel.bounds = {};
+    keep(drawing.set_scene(*mail.scene));
+    if (!camera_given) rig.show(bounds, aspect);
+    if (camera_given) rig.look(camera_given->eye - origin, camera_given->target - origin);
+    panel.cut = panel.bounds.empty() ? 0 : panel.bounds.max.y + 1;
+  }
+  if (mail.world) {
+    world = *mail.world;
+    panel.has_world = true;
+    for (const AvatarClass& c : world.summary().classes) {
+      panel.class_names.push_back(c.name);
+      panel.class_heights.push_back(c.height);
+    }
+  }
+  if (mail.storeys) panel.storeys = *std::move(mail.storeys);
+  if (mail.atlases) {
+    for (auto& row : *mail.atlases) {
+      auto& numbers = figures.of_class.emplace_back();
+      for (Atlas& atlas : row) {
+        const Result<size_t> number = drawing.add_atlas(atlas);
+        if (!number) {
+          keep(number.error());
+          continue;
+        }
+        numbers.push_back(*number);
+        Atlas& shape = figures.shapes.emplace_back();
+        shape.shape = atlas.shape;
+        shape.clips = atlas.clips;
+      }
+      if (numbers.empty()) figures.of_class.pop_back();
+    }
+  }
+  if (mail.replay) {
+    panel.replay = mail.replay;
+    panel.class_names = std::move(mail.class_names);
+  }
+  if (mail.crowd) {
+    panel.crowd = *mail.crowd;
+    panel.avatars_wanted = static_cast<int32_t>(mail.crowd->avatars);
+  }
+  if (mail.feed) {
+    feed = std::move(mail.feed);
+    panel.has_crowd = !panel.replay;
+    time = panel.replay ? panel.replay->first : 0;
+  }
+  if (done) {
+    if (!job->error().empty()) panel.status.error = job->error();
+    job.reset();
+  }
+}
+
+void Viewer::State::reap() {
+  std::erase_if(retired, [](const auto& old) { return old->done(); });
+}
+
+void Viewer::State::act_on_panel() {
+  if (std::exchange(panel.frame_all, false)) rig.show(bounds, aspect);
+  if (std::exchange(panel.step, false)) step_once();
+  if (std::exchange(panel.set_count, false) && panel.has_crowd) {
+    const auto count = static_cast<uint32_t>(std::max(0, panel.avatars_wanted));
+    panel.crowd.avatars = count;
+    change_crowd(
+        [count](CrowdPlayer& player, Context& context) { player.set_count(count, context); });
+  }
+  if (std::exchange(panel.restart, false) && panel.has_crowd) {
+    panel.crowd.avatars = static_cast<uint32_t>(std::max(0, panel.avatars_wanted));
+    restart_crowd();
+  }
+  if (panel.seek && panel.replay) {
+    time = std::clamp(*panel.seek, panel.replay->first, panel.replay->last);
+    if (feed) feed->seek(time);
+  }
+  panel.seek.reset();
+  if (std::exchange(panel.walk, false)) begin_walk();
+}
+
+void Viewer::State::change_crowd(std::function<void(CrowdPlayer&, Context&)> change) {
+  if (!feed || !panel.has_crowd) return;
+  feed->post(
+      [change = std::move(change)](MomentSource& source) {
+        Context quiet;
+        change(static_cast<CrowdPlayer&>(source), quiet);
+      },
+      !panel.playing);
+}
+
+// The scene and the figures stay: only who walks is made again.
+void Viewer::State::restart_crowd() {
+  leave_walk();
+  const CrowdStart start = panel.crowd;
+  retire_job();
+  job = std::make_unique<StageJob>(
+      panel.status.name,
+      [start](StageParts& parts, Context&) -> Result<void> {
+        parts.set_crowd(start);
+        return {};
+      },
+      config.workers, origin, world);
+}
+
+void Viewer::State::retire_job() {
+  if (!job) return;
+  job->cancel();
+  retired.push_back(std::move(job));
+}
+
+void Viewer::State::step_once() {
+  panel.playing = false;
+  if (!feed) return;
+  const MomentPair pair = feed->at(time);
+  // To the next moment that is there: its time is a step on.
+  if (pair.b) time = pair.share < 1 ? pair.b->time : pair.b->time + panel.crowd.dt;
+}
+
+void Viewer::State::advance_time(double seconds) {
+  if (panel.playing) time += seconds * panel.settings.speed;
+  if (panel.replay) {
+    if (time >= panel.replay->last) {
+      time = panel.replay->last;
+      panel.playing = false;
+    }
+  } else if (feed) {
+    time = std::min(time, feed->latest());  // Steps that take longer than they last slow time.
+  }
+}
+
+void Viewer::State::look_up_crowd() {
+  panel.status.avatars = 0;
+  if (!feed) {
+    crowd = {};
+    return;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const MomentPair pair = feed->at(time);
+  if (!pair.a) return;
+  const double cut = panel.is_cut ? panel.cut - origin.y - 0.05 : 1e9;
+  crowd.hide(through_eyes() ? panel.status.driven : -1);
+  crowd.blend(*pair.a, *pair.b, pair.share, figures, cut);
+  panel.report = pair.b->report;
+  panel.status.avatars = crowd.now().size();
+  mean(panel.times.blend, seconds_since(start));
+}
+
+DrawingConfig Viewer::State::drawing_config(int32_t width, int32_t height) const {
+  DrawingConfig out;
+  out.width = width;
+  out.height = height;
+  out.camera = rig.camera(static_cast<double>(width) / height);
+  out.samples = panel.settings.smooth ? 2 : 1;
+  out.avatar_shadows = panel.settings.shadows;
+  out.sun_pixels = panel.settings.smooth ? 4096 : 1024;
+  out.edges = panel.settings.edges;
+  if (panel.is_cut) out.cut_height = panel.cut - origin.y;
+  out.workers = config.workers;
+  return out;
+}
+
+Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t height) {
+  const double seconds = last_now ? std::clamp(now - *last_now, 0.0, 0.25) : 0;
+  if (last_now) mean(panel.times.frame, now - *last_now);
+  last_now = now;
+  picture_width = width;
+  picture_height = height;
+  aspect = static_cast<double>(width) / height;
+  take_parts();
+  reap();
+  panel.status.loading = job != nullptr;
+  if (job) std::tie(panel.progress_stage, panel.progress) = job->progress();
+  rig.field_of_view = panel.settings.view_angle * 0.017453292519943295;
+  move_eye(seconds);
+  advance_time(seconds);
+  look_up_crowd();
+  follow_driven(seconds);
+  look_up_picked();
+  panel.status.playing = panel.playing;
+  panel.status.time = time;
+  panel.status.camera = rig.camera(aspect);
+  panel.status.camera.eye = panel.status.camera.eye + origin;
+  panel.status.camera.target = panel.status.camera.target + origin;
+
+  Frame frame{.config = drawing_config(width, height), .panel = {}};
+  const auto start = std::chrono::steady_clock::now();
+  if (config.panel) {
+    ui->begin(seconds, width, height);
+    draw_panel(panel, ui->scale(), width, height);
+    frame.panel = ui->end();
+    act_on_panel();
+  }
+  mean(panel.times.panel, seconds_since(start));
+  return frame;
+}
+
+void Viewer::State::note(const DrawingReport& report) {
+  panel.status.drawn = report.drawn;
+  mean(panel.times.pack, report.seconds_pack);
+  mean(panel.times.draw, report.seconds_draw);
+}
+
+Viewer::Viewer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Viewer::Viewer(Viewer&&) noexcept = default;
+Viewer& Viewer::operator=(Viewer&&) noexcept = default;
+Viewer::~Viewer() = default;
+
+Result<Viewer> Viewer::create(Drawing drawing, const ViewerConfig& config) {
+  auto state = std::make_unique<State>(std::move(drawing));
+  state->config = config;
+  state->panel.renderer = state->drawing.renderer();
+  // A processor that draws has no time for four samples a pixel; a stored setting is the user's.
+  const std::string& renderer = state->panel.renderer;
+  if (config.panel && (renderer.find("llvmpipe") != std::string::npos ||
+                       renderer.find("SwiftShader") != std::string::npos)) {
+    state->panel.settings.smooth = false;
+  }
+  if (!config.settings.empty()) {
+    const Result<ViewSettings> settings = read_settings(config.settings);
+    if (!settings) return settings.error();
+    state->panel.settings = *settings;
+  }
+  state->ui = std::make_unique<Ui>(config.font, config.pixel_ratio);
+  if (auto ok = state->ui->set_texture(state->drawing); !ok) return ok.error();
+  if (!state->panel.settings.layout.empty()) state->ui->set_layout(state->panel.settings.layout);
+  return Viewer(std::move(state));
+}
+
+void Viewer::load(const std::string& name, LoadStage load) {
+  State& s = *state_;
+  s.retire_job();
+  s.panel.status.name = name;
+  s.panel.status.error.clear();
+  s.panel.status.loading = true;
+  s.job = std::make_unique<StageJob>(name, std::move(load), s.config.workers, Vec3d{}, World{});
+}
+
+Result<void> Viewer::frame(double now, int32_t width, int32_t height) {
+  const State::Frame frame = state_->prepare(now, width, height);
+  DrawingReport report;
+  auto ok = state_->drawing.show(state_->crowd.crowds(), frame.config, &report, frame.panel);
+  if (ok) state_->note(report);
+  return ok;
+}
+
+Result<Image> Viewer::picture(double now, int32_t width, int32_t height) {
+  const State::Frame frame = state_->prepare(now, width, height);
+  DrawingReport report;
+  auto image = state_->drawing.draw(state_->crowd.crowds(), frame.config, &report, frame.panel);
+  if (image) state_->note(report);
+  return image;
+}
+
+void Viewer::look_at(Vec3d eye, Vec3d target) {
+  state_->camera_given = {eye, target};
+  state_->rig.look(eye - state_->origin, target - state_->origin);
+}
+
+void Viewer::wait_until_loaded() {
+  while (state_->job) {
+    state_->take_parts();
+    if (state_->job) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  state_->panel.status.loading = false;
+}
+
+void Viewer::play_for(double seconds) {
+  State& s = *state_;
+  if (!s.feed) return;
+  const double most = s.panel.replay ? s.panel.replay->last : std::numeric_limits<double>::max();
+  // In small steps, so that no moment is passed over.
+  const double end = std::min(s.time + seconds * s.panel.settings.speed, most);
+  while (true) {
+    s.feed->wait_for(s.time);
+    (void)s.feed->at(s.time);
+    if (s.time >= end) return;
+    s.time = std::min(end, s.time + 0.02);
+  }
+}
+
+ViewerWishes Viewer::take_wishes() {
+  ViewerWishes wishes = state_->wishes;
+  state_->wishes.save_picture = false;
+  state_->wishes.open.clear();
+  return wishes;
+}
+
+ViewerStatus Viewer::status() const { return state_->panel.status; }
+
+std::string Viewer::settings() const {
+  ViewSettings settings = state_->panel.settings;
+  settings.layout = state_->ui->layout();
+  return settings_text(settings);
+}
+
+}  // namespace throng

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "throng_view/viewer.h"
+#include "view/camera_rig.h"
+#include "view/ground_pick.h"
+#include "view/moment.h"
+#include "view/moment_feed.h"
+#include "view/panel.h"
+#include "view/stage_job.h"
+#include "view/ui.h"
+
+namespace throng {
+
+/// All that a viewer knows. Frames are in viewer.cpp, what keys and mouse do in controls.cpp, and
+/// walking in walk_mode.cpp.
+struct Viewer::State {
+  explicit State(Drawing given) : drawing(std::move(given)) {}
+
+  struct Frame {
+    DrawingConfig config;
+    PanelView panel;
+  };
+  struct GivenCamera {
+    Vec3d eye, target;
+  };
+
+  Drawing drawing;
+  ViewerConfig config;
+  std::unique_ptr<Ui> ui;
+  PanelState panel;
+  ViewerWishes wishes;
+
+  // What there is to see.
+  Vec3d origin;
+  Box3d bounds;  // Relative to the origin.
+  World world;
+  Figures figures;
+  std::unique_ptr<StageJob> job;
+  std::vector<std::unique_ptr<StageJob>> retired;  // Cancelled, not yet at their ends.
+  std::unique_ptr<MomentFeed> feed;
+  BlendedCrowd crowd;
+
+  // Where one looks from.
+  CameraRig rig;
+  std::optional<GivenCamera> camera_given;
+  double aspect = 16.0 / 9;
+  int32_t picture_width = 0, picture_height = 0;
+
+  // Time.
+  std::optional<double> last_now;
+  double time = 0;
+
+  // What is held.
+  std::array<bool, 256> keys{};
+  std::array<bool, 3> buttons{};
+  double mouse_x = 0, mouse_y = 0, pressed_x = 0, pressed_y = 0;
+  bool dragged = false;  // Since a button went down: no click any more.
+  GamepadState gamepad;
+
+  // Of walking oneself.
+  bool first_person = false;
+  Vec3d last_wish;
+  // What the crowd's thread answers.
+  struct Answers {
+    std::mutex lock;
+    std::optional<int64_t> joined;
+    std::optional<AvatarDetail> detail;
+  };
+  std::shared_ptr<Answers> answers = std::make_shared<Answers>();
+  std::optional<double> last_asked;
+
+  void take_parts();
+  void reap();
+  void retire_job();
+  void restart_crowd();
+  void change_crowd(std::function<void(CrowdPlayer&, Context&)> change);
+  void act_on_panel();
+  void advance_time(double seconds);
+  void step_once();
+  void look_up_crowd();
+  void look_up_picked();
+  [[nodiscard]] DrawingConfig drawing_config(int32_t width, int32_t height) const;
+  Frame prepare(double now, int32_t width, int32_t height);
+  void note(const DrawingReport& report);
+
+  void press(Key key);
+  void click();
+  void drag(double dx, double dy);
+  void move_eye(double seconds);
+  [[nodiscard]] bool held(Key key) const { return keys[static_cast<size_t>(key)]; }
+  [[nodiscard]] SightLine sight_line(double x, double y) const;  // Relative to the origin.
+
+  void begin_walk();
+  void leave_walk();
+  void follow_driven(double seconds);
+  [[nodiscard]] bool through_eyes() const {
+    return panel.mode == CameraMode::kWalk && first_person && panel.status.driven >= 0;
+  }
+};
+
+}  // namespace throng

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "view/ground_pick.h"
+#include "view/viewer_state.h"
+
+// Walking oneself: one avatar of the crowd gets its wishes from keys and sticks, and keeps to the
+// same rules as all.
+namespace throng {
+namespace {
+
+constexpr double kWalk = 1.5, kHurry = 3.0;  // [m/s]
+constexpr double kBehind = 4;                // [m] from the eye to who is walked as
+constexpr double kAsk = 0.2;                 // [s] between two looks at who is picked
+
+Vec3d head_of(const Moment& now, size_t i, double share_of_height,
+              const std::vector<double>& class_heights) {
+  const size_t c = now.classes[i];
+  const double height = c < class_heights.size() ? class_heights[c] : 1.75;
+  return {now.x[i], now.y[i] + share_of_height * height, now.z[i]};
+}
+
+}  // namespace
+
+void Viewer::State::begin_walk() {
+  if (!panel.has_crowd || panel.mode == CameraMode::kWalk) return;
+  const SightLine line = sight_line(0.5 * picture_width, 0.5 * picture_height);
+  const double cut = panel.is_cut ? panel.cut : panel.bounds.max.y + 1;
+  std::optional<Vec3d> where = ground_on(world, {line.eye + origin, line.direction}, cut, 3000);
+  // Nothing to stand on in the middle of the picture: by somebody who is there, or anywhere.
+  if (!where && crowd.now().size() > 0) {
+    where = head_of(crowd.now(), 0, 0, panel.class_heights) + origin;
+  }
+  if (!where) where = world.random_place(0, panel.crowd.seed, 0).position;
+  change_crowd([answers = answers, at = *where](CrowdPlayer& player, Context& context) {
+    const auto id = player.add_driven(at, 0, kHurry, context);
+    const std::lock_guard lock(answers->lock);
+    if (id) answers->joined = static_cast<int64_t>(*id);
+  });
+  panel.playing = true;
+}
+
+void Viewer::State::leave_walk() {
+  if (panel.mode == CameraMode::kWalk) panel.mode = CameraMode::kOrbit;
+  wishes.grab_mouse = false;
+  const int64_t id = std::exchange(panel.status.driven, -1);
+  if (id < 0) return;
+  rig.distance = std::max(rig.distance, 8.0);
+  change_crowd(
+      [id](CrowdPlayer& player, Context&) { player.take_away(static_cast<uint64_t>(id)); });
+}
+
+void Viewer::State::follow_driven(double seconds) {
+  {
+    const std::lock_guard lock(answers->lock);
+    if (const auto id = std::exchange(answers->joined, std::nullopt)) {
+      panel.status.driven = *id;
+      panel.mode = CameraMode::kWalk;
+      rig.distance = kBehind;
+      rig.pitch = 0.25;
+      last_wish = {};
+    }
+  }
+  wishes.grab_mouse = through_eyes();
+  if (panel.status.driven < 0) return;
+  const auto id = static_cast<uint64_t>(panel.status.driven);
+  rig.turn_head(gamepad.look_x * -600 * seconds, gamepad.look_y * -600 * seconds, 600);
+  const auto either = [&](Key a, Key b) { return held(a) || held(b) ? 1.0 : 0.0; };
+  const double right =
+      either(key_of('D'), Key::kRight) - either(key_of('A'), Key::kLeft) + gamepad.walk_x;
+  const double ahead =
+      either(key_of('W'), Key::kUp) - either(key_of('S'), Key::kDown) - gamepad.walk_y;
+  const double size = std::hypot(right, ahead);
+  const double speed = held(Key::kShift) || gamepad.hurry ? kHurry : kWalk;
+  const double scale = size > 0.1 ? speed * std::min(1.0, size) / size : 0;
+  const Vec3d flat{-std::sin(rig.yaw), 0, -std::cos(rig.yaw)};
+  const Vec3d wish = (flat * ahead + Vec3d{-flat.z, 0, flat.x} * right) * scale;
+  if (!(wish == last_wish)) {
+    last_wish = wish;
+    change_crowd([id, wish](CrowdPlayer& player, Context&) { player.drive(id, wish); });
+  }
+  const Moment& now = crowd.now();
+  const size_t i = now.find(id);
+  if (i == now.size()) return;
+  if (first_person) {
+    rig.distance = 1;
+    rig.target = head_of(now, i, 0.93, panel.class_heights) - rig.towards_eye();
+    return;
+  }
+  if (rig.distance < 1.5) rig.distance = kBehind;
+  rig.target = head_of(now, i, 0.85, panel.class_heights);
+}
+
+void Viewer::State::look_up_picked() {
+  panel.picked.reset();
+  if (panel.status.picked < 0) return;
+  const auto id = static_cast<uint64_t>(panel.status.picked);
+  const Moment& now = crowd.now();
+  const size_t i = now.find(id);
+  if (i == now.size()) {
+    panel.status.picked = -1;
+    return;
+  }
+  AvatarDetail detail{.id = id,
+                      .avatar_class = now.classes[i],
+                      .position = {},
+                      .speed = 0,
+                      .goal = {},
+                      .goals_given = 0,
+                      .driven = false};
+  if (panel.has_crowd) {
+    const std::lock_guard lock(answers->lock);
+    if (answers->detail && answers->detail->id == id) detail = *answers->detail;
+  }
+  detail.position = head_of(now, i, 0, panel.class_heights) + origin;
+  panel.picked = detail;
+  panel.picked_pace = now.pace[i];
+  panel.picked_walked = now.walked[i];
+  if (!panel.has_crowd || (last_asked && *last_now - *last_asked < kAsk)) return;
+  last_asked = last_now;
+  feed->post(
+      [id, answers = answers](MomentSource& source) {
+        const auto found = static_cast<CrowdPlayer&>(source).detail(id);
+        const std::lock_guard lock(answers->lock);
+        answers->detail = found;
+      },
+      /*at_once=*/false);
+}
+
+}  // namespace throng

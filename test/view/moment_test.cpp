@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view/moment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace throng {
+namespace {
+
+struct Someone {
+  uint64_t id;
+  float x, z, heading;
+};
+
+Moment moment_of(double time, const std::vector<Someone>& people) {
+  Moment m;
+  m.time = time;
+  m.resize(people.size());
+  for (size_t i = 0; i < people.size(); ++i) {
+    m.ids[i] = people[i].id;
+    m.x[i] = people[i].x;
+    m.z[i] = people[i].z;
+    m.heading[i] = people[i].heading;
+  }
+  return m;
+}
+
+Figures one_figure() {
+  Figures figures;
+  figures.of_class = {{0}};
+  figures.shapes.resize(1);
+  figures.shapes[0].clips = {
+      {.name = "Walk", .first_frame = 0, .frames = 10, .seconds = 1, .stride = 1.5},
+      {.name = "Idle", .first_frame = 10, .frames = 10, .seconds = 2, .stride = 0}};
+  return figures;
+}
+
+TEST(Moment, FollowAddsUpWhatEachHasWalkedThoughOthersComeAndGo) {
+  Moment a = moment_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
+  follow({}, a);
+  Moment b = moment_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
+  follow(a, b);
+  EXPECT_NEAR(b.walked[0] - a.walked[0], 5, 1e-5);
+  EXPECT_NEAR(b.pace[0], 5 * (1 - std::exp(-1 / 0.4)), 1e-4);
+  EXPECT_EQ(b.pace[1], 0);
+  Moment back = moment_of(0, {{3, 0, 0, 0.25F}});
+  follow(b, back);  // Backwards: feet go back the way they came.
+  EXPECT_NEAR(back.walked[0], a.walked[0], 1e-5);
+}
+
+TEST(Moment, FiguresTurnTheShortWayAndNotAtOnce) {
+  Moment a = moment_of(0, {{1, 0, 0, 0.95F}});
+  Moment b = moment_of(0.1, {{1, 0.2F, 0, 0.45F}});
+  follow(a, b);  // Half a turn is asked for; 0.9 turns a second are allowed.
+  const double turned = std::abs(std::remainder(b.heading[0] - 0.95, 1.0));
+  EXPECT_NEAR(turned, 0.09, 1e-5);
+  Moment c = moment_of(0.2, {{1, 0.4F, 0, 0.02F}});
+  a.heading[0] = 0.97F;
+  follow(a, c);  // Over zero: 0.05 turns, within the limit of 0.18.
+  EXPECT_NEAR(c.heading[0], 0.02, 1e-5);
+}
+
+TEST(Moment, WhoStandsKeepsHisHeading) {
+  Moment a = moment_of(0, {{1, 0, 0, 0.4F}});
+  Moment b = moment_of(0.1, {{1, 0, 0, 0}});
+  follow(a, b);
+  EXPECT_NEAR(b.heading[0], 0.4, 1e-6);
+}
+
+TEST(Moment, BlendsBetweenTwoAndShowsWhoCame) {
+  Moment a = moment_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
+  Moment b = moment_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
+  b.pace = {1.2F, 0};
+  BlendedCrowd crowd;
+  crowd.blend(a, b, 0.25, one_figure(), 1e9);
+  const Moment& now = crowd.now();
+  ASSERT_EQ(now.size(), 2U);
+  EXPECT_NEAR(now.time, 1.25, 1e-12);
+  EXPECT_NEAR(now.x[0], 1, 1e-6);
+  EXPECT_NEAR(now.z[0], 2, 1e-6);
+  EXPECT_NEAR(now.heading[0], 0.95, 1e-6);
+  EXPECT_EQ(now.ids[1], 7U);
+  EXPECT_EQ(now.find(7), 1U);
+  EXPECT_EQ(now.find(2), 2U);
+  ASSERT_EQ(crowd.crowds().size(), 2U);  // One walks, one stands.
+  EXPECT_EQ(crowd.crowds()[0].avatars.x.size(), 1U);
+  EXPECT_EQ(crowd.crowds()[0].clip, 0U);
+  EXPECT_EQ(crowd.crowds()[1].clip, 1U);
+}
+
+TEST(Moment, LeavesOutWhoIsAboveTheCutOrLooksHimself) {
+  Moment a = moment_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
+  a.y = {0, 6, 0};
+  BlendedCrowd crowd;
+  crowd.hide(3);
+  crowd.blend(a, a, 1, one_figure(), 5);
+  ASSERT_EQ(crowd.crowds().size(), 1U);
+  EXPECT_EQ(crowd.crowds()[0].avatars.x.size(), 1U);
+  EXPECT_EQ(crowd.now().size(), 3U);
+}
+
+}  // namespace
+}  // namespace throng

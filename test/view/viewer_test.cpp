@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng_view/viewer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "throng/bake.h"
+#include "throng/builtin_worlds.h"
+#include "throng/crowd.h"
+
+// The viewer as a user has it, but for the window: events in, pictures out.
+namespace throng {
+namespace {
+
+constexpr int32_t kWidth = 480, kHeight = 320;
+
+struct Baked {
+  Scene scene;
+  World world;
+};
+
+const Baked& two_floors() {
+  static const Baked baked = [] {
+    Baked b;
+    b.scene.add_box({0, -0.3, 0}, {20, 0, 20});
+    b.scene.add_box({0, 3, 0}, {20, 3.3, 8});
+    b.scene.add_box({9, 0, 9}, {11, 1.5, 11});
+    Context context;
+    auto world = bake_world(b.scene, {}, context);
+    b.world = *std::move(world);
+    return b;
+  }();
+  return baked;
+}
+
+const Atlas& people() {
+  static const Atlas atlas = [] {
+    AtlasConfig config;
+    config.clips = {"Walk", "Idle"};
+    config.frames = 4;
+    config.pixels = 32;
+    Context context;
+    auto built = build_atlas(built_in_character(), config, context);
+    return *std::move(built);
+  }();
+  return atlas;
+}
+
+LoadStage stage_with(uint32_t avatars) {
+  return [avatars](StageParts& parts, Context&) -> Result<void> {
+    const Baked& baked = two_floors();
+    if (auto ok = parts.set_scene(baked.scene); !ok) return ok;
+    parts.set_world(baked.world);
+    parts.set_atlases({{people()}});
+    CrowdStart start;
+    start.avatars = avatars;
+    start.near = 8;
+    parts.set_crowd(start);
+    return {};
+  };
+}
+
+Viewer made_viewer(const ViewerConfig& config = {}) {
+  Result<Drawing> drawing = Drawing::create();
+  EXPECT_TRUE(drawing) << drawing.error().message;
+  Result<Viewer> viewer = Viewer::create(*std::move(drawing), config);
+  EXPECT_TRUE(viewer) << viewer.error().message;
+  return *std::move(viewer);
+}
+
+void press(Viewer& viewer, Key key) {
+  ViewEvent event{.kind = ViewEventKind::kKeyDown};
+  event.key = key;
+  viewer.handle(event);
+  event.kind = ViewEventKind::kKeyUp;
+  viewer.handle(event);
+}
+
+void hold(Viewer& viewer, Key key, bool down) {
+  ViewEvent event{.kind = down ? ViewEventKind::kKeyDown : ViewEventKind::kKeyUp};
+  event.key = key;
+  viewer.handle(event);
+}
+
+void mouse(Viewer& viewer, ViewEventKind kind, double x, double y,
+           MouseButton button = MouseButton::kLeft) {
+  ViewEvent event{.kind = kind};
+  event.x = x;
+  event.y = y;
+  event.button = button;
+  viewer.handle(event);
+}
+
+size_t pixels_that_differ(const Image& a, const Image& b) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.rgb.size(); i += 3) {
+    count += std::abs(a.rgb[i] - b.rgb[i]) + std::abs(a.rgb[i + 1] - b.rgb[i + 1]) > 24 ? 1 : 0;
+  }
+  return count;
+}
+
+Image picture(Viewer& viewer, double now) {
+  auto image = viewer.picture(now, kWidth, kHeight);
+  EXPECT_TRUE(image) << image.error().message;
+  return *std::move(image);
+}
+
+TEST(Viewer, ShowsAWorldAndACrowdThatWalks) {
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  const Image empty = picture(viewer, 0);
+  viewer.load("two floors", stage_with(60));
+  EXPECT_TRUE(viewer.status().loading);
+  viewer.wait_until_loaded();
+  EXPECT_EQ(viewer.status().error, "");
+  viewer.play_for(1);
+  const Image first = picture(viewer, 0);
+  EXPECT_GT(pixels_that_differ(empty, first), first.rgb.size() / 3 / 10);
+  EXPECT_EQ(viewer.status().avatars, 60U);
+  EXPECT_GT(viewer.status().drawn, 30U);
+  EXPECT_NEAR(viewer.status().time, 1, 1e-9);
+  viewer.play_for(2);
+  const Image later = picture(viewer, 0);
+  EXPECT_GT(pixels_that_differ(first, later), 50U);
+}
+
+TEST(Viewer, TheSameTimeGivesTheSamePicture) {
+  const auto taken = [] {
+    Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+    viewer.load("two floors", stage_with(40));
+    viewer.wait_until_loaded();
+    viewer.play_for(1.5);
+    return picture(viewer, 0).rgb;
+  };
+  EXPECT_EQ(taken(), taken());
+}
+
+TEST(Viewer, KeysAndMouseMoveTheEyeAsInOtherPrograms) {
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  viewer.load("two floors", stage_with(5));
+  viewer.wait_until_loaded();
+  (void)picture(viewer, 0);
+  const EyeCamera start = viewer.status().camera;
+  mouse(viewer, ViewEventKind::kMouseDown, 100, 100);
+  mouse(viewer, ViewEventKind::kMouseMove, 180, 130);
+  mouse(viewer, ViewEventKind::kMouseUp, 180, 130);
+  (void)picture(viewer, 0.1);
+  const EyeCamera turned = viewer.status().camera;
+  EXPECT_NEAR(length(turned.target - start.target), 0, 1e-9);
+  EXPECT_GT(length(turned.eye - start.eye), 1);
+  mouse(viewer, ViewEventKind::kMouseDown, 100, 100, MouseButton::kRight);
+  mouse(viewer, ViewEventKind::kMouseMove, 150, 100);
+  mouse(viewer, ViewEventKind::kMouseUp, 150, 100, MouseButton::kRight);
+  (void)picture(viewer, 0.2);
+  EXPECT_GT(length(viewer.status().camera.target - turned.target), 0.5);
+  ViewEvent wheel{.kind = ViewEventKind::kWheel};
+  wheel.y = 4;
+  viewer.handle(wheel);
+  (void)picture(viewer, 0.3);
+  EXPECT_LT(length(viewer.status().camera.eye - viewer.status().camera.target),
+            0.6 * length(turned.eye - turned.target));
+  press(viewer, Key::kHome);
+  hold(viewer, key_of('W'), true);
+  (void)picture(viewer, 0.4);
+  const Vec3d before = viewer.status().camera.target;
+  (void)picture(viewer, 0.6);
+  hold(viewer, key_of('W'), false);
+  const Vec3d after = viewer.status().camera.target;
+  EXPECT_GT(length(after - before), 0.5);
+  EXPECT_NEAR(after.y, before.y, 1e-9);  // Over the ground.
+  viewer.handle({.kind = ViewEventKind::kLeave});
+  (void)picture(viewer, 0.8);
+  EXPECT_NEAR(length(viewer.status().camera.target - after), 0, 1e-9);
+}
+
+TEST(Viewer, SpacePausesAndPeriodMakesOneStep) {
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  viewer.load("two floors", stage_with(20));
+  viewer.wait_until_loaded();
+  viewer.play_for(0.5);
+  EXPECT_TRUE(viewer.status().playing || viewer.status().time == 0);
+  press(viewer, Key::kSpace);
+  (void)picture(viewer, 0);
+  const double paused = viewer.status().time;
+  (void)picture(viewer, 1);
+  EXPECT_FALSE(viewer.status().playing);
+  EXPECT_EQ(viewer.status().time, paused);
+  press(viewer, Key::kPeriod);
+  viewer.play_for(0);
+  (void)picture(viewer, 2);
+  EXPECT_NEAR(viewer.status().time - paused, 0.1, 0.11);
+  EXPECT_GT(viewer.status().time, paused);
+}
+
+TEST(Viewer, StoreysArePeeledOffFromAbove) {
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  viewer.load("two floors", stage_with(150));
+  viewer.wait_until_loaded();
+  viewer.look_at({10, 40, 10.1}, {10, 0, 10});
+  viewer.play_for(0.2);
+  press(viewer, Key::kSpace);
+  const Image whole = picture(viewer, 0);
+  const size_t all = viewer.status().drawn;
+  press(viewer, Key::kPageDown);
+  const Image peeled = picture(viewer, 0.1);
+  EXPECT_LT(viewer.status().drawn, all);
+  EXPECT_GT(viewer.status().drawn, 0U);
+  EXPECT_EQ(viewer.status().avatars, 150U);
+  EXPECT_GT(pixels_that_differ(whole, peeled), 500U);
+  press(viewer, Key::kPageUp);
+  const Image again = picture(viewer, 0.2);
+  EXPECT_EQ(viewer.status().drawn, all);
+  EXPECT_LT(pixels_that_differ(whole, again), 20U);
+}
+
+TEST(Viewer, AClickPicksWhoIsThereAndEscapeLetsGo) {
+  Viewer viewer = made_viewer({.settings = R"({"shadows": false})", .font = {}, .panel = false});
+  (void)picture(viewer, 0);  // So that its shape is known when the eye goes to see all.
+  viewer.load("two floors", stage_with(1));
+  viewer.wait_until_loaded();
+  viewer.play_for(0.1);
+  press(viewer, Key::kSpace);
+  // One avatar: where it differs from the empty world, it is.
+  const Image with = picture(viewer, 0);
+  viewer.load("nobody", stage_with(0));
+  viewer.wait_until_loaded();
+  viewer.play_for(0.1);
+  const Image without = picture(viewer, 0.1);
+  double x = 0, y = 0, n = 0;
+  for (int32_t v = 0; v < kHeight; ++v) {
+    for (int32_t u = 0; u < kWidth; ++u) {
+      const size_t i = (static_cast<size_t>(v) * kWidth + static_cast<size_t>(u)) * 3;
+      if (std::abs(with.rgb[i] - without.rgb[i]) < 40) continue;
+      x += u;
+      y += v;
+      ++n;
+    }
+  }
+  ASSERT_GT(n, 5);
+  viewer.load("one", stage_with(1));
+  viewer.wait_until_loaded();
+  viewer.play_for(0.1);
+  (void)picture(viewer, 0.2);
+  mouse(viewer, ViewEventKind::kMouseDown, x / n, y / n);
+  mouse(viewer, ViewEventKind::kMouseUp, x / n, y / n);
+  EXPECT_EQ(viewer.status().picked, 0);
+  press(viewer, Key::kEscape);
+  EXPECT_EQ(viewer.status().picked, -1);
+  mouse(viewer, ViewEventKind::kMouseDown, 3, 3);
+  mouse(viewer, ViewEventKind::kMouseUp, 3, 3);
+  EXPECT_EQ(viewer.status().picked, -1);
+}
+
+TEST(Viewer, OneWalksOneselfByTheSameRules) {
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  viewer.load("two floors", stage_with(30));
+  viewer.wait_until_loaded();
+  viewer.look_at({10, 12, 26}, {10, 0, 15});
+  viewer.play_for(0.2);
+  (void)picture(viewer, 0);
+  press(viewer, key_of('3'));
+  viewer.play_for(0.3);
+  (void)picture(viewer, 0.1);
+  ASSERT_GE(viewer.status().driven, 0);
+  EXPECT_EQ(viewer.status().avatars, 31U);
+  viewer.play_for(0.2);
+  (void)picture(viewer, 0.2);
+  const Vec3d start = viewer.status().camera.target;
+  hold(viewer, key_of('W'), true);
+  (void)picture(viewer, 0.3);
+  viewer.play_for(12);
+  (void)picture(viewer, 0.4);
+  const Vec3d end = viewer.status().camera.target;
+  EXPECT_LT(end.z, start.z - 2);  // Ahead is away from the eye.
+  EXPECT_GT(end.z, 0);            // The ground's edge stops it.
+  press(viewer, key_of('V'));
+  (void)picture(viewer, 0.5);
+  EXPECT_TRUE(viewer.take_wishes().grab_mouse);
+  press(viewer, Key::kEscape);
+  viewer.play_for(0.5);
+  (void)picture(viewer, 0.6);
+  EXPECT_EQ(viewer.status().driven, -1);
+  EXPECT_EQ(viewer.status().avatars, 30U);
+  EXPECT_FALSE(viewer.take_wishes().grab_mouse);
+}
+
+TEST(Viewer, WishesAreAskedForByKeys) {
+  Viewer viewer = made_viewer();
+  press(viewer, Key::kF11);
+  press(viewer, Key::kF12);
+  EXPECT_TRUE(viewer.take_wishes().fullscreen);
+  EXPECT_TRUE(viewer.take_wishes().fullscreen);
+  EXPECT_FALSE(viewer.take_wishes().save_picture);
+  ViewEvent drop{.kind = ViewEventKind::kDrop};
+  drop.path = "/tmp/a.replay";
+  viewer.handle(drop);
+  EXPECT_EQ(viewer.take_wishes().open, "/tmp/a.replay");
+  hold(viewer, Key::kControl, true);
+  press(viewer, key_of('Q'));
+  EXPECT_TRUE(viewer.take_wishes().close);
+}
+
+TEST(Viewer, ThePanelIsDrawnAndTakesTheMouse) {
+  Viewer viewer = made_viewer();
+  viewer.load("two floors", stage_with(10));
+  viewer.wait_until_loaded();
+  press(viewer, Key::kSpace);
+  (void)picture(viewer, 0);
+  const Image with = picture(viewer, 0.1);
+  const EyeCamera before = viewer.status().camera;
+  mouse(viewer, ViewEventKind::kMouseMove, 60, 60);  // On the panel.
+  (void)picture(viewer, 0.2);
+  mouse(viewer, ViewEventKind::kMouseDown, 60, 60);
+  mouse(viewer, ViewEventKind::kMouseMove, 90, 90);
+  mouse(viewer, ViewEventKind::kMouseUp, 90, 90);
+  (void)picture(viewer, 0.3);
+  EXPECT_EQ(viewer.status().camera.eye, before.eye);
+  press(viewer, Key::kTab);
+  (void)picture(viewer, 0.4);
+  const Image without = picture(viewer, 0.5);
+  EXPECT_GT(pixels_that_differ(with, without), 10000U);
+  press(viewer, Key::kF1);
+  (void)picture(viewer, 0.6);
+  const Image help = picture(viewer, 0.7);
+  EXPECT_GT(pixels_that_differ(help, without), 10000U);
+}
+
+TEST(Viewer, SettingsAreKeptAndBadOnesRefused) {
+  std::string kept;
+  {
+    Viewer viewer = made_viewer();
+    press(viewer, Key::kTab);
+    press(viewer, Key::kComma);
+    kept = viewer.settings();
+  }
+  Viewer viewer = made_viewer({.settings = kept, .font = {}});
+  EXPECT_EQ(viewer.settings(), kept);
+  EXPECT_NE(kept.find("\"panel\": false"), std::string::npos);
+  EXPECT_NE(kept.find("\"speed\": 0.70710"), std::string::npos);
+  Result<Drawing> drawing = Drawing::create();
+  ASSERT_TRUE(drawing);
+  const auto refused = Viewer::create(*std::move(drawing), {.settings = "panel", .font = {}});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::kBadFile);
+  Viewer odd = made_viewer({.settings = R"({"speed": 1e9, "edges": "much"})", .font = {}});
+  EXPECT_NE(odd.settings().find("\"speed\": 1.0"), std::string::npos);
+}
+
+TEST(Viewer, ALoadThatFailsSaysWhyAndOneThatIsReplacedIsCancelled) {
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  viewer.load("bad", [](StageParts&, Context&) -> Result<void> {
+    return Error{Errc::kBadFile, "bad: has no triangles"};
+  });
+  viewer.wait_until_loaded();
+  EXPECT_EQ(viewer.status().error, "bad: has no triangles");
+  std::atomic<bool> seen = false;
+  viewer.load("endless", [&seen](StageParts&, Context& context) -> Result<void> {
+    while (!context.cancel) {
+    }
+    seen = true;
+    return Error{Errc::kCancelled, ""};
+  });
+  viewer.load("two floors", stage_with(3));
+  viewer.wait_until_loaded();
+  (void)picture(viewer, 0);
+  EXPECT_EQ(viewer.status().error, "");
+  EXPECT_EQ(viewer.status().name, "two floors");
+  while (!seen) {
+  }
+}
+
+}  // namespace
+}  // namespace throng

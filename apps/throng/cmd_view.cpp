@@ -18,6 +18,8 @@ struct ViewOptions {
   ViewTarget target;
   std::vector<double> camera;
   std::string picture;
+  std::vector<std::string> overlays;
+  int64_t pick = -1;
   std::string pictures = ".";
   double after = 4;
   bool panel = false;
@@ -47,6 +49,9 @@ int take_picture(Session& session, const ViewOptions& options) {
     return fail({Errc::kBadFile, error});
   }
   viewer->play_for(options.after);
+  viewer->pick(options.pick);
+  for (const std::string& overlay : options.overlays) viewer->show_overlay(overlay);
+  viewer->wait_for_overlays();
   const Result<Image> image = viewer->picture(0, options.width, options.height);
   if (!image) return fail(image.error());
   if (auto done = write_png(*image, options.picture); !done) return fail(done.error());
@@ -127,6 +132,11 @@ void add_view(CLI::App& parser, Session& session) {
   command->add_option("--after", options->after, "With --picture: let so much time pass [s]")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
+  command->add_option("--overlay", options->overlays, "With --picture: switch on, may be repeated")
+      ->check(CLI::IsMember(Viewer::overlay_names(), CLI::ignore_case))
+      ->allow_extra_args(false);
+  command->add_option("--pick", options->pick, "With --picture: the avatar picked")
+      ->type_name("ID");
   command->add_flag("--panel", options->panel, "With --picture: the panel, too");
   command->add_option("--width", options->width, "Of the window or picture [px]")
       ->check(CLI::Range(160, 8192))

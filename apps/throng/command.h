@@ -71,6 +71,7 @@ void add_atlas(CLI::App& parser, Session& session);
 void add_bake(CLI::App& parser, Session& session);
 void add_caacd(CLI::App& parser, Session& session);
 void add_export(CLI::App& parser, Session& session);
+void add_film(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
 void add_nodes(CLI::App& parser, Session& session);
 void add_path(CLI::App& parser, Session& session);

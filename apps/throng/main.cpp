@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
     add_bake(parser, session);
     add_caacd(parser, session);
     add_export(parser, session);
+    add_film(parser, session);
     add_info(parser, session);
     add_nodes(parser, session);
     add_path(parser, session);

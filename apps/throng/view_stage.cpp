@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "rerun.h"
 #include "throng/bake.h"
 #include "throng/character.h"
+#include "throng/nodes.h"
 #include "throng/walkable_surface.h"
 #include "user_files.h"
 
@@ -78,7 +80,12 @@ Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World&
 
 Result<void> show_world(StageParts& parts, const ViewTarget& target, const World& world,
                         Context& context) {
-  parts.set_world(world);
+  // Only some worlds have nodes; the overlay says so when it is asked for.
+  std::optional<Nodes> nodes;
+  if (!target.path.empty() && fs::exists(fs::path(target.path) / "manifest.thm")) {
+    if (Result<Nodes> opened = Nodes::open(target.path)) nodes = *std::move(opened);
+  }
+  parts.set_world(world, nodes);
   auto figures = figures_of(target, heights_of(world.summary().classes), context);
   if (!figures) return figures.error();
   parts.set_atlases(*std::move(figures));

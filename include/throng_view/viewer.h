@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "throng/context.h"
 #include "throng/impostor.h"
+#include "throng/nodes.h"
 #include "throng/recording.h"
 #include "throng/result.h"
 #include "throng/scene.h"
@@ -41,7 +43,7 @@ class THRONG_API StageParts {
   /// What to draw.
   Result<void> set_scene(const Scene& scene);
   /// Where to walk: overlays, levels, and a crowd.
-  void set_world(World world);
+  void set_world(World world, std::optional<Nodes> nodes = {});
   /// Who walks: one figure a class of the world or recording, in their order; the last serves all
   /// that are left.
   void set_atlases(std::vector<std::vector<Atlas>> of_class);
@@ -82,12 +84,13 @@ struct ViewerStatus {
   bool loading = false;
   std::string error;  ///< Why the last load failed, or empty.
   bool playing = false;
-  double time = 0;      ///< Of what is shown. [s]
-  size_t avatars = 0;   ///< That there are.
-  size_t drawn = 0;     ///< In the last frame.
-  int64_t picked = -1;  ///< Id of the avatar that was clicked, or -1.
-  int64_t driven = -1;  ///< Id of the avatar that the user walks as, or -1.
-  EyeCamera camera;     ///< In the world's coordinates.
+  double time = 0;       ///< Of what is shown. [s]
+  double last_time = 0;  ///< Of a recording's last frame, or 0. [s]
+  size_t avatars = 0;    ///< That there are.
+  size_t drawn = 0;      ///< In the last frame.
+  int64_t picked = -1;   ///< Id of the avatar that was clicked, or -1.
+  int64_t driven = -1;   ///< Id of the avatar that the user walks as, or -1.
+  EyeCamera camera;      ///< In the world's coordinates.
 };
 
 /// One at a time a thread: Dear ImGui has a global state.
@@ -109,6 +112,13 @@ class THRONG_API Viewer {
   [[nodiscard]] Result<Image> picture(double now, int32_t width, int32_t height);
   /// Looks at `target` from `eye`, in the world's coordinates.
   void look_at(Vec3d eye, Vec3d target);
+  /// Switches on one of overlay_names(). Others are left out.
+  void show_overlay(const std::string& name);
+  [[nodiscard]] static std::vector<std::string> overlay_names();
+  /// As a click on an avatar does; -1: nobody.
+  void pick(int64_t id);
+  /// Waits until all overlays that are on are there, for tests and pictures.
+  void wait_for_overlays();
   /// Waits until nothing is being loaded, for tests and pictures.
   void wait_until_loaded();
   /// Lets time pass at the speed that is set, with every step that belongs to it, however long that

@@ -269,6 +269,7 @@ void Drawing::State::draw_crowd(const GlProgram& program, const std::vector<Run>
 void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const {
   mark.use();
   mark.set_matrix("clip_from_world", clip_from_world.data());
+  mark.set("cut", static_cast<float>(std::min(config.cut_height, 1e9)));
   mark.set_size("half_picture", 0.5F * static_cast<float>(config.width * config.samples),
                 0.5F * static_cast<float>(config.height * config.samples));
   glEnable(GL_BLEND);

@@ -299,8 +299,10 @@ layout(location = 3) in float side;
 uniform vec2 half_picture; // [px of this target]
 uniform float half_width;  // [px of this target]
 out vec4 tint;
+out float height;
 void main() {
   tint = paint;
+  height = position.y;
   gl_Position = clip_from_world * vec4(position, 1.0);
   if (side != 0.0) {
     vec4 end = clip_from_world * vec4(other, 1.0);
@@ -323,9 +325,14 @@ void main() {
 std::string mark_fragment() {
   return std::string(kHead) + R"(
 in vec4 tint;
+in float height;
 uniform float opacity;
+uniform float cut;
 out vec4 colour;
-void main() { colour = vec4(tint.rgb, tint.a * opacity); }
+void main() {
+  if (height > cut) discard;
+  colour = vec4(tint.rgb, tint.a * opacity);
+}
 )";
 }
 

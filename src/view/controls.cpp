@@ -102,6 +102,10 @@ void Viewer::State::press(Key key) {
     panel.mode = letter('1') ? CameraMode::kOrbit : CameraMode::kFly;
   }
   if (letter('3')) begin_walk();
+  constexpr char kOverlayKeys[] = "CLNKXHPB";  // In the order of Overlay.
+  for (size_t i = 0; i < kOverlays; ++i) {
+    if (letter(kOverlayKeys[i])) panel.overlays[i] = !panel.overlays[i];
+  }
   if (letter('V')) first_person = !first_person;
   if (letter('F') && panel.status.picked >= 0) {
     const size_t i = crowd.now().find(static_cast<uint64_t>(panel.status.picked));

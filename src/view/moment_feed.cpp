@@ -115,9 +115,8 @@ void MomentFeed::wait_for(double time) {
   std::unique_lock lock(mutex_);
   wanted_ = time;
   wake_.notify_all();
-  idle_.wait(lock, [&] {
-    return !seeking_ && (ended_ || (!made_.empty() && made_.back()->time > time));
-  });
+  idle_.wait(
+      lock, [&] { return !seeking_ && (ended_ || (!made_.empty() && made_.back()->time > time)); });
 }
 
 double MomentFeed::latest() const {

@@ -176,6 +176,13 @@ void draw_main(PanelState& s, float scale, int32_t height) {
     draw_crowd(s);
   }
   if (ImGui::CollapsingHeader("Levels", ImGuiTreeNodeFlags_DefaultOpen)) draw_levels(s);
+  if (s.has_world && ImGui::CollapsingHeader("Overlays", ImGuiTreeNodeFlags_DefaultOpen)) {
+    for (size_t i = 0; i < kOverlays; ++i) {
+      if (i % 2 == 1) ImGui::SameLine(ImGui::GetWindowWidth() * 0.5F);
+      ImGui::Checkbox(word_for(static_cast<Overlay>(i)), &s.overlays[i]);
+      tip(legend_of(static_cast<Overlay>(i)));
+    }
+  }
   if (ImGui::CollapsingHeader("View")) draw_view(s);
   if (ImGui::CollapsingHeader("Times")) draw_times(s);
   if (ImGui::Button("Keys (F1)")) s.help = !s.help;
@@ -263,6 +270,8 @@ void draw_help(PanelState& s, int32_t width, int32_t height) {
         {"Page Up, Page Down", "storey by storey; End: all of them"},
         {"Space, period", "pause or play; one step"},
         {"Comma, M", "slower, faster"},
+        {"C, L, N, K", "clearance, levels, nodes, links"},
+        {"X, H, P, B", "air, density (heat), path and neighbours of the avatar picked"},
         {"Tab", "panel"},
         {"F11, F12", "full screen; keep a picture"},
         {"Escape", "leave Walk, let go of the avatar, close this"},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "throng_view/viewer.h"
 #include "view/camera_rig.h"
 #include "view/crowd_player.h"
+#include "view/overlays.h"
 #include "view/replay_player.h"
 #include "view/view_settings.h"
 
@@ -34,6 +36,7 @@ struct PanelState {
   bool help = false;
   double cut = 0;  ///< Height above which the scene is left out, if `is_cut`. [m, world]
   bool is_cut = false;
+  std::array<bool, kOverlays> overlays{};
   CrowdStart crowd;  ///< As it would be started again.
   int32_t avatars_wanted = 0;
 

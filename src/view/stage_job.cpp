@@ -80,12 +80,13 @@ Result<void> StageParts::set_scene(const Scene& scene) {
   return {};
 }
 
-void StageParts::set_world(World world) {
+void StageParts::set_world(World world, std::optional<Nodes> nodes) {
   StageJob& job = job_;
   job.world_ = world;
   {
     const std::lock_guard lock(job.mutex_);
     job.mail_.world = world;
+    job.mail_.nodes = std::move(nodes);
   }
   std::vector<double> storeys = storey_heights(world, job.context_);
   const std::lock_guard lock(job.mutex_);

@@ -22,6 +22,7 @@ namespace throng {
 struct StageMail {
   std::optional<PreparedScene> scene;
   std::optional<World> world;
+  std::optional<Nodes> nodes;
   std::optional<std::vector<double>> storeys;
   std::optional<std::vector<std::vector<Atlas>>> atlases;
   std::optional<ReplaySpan> replay;

@@ -46,6 +46,12 @@ void Viewer::State::take_parts() {
   if (mail.scene) {
     feed.reset();
     world = {};
+    nodes.reset();
+    overlay_maker.reset();
+    ordered.fill(false);
+    for (size_t i = 0; i < kOverlays; ++i) {
+      if (std::exchange(shown[i], false)) keep(drawing.set_marks(i, {}));
+    }
     figures = {};
     drawing.clear_atlases();
     panel.has_world = panel.has_crowd = false;
@@ -67,6 +73,7 @@ void Viewer::State::take_parts() {
   if (mail.world) {
     world = *mail.world;
     panel.has_world = true;
+    overlay_maker = std::make_unique<OverlayMaker>(world, mail.nodes, origin);
     for (const AvatarClass& c : world.summary().classes) {
       panel.class_names.push_back(c.name);
       panel.class_heights.push_back(c.height);
@@ -232,6 +239,7 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
   look_up_crowd();
   follow_driven(seconds);
   look_up_picked();
+  show_overlays();
   panel.status.playing = panel.playing;
   panel.status.time = time;
   panel.status.camera = rig.camera(aspect);
@@ -312,6 +320,42 @@ void Viewer::look_at(Vec3d eye, Vec3d target) {
   state_->rig.look(eye - state_->origin, target - state_->origin);
 }
 
+void Viewer::show_overlay(const std::string& name) {
+  for (size_t i = 0; i < kOverlays; ++i) {
+    if (word_for(static_cast<Overlay>(i)) == name) state_->panel.overlays[i] = true;
+  }
+}
+
+std::vector<std::string> Viewer::overlay_names() {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < kOverlays; ++i) names.emplace_back(word_for(static_cast<Overlay>(i)));
+  return names;
+}
+
+void Viewer::pick(int64_t id) { state_->panel.status.picked = id; }
+
+void Viewer::wait_for_overlays() {
+  State& s = *state_;
+  if (!s.last_now) s.last_now = 0;
+  while (true) {
+    if (s.feed) s.feed->finish_posted();
+    s.look_up_crowd();
+    s.look_up_picked();
+    s.show_overlays();
+    const bool busy = s.overlay_maker && s.overlay_maker->is_busy();
+    bool missing = false;
+    for (size_t i = 0; i < kOverlays; ++i) {
+      missing = missing || (s.overlay_maker && s.panel.overlays[i] && !s.ordered[i] &&
+                            i != static_cast<size_t>(Overlay::kDensity) &&
+                            i != static_cast<size_t>(Overlay::kNeighbours) &&
+                            i != static_cast<size_t>(Overlay::kPath));
+    }
+    if (!busy && !missing) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  s.show_overlays();  // Takes what came last.
+}
+
 void Viewer::wait_until_loaded() {
   while (state_->job) {
     state_->take_parts();
@@ -341,7 +385,12 @@ ViewerWishes Viewer::take_wishes() {
   return wishes;
 }
 
-ViewerStatus Viewer::status() const { return state_->panel.status; }
+ViewerStatus Viewer::status() const {
+  ViewerStatus status = state_->panel.status;
+  status.time = state_->time;
+  status.last_time = state_->panel.replay ? state_->panel.replay->last : 0;
+  return status;
+}
 
 std::string Viewer::settings() const {
   ViewSettings settings = state_->panel.settings;

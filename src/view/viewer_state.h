@@ -14,14 +14,15 @@
 #include "view/ground_pick.h"
 #include "view/moment.h"
 #include "view/moment_feed.h"
+#include "view/overlay_view.h"
 #include "view/panel.h"
 #include "view/stage_job.h"
 #include "view/ui.h"
 
 namespace throng {
 
-/// All that a viewer knows. Frames are in viewer.cpp, what keys and mouse do in controls.cpp, and
-/// walking in walk_mode.cpp.
+/// All that a viewer knows. Frames are in viewer.cpp, what keys and mouse do in controls.cpp,
+/// walking in walk_mode.cpp, overlays in overlay_view.cpp.
 struct Viewer::State {
   explicit State(Drawing given) : drawing(std::move(given)) {}
 
@@ -48,6 +49,11 @@ struct Viewer::State {
   std::vector<std::unique_ptr<StageJob>> retired;  // Cancelled, not yet at their ends.
   std::unique_ptr<MomentFeed> feed;
   BlendedCrowd crowd;
+  std::optional<Nodes> nodes;
+  std::unique_ptr<OverlayMaker> overlay_maker;
+  std::array<bool, kOverlays> shown{}, ordered{};  // In the drawing; asked for since switched on.
+  double air_height = 0;
+  std::optional<double> way_asked;
 
   // Where one looks from.
   CameraRig rig;
@@ -88,6 +94,7 @@ struct Viewer::State {
   void step_once();
   void look_up_crowd();
   void look_up_picked();
+  void show_overlays();
   [[nodiscard]] DrawingConfig drawing_config(int32_t width, int32_t height) const;
   Frame prepare(double now, int32_t width, int32_t height);
   void note(const DrawingReport& report);

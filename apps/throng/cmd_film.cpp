@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "command.h"
+#include "film_pipe.h"
+#include "view_stage.h"
+#include "view_window.h"
+
+// throng film: a recording, or a crowd that walks now, as a film. No window, no display.
+namespace throng::app {
+namespace {
+
+struct FilmOptions {
+  ViewTarget target;
+  std::vector<double> camera;
+  std::string output;
+  FilmFormat format;
+  double seconds = 0;
+  double from = 0;
+  double speed = 1;
+  double turn = 0;
+  int32_t workers = 0;
+};
+
+// The eye after some seconds of a turn around what it looks at.
+Vec3d turned(Vec3d eye, Vec3d target, double angle) {
+  const Vec3d d = eye - target;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return target + Vec3d{c * d.x + s * d.z, d.y, c * d.z - s * d.x};
+}
+
+int film(Session& session, const FilmOptions& options) {
+  const FilmFormat& format = options.format;
+  if (format.width % 2 != 0 || format.height % 2 != 0) {
+    return fail({Errc::kBadConfig, "film: width and height must be even"});
+  }
+  Result<Drawing> drawing = Drawing::create();
+  if (!drawing) return fail(drawing.error());
+  Result<Viewer> viewer = Viewer::create(
+      *std::move(drawing), {.settings = fmt::format("{{\"speed\": {}}}", options.speed),
+                            .font = {},
+                            .workers = options.workers,
+                            .panel = false});
+  if (!viewer) return fail(viewer.error());
+  viewer->load(short_name(options.target.path), stage_of(options.target));
+  viewer->wait_until_loaded();
+  if (const std::string error = viewer->status().error; !error.empty()) {
+    return fail({Errc::kBadFile, error});
+  }
+  const std::vector<double>& c = options.camera;
+  if (!c.empty()) viewer->look_at({c[0], c[1], c[2]}, {c[3], c[4], c[5]});
+  viewer->play_for(options.from / options.speed);
+  // Of a recording all that is left, of a crowd ten seconds.
+  double seconds = options.seconds;
+  const ViewerStatus begin = viewer->status();
+  if (seconds <= 0)
+    seconds = begin.last_time > 0 ? (begin.last_time - begin.time) / options.speed : 10;
+  const auto frames = static_cast<uint64_t>(std::max(1.0, std::round(seconds * format.rate)));
+
+  Result<FilmPipe> pipe = FilmPipe::open(options.output, format);
+  if (!pipe) return fail(pipe.error());
+  Result<Image> image = viewer->picture(0, format.width, format.height);
+  const EyeCamera start = viewer->status().camera;
+  for (uint64_t frame = 0; frame < frames; ++frame) {
+    if (session.context.cancel) return fail({Errc::kCancelled, "film: interrupted"});
+    if (frame > 0) {
+      const double gone = static_cast<double>(frame) / format.rate;
+      if (options.turn != 0) {
+        const double angle = options.turn * gone * std::numbers::pi / 180;
+        viewer->look_at(turned(start.eye, start.target, angle), start.target);
+      }
+      viewer->play_for(1.0 / format.rate);
+      image = viewer->picture(0, format.width, format.height);
+    }
+    if (!image) return fail(image.error());
+    if (auto ok = pipe->add(*image); !ok) return fail(ok.error());
+    show_progress(session, "film", frame + 1, frames);
+  }
+  if (auto ok = pipe->finish(); !ok) return fail(ok.error());
+  const ViewerStatus end = viewer->status();
+  print_result(
+      session,
+      {{"film", options.output},
+       {"frames", frames},
+       {"width", format.width},
+       {"height", format.height},
+       {"rate", format.rate},
+       {"from", begin.time},
+       {"to", end.time},
+       {"avatars", end.avatars}},
+      fmt::format("{}: {} pictures of {} x {}, {:.2f} to {:.2f} s, {} avatars\n", options.output,
+                  frames, format.width, format.height, begin.time, end.time, end.avatars));
+  return kDone;
+}
+
+}  // namespace
+
+void add_film(CLI::App& parser, Session& session) {
+  CLI::App* command = add_command(
+      parser, session, "film", "Make a film of a recording, or of a crowd that walks now",
+      "throng bake builtin:garage -o garage.throng\n"
+      "throng run garage.throng --avatars 200 --steps 10 --goals random --record walk.replay\n"
+      "throng film walk.replay --source builtin:garage --width 320 --height 180 "
+      "--rate 10 -o walk.mp4");
+  const auto options = std::make_shared<FilmOptions>();
+  ViewTarget& target = options->target;
+  command->add_option("target", target.path, "Recording, world folder, or model to bake now")
+      ->required()
+      ->type_name("FILE.replay|WORLD|MODEL");
+  command->add_option("-o,--output", options->output, "Film to write, by ffmpeg")
+      ->required()
+      ->type_name("FILE.mp4");
+  command->add_option("--camera", options->camera, "Where to look from and to [m]")
+      ->expected(6)
+      ->delimiter(',')
+      ->type_name("X,Y,Z,TX,TY,TZ");
+  command->add_option("--turn", options->turn, "Turn around what is looked at [degrees/s]");
+  command->add_option("--from", options->from, "Leave out what comes before [s]")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--seconds", options->seconds,
+                   "Length of the film, 0: all of a recording, ten of a crowd [s]")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--play-speed", options->speed, "Of time")
+      ->check(CLI::Range(0.05, 16.0))
+      ->capture_default_str();
+  command->add_option("--rate", options->format.rate, "Pictures a second")
+      ->check(CLI::Range(1, 120))
+      ->capture_default_str();
+  command->add_option("--width", options->format.width, "[px]")
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
+  command->add_option("--height", options->format.height, "[px]")
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
+  command->add_option("--avatars", target.start.avatars, "How many walk in a world")
+      ->capture_default_str();
+  command->add_option("--seed", target.start.seed, "Seed of all chance")->capture_default_str();
+  command->add_option("--near", target.start.near, "Goals within so many metres, 0: anywhere")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--atlas", target.atlases, "Who walks, made by throng atlas; may be repeated")
+      ->type_name("FILE.atlas")
+      ->allow_extra_args(false);
+  command->add_option("--world", target.world, "World of a recording, if it is not where it was")
+      ->type_name("WORLD");
+  command->add_option("--threads", options->workers, "Threads, 0 for all cores");
+  add_source_options(command, target.sources, "--source");
+  command->callback([&session, options] { session.exit_code = film(session, *options); });
+}
+
+}  // namespace throng::app

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view/overlay_view.h"
+
+#include <cmath>
+#include <utility>
+
+#include "view/viewer_state.h"
+
+namespace throng {
+
+OverlayMaker::OverlayMaker(World world, std::optional<Nodes> nodes, Vec3d origin)
+    : world_(std::move(world)), nodes_(std::move(nodes)), origin_(origin) {}
+
+OverlayMaker::~OverlayMaker() {
+  context_.cancel = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void OverlayMaker::start(const Order& order) {
+  if (thread_.joinable()) thread_.join();
+  busy_ = true;
+  thread_ = std::thread([this, order] {
+    Made made = make(order);
+    {
+      const std::lock_guard lock(mutex_);
+      made_ = std::move(made);
+    }
+    busy_ = false;
+  });
+}
+
+std::optional<OverlayMaker::Made> OverlayMaker::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(made_, std::nullopt);
+}
+
+Result<std::vector<Vec3d>> OverlayMaker::way(const Order& order) {
+  if (!finder_ || finder_class_ != order.avatar_class) {
+    Result<PathFinder> finder =
+        PathFinder::make(world_, {.avatar_class = order.avatar_class}, context_);
+    if (!finder) return finder.error();
+    finder_.emplace(*std::move(finder));
+    finder_class_ = order.avatar_class;
+  }
+  const Place from = world_.find_place(order.avatar_class, order.from, 0.5);
+  const Place to = world_.find_place(order.avatar_class, order.to, 0.5);
+  std::vector<Vec3d> points;
+  if (!from || !to) return points;
+  Path path;
+  finder_->find(from, to, path);
+  if (path.end != PathEnd::kReached) return points;
+  for (const Place& place : path.points) points.push_back(place.position);
+  return points;
+}
+
+OverlayMaker::Made OverlayMaker::make(const Order& order) {
+  Made made{.overlay = order.overlay, .marks = {}, .fault = {}};
+  switch (order.overlay) {
+    case Overlay::kClearance:
+      made.marks = clearance_marks(world_, order.avatar_class, origin_, context_);
+      break;
+    case Overlay::kLevels:
+      made.marks = level_marks(world_, origin_, context_);
+      break;
+    case Overlay::kNodes:
+    case Overlay::kLinks:
+      if (!nodes_) {
+        made.fault = "nodes: this world has none; bake it with --nodes";
+      } else {
+        made.marks = order.overlay == Overlay::kNodes ? node_marks(*nodes_, origin_, context_)
+                                                      : link_marks(*nodes_, origin_, context_);
+      }
+      break;
+    case Overlay::kAir:
+      if (auto marks = air_marks(world_, order.height, origin_, context_)) {
+        made.marks = *std::move(marks);
+      } else {
+        made.fault = marks.error().message;
+      }
+      break;
+    case Overlay::kPath:
+      if (auto points = way(order)) {
+        made.marks = path_marks(*points, origin_);
+      } else {
+        made.fault = points.error().message;
+      }
+      break;
+    case Overlay::kDensity:
+    case Overlay::kNeighbours:
+      break;  // Made anew for each frame.
+  }
+  return made;
+}
+
+// Starts what is wanted and not there, and shows what is there and wanted.
+void Viewer::State::show_overlays() {
+  const auto slot = [](Overlay overlay) { return static_cast<size_t>(overlay); };
+  const auto set = [&](Overlay overlay, const Marks& marks) {
+    if (auto ok = drawing.set_marks(slot(overlay), marks); !ok) {
+      panel.status.error = ok.error().message;
+    }
+    shown[slot(overlay)] = !marks.triangles.empty() || !marks.lines.empty();
+  };
+  const size_t picked = panel.status.picked < 0
+                            ? crowd.now().size()
+                            : crowd.now().find(static_cast<uint64_t>(panel.status.picked));
+  const bool has_picked = picked < crowd.now().size();
+  if (overlay_maker) {
+    if (auto made = overlay_maker->take()) {
+      if (!made->fault.empty()) {
+        panel.status.error = made->fault;
+        panel.overlays[slot(made->overlay)] = false;
+      } else if (panel.overlays[slot(made->overlay)]) {
+        set(made->overlay, made->marks);
+      }
+    }
+  }
+  for (size_t i = 0; i < kOverlays; ++i) {
+    const auto overlay = static_cast<Overlay>(i);
+    if (!panel.overlays[i]) {
+      if (shown[i]) set(overlay, {});
+      ordered[i] = false;
+      continue;
+    }
+    if (overlay == Overlay::kDensity) {
+      set(overlay, density_marks(crowd.now()));
+    } else if (overlay == Overlay::kNeighbours) {
+      set(overlay, has_picked ? neighbour_marks(crowd.now(), picked, 5) : Marks{});
+    } else if (overlay_maker && !overlay_maker->is_busy()) {
+      OverlayMaker::Order order{
+          .overlay = overlay, .height = 0, .avatar_class = 0, .from = {}, .to = {}};
+      if (overlay == Overlay::kAir) {
+        order.height = (panel.is_cut ? panel.cut : panel.bounds.max.y) - 0.05;
+        if (ordered[i] && order.height == air_height) continue;
+        air_height = order.height;
+      } else if (overlay == Overlay::kPath) {
+        if (!has_picked || !panel.picked || !panel.picked->goal) {
+          if (shown[i]) set(overlay, {});
+          ordered[i] = false;
+          continue;
+        }
+        if (ordered[i] && way_asked && *last_now - *way_asked < 0.5) continue;
+        way_asked = last_now;
+        order.avatar_class = panel.picked->avatar_class;
+        order.from = panel.picked->position;
+        order.to = *panel.picked->goal;
+      } else if (ordered[i]) {
+        continue;
+      }
+      ordered[i] = true;
+      overlay_maker->start(order);
+    }
+  }
+}
+
+}  // namespace throng

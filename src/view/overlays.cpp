@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view/overlays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+
+#include "core/random.h"
+#include "throng/flight.h"
+
+namespace throng {
+namespace {
+
+constexpr double kAbove = 0.04;       // [m] over the ground
+constexpr size_t kMost = 12'000'000;  // Vertices: what is more is left out.
+
+MarkVertex at(Vec3d p, Rgba colour) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), colour};
+}
+
+void add_quad(Marks& marks, Vec3d a, Vec3d b, Vec3d c, Vec3d d, Rgba colour) {
+  for (const Vec3d& p : {a, b, c, a, c, d}) marks.triangles.push_back(at(p, colour));
+}
+
+void add_line(Marks& marks, Vec3d a, Vec3d b, Rgba colour) {
+  marks.lines.push_back(at(a, colour));
+  marks.lines.push_back(at(b, colour));
+}
+
+// From red over yellow and green to blue, as 0 goes to 1.
+Rgba ramp(double share, uint32_t alpha) {
+  const double hue = std::clamp(share, 0.0, 1.0) * 4;
+  const auto byte = [](double v) {
+    return static_cast<uint32_t>(std::lround(std::clamp(v, 0.0, 1.0) * 235));
+  };
+  return rgba(byte(2 - hue), byte(hue < 2 ? 0.15 + hue * 0.8 : 3.6 - hue), byte(hue - 2.4), alpha);
+}
+
+Rgba own_colour(uint64_t number, uint32_t alpha) {
+  const double hue = 6 * random_unit(21, 0, number);
+  const auto byte = [hue](double middle) {
+    const double away = std::min(std::abs(hue - middle), 6 - std::abs(hue - middle));
+    return static_cast<uint32_t>(70 + std::lround(170 * std::clamp(2 - away, 0.0, 1.0)));
+  };
+  return rgba(byte(0), byte(2), byte(4), alpha);
+}
+
+// Runs of cells of one colour along x whose floors lie on a line become one quad.
+template <class ColourOf>
+void add_tile(Marks& marks, const LevelTileContent& tile, const WorldSummary& summary, Vec3d origin,
+              ColourOf colour_of) {
+  const double cell = summary.cell;
+  const auto height = [&](size_t i) { return tile.floor[i] * 1e-3 + kAbove; };
+  for (int32_t row = 0; row < kTileCells; ++row) {
+    int32_t end = 0;
+    for (int32_t begin = 0; begin < kTileCells; begin = std::max(end, begin + 1)) {
+      const auto first = static_cast<size_t>(row * kTileCells + begin);
+      const Rgba colour = colour_of(first);
+      end = begin;
+      if (colour == 0) continue;
+      double rise = 0;
+      while (end < kTileCells) {
+        const auto i = static_cast<size_t>(row * kTileCells + end);
+        if (colour_of(i) != colour) break;
+        const int32_t gone = end - begin;
+        if (gone == 1) rise = height(i) - height(first);
+        if (std::abs(height(i) - height(first) - rise * gone) > 0.015 || std::abs(rise) > cell) {
+          break;
+        }
+        ++end;
+      }
+      if (end == begin) end = begin + 1;
+      if (end == begin + 1) rise = 0;
+      const double x0 = summary.origin.x + (tile.tile_x * kTileCells + begin) * cell - origin.x;
+      const double z0 = summary.origin.z + (tile.tile_z * kTileCells + row) * cell - origin.z;
+      const double x1 = x0 + (end - begin) * cell, z1 = z0 + cell;
+      const double y0 = summary.origin.y - origin.y + height(first) - 0.5 * rise;
+      const double y1 = y0 + (end - begin) * rise;
+      add_quad(marks, {x0, y0, z0}, {x0, y0, z1}, {x1, y1, z1}, {x1, y1, z0}, colour);
+    }
+  }
+}
+
+Vec3d middle_of(const Nodes& nodes, uint32_t node) {
+  const auto corners = nodes.corners(node);
+  return (corners[0] + corners[1] + corners[2] + corners[3]) * 0.25;
+}
+
+}  // namespace
+
+const char* word_for(Overlay overlay) {
+  static constexpr std::array<const char*, kOverlays> kWords = {
+      "Clearance", "Levels", "Nodes", "Links", "Air", "Density", "Path", "Neighbours"};
+  return kWords[static_cast<size_t>(overlay)];
+}
+
+const char* legend_of(Overlay overlay) {
+  static constexpr std::array<const char*, kOverlays> kLegends = {
+      "Where the first class may stand: red beside what stops it, blue where there is most room",
+      "Sheets of ground, each in its colour",
+      "Terminal nodes: green level, red steep. A world baked with --nodes has them",
+      "Between nodes: white walk, orange step, magenta climb, blue jump",
+      "Where a flyer's feet may be, at the height of the cut. A world baked with a flying class "
+      "has "
+      "it",
+      "Avatars a square metre, over 2 m: blue few, red four and more",
+      "The shortest way of the avatar picked to its goal",
+      "Whom the avatar picked may see: within 5 m"};
+  return kLegends[static_cast<size_t>(overlay)];
+}
+
+Marks clearance_marks(const World& world, int32_t avatar_class, Vec3d origin, Context& context) {
+  Marks marks;
+  const WorldSummary summary = world.summary();
+  const uint32_t tiles = world.level_tile_count();
+  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMost; ++t) {
+    const LevelTileContent tile = world.level_tile(t);
+    const auto& clearance = tile.clearance[static_cast<size_t>(avatar_class)];
+    add_tile(marks, tile, summary, origin,
+             [&](size_t i) { return clearance[i] == 0 ? 0 : ramp((clearance[i] - 1) / 7.0, 150); });
+    if (context.on_progress) context.on_progress({"clearance", t, tiles});
+  }
+  return marks;
+}
+
+Marks level_marks(const World& world, Vec3d origin, Context& context) {
+  Marks marks;
+  const WorldSummary summary = world.summary();
+  const std::vector<int32_t> storeys = world.storeys();
+  const uint32_t tiles = world.level_tile_count();
+  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMost; ++t) {
+    const LevelTileContent tile = world.level_tile(t);
+    const Rgba colour = own_colour(static_cast<uint64_t>(storeys[t]), 150);
+    add_tile(marks, tile, summary, origin, [&](size_t i) {
+      const bool anyone = std::any_of(tile.clearance.begin(), tile.clearance.end(),
+                                      [i](const auto& of_class) { return of_class[i] > 0; });
+      return anyone ? colour : 0;
+    });
+    if (context.on_progress) context.on_progress({"levels", t, tiles});
+  }
+  return marks;
+}
+
+Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
+  Marks marks;
+  const NodeBins bins = nodes.summary().bins;
+  const Vec3d lift{0, kAbove, 0};
+  for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
+    const NodeInfo info = nodes.node(n);
+    if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMost) continue;
+    auto c = nodes.corners(n);
+    for (Vec3d& p : c) p = p - origin + lift;
+    const double steep = bins.inclination_of(info.inclination) / 90;
+    add_quad(marks, c[0], c[1], c[2], c[3], ramp(0.5 - 0.5 * std::min(1.0, steep), 110));
+    for (size_t k = 0; k < 4; ++k) add_line(marks, c[k], c[(k + 1) % 4], rgba(255, 255, 255, 150));
+  }
+  marks.line_width = 1;
+  return marks;
+}
+
+Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context) {
+  Marks marks;
+  const Vec3d lift = Vec3d{0, 3 * kAbove, 0} - origin;
+  for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
+    for (const NodeArc& arc : nodes.arcs(n)) {
+      // Both directions of a link are arcs: one is enough.
+      if (arc.to < n || marks.lines.size() > kMost) continue;
+      Rgba colour = rgba(255, 255, 255, 170);
+      if (arc.kind == LinkKind::kStep) colour = rgba(255, 150, 30, 220);
+      if (arc.kind == LinkKind::kClimb) colour = rgba(240, 60, 220, 220);
+      if (arc.kind == LinkKind::kJump) colour = rgba(60, 130, 255, 255);
+      add_line(marks, middle_of(nodes, n) + lift, middle_of(nodes, arc.to) + lift, colour);
+    }
+  }
+  marks.line_width = 1.2F;
+  return marks;
+}
+
+Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context& context) {
+  const WorldSummary summary = world.summary();
+  const auto flyer = std::find_if(summary.classes.begin(), summary.classes.end(),
+                                  [](const AvatarClass& c) { return c.flies; });
+  if (flyer == summary.classes.end()) {
+    return Error{Errc::kNotFound, "air: no class of this world flies; bake it with one that does"};
+  }
+  FlightConfig config;
+  config.avatar_class = static_cast<int32_t>(flyer - summary.classes.begin());
+  const Result<FlightFinder> finder = FlightFinder::make(world, config, context);
+  if (!finder) return finder.error();
+  const Result<AirSummary> air = air_summary(world);
+  if (!air) return air.error();
+  // At most a million cells: of large worlds a coarser lattice.
+  const Box3d& box = summary.bounds;
+  const double area = (box.max.x - box.min.x) * (box.max.z - box.min.z);
+  const double cell = std::max(air->cell, std::sqrt(area / 1e6));
+  Marks marks;
+  const double y = height - origin.y;
+  for (double z = box.min.z; z < box.max.z && !context.cancel; z += cell) {
+    double begin = box.min.x;
+    bool open = false;
+    for (double x = box.min.x; x < box.max.x + cell; x += cell) {
+      const bool legal = x < box.max.x && finder->is_legal({x + cell / 2, height, z + cell / 2});
+      if (legal && !open) begin = x;
+      if (!legal && open) {
+        const double x0 = begin - origin.x, x1 = x - origin.x, z0 = z - origin.z;
+        add_quad(marks, {x0, y, z0}, {x0, y, z0 + cell}, {x1, y, z0 + cell}, {x1, y, z0},
+                 rgba(90, 170, 255, 95));
+      }
+      open = legal;
+    }
+  }
+  return marks;
+}
+
+Marks density_marks(const Moment& crowd) {
+  constexpr double kSide = 2, kStorey = 2.5, kMuch = 4;
+  struct Square {
+    uint32_t avatars = 0;
+    float lowest = 1e30F;
+  };
+  std::map<std::tuple<int32_t, int32_t, int32_t>, Square> squares;
+  const auto step = [](double v, double side) {
+    return static_cast<int32_t>(std::floor(v / side));
+  };
+  for (size_t i = 0; i < crowd.size(); ++i) {
+    Square& square = squares[{step(crowd.y[i] + 0.5, kStorey), step(crowd.z[i], kSide),
+                              step(crowd.x[i], kSide)}];
+    ++square.avatars;
+    square.lowest = std::min(square.lowest, crowd.y[i]);
+  }
+  Marks marks;
+  for (const auto& [key, square] : squares) {
+    const double x = std::get<2>(key) * kSide, z = std::get<1>(key) * kSide;
+    const double y = square.lowest + kAbove, density = square.avatars / (kSide * kSide);
+    add_quad(marks, {x, y, z}, {x, y, z + kSide}, {x + kSide, y, z + kSide}, {x + kSide, y, z},
+             ramp(1 - density / kMuch, 150));
+  }
+  return marks;
+}
+
+Marks path_marks(const std::vector<Vec3d>& points, Vec3d origin) {
+  Marks marks;
+  const Vec3d lift = Vec3d{0, 0.12, 0} - origin;
+  const Rgba colour = rgba(255, 190, 40);
+  for (size_t i = 0; i + 1 < points.size(); ++i) {
+    add_line(marks, points[i] + lift, points[i + 1] + lift, colour);
+  }
+  if (!points.empty()) {  // A pole where it leads.
+    add_line(marks, points.back() + lift, points.back() + lift + Vec3d{0, 2.2, 0},
+             rgba(255, 80, 60));
+  }
+  marks.line_width = 4;
+  marks.through_walls = true;
+  return marks;
+}
+
+Marks neighbour_marks(const Moment& crowd, size_t picked, double sight) {
+  Marks marks;
+  const auto place = [&](size_t i) { return Vec3d{crowd.x[i], crowd.y[i] + 0.08, crowd.z[i]}; };
+  const Vec3d me = place(picked);
+  constexpr int32_t kSides = 48;
+  for (int32_t k = 0; k < kSides; ++k) {
+    const auto rim = [&](int32_t n) {
+      const double angle = 2 * std::numbers::pi * n / kSides;
+      return me + Vec3d{sight * std::cos(angle), 0, sight * std::sin(angle)};
+    };
+    add_line(marks, rim(k), rim(k + 1), rgba(255, 255, 255, 190));
+  }
+  for (size_t i = 0; i < crowd.size(); ++i) {
+    const Vec3d other = place(i);
+    const double away = std::hypot(other.x - me.x, other.z - me.z);
+    if (i == picked || away > sight || std::abs(other.y - me.y) > 2) continue;
+    add_line(marks, me, other, ramp(away / sight, 255));
+  }
+  marks.line_width = 2.5F;
+  marks.through_walls = true;
+  return marks;
+}
+
+}  // namespace throng

@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view/overlays.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+#include "throng/bake.h"
+#include "throng_view/viewer.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace throng {
+namespace {
+
+struct Baked {
+  Scene scene;
+  World world;
+  Nodes nodes;
+};
+
+// A hall with a gallery, a ramp up to it and a crate; a flyer is among the classes.
+const Baked& hall() {
+  static const Baked baked = [] {
+    Baked b;
+    b.scene.add_box({0, -0.3, 0}, {16, 0, 12});
+    b.scene.add_box({0, 2.7, 0}, {16, 3, 4});
+    b.scene.add_quad({15, 3, 4}, {15, 0, 11}, {13, 0, 11}, {13, 3, 4});
+    b.scene.add_box({6, 0, 6}, {7.5, 1.2, 7.5});
+    BakeConfig config;
+    config.classes = {AvatarClass{}, flyer_class()};
+    Context context;
+    auto world = bake_world(b.scene, config, context);
+    EXPECT_TRUE(world) << world.error().message;
+    b.world = *std::move(world);
+    auto nodes = Nodes::make(b.world, b.scene, {}, context);
+    EXPECT_TRUE(nodes) << nodes.error().message;
+    b.nodes = *std::move(nodes);
+    return b;
+  }();
+  return baked;
+}
+
+Viewer made_viewer() {
+  Result<Drawing> drawing = Drawing::create();
+  EXPECT_TRUE(drawing) << drawing.error().message;
+  Result<Viewer> viewer =
+      Viewer::create(*std::move(drawing), {.settings = {}, .font = {}, .panel = false});
+  EXPECT_TRUE(viewer) << viewer.error().message;
+  viewer->load("hall", [](StageParts& parts, Context& context) -> Result<void> {
+    if (auto ok = parts.set_scene(hall().scene); !ok) return ok;
+    parts.set_world(hall().world, hall().nodes);
+    AtlasConfig config;
+    config.clips = {"Walk", "Idle"};
+    config.frames = 2;
+    config.pixels = 32;
+    auto atlas = build_atlas(built_in_character(), config, context);
+    if (!atlas) return atlas.error();
+    parts.set_atlases({{*atlas}});
+    CrowdStart start;
+    start.avatars = 40;
+    start.near = 10;
+    start.mix = {1, 0};
+    parts.set_crowd(start);
+    return {};
+  });
+  viewer->wait_until_loaded();
+  EXPECT_EQ(viewer->status().error, "");
+  viewer->look_at({23, 12, 22}, {8, 0.5, 6});
+  viewer->play_for(1);
+  return *std::move(viewer);
+}
+
+Image picture(Viewer& viewer) {
+  auto image = viewer.picture(0, 320, 200);
+  EXPECT_TRUE(image) << image.error().message;
+  return *std::move(image);
+}
+
+size_t pixels_that_differ(const Image& a, const Image& b) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.rgb.size(); i += 3) {
+    count += std::abs(a.rgb[i] - b.rgb[i]) + std::abs(a.rgb[i + 1] - b.rgb[i + 1]) > 24 ? 1 : 0;
+  }
+  return count;
+}
+
+// As the golden picture of a stage: other processors' vectors may round a pixel otherwise.
+void expect_golden(const Image& image, const std::string& name) {
+  const std::string golden = THRONG_TEST_DATA "/overlay_" + name + ".png";
+  if (std::getenv("THRONG_WRITE_GOLDEN") != nullptr) {
+    ASSERT_TRUE(write_png(image, golden));
+  }
+  int width = 0, height = 0, channels = 0;
+  stbi_uc* expected = stbi_load(golden.c_str(), &width, &height, &channels, 3);
+  ASSERT_NE(expected, nullptr) << golden;
+  ASSERT_EQ(width, image.width);
+  ASSERT_EQ(height, image.height);
+  int64_t off = 0, far_off = 0;
+  for (size_t i = 0; i < image.rgb.size(); ++i) {
+    const int32_t difference = std::abs(image.rgb[i] - expected[i]);
+    off += difference;
+    far_off += difference > 32 ? 1 : 0;
+  }
+  stbi_image_free(expected);
+  EXPECT_LT(static_cast<double>(off), 0.2 * static_cast<double>(image.rgb.size())) << name;
+  EXPECT_LT(static_cast<double>(far_off), 0.002 * static_cast<double>(image.rgb.size())) << name;
+}
+
+class Overlays : public testing::TestWithParam<std::string> {};
+
+TEST_P(Overlays, LooksAsItDid) {
+  Viewer viewer = made_viewer();
+  const Image without = picture(viewer);
+  viewer.pick(7);
+  viewer.show_overlay(GetParam());
+  viewer.wait_for_overlays();
+  EXPECT_EQ(viewer.status().error, "");
+  const Image with = picture(viewer);
+  EXPECT_GT(pixels_that_differ(with, without), 40U) << GetParam();
+  expect_golden(with, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Overlays, testing::ValuesIn(Viewer::overlay_names()),
+                         [](const auto& info) { return info.param; });
+
+// Area of a mark's triangles seen from above.
+double area_of(const Marks& marks) {
+  double area = 0;
+  for (size_t i = 0; i + 2 < marks.triangles.size(); i += 3) {
+    const MarkVertex &a = marks.triangles[i], &b = marks.triangles[i + 1],
+                     &c = marks.triangles[i + 2];
+    area += 0.5 * std::abs((b.x - a.x) * (c.z - a.z) - (c.x - a.x) * (b.z - a.z));
+  }
+  return area;
+}
+
+TEST(OverlayMarks, ClearanceCoversWhatAClassCanWalkOnAndNothingElse) {
+  Context context;
+  const World& world = hall().world;
+  const Marks marks = clearance_marks(world, 0, {}, context);
+  const double walkable = world.summary().walkable_area[0];
+  EXPECT_NEAR(area_of(marks), walkable, 0.001 * walkable);
+  // The middle of every triangle's box lies just over a place of the class.
+  for (size_t i = 0; i + 5 < marks.triangles.size(); i += 6) {
+    const MarkVertex &a = marks.triangles[i], &c = marks.triangles[i + 2];
+    const Vec3d middle{0.5 * (a.x + c.x), 0.5 * (a.y + c.y), 0.5 * (a.z + c.z)};
+    const Place place = world.find_place(0, middle, 0.12);
+    EXPECT_TRUE(place) << middle.x << " " << middle.y << " " << middle.z;
+  }
+}
+
+TEST(OverlayMarks, DensityCountsHeadsByStorey) {
+  Moment crowd;
+  crowd.resize(9);
+  for (size_t i = 0; i < 9; ++i) {
+    crowd.ids[i] = i;
+    crowd.x[i] = 0.5F;
+    crowd.z[i] = 0.5F;
+    crowd.y[i] = i < 8 ? 0.0F : 3.0F;
+  }
+  const Marks marks = density_marks(crowd);
+  ASSERT_EQ(marks.triangles.size(), 12U);  // A square each.
+  EXPECT_NE(marks.triangles[0].colour, marks.triangles[6].colour);
+  EXPECT_NEAR(area_of(marks), 8, 1e-5);
+}
+
+TEST(OverlayMarks, NeighboursAreThoseInSightOnTheSameStorey) {
+  Moment crowd;
+  crowd.resize(5);
+  for (size_t i = 0; i < 5; ++i) crowd.ids[i] = i;
+  crowd.x = {0, 3, 4.9F, 5.2F, 1};
+  crowd.y = {0, 0, 0, 0, 3};
+  const Marks marks = neighbour_marks(crowd, 0, 5);
+  EXPECT_EQ(marks.lines.size(), 2 * (48U + 2U));  // The circle, and two neighbours.
+}
+
+TEST(OverlayMarks, WhatAWorldDoesNotHaveIsSaid) {
+  Result<Drawing> drawing = Drawing::create();
+  ASSERT_TRUE(drawing);
+  Result<Viewer> viewer =
+      Viewer::create(*std::move(drawing), {.settings = {}, .font = {}, .panel = false});
+  ASSERT_TRUE(viewer);
+  viewer->load("plain", [](StageParts& parts, Context& context) -> Result<void> {
+    Scene scene;
+    scene.add_box({0, -0.3, 0}, {5, 0, 5});
+    if (auto ok = parts.set_scene(scene); !ok) return ok;
+    auto world = bake_world(scene, {}, context);
+    if (!world) return world.error();
+    parts.set_world(*world);
+    return {};
+  });
+  viewer->wait_until_loaded();
+  for (const auto& [name, says] : {std::pair{"Nodes", "--nodes"}, {"Air", "flies"}}) {
+    viewer->show_overlay(name);
+    viewer->wait_for_overlays();
+    EXPECT_NE(viewer->status().error.find(says), std::string::npos) << viewer->status().error;
+  }
+}
+
+}  // namespace
+}  // namespace throng

@@ -240,7 +240,6 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
   follow_driven(seconds);
   look_up_picked();
   show_overlays();
-  panel.status.playing = panel.playing;
   panel.status.time = time;
   panel.status.camera = rig.camera(aspect);
   panel.status.camera.eye = panel.status.camera.eye + origin;
@@ -337,20 +336,21 @@ void Viewer::pick(int64_t id) { state_->panel.status.picked = id; }
 void Viewer::wait_for_overlays() {
   State& s = *state_;
   if (!s.last_now) s.last_now = 0;
-  while (true) {
-    if (s.feed) s.feed->finish_posted();
+  const auto is_missing = [&](Overlay overlay) {
+    const auto slot = static_cast<size_t>(overlay);
+    if (!s.overlay_maker || !s.panel.overlays[slot] || s.ordered[slot]) return false;
+    if (overlay == Overlay::kDensity || overlay == Overlay::kNeighbours) return false;
+    return overlay != Overlay::kPath || (s.panel.status.picked >= 0 && s.panel.has_crowd);
+  };
+  // Who was picked may have no goal, so a path need not come.
+  for (int32_t tries = 0; tries < 100 || (s.overlay_maker && s.overlay_maker->is_busy()); ++tries) {
     s.look_up_crowd();
     s.look_up_picked();
+    if (s.feed) s.feed->finish_posted();
     s.show_overlays();
-    const bool busy = s.overlay_maker && s.overlay_maker->is_busy();
-    bool missing = false;
-    for (size_t i = 0; i < kOverlays; ++i) {
-      missing = missing || (s.overlay_maker && s.panel.overlays[i] && !s.ordered[i] &&
-                            i != static_cast<size_t>(Overlay::kDensity) &&
-                            i != static_cast<size_t>(Overlay::kNeighbours) &&
-                            i != static_cast<size_t>(Overlay::kPath));
-    }
-    if (!busy && !missing) break;
+    bool missing = s.overlay_maker && s.overlay_maker->is_busy();
+    for (size_t i = 0; i < kOverlays; ++i) missing |= is_missing(static_cast<Overlay>(i));
+    if (!missing) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   s.show_overlays();  // Takes what came last.
@@ -388,6 +388,7 @@ ViewerWishes Viewer::take_wishes() {
 ViewerStatus Viewer::status() const {
   ViewerStatus status = state_->panel.status;
   status.time = state_->time;
+  status.playing = state_->panel.playing;
   status.last_time = state_->panel.replay ? state_->panel.replay->last : 0;
   return status;
 }

@@ -134,7 +134,7 @@ TEST_P(Overlays, LooksAsItDid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Overlays, testing::ValuesIn(Viewer::overlay_names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 // Area of a mark's triangles seen from above.
 double area_of(const Marks& marks) {

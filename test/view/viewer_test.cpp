@@ -181,7 +181,7 @@ TEST(Viewer, SpacePausesAndPeriodMakesOneStep) {
   viewer.load("two floors", stage_with(20));
   viewer.wait_until_loaded();
   viewer.play_for(0.5);
-  EXPECT_TRUE(viewer.status().playing || viewer.status().time == 0);
+  EXPECT_TRUE(viewer.status().playing);
   press(viewer, Key::kSpace);
   (void)picture(viewer, 0);
   const double paused = viewer.status().time;

@@ -52,6 +52,8 @@ int take_picture(Session& session, const ViewOptions& options) {
   viewer->pick(options.pick);
   for (const std::string& overlay : options.overlays) viewer->show_overlay(overlay);
   viewer->wait_for_overlays();
+  // The panel tells of the frame before: one goes ahead.
+  if (options.panel) (void)viewer->picture(0, options.width, options.height);
   const Result<Image> image = viewer->picture(0, options.width, options.height);
   if (!image) return fail(image.error());
   if (auto done = write_png(*image, options.picture); !done) return fail(done.error());

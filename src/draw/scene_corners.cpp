@@ -83,7 +83,7 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
                                    "; draw a part of the model"};
   }
   SceneCorners out{.corners = {}, .bounds = {}, .origin = origin};
-  out.corners.reserve(3 * scene.triangles.size() + 6);
+  out.corners.reserve(3 * scene.triangles.size() + 3);
   const std::vector<uint32_t> welded = weld(scene.positions);
   std::vector<Vec3d> normals;
   std::vector<Side> sides;
@@ -112,7 +112,8 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
   }
   mark_edges(sides, normals, out.corners);
   if (!out.bounds.empty()) {
-    // A plain just under the lowest point, out to the haze, for the scene to stand on.
+    // A plain just under the lowest point, out to the haze, for the scene to stand on. One
+    // triangle: where two of that size meet and are clipped, the sky would show through.
     const double reach = 40 * length(out.bounds.max - out.bounds.min) + 100;
     const auto middle = (out.bounds.min + out.bounds.max) * 0.5;
     const double y = out.bounds.min.y - 0.02;
@@ -122,8 +123,7 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
                              {0, 127, 0},
                              0});
     };
-    corner(-1, -1), corner(-1, 1), corner(1, 1);
-    corner(-1, -1), corner(1, 1), corner(1, -1);
+    corner(-1, -1), corner(-1, 3), corner(3, -1);
   }
   return out;
 }

@@ -108,15 +108,17 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
        {"checks", t.checks},
        {"wall_entries", t.found.wall_entries},
        {"overlaps", t.found.overlaps},
+       {"obstacle_entries", t.found.obstacle_entries},
        {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
        {"peak_bytes", peak_memory()}},
       fmt::format("{}: {:.1f} s, {} people came, {} left, {} are still here\n{}"
                   "the last left after {:.1f} s; a way took {:.1f} s in the mean\n"
                   "{} stranded, {} found no room to come in; {:.0f} ns an avatar a step\n"
-                  "{} checks: {} wall entries, {} overlaps\nstate {:016x}\n",
+                  "{} checks: {} wall entries, {} overlaps, {} in obstacles\nstate {:016x}\n",
                   run.file, t.last.time, t.last.entered, t.last.left, simulation.crowd().size(),
                   lines, outcome.last, outcome.mean_time, t.last.stranded, t.last.outside, ns,
-                  t.checks, t.found.wall_entries, t.found.overlaps, simulation.state_hash()));
+                  t.checks, t.found.wall_entries, t.found.overlaps, t.found.obstacle_entries,
+                  simulation.state_hash()));
 }
 
 Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& scenario,
@@ -132,6 +134,7 @@ Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& sc
     ++t.checks;
     t.found.wall_entries += found.wall_entries;
     t.found.overlaps += found.overlaps;
+    t.found.obstacle_entries += found.obstacle_entries;
   };
   if (auto ok = sinks.add(0, simulation); !ok) return ok.error();
   while (t.steps < steps && (run.steps || !simulation.is_over())) {
@@ -176,7 +179,9 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
     if (ok = write_visits(run.visits, *scenario, *simulation); !ok) return ok.error();
   }
   print(session, run, *scenario, *simulation, *totals);
-  return totals->found.wall_entries + totals->found.overlaps == 0 ? kDone : kAnswerIsNo;
+  const CrowdCheck& found = totals->found;
+  const bool sound = found.wall_entries + found.overlaps + found.obstacle_entries == 0;
+  return sound ? kDone : kAnswerIsNo;
 }
 
 }  // namespace

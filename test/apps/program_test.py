@@ -300,7 +300,7 @@ class Program(unittest.TestCase):
                                "--check-every", 1)
         self.assertEqual(done.returncode, 0, done.stderr)
         result = json.loads(done.stdout)
-        self.assertEqual((result["wall_entries"], result["overlaps"], result["stranded"]), (0, 0, 0))
+        self.assertEqual([result[k] for k in ("wall_entries", "overlaps", "obstacle_entries", "stranded")], [0] * 4)
         self.assertEqual(result["left"], result["entered"])
         self.assertGreater(result["entered"], 150)
         self.assertEqual(sum(e["left"] for e in result["exits"].values()), result["left"])

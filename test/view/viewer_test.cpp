@@ -349,7 +349,7 @@ TEST(Viewer, SettingsAreKeptAndBadOnesRefused) {
   EXPECT_NE(odd.settings().find("\"speed\": 1.0"), std::string::npos);
 }
 
-TEST(Viewer, ALoadThatFailsSaysWhyAndOneThatIsReplacedIsCancelled) {
+TEST(Viewer, ALoadThatFailsSaysWhyAndOneThatIsReplacedMakesWay) {
   Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
   viewer.load("bad", [](StageParts&, Context&) -> Result<void> {
     return Error{Errc::kBadFile, "bad: has no triangles"};

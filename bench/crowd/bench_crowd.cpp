@@ -28,6 +28,7 @@ struct Options {
   uint64_t seed = 1;
   int32_t threads = 0;
   double radius = 0.3, speed = 1.3;
+  uint64_t check_every = 50;
 };
 
 double median(std::vector<double> values) {
@@ -78,10 +79,12 @@ Json run(const Options& o) {
   std::vector<double> seconds;
   double progress = 0;
   CrowdCheck found;
+  uint64_t checked = 0;
   for (uint64_t step = 1; step <= o.warm + o.steps; ++step) {
     const CrowdReport r = crowd->step();
     give(crowd->arrived());
-    if (step % 50 == 0) {
+    if (step % o.check_every == 0) {
+      checked += o.avatars;
       const CrowdCheck check = crowd->check();
       found.overlaps += check.overlaps;
       found.wall_entries += check.wall_entries;
@@ -111,6 +114,8 @@ Json run(const Options& o) {
       {"ns_settle", sum.seconds_settle * all},
       {"contested", static_cast<double>(sum.contested) / o.avatars / static_cast<double>(o.steps)},
       {"progress", progress / static_cast<double>(o.steps)},
+      {"avatar_steps", (o.warm + o.steps) * o.avatars},
+      {"checked_avatar_steps", checked},
       {"overlaps", found.overlaps},
       {"wall_entries", found.wall_entries},
       {"bytes_an_avatar", static_cast<double>(crowd->bytes()) / o.avatars},
@@ -130,6 +135,7 @@ int main(int argc, char** argv) {
   parser.add_option("--seed", options.seed);
   parser.add_option("--threads", options.threads)->check(CLI::Range(0, 1024));
   parser.add_option("--radius", options.radius)->check(CLI::Range(0.05, 10.0));
+  parser.add_option("--check-every", options.check_every, "Steps")->check(CLI::PositiveNumber);
   CLI11_PARSE(parser, argc, argv);
   const Json result = run(options);
   std::puts(result.dump().c_str());

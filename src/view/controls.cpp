@@ -58,6 +58,10 @@ void Viewer::handle(const ViewEvent& event) {
     }
     case ViewEventKind::kWheel:
       if (taken) return;
+      if (s.panel.mode == CameraMode::kWalk) {
+        s.walk_distance = std::clamp(s.walk_distance * std::pow(0.85, event.y), 0.6, 30.0);
+        return;
+      }
       s.rig.zoom(event.y, s.mouse_x, s.mouse_y, s.picture_width, s.picture_height);
       return;
     case ViewEventKind::kLeave:

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "throng/ground_query.h"
 #include "throng_view/viewer.h"
 #include "view/camera_rig.h"
 #include "view/ground_pick.h"
@@ -74,6 +75,8 @@ struct Viewer::State {
 
   // Of walking oneself.
   bool first_person = false;
+  double walk_distance = 4;  // From the eye to who is walked as, if nothing is between. [m]
+  std::optional<GroundQuery> ground_query;
   Vec3d last_wish;
   // What the crowd's thread answers.
   struct Answers {
@@ -109,6 +112,7 @@ struct Viewer::State {
   void begin_walk();
   void leave_walk();
   void follow_driven(double seconds);
+  [[nodiscard]] double free_behind(Vec3d feet, int32_t avatar_class);
   [[nodiscard]] bool through_eyes() const {
     return panel.mode == CameraMode::kWalk && first_person && panel.status.driven >= 0;
   }

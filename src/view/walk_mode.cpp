@@ -60,7 +60,8 @@ void Viewer::State::follow_driven(double seconds) {
     if (const auto id = std::exchange(answers->joined, std::nullopt)) {
       panel.status.driven = *id;
       panel.mode = CameraMode::kWalk;
-      rig.distance = kBehind;
+      walk_distance = kBehind;
+      ground_query.reset();
       rig.pitch = 0.25;
       last_wish = {};
     }
@@ -91,8 +92,27 @@ void Viewer::State::follow_driven(double seconds) {
     rig.target = head_of(now, i, 0.93, panel.class_heights) - rig.towards_eye();
     return;
   }
-  if (rig.distance < 1.5) rig.distance = kBehind;
   rig.target = head_of(now, i, 0.85, panel.class_heights);
+  const Vec3d feet = head_of(now, i, 0, panel.class_heights) + origin;
+  rig.distance = std::min(walk_distance, free_behind(feet, now.classes[i]));
+}
+
+// How far the eye may be behind somebody: to the wall that one would meet who walked there.
+double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
+  constexpr double kLeast = 0.6;
+  const Place place = world.find_place(avatar_class, feet, 0.5);
+  if (!ground_query) {
+    auto query = GroundQuery::make(world, avatar_class);
+    if (query) ground_query.emplace(*std::move(query));
+  }
+  if (!place || !ground_query) return walk_distance;
+  const double flat = walk_distance * std::cos(rig.pitch);
+  const GroundRay ray =
+      ground_query->ray(place, flat * std::sin(rig.yaw), flat * std::cos(rig.yaw));
+  // Over an edge one sees freely.
+  if (ray.arrived || ray.obstacle == Obstacle::kGap) return walk_distance;
+  const double gone = std::hypot(ray.place.position.x - feet.x, ray.place.position.z - feet.z);
+  return std::max(kLeast, gone / std::max(0.2, std::cos(rig.pitch)));
 }
 
 void Viewer::State::look_up_picked() {

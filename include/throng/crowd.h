@@ -33,6 +33,16 @@ struct AvatarId {
 /// A region that many are bound for, see Crowd::add_target. 0 is none.
 using TargetId = uint16_t;
 
+/// A region that is watched, see Crowd::watch_area. [0 to 63]
+using WatchedArea = uint8_t;
+
+/// Somebody came into a region that is watched.
+struct AreaEntry {
+  AvatarId id;
+  WatchedArea area = 0;
+  friend bool operator==(const AreaEntry&, const AreaEntry&) = default;
+};
+
 /// How avatars get from where they are to their goals.
 enum class CrowdWays {
   kPaths,     ///< Shortest ways over the ground, corner by corner.
@@ -49,6 +59,9 @@ struct CrowdConfig {
   double sight = 5;     ///< Who is farther away is not avoided yet. [m, 1 to 50]
   int32_t rounds = 3;   ///< In which claims are settled, a step. [1 to 100]
   bool patient = true;  ///< Who does not get on turns aside by and by.
+  /// Who has a goal, has not arrived, and has not come 0.3 m further between two looks, so many
+  /// seconds apart, is told by stuck(). 0: nobody looks. Never changes what happens. [s, >= 0]
+  double stuck_after = 0;
 };
 
 /// Someone to add.
@@ -163,6 +176,14 @@ class THRONG_API Crowd {
   [[nodiscard]] std::span<const AvatarId> arrived() const;
   /// Whose goals were dropped in the last step, because no way leads there, in order of slot.
   [[nodiscard]] std::span<const AvatarId> stranded() const;
+  /// Tells from now on who comes into the union of some prisms, with his middle; who is inside
+  /// already comes in with the next step. Watching never changes what happens, and is not saved.
+  /// Fails with kBadInput (a prism that is none) or kLimit (64 areas).
+  [[nodiscard]] Result<WatchedArea> watch_area(std::span<const Prism> prisms);
+  /// Who came into watched areas in the last step, in order of slot and area.
+  [[nodiscard]] std::span<const AreaEntry> entered() const;
+  /// Who was stuck when somebody last looked, if that was in the last step, in order of slot.
+  [[nodiscard]] std::span<const AvatarId> stuck() const;
   [[nodiscard]] bool is_alive(AvatarId id) const;
 
   /// All that the next steps depend on. Whoever restores it goes on as this crowd would, step by

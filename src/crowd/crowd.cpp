@@ -40,6 +40,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (config.workers < 0) return bad_config("workers must be 0 (all cores) or more");
   if (!(config.sight >= 1 && config.sight <= 50)) return bad_config("sight must be 1 to 50 m");
   if (!(config.rounds >= 1 && config.rounds <= 100)) return bad_config("rounds must be 1 to 100");
+  if (!(config.stuck_after >= 0)) return bad_config("stuck_after must be 0 s or more");
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
   const WorldData& data = *world.data();
   const double unit = data.summary.cell / kUnitsPerCell;
@@ -157,6 +158,8 @@ AvatarId Crowd::State::add(Body body) {
     free_slots.pop_back();
   }
   where[body.slot] = static_cast<uint32_t>(engine.bodies().size());
+  if (body.slot < inside.size()) inside[body.slot] = 0;
+  if (body.slot < looked_at.size()) looked_at[body.slot] = kNeverLooked;
   make_room(body);
   engine.add(body);
   return id_of(body.slot);
@@ -333,6 +336,7 @@ CrowdReport Crowd::step() {
   }
   s.where_is_old = true;
   s.arrive_in_targets();
+  s.find_events();
   for (std::vector<AvatarId>* ids : {&s.arrived, &s.stranded}) {
     std::sort(ids->begin(), ids->end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -25,6 +26,7 @@
 namespace throng {
 
 inline constexpr uint32_t kNobody = UINT32_MAX;
+inline constexpr std::array<int32_t, 2> kNeverLooked = {INT32_MIN / 2, 0};
 
 // What a class needs that somebody is of.
 struct ClassParts {
@@ -57,6 +59,12 @@ struct Crowd::State {
   std::vector<uint32_t> free_slots;
   mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
   mutable bool where_is_old = false;
+  // Events: what is watched, and by slot where each was.
+  std::vector<Target> watched;
+  std::vector<uint64_t> inside;                   // a bit for each watched area
+  std::vector<std::array<int32_t, 2>> looked_at;  // [units]
+  std::vector<AreaEntry> entered;
+  std::vector<AvatarId> stuck;
   std::vector<Target> targets;  // TargetId less one
   bool flows_are_old = false;   // the ground has changed since
   std::vector<AvatarId> arrived, stranded, in_the_way;
@@ -92,6 +100,9 @@ struct Crowd::State {
   bool plan_way(Body& body, Route& route, const StrideGround& ground, int32_t worker);
   void renew_flows();
   void arrive_in_targets();
+  void find_events();
+  void find_entries();
+  void find_stuck();
   [[nodiscard]] AvatarState state_of(const Body& body) const;
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
 };

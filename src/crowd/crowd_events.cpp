@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "core/parallel.h"
+#include "crowd/crowd_state.h"
+#include "throng/crowd.h"
+
+// What a crowd tells of its steps beside arrivals: who came into watched areas, who is stuck.
+namespace throng {
+namespace {
+
+constexpr size_t kMostAreas = 64;  // bits
+constexpr size_t kGrain = 4096;    // bodies
+constexpr double kStuck = 0.3;     // [m]
+
+}  // namespace
+
+Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
+  State& s = *state_;
+  if (prisms.empty()) return Error{Errc::kBadInput, "crowd: an area needs at least one prism"};
+  for (const Prism& prism : prisms) {
+    if (auto ok = check_prism(prism); !ok) return ok.error();
+  }
+  if (s.watched.size() >= kMostAreas) {
+    return Error{Errc::kLimit, "crowd: it watches 64 areas; watch fewer"};
+  }
+  s.watched.emplace_back(*s.world.data(), prisms);
+  return static_cast<WatchedArea>(s.watched.size() - 1);
+}
+
+std::span<const AreaEntry> Crowd::entered() const { return state_->entered; }
+std::span<const AvatarId> Crowd::stuck() const { return state_->stuck; }
+
+void Crowd::State::find_events() {
+  entered.clear();
+  stuck.clear();
+  if (!watched.empty()) find_entries();
+  const auto every =
+      static_cast<uint64_t>(std::max(1.0, std::round(config.stuck_after / config.dt)));
+  if (config.stuck_after > 0 && step % every == 0) find_stuck();
+}
+
+void Crowd::State::find_entries() {
+  inside.resize(generation.size(), 0);
+  std::mutex adding;
+  parallel_ranges(engine.bodies().size(), kGrain, config.workers, [&](size_t begin, size_t end) {
+    for (const Body& body : engine.bodies().subspan(begin, end - begin)) {
+      uint64_t now = 0;
+      for (size_t area = 0; area < watched.size(); ++area) {
+        if (watched[area].contains(body)) now |= uint64_t{1} << area;
+      }
+      const uint64_t came = now & ~inside[body.slot];
+      inside[body.slot] = now;
+      if (came == 0) continue;
+      const std::lock_guard lock(adding);
+      for (size_t area = 0; area < watched.size(); ++area) {
+        if ((came >> area & 1) == 0) continue;
+        entered.push_back({id_of(body.slot), static_cast<WatchedArea>(area)});
+      }
+    }
+  });
+  std::sort(entered.begin(), entered.end(), [](const AreaEntry& a, const AreaEntry& b) {
+    return a.id.slot1 != b.id.slot1 ? a.id.slot1 < b.id.slot1 : a.area < b.area;
+  });
+}
+
+void Crowd::State::find_stuck() {
+  looked_at.resize(generation.size(), kNeverLooked);
+  const double least = kStuck / unit;
+  for (const Body& body : engine.bodies()) {
+    auto& [x, z] = looked_at[body.slot];
+    const double dx = double{1} * body.x - x, dz = double{1} * body.z - z;
+    const bool walks = body.has(Body::kHasGoal) && !body.has(Body::kArrived);
+    if (walks && dx * dx + dz * dz < least * least) stuck.push_back(id_of(body.slot));
+    x = body.x;
+    z = body.z;
+  }
+  std::sort(stuck.begin(), stuck.end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
+}
+
+}  // namespace throng

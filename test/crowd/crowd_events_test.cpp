@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "throng/bake.h"
+#include "throng/crowd.h"
+#include "throng/scene.h"
+
+namespace throng {
+namespace {
+
+World plane() {
+  const auto scene = make_plane_scene({.ground = {{{0, 0}, {30, 0}, {30, 20}, {0, 20}}, {}},
+                                       .obstacles = {{{{14, 0}, {15, 0}, {15, 8}, {14, 8}}, {}}}});
+  EXPECT_TRUE(scene);
+  Context context;
+  auto world = bake_world(*scene, {}, context);
+  EXPECT_TRUE(world);
+  return *world;
+}
+
+// Who comes into areas, found from positions alone, step by step.
+TEST(CrowdEvents, tell_who_comes_into_areas) {
+  const World world = plane();
+  Context context;
+  auto crowd = Crowd::create(world, {.workers = 2});
+  ASSERT_TRUE(crowd);
+  const auto ids = crowd->scatter(150, {}, context);
+  ASSERT_TRUE(ids);
+  std::vector<Place> goals;
+  for (size_t i = 0; i < ids->size(); ++i) goals.push_back(world.random_place(0, 7, i));
+  crowd->set_goals(*ids, goals);
+  const std::vector<Prism> left = {Prism::box({0, -1, 0}, {8, 1, 20})};
+  const std::vector<Prism> two = {Prism::box({10, -1, 10}, {13, 1, 20}),
+                                  Prism::box({20, -1, 0}, {25, 1, 9})};
+  ASSERT_EQ(*crowd->watch_area(left), 0);
+  ASSERT_EQ(*crowd->watch_area(two), 1);
+  const auto is_in = [&](const std::vector<Prism>& prisms, const Vec3d& p) {
+    for (const Prism& prism : prisms) {
+      const auto &low = prism.corners[0], &high = prism.corners[2];
+      if (p.x >= low[0] && p.x <= high[0] && p.z >= low[1] && p.z <= high[1]) return true;
+    }
+    return false;
+  };
+  std::set<std::pair<uint32_t, int>> before;
+  size_t entries = 0;
+  std::vector<AvatarState> states;
+  for (int step = 0; step < 200; ++step) {
+    crowd->step();
+    crowd->read(states);
+    std::set<std::pair<uint32_t, int>> now, came;
+    for (const AvatarState& a : states) {
+      if (is_in(left, a.position)) now.emplace(a.id, 0);
+      if (is_in(two, a.position)) now.emplace(a.id, 1);
+    }
+    for (const auto& one : now) {
+      if (before.count(one) == 0) came.insert(one);
+    }
+    std::set<std::pair<uint32_t, int>> told;
+    for (const AreaEntry& entry : crowd->entered()) told.emplace(entry.id.slot1 - 1, entry.area);
+    ASSERT_EQ(told, came) << step;
+    entries += told.size();
+    before = now;
+  }
+  EXPECT_GT(entries, 150U);
+}
+
+TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
+  const World world = plane();
+  Context context;
+  auto plain = Crowd::create(world, {}), watched = Crowd::create(world, {.stuck_after = 1});
+  ASSERT_TRUE(plain && watched);
+  for (Crowd* crowd : {&*plain, &*watched}) {
+    const auto ids = crowd->scatter(100, {}, context);
+    ASSERT_TRUE(ids);
+    std::vector<Place> goals;
+    for (size_t i = 0; i < ids->size(); ++i) goals.push_back(world.random_place(0, 3, i));
+    crowd->set_goals(*ids, goals);
+  }
+  const std::vector<Prism> box = {Prism::box({0, -1, 0}, {8, 1, 20})};
+  for (int n = 0; n < 64; ++n) EXPECT_TRUE(watched->watch_area(box));
+  EXPECT_EQ(watched->watch_area(box).error().code, Errc::kLimit);
+  EXPECT_FALSE(plain->watch_area({}));
+  EXPECT_FALSE(plain->watch_area(std::vector<Prism>(1)));
+  EXPECT_FALSE(Crowd::create(world, {.stuck_after = -1}));
+  for (int step = 0; step < 50; ++step) {
+    plain->step();
+    watched->step();
+    ASSERT_EQ(plain->state_hash(), watched->state_hash()) << step;
+  }
+}
+
+// One who has a crate before him on every side is stuck; one who walks, stands or is new is not.
+TEST(CrowdEvents, tell_who_is_stuck) {
+  const World world = plane();
+  Context context;
+  auto crowd = Crowd::create(world, {.ways = CrowdWays::kStraight, .stuck_after = 2});
+  ASSERT_TRUE(crowd);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 1); };
+  const std::vector<AvatarSpawn> spawns = {
+      {at(13.6, 4), 0, 0, 0}, {at(2, 15), 0, 0, 0}, {at(5, 5), 0, 0, 0}};
+  const auto ids = crowd->add(spawns, context);
+  ASSERT_TRUE(ids);
+  // Straight on into the wall; along the hall; nowhere.
+  crowd->set_goals(*ids, std::vector<Place>{at(20, 4), at(28, 15), Place()});
+  int looks = 0, told = 0;
+  for (int step = 1; step <= 100; ++step) {
+    crowd->step();
+    if (step % 20 != 0) {
+      EXPECT_TRUE(crowd->stuck().empty()) << step;
+    }
+    if (step % 20 != 0 || step == 20) continue;
+    ++looks;
+    for (const AvatarId id : crowd->stuck()) {
+      EXPECT_EQ(id, (*ids)[0]);
+      ++told;
+    }
+  }
+  EXPECT_EQ(looks, 4);
+  EXPECT_GE(told, 1);
+}
+
+}  // namespace
+}  // namespace throng

@@ -144,7 +144,7 @@ premovement = { uniform = [2, 8] }
     simulation.read(now);
     for (size_t i = 0; i < std::min(now.size(), before.size()); ++i) {
       const Vec3d a = before[i].position, b = now[i].position;
-      const bool moved = std::hypot(a.x - b.x, a.z - b.z) > 1.2;
+      const bool moved = std::hypot(a.x - b.x, a.z - b.z) > 2;
       if (moved && now[i].id == before[i].id) began.try_emplace(now[i].id, report->time);
     }
   }

@@ -42,8 +42,9 @@ struct Body {
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: it is bound for a region
-  State state = kFree;
-  uint8_t round = 0;  // of the step in which this place was named, from 1
+  State state : 7 = kFree;
+  bool near_wall : 1 = false;  // and in need of another way, in the last step
+  uint8_t round = 0;           // of the step in which this place was named, from 1
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }
   [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }

@@ -25,8 +25,9 @@ using steer::Plane;
 
 constexpr size_t kGrain = 256;  // bodies that are worth handing to another thread
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
-constexpr float kThere = 0.3f;  // [m] from its goal a body has arrived
-constexpr float kEnough = 14;   // bodies, to find the nearest among
+constexpr float kThere = 0.3f;        // [m] from its goal a body has arrived
+constexpr uint64_t kSides = 0x51de5;  // stream of chance
+constexpr float kEnough = 14;         // bodies, to find the nearest among
 
 float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
@@ -45,6 +46,12 @@ bool is_bound(const Body& body) {
 
 // A square of so many cells to each side holds all that is looked at.
 int32_t cells_of(float look) { return static_cast<int32_t>(look) / kUnitsPerCell + 1; }
+
+// Bound for a corner, not for its goal yet?
+bool turns_corner(const Body& body) {
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven;
+  return (body.flags & kAll) == Body::kHasGoal;
+}
 
 Bound bound(const Body& body) {
   return {body.x, body.z, body.aim_x, body.aim_z, body.radius, body.slot};
@@ -99,7 +106,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
     seconds += seconds_since(start);
     start = Clock::now();
   };
-  wish_all(before);
+  wish_all(step, before);
   lap(times.plan);
   grid_->sort({bodies_.data(), size_}, {spare_.data(), size_}, config_.workers);
   std::swap(bodies_, spare_);
@@ -112,7 +119,16 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
   lap(times.settle);
 }
 
-void CrowdEngine::wish_all(const Before& before) {
+void CrowdEngine::wish_all(uint64_t step, const Before& before) {
+  constexpr float kSide = 2;  // [s] that one keeps to a side
+  const auto window = step / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
+  // To the right, if nothing but others is in the way. Before a wall or a corner that would press a
+  // crowd against it: there, to either side by chance.
+  const auto turn = [&](const Body& b) {
+    if (b.turn == 0 || (b.has(Body::kLast) && !b.near_wall)) return b.turn;
+    const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
+    return left ? -b.turn : b.turn;
+  };
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
   parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
     const size_t begin = piece * kGrain;
@@ -122,7 +138,7 @@ void CrowdEngine::wish_all(const Before& before) {
       if (b.has(Body::kDriven)) continue;
       b.wish = b.has(Body::kHasGoal)
                    ? steer::wish_towards(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z),
-                                         b.speed, config_.units.dt, b.turn)
+                                         b.speed, config_.units.dt, turn(b))
                    : Plane{};
     }
   });
@@ -215,21 +231,27 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.wish = body.wish;
   situation.fastest = body.speed;
   situation.near.size = 0;
-  const bool may_wait = is_bound(body);
+  const bool may_wait = is_bound(body), turns = turns_corner(body);
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
+    const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
+    const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
       situation.wish = wish_of_waiting(
-          config_.units.metres(body.aim_x - body.x, body.aim_z - body.z), body.speed,
-          static_cast<float>(body.radius + other.radius) * config_.units.unit);
+          config_.units.metres(body.aim_x - body.x, body.aim_z - body.z), body.speed, room);
+    }
+    if (turns && turns_corner(other) &&
+        gives_way(bound(other), bound(body), size_of(apart), room,
+                  size_of(other.velocity) / other.speed)) {
+      const float back = -0.5f * body.speed / size_of(apart);
+      situation.wish = {apart.x * back, apart.z * back};
     }
     // Who has arrived makes way for those who would pass, were he not there: they may stand.
     const bool makes_way = body.has(Body::kArrived) && !other.has(Body::kArrived);
     situation.near.add(config_.steering,
-                       {config_.units.metres(other.x - body.x, other.z - body.z),
-                        makes_way ? other.wish : other.velocity,
-                        static_cast<float>(body.radius + other.radius) * config_.units.unit});
+                       {apart, makes_way ? other.wish : other.velocity, room, other.wish});
   }
+  situation.wish = steer::following_fast(config_.steering, situation);
 }
 
 // A way that is free as far as one looks has no end that would matter.
@@ -317,6 +339,8 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
     if (open) look_around(body, worker.situation);
     find_ways(worker.situation, open, contest);
   }
+  // Known only where one had to look.
+  body.near_wall = (!open || !named) && worker.situation.has_walls;
   if (!alone) {
     body.state = Body::kUndecided;
     worker.contests.push_back(contest);

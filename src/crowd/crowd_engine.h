@@ -92,7 +92,7 @@ class CrowdEngine {
     EngineCounts counts;
   };
 
-  void wish_all(const Before& before);
+  void wish_all(uint64_t step, const Before& before);
   void decide_all(EngineCounts& counts);
   void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);

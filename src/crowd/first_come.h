@@ -42,4 +42,13 @@ inline steer::Plane wish_of_waiting(steer::Plane way, float speed, float room) {
   return {way.x * back, way.z * back};
 }
 
+/// Must `self` step back for `other`, who would turn the same corner first, and stands? `far`,
+/// `room`: between their middles, and the sum of the radii. [m] `speed`: the other's, by his
+/// wished.
+inline bool gives_way(const Bound& other, const Bound& self, float far, float room, float speed) {
+  constexpr float kClose = 0.1f;   // [m] from touching him
+  constexpr float kStands = 0.2f;  // of his wished speed
+  return far < room + kClose && far > 1e-6f && speed < kStands && goes_first(other, self);
+}
+
 }  // namespace throng

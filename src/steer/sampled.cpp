@@ -82,6 +82,32 @@ float nearness_of_wall(float way, float speed) {
   return speed > 0 ? speed / (way + kSoonest * speed) : 0;
 }
 
+Plane following(const SampledSettings& settings, const Situation& s) {
+  const float wished = size_of(s.wish);
+  if (!(wished > 1e-6f)) return s.wish;
+  const Plane ahead{s.wish.x / wished, s.wish.z / wished};
+  const float per_metre = 1 / (settings.headway * s.fastest);
+  float most = wished;
+  for (size_t n = 0; n < s.near.size; ++n) {
+    const float x = s.near.x[n], z = s.near.z[n], wx = s.near.wx[n], wz = s.near.wz[n];
+    const float along = x * ahead.x + z * ahead.z;
+    const float square = x * x + z * z;
+    const float radii = std::sqrt(std::max(square - s.near.apart[n], 0.0f));
+    const float aside = settings.lane * radii;
+    if (!(along > 0 && square - along * along < aside * aside)) continue;
+    const float theirs = wx * ahead.x + wz * ahead.z;
+    const float turned = settings.same_way * settings.same_way * (wx * wx + wz * wz);
+    if (!(theirs > 0 && theirs * theirs > turned)) continue;
+    const float room = std::max(std::sqrt(square) - std::min(radii, settings.body), 0.0f);
+    const float u = room * per_metre;
+    const float half = 0.5f * u;
+    const float limit = settings.unbound * s.fastest * (1 - 1 / (1 + (u + half * (u + u * u))));
+    const float leader = s.near.vx[n] * ahead.x + s.near.vz[n] * ahead.z;
+    most = std::min(most, limit + settings.foresight * std::max(leader - limit, 0.0f));
+  }
+  return most < wished ? Plane{ahead.x * most, ahead.z * most} : s.wish;
+}
+
 bool wish_is_open(const SampledSettings& settings, const Situation& s) {
   const float least = 1 / settings.horizon;
   for (size_t n = 0; n < s.near.size; ++n) {

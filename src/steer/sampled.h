@@ -33,6 +33,12 @@ struct SampledSettings {
   float wall = 0.5f;          ///< Cost of walking up to a wall,
   float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
   int32_t neighbours = 8;     ///< The nearest so many are looked at. [1 to kMostNear]
+  float headway = 0.45f;      ///< Time between two who walk close behind each other. [s, > 0]
+  float body = 0.4f;          ///< Of their distance, what is not room, if they are that wide. [m]
+  float lane = 0.75f;         ///< Who is ahead: not further aside than this part of both radii,
+  float same_way = 0.8f;      ///< and wishes to go one's way: cosine of the angle between wishes.
+  float unbound = 1.1f;       ///< What room without end allows, by the fastest.
+  float foresight = 0.5f;     ///< Share of a leader's being faster that the room does not limit.
 };
 
 inline constexpr size_t kMostNear = 16;
@@ -45,12 +51,13 @@ inline constexpr float kSoonest = 0.1f;  ///< [s] Nothing is more urgent than a 
 struct Neighbour {
   Plane at, velocity;  ///< `at` from the body's own middle.
   float radii = 0;     ///< Sum of both.
+  Plane wish = {};     ///< Its heading: only the direction counts.
 };
 
 /// Those whom a body steers by, as arrays.
 struct NearSet {
   size_t size = 0;
-  alignas(64) std::array<float, kMostNear> x{}, z{}, vx{}, vz{};
+  alignas(64) std::array<float, kMostNear> x{}, z{}, vx{}, vz{}, wx{}, wz{};
   alignas(
       64) std::array<float, kMostNear> apart{};  ///< Squares: distance less radii and gap, >= 0.
 
@@ -61,6 +68,8 @@ struct NearSet {
     z[size] = other.at.z;
     vx[size] = other.velocity.x;
     vz[size] = other.velocity.z;
+    wx[size] = other.wish.x;
+    wz[size] = other.wish.z;
     apart[size++] =
         std::max(other.at.x * other.at.x + other.at.z * other.at.z - radii * radii, 0.0f);
   }
@@ -97,6 +106,11 @@ inline float nearness(float soonness) { return soonness / (1 + kSoonest * soonne
 inline constexpr float kTouching = 1e-6f;
 /// The same for a wall that is `way` off. [1/s]
 float nearness_of_wall(float way, float speed);
+
+/// The wish of one who follows others: no faster than what the nearest ahead leave him room for.
+/// With u = room / (headway * fastest) that is unbound * fastest * (1 - 1 / (1 + u + u^2 / 2 + u^3
+/// / 2)): in proportion to the room while there is little, and no limit when there is much.
+Plane following(const SampledSettings& settings, const Situation& situation);
 
 /// True if whoever does as he wishes touches nobody and no wall within their horizons.
 bool wish_is_open(const SampledSettings& settings, const Situation& situation);

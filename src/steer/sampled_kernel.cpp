@@ -53,6 +53,50 @@ HWY_INLINE V share_of(V apart) {
   return hn::Div(hn::Set(d, 1), hn::Max(apart, hn::Set(d, kTouching)));
 }
 
+// Written out by vectors of neighbours: the least of their limits does not depend on the order.
+Plane Following(const SampledSettings& settings, const Situation& s) {
+  const D d;
+  const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
+  if (!(wished > 1e-6f)) return s.wish;
+  const Plane ahead{s.wish.x / wished, s.wish.z / wished};
+  const V zero = hn::Zero(d), one = hn::Set(d, 1),
+          fastest = hn::Set(d, settings.unbound * s.fastest);
+  const V ahead_x = hn::Set(d, ahead.x), ahead_z = hn::Set(d, ahead.z);
+  const float same = settings.same_way * settings.same_way;
+  const float per_metre = 1 / (settings.headway * s.fastest);
+  V most = hn::Set(d, wished);
+  for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
+    const V x = hn::Load(d, &s.near.x[n]), z = hn::Load(d, &s.near.z[n]);
+    const V along = hn::Add(hn::Mul(x, ahead_x), hn::Mul(z, ahead_z));
+    const V square = hn::Add(hn::Mul(x, x), hn::Mul(z, z));
+    const V apart = hn::Load(d, &s.near.apart[n]);
+    const V radii = hn::Sqrt(hn::Max(hn::Sub(square, apart), zero));
+    const V aside = hn::Mul(hn::Set(d, settings.lane), radii);
+    const V off = hn::Sub(square, hn::Mul(along, along));
+    auto leads = hn::And(hn::FirstN(d, s.near.size - n), hn::Gt(along, zero));
+    leads = hn::And(leads, hn::Lt(off, hn::Mul(aside, aside)));
+    const V wx = hn::Load(d, &s.near.wx[n]), wz = hn::Load(d, &s.near.wz[n]);
+    const V theirs = hn::Add(hn::Mul(wx, ahead_x), hn::Mul(wz, ahead_z));
+    const V turned = times(hn::Add(hn::Mul(wx, wx), hn::Mul(wz, wz)), same);
+    leads = hn::And(leads, hn::Gt(theirs, zero));
+    leads = hn::And(leads, hn::Gt(hn::Mul(theirs, theirs), turned));
+    if (hn::AllFalse(d, leads)) continue;
+    const V bodies = hn::Min(radii, hn::Set(d, settings.body));
+    const V room = hn::Max(hn::Sub(hn::Sqrt(square), bodies), zero);
+    const V u = times(room, per_metre);
+    const V half = times(u, 0.5f);
+    const V sum = hn::Add(u, hn::Mul(half, hn::Add(u, hn::Mul(u, u))));
+    const V limit = hn::Mul(fastest, hn::Sub(one, hn::Div(one, hn::Add(one, sum))));
+    const V leader = hn::Add(hn::Mul(hn::Load(d, &s.near.vx[n]), ahead_x),
+                             hn::Mul(hn::Load(d, &s.near.vz[n]), ahead_z));
+    const V faster = hn::Max(hn::Sub(leader, limit), zero);
+    const V allowed = hn::Add(limit, times(faster, settings.foresight));
+    most = hn::IfThenElse(leads, hn::Min(most, allowed), most);
+  }
+  const float least = hn::GetLane(hn::MinOfLanes(d, most));
+  return least < wished ? Plane{ahead.x * least, ahead.z * least} : s.wish;
+}
+
 bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
   const D d;
   const V least = hn::Set(d, 1 / settings.horizon);
@@ -229,11 +273,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace throng::steer {
 
+HWY_EXPORT(Following);
 HWY_EXPORT(WishIsOpen);
 HWY_EXPORT(CostsOf);
 HWY_EXPORT(Best);
 HWY_EXPORT(TakeBest);
 
+Plane following_fast(const SampledSettings& settings, const Situation& situation) {
+  return HWY_DYNAMIC_DISPATCH(Following)(settings, situation);
+}
 bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation) {
   return HWY_DYNAMIC_DISPATCH(WishIsOpen)(settings, situation);
 }

@@ -7,6 +7,7 @@
 /// steer/sampled.h for machines: many trials, or many neighbours, at a time. The same bits.
 namespace throng::steer {
 
+Plane following_fast(const SampledSettings& settings, const Situation& situation);
 bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation);
 /// The cheapest trial: what take_best_fast gives first. Most trials need not be looked at for that.
 Plane best_fast(const SampledSettings& settings, const Situation& situation);

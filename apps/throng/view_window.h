@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <string>
 
@@ -16,6 +17,7 @@ struct WindowConfig {
   bool remember = true;                                    ///< Read and keep the settings.
   std::string pictures = ".";                              ///< Folder for F12.
   std::function<LoadStage(const std::string& path)> open;  ///< For files that are dropped.
+  const std::atomic<bool>* cancel = nullptr;               ///< Close when it is set: Ctrl-C.
   double seconds = 0;                                      ///< Close after so long, 0: never. [s]
 };
 

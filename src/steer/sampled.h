@@ -115,8 +115,8 @@ Plane following(const SampledSettings& settings, const Situation& situation);
 /// True if whoever does as he wishes touches nobody and no wall within their horizons.
 bool wish_is_open(const SampledSettings& settings, const Situation& situation);
 
-/// What each trial costs.
-using Costs = std::array<float, kTrials>;
+/// What each trial costs. Whole vectors are stored there, so it is aligned as they are.
+struct alignas(64) Costs : std::array<float, kTrials> {};
 Costs costs_of(const SampledSettings& settings, const Situation& situation, const Trials& trials);
 
 /// Trials in order of their cost, the best first, the first of equals first.

@@ -138,8 +138,6 @@ void add_validate(CLI::App& parser, Session& session) {
   command->add_flag("--brief", options->config.brief, "Fewer points and shorter runs");
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");
   command->add_option("--seed", options->config.seed)->capture_default_str();
-  command->add_option("--recordings", options->config.recordings,
-                      "Folder with recordings of real walkers");
   command->add_option("--threads", options->config.workers, "0: all cores")
       ->check(CLI::Range(0, 1024));
   command->callback([options, &session] { session.exit_code = run(*options, session); });

@@ -20,6 +20,8 @@ struct Prism {
   [[nodiscard]] static Prism box(Vec3d low, Vec3d high) {
     return {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}, low.y, high.y};
   }
+  /// Is (x, z) over or under it, its border included? [m]
+  [[nodiscard]] THRONG_API bool covers(double x, double z) const;
   /// Around an upright cylinder: `middle` is that of its bottom; with 16 corners it reaches 2 % of
   /// the radius beyond. [m, radius > 0, height > 0, corners 3 to 64]
   [[nodiscard]] THRONG_API static Prism circle(Vec3d middle, double radius, double height,

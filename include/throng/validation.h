@@ -52,9 +52,6 @@ struct ValidationConfig {
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   bool brief = false;   ///< Fewer points and shorter runs, for a quick look.
-  /// Folder with recordings of real walkers (juelich, seq_eth, zara01, zara02); empty: those tests
-  /// that need it are refused with kNotFound.
-  std::string recordings = {};
 };
 
 struct ValidationResult {
@@ -72,7 +69,7 @@ struct ValidationResult {
 /// All tests, in order of the tables.
 [[nodiscard]] THRONG_API std::vector<ValidationTest> validation_tests();
 
-/// Runs one test. Fails with kNotFound (no such test, or recordings that it needs), kCancelled.
+/// Runs one test. Fails with kNotFound (no such test), kCancelled.
 [[nodiscard]] THRONG_API Result<ValidationResult> run_validation(const std::string& name,
                                                                  const ValidationConfig& config,
                                                                  Context& context);

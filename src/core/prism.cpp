@@ -21,6 +21,16 @@ Prism Prism::circle(Vec3d middle, double radius, double height, int corners) {
   return prism;
 }
 
+bool Prism::covers(double x, double z) const {
+  bool left = false, right = false;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const double side = turn(corners[i], corners[(i + 1) % corners.size()], {x, z});
+    left |= side > 0;
+    right |= side < 0;
+  }
+  return !(left && right);
+}
+
 Result<void> check_prism(const Prism& prism) {
   const auto bad = [](const std::string& what) { return Error{Errc::kBadInput, "prism: " + what}; };
   const size_t count = prism.corners.size();

@@ -20,14 +20,12 @@ constexpr double kStuck = 0.3;     // [m]
 
 Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
   State& s = *state_;
-  if (prisms.empty()) return Error{Errc::kBadInput, "crowd: an area needs at least one prism"};
-  for (const Prism& prism : prisms) {
-    if (auto ok = check_prism(prism); !ok) return ok.error();
-  }
+  auto made = Target::make(*s.world.data(), prisms);
+  if (!made) return made.error();
   if (s.watched.size() >= kMostAreas) {
     return Error{Errc::kLimit, "crowd: it watches 64 areas; watch fewer"};
   }
-  s.watched.emplace_back(*s.world.data(), prisms);
+  s.watched.push_back(std::move(*made));
   return static_cast<WatchedArea>(s.watched.size() - 1);
 }
 

@@ -130,12 +130,8 @@ void Crowd::State::tell_ways(uint32_t slot, size_t number) {
   CrowdObstacle& obstacle = obstacles.at(slot);
   if (config.ways != CrowdWays::kPaths || obstacle.kind != ObstacleKind::kStanding) return;
   if (!obstacle.exists || !classes[number]) return;
+  if (obstacle.is_up) make_lives(number);
   std::vector<LiveGround>& lives = classes[number]->lives;
-  if (obstacle.is_up && lives.empty()) {
-    auto made = LiveGround::make(world, {.avatar_class = static_cast<int32_t>(number)});
-    THRONG_ASSERT(made);  // The class is one of the world's.
-    lives.assign(static_cast<size_t>(worker_count(config.workers)), *made);
-  }
   flows_are_old = true;
   CrowdObstacle::OfClass& of_class = obstacle.of_class[number];
   ChangeId change = of_class.change;

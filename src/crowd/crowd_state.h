@@ -95,6 +95,8 @@ struct Crowd::State {
   void cut_ways(std::span<const uint32_t> slots);
   /// The grounds are to be as the obstacles are.
   void ground_changed();
+  /// Live grounds of a class, if there are none yet.
+  void make_lives(size_t number);
   /// What a class lacks of the targets.
   Result<void> find_flows(int32_t number, Context& context);
   bool plan_way(Body& body, Route& route, const StrideGround& ground, int32_t worker);

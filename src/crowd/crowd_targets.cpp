@@ -23,14 +23,12 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
   if (s.config.ways != CrowdWays::kPaths) {
     return Error{Errc::kBadConfig, "crowd: who goes straight on knows no targets; give goals"};
   }
-  if (areas.empty()) return Error{Errc::kBadInput, "crowd: a target needs at least one prism"};
-  for (const Prism& prism : areas) {
-    if (auto ok = check_prism(prism); !ok) return ok.error();
-  }
+  auto made = Target::make(*s.world.data(), areas);
+  if (!made) return made.error();
   if (s.targets.size() >= kMostTargets) {
     return Error{Errc::kLimit, "crowd: it has 65535 targets; use those that it has again"};
   }
-  s.targets.emplace_back(*s.world.data(), areas);
+  s.targets.push_back(std::move(*made));
   for (size_t c = 0; c < s.classes.size(); ++c) {
     if (!s.classes[c]) continue;
     auto ok = s.find_flows(static_cast<int32_t>(c), context);
@@ -44,13 +42,17 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
   return static_cast<TargetId>(s.targets.size());
 }
 
+void Crowd::State::make_lives(size_t number) {
+  std::vector<LiveGround>& lives = classes[number]->lives;
+  if (!lives.empty()) return;
+  auto made = LiveGround::make(world, {.avatar_class = static_cast<int32_t>(number)});
+  THRONG_ASSERT(made);  // The class is one of the world's.
+  lives.assign(static_cast<size_t>(worker_count(config.workers)), *made);
+}
+
 Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
   ClassParts& parts = *classes[static_cast<size_t>(number)];
-  if (parts.lives.empty() && !targets.empty()) {
-    auto live = LiveGround::make(world, {.avatar_class = number, .slope_cost = 0});
-    if (!live) return live.error();
-    parts.lives.assign(static_cast<size_t>(worker_count(config.workers)), *live);
-  }
+  if (!targets.empty()) make_lives(static_cast<size_t>(number));
   while (parts.flows.size() < targets.size()) {
     const Target& target = targets[parts.flows.size()];
     const std::vector<Place> goals =

@@ -48,9 +48,15 @@ bool TargetRegion::contains(int32_t x, int32_t z, int32_t y) const {
   });
 }
 
-Target::Target(const WorldData& world, std::span<const Prism> areas)
-    : prisms(areas.begin(), areas.end()) {
-  for (const Prism& prism : prisms) regions.emplace_back(world, prism);
+Result<Target> Target::make(const WorldData& world, std::span<const Prism> areas) {
+  if (areas.empty()) return Error{Errc::kBadInput, "crowd: a region needs at least one prism"};
+  Target made;
+  for (const Prism& prism : areas) {
+    if (auto ok = check_prism(prism); !ok) return ok.error();
+    made.prisms.push_back(prism);
+    made.regions.emplace_back(world, prism);
+  }
+  return made;
 }
 
 bool Target::contains(const Body& body) const {

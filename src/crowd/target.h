@@ -44,7 +44,8 @@ struct Target {
   std::vector<Prism> prisms;
   std::vector<TargetRegion> regions;
 
-  Target(const WorldData& world, std::span<const Prism> areas);
+  /// Fails with kBadInput: none, or one that is no prism.
+  static Result<Target> make(const WorldData& world, std::span<const Prism> areas);
   [[nodiscard]] bool contains(const Body& body) const;
 };
 

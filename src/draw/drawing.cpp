@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/stopwatch.h"
 #include "draw/atlas_textures.h"
 #include "draw/gl_objects.h"
 #include "draw/headless.h"
@@ -28,10 +28,6 @@ namespace throng {
 namespace {
 
 constexpr GLsizei kInstancesWide = 2048;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // A run of instances of one crowd, in the one upload.
 struct Run {
@@ -392,10 +388,10 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   if (auto fits = fit_sun(config.sun_pixels); !fits) return fits.error();
 
   const Vec3d to_sun = config.to_sun * (1 / length(config.to_sun));
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   pack(crowds, config, to_sun);
   const double seconds_pack = seconds_since(start);
-  const auto draw_start = std::chrono::steady_clock::now();
+  const auto draw_start = Clock::now();
   upload_instances();
 
   // The sun's picture covers what is near the target, as far as shadows can be told apart.
@@ -498,7 +494,7 @@ Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingCon
   DrawingReport done;
   if (auto ok = state.paint(crowds, config, done); !ok) return ok.error();
   state.panel.draw(state.panel_program, panel, config.width, config.height, config.samples);
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const GLsizei wide = state.target.width, high = state.target.height;
   std::vector<uint8_t> texels(static_cast<size_t>(wide) * static_cast<size_t>(high) * 4);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "core/plan_point.h"
 #include "core/read_file.h"
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -21,16 +20,6 @@ namespace throng {
 namespace {
 
 constexpr int kMostPixels = 16384;  // of a side
-
-bool is_inside(const Prism& prism, const PlanPoint& p) {
-  bool left = false, right = false;
-  for (size_t i = 0; i < prism.corners.size(); ++i) {
-    const double side = turn(prism.corners[i], prism.corners[(i + 1) % prism.corners.size()], p);
-    left = left || side > 0;
-    right = right || side < 0;
-  }
-  return !(left && right);
-}
 
 }  // namespace
 
@@ -60,9 +49,9 @@ void paint_density(DensityMap& map, std::span<const Prism> prisms, uint8_t weigh
   const double dx = (map.x1 - map.x0) / map.width, dz = (map.z1 - map.z0) / map.height;
   for (int32_t row = 0; row < map.height; ++row) {
     for (int32_t column = 0; column < map.width; ++column) {
-      const PlanPoint middle{map.x0 + (column + 0.5) * dx, map.z0 + (row + 0.5) * dz};
-      const bool painted = std::any_of(prisms.begin(), prisms.end(),
-                                       [&](const Prism& p) { return is_inside(p, middle); });
+      const double x = map.x0 + (column + 0.5) * dx, z = map.z0 + (row + 0.5) * dz;
+      const bool painted =
+          std::any_of(prisms.begin(), prisms.end(), [&](const Prism& p) { return p.covers(x, z); });
       if (!painted) continue;
       map.weights[static_cast<size_t>(row) * static_cast<size_t>(map.width) +
                   static_cast<size_t>(column)] = weight;

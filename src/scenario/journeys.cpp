@@ -36,17 +36,6 @@ double width_of(const ScenarioArea& area) {
   return width;
 }
 
-bool stands_in(const Prism& prism, const Vec3d& p) {
-  bool left = false, right = false;
-  for (size_t i = 0; i < prism.corners.size(); ++i) {
-    const double side =
-        turn(prism.corners[i], prism.corners[(i + 1) % prism.corners.size()], {p.x, p.z});
-    left = left || side > 0;
-    right = right || side < 0;
-  }
-  return !(left && right) && p.y >= prism.low - 0.01 && p.y <= prism.high + 0.01;
-}
-
 }  // namespace
 
 // Where he is, but for making way for others.
@@ -168,7 +157,10 @@ int32_t Simulation::State::area_under(const Person& p) const {
   const auto state = crowd.read(p.id);
   for (const int32_t area : stage.areas) {
     for (const Prism& prism : scenario.areas[static_cast<size_t>(area)].prisms) {
-      if (state && stands_in(prism, state->position)) return area;
+      if (state && prism.covers(state->position.x, state->position.z) &&
+          state->position.y >= prism.low - kFeet && state->position.y <= prism.high + kFeet) {
+        return area;
+      }
     }
   }
   return stage.areas.front();

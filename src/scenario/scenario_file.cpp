@@ -10,7 +10,6 @@
 
 #include "core/config_file.h"
 #include "core/read_file.h"
-#include "core/trig.h"
 #include "scenario/density_image.h"
 #include "throng/scenario.h"
 
@@ -381,10 +380,7 @@ bool File::read_shape(Reader& r, Prism& prism) {
     prism.corners = {{v[0], v[1]}, {v[2], v[1]}, {v[2], v[3]}, {v[0], v[3]}};
   } else {
     r.numbers("circle", v, 3);
-    for (int i = 0; i < kCircleSides; ++i) {
-      const double turns = (i + 0.5) / kCircleSides;
-      prism.corners.push_back({v[0] + v[2] * cos_turns(turns), v[1] + v[2] * sin_turns(turns)});
-    }
+    prism.corners = Prism::circle({v[0], 0, v[1]}, v[2], 1, kCircleSides).corners;
     if (!(v[2] > 0)) r.fail(*r.find("circle"), "circle must be [x, z, radius], radius above 0");
   }
   if (!r.ok()) return false;

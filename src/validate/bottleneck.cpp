@@ -59,8 +59,6 @@ std::vector<Spot> waiting(const Door& door, double radius, uint64_t seed) {
 
 struct Flow {
   std::vector<double> times;  // when somebody passed the middle of the door [s]
-  double density = 0;         // before the door, while all passed [1/m2]
-  bool all_through = false;
 
   /// From the 10 % first to the 10 % last: the time between people.
   [[nodiscard]] double rate() const {
@@ -98,7 +96,6 @@ Result<Flow> pass(const Door& door, const ValidationConfig& config, ValidationRe
     }
     room->leave(gone);
   }
-  flow.all_through = room->size() == 0;
   std::sort(flow.times.begin(), flow.times.end());
   room->report(result);
   return flow;

@@ -11,33 +11,13 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "crowd/crowd_check.h"
+#include "crowds.h"
 #include "simd_targets.h"
 #include "throng/crowd.h"
 #include "worlds.h"
 
 namespace throng {
 namespace {
-
-Crowd made(const World& world, const CrowdConfig& config = {}) {
-  auto crowd = Crowd::create(world, config);
-  EXPECT_TRUE(crowd) << crowd.error().message;
-  return std::move(*crowd);
-}
-
-std::vector<AvatarId> scattered(Crowd& crowd, uint32_t count, const AvatarSpawn& like = {}) {
-  Context context;
-  auto ids = crowd.scatter(count, like, context);
-  EXPECT_TRUE(ids) << ids.error().message;
-  return ids ? *ids : std::vector<AvatarId>();
-}
-
-AvatarId added(Crowd& crowd, const Place& place) {
-  Context context;
-  const AvatarSpawn spawn{.place = place};
-  auto ids = crowd.add(std::span(&spawn, 1), context);
-  EXPECT_TRUE(ids) << ids.error().message;
-  return ids ? ids->front() : AvatarId{};
-}
 
 ObstacleId put_up(Crowd& crowd, const Prism& prism, ObstacleKind kind = ObstacleKind::kStanding) {
   const auto id = crowd.add_obstacle(prism, kind);

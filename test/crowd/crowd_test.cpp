@@ -8,33 +8,12 @@
 #include <vector>
 
 #include "baked.h"
+#include "crowds.h"
 #include "simd_targets.h"
 #include "worlds.h"
 
 namespace throng {
 namespace {
-
-Crowd made(const World& world, const CrowdConfig& config = {}) {
-  auto crowd = Crowd::create(world, config);
-  EXPECT_TRUE(crowd) << crowd.error().message;
-  return std::move(*crowd);
-}
-
-std::vector<AvatarId> scattered(Crowd& crowd, uint32_t count, const AvatarSpawn& like = {}) {
-  Context context;
-  auto ids = crowd.scatter(count, like, context);
-  EXPECT_TRUE(ids) << ids.error().message;
-  return ids ? *ids : std::vector<AvatarId>();
-}
-
-AvatarId added(Crowd& crowd, const Place& place, const AvatarSpawn& like = {}) {
-  Context context;
-  AvatarSpawn spawn = like;
-  spawn.place = place;
-  auto ids = crowd.add(std::span(&spawn, 1), context);
-  EXPECT_TRUE(ids) << ids.error().message;
-  return ids ? ids->front() : AvatarId{};
-}
 
 std::vector<Place> random_goals(const World& world, size_t count, uint64_t seed) {
   std::vector<Place> goals;

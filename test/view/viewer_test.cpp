@@ -295,9 +295,9 @@ TEST(Viewer, WishesAreAskedForByKeys) {
   EXPECT_TRUE(viewer.take_wishes().fullscreen);
   EXPECT_FALSE(viewer.take_wishes().save_picture);
   ViewEvent drop{.kind = ViewEventKind::kDrop};
-  drop.path = "/tmp/a.replay";
+  drop.path = "walks/a.replay";
   viewer.handle(drop);
-  EXPECT_EQ(viewer.take_wishes().open, "/tmp/a.replay");
+  EXPECT_EQ(viewer.take_wishes().open, "walks/a.replay");
   hold(viewer, Key::kControl, true);
   press(viewer, key_of('Q'));
   EXPECT_TRUE(viewer.take_wishes().close);

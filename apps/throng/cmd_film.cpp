@@ -151,7 +151,10 @@ void add_film(CLI::App& parser, Session& session) {
       ->type_name("WORLD");
   command->add_option("--threads", options->workers, "Threads, 0 for all cores");
   add_source_options(command, target.sources, "--source");
-  command->callback([&session, options] { session.exit_code = film(session, *options); });
+  command->callback([&session, options, command] {
+    if (command->count("--seed") > 0) options->target.seed = options->target.start.seed;
+    session.exit_code = film(session, *options);
+  });
 }
 
 }  // namespace throng::app

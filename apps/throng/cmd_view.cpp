@@ -9,8 +9,8 @@
 #include "view_stage.h"
 #include "view_window.h"
 
-// throng view: a world, a model or a recording in a window, or one picture of what the window would
-// show.
+// throng view: a world, a scenario, a model or a recording in a window, or one picture of what the
+// window would show.
 namespace throng::app {
 namespace {
 
@@ -103,9 +103,9 @@ void add_view(CLI::App& parser, Session& session) {
   ViewTarget& target = options->target;
   command
       ->add_option("target", target.path,
-                   "World folder, recording, or a model (or builtin:NAME) to bake now")
+                   "World folder, scenario, recording, or a model (or builtin:NAME) to bake now")
       ->required()
-      ->type_name("WORLD|FILE.replay|MODEL");
+      ->type_name("WORLD|SCENARIO.toml|FILE.replay|MODEL");
   command->add_option("--avatars", target.start.avatars, "How many walk in a world")
       ->capture_default_str();
   command->add_option("--seed", target.start.seed, "Seed of all chance")->capture_default_str();
@@ -153,7 +153,10 @@ void add_view(CLI::App& parser, Session& session) {
   command->add_flag("--forget", options->forget, "Neither read nor keep settings");
   command->add_option("--seconds", options->seconds, "Close the window after so long [s]")
       ->check(CLI::NonNegativeNumber);
-  command->callback([&session, options] { session.exit_code = view(session, *options); });
+  command->callback([&session, options, command] {
+    if (command->count("--seed") > 0) options->target.seed = options->target.start.seed;
+    session.exit_code = view(session, *options);
+  });
 }
 
 }  // namespace throng::app

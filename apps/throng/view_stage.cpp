@@ -14,6 +14,7 @@
 #include "throng/bake.h"
 #include "throng/character.h"
 #include "throng/nodes.h"
+#include "throng/scenario.h"
 #include "throng/walkable_surface.h"
 #include "user_files.h"
 
@@ -131,12 +132,50 @@ Result<void> load_replay(StageParts& parts, const ViewTarget& target, Context& c
   return {};
 }
 
+// A file that load_scenario is for: TOML, or a JSON object that is no city of CityJSON's.
+bool is_scenario(const fs::path& path) {
+  std::error_code none;
+  if (fs::is_directory(path, none)) return false;
+  if (path.extension() == ".toml") return true;
+  if (path.extension() != ".json") return false;
+  const Json json = Json::parse(read_text(path.string()), nullptr, false);
+  return json.is_object() && !json.contains("type") && !json.contains("patches");
+}
+
+// Sources of the options are drawn in place of what the world was baked of.
+Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Context& context) {
+  Result<Scenario> scenario = load_scenario(target.path);
+  if (!scenario) return scenario.error();
+  if (target.seed) scenario->seed = *target.seed;
+  Result<World> world = Error{Errc::kNotFound, ""};
+  if (scenario->world.empty()) {
+    const Result<Scene> scene = load_scene(*scenario, context);
+    if (!scene) return scene.error();
+    auto ok = has_sources(target.sources) ? set_scene(parts, target, {}, context)
+                                          : parts.set_scene(*scene);
+    if (!ok) return ok;
+    world = bake_world(*scenario, *scene, context);
+    if (!world) return world.error();
+  } else {
+    world = World::open(scenario->world);
+    if (!world) return world.error();
+    if (auto ok = set_scene(parts, target, *world, context); !ok) return ok;
+  }
+  ViewTarget without = target;
+  without.crowd = false;
+  without.path = scenario->world;  // Where nodes may lie.
+  if (auto ok = show_world(parts, without, *world, context); !ok) return ok;
+  parts.set_scenario(*scenario);
+  return {};
+}
+
 }  // namespace
 
 LoadStage stage_of(const ViewTarget& target) {
   return [target](StageParts& parts, Context& context) -> Result<void> {
     const fs::path path(target.path);
     std::error_code none;
+    if (is_scenario(path)) return load_scenario_stage(parts, target, context);
     if (path.extension() == ".replay") return load_replay(parts, target, context);
     if (fs::exists(path / "manifest.thm", none)) return load_world(parts, target, context);
     if (path.extension() == ".throng") return World::open(target.path).error();

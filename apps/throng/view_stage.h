@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,16 +10,18 @@
 #include "sources.h"
 #include "throng_view/viewer.h"
 
-/// What throng view and throng film show: a baked world, a recording, or a model that is baked now.
+/// What throng view and throng film show: a baked world, a scenario, a recording, or a model
+/// that is baked now.
 namespace throng::app {
 
 struct ViewTarget {
-  std::string path;                  ///< World folder, FILE.replay, model or builtin:NAME.
+  std::string path;                  ///< World, scenario, recording, model, builtin:NAME.
   std::string world;                 ///< Of a recording, if it is not where it was.
   SourceOptions sources;             ///< What to draw; none: where one can walk.
   std::vector<std::string> atlases;  ///< Who walks; none: the built-in figure.
   double cell = 0.1;                 ///< To bake models with. [m]
   bool crowd = true;                 ///< Start one in a world.
+  std::optional<uint64_t> seed;      ///< Of a scenario, in place of its own.
   CrowdStart start;
 };
 

@@ -94,9 +94,18 @@ Key key_for(int key) {
   }
 }
 
-Viewer& viewer_of(GLFWwindow* window) {
-  return *static_cast<Viewer*>(glfwGetWindowUserPointer(window));
+// Who is told of events, and where the pointer was when the last one came. Buttons are told without
+// a place, and glfwGetCursorPos gives where the pointer is by now: of a fast drag that is its end.
+struct Listener {
+  Viewer* viewer = nullptr;
+  double x = 0, y = 0;
+};
+
+Listener& listener_of(GLFWwindow* window) {
+  return *static_cast<Listener*>(glfwGetWindowUserPointer(window));
 }
+
+Viewer& viewer_of(GLFWwindow* window) { return *listener_of(window).viewer; }
 
 // GLFW counts in units of the desktop, the viewer in pixels.
 ViewEvent at_pointer(GLFWwindow* window, ViewEventKind kind, double x, double y) {
@@ -122,14 +131,15 @@ void listen(GLFWwindow* window) {
     viewer_of(w).handle(event);
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+    listener_of(w).x = x;
+    listener_of(w).y = y;
     viewer_of(w).handle(at_pointer(w, ViewEventKind::kMouseMove, x, y));
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
     if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
-    double x = 0, y = 0;
-    glfwGetCursorPos(w, &x, &y);
+    const Listener& at = listener_of(w);
     ViewEvent event = at_pointer(
-        w, action == GLFW_PRESS ? ViewEventKind::kMouseDown : ViewEventKind::kMouseUp, x, y);
+        w, action == GLFW_PRESS ? ViewEventKind::kMouseDown : ViewEventKind::kMouseUp, at.x, at.y);
     event.button = static_cast<MouseButton>(button);
     viewer_of(w).handle(event);
   });
@@ -248,7 +258,9 @@ Result<void> run_window(const std::string& name, const LoadStage& load,
   Result<Viewer> made = Viewer::create(*std::move(drawing), with);
   if (!made) return Error{made.error().code, kept + ": " + made.error().message};
   Viewer viewer = *std::move(made);
-  glfwSetWindowUserPointer(w, &viewer);
+  Listener listener{.viewer = &viewer};
+  glfwGetCursorPos(w, &listener.x, &listener.y);
+  glfwSetWindowUserPointer(w, &listener);
   listen(w);
   viewer.load(name, load);
 

@@ -128,6 +128,9 @@ class THRONG_API Drawing {
   /// Fails with kLimit: more triangles than the card's memory holds.
   [[nodiscard]] Result<void> set_scene(const Scene& scene, Vec3d origin);
   [[nodiscard]] Result<void> set_scene(const PreparedScene& scene);
+  /// Things that stand in the scene for a time: crates, barriers. Replaces what was there; an empty
+  /// scene takes them away. `origin` as of the scene. Fails with kLimit.
+  [[nodiscard]] Result<void> set_props(const Scene& props, Vec3d origin);
   /// What a slot < kMarkSlots shows from now on; lower slots are drawn first. Fails with kLimit.
   [[nodiscard]] Result<void> set_marks(size_t slot, const Marks& marks);
   /// How opaque each texel of the panel's texture is, rows from the top.

@@ -14,6 +14,7 @@
 #include "throng/nodes.h"
 #include "throng/recording.h"
 #include "throng/result.h"
+#include "throng/scenario.h"
 #include "throng/scene.h"
 #include "throng/world.h"
 #include "throng_draw/draw.h"
@@ -32,6 +33,8 @@ struct CrowdStart {
   double dt = 0.1;          ///< Length of a step. [s, 0.01 to 0.5]
   uint64_t seed = 1;
   bool zones = false;  ///< Ways by zones: for large worlds.
+  /// Where goals lie, as likely as the weights; empty or all 0: see `near`.
+  std::vector<DensityMap> density = {};
 };
 
 class StageJob;  // Internal.
@@ -49,6 +52,8 @@ class THRONG_API StageParts {
   void set_atlases(std::vector<std::vector<Atlas>> of_class);
   /// Starts a crowd in the world.
   void set_crowd(const CrowdStart& start);
+  /// Runs a scenario in the world, instead of a crowd.
+  void set_scenario(const Scenario& scenario);
   /// Shows a recording instead of a crowd.
   void set_replay(Replay replay);
 

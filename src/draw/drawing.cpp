@@ -28,6 +28,7 @@ namespace throng {
 namespace {
 
 constexpr GLsizei kInstancesWide = 2048;
+constexpr double kNearer = 0.002;  // Of the way to the eye that marks are nearer than they are.
 
 // A run of instances of one crowd, in the one upload.
 struct Run {
@@ -80,6 +81,7 @@ PreparedScene::~PreparedScene() = default;
 Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
   Result<SceneCorners> corners = scene_corners(scene, origin);
   if (!corners) return corners.error();
+  add_plain(*corners);
   return PreparedScene(std::make_unique<State>(State{*std::move(corners)}));
 }
 
@@ -90,7 +92,7 @@ struct Drawing::State {
   std::unique_ptr<Headless> context;  // None: a window's, which its owner keeps current.
   GlProgram sky, scene, depth, impostor, shadow, mark, panel_program;
   GlVertexArray nothing;  // Vertices by number alone.
-  SceneMesh mesh;
+  SceneMesh mesh, props;
   std::array<MarkMesh, kMarkSlots> marks;
   PanelMesh panel;
   std::vector<AtlasTextures> atlases;
@@ -246,6 +248,7 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_righ
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5F, 2.0F);
   mesh.draw();
+  props.draw();
   glDisable(GL_POLYGON_OFFSET_FILL);
   if (thrown.empty()) return;
   shadow.use();
@@ -271,6 +274,9 @@ void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConf
   mark.set("cut", static_cast<float>(std::min(config.cut_height, 1e9)));
   mark.set_size("half_picture", 0.5F * static_cast<float>(config.width * config.samples),
                 0.5F * static_cast<float>(config.height * config.samples));
+  // Depth is a + b / w: to add to b is to come nearer by a share of w.
+  const double n = config.camera.nearest, f = config.camera.furthest;
+  mark.set("nearer", static_cast<float>(-kNearer * 2 * f * n / (f - n)));
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
@@ -354,6 +360,13 @@ Result<void> Drawing::set_scene(const Scene& scene, Vec3d origin) {
 Result<void> Drawing::set_scene(const PreparedScene& scene) {
   state_->make_current();
   return state_->mesh.set(scene.state_->corners);
+}
+
+Result<void> Drawing::set_props(const Scene& props, Vec3d origin) {
+  const Result<SceneCorners> corners = scene_corners(props, origin);
+  if (!corners) return corners.error();
+  state_->make_current();
+  return state_->props.set(*corners);
 }
 
 Result<void> Drawing::set_marks(size_t slot, const Marks& marks) {
@@ -451,7 +464,10 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   scene.set("cut", cut);
   scene.set("edges", static_cast<float>(config.edges));
   scene.set("edge_wide", 0.5F * static_cast<float>(config.samples));
+  scene.set("prop", 0.0F);
   mesh.draw();
+  scene.set("prop", 1.0F);
+  props.draw();
 
   begin(impostor);
   static const auto kWardrobe = wardrobe();

@@ -111,21 +111,22 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
     }
   }
   mark_edges(sides, normals, out.corners);
-  if (!out.bounds.empty()) {
-    // A plain just under the lowest point, out to the haze, for the scene to stand on. One
-    // triangle: where two of that size meet and are clipped, the sky would show through.
-    const double reach = 40 * length(out.bounds.max - out.bounds.min) + 100;
-    const auto middle = (out.bounds.min + out.bounds.max) * 0.5;
-    const double y = out.bounds.min.y - 0.02;
-    const auto corner = [&](double x, double z) {
-      out.corners.push_back({{static_cast<float>(middle.x + x * reach), static_cast<float>(y),
+  return out;
+}
+
+// One triangle: where two of that size meet and are clipped, the sky would show through.
+void add_plain(SceneCorners& scene) {
+  if (scene.bounds.empty()) return;
+  const double reach = 40 * length(scene.bounds.max - scene.bounds.min) + 100;
+  const auto middle = (scene.bounds.min + scene.bounds.max) * 0.5;
+  const double y = scene.bounds.min.y - 0.02;
+  const auto corner = [&](double x, double z) {
+    scene.corners.push_back({{static_cast<float>(middle.x + x * reach), static_cast<float>(y),
                               static_cast<float>(middle.z + z * reach)},
                              {0, 127, 0},
                              0});
-    };
-    corner(-1, -1), corner(-1, 3), corner(3, -1);
-  }
-  return out;
+  };
+  corner(-1, -1), corner(-1, 3), corner(3, -1);
 }
 
 }  // namespace throng

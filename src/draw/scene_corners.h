@@ -31,5 +31,7 @@ struct SceneCorners {
 
 /// Fails with kLimit.
 [[nodiscard]] Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin);
+/// A plain just under the lowest point, out to the haze, for the scene to stand on.
+void add_plain(SceneCorners& scene);
 
 }  // namespace throng

@@ -145,6 +145,7 @@ uniform float bias;
 uniform float cut;
 uniform float edges;     // How dark.
 uniform float edge_wide; // [px of this target]
+uniform float prop;      // 1: something that stands here for a time.
 out vec4 colour;
 // How much of the pixel an edge covers. Far away, where triangles are small, edges fade.
 float edge_cover() {
@@ -166,6 +167,7 @@ void main() {
   vec3 floor_colour = vec3(0.42, 0.41, 0.39);
   if (tint < 0.5) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
   vec3 albedo = mix(wall, floor_colour, smoothstep(0.5, 0.8, abs(n.y)));
+  albedo = mix(albedo, vec3(0.72, 0.42, 0.12), prop);
   float in_sun = dot(n, to_sun) > 0.0 ? sunlit(world + n * bias) : 0.0;
   colour = shown(lit(albedo, n, in_sun) * (1.0 - edges * edge), from_eye);
 }
@@ -298,6 +300,7 @@ layout(location = 2) in vec4 paint;
 layout(location = 3) in float side;
 uniform vec2 half_picture; // [px of this target]
 uniform float half_width;  // [px of this target]
+uniform float nearer;      // In clip space: a share of the way to the eye, however far.
 out vec4 tint;
 out float height;
 void main() {
@@ -317,7 +320,7 @@ void main() {
     vec2 across = size > 1e-4 ? vec2(-along.y, along.x) / size : vec2(0.0, 1.0);
     gl_Position.xy += across * side * half_width / half_picture * gl_Position.w;
   }
-  gl_Position.z -= 2e-4 * gl_Position.w;
+  gl_Position.z += nearer;
 }
 )";
 }

@@ -5,25 +5,34 @@
 
 namespace throng {
 
-Result<World> open_world(const Scenario& scenario, Context& context) {
-  if (!scenario.world.empty()) return World::open(scenario.world);
-  Result<Scene> scene = Error{Errc::kBadConfig, "the scenario names no world"};
+Result<Scene> load_scene(const Scenario& scenario, Context& context) {
+  if (!scenario.world.empty()) {
+    return Error{Errc::kBadConfig, scenario.world + ": a baked world keeps no triangles"};
+  }
   if (!scenario.models.empty()) {
     SceneConfig config;
     for (const std::string& model : scenario.models) {
       config.sources.push_back({.path = model, .up = {}, .scale = {}, .transform = {}});
     }
-    scene = load_scene(config, context);
-  } else if (!scenario.builtins.empty()) {
-    scene = make_builtin_world(scenario.builtins.front());
-  } else if (!scenario.planes.empty()) {
-    scene = make_plane_scene(scenario.planes.front());
+    return load_scene(config, context);
   }
-  if (!scene) return scene.error();
+  if (!scenario.builtins.empty()) return make_builtin_world(scenario.builtins.front());
+  if (!scenario.planes.empty()) return make_plane_scene(scenario.planes.front());
+  return Error{Errc::kBadConfig, "the scenario names no world"};
+}
+
+Result<World> bake_world(const Scenario& scenario, const Scene& scene, Context& context) {
   BakeConfig bake;
   bake.cell = scenario.cell;
   if (!scenario.classes.empty()) bake.classes = scenario.classes;
-  return bake_world(*scene, bake, context);
+  return bake_world(scene, bake, context);
+}
+
+Result<World> open_world(const Scenario& scenario, Context& context) {
+  if (!scenario.world.empty()) return World::open(scenario.world);
+  const Result<Scene> scene = load_scene(scenario, context);
+  if (!scene) return scene.error();
+  return bake_world(scenario, *scene, context);
 }
 
 }  // namespace throng

@@ -38,24 +38,31 @@ void Viewer::handle(const ViewEvent& event) {
       s.keys[key] = false;
       return;
     case ViewEventKind::kMouseDown:
+      s.move_pointer(event.x, event.y);
       if (taken && !s.wishes.grab_mouse) return;
       s.buttons[button] = true;
-      s.mouse_x = s.pressed_x = event.x;
-      s.mouse_y = s.pressed_y = event.y;
+      s.pressed_x = event.x;
+      s.pressed_y = event.y;
       s.dragged = false;
+      s.paints = event.button == MouseButton::kLeft && s.brush_paints() &&
+                 s.panel.mode != CameraMode::kWalk && !s.held(Key::kShift);
+      if (s.paints) s.paint_to(event.x, event.y);
       return;
     case ViewEventKind::kMouseUp:
+      // A drag may come up where no move has told of.
+      s.move_pointer(event.x, event.y);
       if (!std::exchange(s.buttons[button], false)) return;
-      if (!s.dragged && event.button == MouseButton::kLeft) s.click();
+      if (event.button != MouseButton::kLeft) return;
+      if (std::exchange(s.paints, false)) {
+        s.send_painted();
+      } else if (!s.dragged) {
+        s.click();
+      }
       return;
-    case ViewEventKind::kMouseMove: {
-      const double dx = event.x - s.mouse_x, dy = event.y - s.mouse_y;
-      s.mouse_x = event.x;
-      s.mouse_y = event.y;
-      if (std::hypot(event.x - s.pressed_x, event.y - s.pressed_y) > kClick) s.dragged = true;
-      s.drag(dx, dy);
+    case ViewEventKind::kMouseMove:
+      s.move_pointer(event.x, event.y);
+      s.show_brush(event.x, event.y);
       return;
-    }
     case ViewEventKind::kWheel:
       if (taken) return;
       if (s.panel.mode == CameraMode::kWalk) {
@@ -67,6 +74,7 @@ void Viewer::handle(const ViewEvent& event) {
     case ViewEventKind::kLeave:
       s.keys.fill(false);
       s.buttons.fill(false);
+      if (std::exchange(s.paints, false)) s.send_painted();
       return;
     case ViewEventKind::kDrop:
       s.wishes.open = event.path;
@@ -74,6 +82,16 @@ void Viewer::handle(const ViewEvent& event) {
     case ViewEventKind::kText:
       return;
   }
+}
+
+void Viewer::State::move_pointer(double x, double y) {
+  const double dx = x - mouse_x, dy = y - mouse_y;
+  if (dx == 0 && dy == 0) return;
+  if (paints) paint_to(x, y);
+  mouse_x = x;
+  mouse_y = y;
+  if (std::hypot(x - pressed_x, y - pressed_y) > kClick) dragged = true;
+  drag(dx, dy);
 }
 
 void Viewer::set_gamepad(const GamepadState& state) { state_->gamepad = state; }
@@ -106,9 +124,16 @@ void Viewer::State::press(Key key) {
     panel.mode = letter('1') ? CameraMode::kOrbit : CameraMode::kFly;
   }
   if (letter('3')) begin_walk();
-  constexpr char kOverlayKeys[] = "CLNKXHPB";  // In the order of Overlay.
+  constexpr char kOverlayKeys[] = "CLNKXHPBO";  // In the order of Overlay.
   for (size_t i = 0; i < kOverlays; ++i) {
     if (letter(kOverlayKeys[i])) panel.overlays[i] = !panel.overlays[i];
+  }
+  if (letter('T') && (panel.has_crowd || panel.scenario)) {
+    panel.tool = panel.tool == Tool::kPaint     ? Tool::kUnpaint
+                 : panel.tool == Tool::kUnpaint ? Tool::kPick
+                                                : Tool::kPaint;
+    if (panel.tool == Tool::kPaint) panel.overlays[static_cast<size_t>(Overlay::kPainted)] = true;
+    show_brush(mouse_x, mouse_y);
   }
   if (letter('V')) first_person = !first_person;
   if (letter('F') && panel.status.picked >= 0) {
@@ -140,7 +165,7 @@ void Viewer::State::drag(double dx, double dy) {
     }
     return;
   }
-  if (!left && !right && !middle) return;
+  if (paints || (!left && !right && !middle)) return;
   if (panel.mode == CameraMode::kFly && (left || right) && !held(Key::kShift)) {
     rig.turn_head(-dx, -dy, height);
   } else if (left && !held(Key::kShift)) {
@@ -154,10 +179,7 @@ void Viewer::State::click() {
   if (panel.mode == CameraMode::kWalk) return;
   const SightLine line = sight_line(pressed_x, pressed_y);
   const double cut = panel.is_cut ? panel.cut - origin.y : std::numeric_limits<double>::infinity();
-  std::optional<Vec3d> ground;
-  if (panel.has_world) {
-    ground = ground_on(world, {line.eye + origin, line.direction}, cut + origin.y, kFarthest);
-  }
+  const std::optional<Vec3d> ground = ground_under(pressed_x, pressed_y);
   if (panel.tool != Tool::kPick) {
     if (!ground || !panel.has_crowd) return;
     const double radius = panel.brush_radius;

@@ -23,6 +23,7 @@ CrowdPlayer::CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Cro
       start_(start),
       origin_(origin),
       crowd_(std::move(crowd)),
+      painted_(start.density),
       classes_(world_.summary().classes) {
   double sum = 0;
   std::vector<double> mix = start.mix;
@@ -96,6 +97,12 @@ uint32_t CrowdPlayer::add_people(const std::vector<AvatarId>& ids,
 Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   const int32_t avatar_class = people_[slot].avatar_class;
   const uint64_t stream = uint64_t{slot} << 32 | nth;
+  for (uint64_t n = 0; n < kTries && !painted_.empty(); ++n) {
+    const auto unit = [&](uint64_t k) { return random_unit(start_.seed + 1, stream, 3 * n + k); };
+    const WeightedPlaces::Point point = painted_.draw(unit(0), unit(1), unit(2));
+    const Place place = world_.find_place(avatar_class, point.at, point.reach);
+    if (place) return place;
+  }
   if (start_.near <= 0) return world_.random_place(avatar_class, start_.seed, stream);
   for (uint64_t n = 0; n < kTries; ++n) {
     const auto offset = [&](uint64_t axis) {
@@ -127,6 +134,21 @@ void CrowdPlayer::give_goals(std::span<const AvatarId> ids) {
   crowd_.set_goals(led, goals_);
 }
 
+void CrowdPlayer::set_density(const std::vector<DensityMap>& maps) {
+  start_.density = maps;
+  painted_ = WeightedPlaces(maps);
+  if (painted_.empty()) return;
+  std::vector<AvatarId> elsewhere;
+  crowd_.read(states_);
+  for (const AvatarState& s : states_) {
+    const Person& person = people_[s.id];
+    if (!person.goal || painted_.weight_at(person.goal.position) == 0) {
+      elsewhere.push_back(person.id);
+    }
+  }
+  give_goals(elsewhere);
+}
+
 std::shared_ptr<const Moment> CrowdPlayer::next() {
   if (!last_) return again();
   report_ = crowd_.step();
@@ -141,18 +163,7 @@ std::shared_ptr<const Moment> CrowdPlayer::again() {
   const auto moment = std::make_shared<Moment>();
   moment->time = time_;
   moment->report = report_;
-  moment->resize(states_.size());
-  for (size_t i = 0; i < states_.size(); ++i) {
-    const AvatarState& s = states_[i];
-    const Vec3d p = s.position - origin_;
-    moment->ids[i] = s.id;
-    moment->classes[i] = static_cast<uint8_t>(s.avatar_class);
-    moment->x[i] = static_cast<float>(p.x);
-    moment->y[i] = static_cast<float>(p.y);
-    moment->z[i] = static_cast<float>(p.z);
-    const double turns = std::atan2(s.heading_x, s.heading_z) / (2 * std::numbers::pi);
-    moment->heading[i] = static_cast<float>(turns - std::floor(turns));
-  }
+  put_states(states_, origin_, *moment);
   follow(last_ ? *last_ : Moment{}, *moment);
   last_ = moment;
   return moment;

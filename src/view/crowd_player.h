@@ -12,6 +12,7 @@
 #include "throng/crowd.h"
 #include "throng/world.h"
 #include "throng_view/viewer.h"
+#include "view/density_brush.h"
 #include "view/moment_feed.h"
 
 namespace throng {
@@ -47,6 +48,9 @@ class CrowdPlayer final : public MomentSource {
   uint32_t spawn(Vec3d where, double radius, uint32_t count, Context& context);
   /// Takes away who is within `radius` of a point, at its height. Returns how many.
   uint32_t erase(Vec3d where, double radius);
+  /// Goals lie where the maps say from now on, anywhere if all is 0; who is bound for a place of
+  /// weight 0 gets another goal.
+  void set_density(const std::vector<DensityMap>& maps);
   [[nodiscard]] std::optional<AvatarDetail> detail(uint64_t id) const;
 
   /// One that the caller leads: added at a place near `where`, if there is one.
@@ -80,6 +84,7 @@ class CrowdPlayer final : public MomentSource {
   CrowdStart start_;
   Vec3d origin_;
   Crowd crowd_;
+  WeightedPlaces painted_;
   std::vector<AvatarClass> classes_;
   std::vector<double> mix_up_to_;  // Running sums of the mix, the last is 1.
   std::vector<Person> people_;     // By slot.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/random.h"
 
@@ -54,6 +55,21 @@ size_t Moment::find(uint64_t id) const {
   return at != ids.end() && *at == id ? static_cast<size_t>(at - ids.begin()) : ids.size();
 }
 
+void put_states(const std::vector<AvatarState>& states, Vec3d origin, Moment& moment) {
+  moment.resize(states.size());
+  for (size_t i = 0; i < states.size(); ++i) {
+    const AvatarState& s = states[i];
+    const Vec3d p = s.position - origin;
+    moment.ids[i] = s.id;
+    moment.classes[i] = static_cast<uint8_t>(s.avatar_class);
+    moment.x[i] = static_cast<float>(p.x);
+    moment.y[i] = static_cast<float>(p.y);
+    moment.z[i] = static_cast<float>(p.z);
+    const double turns = std::atan2(s.heading_x, s.heading_z) / (2 * std::numbers::pi);
+    moment.heading[i] = in_turn(turns);
+  }
+}
+
 void follow(const Moment& before, Moment& now) {
   const double seconds = now.time - before.time, apart = std::max(1e-6, std::abs(seconds));
   for_each_pair(before, now, [&](size_t i, size_t j) {
@@ -84,6 +100,7 @@ void BlendedCrowd::blend(const Moment& a, const Moment& b, double share, const F
   now_.resize(b.size());
   now_.time = a.time + (b.time - a.time) * share;
   now_.report = b.report;
+  now_.flow = b.flow;
   const auto s = static_cast<float>(share);
   for_each_pair(a, b, [&](size_t i, size_t j) {
     now_.ids[i] = b.ids[i];

@@ -6,14 +6,22 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "throng/crowd.h"
 #include "throng/impostor.h"
+#include "throng/prism.h"
 #include "throng_draw/draw.h"
 
 /// Where everybody is at one time, and what lies between two of these.
 namespace throng {
+
+/// How many came and left, and who does not get on.
+struct SceneFlow {
+  uint64_t entered = 0, left = 0;  ///< So far.
+  uint64_t outside = 0, in_links = 0, stranded = 0;
+};
 
 /// One array entry an avatar, ascending ids, positions relative to the stage's origin.
 struct Moment {
@@ -25,12 +33,18 @@ struct Moment {
   std::vector<float> walked;   ///< Since first seen. [m]
   std::vector<float> pace;     ///< Mean speed of late. [m/s]
   CrowdReport report = {};     ///< Of the step that led here; empty for recordings.
+  std::shared_ptr<const std::vector<Prism>> obstacles = {};  ///< That are up now, or none.
+  SceneFlow flow = {};                                       ///< Of scenarios.
+  std::string fault = {};                                    ///< Why no more can come, or empty.
 
   [[nodiscard]] size_t size() const { return ids.size(); }
   void resize(size_t avatars);
   /// Index of an id, or size().
   [[nodiscard]] size_t find(uint64_t id) const;
 };
+
+/// Fills in who is where, relative to an origin.
+void put_states(const std::vector<AvatarState>& states, Vec3d origin, Moment& moment);
 
 /// Fills in `walked` and `pace` of `now` from the moment before it and softens its headings: a
 /// figure turns, it does not flip. `before` may be empty, or later: then time runs backwards.

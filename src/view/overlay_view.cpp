@@ -86,6 +86,9 @@ OverlayMaker::Made OverlayMaker::make(const Order& order) {
         made.fault = points.error().message;
       }
       break;
+    case Overlay::kPainted:
+      if (order.maps) made.marks = painted_marks(world_, *order.maps, origin_, context_);
+      break;
     case Overlay::kDensity:
     case Overlay::kNeighbours:
       break;  // Made anew for each frame.
@@ -129,7 +132,7 @@ void Viewer::State::show_overlays() {
       set(overlay, has_picked ? neighbour_marks(crowd.now(), picked, 5) : Marks{});
     } else if (overlay_maker && !overlay_maker->is_busy()) {
       OverlayMaker::Order order{
-          .overlay = overlay, .height = 0, .avatar_class = 0, .from = {}, .to = {}};
+          .overlay = overlay, .height = 0, .avatar_class = 0, .from = {}, .to = {}, .maps = {}};
       if (overlay == Overlay::kAir) {
         order.height = (panel.is_cut ? panel.cut : panel.bounds.max.y) - 0.05;
         if (ordered[i] && order.height == air_height) continue;
@@ -147,6 +150,9 @@ void Viewer::State::show_overlays() {
         order.to = *panel.picked->goal;
       } else if (ordered[i]) {
         continue;
+      }
+      if (overlay == Overlay::kPainted) {
+        order.maps = std::make_shared<const std::vector<DensityMap>>(painted);
       }
       ordered[i] = true;
       overlay_maker->start(order);

@@ -26,9 +26,10 @@ class OverlayMaker {
 
   struct Order {
     Overlay overlay = Overlay::kClearance;
-    double height = 0;         ///< Of air. [m, world]
-    int32_t avatar_class = 0;  ///< Of clearance and path.
-    Vec3d from, to;            ///< Of a path.
+    double height = 0;                                         ///< Of air. [m, world]
+    int32_t avatar_class = 0;                                  ///< Of clearance and path.
+    Vec3d from, to;                                            ///< Of a path.
+    std::shared_ptr<const std::vector<DensityMap>> maps = {};  ///< Of what is painted.
   };
   struct Made {
     Overlay overlay = Overlay::kClearance;

@@ -93,7 +93,7 @@ Vec3d middle_of(const Nodes& nodes, uint32_t node) {
 
 const char* word_for(Overlay overlay) {
   static constexpr std::array<const char*, kOverlays> kWords = {
-      "Clearance", "Levels", "Nodes", "Links", "Air", "Density", "Path", "Neighbours"};
+      "Clearance", "Levels", "Nodes", "Links", "Air", "Density", "Path", "Neighbours", "Painted"};
   return kWords[static_cast<size_t>(overlay)];
 }
 
@@ -108,7 +108,8 @@ const char* legend_of(Overlay overlay) {
       "it",
       "Avatars a square metre, over 2 m: blue few, red four and more",
       "The shortest way of the avatar picked to its goal",
-      "Whom the avatar picked may see: within 5 m"};
+      "Whom the avatar picked may see: within 5 m",
+      "Where people are sent: painted with the brush, or by the scenario; the stronger, the more"};
   return kLegends[static_cast<size_t>(overlay)];
 }
 
@@ -238,6 +239,50 @@ Marks density_marks(const Moment& crowd) {
     add_quad(marks, {x, y, z}, {x, y, z + kSide}, {x + kSide, y, z + kSide}, {x + kSide, y, z},
              ramp(1 - density / kMuch, 150));
   }
+  return marks;
+}
+
+Marks painted_marks(const World& world, const std::vector<DensityMap>& maps, Vec3d origin,
+                    Context& context) {
+  Marks marks;
+  const auto classes = static_cast<int32_t>(world.summary().classes.size());
+  for (const DensityMap& map : maps) {
+    const double wide = (map.x1 - map.x0) / map.width, deep = (map.z1 - map.z0) / map.height;
+    // A map of all heights is shown on the highest floor of each place.
+    const double low = std::max(map.low, world.summary().bounds.min.y - 1);
+    const double high = std::min(map.high, world.summary().bounds.max.y + 1);
+    const double middle = 0.5 * (low + high), reach = 0.5 * (high - low);
+    for (size_t i = 0; i < map.weights.size() && !context.cancel; ++i) {
+      if (map.weights[i] == 0 || marks.triangles.size() > kMost) continue;
+      const auto column = static_cast<double>(i % static_cast<size_t>(map.width));
+      const auto row = static_cast<double>(i / static_cast<size_t>(map.width));
+      const double x = map.x0 + column * wide, z = map.z0 + row * deep;
+      Place place;
+      for (int32_t c = 0; c < classes && !place; ++c) {
+        place = world.find_place(c, {x + wide / 2, middle, z + deep / 2}, reach);
+      }
+      if (!place) continue;
+      const double y = place.position.y + kAbove;
+      const Vec3d o = origin;
+      const auto alpha = static_cast<uint32_t>(60 + 130 * map.weights[i] / 255);
+      add_quad(marks, Vec3d{x, y, z} - o, Vec3d{x, y, z + deep} - o,
+               Vec3d{x + wide, y, z + deep} - o, Vec3d{x + wide, y, z} - o,
+               rgba(235, 60, 170, alpha));
+    }
+  }
+  return marks;
+}
+
+Marks brush_marks(Vec3d where, double radius, Rgba colour) {
+  Marks marks;
+  constexpr int32_t kSides = 48;
+  const auto rim = [&](int32_t n) {
+    const double angle = 2 * std::numbers::pi * n / kSides;
+    return where + Vec3d{radius * std::cos(angle), 0.1, radius * std::sin(angle)};
+  };
+  for (int32_t k = 0; k < kSides; ++k) add_line(marks, rim(k), rim(k + 1), colour);
+  marks.line_width = 2;
+  marks.through_walls = true;
   return marks;
 }
 

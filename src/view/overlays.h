@@ -8,6 +8,7 @@
 
 #include "throng/context.h"
 #include "throng/nodes.h"
+#include "throng/scenario.h"
 #include "throng/world.h"
 #include "throng_draw/draw.h"
 #include "view/moment.h"
@@ -25,8 +26,9 @@ enum class Overlay : uint8_t {
   kDensity,
   kPath,
   kNeighbours,
+  kPainted,
 };
-inline constexpr size_t kOverlays = 8;
+inline constexpr size_t kOverlays = 9;
 /// "Clearance", ...
 [[nodiscard]] const char* word_for(Overlay overlay);
 /// What its colours mean, one sentence.
@@ -47,6 +49,12 @@ inline constexpr size_t kOverlays = 8;
                                       Context& context);
 /// Avatars a square metre, over squares of two metres: blue few, red four and more.
 [[nodiscard]] Marks density_marks(const Moment& crowd);
+/// Where the maps of a brush or scenario have weight: the more, the less clear. A pixel lies on the
+/// ground of the first class that has any under its middle.
+[[nodiscard]] Marks painted_marks(const World& world, const std::vector<DensityMap>& maps,
+                                  Vec3d origin, Context& context);
+/// The rim of a brush on the ground.
+[[nodiscard]] Marks brush_marks(Vec3d where, double radius, Rgba colour);
 /// A way, a little above the ground.
 [[nodiscard]] Marks path_marks(const std::vector<Vec3d>& points, Vec3d origin);
 /// Who is within `sight` of one avatar, on its storey.

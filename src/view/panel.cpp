@@ -58,21 +58,65 @@ void draw_crowd(PanelState& s) {
   }
   if (ImGui::Button("Start again")) s.restart = true;
   tip("A new crowd with these settings");
+}
+
+void draw_tools(PanelState& s) {
+  const bool can_paint = s.has_crowd || (s.scenario && !s.scenario->densities.empty());
+  if (!can_paint) return;
   ImGui::TextDisabled("A click on the ground");
   const auto tool = [&](const char* name, Tool value) {
-    if (ImGui::RadioButton(name, s.tool == value)) s.tool = value;
+    if (!ImGui::RadioButton(name, s.tool == value)) return;
+    s.tool = value;
+    if (value == Tool::kPaint) s.overlays[static_cast<size_t>(Overlay::kPainted)] = true;
   };
   tool("picks", Tool::kPick);
-  ImGui::SameLine();
-  tool("spawns", Tool::kSpawn);
-  ImGui::SameLine();
-  tool("erases", Tool::kErase);
-  if (s.tool != Tool::kPick) {
-    slide("radius", s.brush_radius, 0.5, 30, "%.1f m", ImGuiSliderFlags_Logarithmic);
-    if (s.tool == Tool::kSpawn) {
-      ImGui::SliderInt("at a time", &s.brush_count, 1, 2000, "%d", ImGuiSliderFlags_Logarithmic);
+  if (s.has_crowd) {
+    ImGui::SameLine();
+    tool("spawns", Tool::kSpawn);
+    ImGui::SameLine();
+    tool("erases", Tool::kErase);
+  }
+  tool("paints where people go", Tool::kPaint);
+  tool("wipes that away", Tool::kUnpaint);
+  if (s.tool == Tool::kPick) return;
+  slide("radius", s.brush_radius, 0.5, 30, "%.1f m", ImGuiSliderFlags_Logarithmic);
+  if (s.tool == Tool::kSpawn) {
+    ImGui::SliderInt("at a time", &s.brush_count, 1, 2000, "%d", ImGuiSliderFlags_Logarithmic);
+  }
+  if (s.tool == Tool::kPaint) {
+    slide("strength", s.brush_weight, 0.05, 1, "%.2f");
+    tip("Twice the strength, twice as many");
+  }
+  if (s.tool != Tool::kPaint && s.tool != Tool::kUnpaint) return;
+  if (s.scenario && s.scenario->densities.size() > 1) {
+    const auto& names = s.scenario->densities;
+    const auto at = static_cast<size_t>(s.scenario->painted);
+    if (ImGui::BeginCombo("map", names[at].c_str())) {
+      for (size_t i = 0; i < names.size(); ++i) {
+        if (ImGui::Selectable(names[i].c_str(), i == at)) {
+          s.scenario->painted = static_cast<int32_t>(i);
+        }
+      }
+      ImGui::EndCombo();
     }
   }
+  // A scenario's people must be able to go somewhere.
+  if (s.has_crowd && ImGui::Button("Wipe all away")) s.unpaint_all = true;
+}
+
+void draw_scenario(PanelState& s) {
+  const SceneFlow& flow = s.flow;
+  ImGui::Text("%.1f of %.0f s", s.status.time, s.scenario->seconds);
+  ImGui::Text("came %llu, left %llu", static_cast<unsigned long long>(flow.entered),
+              static_cast<unsigned long long>(flow.left));
+  const auto told = [](const char* what, uint64_t count) {
+    if (count > 0) ImGui::Text("%s %llu", what, static_cast<unsigned long long>(count));
+  };
+  told("wait outside", flow.outside);
+  told("in lifts", flow.in_links);
+  told("find no way", flow.stranded);
+  if (ImGui::Button("Start again")) s.restart = true;
+  tip("From its beginning, with what was painted");
 }
 
 // Just over the heads of who stands on a storey, under the floor of the next.
@@ -139,7 +183,7 @@ void draw_times(const PanelState& s) {
   row("  cull and pack", s.times.pack);
   row("  draw", s.times.draw);
   row("  panel", s.times.panel);
-  if (s.has_crowd) {
+  if (s.has_crowd || s.scenario) {
     ImGui::Separator();
     row("step", s.report.seconds_total);
     row("  ways", s.report.seconds_plan);
@@ -171,9 +215,14 @@ void draw_main(PanelState& s, float scale, int32_t height) {
     ImGui::TextWrapped("%s", s.status.error.c_str());
     ImGui::PopStyleColor();
   }
-  if (s.has_crowd || s.replay) draw_transport(s);
+  if (s.has_crowd || s.replay || s.scenario) draw_transport(s);
   if (s.has_crowd && ImGui::CollapsingHeader("Crowd", ImGuiTreeNodeFlags_DefaultOpen)) {
     draw_crowd(s);
+    draw_tools(s);
+  }
+  if (s.scenario && ImGui::CollapsingHeader("Scenario", ImGuiTreeNodeFlags_DefaultOpen)) {
+    draw_scenario(s);
+    draw_tools(s);
   }
   if (ImGui::CollapsingHeader("Levels", ImGuiTreeNodeFlags_DefaultOpen)) draw_levels(s);
   if (s.has_world && ImGui::CollapsingHeader("Overlays", ImGuiTreeNodeFlags_DefaultOpen)) {
@@ -261,17 +310,19 @@ void draw_help(PanelState& s, int32_t width, int32_t height) {
         {"Left drag", "turn around the middle; in Fly and Walk: look around"},
         {"Right or middle drag", "move sideways; with Shift, also the left"},
         {"Wheel", "nearer to what is under the pointer, or away"},
-        {"Click", "pick an avatar, or spawn or erase (panel: Crowd)"},
+        {"Click", "pick an avatar, or spawn, erase, paint where people go (panel: Crowd)"},
         {"W A S D, arrows", "go; Q down, E up; Shift: faster"},
         {"1, 2, 3", "Orbit, Fly, Walk yourself"},
         {"V", "in Walk: through its eyes, or from behind"},
         {"F", "look at the avatar picked"},
+        {"T", "paint where people go; again: wipe that away; again: pick"},
         {"Home", "see all"},
         {"Page Up, Page Down", "storey by storey; End: all of them"},
         {"Space, period", "pause or play; one step"},
         {"Comma, M", "slower, faster"},
         {"C, L, N, K", "clearance, levels, nodes, links"},
         {"X, H, P, B", "air, density (heat), path and neighbours of the avatar picked"},
+        {"O", "where people are sent"},
         {"Tab", "panel"},
         {"F11, F12", "full screen; keep a picture"},
         {"Escape", "leave Walk, let go of the avatar, close this"},

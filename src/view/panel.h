@@ -17,7 +17,20 @@
 namespace throng {
 
 /// What a click on the ground does.
-enum class Tool : uint8_t { kPick, kSpawn, kErase };
+enum class Tool : uint8_t {
+  kPick,
+  kSpawn,
+  kErase,
+  kPaint,    ///< Where people go, with the brush's weight.
+  kUnpaint,  ///< The same with weight 0.
+};
+
+/// Of a scenario that runs.
+struct ScenarioPanel {
+  double seconds = 0;                  ///< How long it takes.
+  std::vector<std::string> densities;  ///< Names of its maps.
+  int32_t painted = 0;                 ///< The one that the brush paints.
+};
 
 /// Seconds of a frame, by what they went into.
 struct FrameTimes {
@@ -32,6 +45,7 @@ struct PanelState {
   Tool tool = Tool::kPick;
   double brush_radius = 2;  ///< [m]
   int32_t brush_count = 20;
+  double brush_weight = 1;  ///< Of what is painted. [0.05 to 1]
   bool playing = true;
   bool help = false;
   double cut = 0;  ///< Height above which the scene is left out, if `is_cut`. [m, world]
@@ -49,6 +63,8 @@ struct PanelState {
   bool has_world = false;
   bool has_crowd = false;
   std::optional<ReplaySpan> replay;
+  std::optional<ScenarioPanel> scenario;
+  SceneFlow flow;
   std::vector<double> storeys;
   std::vector<std::string> class_names;
   std::vector<double> class_heights;
@@ -58,6 +74,7 @@ struct PanelState {
   double picked_pace = 0, picked_walked = 0;
 
   // Asked for in this frame; the owner clears them.
+  bool unpaint_all = false;
   bool step = false, restart = false, frame_all = false, set_count = false, walk = false;
   std::optional<double> seek;
 };

@@ -32,23 +32,32 @@ void StageJob::run(const LoadStage& load) {
   try {
     StageParts parts(*this);
     ok = load(parts, context_);
-    if (ok && crowd_) {
-      context_.on_progress({"ways", 0, 0});
-      auto player = CrowdPlayer::make(world_, *crowd_, workers_, origin_, context_);
-      if (player) {
-        auto feed = std::make_unique<MomentFeed>(*std::move(player));
-        const std::lock_guard lock(mutex_);
-        mail_.feed = std::move(feed);
-      } else {
-        ok = player.error();
-      }
-    }
+    if (ok) ok = start_walking();
   } catch (const std::bad_alloc&) {
     ok = Error{Errc::kLimit, name_ + ": out of memory; use larger cells or a smaller world"};
   }
   const std::lock_guard lock(mutex_);
   if (!ok && ok.error().code != Errc::kCancelled) error_ = ok.error().message;
   done_ = true;
+}
+
+Result<void> StageJob::start_walking() {
+  if (!crowd_ && !scenario_) return {};
+  context_.on_progress({"ways", 0, 0});
+  std::unique_ptr<MomentSource> source;
+  if (scenario_) {
+    auto player = ScenarioPlayer::make(world_, *scenario_, workers_, origin_, context_);
+    if (!player) return player.error();
+    source = *std::move(player);
+  } else {
+    auto player = CrowdPlayer::make(world_, *crowd_, workers_, origin_, context_);
+    if (!player) return player.error();
+    source = *std::move(player);
+  }
+  auto feed = std::make_unique<MomentFeed>(std::move(source));
+  const std::lock_guard lock(mutex_);
+  mail_.feed = std::move(feed);
+  return {};
 }
 
 StageMail StageJob::take() {
@@ -107,6 +116,12 @@ void StageParts::set_crowd(const CrowdStart& start) {
   const std::lock_guard lock(job_.mutex_);
   job_.crowd_ = start;
   job_.mail_.crowd = start;
+}
+
+void StageParts::set_scenario(const Scenario& scenario) {
+  const std::lock_guard lock(job_.mutex_);
+  job_.scenario_ = scenario;
+  job_.mail_.scenario = scenario;
 }
 
 void StageParts::set_replay(Replay replay) {

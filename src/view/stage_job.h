@@ -15,6 +15,7 @@
 #include "view/crowd_player.h"
 #include "view/moment_feed.h"
 #include "view/replay_player.h"
+#include "view/scenario_player.h"
 
 namespace throng {
 
@@ -27,6 +28,7 @@ struct StageMail {
   std::optional<std::vector<std::vector<Atlas>>> atlases;
   std::optional<ReplaySpan> replay;
   std::optional<CrowdStart> crowd;
+  std::optional<Scenario> scenario;
   std::vector<std::string> class_names;
   std::unique_ptr<MomentFeed> feed;
 };
@@ -51,6 +53,7 @@ class StageJob {
  private:
   friend class StageParts;
   void run(const LoadStage& load);
+  Result<void> start_walking();
 
   std::string name_;
   int32_t workers_;
@@ -64,6 +67,7 @@ class StageJob {
   Vec3d origin_;
   World world_;
   std::optional<CrowdStart> crowd_;
+  std::optional<Scenario> scenario_;
   std::thread thread_;
 };
 

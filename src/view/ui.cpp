@@ -3,10 +3,12 @@
 #include "view/ui.h"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 namespace throng {
 namespace {
@@ -122,18 +124,21 @@ bool Ui::handle(const ViewEvent& event) {
       return io.WantCaptureMouse;
     case ViewEventKind::kMouseDown:
       move();
-      io.MouseDown[static_cast<size_t>(event.button)] = true;
+      down_[static_cast<size_t>(event.button)] = true;
+      pressed_[static_cast<size_t>(event.button)] = true;
+      // Since the last frame the pointer may have come onto the panel, or left it.
+      ImGui::UpdateHoveredWindowAndCaptureFlags();
       return io.WantCaptureMouse;
     case ViewEventKind::kMouseUp:
       move();
-      io.MouseDown[static_cast<size_t>(event.button)] = false;
+      down_[static_cast<size_t>(event.button)] = false;
       return false;
     case ViewEventKind::kWheel:
       io.MouseWheel += static_cast<float>(event.y);
       return io.WantCaptureMouse;
     case ViewEventKind::kLeave:
       std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-      std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
+      down_.fill(false);
       io.KeyShift = io.KeyCtrl = io.KeyAlt = false;
       return false;
     case ViewEventKind::kDrop:
@@ -147,6 +152,9 @@ void Ui::begin(double seconds, int32_t width, int32_t height) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
+  for (size_t b = 0; b < down_.size(); ++b) {
+    io.MouseDown[b] = down_[b] || std::exchange(pressed_[b], false);
+  }
   ImGui::NewFrame();
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ class Ui {
  private:
   ImGuiContext* context_ = nullptr;
   float scale_ = 1;
+  // What is down, and what went down since the last frame, even if it came up again: ImGui sees
+  // only what is down when a frame begins.
+  std::array<bool, 3> down_{}, pressed_{};
   std::vector<PanelVertex> vertices_;
   std::vector<uint32_t> indices_;
   std::vector<PanelRun> runs_;

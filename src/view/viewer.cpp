@@ -56,6 +56,12 @@ void Viewer::State::take_parts() {
     drawing.clear_atlases();
     panel.has_world = panel.has_crowd = false;
     panel.replay.reset();
+    panel.scenario.reset();
+    scenario.reset();
+    painted.clear();
+    if (props) keep(drawing.set_props({}, {}));
+    props.reset();
+    panel.tool = Tool::kPick;
     panel.storeys.clear();
     panel.class_names.clear();
     panel.class_heights.clear();
@@ -104,10 +110,19 @@ void Viewer::State::take_parts() {
   if (mail.crowd) {
     panel.crowd = *mail.crowd;
     panel.avatars_wanted = static_cast<int32_t>(mail.crowd->avatars);
+    painted = mail.crowd->density;
+  }
+  if (mail.scenario) {
+    scenario = std::move(mail.scenario);
+    painted = scenario->densities;
+    panel.crowd.dt = scenario->dt;
+    panel.scenario = {.seconds = scenario->seconds, .densities = {}, .painted = 0};
+    for (const DensityMap& map : painted) panel.scenario->densities.push_back(map.name);
+    ordered[static_cast<size_t>(Overlay::kPainted)] = false;
   }
   if (mail.feed) {
     feed = std::move(mail.feed);
-    panel.has_crowd = !panel.replay;
+    panel.has_crowd = !panel.replay && !panel.scenario;
     time = panel.replay ? panel.replay->first : 0;
   }
   if (done) {
@@ -129,7 +144,11 @@ void Viewer::State::act_on_panel() {
     change_crowd(
         [count](CrowdPlayer& player, Context& context) { player.set_count(count, context); });
   }
-  if (std::exchange(panel.restart, false) && panel.has_crowd) {
+  if (std::exchange(panel.unpaint_all, false)) {
+    painted.clear();
+    send_painted();
+  }
+  if (std::exchange(panel.restart, false) && (panel.has_crowd || panel.scenario)) {
     panel.crowd.avatars = static_cast<uint32_t>(std::max(0, panel.avatars_wanted));
     restart_crowd();
   }
@@ -151,15 +170,32 @@ void Viewer::State::change_crowd(std::function<void(CrowdPlayer&, Context&)> cha
       !panel.playing);
 }
 
+void Viewer::State::change_scenario(std::function<Result<void>(ScenarioPlayer&)> change) {
+  if (!feed || !panel.scenario) return;
+  feed->post(
+      [change = std::move(change), answers = answers](MomentSource& source) {
+        const Result<void> ok = change(static_cast<ScenarioPlayer&>(source));
+        const std::lock_guard lock(answers->lock);
+        answers->fault = ok ? std::string() : ok.error().message;
+      },
+      !panel.playing);
+}
+
 // The scene and the figures stay: only who walks is made again.
 void Viewer::State::restart_crowd() {
   leave_walk();
-  const CrowdStart start = panel.crowd;
+  CrowdStart start = panel.crowd;
+  start.density = painted;
+  if (scenario) scenario->densities = painted;
   retire_job();
   job = std::make_unique<StageJob>(
       panel.status.name,
-      [start](StageParts& parts, Context&) -> Result<void> {
-        parts.set_crowd(start);
+      [start, again = scenario](StageParts& parts, Context&) -> Result<void> {
+        if (again) {
+          parts.set_scenario(*again);
+        } else {
+          parts.set_crowd(start);
+        }
         return {};
       },
       config.workers, origin, world);
@@ -204,8 +240,33 @@ void Viewer::State::look_up_crowd() {
   crowd.hide(through_eyes() ? panel.status.driven : -1);
   crowd.blend(*pair.a, *pair.b, pair.share, figures, cut);
   panel.report = pair.b->report;
+  panel.flow = pair.b->flow;
+  if (!pair.b->fault.empty()) panel.status.error = pair.b->fault;
+  show_props(*pair.a);
   panel.status.avatars = crowd.now().size();
   mean(panel.times.blend, seconds_since(start));
+}
+
+void Viewer::State::show_props(const Moment& moment) {
+  if (moment.obstacles == props) return;
+  props = moment.obstacles;
+  Scene scene;
+  for (size_t p = 0; props && p < props->size(); ++p) {
+    const Prism& prism = (*props)[p];
+    const auto corner = [&](size_t k, double y) {
+      const auto& c = prism.corners[k % prism.corners.size()];
+      return Vec3d{c[0], y, c[1]};
+    };
+    for (size_t k = 0; k < prism.corners.size(); ++k) {
+      scene.add_quad(corner(k, prism.low), corner(k + 1, prism.low), corner(k + 1, prism.high),
+                     corner(k, prism.high));
+      if (k == 0 || k + 1 == prism.corners.size()) continue;
+      for (const double y : {prism.low, prism.high}) {
+        scene.add_triangle(corner(0, y), corner(k, y), corner(k + 1, y));
+      }
+    }
+  }
+  if (auto ok = drawing.set_props(scene, origin); !ok) panel.status.error = ok.error().message;
 }
 
 DrawingConfig Viewer::State::drawing_config(int32_t width, int32_t height) const {
@@ -237,6 +298,10 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
   move_eye(seconds);
   advance_time(seconds);
   look_up_crowd();
+  {
+    const std::lock_guard lock(answers->lock);
+    if (!answers->fault.empty()) panel.status.error = std::exchange(answers->fault, {});
+  }
   follow_driven(seconds);
   look_up_picked();
   show_overlays();

@@ -17,10 +17,13 @@
 #include "view/moment_feed.h"
 #include "view/overlay_view.h"
 #include "view/panel.h"
+#include "view/scenario_player.h"
 #include "view/stage_job.h"
 #include "view/ui.h"
 
 namespace throng {
+
+inline constexpr size_t kBrushSlot = kMarkSlots - 1;  // Of the drawing's marks.
 
 /// All that a viewer knows. Frames are in viewer.cpp, what keys and mouse do in controls.cpp,
 /// walking in walk_mode.cpp, overlays in overlay_view.cpp.
@@ -54,6 +57,11 @@ struct Viewer::State {
   std::unique_ptr<OverlayMaker> overlay_maker;
   std::array<bool, kOverlays> shown{}, ordered{};  // In the drawing; asked for since switched on.
   double air_height = 0;
+  std::shared_ptr<const std::vector<Prism>> props;  // In the drawing.
+  std::optional<Scenario> scenario;
+  std::vector<DensityMap> painted;  // Of the scenario, or by the brush for the crowd.
+  bool paints = false;              // The brush is down.
+  bool brush_shown = false;         // In the drawing.
   std::optional<double> way_asked;
 
   // Where one looks from.
@@ -83,6 +91,7 @@ struct Viewer::State {
     std::mutex lock;
     std::optional<int64_t> joined;
     std::optional<AvatarDetail> detail;
+    std::string fault;
   };
   std::shared_ptr<Answers> answers = std::make_shared<Answers>();
   std::optional<double> last_asked;
@@ -91,6 +100,9 @@ struct Viewer::State {
   void reap();
   void retire_job();
   void restart_crowd();
+  void change_scenario(std::function<Result<void>(ScenarioPlayer&)> change);
+  void show_props(const Moment& moment);
+  void send_painted();
   void change_crowd(std::function<void(CrowdPlayer&, Context&)> change);
   void act_on_panel();
   void advance_time(double seconds);
@@ -105,6 +117,13 @@ struct Viewer::State {
   void press(Key key);
   void click();
   void drag(double dx, double dy);
+  void move_pointer(double x, double y);
+  void paint_to(double x, double y);
+  void show_brush(double x, double y);
+  [[nodiscard]] bool brush_paints() const {
+    return panel.tool == Tool::kPaint || panel.tool == Tool::kUnpaint;
+  }
+  [[nodiscard]] std::optional<Vec3d> ground_under(double x, double y) const;  // In the world.
   void move_eye(double seconds);
   [[nodiscard]] bool held(Key key) const { return keys[static_cast<size_t>(key)]; }
   [[nodiscard]] SightLine sight_line(double x, double y) const;  // Relative to the origin.

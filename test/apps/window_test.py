@@ -108,11 +108,8 @@ def check(window):
     window.do("key", "Escape")
     # Not the same picture as before: hints come and go.
     without = window.wait("no keys after Escape", lambda p: differing(p, keys) > 8000)
-    # One after the other, as a hand does: a frame takes its time.
-    for drag in (("mousedown", "1"), ("mousemove_relative", "--", "-80", "15"),
-                 ("mousemove_relative", "--", "-80", "15"), ("mouseup", "1")):
-        window.do(*drag)
-        time.sleep(1)
+    # All at once: begun and ended between two frames.
+    window.do("mousedown", "1", "mousemove_relative", "--", "-80", "15", "mousemove_relative", "--", "-80", "15", "mouseup", "1")
     window.wait("another side after a drag", lambda p: differing(p, without) > 8000)
     window.do("key", "F12")
     window.wait("a picture kept", lambda p: (window.folder / "throng-001.png").exists())

@@ -12,6 +12,7 @@
 
 #include "throng/bake.h"
 #include "throng_view/viewer.h"
+#include "view/density_brush.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -53,13 +54,14 @@ const Baked& hall() {
   return baked;
 }
 
-Viewer made_viewer() {
+// Weights are only there for the overlay that shows them: goals would lie elsewhere.
+Viewer made_viewer(const std::string& overlay) {
   Result<Drawing> drawing = Drawing::create();
   EXPECT_TRUE(drawing) << drawing.error().message;
   Result<Viewer> viewer =
       Viewer::create(*std::move(drawing), {.settings = {}, .font = {}, .panel = false});
   EXPECT_TRUE(viewer) << viewer.error().message;
-  viewer->load("hall", [](StageParts& parts, Context& context) -> Result<void> {
+  viewer->load("hall", [overlay](StageParts& parts, Context& context) -> Result<void> {
     if (auto ok = parts.set_scene(hall().scene); !ok) return ok;
     parts.set_world(hall().world, hall().nodes);
     AtlasConfig config;
@@ -73,6 +75,10 @@ Viewer made_viewer() {
     start.avatars = 40;
     start.near = 10;
     start.mix = {1, 0};
+    if (overlay == "Painted") {
+      paint(map_at(start.density, hall().scene.bounds(), 0), {4, 0, 9}, 2.5, 90);
+      paint(map_at(start.density, hall().scene.bounds(), 3), {9, 3, 2}, 1.5, 255);
+    }
     parts.set_crowd(start);
     return {};
   });
@@ -122,7 +128,7 @@ void expect_golden(const Image& image, const std::string& name) {
 class Overlays : public testing::TestWithParam<std::string> {};
 
 TEST_P(Overlays, LooksAsItDid) {
-  Viewer viewer = made_viewer();
+  Viewer viewer = made_viewer(GetParam());
   const Image without = picture(viewer);
   viewer.pick(7);
   viewer.show_overlay(GetParam());

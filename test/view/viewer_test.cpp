@@ -11,6 +11,9 @@
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
 #include "throng/crowd.h"
+#include "throng/scenario.h"
+#include "view/crowd_player.h"
+#include "view/density_brush.h"
 
 // The viewer as a user has it, but for the window: events in, pictures out.
 namespace throng {
@@ -174,6 +177,204 @@ TEST(Viewer, KeysAndMouseMoveTheEyeAsInOtherPrograms) {
   viewer.handle({.kind = ViewEventKind::kLeave});
   (void)picture(viewer, 0.8);
   EXPECT_NEAR(length(viewer.status().camera.target - after), 0, 1e-9);
+}
+
+// As a fast hand and a slow machine give it: all between two frames, and no move told of.
+TEST(Viewer, ADragWithinOneFrameCounts) {
+  Viewer viewer = made_viewer();
+  viewer.load("two floors", stage_with(5));
+  viewer.wait_until_loaded();
+  (void)picture(viewer, 0);
+  mouse(viewer, ViewEventKind::kMouseMove, 60, 60);  // On the panel.
+  (void)picture(viewer, 0.1);
+  const EyeCamera start = viewer.status().camera;
+  mouse(viewer, ViewEventKind::kMouseMove, 430, 150);  // Off it.
+  mouse(viewer, ViewEventKind::kMouseDown, 430, 150);
+  mouse(viewer, ViewEventKind::kMouseUp, 350, 160);
+  (void)picture(viewer, 0.2);
+  EXPECT_GT(length(viewer.status().camera.eye - start.eye), 1);
+  EXPECT_EQ(viewer.status().picked, -1);
+}
+
+TEST(Viewer, AClickWithinOneFrameReachesThePanel) {
+  Viewer viewer = made_viewer();
+  viewer.load("two floors", stage_with(5));
+  viewer.wait_until_loaded();
+  (void)picture(viewer, 0);
+  mouse(viewer, ViewEventKind::kMouseMove, 40, 93);  // "Pause".
+  (void)picture(viewer, 0.1);
+  EXPECT_TRUE(viewer.status().playing);
+  mouse(viewer, ViewEventKind::kMouseDown, 40, 93);
+  mouse(viewer, ViewEventKind::kMouseUp, 40, 93);
+  (void)picture(viewer, 0.2);
+  (void)picture(viewer, 0.3);
+  EXPECT_FALSE(viewer.status().playing);
+}
+
+Scenario a_scenario() {
+  const auto scenario = parse_scenario(R"(
+seconds = 20
+[plane]
+floor = [[0, 0], [20, 0], [20, 20], [0, 20]]
+[[area]]
+name = "door"
+box = [0.5, 0.5, 4, 19]
+[[area]]
+name = "far"
+box = [15, 15, 19, 19]
+[[area]]
+name = "near"
+box = [6, 1, 9, 4]
+[[density]]
+name = "goals"
+box = [0, 0, 20, 20]
+pixel = 1
+paint = [{ area = "far", weight = 100 }]
+[[journey]]
+name = "visit"
+stages = [{ density = "goals" }]
+[[source]]
+name = "all"
+area = "door"
+count = 30
+journey = "visit"
+[[obstacle]]
+name = "crate"
+box = [10, 2, 12, 4]
+y = [0, 1]
+begin = 2
+)",
+                                       "test.toml");
+  EXPECT_TRUE(scenario) << scenario.error().message;
+  return *scenario;
+}
+
+LoadStage stage_of(const Scenario& scenario) {
+  return [scenario](StageParts& parts, Context& context) -> Result<void> {
+    const auto scene = load_scene(scenario, context);
+    if (!scene) return scene.error();
+    if (auto ok = parts.set_scene(*scene); !ok) return ok;
+    const auto world = bake_world(scenario, *scene, context);
+    if (!world) return world.error();
+    parts.set_world(*world);
+    parts.set_atlases({{people()}});
+    parts.set_scenario(scenario);
+    return {};
+  };
+}
+
+TEST(Viewer, RunsAScenarioByItsOwnClockWithItsObstacles) {
+  Viewer viewer = made_viewer({.settings = R"({"shadows": false})", .font = {}, .panel = false});
+  viewer.load("scenario", stage_of(a_scenario()));
+  viewer.wait_until_loaded();
+  EXPECT_EQ(viewer.status().error, "");
+  viewer.look_at({11, 6, 3.1}, {11, 0, 3});
+  viewer.play_for(1);
+  const Image before = picture(viewer, 0);
+  EXPECT_EQ(viewer.status().avatars, 30U);
+  viewer.play_for(1.5);
+  const Image crate = picture(viewer, 0);
+  // The crate's colour is the only warm one: much more red than blue.
+  const auto warm = [](const Image& image) {
+    size_t count = 0;
+    for (size_t i = 0; i < image.rgb.size(); i += 3) {
+      count += image.rgb[i] > image.rgb[i + 2] + 60 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_LT(warm(before), 200U);
+  EXPECT_GT(warm(crate), 10000U);
+  viewer.play_for(100);  // It ends after 20 s.
+  (void)picture(viewer, 0);
+  EXPECT_NEAR(viewer.status().time, 20, 0.11);
+  viewer.load("two floors", stage_with(3));
+  viewer.wait_until_loaded();
+  viewer.look_at({11, 6, 3.1}, {11, 0, 3});
+  EXPECT_LT(warm(picture(viewer, 0)), 200U);  // Gone with its scenario.
+}
+
+size_t pink(const Image& image) {
+  size_t count = 0;
+  for (size_t i = 0; i < image.rgb.size(); i += 3) {
+    count += image.rgb[i] > image.rgb[i + 1] + 50 && image.rgb[i + 2] > image.rgb[i + 1] + 20;
+  }
+  return count;
+}
+
+TEST(Viewer, TheBrushPaintsWhereADragGoesAndWipesItAway) {
+  for (const bool of_scenario : {false, true}) {
+    Viewer viewer = made_viewer({.settings = R"({"shadows": false})", .font = {}, .panel = false});
+    viewer.load("stage", of_scenario ? stage_of(a_scenario()) : stage_with(20));
+    viewer.wait_until_loaded();
+    viewer.look_at({10, 25, 10.1}, {10, 0, 10});
+    viewer.play_for(0.1);
+    (void)picture(viewer, 0);
+    const EyeCamera before = viewer.status().camera;
+    const auto seen = [&] {
+      viewer.wait_for_overlays();
+      return pink(picture(viewer, 0));
+    };
+    press(viewer, key_of('T'));
+    const size_t first = seen();
+    EXPECT_EQ(first > 0, of_scenario);  // Its own map.
+    mouse(viewer, ViewEventKind::kMouseDown, 180, 230);
+    mouse(viewer, ViewEventKind::kMouseMove, 280, 230);
+    mouse(viewer, ViewEventKind::kMouseUp, 280, 230);
+    const size_t painted = seen();
+    EXPECT_GT(painted, first + 3000);
+    EXPECT_EQ(viewer.status().camera.eye, before.eye);  // Nothing turned.
+    press(viewer, key_of('T'));
+    mouse(viewer, ViewEventKind::kMouseDown, 180, 230);
+    mouse(viewer, ViewEventKind::kMouseUp, 220, 230);
+    const size_t left = seen();
+    EXPECT_LT(left, painted - 1000);
+    EXPECT_GT(left, first);
+    press(viewer, key_of('T'));
+    mouse(viewer, ViewEventKind::kMouseDown, 300, 230);
+    mouse(viewer, ViewEventKind::kMouseUp, 350, 230);
+    (void)picture(viewer, 0);
+    EXPECT_NE(viewer.status().camera.eye, before.eye);  // Drags turn again.
+    EXPECT_EQ(viewer.status().error, "");
+  }
+}
+
+TEST(CrowdPlayer, PeopleGoWhereItIsPainted) {
+  Context context;
+  CrowdStart start;
+  start.avatars = 24;
+  auto player = CrowdPlayer::make(two_floors().world, start, 1, {}, context);
+  ASSERT_TRUE(player) << player.error().message;
+  std::vector<DensityMap> maps;
+  const auto near = [](const Moment& moment, double x, double z, double within) {
+    size_t count = 0;
+    for (size_t i = 0; i < moment.size(); ++i) {
+      count += std::hypot(moment.x[i] - x, moment.z[i] - z) < within ? 1 : 0;
+    }
+    return count;
+  };
+  const auto after = [&](int32_t steps) {
+    for (int32_t k = 1; k < steps; ++k) (void)(*player)->next();
+    return (*player)->next();
+  };
+  const auto at_first = after(2);
+  const size_t before = near(*at_first, 3, 15, 4);
+  paint(map_at(maps, two_floors().scene.bounds(), 0), {3, 0, 15}, 3, 255);
+  (*player)->set_density(maps);
+  const size_t there = near(*after(300), 3, 15, 4);
+  EXPECT_LT(before, 10U);
+  EXPECT_GT(there, 14U);  // The others are up where no way leads down, or yet on it.
+  (*player)->set_density({});
+  EXPECT_LT(near(*after(300), 3, 15, 4), 10U);
+}
+
+TEST(Viewer, AScenarioThatCannotRunSaysWhy) {
+  Scenario scenario = a_scenario();
+  scenario.areas[0].prisms = {Prism::box({100, -1, 100}, {101, 3, 101})};
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  viewer.load("scenario", stage_of(scenario));
+  viewer.wait_until_loaded();
+  EXPECT_NE(viewer.status().error.find("source 'all': nobody"), std::string::npos)
+      << viewer.status().error;
 }
 
 TEST(Viewer, SpacePausesAndPeriodMakesOneStep) {

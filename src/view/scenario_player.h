@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "throng/simulation.h"
+#include "view/moment_feed.h"
+
+namespace throng {
+
+/// Runs a scenario: until its time is over or everybody has left.
+class ScenarioPlayer final : public MomentSource {
+ public:
+  /// Fails as Simulation::make does.
+  [[nodiscard]] static Result<std::unique_ptr<ScenarioPlayer>> make(const World& world,
+                                                                    const Scenario& scenario,
+                                                                    int32_t workers, Vec3d origin,
+                                                                    Context& context);
+  std::shared_ptr<const Moment> next() override;
+  std::shared_ptr<const Moment> seek(double) override { return nullptr; }  // Time only goes on.
+  std::shared_ptr<const Moment> again() override;
+  /// As Simulation::set_density.
+  [[nodiscard]] Result<void> set_density(const std::string& name,
+                                         std::span<const uint8_t> weights) {
+    return simulation_.set_density(name, weights);
+  }
+
+ private:
+  ScenarioPlayer(Simulation&& simulation, double seconds, Vec3d origin);
+
+  Simulation simulation_;
+  double seconds_;
+  Vec3d origin_;
+  std::vector<AvatarState> states_;
+  std::shared_ptr<const std::vector<Prism>> obstacles_;
+  SimulationReport report_;
+  std::string fault_;
+  std::shared_ptr<const Moment> last_;
+};
+
+}  // namespace throng

@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "throng/trial.h"
 #include "throng/validation.h"
+#include "trials_folder.h"
 
 // throng validate: what is known of real crowds, tried on ours.
 namespace throng::app {
@@ -34,8 +37,21 @@ Json test_json(const ValidationTest& test) {
       {"test", test.name}, {"title", test.title}, {"method", test.method}, {"source", test.source}};
 }
 
-Json result_json(const ValidationTest& test, const ValidationResult& result) {
-  Json json = test_json(test);
+// One thing to run: a test in code, or a scenario file.
+struct Item {
+  ValidationTest about;
+  std::optional<Trial> trial;
+};
+
+Json item_json(const Item& item) {
+  Json json = test_json(item.about);
+  if (item.trial && !item.trial->note.empty()) json["note"] = item.trial->note;
+  if (item.trial && !item.trial->lacks.empty()) json["lacks"] = item.trial->lacks;
+  return json;
+}
+
+Json result_json(const Item& item, const ValidationResult& result) {
+  Json json = item_json(item);
   json["passed"] = result.passed();
   json["measures"] = Json::array();
   for (const ValidationMeasure& m : result.measures) json["measures"].push_back(measure_json(m));
@@ -43,6 +59,7 @@ Json result_json(const ValidationTest& test, const ValidationResult& result) {
   for (const ValidationChart& c : result.charts) json["charts"].push_back(c.name);
   json["overlaps"] = result.faults.overlaps;
   json["wall_entries"] = result.faults.wall_entries;
+  json["obstacle_entries"] = result.faults.obstacle_entries;
   json["looks"] = result.looks;
   json["simulated"] = result.simulated;
   json["seconds"] = result.seconds;
@@ -79,25 +96,67 @@ Result<void> write_charts(const std::string& folder, const ValidationResult& res
   return {};
 }
 
-void print_list(const Session& session, const std::vector<ValidationTest>& tests) {
+void print_list(const Session& session, const std::vector<Item>& items) {
   Json json = {{"tests", Json::array()}};
   std::string text;
-  for (const ValidationTest& test : tests) {
-    json["tests"].push_back(test_json(test));
-    text += fmt::format("{:20} {}\n{:20} {}\n", test.name, test.title, "", test.source);
+  for (const Item& item : items) {
+    json["tests"].push_back(item_json(item));
+    const bool lacks = item.trial && !item.trial->lacks.empty();
+    text += fmt::format("{:20} {}\n{:20} {}\n", item.about.name, item.about.title, "",
+                        lacks ? "not modelled" : item.about.source);
   }
   print_result(session, json, text);
 }
 
+Result<std::vector<Item>> all_items() {
+  std::vector<Item> items;
+  for (ValidationTest& test : validation_tests()) items.push_back({std::move(test), {}});
+  auto trials = load_trials(trials_folder());
+  if (!trials) return trials.error();
+  for (Trial& trial : *trials) {
+    ValidationTest about = trial.about;
+    items.push_back({std::move(about), std::move(trial)});
+  }
+  return items;
+}
+
+// Those that a word on the command line means: a test, a standard, or a file.
+Result<std::vector<Item>> items_named(const std::string& word, const std::vector<Item>& all) {
+  if (word.ends_with(".toml") || word.ends_with(".json")) {
+    auto trial = load_trial(word);
+    if (!trial) return trial.error();
+    ValidationTest about = trial->about;
+    return std::vector<Item>{{std::move(about), *std::move(trial)}};
+  }
+  std::vector<Item> items;
+  std::string known;
+  for (const Item& item : all) {
+    const std::string& name = item.about.name;
+    if (name == word || name.starts_with(word + ".")) items.push_back(item);
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  if (items.empty()) {
+    return Error{Errc::kNotFound,
+                 fmt::format("validate: no test is called {}; name a standard (rimea, nist), a "
+                             "scenario file, or one of {}",
+                             word, known)};
+  }
+  return items;
+}
+
 int run(const ValidateOptions& options, Session& session) {
-  const std::vector<ValidationTest> tests = validation_tests();
+  const auto all = all_items();
+  if (!all) return fail(all.error());
   if (options.list) {
-    print_list(session, tests);
+    print_list(session, *all);
     return kDone;
   }
-  std::vector<std::string> names = options.names;
-  if (names.empty()) {
-    for (const ValidationTest& test : tests) names.push_back(test.name);
+  std::vector<Item> items;
+  if (options.names.empty()) items = *all;
+  for (const std::string& word : options.names) {
+    const auto named = items_named(word, *all);
+    if (!named) return fail(named.error());
+    items.insert(items.end(), named->begin(), named->end());
   }
   if (!options.folder.empty()) {
     std::error_code failed;
@@ -110,14 +169,22 @@ int run(const ValidateOptions& options, Session& session) {
   Json json = {{"tests", Json::array()}};
   std::string text;
   bool passed = true;
-  for (size_t i = 0; i < names.size(); ++i) {
-    show_progress(session, "validate", i, names.size());
-    const auto result = run_validation(names[i], options.config, session.context);
+  for (size_t i = 0; i < items.size(); ++i) {
+    const Item& item = items[i];
+    show_progress(session, "validate", i, items.size());
+    if (item.trial && !item.trial->lacks.empty()) {
+      json["tests"].push_back(item_json(item));
+      text += fmt::format("{}: {}\n  not modelled: {}\n", item.about.name, item.about.title,
+                          item.trial->lacks);
+      continue;
+    }
+    const auto result = item.trial
+                            ? run_trial(*item.trial, options.config, session.context)
+                            : run_validation(item.about.name, options.config, session.context);
     if (!result) return fail(result.error());
-    const auto test = std::ranges::find(tests, names[i], &ValidationTest::name);
     passed = passed && result->passed();
-    json["tests"].push_back(result_json(*test, *result));
-    text += result_text(*test, *result);
+    json["tests"].push_back(result_json(item, *result));
+    text += result_text(item.about, *result);
     if (options.folder.empty()) continue;
     if (auto done = write_charts(options.folder, *result); !done) return fail(done.error());
   }
@@ -132,8 +199,10 @@ void add_validate(CLI::App& parser, Session& session) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command = add_command(parser, session, "validate",
                                   "Try what is known of real crowds: exit code 1 if a test fails",
-                                  "throng validate --list");
-  command->add_option("test", options->names, "Tests to run; all if none is named");
+                                  "throng validate --list\n"
+                                  "throng validate rimea.1 nist.2.1");
+  command->add_option("test", options->names,
+                      "Tests, standards (rimea, nist) or scenario files; all if none is named");
   command->add_flag("--list", options->list, "Say what tests there are, and run none");
   command->add_flag("--brief", options->config.brief, "Fewer points and shorter runs");
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");

@@ -44,6 +44,7 @@ struct Distribution {
 struct ScenarioArea {
   std::string name;
   std::vector<Prism> prisms;
+  double pace = 1;  ///< Of his speed that somebody walks at inside: stairs, sand. [0.01 to 10]
 };
 
 /// What weighs how much; a choice among them is drawn.
@@ -109,7 +110,10 @@ struct Source {
   /// People a second from a time on, each until the next; empty: all `count` at once. The gaps
   /// between them are exponential: a Poisson process.
   std::vector<std::pair<double, double>> rates;
-  bool even = false;         ///< Gaps are all alike instead.
+  bool even = false;  ///< Gaps are all alike instead.
+  /// In rows over the box around its area instead of by chance: so that dense crowds find room.
+  /// [one area, a finite count, no rates, no density]
+  bool in_rows = false;
   Distribution premovement;  ///< Stands so long before his journey begins. [s]
   Distribution group;        ///< So many come together and stay together. [people]
 };

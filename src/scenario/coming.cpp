@@ -44,6 +44,7 @@ void Simulation::State::call_in() {
         one.due = time();
         one.source = static_cast<int32_t>(n);
         one.companion = first;
+        one.nth = called[n]++;
         p.number = slot_of.size();
         slot_of.push_back(kNoSlot);
         p.profile = pick(source.profiles, unit(p));
@@ -85,6 +86,41 @@ Place Simulation::State::random_spot(std::span<const int32_t> areas, int32_t den
   return {};
 }
 
+// The n-th of as many places as the source has people: rows across the shorter side of the box
+// around its area, each place moved by chance as far as two bodies leave room.
+Place Simulation::State::place_in_rows(const Source& source, uint64_t nth, Person& p) {
+  const ScenarioArea& area = scenario.areas[static_cast<size_t>(source.areas[0])];
+  double x0 = INFINITY, x1 = -INFINITY, z0 = INFINITY, z1 = -INFINITY;
+  for (const Prism& prism : area.prisms) {
+    for (const auto& [x, z] : prism.corners) {
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      z0 = std::min(z0, z);
+      z1 = std::max(z1, z);
+    }
+  }
+  const bool along_x = x1 - x0 >= z1 - z0;
+  const double length = along_x ? x1 - x0 : z1 - z0, width = along_x ? z1 - z0 : x1 - x0;
+  const auto count = static_cast<double>(source.count);
+  const double across = std::max(1.0, std::round(width / std::sqrt(length * width / count)));
+  const double rows = std::ceil(count / across);
+  const double gap_along = length / rows, gap_across = width / across;
+  const auto n = static_cast<double>(nth);
+  const double row = std::floor(n / across), column = n - row * across;
+  const int32_t kind = class_of(p);
+  double radius = kinds[static_cast<size_t>(kind)].radius;
+  if (p.profile >= 0) {
+    const Profile& profile = scenario.profiles[static_cast<size_t>(p.profile)];
+    if (profile.radius.a > 0) radius = std::max(profile.radius.a, profile.radius.b);
+  }
+  const double spare = std::max(0.0, std::min(gap_along, gap_across) - 2 * radius - 0.004);
+  const double u = (row + 0.5) * gap_along + spare * (unit(p) - 0.5);
+  const double v = (column + 0.5) * gap_across + spare * (unit(p) - 0.5);
+  const Prism& first = area.prisms.front();
+  const double x = x0 + (along_x ? u : v), z = z0 + (along_x ? v : u);
+  return world.find_place(kind, {x, (first.low + first.high) / 2, z}, (first.high - first.low) / 2);
+}
+
 Place Simulation::State::place_for(Coming& one) {
   Person& p = one.person;
   if (one.link >= 0) {
@@ -103,6 +139,7 @@ Place Simulation::State::place_for(Coming& one) {
     }
   }
   const Source& source = scenario.sources[static_cast<size_t>(one.source)];
+  if (source.in_rows) return place_in_rows(source, one.nth, p);
   return random_spot(source.areas, source.density, p);
 }
 

@@ -48,7 +48,8 @@ void Simulation::State::keep_together() {
                  (at.position.z - middle.z / count) * heading.z) /
                 size;
       }
-      const double speed = slowest * std::clamp(1 - kPerMetre * ahead, kSlowest, kFastest);
+      const Person& p = persons[id.slot1 - 1];
+      const double speed = p.pace * slowest * std::clamp(1 - kPerMetre * ahead, kSlowest, kFastest);
       crowd.set_speeds({&id, 1}, {&speed, 1});
     }
   }

@@ -22,6 +22,20 @@ constexpr double kBetter = 0.85;      // Another exit must be that much quicker.
 // Not the C library's hypot, which differs between machines.
 double size_of(double x, double z) { return std::sqrt(x * x + z * z); }
 
+// How far a place is from a shape, looked at from above; 0 inside. [m]
+double distance_to(const Prism& prism, double x, double z) {
+  if (prism.covers(x, z)) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < prism.corners.size(); ++i) {
+    const PlanPoint &a = prism.corners[i], &b = prism.corners[(i + 1) % prism.corners.size()];
+    const double ex = b[0] - a[0], ez = b[1] - a[1];
+    const double along = ((x - a[0]) * ex + (z - a[1]) * ez) / (ex * ex + ez * ez);
+    const double part = std::clamp(along, 0.0, 1.0);
+    least = std::min(least, size_of(a[0] + part * ex - x, a[1] + part * ez - z));
+  }
+  return least;
+}
+
 // Longer side of what a shape covers: of an exit, its width. [m]
 double width_of(const ScenarioArea& area) {
   double width = 0;
@@ -150,20 +164,25 @@ void Simulation::State::leave(Person& p) {
   take_out(p);
 }
 
-// Of the stage's areas that in which he stands.
+// Of the stage's areas that in which he stands, or the nearest: who comes to within a step of its
+// border has arrived.
 int32_t Simulation::State::area_under(const Person& p) const {
   const Stage& stage = stage_of(p);
   if (p.area >= 0) return p.area;
   const auto state = crowd.read(p.id);
+  int32_t nearest = stage.areas.front();
+  double least = std::numeric_limits<double>::infinity();
   for (const int32_t area : stage.areas) {
     for (const Prism& prism : scenario.areas[static_cast<size_t>(area)].prisms) {
-      if (state && prism.covers(state->position.x, state->position.z) &&
-          state->position.y >= prism.low - kFeet && state->position.y <= prism.high + kFeet) {
-        return area;
-      }
+      const Vec3d& at = state->position;
+      if (at.y < prism.low - kFeet || at.y > prism.high + kFeet) continue;
+      const double off = distance_to(prism, at.x, at.z);
+      if (off >= least) continue;
+      least = off;
+      nearest = area;
     }
   }
-  return stage.areas.front();
+  return nearest;
 }
 
 // Takes the area that is likely to be passed first: by the way there, or by those before its door.

@@ -262,7 +262,9 @@ class File {
 void File::read_top() {
   Reader r(name_, root_, "scenario");
   r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
-          "area", "density", "profile", "queue", "link", "journey", "source", "obstacle"});
+          "area", "density", "profile", "queue", "link", "journey", "source", "obstacle",
+          // What is expected of the run, read by load_trial.
+          "trial", "measure"});
   r.text("world", out_.world);
   if (!out_.world.empty()) out_.world = path(out_.world);
   if (const ConfigNode* model = r.find("model"); model != nullptr) {
@@ -390,16 +392,20 @@ bool File::read_shape(Reader& r, Prism& prism) {
 
 // Tables of one name are one area.
 void File::read_area(Reader& r) {
-  r.only({"name", "box", "polygon", "circle", "y"});
+  r.only({"name", "box", "polygon", "circle", "y", "pace"});
   r.require("name");
   std::string name;
+  double pace = 1;
   r.text("name", name);
+  r.number("pace", pace, 0.01, 10);
   Prism prism;
   if (!read_shape(r, prism)) return;
   for (ScenarioArea& area : out_.areas) {
-    if (area.name == name) return area.prisms.push_back(prism);
+    if (area.name != name) continue;
+    if (r.find("pace") != nullptr) area.pace = pace;
+    return area.prisms.push_back(prism);
   }
-  out_.areas.push_back({name, {prism}});
+  out_.areas.push_back({name, {prism}, pace});
 }
 
 void File::read_obstacle(Reader& r) {
@@ -606,7 +612,7 @@ void File::read_journey(Reader& r) {
 void File::read_source(Reader& r) {
   Source source;
   r.only({"name", "area", "density", "profile", "journey", "count", "begin", "end", "rate", "rates",
-          "even", "premovement", "group"});
+          "even", "places", "premovement", "group"});
   name_of(r, out_.sources, source.name);
   if (const ConfigNode* area = r.find("area"); area != nullptr) {
     r.names(*area, out_.areas, "area", source.areas);
@@ -646,6 +652,17 @@ void File::read_source(Reader& r) {
   }
   if (source.rates.empty() && source.count == UINT64_MAX) {
     return r.fail(name, "say how many: a count, a rate, or both");
+  }
+  if (const ConfigNode* node = r.find("places"); node != nullptr) {
+    std::string places;
+    r.text("places", places);
+    source.in_rows = places == "rows";
+    if (places != "rows" && places != "chance") {
+      return r.fail(*node, "places must be \"chance\" or \"rows\"");
+    }
+    if (source.in_rows && (source.areas.size() != 1 || !source.rates.empty())) {
+      return r.fail(*node, "rows need one area, a count, and no rate");
+    }
   }
   out_.sources.push_back(std::move(source));
 }

@@ -124,6 +124,7 @@ Result<void> Simulation::State::prepare(Context& context) {
   for (size_t s = 0; s < scenario.sources.size(); ++s) {
     const Source& source = scenario.sources[s];
     arrivals.emplace_back(source, scenario.seed, s);
+    called.push_back(0);
     std::vector<int32_t> bodies;
     for (const Choice& choice : source.profiles) {
       bodies.push_back(classes[static_cast<size_t>(choice.index)]);
@@ -185,6 +186,7 @@ Result<SimulationReport> Simulation::step() {
   s.move_lines();
   if (is_due(kLookEvery)) s.look_around();
   if (is_due(kGroupsEvery)) s.keep_together();
+  s.mind_paces();
 
   SimulationReport report;
   report.crowd = s.crowd.step();

@@ -44,6 +44,7 @@ struct Person {
   uint64_t draws = 0;        // random choices so far
   int32_t group = -1;
   int32_t area = -1;  // which he chose among areas; -1: all the same to him
+  double pace = 1;    // of the area in which he is
   Place spot;         // kToSpot, kToQueue, kInQueue
 };
 
@@ -67,6 +68,7 @@ struct Coming {
   int32_t source = -1;  // or
   int32_t link = -1;
   uint64_t companion = UINT64_MAX;  // number of him beside whom he comes
+  uint64_t nth = 0;                 // of its source
 };
 
 struct Simulation::State {
@@ -88,6 +90,7 @@ struct Simulation::State {
   std::map<std::pair<TargetId, int32_t>, std::vector<Place>> places;  // of targets and classes
 
   std::vector<Arrivals> arrivals;             // by source
+  std::vector<uint64_t> called;               // by source: how many so far
   std::deque<Coming> coming;                  // out of sources, in order
   std::deque<Coming> riding;                  // out of links, in order of coming out
   std::vector<Visit> visits;                  // by number
@@ -133,6 +136,7 @@ struct Simulation::State {
   void call_in();
   Result<void> let_in(std::deque<Coming>& queue, Context& context);
   Place place_for(Coming& coming);
+  Place place_in_rows(const Source& source, uint64_t nth, Person& p);
   Place random_spot(std::span<const int32_t> areas, int32_t density, Person& p);
   void enter(const Coming& coming, AvatarId id);
 
@@ -154,6 +158,9 @@ struct Simulation::State {
   [[nodiscard]] Place in_line(const Queue& queue, size_t index, int32_t avatar_class) const;
   void move_lines();
   void run_links();
+
+  // paces.cpp
+  void mind_paces();
 
   // groups.cpp
   [[nodiscard]] bool group_is_ready(const Person& p);

@@ -20,7 +20,7 @@ void for_tests(Do act) {
 }  // namespace
 
 bool ValidationResult::passed() const {
-  return faults.overlaps == 0 && faults.wall_entries == 0 &&
+  return faults.overlaps == 0 && faults.wall_entries == 0 && faults.obstacle_entries == 0 &&
          std::ranges::all_of(measures, &ValidationMeasure::passed);
 }
 

@@ -334,6 +334,48 @@ class Program(unittest.TestCase):
             known = done.stderr.strip().split("known are ")[1].split(", ")
             self.assertEqual(sorted(known), sorted(tables[name]), name)
 
+    def test_trials_of_the_standards_are_found_and_give_the_same_for_any_threads(self):
+        listed = json.loads(self.run_throng("validate", "--list", "--json").stdout)["tests"]
+        names = [test["test"] for test in listed]
+        self.assertEqual([n for n in names if n.startswith("rimea.")], [f"rimea.{k}" for k in range(1, 17)])
+        self.assertEqual(sum(n.startswith("nist.") for n in names), 17)
+        self.assertEqual(len(set(names)), len(names))
+        for test in listed:
+            self.assertTrue(test["title"] and test["source"] and (test.get("lacks") or test["method"]), test)
+        cheap = ("rimea.1", "rimea.2", "rimea.3", "rimea.5", "rimea.6", "rimea.10", "rimea.15", "nist.2.1", "nist.2.2", "nist.2.3",
+                 "nist.2.4", "nist.2.5", "nist.2.9", "nist.4.1")
+        runs = []
+        for threads in (1, 2, 4):
+            done = self.run_throng("validate", *cheap, "--threads", threads, "--json")
+            self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+            runs.append(json.loads(done.stdout)["tests"])
+            for test in runs[-1]:
+                test.pop("seconds", None)
+        self.assertEqual(runs[0], runs[1])
+        self.assertEqual(runs[0], runs[2])
+        smoke = runs[0][cheap.index("nist.2.5")]
+        self.assertNotIn("passed", smoke)
+        self.assertIn("smoke", smoke["lacks"])
+
+    def test_a_trial_of_ones_own_is_judged_and_a_bad_one_is_refused(self):
+        text = (ROOT / "trials" / "rimea" / "01_corridor.toml").read_text()
+        (self.path / "mine.toml").write_text(text.replace("high = 34", "high = 27"))
+        self.assertEqual(self.run_throng("run", "mine.toml").returncode, 0)
+        done = self.run_throng("validate", "mine.toml", "--json")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertFalse(json.loads(done.stdout)["tests"][0]["measures"][0]["passed"])
+        (self.path / "bad.toml").write_text(text.replace('of = "time"', 'of = "weather"'))
+        self.assert_refused(self.run_throng("validate", "bad.toml"), "bad.toml:", "of must be one of: time")
+        self.assert_refused(self.run_throng("validate", "none.toml"), "none.toml")
+        self.assert_refused(self.run_throng("validate", "rimea.99"), "rimea.99", "rimea.1,")
+        wrong = text.replace("[[measure]]", "[[measure]]\nnonsense = 1")
+        (self.path / "wrong.toml").write_text(wrong)
+        done = self.run_throng("validate", "wrong.toml")
+        self.assert_refused(done, "unknown key 'nonsense'")
+        known = done.stderr.strip().split("known are ")[1].split(", ")
+        schema = json.loads((ROOT / "docs" / "scenario.schema.json").read_text())
+        self.assertEqual(sorted(known), sorted(schema["definitions"]["measures"]["items"]["properties"]))
+
     def test_options_of_worlds_are_refused_for_scenarios_and_the_other_way_round(self):
         file = self.scenario()
         self.assert_refused(self.run_throng("run", file, "--avatars", 3), "--avatars", "hall.toml")

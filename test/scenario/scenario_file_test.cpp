@@ -35,6 +35,7 @@ box = [0.5, 1, 3, 9]
 name = "out"
 polygon = [[18, 1], [19.5, 1], [19.5, 4]]
 y = [-1, 1]
+pace = 0.5
 
 [[area]]
 name = "out"
@@ -123,6 +124,9 @@ TEST(ScenarioFile, reads_every_key) {
   ASSERT_EQ(s->areas.size(), 2U);
   EXPECT_EQ(s->areas[1].prisms.size(), 2U);
   EXPECT_EQ(s->areas[1].prisms[0].low, -1);
+  EXPECT_EQ(s->areas[0].pace, 1);
+  EXPECT_EQ(s->areas[1].pace, 0.5);
+  EXPECT_FALSE(s->sources[0].in_rows);
   ASSERT_EQ(s->densities.size(), 1U);
   EXPECT_EQ(s->densities[0].width, 20);
   EXPECT_EQ(s->densities[0].weights[size_t{5} * 20 + 1], 200);  // in
@@ -188,6 +192,9 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
       {"{ queue = \"till\" }", "{ queue = \"tall\" }", "there is no queue named 'tall'"},
       {"journey = { round = 1, away = 2.5 }", "journey = { round = -1 }",
        "must be a number above 0"},
+      {"pace = 0.5", "pace = 0", "area 'out': pace = 0 is outside"},
+      {"count = 10", "count = 10\nplaces = \"heap\"", "places must be \"chance\" or \"rows\""},
+      {"even = true", "even = true\nplaces = \"rows\"", "rows need one area, a count"},
       {"count = 10", "count = 1.5", "count must be a whole number"},
       {"rates = [[0, 0.5], [10, 0], [20, 2]]", "rates = [[0, 0.5], [0, 1]]", "times ascending"},
       {"density = \"crowd\"\nrates", "density = \"crowd\"\narea = \"in\"\nrates", "say where they"},

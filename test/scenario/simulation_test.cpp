@@ -465,5 +465,98 @@ TEST(Crowd, many_with_one_goal_walk) {
   EXPECT_GT(progress, 0.75);  // 0.8 m behind each other nobody walks at his full speed
 }
 
+// Who has come to within a step of an area has left by it, not by the first of the list.
+TEST(Simulation, the_exit_told_is_the_one_taken) {
+  const Hall run = read(R"(
+[[area]]
+name = "beside north"
+box = [15, 0.5, 16, 1.5]
+[[area]]
+name = "beside south"
+box = [15, 8.5, 16, 9.5]
+[[journey]]
+name = "out"
+stages = [{ leave = ["north", "south"] }]
+[[source]]
+name = "upper"
+area = "beside north"
+journey = "out"
+count = 3
+[[source]]
+name = "lower"
+area = "beside south"
+journey = "out"
+count = 3
+)");
+  Simulation simulation = made(run);
+  run_out(simulation, 30);
+  for (const Visit& visit : simulation.visits()) {
+    ASSERT_GE(visit.exit, 0);
+    EXPECT_EQ(run.scenario.areas[static_cast<size_t>(visit.exit)].name,
+              visit.source == 0 ? "north" : "south");
+  }
+}
+
+TEST(Simulation, rows_hold_five_a_square_metre_that_do_not_touch) {
+  const Hall run = read(R"(
+[[area]]
+name = "full"
+box = [1, 1, 5, 7]
+[[profile]]
+name = "slim"
+radius = 0.19
+[[source]]
+name = "all"
+area = "full"
+profile = "slim"
+count = 120
+places = "rows"
+)");
+  const Simulation simulation = made(run);
+  EXPECT_EQ(simulation.crowd().size(), 120U);
+  EXPECT_EQ(simulation.crowd().check().overlaps, 0U);
+}
+
+TEST(Simulation, people_walk_at_an_areas_pace_inside_it_alone) {
+  const Hall run = read(R"(
+[[area]]
+name = "stairs"
+box = [8.5, 0, 14, 10]
+pace = 0.5
+[[profile]]
+name = "any"
+speed = 1
+[[journey]]
+name = "out"
+stages = [{ leave = ["north", "south"] }]
+[[source]]
+name = "all"
+area = "west"
+profile = "any"
+journey = "out"
+count = 1
+)");
+  Simulation simulation = made(run);
+  std::vector<AvatarState> before, now;
+  int slow = 0, fast = 0;
+  simulation.read(before);
+  while (!simulation.is_over()) {
+    ASSERT_TRUE(simulation.step());
+    simulation.read(now);
+    if (now.empty()) break;
+    const Vec3d &a = before[0].position, &b = now[0].position;
+    const double speed = std::hypot(b.x - a.x, b.z - a.z) / 0.1;
+    if (a.x > 8.8 && b.x < 13.8) {
+      EXPECT_NEAR(speed, 0.5, 0.011) << a.x;
+      ++slow;
+    }
+    if ((b.x < 8.4 && simulation.crowd().size() == 1 && speed > 0.9) || a.x > 14.3) ++fast;
+    EXPECT_LE(speed, 1.001);
+    before = now;
+  }
+  EXPECT_GT(slow, 80);
+  EXPECT_GT(fast, 30);
+}
+
 }  // namespace
 }  // namespace throng

@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/stopwatch.h"
+#include "throng/simulation.h"
+#include "throng/trial.h"
+#include "validate/statistics.h"
+
+// A trial: its scenario is run, and looked at after every step.
+namespace throng {
+namespace {
+
+constexpr double kFeet = 0.05;       // [m] Heights of feet differ by rounding alone.
+constexpr double kFirstStep = 0.02;  // [m] in one step: he walks, he is not made way for.
+
+bool covers(const ScenarioArea& area, const Vec3d& at) {
+  return std::ranges::any_of(area.prisms, [&](const Prism& p) {
+    return at.y >= p.low - kFeet && at.y <= p.high + kFeet && p.covers(at.x, at.z);
+  });
+}
+
+// By the shoelace formula; the parts of an area are taken not to overlap.
+double size_of(const ScenarioArea& area) {
+  double sum = 0;
+  for (const Prism& prism : area.prisms) {
+    double twice = 0;
+    for (size_t i = 0; i < prism.corners.size(); ++i) {
+      const auto &a = prism.corners[i], &b = prism.corners[(i + 1) % prism.corners.size()];
+      twice += a[0] * b[1] - a[1] * b[0];
+    }
+    sum += std::fabs(twice) / 2;
+  }
+  return sum;
+}
+
+bool is_in(const std::vector<int32_t>& list, int32_t index) {
+  return list.empty() || std::ranges::find(list, index) != list.end();
+}
+
+bool counts(const TrialMeasure& m, const Visit& v) {
+  return v.entered >= 0 && is_in(m.sources, v.source) && is_in(m.profiles, v.profile) &&
+         is_in(m.journeys, v.journey) &&
+         (m.exits.empty() || (v.left >= 0 && is_in(m.exits, v.exit)));
+}
+
+// Where along the way from a to b it crosses a line, 0 to 1; none if it does not.
+std::optional<double> crossing(const Vec3d& a, const Vec3d& b,
+                               const std::array<std::array<double, 2>, 2>& line) {
+  const double lx = line[1][0] - line[0][0], lz = line[1][1] - line[0][1];
+  const auto side = [&](const Vec3d& p) {
+    return lx * (p.z - line[0][1]) - lz * (p.x - line[0][0]);
+  };
+  const double before = side(a), after = side(b);
+  if ((before < 0) == (after < 0)) return {};
+  const double part = before / (before - after);
+  const double x = a.x + part * (b.x - a.x), z = a.z + part * (b.z - a.z);
+  const double along = (lx * (x - line[0][0]) + lz * (z - line[0][1])) / (lx * lx + lz * lz);
+  return along >= 0 && along <= 1 ? std::optional(part) : std::nullopt;
+}
+
+// What is kept of one measure while the run goes on.
+struct Kept {
+  std::vector<double> way, time;  // by person: in the area [m, s]
+  std::vector<double> density;    // by step [1/m2]
+  std::vector<double> crossed;    // [s]
+  std::vector<bool> has_crossed;  // by person
+};
+
+class Observer {
+ public:
+  explicit Observer(const Trial& trial) : trial_(trial), kept_(trial.measures.size()) {}
+
+  void look(const Simulation& simulation, double time) {
+    simulation.read(states_);
+    const auto visits = simulation.visits();
+    const size_t people = visits.size();
+    last_.resize(people);
+    was_here_.resize(people, 0);
+    first_step_.resize(people, -1);
+    inside_.assign(kept_.size(), 0);
+    ++looks_;
+    for (const AvatarState& state : states_) {
+      const size_t n = state.id;
+      const Vec3d& now = state.position;
+      // Who was looked at the last time has walked since; in lifts nobody walks.
+      if (was_here_[n] == looks_ - 1 && was_here_[n] > 0) {
+        walked(visits[n], last_[n], now, time);
+      } else {
+        for (size_t k = 0; k < kept_.size(); ++k) stands(k, visits[n], now);
+      }
+      last_[n] = now;
+      was_here_[n] = looks_;
+    }
+    for (size_t k = 0; k < kept_.size(); ++k) {
+      const TrialMeasure& m = trial_.measures[k];
+      if (m.of != Observed::kDensity || time < m.from || time > m.until) continue;
+      const ScenarioArea& area = trial_.scenario.areas[static_cast<size_t>(m.area)];
+      kept_[k].density.push_back(inside_[k] / size_of(area));
+    }
+  }
+
+  [[nodiscard]] std::vector<ValidationMeasure> measures(std::span<const Visit> visits) const {
+    std::vector<ValidationMeasure> out;
+    for (size_t k = 0; k < kept_.size(); ++k) {
+      const TrialMeasure& m = trial_.measures[k];
+      out.push_back({.name = m.name,
+                     .value = value(k, visits, out),
+                     .unit = unit(m),
+                     .low = m.low,
+                     .high = m.high});
+      if (m.others.empty() || m.of == Observed::kRatio) continue;
+      out.back().unit = out[m.others.front()].unit;
+    }
+    return out;
+  }
+
+ private:
+  void stands(size_t k, const Visit& visit, const Vec3d& now) {
+    const TrialMeasure& m = trial_.measures[k];
+    if (m.of != Observed::kDensity || !counts(m, visit)) return;
+    if (covers(trial_.scenario.areas[static_cast<size_t>(m.area)], now)) inside_[k] += 1;
+  }
+
+  void walked(const Visit& visit, const Vec3d& before, const Vec3d& now, double time) {
+    const double way = std::hypot(now.x - before.x, now.z - before.z);
+    const double dt = trial_.scenario.dt;
+    double& first = first_step_[visit.person];
+    if (first < 0 && time > visit.started && way >= kFirstStep) first = time;
+    for (size_t k = 0; k < kept_.size(); ++k) {
+      const TrialMeasure& m = trial_.measures[k];
+      stands(k, visit, now);
+      if (time < m.from || time > m.until || !counts(m, visit)) continue;
+      Kept& kept = kept_[k];
+      if (m.of == Observed::kSpeed) {
+        const bool here =
+            m.area < 0 ? time - dt >= visit.started - 1e-9
+                       : covers(trial_.scenario.areas[static_cast<size_t>(m.area)], now) &&
+                             covers(trial_.scenario.areas[static_cast<size_t>(m.area)], before);
+        if (!here) continue;
+        kept.way.resize(last_.size());
+        kept.time.resize(last_.size());
+        kept.way[visit.person] += way;
+        kept.time[visit.person] += dt;
+      } else if (m.of == Observed::kFlow || m.of == Observed::kPassed) {
+        kept.has_crossed.resize(last_.size());
+        const auto part = crossing(before, now, m.line);
+        if (!part || kept.has_crossed[visit.person]) continue;
+        kept.has_crossed[visit.person] = true;
+        kept.crossed.push_back(time - dt * (1 - *part));
+      }
+    }
+  }
+
+  static std::string unit(const TrialMeasure& m) {
+    if (m.take == Taken::kFit) return "p";
+    switch (m.of) {
+      case Observed::kTime:
+      case Observed::kLeft:
+      case Observed::kPremovement:
+      case Observed::kDelay:
+        return "s";
+      case Observed::kWish:
+      case Observed::kSpeed:
+        return "m/s";
+      case Observed::kDensity:
+        return "1/m2";
+      case Observed::kFlow:
+        return m.by_width ? "p/(m s)" : "p/s";
+      default:
+        return "";
+    }
+  }
+
+  // One number of each person that the measure is of.
+  [[nodiscard]] std::vector<double> of_each(size_t k, std::span<const Visit> visits) const {
+    const TrialMeasure& m = trial_.measures[k];
+    std::vector<double> numbers;
+    for (const Visit& v : visits) {
+      if (!counts(m, v)) continue;
+      if (m.of == Observed::kPremovement) numbers.push_back(v.started - v.entered);
+      if (m.of == Observed::kWish) numbers.push_back(v.speed);
+      if (m.of == Observed::kDelay && first_step_[v.person] >= 0) {
+        numbers.push_back(first_step_[v.person] - v.started);
+      }
+      if (m.of == Observed::kTime && v.left >= 0) numbers.push_back(v.left - v.started);
+      if (m.of == Observed::kLeft && v.left >= 0) numbers.push_back(v.left);
+      if (m.of == Observed::kSpeed && v.person < kept_[k].time.size() &&
+          kept_[k].time[v.person] > 0) {
+        numbers.push_back(kept_[k].way[v.person] / kept_[k].time[v.person]);
+      }
+    }
+    return numbers;
+  }
+
+  // What the scenario says that the numbers are drawn from: of the first source or profile that the
+  // measure is of.
+  [[nodiscard]] const Distribution& law(const TrialMeasure& m) const {
+    const Scenario& s = trial_.scenario;
+    if (m.of == Observed::kPremovement) {
+      return s.sources[m.sources.empty() ? 0 : static_cast<size_t>(m.sources[0])].premovement;
+    }
+    return s.profiles[m.profiles.empty() ? 0 : static_cast<size_t>(m.profiles[0])].speed;
+  }
+
+  [[nodiscard]] double taken(const TrialMeasure& m, const std::vector<double>& numbers) const {
+    if (numbers.empty()) return std::nan("");
+    const auto [least, most] = std::ranges::minmax(numbers);
+    double sum = 0;
+    for (const double x : numbers) sum += x;
+    switch (m.take) {
+      case Taken::kLeast:
+        return least;
+      case Taken::kMost:
+        return most;
+      case Taken::kSpread:
+        return most - least;
+      case Taken::kFit: {
+        const auto share = [&](double x) { return validate::share_below(law(m), x); };
+        return validate::ks_likelihood(validate::ks_distance(numbers, share), numbers.size());
+      }
+      default:
+        return sum / static_cast<double>(numbers.size());
+    }
+  }
+
+  [[nodiscard]] double value(size_t k, std::span<const Visit> visits,
+                             const std::vector<ValidationMeasure>& before) const {
+    const TrialMeasure& m = trial_.measures[k];
+    const auto count = [&](bool has_left) {
+      return static_cast<double>(std::ranges::count_if(
+          visits, [&](const Visit& v) { return counts(m, v) && (v.left >= 0) == has_left; }));
+    };
+    switch (m.of) {
+      case Observed::kPeople:
+        return count(true);
+      case Observed::kStayed:
+        return count(false);
+      case Observed::kPassed:
+        return static_cast<double>(kept_[k].crossed.size());
+      case Observed::kFlow: {
+        std::vector<double> times = kept_[k].crossed;
+        std::sort(times.begin(), times.end());
+        const double width = std::hypot(m.line[1][0] - m.line[0][0], m.line[1][1] - m.line[0][1]);
+        return validate::flow_rate(times) / (m.by_width ? width : 1);
+      }
+      case Observed::kDensity:
+        return taken(m, kept_[k].density);
+      case Observed::kRatio:
+        return before[m.others[0]].value / before[m.others[1]].value;
+      case Observed::kDifference:
+        return before[m.others[0]].value - before[m.others[1]].value;
+      case Observed::kRise: {
+        double least = std::numeric_limits<double>::infinity();
+        for (size_t i = 1; i < m.others.size(); ++i) {
+          const double step = before[m.others[i]].value - before[m.others[i - 1]].value;
+          if (std::isnan(step)) return step;
+          least = std::min(least, step);
+        }
+        return least;
+      }
+      default:
+        break;
+    }
+    if (m.take != Taken::kOverall) return taken(m, of_each(k, visits));
+    double way = 0, time = 0;
+    for (const double w : kept_[k].way) way += w;
+    for (const double t : kept_[k].time) time += t;
+    return way / time;
+  }
+
+  const Trial& trial_;
+  std::vector<Kept> kept_;  // by measure
+  std::vector<AvatarState> states_;
+  std::vector<Vec3d> last_;         // by person
+  std::vector<uint64_t> was_here_;  // by person: the look at which he was seen last
+  std::vector<double> first_step_;  // by person [s]
+  std::vector<double> inside_;      // by measure: people in its area
+  uint64_t looks_ = 0;
+};
+
+}  // namespace
+
+Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& config,
+                                   Context& context) {
+  if (!trial.lacks.empty()) {
+    return Error{Errc::kBadConfig, trial.about.name + ": cannot be run: " + trial.lacks};
+  }
+  const auto start = Clock::now();
+  Scenario scenario = trial.scenario;
+  scenario.seed += config.seed - 1;
+  const auto world = open_world(scenario, context);
+  if (!world) return world.error();
+  auto simulation = Simulation::make(*world, scenario, config.workers, context);
+  if (!simulation) return simulation.error();
+  Observer observer(trial);
+  observer.look(*simulation, 0);
+  ValidationResult result;
+  const auto steps = static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9));
+  for (uint64_t step = 0; step < steps && !simulation->is_over(); ++step) {
+    const auto report = simulation->step();
+    if (!report) return report.error();
+    observer.look(*simulation, report->time);
+    const CrowdCheck found = simulation->crowd().check();
+    result.faults.overlaps += found.overlaps;
+    result.faults.wall_entries += found.wall_entries;
+    result.faults.obstacle_entries += found.obstacle_entries;
+    ++result.looks;
+    result.simulated = report->time;
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
+  }
+  result.measures = observer.measures(simulation->visits());
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace throng

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/trial.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace throng {
+namespace {
+
+// One person walks 10 m at 1 m/s, then through a slow area of 5 m at 0.5 m/s, then 4 m on.
+const std::string kWalk = R"(seconds = 60
+cell = 0.05
+[trial]
+name = "walk"
+title = "One walks"
+source = "by hand"
+[plane]
+floor = [[0, 0], [22, 0], [22, 2], [0, 2]]
+[[class]]
+name = "walker"
+radius = 0.19
+[[area]]
+name = "begin"
+box = [0.9, 0.9, 1.1, 1.1]
+[[area]]
+name = "slow"
+box = [11, 0, 16, 2]
+pace = 0.5
+[[area]]
+name = "end"
+box = [20, 0, 22, 2]
+[[profile]]
+name = "one"
+speed = 1
+[[journey]]
+name = "walk"
+stages = [{ leave = "end" }]
+[[source]]
+name = "source"
+area = "begin"
+journey = "walk"
+profile = "one"
+count = 1
+premovement = 3
+)";
+
+// Measures m0, m1, ...
+std::string measures(const std::vector<std::string>& bodies) {
+  std::string text;
+  for (size_t n = 0; n < bodies.size(); ++n) {
+    text += "[[measure]]\nname = \"m" + std::to_string(n) + "\"\n" + bodies[n] + "\n";
+  }
+  return text;
+}
+
+ValidationResult run(const std::string& text, int32_t workers = 1) {
+  const auto trial = parse_trial(text, "walk.toml");
+  EXPECT_TRUE(trial) << trial.error().message;
+  Context context;
+  auto result = run_trial(*trial, {.workers = workers}, context);
+  EXPECT_TRUE(result) << result.error().message;
+  return *result;
+}
+
+TEST(Trial, MeasuresAreThoseOfOneWalkWorkedOutByHand) {
+  const auto result =
+      run(kWalk + measures({"of = \"time\"", "of = \"left\"", "of = \"premovement\"",
+                            "of = \"delay\"", "of = \"wish\"", "of = \"speed\"\narea = \"slow\"",
+                            "of = \"speed\"\nfrom = 4\nuntil = 11", "of = \"people\"",
+                            "of = \"stayed\"", "of = \"people\"\nexit = \"slow\"",
+                            "of = \"passed\"\nline = [[10, 0], [10, 2]]",
+                            "of = \"passed\"\nline = [[10, 1.5], [10, 2]]",
+                            "of = \"density\"\narea = \"slow\"\nfrom = 14\nuntil = 22",
+                            "of = \"density\"\narea = \"slow\"\ntake = \"most\"",
+                            "of = \"ratio\"\nothers = [\"m0\", \"m2\"]",
+                            "of = \"difference\"\nothers = [\"m1\", \"m0\"]",
+                            "of = \"rise\"\nothers = [\"m2\", \"m0\", \"m1\"]"}));
+  const double time = 10 + 10 + 4;
+  const std::vector<std::pair<double, double>> expected = {
+      {time, 0.4}, {time + 3, 0.4}, {3, 1e-9},        {0.1, 0.101}, {1, 1e-9}, {0.5, 0.005},
+      {1, 0.005},  {1, 0},          {0, 0},           {0, 0},       {1, 0},    {0, 0},
+      {0.1, 1e-9}, {0.1, 1e-9},     {time / 3, 0.15}, {3, 1e-9},    {3, 1e-9},
+  };
+  ASSERT_EQ(result.measures.size(), expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(result.measures[i].value, expected[i].first, expected[i].second) << "m" << i;
+  }
+  EXPECT_EQ(result.looks, static_cast<uint64_t>(std::lround(result.measures[1].value / 0.1)));
+  EXPECT_TRUE(result.passed());
+}
+
+TEST(Trial, AFitIsLikelyForWhatIsDrawnSoAndNotForWhatIsNot) {
+  std::string text = kWalk;
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("count = 1", "count = 60\nplaces = \"rows\"");
+  put("box = [0.9, 0.9, 1.1, 1.1]", "box = [0.3, 0.3, 10, 1.7]");
+  put("speed = 1", "speed = { normal = [1.2, 0.2], within = [0.6, 1.8] }");
+  put("seconds = 60", "seconds = 30");
+  text += "[[measure]]\nname = \"wished\"\nof = \"wish\"\nprofile = \"one\"\ntake = \"fit\"\n";
+  // In a corridor for two abreast nobody walks as fast as he wishes.
+  text +=
+      "[[measure]]\nname = \"walked\"\nof = \"speed\"\nprofile = \"one\"\ntake = \"fit\"\n"
+      "area = \"slow\"\n";
+  const auto one = run(text, 1);
+  EXPECT_GT(one.measures[0].value, 0.05);
+  EXPECT_LT(one.measures[1].value, 1e-6);
+  for (const int32_t workers : {2, 4}) {
+    const auto other = run(text, workers);
+    EXPECT_EQ(other.measures[0].value, one.measures[0].value);
+    EXPECT_EQ(other.measures[1].value, one.measures[1].value);
+  }
+}
+
+TEST(Trial, ANumberThatNothingGaveIsNoneAndFails) {
+  const auto result = run(kWalk + measures({"of = \"left\"\nexit = \"slow\"\nlow = 0",
+                                            "of = \"rise\"\nothers = [\"m0\", \"m0\"]\nlow = -1"}));
+  for (const ValidationMeasure& m : result.measures) {
+    EXPECT_TRUE(std::isnan(m.value)) << m.name;
+    EXPECT_FALSE(m.passed()) << m.name;
+  }
+}
+
+TEST(Trial, WhatIsWrongIsRefusedInOneSentence) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"of = \"weight\"", "of must be one of: time, left"},
+      {"of = \"time\"\nnonsense = 1", "unknown key 'nonsense'"},
+      {"of = \"time\"\nsource = \"nobody\"", "source: there is no 'nobody'; there are: source"},
+      {"of = \"time\"\ntake = \"overall\"", "only a speed"},
+      {"of = \"time\"\ntake = \"fit\"", "can fit"},
+      {"of = \"wish\"\ntake = \"fit\"", "a fit needs one source"},
+      {"of = \"time\"\nline = [[0, 0], [1, 1]]", "only flow and passed"},
+      {"of = \"flow\"", "line = [[x, z], [x, z]]"},
+      {"of = \"flow\"\nline = [[1, 1], [1, 1]]", "two different"},
+      {"of = \"flow\"\nline = [[1, 1], [1, 2]]\ntake = \"mean\"", "one number only"},
+      {"of = \"density\"", "needs an area"},
+      {"of = \"people\"\narea = \"end\"", "only a speed or a density"},
+      {"of = \"speed\"\nfrom = 5\nuntil = 5", "until must be after from"},
+      {"of = \"time\"\nlow = 5\nhigh = 4", "low must not be above high"},
+      {"of = \"ratio\"\nothers = [\"x\", \"y\"]", "others: there is no 'x'"},
+      {"of = \"ratio\"", "others"},
+      {"of = \"time\"\nby = \"width\"", "only a flow"},
+  };
+  for (const auto& [rest, why] : cases) {
+    const auto trial = parse_trial(kWalk + "[[measure]]\nname = \"bad\"\n" + rest, "bad.toml");
+    ASSERT_FALSE(trial) << rest;
+    EXPECT_EQ(trial.error().code, Errc::kBadFile) << rest;
+    EXPECT_EQ(trial.error().message.find("bad.toml"), 0U) << trial.error().message;
+    EXPECT_NE(trial.error().message.find(why), std::string::npos) << trial.error().message;
+  }
+  const auto nothing = parse_trial(kWalk, "walk.toml");
+  ASSERT_FALSE(nothing);
+  EXPECT_NE(nothing.error().message.find("nothing is measured"), std::string::npos);
+  EXPECT_FALSE(load_trial("/no/such/file.toml"));
+  EXPECT_FALSE(load_trials("/no/such/folder"));
+}
+
+TEST(Trial, WhatIsNotModelledIsNotRun) {
+  const auto trial = parse_trial("[trial]\nname = \"smoke\"\nlacks = \"no smoke\"\n", "smoke.toml");
+  ASSERT_TRUE(trial) << trial.error().message;
+  EXPECT_EQ(trial->about.name, "smoke");
+  Context context;
+  const auto result = run_trial(*trial, {}, context);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().message, "smoke: cannot be run: no smoke");
+}
+
+}  // namespace
+}  // namespace throng

@@ -40,7 +40,8 @@ Json test_json(const ValidationTest& test) {
 // One thing to run: a test in code, or a scenario file.
 struct Item {
   ValidationTest about;
-  std::optional<Trial> trial;
+  std::optional<Trial> trial = {};
+  std::string recordings = {};  // A folder; empty: none are needed.
 };
 
 Json item_json(const Item& item) {
@@ -110,14 +111,28 @@ void print_list(const Session& session, const std::vector<Item>& items) {
 
 Result<std::vector<Item>> all_items() {
   std::vector<Item> items;
-  for (ValidationTest& test : validation_tests()) items.push_back({std::move(test), {}});
+  for (ValidationTest& test : validation_tests()) items.push_back({.about = std::move(test)});
   auto trials = load_trials(trials_folder());
   if (!trials) return trials.error();
   for (Trial& trial : *trials) {
     ValidationTest about = trial.about;
-    items.push_back({std::move(about), std::move(trial)});
+    items.push_back({.about = std::move(about), .trial = std::move(trial)});
   }
   return items;
+}
+
+std::optional<ValidationTest> recorded_test(const std::string& word) {
+  for (ValidationTest& test : recorded_validation_tests()) {
+    if (test.name == word) return std::move(test);
+  }
+  return {};
+}
+
+Result<ValidationResult> run_item(const Item& item, const ValidationConfig& config,
+                                  Context& context) {
+  if (item.trial) return run_trial(*item.trial, config, context);
+  if (item.recordings.empty()) return run_validation(item.about.name, config, context);
+  return run_recorded_validation(item.about.name, item.recordings, config, context);
 }
 
 // Those that a word on the command line means: a test, a standard, or a file.
@@ -126,7 +141,7 @@ Result<std::vector<Item>> items_named(const std::string& word, const std::vector
     auto trial = load_trial(word);
     if (!trial) return trial.error();
     ValidationTest about = trial->about;
-    return std::vector<Item>{{std::move(about), *std::move(trial)}};
+    return std::vector<Item>{{.about = std::move(about), .trial = *std::move(trial)}};
   }
   std::vector<Item> items;
   std::string known;
@@ -148,12 +163,27 @@ int run(const ValidateOptions& options, Session& session) {
   const auto all = all_items();
   if (!all) return fail(all.error());
   if (options.list) {
-    print_list(session, *all);
+    std::vector<Item> listed = *all;
+    for (ValidationTest& test : recorded_validation_tests()) {
+      listed.push_back({.about = std::move(test)});
+    }
+    print_list(session, listed);
     return kDone;
   }
   std::vector<Item> items;
   if (options.names.empty()) items = *all;
-  for (const std::string& word : options.names) {
+  for (size_t i = 0; i < options.names.size(); ++i) {
+    const std::string& word = options.names[i];
+    if (const auto test = recorded_test(word)) {
+      if (i + 1 == options.names.size()) {
+        return fail({Errc::kBadConfig,
+                     fmt::format("validate: {0} needs a folder of recordings: throng validate {0} "
+                                 "FOLDER",
+                                 word)});
+      }
+      items.push_back({.about = *test, .recordings = options.names[++i]});
+      continue;
+    }
     const auto named = items_named(word, *all);
     if (!named) return fail(named.error());
     items.insert(items.end(), named->begin(), named->end());
@@ -178,9 +208,7 @@ int run(const ValidateOptions& options, Session& session) {
                           item.trial->lacks);
       continue;
     }
-    const auto result = item.trial
-                            ? run_trial(*item.trial, options.config, session.context)
-                            : run_validation(item.about.name, options.config, session.context);
+    const auto result = run_item(item, options.config, session.context);
     if (!result) return fail(result.error());
     passed = passed && result->passed();
     json["tests"].push_back(result_json(item, *result));
@@ -202,7 +230,8 @@ void add_validate(CLI::App& parser, Session& session) {
                                   "throng validate --list\n"
                                   "throng validate rimea.1 nist.2.1");
   command->add_option("test", options->names,
-                      "Tests, standards (rimea, nist) or scenario files; all if none is named");
+                      "Tests, standards (rimea, nist), scenario files, or a test of recordings and "
+                      "their folder; all that need no recordings if none is named");
   command->add_flag("--list", options->list, "Say what tests there are, and run none");
   command->add_flag("--brief", options->config.brief, "Fewer points and shorter runs");
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");

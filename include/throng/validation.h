@@ -74,4 +74,13 @@ struct ValidationResult {
                                                                  const ValidationConfig& config,
                                                                  Context& context);
 
+/// Tests that need recordings of real people, which are none of ours to ship.
+[[nodiscard]] THRONG_API std::vector<ValidationTest> recorded_validation_tests();
+
+/// Runs one of those with a folder of recordings. Fails with kNotFound (no such test; nothing fits
+/// in the folder), kBadFile and the line, kCancelled.
+[[nodiscard]] THRONG_API Result<ValidationResult> run_recorded_validation(
+    const std::string& name, const std::string& folder, const ValidationConfig& config,
+    Context& context);
+
 }  // namespace throng

@@ -10,6 +10,7 @@
 
 #include "core/random.h"
 #include "validate/room.h"
+#include "validate/statistics.h"
 #include "validate/tests.h"
 
 // Speed by density: everybody walks one way around a ring, which has no ends that could hold them
@@ -121,10 +122,6 @@ Result<Point> walk_around(const Walk& walk, double density, const ValidationConf
   room->report(result);
   const double area = 2 * std::numbers::pi * kMiddle * kMeasured;
   return Point{inside / (area * static_cast<double>(steps)), ways / inside};
-}
-
-double weidmann(double density) {
-  return density >= 5.4 ? 0 : 1.34 * (1 - std::exp(-1.913 * (1 / density - 1 / 5.4)));
 }
 
 std::string at_density(const char* what, double density) {

@@ -32,21 +32,34 @@ Result<Room> Room::build(const PlaneConfig& plane, const AvatarClass& body, Crow
   return Room(*std::move(world), *std::move(crowd));
 }
 
-Result<std::vector<AvatarId>> Room::stand(std::span<const Spot> spots, double speed,
-                                          Context& context) {
+Result<std::vector<AvatarId>> Room::place(std::span<const Spot> spots,
+                                          std::span<const double> speeds, Context& context) {
   std::vector<AvatarSpawn> spawns;
-  for (const Spot& spot : spots) {
-    const Place place = world_.find_place(0, {spot.x, 0, spot.z}, 0.5);
-    if (place) spawns.push_back({.place = place, .speed = speed});
+  std::vector<size_t> whose;
+  for (size_t i = 0; i < spots.size(); ++i) {
+    const Place place = world_.find_place(0, {spots[i].x, 0, spots[i].z}, 0.5);
+    if (!place) continue;
+    spawns.push_back({.place = place, .speed = speeds[i]});
+    whose.push_back(i);
   }
-  auto ids = crowd_.add(spawns, context);
-  if (!ids) return ids.error();
-  std::erase_if(*ids, [](AvatarId id) { return !id; });
-  for (const AvatarId id : *ids) {
+  const auto added = crowd_.add(spawns, context);
+  if (!added) return added.error();
+  std::vector<AvatarId> ids(spots.size());
+  for (size_t k = 0; k < added->size(); ++k) {
+    const AvatarId id = (*added)[k];
+    if (!id) continue;
+    ids[whose[k]] = id;
     if (id.slot1 > id_of_slot_.size()) id_of_slot_.resize(id.slot1);
     id_of_slot_[id.slot1 - 1] = id;
   }
   look(/*has_moved=*/false);
+  return ids;
+}
+
+Result<std::vector<AvatarId>> Room::stand(std::span<const Spot> spots, double speed,
+                                          Context& context) {
+  auto ids = place(spots, std::vector<double>(spots.size(), speed), context);
+  if (ids) std::erase_if(*ids, [](AvatarId id) { return !id; });
   return ids;
 }
 

@@ -41,6 +41,9 @@ class Room {
   static Result<Room> build(const PlaneConfig& plane, const AvatarClass& body, CrowdWays ways,
                             const ValidationConfig& config, Context& context);
 
+  /// Adds avatars at speeds of their own; nobody's id for who does not fit.
+  Result<std::vector<AvatarId>> place(std::span<const Spot> spots, std::span<const double> speeds,
+                                      Context& context);
   /// Adds avatars; who does not fit is left out. Returns those who were added.
   Result<std::vector<AvatarId>> stand(std::span<const Spot> spots, double speed, Context& context);
   /// Sends somebody to a spot. False if nobody of the class can stand there.

@@ -54,6 +54,10 @@ double ks_likelihood(double distance, size_t n) {
   return std::clamp(2 * sum, 0.0, 1.0);
 }
 
+double weidmann(double density) {
+  return density >= 5.4 ? 0 : 1.34 * (1 - std::exp(-1.913 * (1 / density - 1 / 5.4)));
+}
+
 double flow_rate(std::span<const double> times) {
   if (times.size() < 20) return 0;
   const size_t first = times.size() / 10, last = times.size() - 1 - times.size() / 10;

@@ -21,6 +21,9 @@ double ks_distance(std::vector<double> sample, const std::function<double(double
 /// How likely a sample of n numbers of the distribution itself is at least so far off [Stephens70].
 double ks_likelihood(double distance, size_t n);
 
+/// Speed at a density, one way [Weidmann93]. [1/m2, > 0; m/s]
+double weidmann(double density);
+
 /// People a second through a line, from the 10 % first to the 10 % last, by the time between them
 /// [SS10]. 0: fewer than 20 came through. [times: ascending, s]
 double flow_rate(std::span<const double> times);

@@ -10,9 +10,34 @@
 namespace throng {
 namespace {
 
+struct RecordedTest {
+  ValidationTest about;
+  Result<ValidationResult> (*run)(const std::string& folder, const ValidationConfig& config,
+                                  Context& context);
+};
+
+const RecordedTest kRecorded[] = {
+    {{"walkers", "People in streets for 4.8 s, and three guesses where they will be",
+      "All who were filmed for 0.4 s before and 4.8 s after a beginning, one each 4.8 s, begin "
+      "where "
+      "they are as they walked in the last 0.4 s; no guess knows a destination. Errors: distance "
+      "from where they were, mean of 12 positions and last. Least distances among those who are "
+      "followed, at the same positions.",
+      "scenes of [PESV09], [LCL07]; nothing is asked, compared with [HM95] and constant velocity"},
+     validate::walkers},
+    {{"laboratory", "Corridors, a counter-flow and a gate, beside the people who were filmed there",
+      "The same walls; everybody comes in when and where he was filmed first, wishing for 1.34 "
+      "m/s. "
+      "Flow over a line by the time between people, without the first and the last tenth [SS10]; "
+      "meanwhile classic density in a box, and speeds over 0.8 s in it. Measured alike in both.",
+      "trajectories of [ZKSS11], [ZKSS12], [ABHSS20]; nothing is asked"},
+     validate::laboratory},
+};
+
 template <class Do>
 void for_tests(Do act) {
-  for (const auto family : {validate::density_tests, validate::bottleneck_tests}) {
+  for (const auto family :
+       {validate::density_tests, validate::bottleneck_tests, validate::stream_tests}) {
     for (const validate::Test& test : family()) act(test);
   }
 }
@@ -43,6 +68,25 @@ Result<ValidationResult> run_validation(const std::string& name, const Validatio
   }
   const auto start = Clock::now();
   auto result = found->run(config, context);
+  if (result) result->seconds = seconds_since(start);
+  return result;
+}
+
+std::vector<ValidationTest> recorded_validation_tests() {
+  std::vector<ValidationTest> tests;
+  for (const RecordedTest& test : kRecorded) tests.push_back(test.about);
+  return tests;
+}
+
+Result<ValidationResult> run_recorded_validation(const std::string& name, const std::string& folder,
+                                                 const ValidationConfig& config, Context& context) {
+  const auto found = std::ranges::find_if(
+      kRecorded, [&](const RecordedTest& test) { return test.about.name == name; });
+  if (found == std::end(kRecorded)) {
+    return Error{Errc::kNotFound, "validate: no test of recordings is called " + name};
+  }
+  const auto start = Clock::now();
+  auto result = found->run(folder, config, context);
   if (result) result->seconds = seconds_since(start);
   return result;
 }

@@ -357,6 +357,18 @@ class Program(unittest.TestCase):
         self.assertNotIn("passed", smoke)
         self.assertIn("smoke", smoke["lacks"])
 
+    def test_recordings_are_compared_and_damaged_ones_are_refused(self):
+        self.assert_refused(self.run_throng("validate", "walkers"), "walkers", "FOLDER")
+        self.assert_refused(self.run_throng("validate", "walkers", self.path), str(self.path), "obsmat.txt")
+        self.assert_refused(self.run_throng("validate", "laboratory", "nowhere"), "nowhere", "uo-050-180-180.txt")
+        (self.path / "obsmat.txt").write_text("1 1 0 0 0 0 0 0\n11 1 0.4 0 zero 0 0 0\n")
+        self.assert_refused(self.run_throng("validate", "walkers", self.path), "obsmat.txt:2:")
+        (self.path / "obsmat.txt").write_text("".join(f"{10 * k + 1} {n} {0.5 * k} 0 {3 * n} 0 0 0\n" for k in range(20) for n in (1, 2)))
+        done = self.run_throng("validate", "walkers", self.path, "rimea.1", "--json", "-o", "charts")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([t["test"] for t in json.loads(done.stdout)["tests"]], ["walkers", "rimea.1"])
+        self.assertEqual(len(list((self.path / "charts").glob("walkers_*.png"))), 1)
+
     def test_a_trial_of_ones_own_is_judged_and_a_bad_one_is_refused(self):
         text = (ROOT / "trials" / "rimea" / "01_corridor.toml").read_text()
         (self.path / "mine.toml").write_text(text.replace("high = 34", "high = 27"))

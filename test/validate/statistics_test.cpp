@@ -58,6 +58,14 @@ TEST(Statistics, LikelihoodsAreThoseOfTheTables) {
   }
 }
 
+TEST(Statistics, WeidmannsSpeedsAreThoseOfHisTable) {
+  EXPECT_NEAR(weidmann(0.5), 1.30, 0.005);
+  EXPECT_NEAR(weidmann(1), 1.06, 0.005);
+  EXPECT_NEAR(weidmann(2), 0.61, 0.005);
+  EXPECT_NEAR(weidmann(4), 0.16, 0.005);
+  EXPECT_EQ(weidmann(6), 0);
+}
+
 TEST(Statistics, FlowLeavesOutTheFirstAndTheLastTenth) {
   std::vector<double> times;
   for (int i = 0; i < 20; ++i) times.push_back(0.5 * i);

@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "validate/room.h"
+#include "validate/statistics.h"
+#include "validate/tests.h"
+#include "validate/tracks.h"
+
+// Experiments of the laboratory of Juelich again: the same walls, and everybody comes in when and
+// where he was filmed first. Measured alike in both: what was filmed and what was walked.
+namespace throng::validate {
+namespace {
+
+constexpr int64_t kHalf = 4;  // steps: speeds are of 0.8 s, so that swaying heads do not count
+
+struct Experiment {
+  const char* file;
+  const char* title;
+  std::vector<Polygon> walls;
+  Spot low, high;            // of the ground
+  Spot box_low, box_high;    // in which density and speed are measured
+  Spot line_from, line_to;   // over which flow is
+  Spot goal_low, goal_high;  // two ends; whoever was filmed last nearer to one is bound for it
+  bool has_two_ways = false;
+};
+
+// A corridor 1.8 m wide and 8 m long, between an entrance and an exit of their own widths.
+Experiment open_corridor(const char* file, const char* title, double in, double out) {
+  const double middle = 0.9;
+  Experiment e{.file = file,
+               .title = title,
+               .walls = {},
+               .low = {-2, -8},
+               .high = {4, 9},
+               .box_low = {0, -2},
+               .box_high = {1.8, 2},
+               .line_from = {0, -3.5},
+               .line_to = {1.8, -3.5},
+               .goal_low = {middle, -7},
+               .goal_high = {middle, -7}};
+  for (const auto& [z, width] : {std::pair(3.7, in), std::pair(-4.0, out)}) {
+    e.walls.push_back(box(-2, z, middle - width / 2, z + 0.3));
+    e.walls.push_back(box(middle + width / 2, z, 4, z + 0.3));
+  }
+  e.walls.push_back(box(-0.5, -3.7, 0, 3.7));
+  e.walls.push_back(box(1.8, -3.7, 2.3, 3.7));
+  return e;
+}
+
+std::vector<Experiment> experiments() {
+  std::vector<Experiment> all{
+      open_corridor("uo-050-180-180.txt", "one way, entrance 0.5 m", 0.5, 1.8),
+      open_corridor("uo-100-180-180.txt", "one way, entrance 1 m", 1.0, 1.8),
+      open_corridor("uo-180-180-180.txt", "one way, open", 1.8, 1.8),
+      open_corridor("uo-180-180-070.txt", "one way, exit 0.7 m", 1.8, 0.7)};
+  all.push_back({.file = "bi_corr_400_b_03.txt",
+                 .title = "two ways, 4 m",
+                 .walls = {box(-4.8, -0.5, 4.3, 0), box(-4.8, 4, 4.3, 4.5)},
+                 .low = {-9, -1.5},
+                 .high = {8, 5.5},
+                 .box_low = {-2, 0},
+                 .box_high = {2, 4},
+                 .line_from = {0, 0},
+                 .line_to = {0, 4},
+                 .goal_low = {-8, 2},
+                 .goal_high = {7, 2},
+                 .has_two_ways = true});
+  all.push_back({.file = "040_c_56_h-.txt",
+                 .title = "crowd before a gate of 0.5 m",
+                 .walls = {box(-3.3, -1, -2.8, 9), box(2.8, -1, 3.3, 9), box(-2.8, -1, -0.25, 0),
+                           box(0.25, -1, 2.8, 0)},
+                 .low = {-3.3, -5},
+                 .high = {3.3, 9},
+                 .box_low = {-1, 0.3},
+                 .box_high = {1, 2.3},
+                 .line_from = {-0.25, -0.5},
+                 .line_to = {0.25, -0.5},
+                 .goal_low = {0, -4},
+                 .goal_high = {0, -4}});
+  return all;
+}
+
+// Somebody's way, a position each step of 0.1 s.
+struct Way {
+  int64_t first = 0;  // step
+  std::vector<Spot> at;
+};
+
+// Positions between frames, straight.
+Way resampled(const Track& track, double fps) {
+  Way way;
+  const auto time = [&](size_t i) { return static_cast<double>(track.points[i].frame) / fps; };
+  way.first = static_cast<int64_t>(std::ceil(time(0) / Room::kStep - 1e-9));
+  size_t i = 0;
+  for (int64_t step = way.first;; ++step) {
+    const double t = static_cast<double>(step) * Room::kStep;
+    while (i + 1 < track.points.size() && time(i + 1) < t) ++i;
+    if (i + 1 >= track.points.size()) break;
+    const TrackPoint &a = track.points[i], &b = track.points[i + 1];
+    const double part = (t - time(i)) / (time(i + 1) - time(i));
+    way.at.push_back({a.x + part * (b.x - a.x), a.z + part * (b.z - a.z)});
+  }
+  return way;
+}
+
+struct Measured {
+  size_t passed = 0;
+  double flow = 0, density = 0, speed = 0;
+};
+
+// When somebody comes over the line first [s]; below 0: he does not.
+double crossing_time(const Way& way, const Experiment& e) {
+  const bool along_x = e.line_from.z == e.line_to.z;
+  for (size_t i = 1; i < way.at.size(); ++i) {
+    const Spot &a = way.at[i - 1], &b = way.at[i];
+    const double before = along_x ? a.z - e.line_from.z : a.x - e.line_from.x;
+    const double after = along_x ? b.z - e.line_from.z : b.x - e.line_from.x;
+    if ((before < 0) == (after < 0)) continue;
+    return (static_cast<double>(way.first + static_cast<int64_t>(i)) - after / (after - before)) *
+           Room::kStep;
+  }
+  return -1;
+}
+
+Measured measure(const std::vector<Way>& ways, const Experiment& e) {
+  Measured out;
+  std::vector<double> times;
+  for (const Way& way : ways) {
+    if (const double t = crossing_time(way, e); t >= 0) times.push_back(t);
+  }
+  std::sort(times.begin(), times.end());
+  out.passed = times.size();
+  out.flow = flow_rate(times);
+  if (times.size() < 20) return out;
+  const auto step_of = [](double t) { return static_cast<int64_t>(t / Room::kStep); };
+  const int64_t begin = step_of(times[times.size() / 10]),
+                end = step_of(times[times.size() - 1 - times.size() / 10]);
+  double inside = 0, moved = 0, speeds = 0;
+  for (const Way& way : ways) {
+    for (size_t i = 0; i < way.at.size(); ++i) {
+      const int64_t step = way.first + static_cast<int64_t>(i);
+      const Spot& p = way.at[i];
+      const bool here =
+          p.x >= e.box_low.x && p.x <= e.box_high.x && p.z >= e.box_low.z && p.z <= e.box_high.z;
+      if (step < begin || step >= end || !here) continue;
+      inside += 1;
+      if (i < kHalf || i + kHalf >= way.at.size()) continue;
+      const Spot &a = way.at[i - kHalf], &b = way.at[i + kHalf];
+      speeds += std::hypot(b.x - a.x, b.z - a.z) / (2 * kHalf * Room::kStep);
+      moved += 1;
+    }
+  }
+  const double area = (e.box_high.x - e.box_low.x) * (e.box_high.z - e.box_low.z);
+  out.density = inside / (area * static_cast<double>(end - begin));
+  out.speed = speeds / moved;
+  return out;
+}
+
+// Whoever has been filmed comes in, and walks to the end at which he was filmed last.
+Result<std::vector<Way>> walk(const Experiment& e, const std::vector<Way>& filmed,
+                              const ValidationConfig& config, ValidationResult& result,
+                              Context& context) {
+  PlaneConfig plane;
+  plane.ground = box(e.low.x, e.low.z, e.high.x, e.high.z);
+  plane.obstacles = e.walls;
+  const AvatarClass body = walker();
+  auto room = Room::build(plane, body, CrowdWays::kPaths, config, context);
+  if (!room) return room.error();
+  std::vector<size_t> outside(filmed.size());
+  for (size_t n = 0; n < filmed.size(); ++n) outside[n] = n;
+  std::sort(outside.begin(), outside.end(), [&](size_t a, size_t b) {
+    return std::pair(filmed[a].first, a) < std::pair(filmed[b].first, b);
+  });
+  std::vector<Way> ways(filmed.size());
+  std::map<uint32_t, size_t> who;  // by slot
+  int64_t last = 0;
+  for (const Way& way : filmed) {
+    last = std::max(last, way.first + static_cast<int64_t>(way.at.size()));
+  }
+  for (int64_t step = 0; step < 3 * last && !(outside.empty() && room->size() == 0); ++step) {
+    std::vector<Spot> spots;
+    std::vector<size_t> due;
+    for (const size_t n : outside) {
+      if (filmed[n].first > step) break;
+      due.push_back(n);
+      spots.push_back(filmed[n].at.front());
+    }
+    if (!due.empty()) {
+      const auto ids = room->place(spots, std::vector<double>(spots.size(), body.speed), context);
+      if (!ids) return ids.error();
+      for (size_t k = 0; k < due.size(); ++k) {
+        if (!(*ids)[k]) continue;
+        const Way& own = filmed[due[k]];
+        const bool to_low = !e.has_two_ways || own.at.back().x < own.at.front().x;
+        room->send((*ids)[k], to_low ? e.goal_low : e.goal_high);
+        who[(*ids)[k].slot1] = due[k];
+        ways[due[k]] = {step, {own.at.front()}};
+        std::erase(outside, due[k]);
+      }
+    }
+    room->step();
+    std::vector<AvatarId> gone;
+    for (const Seen& s : room->all()) {
+      Way& way = ways[who[s.id.slot1]];
+      way.at.push_back({s.x, s.z});
+      const bool to_low = !e.has_two_ways || filmed[who[s.id.slot1]].at.back().x <
+                                                 filmed[who[s.id.slot1]].at.front().x;
+      const Spot& goal = to_low ? e.goal_low : e.goal_high;
+      if (std::hypot(s.x - goal.x, s.z - goal.z) < 2) gone.push_back(s.id);
+    }
+    room->leave(gone);
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
+  }
+  room->report(result);
+  return ways;
+}
+
+Result<void> compare(const Experiment& e, const std::string& path, const ValidationConfig& config,
+                     ValidationResult& result, Context& context) {
+  const auto tracks = load_juelich(path);
+  if (!tracks) return tracks.error();
+  std::vector<Way> filmed;
+  for (const Track& track : tracks->people) {
+    Way way = resampled(track, tracks->fps);
+    if (way.at.empty()) continue;
+    filmed.push_back(std::move(way));
+  }
+  const auto is_outside = [&](const Way& way) {
+    const Spot& p = way.at.front();
+    return !(p.x > e.low.x && p.x < e.high.x && p.z > e.low.z && p.z < e.high.z);
+  };
+  if (filmed.empty() || std::ranges::any_of(filmed, is_outside)) {
+    return Error{Errc::kBadFile, path +
+                                     ": somebody is filmed first outside of the experiment's "
+                                     "ground; is it another experiment's file?"};
+  }
+  const auto walked = walk(e, filmed, config, result, context);
+  if (!walked) return walked.error();
+  const Measured real = measure(filmed, e), ours = measure(*walked, e);
+  const auto told = [&](const char* what, double value, const char* unit) {
+    result.measures.push_back(
+        {.name = std::string(e.title) + ": " + what, .value = value, .unit = unit});
+  };
+  told("people filmed over the line", static_cast<double>(real.passed), "");
+  told("people walked over the line", static_cast<double>(ours.passed), "");
+  told("flow, real", real.flow, "p/s");
+  told("flow, throng", ours.flow, "p/s");
+  told("density, real", real.density, "1/m2");
+  told("density, throng", ours.density, "1/m2");
+  told("speed, real", real.speed, "m/s");
+  told("speed, throng", ours.speed, "m/s");
+  return {};
+}
+
+}  // namespace
+
+Result<ValidationResult> laboratory(const std::string& folder, const ValidationConfig& config,
+                                    Context& context) {
+  ValidationResult result;
+  std::string known;
+  for (const Experiment& e : experiments()) {
+    known += (known.empty() ? "" : ", ") + std::string(e.file);
+    const std::string path = (std::filesystem::path(folder) / e.file).string();
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(path, none)) continue;
+    if (auto ok = compare(e, path, config, result, context); !ok) return ok.error();
+  }
+  if (result.measures.empty()) {
+    return Error{Errc::kNotFound, folder + ": it holds none of " + known};
+  }
+  return result;
+}
+
+}  // namespace throng::validate

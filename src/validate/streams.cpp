@@ -1,0 +1,350 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "validate/streams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/random.h"
+#include "validate/room.h"
+#include "validate/statistics.h"
+#include "validate/tests.h"
+
+// What streams of people do by themselves: lanes, crossings without jams, arches before doors.
+namespace throng::validate {
+
+double lane_order(std::span<const Passer> people, double row) {
+  std::map<int64_t, std::pair<double, double>> rows;  // up, down
+  for (const Passer& p : people) {
+    auto& [up, down] = rows[static_cast<int64_t>(std::floor(p.across / row))];
+    (p.up ? up : down) += 1;
+  }
+  const auto all = static_cast<double>(people.size());
+  const auto count = static_cast<double>(rows.size());
+  if (all <= count) return 0;
+  double sum = 0;
+  for (const auto& [at, ways] : rows) {
+    const auto [up, down] = ways;
+    sum += (up - down) * (up - down) / (up + down);
+  }
+  // By chance each row of n has a mean square surplus of n.
+  return (sum - count) / (all - count);
+}
+
+double arch_shape(std::span<const Before> people) {
+  double aside = 0, front = 0;
+  for (const Before& p : people) {
+    aside += std::fabs(p.aside);
+    front += p.front;
+  }
+  return front > 0 ? aside / front : 0;
+}
+
+namespace {
+
+// Lanes: whoever leaves at one end comes in again at the other, so that as many stay.
+constexpr double kLong = 40, kWide = 6;            // [m]
+constexpr double kLaneFrom = 10, kLaneUntil = 30;  // [m] where order is looked at
+constexpr double kRow = 0.6;                       // [m]
+constexpr double kLaneTime = 120;                  // [s]
+
+struct Lanes {
+  std::vector<double> order, speed;  // of each second
+};
+
+Result<Lanes> walk_lanes(double density, const ValidationConfig& config, ValidationResult& result,
+                         Context& context) {
+  PlaneConfig plane;
+  plane.ground = box(-1, -0.5, kLong + 1, kWide + 0.5);
+  plane.obstacles = {box(-1, -0.5, kLong + 1, 0), box(-1, kWide, kLong + 1, kWide + 0.5)};
+  const AvatarClass body = walker();
+  auto room = Room::build(plane, body, CrowdWays::kStraight, config, context);
+  if (!room) return room.error();
+  // Everybody begins at a place of a grid, and goes either way by chance.
+  std::vector<Spot> spots;
+  const double apart = 1 / std::sqrt(density), spare = apart - 2 * body.radius - 0.01;
+  for (double x = apart / 2; x < kLong; x += apart) {
+    for (double z = std::max(0.3, apart / 2); z < kWide - 0.25; z += apart) {
+      const uint64_t n = spots.size();
+      spots.push_back(
+          {x + spare * (random_unit(config.seed, 1, n) - 0.5),
+           std::clamp(z + spare * (random_unit(config.seed, 2, n) - 0.5), 0.3, kWide - 0.3)});
+    }
+  }
+  const auto ids = room->stand(spots, 0, context);
+  if (!ids) return ids.error();
+  std::map<uint32_t, bool> is_up;  // by slot
+  for (const AvatarId id : *ids) {
+    is_up[id.slot1] = random_unit(config.seed, 3, id.slot1) < 0.5;
+  }
+  Lanes lanes;
+  std::vector<std::pair<Spot, bool>> coming;
+  std::vector<Passer> passers;
+  std::vector<AvatarId> who, gone;
+  std::vector<Vec3d> wishes;
+  const double time = config.brief ? kLaneTime / 4 : kLaneTime;
+  double speeds = 0, looked = 0;
+  for (int64_t step = 1; room->time() < time - 1e-9; ++step) {
+    who.clear();
+    wishes.clear();
+    gone.clear();
+    for (const Seen& s : room->all()) {
+      const bool up = is_up[s.id.slot1];
+      if (up ? s.x > kLong : s.x < 0) {
+        gone.push_back(s.id);
+        coming.push_back({{up ? 0.1 : kLong - 0.1, s.z}, up});
+        continue;
+      }
+      who.push_back(s.id);
+      wishes.push_back({up ? body.speed : -body.speed, 0, 0});
+    }
+    room->leave(gone);
+    std::vector<Spot> at;
+    for (const auto& [spot, up] : coming) at.push_back(spot);
+    const auto added = room->place(at, std::vector<double>(at.size(), body.speed), context);
+    if (!added) return added.error();
+    size_t k = 0;
+    std::erase_if(coming, [&](const auto& one) {
+      const AvatarId id = (*added)[k++];
+      if (!id) return false;
+      is_up[id.slot1] = one.second;
+      who.push_back(id);
+      wishes.push_back({one.second ? body.speed : -body.speed, 0, 0});
+      return true;
+    });
+    room->drive(who, wishes);
+    room->step();
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
+    passers.clear();
+    for (const Seen& s : room->all()) {
+      if (s.x < kLaneFrom || s.x > kLaneUntil) continue;
+      const bool up = is_up[s.id.slot1];
+      passers.push_back({s.z, up});
+      speeds += up ? s.vx : -s.vx;
+      looked += 1;
+    }
+    if (step % 10 != 0) continue;
+    lanes.order.push_back(lane_order(passers, kRow));
+    lanes.speed.push_back(looked > 0 ? speeds / looked : 0);
+    speeds = looked = 0;
+  }
+  room->report(result);
+  return lanes;
+}
+
+double mean_of(const std::vector<double>& values, size_t from, size_t until) {
+  double sum = 0;
+  for (size_t i = from; i < until; ++i) sum += values[i];
+  return sum / static_cast<double>(until - from);
+}
+
+Result<ValidationResult> lanes(const ValidationConfig& config, Context& context) {
+  ValidationResult result;
+  ValidationChart order{"lanes_order", {}}, speed{"lanes_speed", {}};
+  order.chart.title = "Order of lanes in a counter-flow";
+  order.chart.y_title = "order, 1: every row goes one way";
+  order.chart.most = 1;
+  speed.chart.title = "Speed in a counter-flow";
+  speed.chart.y_title = "speed along the corridor, m/s";
+  for (const double density : {0.3, 0.6, 1.0, 1.5, 2.0}) {
+    const auto found = walk_lanes(density, config, result, context);
+    if (!found) return found.error();
+    const size_t seconds = found->order.size(), last = seconds / 4;
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.1f /m2", density);
+    const std::string at = text.data();
+    result.measures.push_back(
+        {.name = "order in the first 5 s, " + at, .value = mean_of(found->order, 0, 5)});
+    result.measures.push_back({.name = "order in the last quarter, " + at,
+                               .value = mean_of(found->order, seconds - last, seconds),
+                               .low = 0.5});
+    result.measures.push_back({.name = "speed in the last quarter, " + at,
+                               .value = mean_of(found->speed, seconds - last, seconds),
+                               .unit = "m/s",
+                               .low = weidmann(density) / 2});
+    for (ValidationChart* chart : {&order, &speed}) {
+      chart->chart.x_title = "time, s";
+      chart->chart.x.clear();
+      ChartLine line{.name = at, .kind = LineKind::kPlain};
+      for (size_t i = 0; i < seconds; ++i) {
+        chart->chart.x.push_back(static_cast<double>(i + 1));
+        line.values.push_back(std::max(0.0, chart == &order ? found->order[i] : found->speed[i]));
+      }
+      chart->chart.lines.push_back(std::move(line));
+    }
+  }
+  result.charts = {std::move(order), std::move(speed)};
+  return result;
+}
+
+// Two corridors that cross: half a person a square metre comes in each, so that there is one where
+// they cross, as long as nobody is held up.
+constexpr double kArm = 12, kCross = 4;  // [m] of a corridor before the crossing; its width
+constexpr double kEach = 0.5;            // [1/m2]
+
+Result<ValidationResult> crossing(const ValidationConfig& config, Context& context) {
+  ValidationResult result;
+  const double all = 2 * kArm + kCross;
+  PlaneConfig plane;
+  plane.ground = box(-1, -1, all + 1, all + 1);
+  plane.obstacles = {box(-1, -1, kArm, kArm), box(kArm + kCross, -1, all + 1, kArm),
+                     box(-1, kArm + kCross, kArm, all + 1),
+                     box(kArm + kCross, kArm + kCross, all + 1, all + 1)};
+  const AvatarClass body = walker();
+  auto room = Room::build(plane, body, CrowdWays::kPaths, config, context);
+  if (!room) return room.error();
+  const double rate = kEach * body.speed * kCross;  // [p/s] of each stream
+  const double time = config.brief ? 40 : 120, from = time / 3;
+  std::map<uint32_t, int> stream_of;
+  std::array<uint64_t, 2> called{};
+  std::vector<std::pair<Spot, int>> coming;
+  uint64_t came = 0, left = 0, most_outside = 0;
+  double inside = 0, speeds = 0;
+  int64_t steps = 0;
+  while (room->time() < time - 1e-9) {
+    for (int k = 0; k < 2; ++k) {
+      const auto which = static_cast<size_t>(k);
+      while (static_cast<double>(called[which]) < rate * room->time()) {
+        const double aside =
+            kArm + 0.25 + (kCross - 0.5) * random_unit(config.seed, 10 + which, called[which]);
+        ++called[which];
+        coming.push_back({k == 0 ? Spot{-0.5, aside} : Spot{aside, -0.5}, k});
+      }
+    }
+    std::vector<Spot> at;
+    for (const auto& [spot, stream] : coming) at.push_back(spot);
+    const auto added = room->place(at, std::vector<double>(at.size(), body.speed), context);
+    if (!added) return added.error();
+    const bool counts = room->time() >= from;
+    size_t n = 0;
+    std::erase_if(coming, [&](const auto& one) {
+      const AvatarId id = (*added)[n++];
+      if (!id) return false;
+      stream_of[id.slot1] = one.second;
+      room->send(id, one.second == 0 ? Spot{all + 0.7, one.first.z} : Spot{one.first.x, all + 0.7});
+      came += counts ? 1 : 0;
+      return true;
+    });
+    most_outside = std::max<uint64_t>(most_outside, coming.size());
+    room->step();
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
+    std::vector<AvatarId> gone;
+    steps += counts ? 1 : 0;
+    for (const Seen& s : room->all()) {
+      const bool eastward = stream_of[s.id.slot1] == 0;
+      if ((eastward ? s.x : s.z) > all) gone.push_back(s.id);
+      if (!counts || s.x < kArm || s.x > kArm + kCross || s.z < kArm || s.z > kArm + kCross) {
+        continue;
+      }
+      inside += 1;
+      speeds += eastward ? s.vx : s.vz;
+    }
+    left += counts ? gone.size() : 0;
+    room->leave(gone);
+  }
+  room->report(result);
+  result.measures = {
+      {.name = "density where they cross",
+       .value = inside / (kCross * kCross * static_cast<double>(steps)),
+       .unit = "1/m2"},
+      {.name = "speed there", .value = speeds / inside, .unit = "m/s", .low = weidmann(1) / 2},
+      {.name = "left by came",
+       .value = static_cast<double>(left) / static_cast<double>(came),
+       .low = 0.9},
+      {.name = "most who found no room to come in", .value = static_cast<double>(most_outside)},
+  };
+  return result;
+}
+
+// A crowd that walks up to a door.
+constexpr double kDoor = 1.2, kHall = 14;  // [m]
+constexpr uint32_t kCrowd = 150;
+
+Result<ValidationResult> arch(const ValidationConfig& config, Context& context) {
+  ValidationResult result;
+  PlaneConfig plane;
+  plane.ground = box(-0.5, -0.5, kHall + 8, kHall + 0.5);
+  const double middle = kHall / 2;
+  plane.obstacles = {box(kHall, -0.5, kHall + 0.5, middle - kDoor / 2),
+                     box(kHall, middle + kDoor / 2, kHall + 0.5, kHall + 0.5)};
+  const AvatarClass body = walker();
+  auto room = Room::build(plane, body, CrowdWays::kPaths, config, context);
+  if (!room) return room.error();
+  std::vector<Spot> spots;
+  for (uint64_t n = 0; n < kCrowd; ++n) {
+    spots.push_back(
+        {0.5 + 0.6 * static_cast<double>(n / 15) + 0.2 * (random_unit(config.seed, 1, n) - 0.5),
+         2.8 + 0.6 * static_cast<double>(n % 15) + 0.2 * (random_unit(config.seed, 2, n) - 0.5)});
+  }
+  const auto ids = room->stand(spots, 0, context);
+  if (!ids) return ids.error();
+  for (const AvatarId id : *ids) room->send(id, {kHall + 7, middle});
+  std::vector<double> times;
+  std::vector<Before> waiting;
+  double shape = 0, near = 0;
+  int64_t looks = 0;
+  while (room->size() > 0 && room->time() < 300) {
+    room->step();
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
+    std::vector<AvatarId> gone;
+    waiting.clear();
+    for (const Seen& s : room->all()) {
+      const double before = s.x - s.vx * Room::kStep;
+      if (before < kHall + 0.25 && s.x >= kHall + 0.25) times.push_back(room->time());
+      if (s.x > kHall + 5) gone.push_back(s.id);
+      if (s.x < kHall) waiting.push_back({s.z - middle, kHall - s.x});
+    }
+    room->leave(gone);
+    if (room->time() < 15 || room->time() > 30 + 1e-9) continue;
+    ++looks;
+    shape += arch_shape(waiting);
+    near += static_cast<double>(std::ranges::count_if(
+        waiting, [](const Before& p) { return std::hypot(p.aside, p.front) < 2; }));
+  }
+  room->report(result);
+  const double half_circle = 2 * 3.14159265358979323846;  // of 2 m [m2]
+  result.measures = {
+      {.name = "to the side by to the front, 15 to 30 s",
+       .value = shape / static_cast<double>(looks),
+       .low = 0.6,
+       .high = 1.6},
+      {.name = "density within 2 m of the door",
+       .value = near / (half_circle * static_cast<double>(looks)),
+       .unit = "1/m2"},
+      {.name = "flow", .value = flow_rate(times) / kDoor, .unit = "p/(m s)"},
+      {.name = "left behind", .value = static_cast<double>(room->size()), .low = 0, .high = 0},
+  };
+  return result;
+}
+
+const std::array<Test, 3> kTests{
+    Test{{"lanes", "Lanes in a counter-flow",
+          "A corridor of 40 x 6 m, people set off either way by chance, mixed; whoever leaves at "
+          "one end comes in again at the other. Order of rows 0.6 m wide along the middle 20 m "
+          "[NS12], 0 for people mixed by chance, 1 if every row goes one way, each second for 120 "
+          "s; speeds along the way.",
+          "ours: an order of 0.5, and half of the speed of [Weidmann93] at the density"},
+         lanes},
+    Test{{"crossing", "Two streams that cross at right angles",
+          "Corridors 4 m wide, half a person a square metre coming in each, so 1 /m2 where they "
+          "cross; after the first third of 120 s.",
+          "ours: no jam, that is half of [Weidmann93]'s speed at 1 /m2, and nine of ten who come "
+          "leave"},
+         crossing},
+    Test{{"arch", "An arch before a door",
+          "150 people walk up to a door of 1.2 m. From 15 to 30 s: mean distance to the side of "
+          "all before it by mean distance to the front; 1 for a half circle, less for a column, "
+          "more for a line along the wall. Flow as of bottleneck.",
+          "[HFV00]: arches; the range is ours"},
+         arch}};
+
+}  // namespace
+
+std::span<const Test> stream_tests() { return kTests; }
+
+}  // namespace throng::validate

@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "validate/room.h"
+#include "validate/social_force.h"
+#include "validate/tests.h"
+#include "validate/tracks.h"
+
+// Real people in a street, and three guesses where they will be: each begins where somebody is, as
+// he walked last, and is looked at for 4.8 s. All guesses know the same: nobody's destination.
+namespace throng::validate {
+namespace {
+
+constexpr double kSample = 0.4;  // [s] between positions in the scenes
+constexpr size_t kAhead = 12;    // samples
+constexpr int kStepsASample = 4;
+constexpr double kStanding = 0.05;  // [m/s] Who is slower stands.
+
+enum Model : size_t { kReal, kOurs, kConstant, kForce, kModels };
+constexpr std::array<const char*, kModels> kNames{"real", "throng", "constant velocity",
+                                                  "social force [HM95]"};
+
+struct Walker {
+  Spot begin;
+  double vx = 0, vz = 0;
+  std::array<Spot, kAhead> real = {};
+  bool is_complete = false;  // He was filmed for all of it.
+};
+
+// The scene by sample: who was there when.
+struct Film {
+  std::vector<std::map<int64_t, Spot>> samples;
+  Spot low{1e9, 1e9}, high{-1e9, -1e9};
+};
+
+Film film_of(const Tracks& tracks) {
+  int64_t first = std::numeric_limits<int64_t>::max(), gap = first;
+  for (const Track& track : tracks.people) {
+    first = std::min(first, track.points.front().frame);
+    for (size_t i = 1; i < track.points.size(); ++i) {
+      gap = std::min(gap, track.points[i].frame - track.points[i - 1].frame);
+    }
+  }
+  Film film;
+  for (const Track& track : tracks.people) {
+    for (const TrackPoint& p : track.points) {
+      const auto k = static_cast<size_t>((p.frame - first) / gap);
+      if (film.samples.size() <= k) film.samples.resize(k + 1);
+      film.samples[k][track.person] = {p.x, p.z};
+      film.low = {std::min(film.low.x, p.x), std::min(film.low.z, p.z)};
+      film.high = {std::max(film.high.x, p.x), std::max(film.high.z, p.z)};
+    }
+  }
+  return film;
+}
+
+std::vector<Walker> walkers_at(const Film& film, size_t k) {
+  std::vector<Walker> walkers;
+  for (const auto& [person, now] : film.samples[k]) {
+    const auto before = film.samples[k - 1].find(person);
+    if (before == film.samples[k - 1].end()) continue;
+    Walker w;
+    w.begin = now;
+    w.vx = (now.x - before->second.x) / kSample;
+    w.vz = (now.z - before->second.z) / kSample;
+    w.is_complete = true;
+    for (size_t i = 0; i < kAhead; ++i) {
+      const auto then = film.samples[k + 1 + i].find(person);
+      if (then == film.samples[k + 1 + i].end()) {
+        w.is_complete = false;
+        break;
+      }
+      w.real[i] = then->second;
+    }
+    walkers.push_back(w);
+  }
+  return walkers;
+}
+
+using Ways = std::vector<std::array<Spot, kAhead>>;  // by walker
+
+Ways constant_ways(const std::vector<Walker>& walkers) {
+  Ways ways(walkers.size());
+  for (size_t n = 0; n < walkers.size(); ++n) {
+    for (size_t i = 0; i < kAhead; ++i) {
+      const double t = kSample * static_cast<double>(i + 1);
+      ways[n][i] = {walkers[n].begin.x + walkers[n].vx * t, walkers[n].begin.z + walkers[n].vz * t};
+    }
+  }
+  return ways;
+}
+
+Ways force_ways(const std::vector<Walker>& walkers) {
+  std::vector<ForceWalker> moved;
+  for (const Walker& w : walkers) moved.push_back({w.begin.x, w.begin.z, w.vx, w.vz, w.vx, w.vz});
+  Ways ways(walkers.size());
+  for (size_t i = 0; i < kAhead; ++i) {
+    for (int step = 0; step < kStepsASample; ++step) step_social_force(moved, Room::kStep, {});
+    for (size_t n = 0; n < walkers.size(); ++n) ways[n][i] = {moved[n].x, moved[n].z};
+  }
+  return ways;
+}
+
+// Walks the crowd; who found no room to stand is marked as not complete.
+Result<Ways> our_ways(Room& room, std::vector<Walker>& walkers, Context& context) {
+  std::vector<Spot> spots;
+  std::vector<double> speeds;
+  for (const Walker& w : walkers) {
+    spots.push_back(w.begin);
+    speeds.push_back(std::max(kStanding, std::hypot(w.vx, w.vz)));
+  }
+  const auto ids = room.place(spots, speeds, context);
+  if (!ids) return ids.error();
+  std::vector<AvatarId> who;
+  std::vector<Vec3d> wishes;
+  std::map<uint32_t, size_t> walker_of;  // by slot
+  for (size_t n = 0; n < walkers.size(); ++n) {
+    if (!(*ids)[n]) {
+      walkers[n].is_complete = false;
+      continue;
+    }
+    walker_of[(*ids)[n].slot1] = n;
+    who.push_back((*ids)[n]);
+    const bool stands = std::hypot(walkers[n].vx, walkers[n].vz) < kStanding;
+    wishes.push_back(stands ? Vec3d{} : Vec3d{walkers[n].vx, 0, walkers[n].vz});
+  }
+  room.drive(who, wishes);
+  Ways ways(walkers.size());
+  for (size_t i = 0; i < kAhead; ++i) {
+    for (int step = 0; step < kStepsASample; ++step) room.step();
+    for (const Seen& s : room.all()) ways[walker_of[s.id.slot1]][i] = {s.x, s.z};
+  }
+  room.leave(who);
+  return ways;
+}
+
+// What is summed up over all beginnings.
+struct Score {
+  double mean_error = 0, last_error = 0;
+  std::vector<double> nearest;  // to another of those who are scored, of each [m]
+};
+
+double apart(const Spot& a, const Spot& b) { return std::hypot(a.x - b.x, a.z - b.z); }
+
+void add(Score& score, const std::vector<Walker>& walkers, const Ways& ways) {
+  for (size_t n = 0; n < walkers.size(); ++n) {
+    if (!walkers[n].is_complete) continue;
+    double sum = 0, nearest = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < kAhead; ++i) {
+      sum += apart(ways[n][i], walkers[n].real[i]);
+      for (size_t m = 0; m < walkers.size(); ++m) {
+        if (m == n || !walkers[m].is_complete) continue;
+        nearest = std::min(nearest, apart(ways[n][i], ways[m][i]));
+      }
+    }
+    score.mean_error += sum / static_cast<double>(kAhead);
+    score.last_error += apart(ways[n].back(), walkers[n].real.back());
+    if (nearest < std::numeric_limits<double>::infinity()) score.nearest.push_back(nearest);
+  }
+}
+
+double quantile(std::vector<double> sorted, double part) {
+  if (sorted.empty()) return std::nan("");
+  return sorted[static_cast<size_t>(part * static_cast<double>(sorted.size() - 1) + 0.5)];
+}
+
+ValidationChart distances(const std::string& scene, const std::array<Score, kModels>& scores) {
+  ValidationChart chart;
+  chart.name = "walkers_" + scene;
+  chart.chart.title = "Least distance to another within 4.8 s, " + scene;
+  chart.chart.x_title = "distance, m";
+  chart.chart.y_title = "share of people below, %";
+  for (double x = 0; x <= 3.001; x += 0.1) chart.chart.x.push_back(x);
+  for (size_t m = 0; m < kModels; ++m) {
+    ChartLine line{.name = kNames[m],
+                   .kind = m == kReal   ? LineKind::kDashed
+                           : m == kOurs ? LineKind::kStrong
+                                        : LineKind::kPlain};
+    for (const double x : chart.chart.x) {
+      const auto below = std::ranges::count_if(scores[m].nearest, [&](double d) { return d < x; });
+      line.values.push_back(100.0 * static_cast<double>(below) /
+                            static_cast<double>(std::max<size_t>(1, scores[m].nearest.size())));
+    }
+    chart.chart.lines.push_back(std::move(line));
+  }
+  return chart;
+}
+
+Result<void> walk_scene(const std::string& scene, const std::string& path,
+                        const ValidationConfig& config, ValidationResult& result,
+                        Context& context) {
+  const auto tracks = load_obsmat(path);
+  if (!tracks) return tracks.error();
+  const Film film = film_of(*tracks);
+  // The speeds of the file are short: nobody gets farther than this from where he was filmed.
+  constexpr double kMargin = 20;
+  const Spot& low = film.low;
+  const Spot& high = film.high;
+  if (high.x - low.x > 300 || high.z - low.z > 300) {
+    return Error{Errc::kBadFile, path +
+                                     ": its people are more than 300 m apart; metres are "
+                                     "expected"};
+  }
+  PlaneConfig plane;
+  plane.ground = box(low.x - kMargin, low.z - kMargin, high.x + kMargin, high.z + kMargin);
+  auto room = Room::build(plane, walker(), CrowdWays::kStraight, config, context);
+  if (!room) return room.error();
+  std::array<Score, kModels> scores;
+  size_t count = 0, no_room = 0;
+  const size_t every = config.brief ? 10 * kAhead : kAhead;
+  for (size_t k = 1; k + kAhead < film.samples.size(); k += every) {
+    std::vector<Walker> walkers = walkers_at(film, k);
+    const auto complete = [&] {
+      return static_cast<size_t>(std::ranges::count_if(walkers, &Walker::is_complete));
+    };
+    const size_t filmed = complete();
+    if (filmed == 0) continue;
+    const auto ours = our_ways(*room, walkers, context);
+    if (!ours) return ours.error();
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
+    count += complete();
+    no_room += filmed - complete();
+    Ways real;
+    for (const Walker& w : walkers) real.push_back(w.real);
+    add(scores[kReal], walkers, real);
+    add(scores[kOurs], walkers, *ours);
+    add(scores[kConstant], walkers, constant_ways(walkers));
+    add(scores[kForce], walkers, force_ways(walkers));
+  }
+  room->report(result);
+  if (count == 0) {
+    return Error{Errc::kBadFile, path + ": nobody was filmed for 5.2 s on end; it is too short"};
+  }
+  const auto people = static_cast<double>(count);
+  const auto told = [&](const std::string& what, double value, const std::string& unit) {
+    result.measures.push_back({.name = scene + ": " + what, .value = value, .unit = unit});
+  };
+  told("people followed", people, "");
+  told("left out, nearer to another than two bodies", static_cast<double>(no_room), "");
+  for (size_t m = kOurs; m < kModels; ++m) {
+    told(std::string("mean error, ") + kNames[m], scores[m].mean_error / people, "m");
+    told(std::string("error after 4.8 s, ") + kNames[m], scores[m].last_error / people, "m");
+  }
+  for (size_t m = 0; m < kModels; ++m) {
+    std::ranges::sort(scores[m].nearest);
+    const auto below = std::ranges::count_if(
+        scores[m].nearest, [](double d) { return d < 2 * walker().radius - 1e-6; });
+    told(std::string("least distance, 5 % of people, ") + kNames[m],
+         quantile(scores[m].nearest, 0.05), "m");
+    told(std::string("least distance, half of people, ") + kNames[m],
+         quantile(scores[m].nearest, 0.5), "m");
+    told(std::string("bodies overlap, ") + kNames[m],
+         100 * static_cast<double>(below) /
+             static_cast<double>(std::max<size_t>(1, scores[m].nearest.size())),
+         "% of people");
+  }
+  result.charts.push_back(distances(scene, scores));
+  return {};
+}
+
+}  // namespace
+
+Result<ValidationResult> walkers(const std::string& folder, const ValidationConfig& config,
+                                 Context& context) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  std::vector<std::pair<std::string, std::string>> scenes;
+  const fs::path root(folder);
+  if (fs::is_regular_file(root / "obsmat.txt", failed)) {
+    scenes.emplace_back(fs::weakly_canonical(root, failed).filename().string(),
+                        (root / "obsmat.txt").string());
+  }
+  for (fs::directory_iterator it(root, failed), end; !failed && it != end; it.increment(failed)) {
+    const fs::path file = it->path() / "obsmat.txt";
+    std::error_code none;
+    if (!fs::is_regular_file(file, none)) continue;
+    scenes.emplace_back(it->path().filename().string(), file.string());
+  }
+  std::sort(scenes.begin(), scenes.end());
+  if (scenes.empty()) {
+    return Error{Errc::kNotFound, folder + ": neither it nor a folder in it holds an obsmat.txt"};
+  }
+  ValidationResult result;
+  for (const auto& [scene, path] : scenes) {
+    if (auto ok = walk_scene(scene, path, config, result, context); !ok) return ok.error();
+  }
+  return result;
+}
+
+}  // namespace throng::validate

@@ -233,7 +233,8 @@ void add_validate(CLI::App& parser, Session& session) {
                       "Tests, standards (rimea, nist), scenario files, or a test of recordings and "
                       "their folder; all that need no recordings if none is named");
   command->add_flag("--list", options->list, "Say what tests there are, and run none");
-  command->add_flag("--brief", options->config.brief, "Fewer points and shorter runs");
+  command->add_flag("--brief", options->config.brief,
+                    "Fewer points and shorter runs; not of scenario files");
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");
   command->add_option("--seed", options->config.seed)->capture_default_str();
   command->add_option("--threads", options->config.workers, "0: all cores")

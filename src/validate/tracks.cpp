@@ -27,6 +27,9 @@ bool numbers_of(const std::string& line, std::vector<double>& out) {
   }
 }
 
+constexpr int64_t kMostFrames = 1000000;  // 17 hours at 16 a second
+constexpr double kMostFps = 1000;
+
 struct Columns {
   size_t person, frame, x, z, least;
 };
@@ -35,7 +38,7 @@ struct Columns {
 void read_comment(const std::string& line, double& fps, double& unit) {
   if (const size_t at = line.find("framerate:"); at != std::string::npos) {
     const double value = std::strtod(line.c_str() + at + 10, nullptr);
-    if (value > 0) fps = value;
+    fps = value;
   }
   if (line.find("x/m") != std::string::npos) unit = 1;
   if (line.find("x/cm") != std::string::npos) unit = 0.01;
@@ -57,6 +60,9 @@ Result<Tracks> load(const std::string& path, const Columns& columns, double unit
     };
     if (line.starts_with('#')) {
       read_comment(line, tracks.fps, unit);
+      if (!(tracks.fps >= 1 && tracks.fps <= kMostFps)) {
+        return bad("the frames a second must be within 1 to 1000");
+      }
       continue;
     }
     if (!numbers_of(line, row)) return bad("numbers are expected here, nothing else");
@@ -68,6 +74,9 @@ Result<Tracks> load(const std::string& path, const Columns& columns, double unit
     auto& points = people[std::llround(row[columns.person])];
     const TrackPoint point{std::llround(row[columns.frame]), row[columns.x] * unit,
                            row[columns.z] * unit};
+    if (point.frame < 0 || point.frame > kMostFrames) {
+      return bad("a frame must be within 0 to " + std::to_string(kMostFrames));
+    }
     if (!points.empty() && points.back().frame >= point.frame) {
       return bad("frames of a person must ascend");
     }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "core/random.h"
 #include "throng/validation.h"
 #include "validate/tracks.h"
 
@@ -64,6 +65,10 @@ TEST_F(Recorded, DamagedFilesAreRefusedWithTheLine) {
       {"1 0 2 3\n", "bad.txt:1: it has 4 numbers, 5 are expected"},
       {"1 5 2 3 4\n1 5 2 3 4\n", "bad.txt:2: frames of a person must ascend"},
       {"1 0 nan 3 4\n", "bad.txt:1: numbers"},
+      {"1 -1 2 3 4\n", "bad.txt:1: a frame must be within 0 to 1000000"},
+      {"1 1e8 2 3 4\n", "bad.txt:1: a frame must be within"},
+      {"# framerate: 0 fps\n1 0 2 3 4\n", "bad.txt:1: the frames a second"},
+      {"# framerate: many\n1 0 2 3 4\n", "bad.txt:1: the frames a second"},
       {"# nothing\n", "bad.txt: it has no positions"},
       {"", "bad.txt: it has no positions"},
   };
@@ -74,6 +79,33 @@ TEST_F(Recorded, DamagedFilesAreRefusedWithTheLine) {
     EXPECT_NE(tracks.error().message.find(why), std::string::npos) << tracks.error().message;
   }
   EXPECT_FALSE(validate::load_juelich((folder_ / "none.txt").string()));
+}
+
+// Whatever stands in a file, it is read or refused.
+TEST_F(Recorded, DamagedFilesNeverDoHarm) {
+  std::string good;
+  for (int k = 0; k < 30; ++k) {
+    for (int n = 1; n <= 2; ++n) {
+      good += std::to_string(10 * k) + " " + std::to_string(n) + " " + std::to_string(0.5 * k) +
+              " 0 " + std::to_string(3 * n) + " 0 0 0\n";
+    }
+  }
+  const std::string bytes = "0123456789.-+eE \n\t#x\xff";
+  int read = 0, refused = 0;
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    std::string text = good;
+    for (uint64_t k = 0; k < 3; ++k) {
+      const uint64_t at = random_below(seed, 1, k, text.size());
+      text[at] = bytes[random_below(seed, 2, k, bytes.size())];
+    }
+    const auto tracks = validate::load_obsmat(write("obsmat.txt", text));
+    ++(tracks ? read : refused);
+    if (!tracks) {
+      EXPECT_NE(tracks.error().message.find("obsmat.txt:"), std::string::npos);
+    }
+  }
+  EXPECT_GT(read, 50);
+  EXPECT_GT(refused, 50);
 }
 
 // Two people: one walks straight, the other turns aside by 0.1 m a sample. Constant velocity is

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/random.h"
+
 namespace throng {
 namespace {
 
@@ -159,6 +161,32 @@ TEST(Trial, WhatIsWrongIsRefusedInOneSentence) {
   EXPECT_NE(nothing.error().message.find("nothing is measured"), std::string::npos);
   EXPECT_FALSE(load_trial("/no/such/file.toml"));
   EXPECT_FALSE(load_trials("/no/such/folder"));
+}
+
+// Whatever stands in a file, it is read or refused with a place.
+TEST(Trial, DamagedFilesNeverDoHarm) {
+  const std::string good =
+      kWalk +
+      measures({"of = \"flow\"\nline = [[10, 0], [10, 2]]\nby = \"width\"\nlow = 1\nhigh = 2",
+                "of = \"speed\"\ntake = \"fit\"\nprofile = \"one\"\narea = \"slow\"\nfrom = 1",
+                "of = \"ratio\"\nothers = [\"m0\", \"m1\"]"});
+  ASSERT_TRUE(parse_trial(good, "good.toml"));
+  const std::string bytes = "0123456789.-\"[]{}=,\n #\xff";
+  int read = 0, refused = 0;
+  for (uint64_t seed = 0; seed < 2000; ++seed) {
+    std::string text = good;
+    for (uint64_t k = 0; k < 1; ++k) {
+      const uint64_t at = random_below(seed, 1, k, text.size());
+      text[at] = bytes[random_below(seed, 2, k, bytes.size())];
+    }
+    const auto trial = parse_trial(text, "bad.toml");
+    ++(trial ? read : refused);
+    if (!trial) {
+      EXPECT_EQ(trial.error().message.find("bad.toml"), 0U) << trial.error().message;
+    }
+  }
+  EXPECT_GT(read, 50);
+  EXPECT_GT(refused, 100);
 }
 
 TEST(Trial, WhatIsNotModelledIsNotRun) {

@@ -10,12 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "throng/caacd.h"
 #include "validate/room.h"
 #include "validate/social_force.h"
 #include "validate/tests.h"
 #include "validate/tracks.h"
 
-// Real people in a street, and three guesses where they will be: each begins where somebody is, as
+// Real people in a street, and guesses where they will be: each begins where somebody is, as
 // he walked last, and is looked at for 4.8 s. All guesses know the same: nobody's destination.
 namespace throng::validate {
 namespace {
@@ -25,9 +26,9 @@ constexpr size_t kAhead = 12;    // samples
 constexpr int kStepsASample = 4;
 constexpr double kStanding = 0.05;  // [m/s] Who is slower stands.
 
-enum Model : size_t { kReal, kOurs, kConstant, kForce, kModels };
+enum Model : size_t { kReal, kOurs, kConstant, kForce, kCurves, kModels };
 constexpr std::array<const char*, kModels> kNames{"real", "throng", "constant velocity",
-                                                  "social force [HM95]"};
+                                                  "social force [HM95]", "[CAACD]"};
 
 struct Walker {
   Spot begin;
@@ -106,6 +107,56 @@ Ways force_ways(const std::vector<Walker>& walkers) {
   for (size_t i = 0; i < kAhead; ++i) {
     for (int step = 0; step < kStepsASample; ++step) step_social_force(moved, Room::kStep, {});
     for (size_t n = 0; n < walkers.size(); ++n) ways[n][i] = {moved[n].x, moved[n].z};
+  }
+  return ways;
+}
+
+// [CAACD] as printed, in its own units: a repulsive field as large as our body, and its frames so
+// long that its greatest speed is an adult's. Everybody's target lies far ahead, nobody brakes.
+constexpr double kUnit = 0.19 / 5;                       // [m]
+constexpr double kFramesASecond = 1.34 / (0.4 * kUnit);  // of 0.4 units each
+constexpr int kFramesASample = 36;
+
+Ways curve_ways(const std::vector<Walker>& walkers) {
+  const double per_frame = 1 / (kUnit * kFramesASecond);
+  const double dt = kSample * kFramesASecond / kFramesASample;  // [frames]
+  std::vector<caacd::Body> bodies;
+  std::vector<caacd::Model> models(walkers.size());
+  std::vector<Vec3d> targets;
+  for (size_t n = 0; n < walkers.size(); ++n) {
+    const Walker& w = walkers[n];
+    const double speed = std::hypot(w.vx, w.vz);
+    const bool stands = speed < kStanding;
+    caacd::Body body;
+    body.position = Vec3d{w.begin.x, 0, w.begin.z} * (1 / kUnit);
+    if (!stands) body.velocity = Vec3d{w.vx, 0, w.vz} * per_frame;
+    body.forward = caacd::heading_of(body.velocity, {1, 0, 0});
+    body.fields = {5, 7.5, 12};
+    body.id = static_cast<uint32_t>(n);
+    models[n].max_speed = std::max(kStanding, speed) * per_frame;
+    targets.push_back(body.position + body.velocity * (stands ? 0 : 100 * kFramesASecond));
+    bodies.push_back(body);
+  }
+  Ways ways(walkers.size());
+  std::vector<Vec3d> steer(walkers.size());
+  for (size_t i = 0; i < kAhead; ++i) {
+    for (int frame = 0; frame < kFramesASample; ++frame) {
+      for (size_t n = 0; n < bodies.size(); ++n) {
+        const auto threat = caacd::greatest_threat(bodies[n], bodies, {}, models[n]);
+        steer[n] = threat.level != caacd::State::kTolerable
+                       ? caacd::avoidance(bodies[n], threat, models[n])
+                       : caacd::path_amendment(bodies[n], targets[n], 0, models[n]);
+      }
+      for (size_t n = 0; n < bodies.size(); ++n) {
+        caacd::Body& body = bodies[n];
+        body.velocity = caacd::steered(body.velocity, steer[n], dt, models[n]);
+        body.forward = caacd::heading_of(body.velocity, body.forward);
+        body.position = body.position + body.velocity * dt;
+      }
+    }
+    for (size_t n = 0; n < bodies.size(); ++n) {
+      ways[n][i] = {bodies[n].position.x * kUnit, bodies[n].position.z * kUnit};
+    }
   }
   return ways;
 }
@@ -235,6 +286,7 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
     add(scores[kOurs], walkers, *ours);
     add(scores[kConstant], walkers, constant_ways(walkers));
     add(scores[kForce], walkers, force_ways(walkers));
+    add(scores[kCurves], walkers, curve_ways(walkers));
   }
   room->report(result);
   if (count == 0) {

@@ -128,6 +128,9 @@ TEST_F(Recorded, ErrorsOfConstantVelocityAreThoseWorkedOutByHand) {
   EXPECT_EQ(value_of(*result, "scene: people followed"), 2);
   EXPECT_NEAR(value_of(*result, "scene: mean error, constant velocity"), 0.65 / 2, 1e-5);
   EXPECT_NEAR(value_of(*result, "scene: error after 4.8 s, constant velocity"), 1.2 / 2, 1e-5);
+  // Alone, [CAACD] and the social force keep on as well.
+  EXPECT_NEAR(value_of(*result, "scene: mean error, [CAACD]"), 0.65 / 2, 1e-5);
+  EXPECT_NEAR(value_of(*result, "scene: mean error, social force [HM95]"), 0.65 / 2, 1e-5);
   // Nobody is near, so ours walks as straight, a tenth of a millimetre aside.
   EXPECT_NEAR(value_of(*result, "scene: mean error, throng"), 0.65 / 2, 1e-3);
   EXPECT_NEAR(value_of(*result, "scene: least distance, half of people, real"), 20.1, 1e-5);

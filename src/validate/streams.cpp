@@ -161,9 +161,10 @@ Result<ValidationResult> lanes(const ValidationConfig& config, Context& context)
     const std::string at = text.data();
     result.measures.push_back(
         {.name = "order in the first 5 s, " + at, .value = mean_of(found->order, 0, 5)});
-    result.measures.push_back({.name = "order in the last quarter, " + at,
-                               .value = mean_of(found->order, seconds - last, seconds),
-                               .low = 0.5});
+    ValidationMeasure last_order{.name = "order in the last quarter, " + at,
+                                 .value = mean_of(found->order, seconds - last, seconds)};
+    if (density > 0.5) last_order.low = 0.5;  // Fewer have room without lanes.
+    result.measures.push_back(std::move(last_order));
     result.measures.push_back({.name = "speed in the last quarter, " + at,
                                .value = mean_of(found->speed, seconds - last, seconds),
                                .unit = "m/s",
@@ -329,7 +330,7 @@ const std::array<Test, 3> kTests{
           "one end comes in again at the other. Order of rows 0.6 m wide along the middle 20 m "
           "[NS12], 0 for people mixed by chance, 1 if every row goes one way, each second for 120 "
           "s; speeds along the way.",
-          "ours: an order of 0.5, and half of the speed of [Weidmann93] at the density"},
+          "ours: an order of 0.5 from 0.6 /m2 up, and half of the speed of [Weidmann93]"},
          lanes},
     Test{{"crossing", "Two streams that cross at right angles",
           "Corridors 4 m wide, half a person a square metre coming in each, so 1 /m2 where they "

@@ -34,7 +34,8 @@ struct ImpostorArrays {
 };
 
 /// Sixteen bytes for the card. `view`: AtlasShape::view in bits 0 to 19, mirrored in bit 20, look
-/// in bits 21 to 31.
+/// in bits 21 to 31. Of a mesh: heading in bits 0 to 10 [2048 a turn], phase in bits 11 to 20 [1024
+/// a cycle], look as before.
 struct ImpostorInstance {
   float x = 0, y = 0, z = 0;
   uint32_t view = 0;
@@ -53,6 +54,32 @@ struct PackConfig {
 /// one length, at most 2^31 - 1, and `out` no less.
 THRONG_API size_t pack_impostors(const Atlas& atlas, const ImpostorArrays& avatars,
                                  const PackConfig& config, std::span<ImpostorInstance> out);
+
+/// How far from the eye an avatar is drawn as what. Where two ranges overlap it is drawn as both,
+/// and they fade into each other. [m, 0 <= mesh_near <= mesh_far <= point_near <= point_far]
+struct LevelDistances {
+  double mesh_near = 0, mesh_far = 0;  ///< Meshes end at `mesh_far`, views begin at `mesh_near`.
+  double point_near = 1e18, point_far = 1e18;  ///< Points begin at `near`, views end at `far`.
+};
+
+/// By how large a texel is in the picture: meshes where it is `mesh_texel` pixels or more, points
+/// where a view's side is `point_pixels` pixels or less; each fades over a fifth of the distance.
+/// 0: none. `height` is the picture's. [px]
+[[nodiscard]] THRONG_API LevelDistances level_distances(const AtlasShape& shape,
+                                                        const EyeCamera& camera, double height,
+                                                        double mesh_texel, double point_pixels);
+
+/// Spans to write to, each as long as the avatars, those of a level that cannot be may be empty.
+struct LevelSpans {
+  std::span<ImpostorInstance> meshes, views, points;
+};
+struct LevelCounts {
+  size_t meshes = 0, views = 0, points = 0;
+};
+/// As pack_impostors, each avatar as what its distance says. Of points only place and look count.
+THRONG_API LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars,
+                                   const PackConfig& config, const LevelDistances& levels,
+                                   const LevelSpans& out);
 
 /// The axes of a camera: unit vectors.
 struct CameraAxes {

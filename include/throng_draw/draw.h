@@ -87,14 +87,24 @@ struct DrawnCrowd {
   ImpostorArrays avatars;
 };
 
+/// As what avatars are drawn.
+enum class AvatarStyle : uint8_t {
+  kPeople,      ///< As finely as they can be seen.
+  kPlainQuads,  ///< One rectangle of one colour each, to measure the others against.
+};
+
 struct DrawingConfig {
   EyeCamera camera;  ///< Relative to the drawing's origin; `aspect` follows from the picture.
   int32_t width = 1280, height = 720;  ///< [px, 16 to 8192]
   int32_t samples = 2;                 ///< Along each side of a pixel. [1 to 4]
   Vec3d to_sun{-0.5, 0.75, 0.45};      ///< Towards the sun, any length. [y > 0]
-  bool avatar_shadows = true;          ///< Those of the scene are always there.
-  int32_t sun_pixels = 4096;           ///< Along a side of the sun's picture. [256 to 8192]
-  double edges = 0.5;                  ///< How dark edges of the scene are, 0: not drawn. [0 to 1]
+  AvatarStyle avatars = AvatarStyle::kPeople;
+  /// Whose view's side is no more than so many samples of the picture is drawn as a point: head,
+  /// chest and legs in his colours. 0: nobody. [>= 0]
+  double point_pixels = 10;
+  bool avatar_shadows = true;  ///< Those of the scene are always there.
+  int32_t sun_pixels = 4096;   ///< Along a side of the sun's picture. [256 to 8192]
+  double edges = 0.5;          ///< How dark edges of the scene are, 0: not drawn. [0 to 1]
   /// The scene above this height is left out, for looking into buildings; relative to the origin.
   /// Avatars are the caller's. [m]
   double cut_height = std::numeric_limits<double>::infinity();

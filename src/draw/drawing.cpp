@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/stopwatch.h"
-#include "draw/atlas_textures.h"
+#include "draw/crowd_pass.h"
 #include "draw/gl_objects.h"
 #include "draw/headless.h"
 #include "draw/mark_mesh.h"
@@ -18,7 +18,6 @@
 #include "draw/panel_mesh.h"
 #include "draw/scene_mesh.h"
 #include "draw/shaders.h"
-#include "draw/wardrobe.h"
 #include "throng_draw/draw.h"
 
 // A picture in six passes: the sun's depth of scene and avatars, the sky, the scene, the avatars,
@@ -27,14 +26,7 @@
 namespace throng {
 namespace {
 
-constexpr GLsizei kInstancesWide = 2048;
 constexpr double kNearer = 0.002;  // Of the way to the eye that marks are nearer than they are.
-
-// A run of instances of one crowd, in the one upload.
-struct Run {
-  size_t atlas = 0;
-  size_t first = 0, count = 0;
-};
 
 // Colour and depth that are no window's.
 struct Target {
@@ -90,17 +82,14 @@ Vec3d PreparedScene::origin() const { return state_->corners.origin; }
 
 struct Drawing::State {
   std::unique_ptr<Headless> context;  // None: a window's, which its owner keeps current.
-  GlProgram sky, scene, depth, impostor, shadow, mark, panel_program;
+  GlProgram sky, scene, depth, mark, panel_program;
   GlVertexArray nothing;  // Vertices by number alone.
   SceneMesh mesh, props;
   std::array<MarkMesh, kMarkSlots> marks;
   PanelMesh panel;
-  std::vector<AtlasTextures> atlases;
-  std::vector<ImpostorInstance> instances;
-  std::vector<Run> seen, thrown;
-  GlTexture instance_texture, sun_depth;
+  CrowdPass crowd;
+  GlTexture sun_depth;
   GlFramebuffer sun_frame;
-  GLsizei instance_rows = 0;
   GLsizei sun_pixels = 0;
   Target target;
 
@@ -111,33 +100,22 @@ struct Drawing::State {
   Result<void> make_programs();
   Result<void> fit_sun(GLsizei pixels);
   Result<void> fit_target(GLsizei width, GLsizei height);
-  void pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config, Vec3d to_sun);
-  void upload_instances();
   void draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up, float cut) const;
   void draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const;
   // Everything but the panel, into the target.
   Result<void> paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                      DrawingReport& report);
-  void draw_crowd(const GlProgram& program, const std::vector<Run>& runs) const;
 };
 
 Result<void> Drawing::State::make_programs() {
   sky = GlProgram(shaders::sky_vertex(), shaders::sky_fragment());
   scene = GlProgram(shaders::scene_vertex(), shaders::scene_fragment());
   depth = GlProgram(shaders::depth_vertex(), shaders::depth_fragment());
-  impostor = GlProgram(shaders::impostor_vertex(), shaders::impostor_fragment());
-  shadow = GlProgram(shaders::shadow_vertex(), shaders::shadow_fragment());
   mark = GlProgram(shaders::mark_vertex(), shaders::mark_fragment());
   panel_program = GlProgram(shaders::panel_vertex(), shaders::panel_fragment());
-  for (const GlProgram* program :
-       {&sky, &scene, &depth, &impostor, &shadow, &mark, &panel_program}) {
-    if (program->is_linked()) continue;
-    const std::string fault = program->fault().substr(0, program->fault().find('\n'));
-    return Error{Errc::kNotFound,
-                 "drawing: the driver refuses a shader (" + fault + "); use another driver"};
-  }
+  if (auto ok = check_linked({&sky, &scene, &depth, &mark, &panel_program}); !ok) return ok;
   nothing = make_vertex_array();
-  return {};
+  return crowd.make_programs();
 }
 
 Result<void> Drawing::State::fit_sun(GLsizei pixels) {
@@ -191,52 +169,6 @@ Result<void> Drawing::State::fit_target(GLsizei width, GLsizei height) {
                "smaller"};
 }
 
-void Drawing::State::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
-                          Vec3d to_sun) {
-  size_t most = 0;
-  for (const DrawnCrowd& crowd : crowds) most += crowd.avatars.x.size();
-  if (instances.size() < 2 * most) instances.resize(2 * most);
-  seen.clear();
-  thrown.clear();
-  size_t used = 0;
-  const auto add = [&](const DrawnCrowd& crowd, std::optional<Vec3d> from, std::vector<Run>& runs) {
-    const PackConfig pack_config{.camera = config.camera,
-                                 .clip = crowd.clip,
-                                 .from_direction = from,
-                                 .workers = config.workers};
-    const size_t count = pack_impostors(atlases[crowd.atlas].shape, crowd.avatars, pack_config,
-                                        std::span(instances).subspan(used));
-    if (count > 0) runs.push_back({crowd.atlas, used, count});
-    used += count;
-  };
-  for (const DrawnCrowd& crowd : crowds) add(crowd, {}, seen);
-  if (!config.avatar_shadows) return;
-  for (const DrawnCrowd& crowd : crowds) add(crowd, to_sun, thrown);
-}
-
-void Drawing::State::upload_instances() {
-  size_t used = 0;
-  for (const auto* runs : {&seen, &thrown}) {
-    for (const Run& run : *runs) used = std::max(used, run.first + run.count);
-  }
-  const auto rows = static_cast<GLsizei>((used + kInstancesWide - 1) / kInstancesWide);
-  glActiveTexture(GL_TEXTURE3);
-  if (instance_rows == 0 || instance_rows < rows) {
-    instance_rows = std::max(rows, GLsizei{1});
-    instance_texture = make_texture();
-    glBindTexture(GL_TEXTURE_2D, instance_texture.get());
-    glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32UI, kInstancesWide, instance_rows);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  }
-  glBindTexture(GL_TEXTURE_2D, instance_texture.get());
-  if (rows == 0) return;
-  const size_t whole = static_cast<size_t>(rows) * kInstancesWide;
-  if (instances.size() < whole) instances.resize(whole);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kInstancesWide, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
-                  instances.data());
-}
-
 void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up,
                                     float cut) const {
   glBindFramebuffer(GL_FRAMEBUFFER, sun_frame.get());
@@ -250,22 +182,7 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_righ
   mesh.draw();
   props.draw();
   glDisable(GL_POLYGON_OFFSET_FILL);
-  if (thrown.empty()) return;
-  shadow.use();
-  shadow.set_matrix("clip_from_world", sun_from_world.data());
-  shadow.set("sun_right", sun_right);
-  shadow.set("sun_up", sun_up);
-  shadow.set("instances", 3);
-  draw_crowd(shadow, thrown);
-}
-
-void Drawing::State::draw_crowd(const GlProgram& program, const std::vector<Run>& runs) const {
-  glBindVertexArray(nothing.get());
-  for (const Run& run : runs) {
-    atlases[run.atlas].bind(program);
-    program.set("first", static_cast<int>(run.first));
-    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * run.count));
-  }
+  crowd.draw_shadows(sun_from_world, sun_right, sun_up);
 }
 
 void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const {
@@ -383,15 +300,12 @@ Result<void> Drawing::set_panel_texture(int32_t width, int32_t height,
 
 Result<size_t> Drawing::add_atlas(const Atlas& atlas) {
   state_->make_current();
-  Result<AtlasTextures> made = AtlasTextures::make(atlas);
-  if (!made) return made.error();
-  state_->atlases.push_back(*std::move(made));
-  return state_->atlases.size() - 1;
+  return state_->crowd.add_atlas(atlas);
 }
 
 void Drawing::clear_atlases() {
   state_->make_current();
-  state_->atlases.clear();
+  state_->crowd.clear_atlases();
 }
 
 Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
@@ -402,10 +316,10 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
 
   const Vec3d to_sun = config.to_sun * (1 / length(config.to_sun));
   const auto start = Clock::now();
-  pack(crowds, config, to_sun);
+  crowd.pack(crowds, config, to_sun);
   const double seconds_pack = seconds_since(start);
   const auto draw_start = Clock::now();
-  upload_instances();
+  crowd.upload();
 
   // The sun's picture covers what is near the target, as far as shadows can be told apart.
   const EyeCamera& camera = config.camera;
@@ -469,16 +383,13 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   scene.set("prop", 1.0F);
   props.draw();
 
-  begin(impostor);
-  static const auto kWardrobe = wardrobe();
-  impostor.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
-  draw_crowd(impostor, seen);
+  crowd.draw(config, begin);
 
   draw_marks(clip_from_world, config);
 
   report = {.seconds_pack = seconds_pack, .seconds_draw = seconds_since(draw_start)};
-  for (const DrawnCrowd& crowd : crowds) report.avatars += crowd.avatars.x.size();
-  for (const Run& run : seen) report.drawn += run.count;
+  for (const DrawnCrowd& of_atlas : crowds) report.avatars += of_atlas.avatars.x.size();
+  report.drawn = crowd.drawn();
   return {};
 }
 

@@ -54,6 +54,40 @@ float sunlit(vec3 p) {
       sum += textureLod(sun_depth, vec3(at.xy + vec2(x, y) * sun_texel, at.z), 0.0);
   return sum / 9.0;
 }
+// One look, which the card filters: for what is all in the sun or all in the shade.
+float sunlit_once(vec3 p) {
+  vec4 c = sun_from_world * vec4(p, 1.0);
+  vec3 at = c.xyz * 0.5 + 0.5;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  return textureLod(sun_depth, at, 0.0);
+}
+)";
+
+// Where two levels of detail overlap, each shows the pixels that the other leaves out: more and
+// more of a pattern of 4 x 4.
+constexpr const char* kFade = R"(
+uniform vec2 mesh_range;   // Views begin and meshes end [m].
+uniform vec2 point_range;  // Points begin and views end [m].
+float share_beyond(vec2 range, float far) {
+  return clamp((far - range.x) / max(range.y - range.x, 1e-3), 0.0, 1.0);
+}
+)";
+constexpr const char* kPattern = R"(
+float threshold() {
+  ivec2 p = ivec2(gl_FragCoord.xy) & 3;
+  int q = p.x ^ p.y;
+  int rank = (q & 1) << 3 | (p.y & 1) << 2 | (q & 2) | p.y >> 1;
+  return (float(rank) + 0.5) / 16.0;
+}
+)";
+
+// Whose clothes an avatar wears: one of twelve colours for each part.
+constexpr const char* kClothes = R"(
+uniform vec3 wardrobe[72];
+vec3 cloth(uint part, uint look) {
+  uint k = (look * (5u + 2u * part) + (look >> 4u) * 7u + part * 3u) % 12u;
+  return wardrobe[part * 12u + k];
+}
 )";
 
 // Which avatar and which corner a vertex is, and the rectangle that shows it. Pulled from textures
@@ -196,12 +230,13 @@ void main() {
 }
 
 std::string impostor_vertex() {
-  return std::string(kHead) + kSunlit + kPull + R"(
+  return std::string(kHead) + kSunlit + kPull + kFade + R"(
 out vec3 texel;
 out vec3 world;
 flat out vec3 right, up, towards;
 flat out uint look;
 flat out float in_sun;
+flat out float shown_from, shown_to;  // The thresholds between which it is shown.
 out float height;
 void main() {
   Corner c = pull();
@@ -215,27 +250,32 @@ void main() {
   right *= c.flip;  // As the texels' normals have it.
   texel = c.texel;
   look = c.look;
-  in_sun = sunlit(middle + to_sun * 0.9);  // In front of its own shadow.
+  in_sun = sunlit_once(middle + to_sun * 0.9);  // In front of its own shadow.
+  float far = length(eye - middle);
+  shown_from = 1.0 - (mesh_range.y > 0.0 ? share_beyond(mesh_range, far) : 1.0);
+  shown_to = 1.0 - share_beyond(point_range, far);
   gl_Position = clip_from_world * vec4(world, 1.0);
 }
 )";
 }
 
 std::string impostor_fragment() {
-  return std::string(kHead) + kLight + R"(
+  return std::string(kHead) + kLight + kPattern + kClothes + R"(
 in vec3 texel;
 in vec3 world;
 flat in vec3 right, up, towards;
 flat in uint look;
 flat in float in_sun;
+flat in float shown_from, shown_to;
 in float height;
 uniform sampler2DArray albedo;
 uniform sampler2DArray detail;
-uniform vec3 wardrobe[72];   // Twelve colours for each body part.
 uniform vec3 part_colour[6]; // What the atlas has.
 uniform float side;          // Of a view [m].
 out vec4 colour;
 void main() {
+  float rank = threshold();
+  if (rank < shown_from || rank > shown_to) discard;
   if (texture(albedo, texel).a < 0.5) discard;  // Filtered: a smooth outline.
   // Not filtered: a texel is of one part, and its colour says nothing of the part beside it.
   ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z));
@@ -253,15 +293,106 @@ void main() {
   uint part = mask >> 5;
   vec3 own = stored.rgb * stored.rgb;
   if (part > 0u) {
-    uint k = (look * (5u + 2u * part) + (look >> 4u) * 7u + part * 3u) % 12u;
     // The part's own light and dark stay, its hue does not.
     const vec3 kBright = vec3(0.30, 0.59, 0.11);
     float relief = clamp(dot(own, kBright) / dot(part_colour[part], kBright), 0.4, 1.7);
-    own = min(wardrobe[part * 12u + k] * relief, 0.95);
+    own = min(cloth(part, look) * relief, 0.95);
   }
   float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));  // Less light near the ground.
   colour = shown(lit(own, n, in_sun) * shade, world - eye);
 }
+)";
+}
+
+// A figure of a few pixels: head, shirt and trousers, lit where it stands. One vertex instead of
+// six and no texture but that of its three colours, by its look.
+std::string point_vertex() {
+  return std::string(kHead) + kLight + kSunlit + kFade + R"(
+uniform usampler2D instances;
+uniform usampler2D looks;     // Head, chest and legs, 8 bits a channel, as square roots.
+uniform int first;
+uniform float centre;         // Half a figure's height [m].
+uniform float pixels_at_one;  // Of a metre at a metre's distance.
+flat out vec3 head, chest, legs;
+flat out vec3 shape;  // Half its width, and where the chest and the legs begin, of its height.
+flat out float shown_from;
+vec3 albedo_of(uint bytes) {
+  vec3 root = vec3(bytes & 255u, bytes >> 8u & 255u, bytes >> 16u) / 255.0;
+  return root * root;
+}
+void main() {
+  int number = gl_VertexID + first;
+  uvec4 data = texelFetch(instances, ivec2(number & 2047, number >> 11), 0);
+  uvec4 colours = texelFetch(looks, ivec2(int(data.w >> 21), 0), 0);
+  vec3 middle = uintBitsToFloat(data.xyz) + vec3(0.0, centre, 0.0);
+  vec3 from_eye = middle - eye;
+  float far = length(from_eye);
+  float flat_share = length(from_eye.xz) / far;
+  gl_Position = clip_from_world * vec4(middle, 1.0);
+  // As seen from above, a figure is shorter and its head larger.
+  float high = 2.0 * centre * flat_share + 0.3 * (1.0 - flat_share);
+  float size = max(high * pixels_at_one / gl_Position.w, 1.0);
+  gl_PointSize = size;
+  shape = vec3(max(0.21 / high, 0.55 / size), mix(0.45, 0.16, flat_share),
+               mix(0.9, 0.54, flat_share));
+  // The mean of what the sides that are seen get of the sun.
+  vec3 normal = normalize(from_eye / -far + vec3(0.0, 0.3, 0.0));
+  vec3 light = lit(vec3(1.0), normal, sunlit_once(middle + to_sun * 0.9));
+  float haze_share = 1.0 - exp(-haze * far);
+  vec3 air = sky_colour(vec3(0.0)) * haze_share;
+  light *= 1.0 - haze_share;
+  head = sqrt(min(albedo_of(colours.x) * light + air, 1.0));
+  chest = sqrt(min(albedo_of(colours.y) * light + air, 1.0));
+  legs = sqrt(min(albedo_of(colours.z) * light * 0.85 + air, 1.0));
+  shown_from = 1.0 - share_beyond(point_range, far);
+}
+)";
+}
+
+std::string point_fragment() {
+  return std::string(kHead) + kPattern + R"(
+flat in vec3 head, chest, legs;
+flat in vec3 shape;
+flat in float shown_from;
+out vec4 colour;
+void main() {
+  float down = gl_PointCoord.y;
+  float wide = down < shape.y ? 0.55 : down < shape.z ? 1.0 : 0.72;
+  if (abs(gl_PointCoord.x - 0.5) > shape.x * wide || threshold() < shown_from) discard;
+  colour = vec4(down < shape.y ? head : down < shape.z ? chest : legs, 1.0);
+}
+)";
+}
+
+// Nothing but a rectangle of one colour: what drawing so many things costs at least.
+std::string plain_vertex() {
+  return std::string(kHead) + R"(
+uniform usampler2D instances;
+uniform int first;
+uniform float centre;
+flat out vec3 tint;
+void main() {
+  int number = gl_VertexID / 6 + first, corner = gl_VertexID % 6;
+  uvec4 data = texelFetch(instances, ivec2(number & 2047, number >> 11), 0);
+  int k = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
+  vec3 middle = uintBitsToFloat(data.xyz) + vec3(0.0, centre, 0.0);
+  vec3 towards = normalize(eye - middle);
+  float flat_length = length(towards.xz);
+  vec3 right = flat_length > 1e-4 ? vec3(towards.z, 0.0, -towards.x) / flat_length : vec3(1.0, 0.0, 0.0);
+  vec3 up = cross(towards, right);
+  vec2 at = (vec2(float(k & 1), float(k >> 1)) - 0.5) * vec2(0.6, 2.0 * centre);
+  uint look = data.w >> 21;
+  tint = vec3(look & 7u, look >> 3u & 7u, look >> 6u & 7u) / 7.0;
+  gl_Position = clip_from_world * vec4(middle + right * at.x + up * at.y, 1.0);
+}
+)";
+}
+
+std::string plain_fragment() {
+  return std::string(kHead) + R"(
+flat in vec3 tint;
+out vec4 colour;
+void main() { colour = vec4(tint, 1.0); }
 )";
 }
 

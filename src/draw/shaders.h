@@ -15,6 +15,10 @@ std::string depth_vertex();  ///< Of the scene, as the sun sees it.
 std::string depth_fragment();
 std::string impostor_vertex();
 std::string impostor_fragment();
+std::string point_vertex();  ///< Of avatars that are too small for a view.
+std::string point_fragment();
+std::string plain_vertex();  ///< Of plain quads, for comparison.
+std::string plain_fragment();
 std::string shadow_vertex();  ///< Of impostors, as the sun sees them.
 std::string shadow_fragment();
 std::string mark_vertex();  ///< Of overlays: coloured triangles and lines.

@@ -31,14 +31,63 @@ std::array<PackPlane, 6> planes_of(const EyeCamera& camera, double reach) {
 }
 
 // Without a branch: who is not seen is overwritten by the next.
-size_t write_seen(const float* x, const float* y, const float* z, size_t count,
-                  const PackBlock& block, ImpostorInstance* out) {
+size_t write_seen(const PackInput& in, const PackBlock& block, uint32_t bit,
+                  ImpostorInstance* out) {
   size_t written = 0;
-  for (size_t i = 0; i < count; ++i) {
-    out[written] = {x[i], y[i], z[i], block.view[i]};
-    written += block.seen[i];
+  for (size_t i = 0; i < in.count; ++i) {
+    out[written] = {in.x[i], in.y[i], in.z[i], block.view[i]};
+    written += block.seen[i] >> bit & 1;
   }
   return written;
+}
+
+// Few are that near, so a branch.
+size_t write_meshes(const PackInput& in, const PackBlock& block, ImpostorInstance* out) {
+  size_t written = 0;
+  for (size_t i = 0; i < in.count; ++i) {
+    if ((block.seen[i] & kSeenAsMesh) == 0) continue;
+    const uint32_t heading = ((in.heading[i] + 16U) & 0xffffU) >> 5, phase = in.phase[i] >> 6;
+    out[written++] = {in.x[i], in.y[i], in.z[i],
+                      heading | phase << 11 | static_cast<uint32_t>(in.look[i]) << 21};
+  }
+  return written;
+}
+
+// Closes the gaps that each block left behind; returns how many there are.
+size_t close_gaps(const std::vector<uint32_t>& kept, std::span<ImpostorInstance> out) {
+  size_t total = 0;
+  for (size_t b = 0; b < kept.size(); ++b) {
+    if (total != b * kPackBlock && kept[b] > 0) {
+      std::memmove(&out[total], &out[b * kPackBlock], kept[b] * sizeof out[0]);
+    }
+    total += kept[b];
+  }
+  return total;
+}
+
+PackShared shared_of(const Atlas& atlas, const PackConfig& config, const LevelDistances& levels) {
+  const AtlasClip& clip = atlas.clips[config.clip];
+  const auto square = [](double v) { return static_cast<float>(v * v); };
+  PackShared s{.planes = planes_of(config.camera, 0.5 * atlas.shape.side),
+               .eye_x = static_cast<float>(config.camera.eye.x),
+               .eye_y = static_cast<float>(config.camera.eye.y),
+               .eye_z = static_cast<float>(config.camera.eye.z),
+               .fixed = config.from_direction.has_value(),
+               .centre = static_cast<float>(atlas.shape.centre),
+               .directions = static_cast<uint32_t>(atlas.shape.directions),
+               .rows = static_cast<uint32_t>(atlas.shape.elevations),
+               .frames = static_cast<uint32_t>(clip.frames),
+               .first_frame = static_cast<uint32_t>(clip.first_frame),
+               .mesh_near = square(levels.mesh_near),
+               .mesh_far = square(levels.mesh_far),
+               .point_near = square(levels.point_near),
+               .point_far = square(levels.point_far)};
+  if (s.fixed) {
+    s.to_x = static_cast<float>(config.from_direction->x);
+    s.to_y = static_cast<float>(config.from_direction->y);
+    s.to_z = static_cast<float>(config.from_direction->z);
+  }
+  return s;
 }
 
 }  // namespace
@@ -55,51 +104,61 @@ CameraAxes camera_axes(const EyeCamera& camera) {
   return axes;
 }
 
-size_t pack_impostors(const Atlas& atlas, const ImpostorArrays& avatars, const PackConfig& config,
-                      std::span<ImpostorInstance> out) {
+LevelDistances level_distances(const AtlasShape& shape, const EyeCamera& camera, double height,
+                               double mesh_texel, double point_pixels) {
+  constexpr double kFade = 0.2;
+  // A side at this distance is a pixel high.
+  const double one = shape.side * 0.5 * height / std::tan(0.5 * camera.field_of_view);
+  LevelDistances out;
+  if (mesh_texel > 0) {
+    out.mesh_far = one / (mesh_texel * shape.pixels);
+    out.mesh_near = (1 - kFade) * out.mesh_far;
+  }
+  if (point_pixels > 0) {
+    out.point_far = std::max(one / point_pixels, out.mesh_far);
+    out.point_near = std::max((1 - kFade) * out.point_far, out.mesh_far);
+  }
+  return out;
+}
+
+LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars, const PackConfig& config,
+                        const LevelDistances& levels, const LevelSpans& out) {
   const size_t count = avatars.x.size();
   THRONG_ASSERT(avatars.y.size() == count && avatars.z.size() == count &&
                 avatars.heading.size() == count && avatars.phase.size() == count &&
-                avatars.look.size() == count && out.size() >= count &&
-                config.clip < atlas.clips.size());
-  const AtlasClip& clip = atlas.clips[config.clip];
-  PackShared s{.planes = planes_of(config.camera, 0.5 * atlas.shape.side),
-               .eye_x = static_cast<float>(config.camera.eye.x),
-               .eye_y = static_cast<float>(config.camera.eye.y),
-               .eye_z = static_cast<float>(config.camera.eye.z),
-               .fixed = config.from_direction.has_value(),
-               .centre = static_cast<float>(atlas.shape.centre),
-               .directions = static_cast<uint32_t>(atlas.shape.directions),
-               .rows = static_cast<uint32_t>(atlas.shape.elevations),
-               .frames = static_cast<uint32_t>(clip.frames),
-               .first_frame = static_cast<uint32_t>(clip.first_frame)};
-  if (s.fixed) {
-    s.to_x = static_cast<float>(config.from_direction->x);
-    s.to_y = static_cast<float>(config.from_direction->y);
-    s.to_z = static_cast<float>(config.from_direction->z);
-  }
+                avatars.look.size() == count && config.clip < atlas.clips.size());
+  THRONG_ASSERT(out.views.size() >= count && (levels.mesh_far == 0 || out.meshes.size() >= count) &&
+                (levels.point_near >= 1e18 || out.points.size() >= count));
+  const PackShared s = shared_of(atlas, config, levels);
   const size_t blocks = (count + kPackBlock - 1) / kPackBlock;
-  std::vector<uint32_t> kept(blocks);
+  std::vector<uint32_t> views(blocks), meshes(blocks), points(blocks);
   parallel_ranges(blocks, 4, config.workers, [&](size_t begin, size_t end) {
     PackBlock block;
     for (size_t b = begin; b < end; ++b) {
-      const size_t first = b * kPackBlock, size = std::min(kPackBlock, count - first);
-      find_views(s,
-                 {&avatars.x[first], &avatars.y[first], &avatars.z[first], &avatars.heading[first],
-                  &avatars.phase[first], &avatars.look[first], size},
-                 block);
-      kept[b] = static_cast<uint32_t>(write_seen(&avatars.x[first], &avatars.y[first],
-                                                 &avatars.z[first], size, block, &out[first]));
+      const size_t first = b * kPackBlock;
+      const PackInput in{&avatars.x[first],
+                         &avatars.y[first],
+                         &avatars.z[first],
+                         &avatars.heading[first],
+                         &avatars.phase[first],
+                         &avatars.look[first],
+                         std::min(kPackBlock, count - first)};
+      find_views(s, in, block);
+      const auto any = [&](uint32_t as) { return (block.seen_any & as) != 0; };
+      const auto number = [](size_t n) { return static_cast<uint32_t>(n); };
+      if (any(kSeenByView)) views[b] = number(write_seen(in, block, 0, &out.views[first]));
+      if (any(kSeenAsMesh)) meshes[b] = number(write_meshes(in, block, &out.meshes[first]));
+      if (any(kSeenAsPoint)) points[b] = number(write_seen(in, block, 2, &out.points[first]));
     }
   });
-  size_t total = 0;
-  for (size_t b = 0; b < blocks; ++b) {
-    if (total != b * kPackBlock && kept[b] > 0) {
-      std::memmove(&out[total], &out[b * kPackBlock], kept[b] * sizeof out[0]);
-    }
-    total += kept[b];
-  }
-  return total;
+  return {.meshes = close_gaps(meshes, out.meshes),
+          .views = close_gaps(views, out.views),
+          .points = close_gaps(points, out.points)};
+}
+
+size_t pack_impostors(const Atlas& atlas, const ImpostorArrays& avatars, const PackConfig& config,
+                      std::span<ImpostorInstance> out) {
+  return pack_levels(atlas, avatars, config, {}, {.meshes = {}, .views = out, .points = {}}).views;
 }
 
 }  // namespace throng

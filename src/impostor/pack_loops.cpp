@@ -26,11 +26,19 @@ void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
       const float inside = p.x * px + p.y * py + p.z * pz + p.offset;
       least = inside < least ? inside : least;
     }
-    block.seen[i] = least >= 0 ? 1 : 0;
-    block.to_x[i] = s.fixed ? s.to_x : s.eye_x - px;
-    block.to_y[i] = s.fixed ? s.to_y : s.eye_y - py;
-    block.to_z[i] = s.fixed ? s.to_z : s.eye_z - pz;
+    const float dx = s.eye_x - px, dy = s.eye_y - py, dz = s.eye_z - pz;
+    const float far = dx * dx + dy * dy + dz * dz;
+    const uint32_t by_view = far >= s.mesh_near && far < s.point_far ? kSeenByView : 0;
+    const uint32_t as_mesh = far < s.mesh_far ? kSeenAsMesh : 0;
+    const uint32_t as_point = far >= s.point_near ? kSeenAsPoint : 0;
+    block.seen[i] = least >= 0 ? by_view | as_mesh | as_point : 0;
+    block.to_x[i] = s.fixed ? s.to_x : dx;
+    block.to_y[i] = s.fixed ? s.to_y : dy;
+    block.to_z[i] = s.fixed ? s.to_z : dz;
   }
+  uint32_t any = 0;
+  for (size_t i = 0; i < in.count; ++i) any |= block.seen[i];
+  block.seen_any = any;
 }
 
 void FindViews(const PackShared& shared, const PackInput& input, PackBlock& block) {

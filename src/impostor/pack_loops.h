@@ -24,7 +24,12 @@ struct PackShared {
   float to_x = 0, to_y = 0, to_z = 0;  ///< That direction.
   float centre = 0;                    ///< Of a view over the feet.
   uint32_t directions = 0, rows = 0, frames = 0, first_frame = 0;
+  // Squares of LevelDistances.
+  float mesh_near = 0, mesh_far = 0, point_near = 0, point_far = 0;
 };
+
+/// Bits of PackBlock::seen.
+inline constexpr uint32_t kSeenByView = 1, kSeenAsMesh = 2, kSeenAsPoint = 4;
 
 /// The same entries of each array of the avatars.
 struct PackInput {
@@ -36,10 +41,11 @@ struct PackInput {
 struct PackBlock {
   alignas(64) std::array<float, kPackBlock> to_x, to_y, to_z;
   alignas(64) std::array<uint32_t, kPackBlock> view;  ///< ImpostorInstance::view.
-  alignas(64) std::array<uint32_t, kPackBlock> seen;  ///< 1 if in the picture, else 0.
+  alignas(64) std::array<uint32_t, kPackBlock> seen;  ///< As what, 0: not in the picture.
+  uint32_t seen_any = 0;                              ///< All of `seen`, or-ed.
 };
 
-/// Fills `view` and `seen`.
+/// Fills `view`, `seen` and `seen_any`.
 void find_views(const PackShared& shared, const PackInput& input, PackBlock& block);
 
 }  // namespace throng

@@ -148,6 +148,86 @@ TEST(PackImpostors, SameBytesForAnyNumberOfWorkersAndNoAvatarsAtAll) {
   EXPECT_TRUE(pack(atlas, Avatars{}, config).empty());
 }
 
+// Each level against a look at every avatar by itself.
+TEST(PackImpostors, EachIsDrawnAsWhatItsDistanceSays) {
+  const Atlas atlas = atlas_of(16, 8);
+  const Avatars avatars = random_avatars(20'000, 60);
+  const size_t count = avatars.x.size();
+  PackConfig config;
+  config.camera.eye = {2, 3, 4};
+  config.camera.target = {0, 0, -10};
+  const LevelDistances levels{.mesh_near = 8, .mesh_far = 10, .point_near = 30, .point_far = 40};
+  const std::vector<ImpostorInstance> all = pack(atlas, avatars, config);
+  for (const int32_t workers : {1, 2, 0}) {
+    config.workers = workers;
+    std::vector<ImpostorInstance> meshes(count), views(count), points(count);
+    const LevelCounts counts =
+        pack_levels(atlas, avatars.view(), config, levels, {meshes, views, points});
+    size_t m = 0, v = 0, p = 0;
+    for (const ImpostorInstance& one : all) {
+      // As the loop has it, in floats: the bounds belong to what begins there.
+      const float dx = 2 - one.x, dy = 3 - (one.y + 0.875F), dz = 4 - one.z;
+      const float far = dx * dx + dy * dy + dz * dz;
+      const auto is_same = [&](const ImpostorInstance& other) {
+        return other.x == one.x && other.y == one.y && other.z == one.z &&
+               other.view >> 21 == one.view >> 21;
+      };
+      if (far < 100) {
+        ASSERT_LT(m, counts.meshes);
+        EXPECT_TRUE(is_same(meshes[m++]));
+      }
+      if (far >= 64 && far < 1600) {
+        ASSERT_LT(v, counts.views);
+        EXPECT_EQ(std::memcmp(&views[v++], &one, sizeof one), 0);
+      }
+      if (far >= 900) {
+        ASSERT_LT(p, counts.points);
+        EXPECT_TRUE(is_same(points[p++]));
+      }
+    }
+    EXPECT_EQ(m, counts.meshes);
+    EXPECT_EQ(v, counts.views);
+    EXPECT_EQ(p, counts.points);
+    EXPECT_GT(m, 20U);
+    EXPECT_GT(v, 500U);
+    EXPECT_GT(p, 500U);
+  }
+}
+
+TEST(PackImpostors, MeshesKnowHeadingAndPhase) {
+  const Atlas atlas = atlas_of(16, 8);
+  const std::vector<float> x{0, 0, 0}, y{0, 0, 0}, z{-3, -3, -3};
+  const std::vector<uint16_t> heading{0, 32768, 65530}, phase{0, 32768, 65535}, look{1, 2, 2047};
+  PackConfig config;
+  config.camera.eye = {0, 1, 0};
+  config.camera.target = {0, 1, -1};
+  std::vector<ImpostorInstance> meshes(3), views(3);
+  const LevelCounts counts =
+      pack_levels(atlas, {x, y, z, heading, phase, look}, config, {.mesh_near = 4, .mesh_far = 5},
+                  {.meshes = meshes, .views = views, .points = {}});
+  ASSERT_EQ(counts.meshes, 3U);
+  EXPECT_EQ(counts.views, 0U);
+  EXPECT_EQ(meshes[0].view, 1U << 21);
+  EXPECT_EQ(meshes[1].view, 2U << 21 | 512U << 11 | 1024U);
+  EXPECT_EQ(meshes[2].view, 2047U << 21 | 1023U << 11 | 0U);  // To the nearest step.
+}
+
+TEST(PackImpostors, LevelsFollowTheSizeOfATexel) {
+  const AtlasShape shape = atlas_of(16, 8).shape;  // 2 m in 64 texels.
+  EyeCamera camera;
+  camera.field_of_view = 2 * std::atan(0.5);  // A metre at a metre is as many pixels as are high.
+  const LevelDistances d = level_distances(shape, camera, 640, 2, 8);
+  EXPECT_NEAR(d.mesh_far, 2 * 640.0 / 128, 1e-9);  // A side of 128 pixels.
+  EXPECT_NEAR(d.mesh_near, 8, 1e-9);
+  EXPECT_NEAR(d.point_far, 160, 1e-9);
+  EXPECT_NEAR(d.point_near, 128, 1e-9);
+  const LevelDistances none = level_distances(shape, camera, 640, 0, 0);
+  EXPECT_EQ(none.mesh_far, 0);
+  EXPECT_GE(none.point_near, 1e18);
+  const LevelDistances odd = level_distances(shape, camera, 640, 0.1, 64);  // Meshes win.
+  EXPECT_LE(odd.mesh_far, odd.point_near);
+}
+
 TEST(PackImpostors, SameBytesForAnyVectorInstructions) {
   const Atlas atlas = atlas_of(16, 8);
   const Avatars avatars = random_avatars(3000, 50);

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "draw/crowd_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "draw/shaders.h"
+#include "draw/wardrobe.h"
+
+namespace throng {
+namespace {
+
+constexpr GLsizei kInstancesWide = 2048;
+constexpr GLsizei kLooks = 2048;
+
+// The colours of everybody who is too small for a view: head, chest and legs of each look, chosen
+// as the shaders choose them.
+GlTexture make_looks() {
+  const auto all = wardrobe();
+  std::vector<uint32_t> words(size_t{4} * kLooks);
+  for (uint32_t look = 0; look < kLooks; ++look) {
+    const auto cloth = [&](BodyPart part, size_t channel) {
+      const auto p = static_cast<uint32_t>(part);
+      const uint32_t k = (look * (5 + 2 * p) + (look >> 4) * 7 + p * 3) % kColoursAPart;
+      return all[(p * kColoursAPart + k) * 3 + channel];
+    };
+    for (size_t channel = 0; channel < 3; ++channel) {
+      const float parts[] = {
+          0.5F * (cloth(BodyPart::kSkin, channel) + cloth(BodyPart::kHair, channel)),
+          cloth(BodyPart::kShirt, channel), cloth(BodyPart::kPants, channel)};
+      for (size_t i = 0; i < 3; ++i) {
+        const auto root = static_cast<uint32_t>(std::lround(std::sqrt(parts[i]) * 255));
+        words[look * size_t{4} + i] |= root << 8 * channel;
+      }
+    }
+  }
+  GlTexture texture = make_texture();
+  glBindTexture(GL_TEXTURE_2D, texture.get());
+  glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32UI, kLooks, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kLooks, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                  words.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return texture;
+}
+
+}  // namespace
+
+Result<void> check_linked(std::initializer_list<const GlProgram*> programs) {
+  for (const GlProgram* program : programs) {
+    if (program->is_linked()) continue;
+    const std::string fault = program->fault().substr(0, program->fault().find('\n'));
+    return Error{Errc::kNotFound,
+                 "drawing: the driver refuses a shader (" + fault + "); use another driver"};
+  }
+  return {};
+}
+
+Result<void> CrowdPass::make_programs() {
+  impostor_ = GlProgram(shaders::impostor_vertex(), shaders::impostor_fragment());
+  point_ = GlProgram(shaders::point_vertex(), shaders::point_fragment());
+  shadow_ = GlProgram(shaders::shadow_vertex(), shaders::shadow_fragment());
+  nothing_ = make_vertex_array();
+  looks_ = make_looks();
+  return check_linked({&impostor_, &point_, &shadow_});
+}
+
+Result<size_t> CrowdPass::add_atlas(const Atlas& atlas) {
+  Result<AtlasTextures> made = AtlasTextures::make(atlas);
+  if (!made) return made.error();
+  atlases_.push_back(*std::move(made));
+  return atlases_.size() - 1;
+}
+
+void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
+                     Vec3d to_sun) {
+  const bool plain = config.avatars == AvatarStyle::kPlainQuads;
+  size_t most = 0;
+  for (const DrawnCrowd& crowd : crowds) most += crowd.avatars.x.size();
+  // Each is seen as a view, or a point, or both, and by the sun.
+  if (instances_.size() < 3 * most) instances_.resize(3 * most);
+  for (auto* runs : {&views_, &points_, &thrown_}) runs->clear();
+  used_ = drawn_ = 0;
+  const auto keep = [&](std::vector<Run>& runs, const Run& run) {
+    if (run.count == 0) return;
+    runs.push_back(run);
+    // Closer together than they were packed, so that less is uploaded.
+    if (run.first != used_) {
+      const auto from = instances_.begin() + static_cast<ptrdiff_t>(run.first);
+      std::copy(from, from + static_cast<ptrdiff_t>(run.count),
+                instances_.begin() + static_cast<ptrdiff_t>(used_));
+      runs.back().first = used_;
+    }
+    used_ += run.count;
+  };
+  for (const DrawnCrowd& crowd : crowds) {
+    const Atlas& shape = atlases_[crowd.atlas].shape;
+    const PackConfig pack_config{.camera = config.camera,
+                                 .clip = crowd.clip,
+                                 .from_direction = {},
+                                 .workers = config.workers};
+    LevelDistances levels;
+    if (!plain) {
+      levels = level_distances(shape.shape, config.camera, config.height * config.samples, 0,
+                               config.point_pixels);
+    }
+    const size_t size = crowd.avatars.x.size(), first = used_;
+    const auto out = std::span(instances_).subspan(first);
+    const LevelCounts counts =
+        pack_levels(shape, crowd.avatars, pack_config, levels,
+                    {.meshes = {}, .views = out.first(size), .points = out.subspan(size, size)});
+    keep(views_, {crowd.atlas, first, counts.views, levels});
+    keep(points_, {crowd.atlas, first + size, counts.points, levels});
+    drawn_ += counts.views + counts.points;
+  }
+  if (!config.avatar_shadows) return;
+  for (const DrawnCrowd& crowd : crowds) {
+    const PackConfig pack_config{.camera = config.camera,
+                                 .clip = crowd.clip,
+                                 .from_direction = to_sun,
+                                 .workers = config.workers};
+    const size_t count = pack_impostors(atlases_[crowd.atlas].shape, crowd.avatars, pack_config,
+                                        std::span(instances_).subspan(used_));
+    keep(thrown_, {crowd.atlas, used_, count});
+  }
+}
+
+void CrowdPass::upload() {
+  const auto rows = static_cast<GLsizei>((used_ + kInstancesWide - 1) / kInstancesWide);
+  glActiveTexture(GL_TEXTURE3);
+  if (instance_rows_ == 0 || instance_rows_ < rows) {
+    instance_rows_ = std::max(rows, GLsizei{1});
+    instance_texture_ = make_texture();
+    glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
+    glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32UI, kInstancesWide, instance_rows_);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  }
+  glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
+  if (rows == 0) return;
+  const size_t whole = static_cast<size_t>(rows) * kInstancesWide;
+  if (instances_.size() < whole) instances_.resize(whole);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kInstancesWide, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                  instances_.data());
+}
+
+void CrowdPass::draw_runs(const GlProgram& program, const std::vector<Run>& runs, GLenum kind,
+                          size_t vertices) const {
+  glBindVertexArray(nothing_.get());
+  for (const Run& run : runs) {
+    atlases_[run.atlas].bind(program);
+    program.set("first", static_cast<int>(run.first));
+    const auto number = [](double metres) { return static_cast<float>(std::min(metres, 1e9)); };
+    program.set_size("mesh_range", number(run.levels.mesh_near), number(run.levels.mesh_far));
+    program.set_size("point_range", number(run.levels.point_near), number(run.levels.point_far));
+    glDrawArrays(kind, 0, static_cast<GLsizei>(vertices * run.count));
+  }
+}
+
+void CrowdPass::draw_shadows(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up) const {
+  if (thrown_.empty()) return;
+  shadow_.use();
+  shadow_.set_matrix("clip_from_world", sun_from_world.data());
+  shadow_.set("sun_right", sun_right);
+  shadow_.set("sun_up", sun_up);
+  shadow_.set("instances", 3);
+  draw_runs(shadow_, thrown_, GL_TRIANGLES, 6);
+}
+
+void CrowdPass::draw(const DrawingConfig& config,
+                     const std::function<void(const GlProgram&)>& begin) {
+  if (config.avatars == AvatarStyle::kPlainQuads) {
+    if (!plain_.is_linked()) {
+      plain_ = GlProgram(shaders::plain_vertex(), shaders::plain_fragment());
+    }
+    begin(plain_);
+    draw_runs(plain_, views_, GL_TRIANGLES, 6);
+    return;
+  }
+  static const auto kWardrobe = wardrobe();
+  if (!views_.empty()) {
+    begin(impostor_);
+    impostor_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
+    draw_runs(impostor_, views_, GL_TRIANGLES, 6);
+  }
+  if (points_.empty()) return;
+  begin(point_);
+  glActiveTexture(GL_TEXTURE5);
+  glBindTexture(GL_TEXTURE_2D, looks_.get());
+  point_.set("looks", 5);
+  const double up = std::tan(0.5 * config.camera.field_of_view);
+  point_.set("pixels_at_one", static_cast<float>(0.5 * config.height * config.samples / up));
+  draw_runs(point_, points_, GL_POINTS, 1);
+}
+
+}  // namespace throng

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "draw/atlas_textures.h"
+#include "draw/gl_objects.h"
+#include "draw/matrix.h"
+#include "throng/result.h"
+#include "throng_draw/draw.h"
+
+namespace throng {
+
+/// Draws crowds: culled and packed by the processor, uploaded at once, pulled by vertex number.
+class CrowdPass {
+ public:
+  /// Fails with kNotFound: the driver refuses a shader.
+  [[nodiscard]] Result<void> make_programs();
+  /// Fails with kLimit.
+  [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
+  void clear_atlases() { atlases_.clear(); }
+
+  /// Who is seen by the eye, and who by the sun.
+  void pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config, Vec3d to_sun);
+  void upload();
+  /// Into the sun's depth picture.
+  void draw_shadows(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up) const;
+  /// `begin` puts a program in use and sets what all share.
+  void draw(const DrawingConfig& config, const std::function<void(const GlProgram&)>& begin);
+  [[nodiscard]] size_t drawn() const { return drawn_; }  ///< Not culled.
+
+ private:
+  // A run of instances of one crowd, in the one upload.
+  struct Run {
+    size_t atlas = 0;
+    size_t first = 0, count = 0;
+    LevelDistances levels = {};
+  };
+  void draw_runs(const GlProgram& program, const std::vector<Run>& runs, GLenum kind,
+                 size_t vertices) const;
+
+  GlProgram impostor_, point_, plain_, shadow_;
+  GlVertexArray nothing_;  // Vertices by number alone.
+  std::vector<AtlasTextures> atlases_;
+  std::vector<ImpostorInstance> instances_;
+  std::vector<Run> views_, points_, thrown_;
+  size_t used_ = 0, drawn_ = 0;
+  GlTexture instance_texture_, looks_;
+  GLsizei instance_rows_ = 0;
+};
+
+/// Fails with kNotFound if a program is not linked.
+[[nodiscard]] Result<void> check_linked(std::initializer_list<const GlProgram*> programs);
+
+}  // namespace throng

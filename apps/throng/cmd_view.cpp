@@ -121,6 +121,11 @@ void add_view(CLI::App& parser, Session& session) {
   command->add_option("--atlas", target.atlases, "Who walks, made by throng atlas; may be repeated")
       ->type_name("FILE.atlas")
       ->allow_extra_args(false);
+  command
+      ->add_option("--character", target.characters,
+                   "Who walks, with a skeleton (fbx, glb ...); may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   command->add_option("--world", target.world, "World of a recording, if it is not where it was")
       ->type_name("WORLD");
   command->add_option("--cell", target.cell, "Side of a cell, to bake a model with [m]")

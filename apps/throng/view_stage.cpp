@@ -27,11 +27,22 @@ bool has_sources(const SourceOptions& sources) {
   return !sources.files.empty() || !sources.scene.empty();
 }
 
-// The built-in figure at a height; kept for the next time, for it takes seconds to make.
-Result<Atlas> figure_of(double height, Context& context) {
+// More poses than views: near the eye one sees them change.
+Result<FigureModel> model_of(const Character& character, AtlasConfig config, Context& context) {
+  config.frames = 24;
+  return build_figure_model(character, config, context);
+}
+
+AtlasConfig figure_config(double height) {
   AtlasConfig config;
   config.clips = {"Walk", "Idle"};
   config.height = height;
+  return config;
+}
+
+// The built-in figure at a height; kept for the next time, for it takes seconds to make.
+Result<Atlas> atlas_of(double height, Context& context) {
+  const AtlasConfig config = figure_config(height);
   const std::string kept =
       user_file(UserFolder::kCache, fmt::format("figure-1-{:.0f}mm.atlas", height * 1000));
   if (!kept.empty()) {
@@ -43,23 +54,44 @@ Result<Atlas> figure_of(double height, Context& context) {
   return atlas;
 }
 
-Result<std::vector<std::vector<Atlas>>> figures_of(const ViewTarget& target,
-                                                   const std::vector<double>& heights,
-                                                   Context& context) {
-  std::vector<std::vector<Atlas>> of_class;
-  if (!target.atlases.empty()) {
+// A character of a file, drawn and posed now; who cannot stand still only walks.
+Result<ViewFigure> figure_of_file(const std::string& path, Context& context) {
+  const Result<Character> character = load_character(path, context);
+  if (!character) return character.error();
+  AtlasConfig config = figure_config(AtlasConfig{}.height);
+  if (!find_clip(*character, "Idle")) config.clips = {"Walk"};
+  Result<Atlas> atlas = build_atlas(*character, config, context);
+  if (!atlas) return Error{atlas.error().code, path + ": " + atlas.error().message};
+  Result<FigureModel> model = model_of(*character, config, context);
+  if (!model) return Error{model.error().code, path + ": " + model.error().message};
+  return ViewFigure{.atlas = *std::move(atlas), .model = *std::move(model)};
+}
+
+Result<std::vector<std::vector<ViewFigure>>> figures_of(const ViewTarget& target,
+                                                        const std::vector<double>& heights,
+                                                        Context& context) {
+  std::vector<std::vector<ViewFigure>> of_class;
+  if (!target.atlases.empty() || !target.characters.empty()) {
     auto& all = of_class.emplace_back();
     for (const std::string& path : target.atlases) {
       Result<Atlas> atlas = load_atlas(path);
       if (!atlas) return atlas.error();
-      all.push_back(*std::move(atlas));
+      all.push_back({.atlas = *std::move(atlas)});
+    }
+    for (const std::string& path : target.characters) {
+      Result<ViewFigure> figure = figure_of_file(path, context);
+      if (!figure) return figure.error();
+      all.push_back(*std::move(figure));
     }
     return of_class;
   }
+  const Character character = built_in_character();
   for (const double height : heights) {
-    Result<Atlas> atlas = figure_of(height, context);
+    Result<Atlas> atlas = atlas_of(height, context);
     if (!atlas) return atlas.error();
-    of_class.emplace_back().push_back(*std::move(atlas));
+    Result<FigureModel> model = model_of(character, figure_config(height), context);
+    if (!model) return model.error();
+    of_class.emplace_back().push_back({.atlas = *std::move(atlas), .model = *std::move(model)});
   }
   return of_class;
 }
@@ -89,7 +121,7 @@ Result<void> show_world(StageParts& parts, const ViewTarget& target, const World
   parts.set_world(world, nodes);
   auto figures = figures_of(target, heights_of(world.summary().classes), context);
   if (!figures) return figures.error();
-  parts.set_atlases(*std::move(figures));
+  parts.set_figures(*std::move(figures));
   if (target.crowd) parts.set_crowd(target.start);
   return {};
 }
@@ -127,7 +159,7 @@ Result<void> load_replay(StageParts& parts, const ViewTarget& target, Context& c
   parts.set_world(*world);
   auto figures = figures_of(target, heights, context);
   if (!figures) return figures.error();
-  parts.set_atlases(*std::move(figures));
+  parts.set_figures(*std::move(figures));
   parts.set_replay(*std::move(replay));
   return {};
 }

@@ -15,13 +15,14 @@
 namespace throng::app {
 
 struct ViewTarget {
-  std::string path;                  ///< World, scenario, recording, model, builtin:NAME.
-  std::string world;                 ///< Of a recording, if it is not where it was.
-  SourceOptions sources;             ///< What to draw; none: where one can walk.
-  std::vector<std::string> atlases;  ///< Who walks; none: the built-in figure.
-  double cell = 0.1;                 ///< To bake models with. [m]
-  bool crowd = true;                 ///< Start one in a world.
-  std::optional<uint64_t> seed;      ///< Of a scenario, in place of its own.
+  std::string path;                          ///< World, scenario, recording, model, builtin:NAME.
+  std::string world;                         ///< Of a recording, if it is not where it was.
+  SourceOptions sources;                     ///< What to draw; none: where one can walk.
+  std::vector<std::string> atlases;          ///< Who walks; none: the built-in figure.
+  std::vector<std::string> characters = {};  ///< The same as files with a skeleton.
+  double cell = 0.1;                         ///< To bake models with. [m]
+  bool crowd = true;                         ///< Start one in a world.
+  std::optional<uint64_t> seed;              ///< Of a scenario, in place of its own.
   CrowdStart start;
 };
 

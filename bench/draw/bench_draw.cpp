@@ -89,7 +89,9 @@ int run(const Options& options) {
     std::fprintf(stderr, "bench_draw: %s\n", error.message.c_str());
     return 2;
   };
-  Result<Scene> scene = make_builtin_world({.name = "city", .triangles = options.polygons});
+  Result<Scene> scene = make_builtin_world({.name = "city",
+                                            .size = options.polygons < 8000 ? 100.0 : 0.0,
+                                            .triangles = options.polygons});
   if (!scene) return fail(scene.error());
   const Box3d bounds = scene->bounds();
   const Vec3d origin = (bounds.min + bounds.max) * 0.5;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "throng/context.h"
+#include "throng/figure_model.h"
 #include "throng/impostor.h"
 #include "throng/nodes.h"
 #include "throng/recording.h"
@@ -39,6 +40,12 @@ struct CrowdStart {
 
 class StageJob;  // Internal.
 
+/// What somebody looks like, and near the eye, if there is a model with the clips of the atlas.
+struct ViewFigure {
+  Atlas atlas;
+  std::optional<FigureModel> model = {};
+};
+
 /// Where whoever loads puts what he has, as soon as he has it: each part is shown at once. The
 /// scene first; everything else refers to it. From one thread, any.
 class THRONG_API StageParts {
@@ -50,6 +57,8 @@ class THRONG_API StageParts {
   /// Who walks: one figure a class of the world or recording, in their order; the last serves all
   /// that are left.
   void set_atlases(std::vector<std::vector<Atlas>> of_class);
+  /// The same with meshes for who is near.
+  void set_figures(std::vector<std::vector<ViewFigure>> of_class);
   /// Starts a crowd in the world.
   void set_crowd(const CrowdStart& start);
   /// Runs a scenario in the world, instead of a crowd.

@@ -60,18 +60,47 @@ Result<void> check_linked(std::initializer_list<const GlProgram*> programs) {
 
 Result<void> CrowdPass::make_programs() {
   impostor_ = GlProgram(shaders::impostor_vertex(), shaders::impostor_fragment());
+  model_ = GlProgram(shaders::model_vertex(), shaders::model_fragment());
   point_ = GlProgram(shaders::point_vertex(), shaders::point_fragment());
   shadow_ = GlProgram(shaders::shadow_vertex(), shaders::shadow_fragment());
   nothing_ = make_vertex_array();
   looks_ = make_looks();
-  return check_linked({&impostor_, &point_, &shadow_});
+  return check_linked({&impostor_, &model_, &point_, &shadow_});
 }
 
 Result<size_t> CrowdPass::add_atlas(const Atlas& atlas) {
   Result<AtlasTextures> made = AtlasTextures::make(atlas);
   if (!made) return made.error();
   atlases_.push_back(*std::move(made));
+  models_.emplace_back();
   return atlases_.size() - 1;
+}
+
+Result<void> CrowdPass::set_model(size_t atlas, const FigureModel& model) {
+  if (model.clips.size() != atlases_[atlas].shape.clips.size()) {
+    return Error{Errc::kBadInput, "drawing: a figure must have the clips of its atlas"};
+  }
+  Result<ModelMesh> made = ModelMesh::make(model);
+  if (!made) return made.error();
+  models_[atlas] = *std::move(made);
+  return {};
+}
+
+void CrowdPass::Level::begin(size_t most) {
+  if (instances.size() < most) instances.resize(most);
+  runs.clear();
+  used = 0;
+}
+
+void CrowdPass::Level::add(const Run& run) {
+  if (run.count == 0) return;
+  runs.push_back(run);
+  runs.back().first = used;
+  used += run.count;
+}
+
+GLsizei CrowdPass::Level::rows() const {
+  return static_cast<GLsizei>((used + kInstancesWide - 1) / kInstancesWide);
 }
 
 void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
@@ -79,22 +108,7 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
   const bool plain = config.avatars == AvatarStyle::kPlainQuads;
   size_t most = 0;
   for (const DrawnCrowd& crowd : crowds) most += crowd.avatars.x.size();
-  // Each is seen as a view, or a point, or both, and by the sun.
-  if (instances_.size() < 3 * most) instances_.resize(3 * most);
-  for (auto* runs : {&views_, &points_, &thrown_}) runs->clear();
-  used_ = drawn_ = 0;
-  const auto keep = [&](std::vector<Run>& runs, const Run& run) {
-    if (run.count == 0) return;
-    runs.push_back(run);
-    // Closer together than they were packed, so that less is uploaded.
-    if (run.first != used_) {
-      const auto from = instances_.begin() + static_cast<ptrdiff_t>(run.first);
-      std::copy(from, from + static_cast<ptrdiff_t>(run.count),
-                instances_.begin() + static_cast<ptrdiff_t>(used_));
-      runs.back().first = used_;
-    }
-    used_ += run.count;
-  };
+  for (Level* level : {&meshes_, &views_, &points_, &thrown_}) level->begin(most);
   for (const DrawnCrowd& crowd : crowds) {
     const Atlas& shape = atlases_[crowd.atlas].shape;
     const PackConfig pack_config{.camera = config.camera,
@@ -103,32 +117,38 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
                                  .workers = config.workers};
     LevelDistances levels;
     if (!plain) {
-      levels = level_distances(shape.shape, config.camera, config.height * config.samples, 0,
-                               config.point_pixels);
+      levels = level_distances(shape.shape, config.camera, config.height * config.samples,
+                               models_[crowd.atlas] ? config.mesh_texel : 0, config.point_pixels);
     }
-    const size_t size = crowd.avatars.x.size(), first = used_;
-    const auto out = std::span(instances_).subspan(first);
     const LevelCounts counts =
         pack_levels(shape, crowd.avatars, pack_config, levels,
-                    {.meshes = {}, .views = out.first(size), .points = out.subspan(size, size)});
-    keep(views_, {crowd.atlas, first, counts.views, levels});
-    keep(points_, {crowd.atlas, first + size, counts.points, levels});
-    drawn_ += counts.views + counts.points;
+                    {.meshes = meshes_.rest(), .views = views_.rest(), .points = points_.rest()});
+    meshes_.add({crowd.atlas, crowd.clip, 0, counts.meshes, levels});
+    views_.add({crowd.atlas, crowd.clip, 0, counts.views, levels});
+    points_.add({crowd.atlas, crowd.clip, 0, counts.points, levels});
   }
+  drawn_ = meshes_.used + views_.used + points_.used;
   if (!config.avatar_shadows) return;
   for (const DrawnCrowd& crowd : crowds) {
     const PackConfig pack_config{.camera = config.camera,
                                  .clip = crowd.clip,
                                  .from_direction = to_sun,
                                  .workers = config.workers};
-    const size_t count = pack_impostors(atlases_[crowd.atlas].shape, crowd.avatars, pack_config,
-                                        std::span(instances_).subspan(used_));
-    keep(thrown_, {crowd.atlas, used_, count});
+    thrown_.add(
+        {crowd.atlas,
+         crowd.clip,
+         0,
+         pack_impostors(atlases_[crowd.atlas].shape, crowd.avatars, pack_config, thrown_.rest()),
+         {}});
   }
 }
 
 void CrowdPass::upload() {
-  const auto rows = static_cast<GLsizei>((used_ + kInstancesWide - 1) / kInstancesWide);
+  GLsizei rows = 0;
+  for (Level* level : {&meshes_, &views_, &points_, &thrown_}) {
+    level->first_row = rows;
+    rows += level->rows();
+  }
   glActiveTexture(GL_TEXTURE3);
   if (instance_rows_ == 0 || instance_rows_ < rows) {
     instance_rows_ = std::max(rows, GLsizei{1});
@@ -139,28 +159,34 @@ void CrowdPass::upload() {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
   glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
-  if (rows == 0) return;
-  const size_t whole = static_cast<size_t>(rows) * kInstancesWide;
-  if (instances_.size() < whole) instances_.resize(whole);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kInstancesWide, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
-                  instances_.data());
+  for (Level* level : {&meshes_, &views_, &points_, &thrown_}) {
+    if (level->used == 0) continue;
+    const size_t whole = static_cast<size_t>(level->rows()) * kInstancesWide;
+    if (level->instances.size() < whole) level->instances.resize(whole);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, level->first_row, kInstancesWide, level->rows(),
+                    GL_RGBA_INTEGER, GL_UNSIGNED_INT, level->instances.data());
+  }
 }
 
-void CrowdPass::draw_runs(const GlProgram& program, const std::vector<Run>& runs, GLenum kind,
+void CrowdPass::draw_runs(const GlProgram& program, const Level& level, GLenum kind,
                           size_t vertices) const {
   glBindVertexArray(nothing_.get());
-  for (const Run& run : runs) {
-    atlases_[run.atlas].bind(program);
-    program.set("first", static_cast<int>(run.first));
-    const auto number = [](double metres) { return static_cast<float>(std::min(metres, 1e9)); };
-    program.set_size("mesh_range", number(run.levels.mesh_near), number(run.levels.mesh_far));
-    program.set_size("point_range", number(run.levels.point_near), number(run.levels.point_far));
+  for (const Run& run : level.runs) {
+    use_run(program, level, run);
     glDrawArrays(kind, 0, static_cast<GLsizei>(vertices * run.count));
   }
 }
 
+void CrowdPass::use_run(const GlProgram& program, const Level& level, const Run& run) const {
+  atlases_[run.atlas].bind(program);
+  program.set("first", level.first_row * kInstancesWide + static_cast<int>(run.first));
+  const auto number = [](double metres) { return static_cast<float>(std::min(metres, 1e9)); };
+  program.set_size("mesh_range", number(run.levels.mesh_near), number(run.levels.mesh_far));
+  program.set_size("point_range", number(run.levels.point_near), number(run.levels.point_far));
+}
+
 void CrowdPass::draw_shadows(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up) const {
-  if (thrown_.empty()) return;
+  if (thrown_.runs.empty()) return;
   shadow_.use();
   shadow_.set_matrix("clip_from_world", sun_from_world.data());
   shadow_.set("sun_right", sun_right);
@@ -180,12 +206,20 @@ void CrowdPass::draw(const DrawingConfig& config,
     return;
   }
   static const auto kWardrobe = wardrobe();
-  if (!views_.empty()) {
+  if (!views_.runs.empty()) {
     begin(impostor_);
     impostor_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
     draw_runs(impostor_, views_, GL_TRIANGLES, 6);
   }
-  if (points_.empty()) return;
+  if (!meshes_.runs.empty()) {
+    begin(model_);
+    model_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
+    for (const Run& run : meshes_.runs) {
+      use_run(model_, meshes_, run);
+      models_[run.atlas]->draw(model_, run.clip, run.count);
+    }
+  }
+  if (points_.runs.empty()) return;
   begin(point_);
   glActiveTexture(GL_TEXTURE5);
   glBindTexture(GL_TEXTURE_2D, looks_.get());

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "draw/atlas_textures.h"
 #include "draw/gl_objects.h"
 #include "draw/matrix.h"
+#include "draw/model_mesh.h"
 #include "throng/result.h"
 #include "throng_draw/draw.h"
 
@@ -23,7 +25,12 @@ class CrowdPass {
   [[nodiscard]] Result<void> make_programs();
   /// Fails with kLimit.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
-  void clear_atlases() { atlases_.clear(); }
+  void clear_atlases() {
+    atlases_.clear();
+    models_.clear();
+  }
+  /// Fails with kBadInput (other clips than the atlas), kLimit.
+  [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
 
   /// Who is seen by the eye, and who by the sun.
   void pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config, Vec3d to_sun);
@@ -37,19 +44,30 @@ class CrowdPass {
  private:
   // A run of instances of one crowd, in the one upload.
   struct Run {
-    size_t atlas = 0;
+    size_t atlas = 0, clip = 0;
     size_t first = 0, count = 0;
     LevelDistances levels = {};
   };
-  void draw_runs(const GlProgram& program, const std::vector<Run>& runs, GLenum kind,
-                 size_t vertices) const;
+  // All that are drawn in one way, at rows of their own of the instances' texture.
+  struct Level {
+    std::vector<ImpostorInstance> instances;
+    std::vector<Run> runs;
+    size_t used = 0;
+    GLsizei first_row = 0;
+    [[nodiscard]] std::span<ImpostorInstance> rest() { return std::span(instances).subspan(used); }
+    void begin(size_t most);
+    void add(const Run& run);
+    [[nodiscard]] GLsizei rows() const;
+  };
+  void draw_runs(const GlProgram& program, const Level& level, GLenum kind, size_t vertices) const;
+  void use_run(const GlProgram& program, const Level& level, const Run& run) const;
 
-  GlProgram impostor_, point_, plain_, shadow_;
+  GlProgram impostor_, model_, point_, plain_, shadow_;
   GlVertexArray nothing_;  // Vertices by number alone.
   std::vector<AtlasTextures> atlases_;
-  std::vector<ImpostorInstance> instances_;
-  std::vector<Run> views_, points_, thrown_;
-  size_t used_ = 0, drawn_ = 0;
+  std::vector<std::optional<ModelMesh>> models_;  // By atlas.
+  Level meshes_, views_, points_, thrown_;
+  size_t drawn_ = 0;
   GlTexture instance_texture_, looks_;
   GLsizei instance_rows_ = 0;
 };

@@ -303,6 +303,11 @@ Result<size_t> Drawing::add_atlas(const Atlas& atlas) {
   return state_->crowd.add_atlas(atlas);
 }
 
+Result<void> Drawing::set_model(size_t atlas, const FigureModel& model) {
+  state_->make_current();
+  return state_->crowd.set_model(atlas, model);
+}
+
 void Drawing::clear_atlases() {
   state_->make_current();
   state_->crowd.clear_atlases();

@@ -88,6 +88,13 @@ vec3 cloth(uint part, uint look) {
   uint k = (look * (5u + 2u * part) + (look >> 4u) * 7u + part * 3u) % 12u;
   return wardrobe[part * 12u + k];
 }
+// The part's own light and dark stay, its hue does not. `mean`: of the part.
+vec3 dressed(vec3 own, uint part, uint look, vec3 mean) {
+  if (part == 0u) return own;
+  const vec3 kBright = vec3(0.30, 0.59, 0.11);
+  float relief = clamp(dot(own, kBright) / dot(mean, kBright), 0.4, 1.7);
+  return min(cloth(part, look) * relief, 0.95);
+}
 )";
 
 // Which avatar and which corner a vertex is, and the rectangle that shows it. Pulled from textures
@@ -292,13 +299,85 @@ void main() {
                      towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
   uint part = mask >> 5;
   vec3 own = stored.rgb * stored.rgb;
-  if (part > 0u) {
-    // The part's own light and dark stay, its hue does not.
-    const vec3 kBright = vec3(0.30, 0.59, 0.11);
-    float relief = clamp(dot(own, kBright) / dot(part_colour[part], kBright), 0.4, 1.7);
-    own = min(cloth(part, look) * relief, 0.95);
-  }
+  own = dressed(own, part, look, part_colour[part]);
   float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));  // Less light near the ground.
+  colour = shown(lit(own, n, in_sun) * shade, world - eye);
+}
+)";
+}
+
+// A mesh between two of its poses, turned and put where its avatar is.
+std::string model_vertex() {
+  return std::string(kHead) + kSunlit + kFade + R"(
+layout(location = 0) in uvec4 paint;  // Albedo and part.
+uniform usampler2D instances;
+uniform usampler2D poses;
+uniform int first, vertices, first_frame, frames;
+uniform vec3 low, extent;
+uniform float centre;
+out vec3 world;
+out vec3 normal;
+out float height;
+flat out vec3 albedo_root;
+flat out uint part;
+flat out uint look;
+flat out float in_sun;
+flat out float shown_to;
+uvec4 posed(int frame) {
+  int at = (first_frame + frame) * vertices + gl_VertexID;
+  return texelFetch(poses, ivec2(at & 2047, at >> 11), 0);
+}
+vec3 unfolded(uint bytes) {
+  vec2 f = (vec2(bytes & 255u, bytes >> 8u) - 128.0) / 127.0;
+  float up = 1.0 - abs(f.x) - abs(f.y);
+  vec2 side = f;
+  if (up < 0.0) side = (1.0 - abs(f.yx)) * vec2(f.x < 0.0 ? -1.0 : 1.0, f.y < 0.0 ? -1.0 : 1.0);
+  return vec3(side.x, up, side.y);
+}
+void main() {
+  int number = first + gl_InstanceID;
+  uvec4 data = texelFetch(instances, ivec2(number & 2047, number >> 11), 0);
+  float cycle = float(data.w >> 11u & 1023u) / 1024.0 * float(frames);
+  int frame = int(cycle) % frames;
+  uvec4 a = posed(frame), b = posed((frame + 1) % frames);
+  float share = fract(cycle);
+  vec3 p = low + extent * mix(vec3(a.xyz), vec3(b.xyz), share) / 65535.0;
+  vec3 n = mix(unfolded(a.w), unfolded(b.w), share);
+  float heading = float(data.w & 2047u) * (6.283185307 / 2048.0);
+  float s = sin(heading), c = cos(heading);
+  vec3 feet = uintBitsToFloat(data.xyz);
+  height = p.y;
+  world = feet + vec3(p.x * c + p.z * s, p.y, p.z * c - p.x * s);
+  normal = vec3(n.x * c + n.z * s, n.y, n.z * c - n.x * s);
+  albedo_root = vec3(paint.rgb) / 255.0;
+  part = paint.a;
+  look = data.w >> 21;
+  vec3 middle = feet + vec3(0.0, centre, 0.0);
+  in_sun = sunlit_once(middle + to_sun * 0.9);
+  shown_to = 1.0 - share_beyond(mesh_range, length(eye - middle));
+  gl_Position = clip_from_world * vec4(world, 1.0);
+}
+)";
+}
+
+std::string model_fragment() {
+  return std::string(kHead) + kLight + kPattern + kClothes + R"(
+in vec3 world;
+in vec3 normal;
+in float height;
+flat in vec3 albedo_root;
+flat in uint part;
+flat in uint look;
+flat in float in_sun;
+flat in float shown_to;
+uniform vec3 part_colour[6];
+out vec4 colour;
+void main() {
+  if (threshold() > shown_to) discard;
+  vec3 n = normalize(normal);
+  if (dot(n, eye - world) < 0.0) n = -n;  // Thin clothes have an inside.
+  float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));
+  vec3 own = dressed(albedo_root * albedo_root, part, look, part_colour[part]);
   colour = shown(lit(own, n, in_sun) * shade, world - eye);
 }
 )";

@@ -15,6 +15,8 @@ std::string depth_vertex();  ///< Of the scene, as the sun sees it.
 std::string depth_fragment();
 std::string impostor_vertex();
 std::string impostor_fragment();
+std::string model_vertex();  ///< Of avatars near the eye: meshes.
+std::string model_fragment();
 std::string point_vertex();  ///< Of avatars that are too small for a view.
 std::string point_fragment();
 std::string plain_vertex();  ///< Of plain quads, for comparison.

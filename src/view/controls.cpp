@@ -124,7 +124,7 @@ void Viewer::State::press(Key key) {
     panel.mode = letter('1') ? CameraMode::kOrbit : CameraMode::kFly;
   }
   if (letter('3')) begin_walk();
-  constexpr char kOverlayKeys[] = "CLNKXHPBO";  // In the order of Overlay.
+  constexpr char kOverlayKeys[] = "CLNKXHPBOG";  // In the order of Overlay.
   for (size_t i = 0; i < kOverlays; ++i) {
     if (letter(kOverlayKeys[i])) panel.overlays[i] = !panel.overlays[i];
   }

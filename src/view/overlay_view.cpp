@@ -91,6 +91,7 @@ OverlayMaker::Made OverlayMaker::make(const Order& order) {
       break;
     case Overlay::kDensity:
     case Overlay::kNeighbours:
+    case Overlay::kFields:
       break;  // Made anew for each frame.
   }
   return made;
@@ -128,6 +129,8 @@ void Viewer::State::show_overlays() {
     }
     if (overlay == Overlay::kDensity) {
       set(overlay, density_marks(crowd.now()));
+    } else if (overlay == Overlay::kFields) {
+      set(overlay, field_marks(crowd.now(), picked, rig.target, panel.class_radii));
     } else if (overlay == Overlay::kNeighbours) {
       set(overlay, has_picked ? neighbour_marks(crowd.now(), picked, 5) : Marks{});
     } else if (overlay_maker && !overlay_maker->is_busy()) {

@@ -93,7 +93,8 @@ Vec3d middle_of(const Nodes& nodes, uint32_t node) {
 
 const char* word_for(Overlay overlay) {
   static constexpr std::array<const char*, kOverlays> kWords = {
-      "Clearance", "Levels", "Nodes", "Links", "Air", "Density", "Path", "Neighbours", "Painted"};
+      "Clearance", "Levels", "Nodes",      "Links",   "Air",
+      "Density",   "Path",   "Neighbours", "Painted", "Fields"};
   return kWords[static_cast<size_t>(overlay)];
 }
 
@@ -109,7 +110,9 @@ const char* legend_of(Overlay overlay) {
       "Avatars a square metre, over 2 m: blue few, red four and more",
       "The shortest way of the avatar picked to its goal",
       "Whom the avatar picked may see: within 5 m",
-      "Where people are sent: painted with the brush, or by the scenario; the stronger, the more"};
+      "Where people are sent: painted with the brush, or by the scenario; the stronger, the more",
+      "Protection fields of [CAACD] and the zone ahead: green tolerable, yellow alert, orange "
+      "critical, red collision"};
   return kLegends[static_cast<size_t>(overlay)];
 }
 

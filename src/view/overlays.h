@@ -27,8 +27,9 @@ enum class Overlay : uint8_t {
   kPath,
   kNeighbours,
   kPainted,
+  kFields,
 };
-inline constexpr size_t kOverlays = 9;
+inline constexpr size_t kOverlays = 10;
 /// "Clearance", ...
 [[nodiscard]] const char* word_for(Overlay overlay);
 /// What its colours mean, one sentence.
@@ -49,6 +50,11 @@ inline constexpr size_t kOverlays = 9;
                                       Context& context);
 /// Avatars a square metre, over squares of two metres: blue few, red four and more.
 [[nodiscard]] Marks density_marks(const Moment& crowd);
+/// The protection fields of [CAACD] in metres: three circles and the zone ahead, green tolerable,
+/// yellow alert, orange critical, red collision. Of who is within 8 m of the one picked; if
+/// `picked` is nobody's index, of the 300 nearest to a point. `radii`: of bodies, by class.
+[[nodiscard]] Marks field_marks(const Moment& crowd, size_t picked, Vec3d middle,
+                                const std::vector<double>& radii);
 /// Where the maps of a brush or scenario have weight: the more, the less clear. A pixel lies on the
 /// ground of the first class that has any under its middle.
 [[nodiscard]] Marks painted_marks(const World& world, const std::vector<DensityMap>& maps,

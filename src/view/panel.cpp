@@ -322,7 +322,7 @@ void draw_help(PanelState& s, int32_t width, int32_t height) {
         {"Comma, M", "slower, faster"},
         {"C, L, N, K", "clearance, levels, nodes, links"},
         {"X, H, P, B", "air, density (heat), path and neighbours of the avatar picked"},
-        {"O", "where people are sent"},
+        {"O, G", "where people are sent; protection fields"},
         {"Tab", "panel"},
         {"F11, F12", "full screen; keep a picture"},
         {"Escape", "leave Walk, let go of the avatar, close this"},

@@ -67,7 +67,7 @@ struct PanelState {
   SceneFlow flow;
   std::vector<double> storeys;
   std::vector<std::string> class_names;
-  std::vector<double> class_heights;
+  std::vector<double> class_heights, class_radii;
   FrameTimes times;
   CrowdReport report;
   std::optional<AvatarDetail> picked;

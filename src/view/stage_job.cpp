@@ -103,13 +103,22 @@ void StageParts::set_world(World world, std::optional<Nodes> nodes) {
 }
 
 void StageParts::set_atlases(std::vector<std::vector<Atlas>> of_class) {
+  std::vector<std::vector<ViewFigure>> figures;
   for (auto& row : of_class) {
-    for (Atlas& atlas : row) {
+    auto& out = figures.emplace_back();
+    for (Atlas& atlas : row) out.push_back({.atlas = std::move(atlas)});
+  }
+  set_figures(std::move(figures));
+}
+
+void StageParts::set_figures(std::vector<std::vector<ViewFigure>> of_class) {
+  for (auto& row : of_class) {
+    for (auto& [atlas, model] : row) {
       if (atlas.format != AtlasFormat::kRgba8) atlas = convert_atlas(atlas, AtlasFormat::kRgba8);
     }
   }
   const std::lock_guard lock(job_.mutex_);
-  job_.mail_.atlases = std::move(of_class);
+  job_.mail_.figures = std::move(of_class);
 }
 
 void StageParts::set_crowd(const CrowdStart& start) {

@@ -25,7 +25,7 @@ struct StageMail {
   std::optional<World> world;
   std::optional<Nodes> nodes;
   std::optional<std::vector<double>> storeys;
-  std::optional<std::vector<std::vector<Atlas>>> atlases;
+  std::optional<std::vector<std::vector<ViewFigure>>> figures;
   std::optional<ReplaySpan> replay;
   std::optional<CrowdStart> crowd;
   std::optional<Scenario> scenario;

@@ -65,6 +65,7 @@ void Viewer::State::take_parts() {
     panel.storeys.clear();
     panel.class_names.clear();
     panel.class_heights.clear();
+    panel.class_radii.clear();
     panel.is_cut = false;
     panel.status.picked = panel.status.driven = -1;
     origin = mail.scene->origin();
@@ -83,19 +84,21 @@ void Viewer::State::take_parts() {
     for (const AvatarClass& c : world.summary().classes) {
       panel.class_names.push_back(c.name);
       panel.class_heights.push_back(c.height);
+      panel.class_radii.push_back(c.radius);
     }
   }
   if (mail.storeys) panel.storeys = *std::move(mail.storeys);
-  if (mail.atlases) {
-    for (auto& row : *mail.atlases) {
+  if (mail.figures) {
+    for (auto& row : *mail.figures) {
       auto& numbers = figures.of_class.emplace_back();
-      for (Atlas& atlas : row) {
+      for (const auto& [atlas, model] : row) {
         const Result<size_t> number = drawing.add_atlas(atlas);
         if (!number) {
           keep(number.error());
           continue;
         }
         numbers.push_back(*number);
+        if (model) keep(drawing.set_model(*number, *model));
         Atlas& shape = figures.shapes.emplace_back();
         shape.shape = atlas.shape;
         shape.clips = atlas.clips;
@@ -404,7 +407,9 @@ void Viewer::wait_for_overlays() {
   const auto is_missing = [&](Overlay overlay) {
     const auto slot = static_cast<size_t>(overlay);
     if (!s.overlay_maker || !s.panel.overlays[slot] || s.ordered[slot]) return false;
-    if (overlay == Overlay::kDensity || overlay == Overlay::kNeighbours) return false;
+    const bool is_of_frame = overlay == Overlay::kDensity || overlay == Overlay::kNeighbours ||
+                             overlay == Overlay::kFields;
+    if (is_of_frame) return false;
     return overlay != Overlay::kPath || (s.panel.status.picked >= 0 && s.panel.has_crowd);
   };
   // Who was picked may have no goal, so a path need not come.

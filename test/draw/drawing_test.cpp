@@ -9,6 +9,7 @@
 
 #include "impostor/view_packer.h"
 #include "throng/builtin_worlds.h"
+#include "throng/figure_model.h"
 #include "throng_draw/draw.h"
 
 #pragma GCC diagnostic push
@@ -318,6 +319,78 @@ TEST(GlDrawing, ABuiltInWorldIsDrawnAndBadSettingsAreRefused) {
   EXPECT_EQ(refused([](Config c) { c.camera.eye.x = NAN; }), Errc::kBadConfig);
   EXPECT_EQ(refused([](Config c) { c.camera.field_of_view = 3.2; }), Errc::kBadConfig);
   EXPECT_EQ(refused([](Config c) { c.to_sun = {1, 0, 0}; }), Errc::kBadConfig);
+}
+
+// One avatar, nearer and nearer: point, view, mesh. Neighbours in size look alike, and in a fade
+// both are there.
+TEST(GlDrawing, LevelsOfDetailLookAlike) {
+  Drawing drawing = made_drawing();
+  Context context;
+  AtlasConfig atlas_config;
+  const auto atlas = build_atlas(built_in_character(), atlas_config, context);
+  ASSERT_TRUE(atlas);
+  ASSERT_TRUE(drawing.add_atlas(*atlas));
+  AtlasConfig pose_config = atlas_config;
+  pose_config.frames = 24;
+  const auto model = build_figure_model(built_in_character(), pose_config, context);
+  ASSERT_TRUE(model);
+  ASSERT_TRUE(drawing.set_model(0, *model));
+  FigureModel other = *model;
+  other.clips.clear();
+  EXPECT_EQ(drawing.set_model(0, other).error().code, Errc::kBadInput);
+  Avatars avatars;
+  avatars.add({0, 0, 0}, 0.1, 0.3, 77);
+  const DrawnCrowd crowd = avatars.crowd();
+  const auto seen = [&](double distance, double mesh_texel, double point_pixels) {
+    DrawingConfig config;
+    config.width = config.height = 200;
+    config.samples = 1;
+    config.avatar_shadows = false;
+    config.mesh_texel = mesh_texel;
+    config.point_pixels = point_pixels;
+    config.camera.eye = {0, 0.875 + 0.2 * distance, distance};
+    config.camera.target = {0, 0.875, 0};
+    config.camera.field_of_view = 2 * std::atan(1.2 / distance);
+    DrawingReport report;
+    auto image = drawing.draw({&crowd, 1}, config, &report);
+    EXPECT_TRUE(image) << image.error().message;
+    EXPECT_EQ(report.avatars, 1U);
+    return std::pair(*std::move(image), report.drawn);
+  };
+  const auto none = drawing.draw({}, {.camera = {.eye = {0, 2.875, 10},
+                                                 .target = {0, 0.875, 0},
+                                                 .field_of_view = 2 * std::atan(0.12)},
+                                      .width = 200,
+                                      .height = 200,
+                                      .samples = 1});
+  ASSERT_TRUE(none);
+  const auto covered = [&](const Image& image) {
+    int64_t count = 0;
+    for (size_t i = 0; i < image.rgb.size(); i += 3) {
+      int32_t off = 0;
+      for (size_t c = 0; c < 3; ++c) off += std::abs(image.rgb[i + c] - none->rgb[i + c]);
+      count += off > 40 ? 1 : 0;
+    }
+    return count;
+  };
+  // A side of 2.07 m is 172 pixels of the picture's 200: texels of 2.7 pixels.
+  const auto [mesh, one_mesh] = seen(10, 1, 0);
+  const auto [view, one_view] = seen(10, 0, 0);
+  const auto [point, one_point] = seen(10, 0, 2000);
+  const auto [both, two] = seen(10, 2.5, 0);
+  EXPECT_EQ(one_mesh, 1U);
+  EXPECT_EQ(one_view, 1U);
+  EXPECT_EQ(one_point, 1U);
+  EXPECT_EQ(two, 2U);
+  const auto area = static_cast<double>(covered(view));
+  EXPECT_GT(area, 2000);
+  EXPECT_NEAR(static_cast<double>(covered(mesh)) / area, 1, 0.12);
+  EXPECT_NEAR(static_cast<double>(covered(both)) / area, 1, 0.12);
+  EXPECT_NEAR(static_cast<double>(covered(point)) / area, 1.2, 0.5);
+  // Mesh and view show the same colours at the same places, but for texels' edges.
+  int64_t off = 0;
+  for (size_t i = 0; i < mesh.rgb.size(); ++i) off += std::abs(mesh.rgb[i] - view.rgb[i]) > 40;
+  EXPECT_LT(static_cast<double>(off), 0.35 * 3 * area);
 }
 
 }  // namespace

@@ -153,6 +153,30 @@ double area_of(const Marks& marks) {
   return area;
 }
 
+TEST(OverlayMarks, FieldsAreColouredByTheStateThatTheyAreIn) {
+  // Two who walk into each other, one far off, one on another storey.
+  Moment crowd;
+  crowd.resize(4);
+  crowd.ids = {1, 2, 3, 4};
+  crowd.x = {0, 1, 50, 0};
+  crowd.y = {0, 0, 0, 3};
+  crowd.z = {0, 0, 0, 0};
+  crowd.heading = {0.25F, 0.75F, 0, 0};
+  crowd.pace = {1, 1, 1, 0};
+  const Marks all = field_marks(crowd, 4, {}, {0.25});
+  const size_t each = 3 * 32 * 2;
+  ASSERT_EQ(all.lines.size(), 4 * each);
+  const auto rgb = [](Rgba colour) { return colour & 0xffffff; };
+  const auto state_at = [&](size_t n) { return rgb(all.lines[n * each].colour); };
+  EXPECT_EQ(state_at(0), state_at(1));  // Critical, from both sides.
+  EXPECT_EQ(state_at(0), rgb(rgba(250, 130, 40)));
+  EXPECT_EQ(state_at(2), rgb(rgba(90, 200, 110)));  // The storey above: nearer than who is far.
+  EXPECT_EQ(state_at(3), rgb(rgba(90, 200, 110)));
+  EXPECT_EQ(field_marks(crowd, 0, {}, {0.25}).lines.size(), 3 * each);  // Without who is far.
+  crowd.x[1] = 0.45F;
+  EXPECT_EQ(rgb(field_marks(crowd, 0, {}, {0.25}).lines[0].colour), rgb(rgba(230, 40, 40)));
+}
+
 TEST(OverlayMarks, ClearanceCoversWhatAClassCanWalkOnAndNothingElse) {
   Context context;
   const World& world = hall().world;

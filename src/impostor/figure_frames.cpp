@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "impostor/figure_frames.h"
+
+#include <algorithm>
+#include <string>
+
+#include "impostor/gait.h"
+
+namespace throng {
+
+Result<void> check_atlas_config(const AtlasConfig& config) {
+  const auto bad = [](const std::string& what) {
+    return Error{Errc::kBadConfig, "atlas: " + what};
+  };
+  if (config.clips.empty() || config.clips.size() > 16) return bad("need 1 to 16 clips");
+  const bool even = config.frames == 1 || config.frames % 2 == 0;
+  if (!(config.frames >= 1 && config.frames <= 64 && even)) {
+    return bad("frames " + std::to_string(config.frames) +
+               ": need 1, or an even number up to 64 (a mirrored view is half a cycle on)");
+  }
+  if (!(config.directions >= 2 && config.directions <= 64)) {
+    return bad("directions " + std::to_string(config.directions) + ": need 2 to 64");
+  }
+  if (!(config.elevations >= 1 && config.elevations <= 32)) {
+    return bad("elevations " + std::to_string(config.elevations) + ": need 1 to 32");
+  }
+  if (!(config.pixels >= 8 && config.pixels <= 256)) {
+    return bad("pixels " + std::to_string(config.pixels) + ": need 8 to 256 a side of a view");
+  }
+  if (!(config.height >= 0 && config.height <= 100) || config.workers < 0) {
+    return bad("need a height of 0 to 100 m, and workers >= 0");
+  }
+  return {};
+}
+
+Result<FigureFrames> pose_frames(const Character& character, const AtlasConfig& config) {
+  FigureFrames poses;
+  Box3d first_clip;
+  for (const std::string& word : config.clips) {
+    const Result<size_t> clip = find_clip(character, word);
+    if (!clip) return clip.error();
+    const ClipPlace place = place_of_clip(character, *clip);
+    poses.clips.push_back({.name = character.clips[*clip].name,
+                           .first_frame = static_cast<int32_t>(poses.frames.size()),
+                           .frames = config.frames,
+                           .seconds = character.clips[*clip].seconds,
+                           .stride = stride_of_clip(character, *clip, place)});
+    for (int32_t f = 0; f < config.frames; ++f) {
+      pose_in_place(character, *clip, place, static_cast<double>(f) / config.frames,
+                    poses.frames.emplace_back());
+      for (const Vec3d& p : poses.frames.back().positions) {
+        if (poses.clips.size() == 1) first_clip.add(p);
+      }
+    }
+  }
+  const double own_height = first_clip.max.y - first_clip.min.y;
+  if (!(own_height > 1e-9 && own_height < 1e9)) {
+    return Error{Errc::kBadInput,
+                 "atlas: the character has no height in its first clip; "
+                 "check its mesh and its skeleton"};
+  }
+  const double scale = config.height > 0 ? config.height / own_height : 1;
+  poses.height = own_height * scale;
+  for (PosedMesh& mesh : poses.frames) {
+    for (Vec3d& p : mesh.positions) {
+      p = Vec3d{p.x, p.y - first_clip.min.y, p.z} * scale;
+      poses.radius = std::max(poses.radius, length(p - Vec3d{0, 0.5 * poses.height, 0}));
+    }
+  }
+  for (AtlasClip& clip : poses.clips) clip.stride *= scale;
+  return poses;
+}
+
+}  // namespace throng

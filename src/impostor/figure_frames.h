@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "throng/character.h"
+#include "throng/impostor.h"
+#include "throng/result.h"
+
+namespace throng {
+
+/// Fails with kBadConfig.
+[[nodiscard]] Result<void> check_atlas_config(const AtlasConfig& config);
+
+/// All frames of all clips, on the spot, feet at 0, in metres.
+struct FigureFrames {
+  std::vector<PosedMesh> frames;
+  std::vector<AtlasClip> clips;
+  double height = 0, radius = 0;  ///< Radius of the ball around (0, height / 2, 0) that holds all.
+};
+
+/// Fails with kNotFound (a clip), kBadInput (a character without height).
+[[nodiscard]] Result<FigureFrames> pose_frames(const Character& character,
+                                               const AtlasConfig& config);
+
+}  // namespace throng

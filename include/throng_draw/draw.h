@@ -100,8 +100,8 @@ struct DrawingConfig {
   int32_t samples = 2;                 ///< Along each side of a pixel. [1 to 4]
   Vec3d to_sun{-0.5, 0.75, 0.45};      ///< Towards the sun, any length. [y > 0]
   AvatarStyle avatars = AvatarStyle::kPeople;
-  /// Avatars that have a model are drawn by it where a texel of their atlas would be so many samples
-  /// of the picture or more, 0: nowhere. [>= 0]
+  /// Avatars that have a model are drawn by it where a texel of their atlas would be so many
+  /// samples of the picture or more, 0: nowhere. [>= 0]
   double mesh_texel = 3;
   /// Whose view's side is no more than so many samples of the picture is drawn as a point: head,
   /// chest and legs in his colours. 0: nobody. [>= 0]
@@ -152,8 +152,8 @@ class THRONG_API Drawing {
                                                std::span<const uint8_t> alpha);
   /// Keeps a copy of an atlas. Fails with kLimit: pages larger than the card's textures.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
-  /// Draws avatars of an atlas as meshes where they are near. Fails with kBadInput (other clips than
-  /// the atlas has), kLimit.
+  /// Draws avatars of an atlas as meshes where they are near. Fails with kBadInput (other clips
+  /// than the atlas has), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
   void clear_atlases();  ///< Forgets all: the next one is number 0.
   /// Fails with kBadConfig if draw() would.

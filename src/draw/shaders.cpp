@@ -457,7 +457,7 @@ void main() {
   vec3 middle = uintBitsToFloat(data.xyz) + vec3(0.0, centre, 0.0);
   vec3 towards = normalize(eye - middle);
   float flat_length = length(towards.xz);
-  vec3 right = flat_length > 1e-4 ? vec3(towards.z, 0.0, -towards.x) / flat_length : vec3(1.0, 0.0, 0.0);
+  vec3 right = vec3(towards.z, 0.0, -towards.x) / max(flat_length, 1e-4);
   vec3 up = cross(towards, right);
   vec2 at = (vec2(float(k & 1), float(k >> 1)) - 0.5) * vec2(0.6, 2.0 * centre);
   uint look = data.w >> 21;

@@ -650,7 +650,8 @@ std::span<const TileColumns::Spill> TileColumns::spills_of(int32_t cell) const {
   if (spills.empty()) return {};
   const auto less = [](const Spill& a, const Spill& b) { return a.cell < b.cell; };
   const auto range = std::equal_range(spills.begin(), spills.end(), Spill{cell, 0, 0, 0}, less);
-  return {range.first, range.second};
+  return std::span(spills).subspan(static_cast<size_t>(range.first - spills.begin()),
+                                   static_cast<size_t>(range.second - range.first));
 }
 
 void sort_spans(const TileColumns& columns, TileSpans& spans) {

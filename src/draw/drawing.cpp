@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "core/stopwatch.h"
 #include "draw/crowd_pass.h"
+#include "draw/gl.h"
 #include "draw/gl_objects.h"
 #include "draw/headless.h"
 #include "draw/mark_mesh.h"
@@ -264,7 +263,7 @@ Result<void> Drawing::check(const DrawingConfig& c) {
 
 std::string Drawing::renderer() const {
   state_->make_current();
-  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const auto* name = reinterpret_cast<const char*>(glGetString(kRendererName));
   return name == nullptr ? "unknown" : name;
 }
 

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <epoxy/gl.h>
-
 #include <string>
 #include <utility>
 
+#include "draw/gl.h"
 #include "throng/math.h"
 
 /// Names that OpenGL hands out, given back when their owner goes. A context must be current.

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "draw/headless.h"
+
+// A browser's page: all it has is the canvas's context.
+namespace throng {
+
+Result<std::unique_ptr<Headless>> Headless::create() {
+  return Error{Errc::kNotFound, "drawing: a page draws into its canvas only"};
+}
+
+Headless::~Headless() = default;
+
+void Headless::make_current() const {}
+
+}  // namespace throng

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+
+#include "core/read_file.h"
+#include "import/assimp_reader.h"
+#include "import/city.h"
+#include "import/glb.h"
+#include "import/patch_json.h"
+#include "import/plan.h"
+#include "throng/character.h"
+
+// A build without assimp, pugixml and simdjson, and without child processes: a browser's.
+namespace throng {
+namespace {
+
+Error not_here(const std::string& name) {
+  return {Errc::kBadFile, name +
+                              ": this build does not read such files; the program does: throng "
+                              "bake makes a world of it, which opens everywhere"};
+}
+
+}  // namespace
+
+Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions& options,
+                                  Context& context) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension != ".glb" && extension != ".GLB") return not_here(path);
+  const auto bytes = read_file(path);
+  if (!bytes) return bytes.error();
+  return read_glb(*bytes, options, context);
+}
+
+Result<RawScene> read_cityjson(std::string_view, const ReadOptions& options, Context&) {
+  return not_here(options.name);
+}
+
+Result<RawScene> read_citygml(std::string_view, const ReadOptions& options, Context&) {
+  return not_here(options.name);
+}
+
+Result<RawScene> read_geojson(std::string_view, const ReadOptions& options, Context&) {
+  return not_here(options.name);
+}
+
+Result<RawScene> read_patch_json(std::string_view, const ReadOptions& options, Context&) {
+  return not_here(options.name);
+}
+
+Result<Character> load_character(const std::string& path, Context&) { return not_here(path); }
+
+}  // namespace throng

@@ -7,8 +7,9 @@
 
 namespace throng {
 
-MomentFeed::MomentFeed(std::unique_ptr<MomentSource> source)
-    : source_(std::move(source)), thread_([this] { run(); }) {}
+MomentFeed::MomentFeed(std::unique_ptr<MomentSource> source) : source_(std::move(source)) {
+  task_.emplace([this] { run(); });
+}
 
 MomentFeed::~MomentFeed() {
   {
@@ -16,7 +17,7 @@ MomentFeed::~MomentFeed() {
     stopping_ = true;
   }
   wake_.notify_all();
-  thread_.join();
+  task_.reset();
 }
 
 // Two moments around what is shown, and one more so that the next is there in time.
@@ -64,6 +65,9 @@ void MomentFeed::run() {
     }
     working_ = false;
     idle_.notify_all();
+    lock.unlock();
+    SideTask::breathe();
+    lock.lock();
   }
 }
 
@@ -108,15 +112,16 @@ void MomentFeed::post(std::function<void(MomentSource&)> work, bool at_once) {
 
 void MomentFeed::finish_posted() {
   std::unique_lock lock(mutex_);
-  idle_.wait(lock, [&] { return posted_.empty() && !working_; });
+  idle_.wait_for(*task_, lock, [&] { return posted_.empty() && !working_; });
 }
 
 void MomentFeed::wait_for(double time) {
   std::unique_lock lock(mutex_);
   wanted_ = time;
   wake_.notify_all();
-  idle_.wait(
-      lock, [&] { return !seeking_ && (ended_ || (!made_.empty() && made_.back()->time > time)); });
+  idle_.wait_for(*task_, lock, [&] {
+    return !seeking_ && (ended_ || (!made_.empty() && made_.back()->time > time));
+  });
 }
 
 double MomentFeed::latest() const {

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <thread>
+#include <optional>
 
 #include "view/moment.h"
+#include "view/side_task.h"
 
-/// Moments made on a thread of their own, a little ahead of what is shown: a window never waits
-/// for a step.
+/// Moments made beside the window, a little ahead of what is shown: it never waits for a step.
 namespace throng {
 
 /// Where moments come from. One thread at a time.
@@ -47,7 +46,7 @@ class MomentFeed {
   MomentPair at(double time);
   /// Drops what is ahead and goes on from `time`, where the source can.
   void seek(double time);
-  /// Runs `work` on the feed's thread between two moments. What is made after it shows its effect;
+  /// Runs `work` beside the window, between two moments. What is made after it shows its effect;
   /// `at_once` (while nothing plays) shows it in the moment that stands.
   void post(std::function<void(MomentSource&)> work, bool at_once);
   /// Waits until all work that was posted has been done.
@@ -57,6 +56,8 @@ class MomentFeed {
   void wait_for(double time);
   /// Time of the last moment made.
   [[nodiscard]] double latest() const;
+  /// Where there are no threads: makes moments for a while.
+  void turn() { task_->turn(); }
 
  private:
   void run();
@@ -64,7 +65,7 @@ class MomentFeed {
 
   std::unique_ptr<MomentSource> source_;
   mutable std::mutex mutex_;
-  std::condition_variable wake_, idle_;
+  SideSignal wake_, idle_;
   std::deque<std::shared_ptr<const Moment>> made_;  // In order of time.
   struct Posted {
     std::function<void(MomentSource&)> work;
@@ -74,7 +75,7 @@ class MomentFeed {
   double wanted_ = 0;
   double seek_to_ = 0;
   bool seeking_ = false, ended_ = false, stopping_ = false, working_ = false;
-  std::thread thread_;
+  std::optional<SideTask> task_;  // Last, so that it ends before what it uses.
 };
 
 }  // namespace throng

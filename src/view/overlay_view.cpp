@@ -10,17 +10,19 @@
 namespace throng {
 
 OverlayMaker::OverlayMaker(World world, std::optional<Nodes> nodes, Vec3d origin)
-    : world_(std::move(world)), nodes_(std::move(nodes)), origin_(origin) {}
+    : world_(std::move(world)), nodes_(std::move(nodes)), origin_(origin) {
+  context_.on_progress = [](const Progress&) { SideTask::breathe(); };
+}
 
 OverlayMaker::~OverlayMaker() {
   context_.cancel = true;
-  if (thread_.joinable()) thread_.join();
+  task_.reset();
 }
 
 void OverlayMaker::start(const Order& order) {
-  if (thread_.joinable()) thread_.join();
+  task_.reset();
   busy_ = true;
-  thread_ = std::thread([this, order] {
+  task_.emplace([this, order] {
     Made made = make(order);
     {
       const std::lock_guard lock(mutex_);
@@ -111,6 +113,7 @@ void Viewer::State::show_overlays() {
                             : crowd.now().find(static_cast<uint64_t>(panel.status.picked));
   const bool has_picked = picked < crowd.now().size();
   if (overlay_maker) {
+    overlay_maker->turn();
     if (auto made = overlay_maker->take()) {
       if (!made->fault.empty()) {
         panel.status.error = made->fault;

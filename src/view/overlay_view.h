@@ -8,15 +8,16 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "throng/path.h"
 #include "view/overlays.h"
+#include "view/side_task.h"
 
 namespace throng {
 
-/// Overlays that take their time, made on a thread: one thing at a time, the last one asked for.
+/// Overlays that take their time, made beside the window: one thing at a time, the last one asked
+/// for.
 class OverlayMaker {
  public:
   OverlayMaker(World world, std::optional<Nodes> nodes, Vec3d origin);
@@ -40,6 +41,10 @@ class OverlayMaker {
   /// Only while it is not busy.
   void start(const Order& order);
   [[nodiscard]] std::optional<Made> take();
+  /// Where there are no threads: works for a while.
+  void turn() {
+    if (task_) task_->turn();
+  }
 
  private:
   Made make(const Order& order);
@@ -55,7 +60,7 @@ class OverlayMaker {
   // Made when first needed, of one class.
   std::optional<PathFinder> finder_;
   int32_t finder_class_ = -1;
-  std::thread thread_;
+  std::optional<SideTask> task_;
 };
 
 }  // namespace throng

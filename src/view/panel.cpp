@@ -244,7 +244,7 @@ void draw_progress(const PanelState& s, float scale, int32_t width, int32_t heig
   ImGui::SetNextWindowPos(
       {0.5F * static_cast<float>(width), static_cast<float>(height) - 70 * scale}, ImGuiCond_Always,
       {0.5F, 1});
-  ImGui::SetNextWindowSize({360 * scale, 0});
+  ImGui::SetNextWindowSize({std::min(360 * scale, static_cast<float>(width) - 24 * scale), 0});
   ImGui::Begin("##progress", nullptr, kFixed);
   ImGui::Text("%s: %s", s.status.name.c_str(),
               s.progress_stage.empty() ? "open" : s.progress_stage.c_str());

@@ -13,18 +13,21 @@ namespace throng {
 StageJob::StageJob(std::string name, LoadStage load, int32_t workers, Vec3d origin, World world)
     : name_(std::move(name)), workers_(workers), origin_(origin), world_(std::move(world)) {
   context_.on_progress = [this](const Progress& progress) {
-    const std::lock_guard lock(mutex_);
-    stage_ = progress.stage;
-    share_ = progress.total > 0
-                 ? static_cast<double>(progress.done) / static_cast<double>(progress.total)
-                 : -1;
+    {
+      const std::lock_guard lock(mutex_);
+      stage_ = progress.stage;
+      share_ = progress.total > 0
+                   ? static_cast<double>(progress.done) / static_cast<double>(progress.total)
+                   : -1;
+    }
+    SideTask::breathe();
   };
-  thread_ = std::thread([this, load = std::move(load)] { run(load); });
+  task_.emplace([this, load = std::move(load)] { run(load); });
 }
 
 StageJob::~StageJob() {
   cancel();
-  thread_.join();
+  task_.reset();
 }
 
 void StageJob::run(const LoadStage& load) {

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "throng/context.h"
@@ -16,6 +15,7 @@
 #include "view/moment_feed.h"
 #include "view/replay_player.h"
 #include "view/scenario_player.h"
+#include "view/side_task.h"
 
 namespace throng {
 
@@ -33,7 +33,7 @@ struct StageMail {
   std::unique_ptr<MomentFeed> feed;
 };
 
-/// A load on a thread of its own.
+/// A load beside the window.
 class StageJob {
  public:
   /// A load that sets no scene goes on from the origin and world given.
@@ -44,6 +44,8 @@ class StageJob {
 
   [[nodiscard]] StageMail take();
   void cancel() { context_.cancel = true; }
+  /// Where there are no threads: loads for a while.
+  void turn() { task_->turn(); }
   [[nodiscard]] bool done() const { return done_; }
   [[nodiscard]] std::string error() const;  ///< Of a load that failed, or empty.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -63,12 +65,12 @@ class StageJob {
   std::string error_, stage_;
   double share_ = -1;
   std::atomic<bool> done_ = false;
-  // Of the job's thread.
+  // Of the task.
   Vec3d origin_;
   World world_;
   std::optional<CrowdStart> crowd_;
   std::optional<Scenario> scenario_;
-  std::thread thread_;
+  std::optional<SideTask> task_;  // Last, so that it ends before what it uses.
 };
 
 }  // namespace throng

@@ -38,6 +38,7 @@ void mean(double& value, double now) {
 
 void Viewer::State::take_parts() {
   if (!job) return;
+  job->turn();
   const bool done = job->done();  // Asked first: what comes later is taken in the next frame.
   StageMail mail = job->take();
   const auto keep = [&](const Result<void>& ok) {
@@ -135,6 +136,7 @@ void Viewer::State::take_parts() {
 }
 
 void Viewer::State::reap() {
+  for (const auto& old : retired) old->turn();
   std::erase_if(retired, [](const auto& old) { return old->done(); });
 }
 
@@ -238,6 +240,7 @@ void Viewer::State::look_up_crowd() {
   }
   const auto start = std::chrono::steady_clock::now();
   const MomentPair pair = feed->at(time);
+  feed->turn();
   if (!pair.a) return;
   const double cut = panel.is_cut ? panel.cut - origin.y - 0.05 : 1e9;
   crowd.hide(through_eyes() ? panel.status.driven : -1);
@@ -421,7 +424,7 @@ void Viewer::wait_for_overlays() {
     bool missing = s.overlay_maker && s.overlay_maker->is_busy();
     for (size_t i = 0; i < kOverlays; ++i) missing |= is_missing(static_cast<Overlay>(i));
     if (!missing) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    SideTask::nap();
   }
   s.show_overlays();  // Takes what came last.
 }
@@ -429,7 +432,7 @@ void Viewer::wait_for_overlays() {
 void Viewer::wait_until_loaded() {
   while (state_->job) {
     state_->take_parts();
-    if (state_->job) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (state_->job) SideTask::nap();
   }
   state_->panel.status.loading = false;
 }

@@ -84,6 +84,10 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+double least(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
+}
+
 int run(const Options& options) {
   const auto fail = [](const Error& error) {
     std::fprintf(stderr, "bench_draw: %s\n", error.message.c_str());
@@ -166,6 +170,9 @@ int run(const Options& options) {
                                        {"ms_people", median(people) * 1e3},
                                        {"ms_quads", median(quads) * 1e3},
                                        {"ms_nobody", median(nobody) * 1e3},
+                                       {"least_people", least(people) * 1e3},
+                                       {"least_quads", least(quads) * 1e3},
+                                       {"least_nobody", least(nobody) * 1e3},
                                        {"ms_pack", median(pack) * 1e3},
                                        {"ratio", median(ratio)}};
   std::printf("%s\n", json.dump().c_str());

@@ -51,7 +51,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .seed = config.seed,
                       .workers = config.workers,
                       .steering = {},
-                      .patience = {}},
+                      .patience = {},
+                      .lanes = {},
+                      .room = {}},
                      data.width, data.depth, data.summary.classes.size());
   auto state = std::make_unique<State>(world, config, std::move(engine));
   state->unit = unit;

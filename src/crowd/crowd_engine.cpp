@@ -27,6 +27,8 @@ constexpr size_t kGrain = 256;  // bodies that are worth handing to another thre
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;        // [m] from its goal a body has arrived
 constexpr uint64_t kSides = 0x51de5;  // stream of chance
+constexpr float kClose = 0.1f;        // [m] to its corner a body turns to no side
+constexpr float kAtOnce = 0.3f;       // [s] Who goes straight meets nobody within.
 constexpr float kEnough = 14;         // bodies, to find the nearest among
 
 float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
@@ -126,6 +128,7 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
   // crowd against it: there, to either side by chance.
   const auto turn = [&](const Body& b) {
     if (b.turn == 0 || (b.has(Body::kLast) && !b.near_wall)) return b.turn;
+    if (size_of(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z)) < kClose) return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
     return left ? -b.turn : b.turn;
   };
@@ -232,17 +235,20 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
+  worker.waits = false;
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
+      worker.waits = true;
       situation.wish = wish_of_waiting(
           config_.units.metres(body.aim_x - body.x, body.aim_z - body.z), body.speed, room);
     }
     if (turns && turns_corner(other) &&
         gives_way(bound(other), bound(body), size_of(apart), room,
                   size_of(other.velocity) / other.speed)) {
+      worker.waits = true;
       const float back = -0.5f * body.speed / size_of(apart);
       situation.wish = {apart.x * back, apart.z * back};
     }
@@ -252,6 +258,67 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
                        {apart, makes_way ? other.wish : other.velocity, room, other.wish});
   }
   situation.wish = steer::following_fast(config_.steering, situation);
+}
+
+// Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
+bool CrowdEngine::find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+  const Body& body = bodies_[i];
+  if (!worker.waits && go_straight(body, worker.situation)) return true;
+  const auto is_open = [&] {
+    look_ahead(body, worker.situation);
+    return steer::wish_is_open_fast(config_.steering, worker.situation);
+  };
+  return is_open() || (!worker.waits && take_lane(i, worker, around) && is_open());
+}
+
+// Who was turned aside by a jam at a door goes through as soon as he can.
+bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) const {
+  if (body.turn == 0 || (body.has(Body::kLast) && !body.near_wall)) return false;
+  const Plane turned = situation.wish;
+  situation.wish =
+      steer::wish_towards(config_.units.metres(body.aim_x - body.x, body.aim_z - body.z),
+                          body.speed, config_.units.dt, 0);
+  situation.wish = steer::following_fast(config_.steering, situation);
+  look_ahead(body, situation);
+  steer::SampledSettings at_once = config_.steering;
+  at_once.horizon = kAtOnce;
+  if (steer::wish_is_open_fast(at_once, situation)) return true;
+  situation.wish = turned;
+  return false;
+}
+
+// True if the wish is another one now.
+bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+  const Body& body = bodies_[i];
+  steer::Situation& situation = worker.situation;
+  if (!steer::is_opposed(config_.lanes, situation)) return false;
+  const Eye eye{.x = body.x,
+                .z = body.z,
+                .y = body.y,
+                .self = i,
+                .most = static_cast<float>(sight_) * static_cast<float>(sight_),
+                .tall = body.height,
+                .touch = 0,
+                .touch_tall = 0};
+  SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
+  find_seen({grid_->x(), grid_->z(), grid_->y()}, around, eye, lists);
+  steer::Lanes lanes(config_.lanes, body.wish);
+  for (size_t n = 0; n < lists.seen; ++n) {
+    const Body& other = bodies_[lists.entries[n]];
+    const bool is_led = other.has(Body::kDriven) || !other.has(Body::kHasGoal);
+    lanes.add(
+        config_.units.metres(other.x - body.x, other.z - body.z),
+        is_led ? other.wish : config_.units.metres(other.aim_x - other.x, other.aim_z - other.z));
+  }
+  situation.wish = lanes.wish();
+  situation.wish = steer::following_fast(config_.steering, situation);
+  return true;
+}
+
+// Who can but stand between walls makes room for others.
+Plane CrowdEngine::if_blocked(Plane way, const steer::Situation& situation) const {
+  const bool stands = way.x == 0 && way.z == 0;
+  return stands && situation.has_walls ? steer::making_room(config_.room, situation) : way;
 }
 
 // A way that is free as far as one looks has no end that would matter.
@@ -300,6 +367,7 @@ void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Contes
   contest.ways = 0;
   contest.has_all = true;
   const auto add_way = [&](Plane v) {
+    v = if_blocked(v, situation);
     contest.way[contest.ways++] = {config_.units.way(v.x), config_.units.way(v.z)};
   };
   Plane best = situation.wish;
@@ -323,13 +391,13 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   sense(i, worker, around, true);
   contest.last = static_cast<uint32_t>(worker.others.size());
   const bool alone = contest.first == contest.last;
-  look_ahead(body, worker.situation);
-  const bool open = steer::wish_is_open_fast(config_.steering, worker.situation);
+  const bool open = find_open_wish(i, worker, around);
   worker.counts.contested += alone ? 0 : 1;
   // The best of his ways is enough as long as nobody objects to it.
   if (!open) look_around(body, worker.situation);
   const Plane best =
-      open ? worker.situation.wish : steer::best_fast(config_.steering, worker.situation);
+      open ? worker.situation.wish
+           : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
   contest.ways = 1;
   contest.has_all = false;
   contest.way[0] = {config_.units.way(best.x), config_.units.way(best.z)};
@@ -432,9 +500,9 @@ void CrowdEngine::name(Contest& contest, const Worker& owner, Worker& scratch, u
   }
   if (contest.has_all) return;
   // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
-  sense(contest.body, scratch, grid_->around(grid_->square(body)), /*lists_others=*/false);
-  look_ahead(body, scratch.situation);
-  const bool open = steer::wish_is_open_fast(config_.steering, scratch.situation);
+  const NeighbourGrid::Around around = grid_->around(grid_->square(body));
+  sense(contest.body, scratch, around, /*lists_others=*/false);
+  const bool open = find_open_wish(contest.body, scratch, around);
   look_around(body, scratch.situation);
   find_ways(scratch.situation, open, contest);
   for (; tried < contest.ways; ++tried) {

@@ -14,6 +14,7 @@
 #include "crowd/neighbour_grid.h"
 #include "crowd/step_units.h"
 #include "crowd/stride_ground.h"
+#include "steer/lanes.h"
 #include "steer/sampled.h"
 
 /// The step of a crowd with goals as passes over arrays: sort, sense and steer, commit in rounds,
@@ -29,6 +30,8 @@ struct EngineConfig {
   int32_t workers = 0;
   steer::SampledSettings steering;
   steer::Patience patience;
+  steer::LaneSettings lanes;
+  steer::RoomSettings room;
 };
 
 /// What a step did, summed over all bodies.
@@ -89,6 +92,7 @@ class CrowdEngine {
     std::vector<uint32_t> others;
     std::vector<Contest> contests;
     steer::Situation situation;
+    bool waits = false;  // for another, instead of doing as he wishes
     EngineCounts counts;
   };
 
@@ -96,6 +100,10 @@ class CrowdEngine {
   void decide_all(EngineCounts& counts);
   void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
+  bool find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  bool go_straight(const Body& body, steer::Situation& situation) const;
+  bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  [[nodiscard]] steer::Plane if_blocked(steer::Plane way, const steer::Situation& situation) const;
   [[nodiscard]] float metres(float way, float look) const;
   void look_ahead(const Body& body, steer::Situation& situation) const;
   void look_around(const Body& body, steer::Situation& situation) const;

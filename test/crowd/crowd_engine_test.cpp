@@ -68,7 +68,9 @@ struct LevelGround {
                         .seed = config.seed,
                         .workers = workers,
                         .steering = config.steering,
-                        .patience = config.patience},
+                        .patience = config.patience,
+                        .lanes = config.lanes,
+                        .room = {}},
                        data.width, data.depth, 1);
     engine.set_ground(0, StrideGround(ground, 400));
     engine.fit(widest, fastest, config.units.dt);

@@ -121,6 +121,7 @@ void PlainCrowd::steer_all() {
                                .fastest = body.speed,
                                .near = {},
                                .free_way = {}};
+    bool waits = false;
     for (const Near& n : near_[i]) {
       if (situation.near.size == static_cast<size_t>(config_.steering.neighbours)) break;
       const PlainBody& other = bodies_[n.other];
@@ -131,6 +132,7 @@ void PlainCrowd::steer_all() {
       };
       if (body.arrived < 0 && other.arrived < 0 &&
           goes_first(bound(other, n.other), bound(body, i))) {
+        waits = true;
         situation.wish = wish_of_waiting(
             config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,
             static_cast<float>(body.radius + other.radius) * config_.units.unit);
@@ -141,9 +143,21 @@ void PlainCrowd::steer_all() {
            static_cast<float>(body.radius + other.radius) * config_.units.unit, wish_of(other)});
     }
     situation.wish = steer::following(config_.steering, situation);
+    bool open = steer::wish_is_open(config_.steering, situation);
+    if (!open && !waits && steer::is_opposed(config_.lanes, situation)) {
+      steer::Lanes lanes(config_.lanes, wish_of(body));
+      for (const Near& n : near_[i]) {
+        const PlainBody& other = bodies_[n.other];
+        lanes.add(config_.units.metres(n.at.x, n.at.z),
+                  config_.units.metres(other.goal.x - other.at.x, other.goal.z - other.at.z));
+      }
+      situation.wish = lanes.wish();
+      situation.wish = steer::following(config_.steering, situation);
+      open = steer::wish_is_open(config_.steering, situation);
+    }
     choices_[i] = steer::choose_velocity(config_.steering, situation);
     // Who meets nobody does as he wishes.
-    if (steer::wish_is_open(config_.steering, situation)) {
+    if (open) {
       std::rotate(choices_[i].begin(), choices_[i].end() - 1, choices_[i].end());
       choices_[i][0] = situation.wish;
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "crowd/step_units.h"
+#include "steer/lanes.h"
 #include "steer/sampled.h"
 
 /// The crowd's step as plainly as it can be written: an open plane, discs with goals, one loop
@@ -36,6 +37,7 @@ struct PlainConfig {
   uint64_t seed = 1;
   steer::SampledSettings steering;
   steer::Patience patience;
+  steer::LaneSettings lanes;
 
   [[nodiscard]] int32_t to_units(double metres) const;
 };

@@ -49,13 +49,6 @@ EMSCRIPTEN_KEEPALIVE bool bench_start(const char* canvas, int32_t width, int32_t
   AtlasConfig atlas_config;
   const Result<Atlas> atlas = build_atlas(built_in_character(), atlas_config, quiet);
   if (!atlas || !drawing->add_atlas(*atlas)) return false;
-  // The ground, as the other page draws it.
-  Scene ground;
-  const double far = 2000;
-  ground.positions = {{-far, 0, -far}, {far, 0, -far}, {far, 0, far}, {-far, 0, far}};
-  ground.triangles = {{0, 2, 1}, {0, 3, 2}};
-  ground.area.assign(2, {});
-  if (!drawing->set_scene(ground, {})) return false;
   bench().drawing = std::move(*drawing);
   bench().config.width = width;
   bench().config.height = height;

@@ -61,9 +61,6 @@ function make_theirs() {
   renderer.setSize(kWidth, kHeight, false);
   const scene = new THREE.Scene();
   scene.background = new THREE.Color(0x9ec0e6);
-  const ground = new THREE.Mesh(new THREE.PlaneGeometry(4000, 4000), new THREE.MeshBasicMaterial({ color: 0x8c9188 }));
-  ground.rotation.x = -Math.PI / 2;
-  scene.add(ground);
   const camera = new THREE.PerspectiveCamera(kView * 180 / Math.PI, kWidth / kHeight, 0.5, 4000);
   let mesh = null;
   let turned = new THREE.Object3D();

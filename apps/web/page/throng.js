@@ -118,9 +118,9 @@ function kept_settings() {
     settings = JSON.parse(localStorage.getItem(kSettings) ?? '{}') ?? {};
   } catch { /* A page that may keep nothing starts anew each time. */ }
   if (Object.keys(settings).length === 0 && canvas.clientWidth < 700) settings.panel = false;
-  if (matchMedia('(pointer: coarse)').matches) settings.hints = false;
+  settings.hints = false;  // The page's buttons say it.
   if (parameters.has('panel')) settings.panel = parameters.get('panel') !== '0';
-  return Object.keys(settings).length === 0 ? '' : JSON.stringify(settings);
+  return JSON.stringify(settings);
 }
 
 function keep_settings() {

@@ -22,12 +22,17 @@ constexpr auto kShare = std::chrono::milliseconds(12);  // Of a frame, for each 
 constexpr size_t kStack = 1 << 21;                      // [bytes]
 constexpr size_t kUnwound = 1 << 18;                    // [bytes] What a paused stack is kept in.
 
+// What code expects of its stack; malloc gives less.
+struct alignas(16) StackBlock {
+  std::array<uint8_t, 16> bytes;
+};
+
 }  // namespace
 
 struct SideTask::State {
   explicit State(std::function<void()> given)
-      : work(std::move(given)), stack(kStack), unwound(kUnwound) {
-    emscripten_fiber_init(&fiber, &State::enter, this, stack.data(), stack.size(), unwound.data(),
+      : work(std::move(given)), stack(kStack / sizeof(StackBlock)), unwound(kUnwound) {
+    emscripten_fiber_init(&fiber, &State::enter, this, stack.data(), kStack, unwound.data(),
                           unwound.size());
   }
 
@@ -44,7 +49,8 @@ struct SideTask::State {
   }
 
   std::function<void()> work;
-  std::vector<uint8_t> stack, unwound;
+  std::vector<StackBlock> stack;
+  std::vector<uint8_t> unwound;
   emscripten_fiber_t fiber{};
   emscripten_fiber_t* back = nullptr;  // Whoever let it run.
   State* caller = nullptr;             // The same, if that is a task, too.

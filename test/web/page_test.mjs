@@ -69,7 +69,7 @@ const tests = {
   },
 
   async 'reacts to the panel, to keys and to drags'(page) {
-    await page.goto(`${server.url}?open=builtin:garage&avatars=100`);
+    await page.goto(`${server.url}?open=builtin:garage&avatars=100&panel=1`);
     await walking(page, 80);
     await page.mouse.move(45, 93);
     await frames(page, 2);

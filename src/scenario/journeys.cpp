@@ -14,7 +14,7 @@ namespace {
 constexpr double kFeet = 0.05;        // [m] Heights of feet differ by rounding alone.
 constexpr double kNearSpot = 1.5;     // [m] Who is so near his spot
 constexpr double kNearLong = 4;       // [s] for so long, and cannot come nearer, is there.
-constexpr double kDoorFlow = 1.3;     // [people / (m s)], of who chooses the quickest exit
+constexpr double kDoorFlow = 2.0;     // [people / (m s)], of who chooses the quickest exit
 constexpr uint64_t kChooseEvery = 3;  // looks around
 constexpr uint64_t kRetryEvery = 5;   // looks around
 constexpr double kBetter = 0.85;      // Another exit must be that much quicker.

@@ -22,6 +22,11 @@ struct Prism {
   }
   /// Is (x, z) over or under it, its border included? [m]
   [[nodiscard]] THRONG_API bool covers(double x, double z) const;
+  /// Do feet stand in it that are at a height? [m]
+  [[nodiscard]] bool reaches(double y) const { return y >= low - kFeet && y <= high + kFeet; }
+  /// Does somebody stand in it whose feet are there?
+  [[nodiscard]] bool holds(Vec3d feet) const { return reaches(feet.y) && covers(feet.x, feet.z); }
+  static constexpr double kFeet = 0.05;  ///< [m] Heights of feet and floors differ by rounding.
   /// Around an upright cylinder: `middle` is that of its bottom; with 16 corners it reaches 2 % of
   /// the radius beyond. [m, radius > 0, height > 0, corners 3 to 64]
   [[nodiscard]] THRONG_API static Prism circle(Vec3d middle, double radius, double height,

@@ -31,8 +31,6 @@ constexpr float kClose = 0.1f;        // [m] to its corner a body turns to no si
 constexpr float kAtOnce = 0.3f;       // [s] Who goes straight meets nobody within.
 constexpr float kEnough = 14;         // bodies, to find the nearest among
 
-float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
-
 // Do two bodies clash that stand at these places?
 bool clash(const Body& a, const Body& at_a, const Body& b, const Body& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
@@ -53,6 +51,11 @@ int32_t cells_of(float look) { return static_cast<int32_t>(look) / kUnitsPerCell
 bool turns_corner(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven;
   return (body.flags & kAll) == Body::kHasGoal;
+}
+
+// Turned aside by his patience where not only others are in the way?
+bool is_held_up(const Body& body) {
+  return body.turn != 0 && (!body.has(Body::kLast) || body.near_wall);
 }
 
 Bound bound(const Body& body) {
@@ -127,7 +130,7 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
   // To the right, if nothing but others is in the way. Before a wall or a corner that would press a
   // crowd against it: there, to either side by chance.
   const auto turn = [&](const Body& b) {
-    if (b.turn == 0 || (b.has(Body::kLast) && !b.near_wall)) return b.turn;
+    if (!is_held_up(b)) return b.turn;
     if (size_of(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z)) < kClose) return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
     return left ? -b.turn : b.turn;
@@ -273,7 +276,7 @@ bool CrowdEngine::find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid
 
 // Who was turned aside by a jam at a door goes through as soon as he can.
 bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) const {
-  if (body.turn == 0 || (body.has(Body::kLast) && !body.near_wall)) return false;
+  if (!is_held_up(body)) return false;
   const Plane turned = situation.wish;
   situation.wish =
       steer::wish_towards(config_.units.metres(body.aim_x - body.x, body.aim_z - body.z),

@@ -11,7 +11,6 @@
 namespace throng {
 namespace {
 
-constexpr double kFeet = 0.05;        // [m] Heights of feet differ by rounding alone.
 constexpr double kNearSpot = 1.5;     // [m] Who is so near his spot
 constexpr double kNearLong = 4;       // [s] for so long, and cannot come nearer, is there.
 constexpr double kDoorFlow = 2.0;     // [people / (m s)], of who chooses the quickest exit
@@ -55,7 +54,7 @@ double width_of(const ScenarioArea& area) {
 // Where he is, but for making way for others.
 void Simulation::State::stand(Person& p, Doing doing) {
   const auto state = crowd.read(p.id);
-  const Place here = world.find_place(class_of(p), state->position, kFeet);
+  const Place here = world.find_place(class_of(p), state->position, Prism::kFeet);
   crowd.set_goals({&p.id, 1}, {&here, 1});
   p.doing = doing;
 }
@@ -169,13 +168,14 @@ void Simulation::State::leave(Person& p) {
 int32_t Simulation::State::area_under(const Person& p) const {
   const Stage& stage = stage_of(p);
   if (p.area >= 0) return p.area;
-  const auto state = crowd.read(p.id);
   int32_t nearest = stage.areas.front();
+  const auto state = crowd.read(p.id);
+  if (!state) return nearest;
   double least = std::numeric_limits<double>::infinity();
   for (const int32_t area : stage.areas) {
     for (const Prism& prism : scenario.areas[static_cast<size_t>(area)].prisms) {
       const Vec3d& at = state->position;
-      if (at.y < prism.low - kFeet || at.y > prism.high + kFeet) continue;
+      if (!prism.reaches(at.y)) continue;
       const double off = distance_to(prism, at.x, at.z);
       if (off >= least) continue;
       least = off;

@@ -6,15 +6,6 @@
 
 // Where people walk faster or slower: on stairs, through sand.
 namespace throng {
-namespace {
-
-constexpr double kFeet = 0.05;  // [m] Heights of feet differ by rounding alone.
-
-bool covers(const Prism& prism, const Vec3d& at) {
-  return at.y >= prism.low - kFeet && at.y <= prism.high + kFeet && prism.covers(at.x, at.z);
-}
-
-}  // namespace
 
 // The first area with a pace in which somebody stands sets his.
 void Simulation::State::mind_paces() {
@@ -25,7 +16,7 @@ void Simulation::State::mind_paces() {
     const Vec3d at = crowd.read(p.id)->position;
     double pace = 1;
     for (const ScenarioArea& area : scenario.areas) {
-      const auto is_here = [&](const Prism& prism) { return covers(prism, at); };
+      const auto is_here = [&](const Prism& prism) { return prism.holds(at); };
       if (!has_pace(area) || std::ranges::none_of(area.prisms, is_here)) continue;
       pace = area.pace;
       break;

@@ -11,8 +11,6 @@ namespace {
 
 constexpr float kOne = 4096;  // Sums of whole numbers do not depend on their order.
 
-float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
-
 // Cosine of the angle between a direction and a way, 0 if the way leads nowhere.
 float cosine(Plane direction, Plane way) {
   const float size = size_of(way);

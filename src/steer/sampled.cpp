@@ -9,8 +9,6 @@
 namespace throng::steer {
 namespace {
 
-float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
-
 // Cosines and sines of multiples of 15 degrees.
 struct Turns {
   std::array<float, kDirections> cosine, sine;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,6 +22,7 @@ namespace throng::steer {
 struct Plane {
   float x = 0, z = 0;
 };
+inline float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
 /// Sources of all numbers: docs/design/008-engine.md.
 struct SampledSettings {

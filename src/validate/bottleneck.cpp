@@ -11,6 +11,7 @@
 
 #include "core/random.h"
 #include "validate/room.h"
+#include "validate/statistics.h"
 #include "validate/tests.h"
 
 // A crowd before a door, as in the laboratory.
@@ -57,19 +58,11 @@ std::vector<Spot> waiting(const Door& door, double radius, uint64_t seed) {
   return spots;
 }
 
-struct Flow {
-  std::vector<double> times;  // when somebody passed the middle of the door [s]
+// When people passed the middle of the door, in order. [s]
+using Times = std::vector<double>;
 
-  /// From the 10 % first to the 10 % last: the time between people.
-  [[nodiscard]] double rate() const {
-    if (times.size() < 20) return 0;
-    const size_t first = times.size() / 10, last = times.size() - 1 - times.size() / 10;
-    return static_cast<double>(last - first) / (times[last] - times[first]);
-  }
-};
-
-Result<Flow> pass(const Door& door, const ValidationConfig& config, ValidationResult& result,
-                  Context& context) {
+Result<Times> pass(const Door& door, const ValidationConfig& config, ValidationResult& result,
+                   Context& context) {
   const AvatarClass body = walker();
   auto room = Room::build(door_plane(door.width), body, CrowdWays::kPaths, config, context);
   if (!room) return room.error();
@@ -79,7 +72,7 @@ Result<Flow> pass(const Door& door, const ValidationConfig& config, ValidationRe
     const double z = 1 + (kRoomWide - 2) * random_unit(config.seed, 3, i);
     room->send((*ids)[i], {kRoomLong + kThick + kBeyond - 0.5, z});
   }
-  Flow flow;
+  Times times;
   const double line = kRoomLong + kThick / 2;
   std::set<uint32_t> through;  // only the first time counts
   const double limit = 60 + 3.0 * door.people / door.width;
@@ -90,15 +83,15 @@ Result<Flow> pass(const Door& door, const ValidationConfig& config, ValidationRe
     for (const Seen& s : room->all()) {
       const double before = s.x - s.vx * Room::kStep;
       if (before < line && s.x >= line && through.insert(s.id.slot1).second) {
-        flow.times.push_back(room->time() - (s.x - line) / std::max(1e-9, s.vx));
+        times.push_back(room->time() - (s.x - line) / std::max(1e-9, s.vx));
       }
       if (s.x > kRoomLong + kThick + kBeyond - 2) gone.push_back(s.id);
     }
     room->leave(gone);
   }
-  std::sort(flow.times.begin(), flow.times.end());
+  std::sort(times.begin(), times.end());
   room->report(result);
-  return flow;
+  return times;
 }
 
 std::string at_width(const char* what, double width) {
@@ -114,16 +107,16 @@ Result<ValidationResult> bottleneck(const ValidationConfig& config, Context& con
   std::vector<double> flows;
   for (const double width : widths) {
     const Door door{.width = width, .people = config.brief ? 120u : 200u};
-    const auto flow = pass(door, config, result, context);
-    if (!flow) return flow.error();
-    flows.push_back(flow->rate());
+    const auto times = pass(door, config, result, context);
+    if (!times) return times.error();
+    flows.push_back(flow_rate(*times));
     result.measures.push_back({.name = at_width("flow by width", width),
-                               .value = flow->rate() / width,
+                               .value = flow_rate(*times) / width,
                                .unit = "p/(m s)",
                                .low = 1.8,
                                .high = 2.3});
     result.measures.push_back({.name = at_width("left behind", width),
-                               .value = static_cast<double>(door.people - flow->times.size()),
+                               .value = static_cast<double>(door.people - times->size()),
                                .low = 0,
                                .high = 0});
   }

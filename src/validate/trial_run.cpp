@@ -14,13 +14,10 @@
 namespace throng {
 namespace {
 
-constexpr double kFeet = 0.05;       // [m] Heights of feet differ by rounding alone.
 constexpr double kFirstStep = 0.02;  // [m] in one step: he walks, he is not made way for.
 
 bool covers(const ScenarioArea& area, const Vec3d& at) {
-  return std::ranges::any_of(area.prisms, [&](const Prism& p) {
-    return at.y >= p.low - kFeet && at.y <= p.high + kFeet && p.covers(at.x, at.z);
-  });
+  return std::ranges::any_of(area.prisms, [&](const Prism& p) { return p.holds(at); });
 }
 
 // By the shoelace formula; the parts of an area are taken not to overlap.

@@ -19,8 +19,6 @@ using steer::Plane;
 constexpr float kThere = 0.3f;  // [m] from its goal a body has arrived
 constexpr float kShorter[] = {0.5f, 0.25f, 0.1f};
 
-float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
-
 int32_t wrapped(int32_t d, int32_t side) {
   if (side <= 0) return d;
   if (d > side / 2) return d - side;

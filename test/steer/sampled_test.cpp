@@ -16,8 +16,6 @@
 namespace throng::steer {
 namespace {
 
-float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
-
 // Seconds until discs touch; -1 if never.
 float time_to_touch(Plane at, Plane velocity, float radii) {
   NearSet near;

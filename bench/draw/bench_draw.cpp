@@ -24,7 +24,7 @@ struct Options {
   size_t avatars = 10'000;
   int32_t runs = 15, samples = 1, workers = 2, width = 1280, height = 720;
   bool shadows = false;
-  double point_pixels = DrawingConfig{}.point_pixels;
+  double point_pixels = DrawingConfig{}.point_pixels, view_blend = DrawingConfig{}.view_blend;
   std::string picture;
 };
 
@@ -128,6 +128,7 @@ int run(const Options& options) {
   config.avatar_shadows = options.shadows;
   config.sun_pixels = 1024;
   config.point_pixels = options.point_pixels;
+  config.view_blend = options.view_blend;
   config.workers = options.workers;
   // All of the city is in the picture.
   const double half = 0.5 * std::max(bounds.max.x - bounds.min.x, bounds.max.z - bounds.min.z);
@@ -191,6 +192,7 @@ int main(int argc, char** argv) {
   app.add_option("--samples", options.samples, "Along a side of a pixel");
   app.add_option("--threads", options.workers, "For culling and packing");
   app.add_option("--point-pixels", options.point_pixels, "Who is no higher is a point, 0: nobody");
+  app.add_option("--view-blend", options.view_blend, "Share of the angle between views, 0: none");
   app.add_flag("--shadows", options.shadows, "Of avatars");
   app.add_option("--width", options.width, "[px]");
   app.add_option("--height", options.height, "[px]");

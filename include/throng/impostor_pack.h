@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -41,6 +42,16 @@ struct ImpostorInstance {
   uint32_t view = 0;
 };
 
+/// Thirty-two bytes for the card: an avatar seen from between two directions or elevations, by the
+/// four views around. `nearest_below` is that of the lower column and row, `others` those of the
+/// next column, the next row and both, as ImpostorInstance::view without a look. `shares`: of the
+/// next column in bits 0 to 8, of the next row in bits 9 to 17 [256: all].
+struct BlendedInstance {
+  ImpostorInstance nearest_below;
+  std::array<uint32_t, 3> others{};
+  uint32_t shares = 0;
+};
+
 struct PackConfig {
   EyeCamera camera;  ///< Relative to the same point as the arrays.
   size_t clip = 0;   ///< Index into Atlas::clips.
@@ -60,11 +71,16 @@ THRONG_API size_t pack_impostors(const Atlas& atlas, const ImpostorArrays& avata
 struct LevelDistances {
   double mesh_near = 0, mesh_far = 0;  ///< Meshes end at `mesh_far`, views begin at `mesh_near`.
   double point_near = 1e18, point_far = 1e18;  ///< Points begin at `near`, views end at `far`.
+  /// Nearer than this, a view fades into the next one as the eye goes around: over `blend_share` of
+  /// the angle between two views [0 to 1; 0: never], and less in the last fifth of the distance.
+  double blend_far = 0;
+  double blend_share = 0;
 };
 
 /// By how large a texel is in the picture: meshes where it is `mesh_texel` pixels or more, points
 /// where a view's side is `point_pixels` pixels or less; each fades over a fifth of the distance.
-/// 0: none. `height` is the picture's. [px]
+/// 0: none. Views blend up to where a view's side is 24 pixels: beyond, the step from one to the
+/// next moves an arm by less than a pixel. `blend_share` is left 0. `height` is the picture's. [px]
 [[nodiscard]] THRONG_API LevelDistances level_distances(const AtlasShape& shape,
                                                         const EyeCamera& camera, double height,
                                                         double mesh_texel, double point_pixels);
@@ -72,9 +88,10 @@ struct LevelDistances {
 /// Spans to write to, each as long as the avatars, those of a level that cannot be may be empty.
 struct LevelSpans {
   std::span<ImpostorInstance> meshes, views, points;
+  std::span<BlendedInstance> blends = {};
 };
 struct LevelCounts {
-  size_t meshes = 0, views = 0, points = 0;
+  size_t meshes = 0, views = 0, points = 0, blends = 0;
 };
 /// As pack_impostors, each avatar as what its distance says. Of points only place and look count.
 THRONG_API LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars,

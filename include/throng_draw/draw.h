@@ -106,6 +106,9 @@ struct DrawingConfig {
   /// Whose view's side is no more than so many samples of the picture is drawn as a point: head,
   /// chest and legs in his colours. 0: nobody. [>= 0]
   double point_pixels = 10;
+  /// Views fade into the next ones as the eye goes around an avatar, over this share of the angle
+  /// between them; 0: the nearest view alone. [0 to 1]
+  double view_blend = 0.4;
   bool avatar_shadows = true;  ///< Those of the scene are always there.
   int32_t sun_pixels = 4096;   ///< Along a side of the sun's picture. [256 to 8192]
   double edges = 0.5;          ///< How dark edges of the scene are, 0: not drawn. [0 to 1]

@@ -12,7 +12,7 @@
 namespace throng {
 namespace {
 
-constexpr GLsizei kInstancesWide = 2048;
+constexpr GLsizei kInstancesWide = 2048;  // [texels]
 constexpr GLsizei kLooks = 2048;
 
 // The colours of everybody who is too small for a view: head, chest and legs of each look, chosen
@@ -60,12 +60,13 @@ Result<void> check_linked(std::initializer_list<const GlProgram*> programs) {
 
 Result<void> CrowdPass::make_programs() {
   impostor_ = GlProgram(shaders::impostor_vertex(), shaders::impostor_fragment());
+  blended_ = GlProgram(shaders::blended_vertex(), shaders::blended_fragment());
   model_ = GlProgram(shaders::model_vertex(), shaders::model_fragment());
   point_ = GlProgram(shaders::point_vertex(), shaders::point_fragment());
   shadow_ = GlProgram(shaders::shadow_vertex(), shaders::shadow_fragment());
   nothing_ = make_vertex_array();
   looks_ = make_looks();
-  return check_linked({&impostor_, &model_, &point_, &shadow_});
+  return check_linked({&impostor_, &blended_, &model_, &point_, &shadow_});
 }
 
 Result<size_t> CrowdPass::add_atlas(const Atlas& atlas) {
@@ -86,21 +87,32 @@ Result<void> CrowdPass::set_model(size_t atlas, const FigureModel& model) {
   return {};
 }
 
-void CrowdPass::Level::begin(size_t most) {
+template <class Instance>
+void CrowdPass::Level<Instance>::begin(size_t most) {
   if (instances.size() < most) instances.resize(most);
   runs.clear();
   used = 0;
 }
 
-void CrowdPass::Level::add(const Run& run) {
+void CrowdPass::Runs::add(const Run& run) {
   if (run.count == 0) return;
   runs.push_back(run);
   runs.back().first = used;
   used += run.count;
 }
 
-GLsizei CrowdPass::Level::rows() const {
-  return static_cast<GLsizei>((used + kInstancesWide - 1) / kInstancesWide);
+template <class Instance>
+GLsizei CrowdPass::Level<Instance>::rows() const {
+  return static_cast<GLsizei>((used * texels + kInstancesWide - 1) / kInstancesWide);
+}
+
+template <class Instance>
+void CrowdPass::Level<Instance>::upload() {
+  if (used == 0) return;
+  const size_t whole = static_cast<size_t>(rows()) * kInstancesWide / texels;
+  if (instances.size() < whole) instances.resize(whole);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, first_row, kInstancesWide, rows(), GL_RGBA_INTEGER,
+                  GL_UNSIGNED_INT, instances.data());
 }
 
 void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
@@ -108,7 +120,7 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
   const bool plain = config.avatars == AvatarStyle::kPlainQuads;
   size_t most = 0;
   for (const DrawnCrowd& crowd : crowds) most += crowd.avatars.x.size();
-  for (Level* level : {&meshes_, &views_, &points_, &thrown_}) level->begin(most);
+  for_each_level([&](auto& level) { level.begin(most); });
   for (const DrawnCrowd& crowd : crowds) {
     const Atlas& shape = atlases_[crowd.atlas].shape;
     const PackConfig pack_config{.camera = config.camera,
@@ -119,15 +131,19 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
     if (!plain) {
       levels = level_distances(shape.shape, config.camera, config.height * config.samples,
                                models_[crowd.atlas] ? config.mesh_texel : 0, config.point_pixels);
+      levels.blend_share = config.view_blend;
     }
-    const LevelCounts counts =
-        pack_levels(shape, crowd.avatars, pack_config, levels,
-                    {.meshes = meshes_.rest(), .views = views_.rest(), .points = points_.rest()});
+    const LevelCounts counts = pack_levels(shape, crowd.avatars, pack_config, levels,
+                                           {.meshes = meshes_.rest(),
+                                            .views = views_.rest(),
+                                            .points = points_.rest(),
+                                            .blends = blends_.rest()});
     meshes_.add({crowd.atlas, crowd.clip, 0, counts.meshes, levels});
     views_.add({crowd.atlas, crowd.clip, 0, counts.views, levels});
     points_.add({crowd.atlas, crowd.clip, 0, counts.points, levels});
+    blends_.add({crowd.atlas, crowd.clip, 0, counts.blends, levels});
   }
-  drawn_ = meshes_.used + views_.used + points_.used;
+  drawn_ = meshes_.used + views_.used + points_.used + blends_.used;
   if (!config.avatar_shadows) return;
   for (const DrawnCrowd& crowd : crowds) {
     const PackConfig pack_config{.camera = config.camera,
@@ -145,10 +161,10 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
 
 void CrowdPass::upload() {
   GLsizei rows = 0;
-  for (Level* level : {&meshes_, &views_, &points_, &thrown_}) {
-    level->first_row = rows;
-    rows += level->rows();
-  }
+  for_each_level([&](auto& level) {
+    level.first_row = rows;
+    rows += level.rows();
+  });
   glActiveTexture(GL_TEXTURE3);
   if (instance_rows_ == 0 || instance_rows_ < rows) {
     instance_rows_ = std::max(rows, GLsizei{1});
@@ -159,16 +175,10 @@ void CrowdPass::upload() {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
   glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
-  for (Level* level : {&meshes_, &views_, &points_, &thrown_}) {
-    if (level->used == 0) continue;
-    const size_t whole = static_cast<size_t>(level->rows()) * kInstancesWide;
-    if (level->instances.size() < whole) level->instances.resize(whole);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, level->first_row, kInstancesWide, level->rows(),
-                    GL_RGBA_INTEGER, GL_UNSIGNED_INT, level->instances.data());
-  }
+  for_each_level([](auto& level) { level.upload(); });
 }
 
-void CrowdPass::draw_runs(const GlProgram& program, const Level& level, GLenum kind,
+void CrowdPass::draw_runs(const GlProgram& program, const Runs& level, GLenum kind,
                           size_t vertices) const {
   glBindVertexArray(nothing_.get());
   for (const Run& run : level.runs) {
@@ -177,9 +187,10 @@ void CrowdPass::draw_runs(const GlProgram& program, const Level& level, GLenum k
   }
 }
 
-void CrowdPass::use_run(const GlProgram& program, const Level& level, const Run& run) const {
+void CrowdPass::use_run(const GlProgram& program, const Runs& level, const Run& run) const {
   atlases_[run.atlas].bind(program);
-  program.set("first", level.first_row * kInstancesWide + static_cast<int>(run.first));
+  program.set("first",
+              level.first_row * kInstancesWide + static_cast<int>(level.texels * run.first));
   const auto number = [](double metres) { return static_cast<float>(std::min(metres, 1e9)); };
   program.set_size("mesh_range", number(run.levels.mesh_near), number(run.levels.mesh_far));
   program.set_size("point_range", number(run.levels.point_near), number(run.levels.point_far));
@@ -210,6 +221,11 @@ void CrowdPass::draw(const DrawingConfig& config,
     begin(impostor_);
     impostor_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
     draw_runs(impostor_, views_, GL_TRIANGLES, 6);
+  }
+  if (!blends_.runs.empty()) {
+    begin(blended_);
+    blended_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
+    draw_runs(blended_, blends_, GL_TRIANGLES, 6);
   }
   if (!meshes_.runs.empty()) {
     begin(model_);

@@ -48,25 +48,35 @@ class CrowdPass {
     size_t first = 0, count = 0;
     LevelDistances levels = {};
   };
-  // All that are drawn in one way, at rows of their own of the instances' texture.
-  struct Level {
-    std::vector<ImpostorInstance> instances;
+  // Where those that are drawn in one way lie in the instances' texture: at rows of their own.
+  struct Runs {
     std::vector<Run> runs;
     size_t used = 0;
     GLsizei first_row = 0;
-    [[nodiscard]] std::span<ImpostorInstance> rest() { return std::span(instances).subspan(used); }
-    void begin(size_t most);
+    size_t texels = 1;  // Of an instance.
     void add(const Run& run);
-    [[nodiscard]] GLsizei rows() const;
   };
-  void draw_runs(const GlProgram& program, const Level& level, GLenum kind, size_t vertices) const;
-  void use_run(const GlProgram& program, const Level& level, const Run& run) const;
+  template <class Instance>
+  struct Level : Runs {
+    Level() { texels = sizeof(Instance) / sizeof(ImpostorInstance); }
+    std::vector<Instance> instances;
+    [[nodiscard]] std::span<Instance> rest() { return std::span(instances).subspan(used); }
+    void begin(size_t most);
+    [[nodiscard]] GLsizei rows() const;
+    void upload();
+  };
+  void draw_runs(const GlProgram& program, const Runs& level, GLenum kind, size_t vertices) const;
+  void use_run(const GlProgram& program, const Runs& level, const Run& run) const;
+  void for_each_level(const auto& act) {
+    act(meshes_), act(views_), act(points_), act(thrown_), act(blends_);
+  }
 
-  GlProgram impostor_, model_, point_, plain_, shadow_;
+  GlProgram impostor_, blended_, model_, point_, plain_, shadow_;
   GlVertexArray nothing_;  // Vertices by number alone.
   std::vector<AtlasTextures> atlases_;
   std::vector<std::optional<ModelMesh>> models_;  // By atlas.
-  Level meshes_, views_, points_, thrown_;
+  Level<ImpostorInstance> meshes_, views_, points_, thrown_;
+  Level<BlendedInstance> blends_;
   size_t drawn_ = 0;
   GlTexture instance_texture_, looks_;
   GLsizei instance_rows_ = 0;

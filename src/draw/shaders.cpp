@@ -104,7 +104,6 @@ uniform usampler2D instances;
 uniform usampler2D views;
 uniform int first;
 uniform float side;    // Of a view [m].
-uniform float centre;  // Over the feet [m].
 uniform float pixels;  // Along a view's side.
 uniform vec2 page;     // [texels]
 struct Corner {
@@ -130,6 +129,67 @@ Corner pull() {
   c.texel = vec3((vec2(place.xy) + at) / page, float(part.z));
   c.look = data.w >> 21;
   return c;
+}
+)";
+
+// A card that faces the eye, `offset` from its middle.
+constexpr const char* kCard = R"(
+uniform float centre;  // Over the feet [m].
+out vec3 world;
+flat out vec3 right, up, towards;
+flat out uint look;
+flat out float in_sun;
+flat out float shown_from, shown_to;  // The thresholds between which it is shown.
+out float height;
+void stand(vec3 feet, vec2 offset, uint clothes) {
+  vec3 middle = feet + vec3(0.0, centre, 0.0);
+  towards = normalize(eye - middle);
+  float flat_length = length(towards.xz);
+  right = flat_length > 1e-4 ? vec3(towards.z, 0.0, -towards.x) / flat_length : vec3(1.0, 0.0, 0.0);
+  up = cross(towards, right);
+  world = middle + right * offset.x + up * offset.y;
+  height = offset.y + centre;
+  look = clothes;
+  in_sun = sunlit_once(middle + to_sun * 0.9);  // In front of its own shadow.
+  float far = length(eye - middle);
+  shown_from = 1.0 - (mesh_range.y > 0.0 ? share_beyond(mesh_range, far) : 1.0);
+  shown_to = 1.0 - share_beyond(point_range, far);
+  gl_Position = clip_from_world * vec4(world, 1.0);
+}
+)";
+
+// What a texel of a figure shows, and where.
+constexpr const char* kFigure = R"(
+in vec3 world;
+flat in vec3 right, up, towards;
+flat in uint look;
+flat in float in_sun;
+flat in float shown_from, shown_to;
+in float height;
+uniform sampler2DArray albedo;
+uniform sampler2DArray detail;
+uniform vec3 part_colour[6]; // What the atlas has.
+uniform float side;          // Of a view [m].
+out vec4 colour;
+void show(vec3 texel, vec3 right_of_texels) {
+  // Not filtered: a texel is of one part, and its colour says nothing of the part beside it.
+  ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z));
+  vec4 stored = texelFetch(albedo, at, 0);
+  vec4 d = texelFetch(detail, at, 0);
+  // Where the body is, not the card that shows it: so it is cut where it meets a wall or a stair.
+  // A texel knows its place to 7 cm, so it comes 5 cm nearer, or soles would sink into the ground.
+  uint mask = uint(d.z * 255.0 + 0.5);
+  float in_front = (float(mask & 31u) - 16.0) / 30.0 * side + 0.05;
+  vec4 clip = clip_from_world * vec4(world + towards * in_front, 1.0);
+  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
+  vec2 side_ways = (d.xy * 255.0 - 128.0) / 127.0;
+  vec3 n = normalize(right_of_texels * side_ways.x + up * side_ways.y +
+                     towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
+  uint part = mask >> 5;
+  vec3 own = stored.rgb * stored.rgb;
+  own = dressed(own, part, look, part_colour[part]);
+  float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));  // Less light near the ground.
+  colour = shown(lit(own, n, in_sun) * shade, world - eye);
 }
 )";
 
@@ -237,71 +297,98 @@ void main() {
 }
 
 std::string impostor_vertex() {
-  return std::string(kHead) + kSunlit + kPull + kFade + R"(
+  return std::string(kHead) + kSunlit + kPull + kFade + kCard + R"(
 out vec3 texel;
-out vec3 world;
-flat out vec3 right, up, towards;
-flat out uint look;
-flat out float in_sun;
-flat out float shown_from, shown_to;  // The thresholds between which it is shown.
-out float height;
 void main() {
   Corner c = pull();
-  vec3 middle = c.feet + vec3(0.0, centre, 0.0);
-  towards = normalize(eye - middle);
-  float flat_length = length(towards.xz);
-  right = flat_length > 1e-4 ? vec3(towards.z, 0.0, -towards.x) / flat_length : vec3(1.0, 0.0, 0.0);
-  up = cross(towards, right);
-  world = middle + right * c.offset.x + up * c.offset.y;
-  height = c.offset.y + centre;
+  stand(c.feet, c.offset, c.look);
   right *= c.flip;  // As the texels' normals have it.
   texel = c.texel;
-  look = c.look;
-  in_sun = sunlit_once(middle + to_sun * 0.9);  // In front of its own shadow.
-  float far = length(eye - middle);
-  shown_from = 1.0 - (mesh_range.y > 0.0 ? share_beyond(mesh_range, far) : 1.0);
-  shown_to = 1.0 - share_beyond(point_range, far);
-  gl_Position = clip_from_world * vec4(world, 1.0);
 }
 )";
 }
 
 std::string impostor_fragment() {
-  return std::string(kHead) + kLight + kPattern + kClothes + R"(
+  return std::string(kHead) + kLight + kPattern + kClothes + kFigure + R"(
 in vec3 texel;
-in vec3 world;
-flat in vec3 right, up, towards;
-flat in uint look;
-flat in float in_sun;
-flat in float shown_from, shown_to;
-in float height;
-uniform sampler2DArray albedo;
-uniform sampler2DArray detail;
-uniform vec3 part_colour[6]; // What the atlas has.
-uniform float side;          // Of a view [m].
-out vec4 colour;
 void main() {
   float rank = threshold();
   if (rank < shown_from || rank > shown_to) discard;
   if (texture(albedo, texel).a < 0.5) discard;  // Filtered: a smooth outline.
-  // Not filtered: a texel is of one part, and its colour says nothing of the part beside it.
-  ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z));
-  vec4 stored = texelFetch(albedo, at, 0);
-  vec4 d = texelFetch(detail, at, 0);
-  // Where the body is, not the card that shows it: so it is cut where it meets a wall or a stair.
-  // A texel knows its place to 7 cm, so it comes 5 cm nearer, or soles would sink into the ground.
-  uint mask = uint(d.z * 255.0 + 0.5);
-  float in_front = (float(mask & 31u) - 16.0) / 30.0 * side + 0.05;
-  vec4 clip = clip_from_world * vec4(world + towards * in_front, 1.0);
-  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
-  vec2 side_ways = (d.xy * 255.0 - 128.0) / 127.0;
-  vec3 n = normalize(right * side_ways.x + up * side_ways.y +
-                     towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
-  uint part = mask >> 5;
-  vec3 own = stored.rgb * stored.rgb;
-  own = dressed(own, part, look, part_colour[part]);
-  float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));  // Less light near the ground.
-  colour = shown(lit(own, n, in_sun) * shade, world - eye);
+  show(texel, right);
+}
+)";
+}
+
+// Four views at once: a card that holds all their rectangles, each pixel of which shows one of
+// them, by its place in the pattern.
+std::string blended_vertex() {
+  return std::string(kHead) + kSunlit + kFade + kCard + R"(
+uniform usampler2D instances;
+uniform usampler2D views;
+uniform int first;
+uniform float side;    // Of a view [m].
+uniform float pixels;  // Along a view's side.
+out vec2 spot;  // On the card, in texels of a view, from its upper left corner.
+flat out vec3 limits;  // Of the pattern: where the second, third and fourth view begin.
+// Where in its page a spot is: x times the first plus the second, y plus the third; the page.
+flat out vec4 map0, map1, map2, map3;
+flat out vec4 box0, box1, box2, box3;  // The rectangle in its page.
+vec2 low, high;
+void add(uint word, out vec4 map, out vec4 box) {
+  int view = int(word & 0xfffffu) * 2;
+  vec4 place = vec4(texelFetch(views, ivec2(view & 1023, view >> 10), 0));
+  vec4 part = vec4(texelFetch(views, ivec2((view & 1023) + 1, view >> 10), 0));
+  bool mirrored = (word >> 20 & 1u) == 1u;
+  box = vec4(place.xy, place.xy + place.zw);
+  map = mirrored ? vec4(-1.0, place.x + pixels - part.x, place.y - part.y, part.z)
+                 : vec4(1.0, place.x - part.x, place.y - part.y, part.z);
+  vec2 corner = vec2(mirrored ? pixels - part.x - place.z : part.x, part.y);
+  low = min(low, corner);
+  high = max(high, corner + place.zw);
+}
+void main() {
+  int at = gl_VertexID / 6 * 2 + first, corner = gl_VertexID % 6;
+  uvec4 data = texelFetch(instances, ivec2(at & 2047, at >> 11), 0);
+  uvec4 more = texelFetch(instances, ivec2((at & 2047) + 1, at >> 11), 0);
+  low = vec2(pixels);
+  high = vec2(0.0);
+  add(data.w, map0, box0);
+  add(more.x, map1, box1);
+  add(more.y, map2, box2);
+  add(more.z, map3, box3);
+  vec2 next = vec2(more.w & 511u, more.w >> 9u) / 256.0;
+  limits.x = (1.0 - next.x) * (1.0 - next.y);
+  limits.y = 1.0 - next.y;
+  limits.z = limits.y + (1.0 - next.x) * next.y;
+  int k = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
+  spot = mix(low, high, vec2(float(k & 1), float(k >> 1)));
+  stand(uintBitsToFloat(data.xyz), (spot - 0.5 * pixels) * vec2(1.0, -1.0) * (side / pixels),
+        data.w >> 21);
+}
+)";
+}
+
+std::string blended_fragment() {
+  return std::string(kHead) + kLight + kPattern + kClothes + kFigure + R"(
+in vec2 spot;
+flat in vec3 limits;
+flat in vec4 map0, map1, map2, map3;
+flat in vec4 box0, box1, box2, box3;
+void main() {
+  vec2 page = vec2(textureSize(albedo, 0).xy);
+  vec2 a_right = dFdx(spot) / page, a_down = dFdy(spot) / page;
+  float rank = threshold();
+  if (rank < shown_from || rank > shown_to) discard;
+  // Those pixels that this level of detail shows are dealt out to the views.
+  float share = (rank - shown_from) / max(shown_to - shown_from, 1e-3);
+  vec4 map = share < limits.y ? share < limits.x ? map0 : map1 : share < limits.z ? map2 : map3;
+  vec4 box = share < limits.y ? share < limits.x ? box0 : box1 : share < limits.z ? box2 : box3;
+  vec2 at = vec2(map.x * spot.x + map.y, spot.y + map.z);
+  if (any(lessThan(at, box.xy)) || any(greaterThan(at, box.zw))) discard;
+  vec3 texel = vec3(at / page, map.w);
+  if (textureGrad(albedo, texel, a_right, a_down).a < 0.5) discard;
+  show(texel, right * map.x);
 }
 )";
 }
@@ -479,6 +566,7 @@ void main() { colour = vec4(tint, 1.0); }
 std::string shadow_vertex() {
   return std::string(kHead) + kPull + R"(
 uniform vec3 sun_right, sun_up;
+uniform float centre;  // Over the feet [m].
 out vec3 texel;
 void main() {
   Corner c = pull();

@@ -15,6 +15,8 @@ std::string depth_vertex();  ///< Of the scene, as the sun sees it.
 std::string depth_fragment();
 std::string impostor_vertex();
 std::string impostor_fragment();
+std::string blended_vertex();  ///< Of impostors between two directions or elevations.
+std::string blended_fragment();
 std::string model_vertex();  ///< Of avatars near the eye: meshes.
 std::string model_fragment();
 std::string point_vertex();  ///< Of avatars that are too small for a view.

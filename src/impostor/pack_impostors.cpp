@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/parallel.h"
+#include "impostor/blend_views.h"
 #include "impostor/pack_loops.h"
 #include "throng/impostor_pack.h"
 
@@ -54,7 +55,8 @@ size_t write_meshes(const PackInput& in, const PackBlock& block, ImpostorInstanc
 }
 
 // Closes the gaps that each block left behind; returns how many there are.
-size_t close_gaps(const std::vector<uint32_t>& kept, std::span<ImpostorInstance> out) {
+template <class Instance>
+size_t close_gaps(const std::vector<uint32_t>& kept, std::span<Instance> out) {
   size_t total = 0;
   for (size_t b = 0; b < kept.size(); ++b) {
     if (total != b * kPackBlock && kept[b] > 0) {
@@ -81,7 +83,8 @@ PackShared shared_of(const Atlas& atlas, const PackConfig& config, const LevelDi
                .mesh_near = square(levels.mesh_near),
                .mesh_far = square(levels.mesh_far),
                .point_near = square(levels.point_near),
-               .point_far = square(levels.point_far)};
+               .point_far = square(levels.point_far),
+               .blend_far = levels.blend_share > 0 ? square(levels.blend_far) : 0};
   if (s.fixed) {
     s.to_x = static_cast<float>(config.from_direction->x);
     s.to_y = static_cast<float>(config.from_direction->y);
@@ -106,7 +109,7 @@ CameraAxes camera_axes(const EyeCamera& camera) {
 
 LevelDistances level_distances(const AtlasShape& shape, const EyeCamera& camera, double height,
                                double mesh_texel, double point_pixels) {
-  constexpr double kFade = 0.2;
+  constexpr double kFade = 0.2, kBlendPixels = 24;
   // A side at this distance is a pixel high.
   const double one = shape.side * 0.5 * height / std::tan(0.5 * camera.field_of_view);
   LevelDistances out;
@@ -118,6 +121,7 @@ LevelDistances level_distances(const AtlasShape& shape, const EyeCamera& camera,
     out.point_far = std::max(one / point_pixels, out.mesh_far);
     out.point_near = std::max((1 - kFade) * out.point_far, out.mesh_far);
   }
+  out.blend_far = one / kBlendPixels;
   return out;
 }
 
@@ -128,10 +132,13 @@ LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars, const
                 avatars.heading.size() == count && avatars.phase.size() == count &&
                 avatars.look.size() == count && config.clip < atlas.clips.size());
   THRONG_ASSERT(out.views.size() >= count && (levels.mesh_far == 0 || out.meshes.size() >= count) &&
-                (levels.point_near >= 1e18 || out.points.size() >= count));
+                (levels.point_near >= 1e18 || out.points.size() >= count) &&
+                (levels.blend_share == 0 || out.blends.size() >= count));
   const PackShared s = shared_of(atlas, config, levels);
   const size_t blocks = (count + kPackBlock - 1) / kPackBlock;
-  std::vector<uint32_t> views(blocks), meshes(blocks), points(blocks);
+  std::vector<uint32_t> views(blocks), meshes(blocks), points(blocks), blends(blocks);
+  const BlendShape blend{static_cast<float>(levels.blend_share),
+                         static_cast<float>(levels.blend_far)};
   parallel_ranges(blocks, 4, config.workers, [&](size_t begin, size_t end) {
     PackBlock block;
     for (size_t b = begin; b < end; ++b) {
@@ -146,14 +153,19 @@ LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars, const
       find_views(s, in, block);
       const auto any = [&](uint32_t as) { return (block.seen_any & as) != 0; };
       const auto number = [](size_t n) { return static_cast<uint32_t>(n); };
-      if (any(kSeenByView)) views[b] = number(write_seen(in, block, 0, &out.views[first]));
+      if (any(kSeenBetween)) {
+        blends[b] = number(write_blends(s, blend, in, block, &out.blends[first]));
+      }
+      if (any(kSeenByView | kSeenBetween))
+        views[b] = number(write_seen(in, block, 0, &out.views[first]));
       if (any(kSeenAsMesh)) meshes[b] = number(write_meshes(in, block, &out.meshes[first]));
       if (any(kSeenAsPoint)) points[b] = number(write_seen(in, block, 2, &out.points[first]));
     }
   });
   return {.meshes = close_gaps(meshes, out.meshes),
           .views = close_gaps(views, out.views),
-          .points = close_gaps(points, out.points)};
+          .points = close_gaps(points, out.points),
+          .blends = close_gaps(blends, out.blends)};
 }
 
 size_t pack_impostors(const Atlas& atlas, const ImpostorArrays& avatars, const PackConfig& config,

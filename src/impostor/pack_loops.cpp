@@ -28,7 +28,8 @@ void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
     }
     const float dx = s.eye_x - px, dy = s.eye_y - py, dz = s.eye_z - pz;
     const float far = dx * dx + dy * dy + dz * dz;
-    const uint32_t by_view = far >= s.mesh_near && far < s.point_far ? kSeenByView : 0;
+    const uint32_t near_view = far < s.blend_far ? kSeenBetween : kSeenByView;
+    const uint32_t by_view = far >= s.mesh_near && far < s.point_far ? near_view : 0;
     const uint32_t as_mesh = far < s.mesh_far ? kSeenAsMesh : 0;
     const uint32_t as_point = far >= s.point_near ? kSeenAsPoint : 0;
     block.seen[i] = least >= 0 ? by_view | as_mesh | as_point : 0;
@@ -53,8 +54,7 @@ void FindViews(const PackShared& shared, const PackInput& input, PackBlock& bloc
     const uint32_t column = mirrored != 0 ? 2 * s.directions - 1 - sector : sector;
     uint32_t frame = (in.phase[i] * s.frames + 32768) >> 16;
     frame = frame >= s.frames ? frame - s.frames : frame;
-    const uint32_t half = frame + s.frames / 2;
-    const uint32_t other = half >= s.frames ? half - s.frames : half;
+    const uint32_t other = half_cycle_on(frame, s.frames);
     frame = (mirrored != 0 ? other : frame) + s.first_frame;
     block.view[i] = ((frame * s.rows + row) * s.directions + column) | mirrored << 20 |
                     static_cast<uint32_t>(in.look[i]) << 21;

@@ -25,11 +25,11 @@ struct PackShared {
   float centre = 0;                    ///< Of a view over the feet.
   uint32_t directions = 0, rows = 0, frames = 0, first_frame = 0;
   // Squares of LevelDistances.
-  float mesh_near = 0, mesh_far = 0, point_near = 0, point_far = 0;
+  float mesh_near = 0, mesh_far = 0, point_near = 0, point_far = 0, blend_far = 0;
 };
 
-/// Bits of PackBlock::seen.
-inline constexpr uint32_t kSeenByView = 1, kSeenAsMesh = 2, kSeenAsPoint = 4;
+/// Bits of PackBlock::seen. `kSeenBetween`: by a view, or by four that blend.
+inline constexpr uint32_t kSeenByView = 1, kSeenAsMesh = 2, kSeenAsPoint = 4, kSeenBetween = 8;
 
 /// The same entries of each array of the avatars.
 struct PackInput {

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numbers>
+#include <span>
 #include <vector>
 
 #include "core/random.h"
@@ -253,6 +256,71 @@ TEST(PackImpostors, FromTheSunAllShowTheSideThatItSees) {
     EXPECT_EQ(view % 16, 8U);
     EXPECT_EQ(view / 16 % 8, 4U);
   }
+}
+
+// Each of the four by choose_view, from half a view to either side.
+TEST(PackImpostors, BlendsTheFourViewsAroundTheEyesDirection) {
+  const Atlas atlas = atlas_of(16, 8);
+  const Avatars avatars = random_avatars(60000, 40);
+  const size_t count = avatars.x.size();
+  PackConfig config;
+  config.camera.eye = {3, 12, 30};
+  const LevelDistances levels{.blend_far = 35, .blend_share = 0.5};
+  std::vector<ImpostorInstance> views(count);
+  std::vector<BlendedInstance> blends(count);
+  const LevelCounts counts =
+      pack_levels(atlas, avatars.view(), config, levels,
+                  {.meshes = {}, .views = views, .points = {}, .blends = blends});
+  EXPECT_EQ(counts.views + counts.blends, pack(atlas, avatars, config).size());
+  ASSERT_GT(counts.blends, 2000U);
+  size_t i = 0, corners = 0, borders[2] = {};
+  for (const BlendedInstance& b : std::span(blends).first(counts.blends)) {
+    while (avatars.x[i] != b.nearest_below.x || avatars.z[i] != b.nearest_below.z) ++i;
+    const Vec3d d{3.0F - avatars.x[i], 12.0F - (avatars.y[i] + 0.875F), 30.0F - avatars.z[i]};
+    const double flat = std::hypot(d.x, d.z), far = length(d);
+    EXPECT_LT(far, 35.001);
+    const double turn = 2 * std::numbers::pi;
+    const double column = (std::atan2(d.x, d.z) / turn - avatars.heading[i] / 65536.0) * 32;
+    const double row = std::atan2(std::max(d.y, 0.0), flat) / turn * 32;
+    // From the middle of the lower view to that of the upper one, a band in the middle.
+    const double band = 0.5 * std::min(1.0, 5 * (1 - far / 35));
+    const auto share = [&](double at) {
+      return std::clamp(0.5 + (at - std::round(at)) / std::max(band, 1e-6), 0.0, 1.0);
+    };
+    const bool row_ends = row < 0.5 || row >= 7.5;
+    const auto view = [&](double c, double r) {
+      const double azimuth = (c / 32 + avatars.heading[i] / 65536.0) * turn, up = r / 32 * turn;
+      const ViewChoice v = choose_view(
+          atlas.shape, atlas.clips[0],
+          {std::sin(azimuth) * std::cos(up), std::sin(up), std::cos(azimuth) * std::cos(up)},
+          avatars.heading[i] / 65536.0, avatars.phase[i] / 65536.0);
+      return static_cast<uint32_t>(atlas.shape.view(v.frame, v.row, v.column)) |
+             static_cast<uint32_t>(v.mirrored) << 20;
+    };
+    const uint32_t to_column = b.shares & 511, to_row = b.shares >> 9;
+    const double c0 = to_column > 0 ? std::round(column) - 0.5 : std::floor(column) + 0.5;
+    const double r0 = to_row > 0 ? std::round(row) - 0.5 : std::floor(row) + 0.5;
+    const double c1 = to_column > 0 ? c0 + 1 : c0, r1 = to_row > 0 ? r0 + 1 : r0;
+    EXPECT_NEAR(to_column / 256.0, to_column > 0 ? share(column) : 0, 0.01 / band);
+    EXPECT_NEAR(to_row / 256.0, to_row > 0 && !row_ends ? share(row) : 0, 0.01 / band);
+    if (to_column == 0) {
+      EXPECT_LT(std::min(share(column), 1 - share(column)), 0.01 / band);
+    }
+    if (to_row == 0 && !row_ends) {
+      EXPECT_LT(std::min(share(row), 1 - share(row)), 0.01 / band);
+    }
+    const auto near_floor = [](double at) { return std::fabs(at - std::round(at)) < 1e-3; };
+    if ((to_column == 0 && near_floor(column)) || (to_row == 0 && near_floor(row))) continue;
+    EXPECT_EQ(b.nearest_below.view, view(c0, r0) | static_cast<uint32_t>(avatars.look[i]) << 21);
+    EXPECT_EQ(b.others[0], view(c1, r0));
+    EXPECT_EQ(b.others[1], view(c0, r1));
+    EXPECT_EQ(b.others[2], view(c1, r1));
+    ++(to_column > 0 && to_row > 0 ? corners : borders[to_row > 0 ? 1 : 0]);
+    ++i;
+  }
+  EXPECT_GT(corners, 300U);
+  EXPECT_GT(borders[0], 800U);
+  EXPECT_GT(borders[1], 300U);
 }
 
 }  // namespace

@@ -13,9 +13,10 @@
 #include "throng/builtin_worlds.h"
 #include "throng_draw/draw.h"
 
-// Frames of a city from above with a crowd on its ground: as people, as plain quads at the same
-// places, and without avatars, frame by frame in turn, so that whatever else the machine does
-// touches all three alike. A frame is culling, packing, upload, drawing and reading back.
+// Frames of a city with a crowd on its ground: as people, as plain quads at the same places,
+// without avatars, and as people without asking what is hidden; frame by frame in turn, so that
+// whatever else the machine does touches all alike. A frame is culling, packing, upload, drawing
+// and reading back.
 namespace throng {
 namespace {
 
@@ -23,7 +24,7 @@ struct Options {
   uint64_t polygons = 30'000;
   size_t avatars = 10'000;
   int32_t runs = 15, samples = 1, workers = 2, width = 1280, height = 720;
-  bool shadows = false;
+  bool shadows = false, street = false;
   double point_pixels = DrawingConfig{}.point_pixels, view_blend = DrawingConfig{}.view_blend;
   std::string picture;
 };
@@ -136,9 +137,17 @@ int run(const Options& options) {
   config.camera.target = {0, 0, 0.1 * half};
   config.camera.furthest = 20 * half;
   config.camera.nearest = 0.002 * half;
+  if (options.street) {  // From where somebody stands near the middle, along the street.
+    size_t who = 0;
+    for (size_t i = 0; i < crowd.x.size(); ++i) {
+      if (std::hypot(crowd.x[i], crowd.z[i]) < std::hypot(crowd.x[who], crowd.z[who])) who = i;
+    }
+    config.camera = EyeCamera{.eye = {crowd.x[who], crowd.y[who] + 1.7, crowd.z[who]},
+                              .target = {crowd.x[who] + 10.0, 1.5, crowd.z[who] + 1.0}};
+  }
 
-  std::vector<double> people, quads, nobody, pack, ratio;
-  size_t seen = 0;
+  std::vector<double> people, quads, nobody, whole, pack, cull, ratio;
+  DrawingReport last, seen, uncut;
   const auto frame = [&](AvatarStyle style, bool with, double& packing) -> double {
     config.avatars = style;
     DrawingReport report;
@@ -146,16 +155,22 @@ int run(const Options& options) {
         drawing->draw(with ? std::span(&drawn, 1) : std::span<const DrawnCrowd>(), config, &report);
     if (!image) return -1;
     packing = report.seconds_pack;
-    if (with) seen = report.drawn;
-    return report.seconds_pack + report.seconds_draw;
+    if (with) last = report;
+    return report.seconds_pack + report.seconds_cull + report.seconds_draw;
   };
   double packing = 0, none = 0;
   for (int32_t r = -2; r < options.runs; ++r) {  // Two to warm up.
     const double b = frame(AvatarStyle::kPlainQuads, true, none);
+    config.culling = HiddenCulling::kNever;
+    const double d = frame(AvatarStyle::kPeople, true, none);
+    uncut = last;
+    config.culling = HiddenCulling::kWhereItPays;
     const double a = frame(AvatarStyle::kPeople, true, packing);
     const double c = frame(AvatarStyle::kPeople, false, none);
     if (r < 0) continue;
     people.push_back(a), quads.push_back(b), nobody.push_back(c), pack.push_back(packing);
+    whole.push_back(d), cull.push_back(last.seconds_cull);
+    seen = last;
     ratio.push_back(a / b);
   }
   if (!options.picture.empty()) {
@@ -166,7 +181,10 @@ int run(const Options& options) {
   const nlohmann::ordered_json json = {{"renderer", drawing->renderer()},
                                        {"triangles", scene->triangles.size()},
                                        {"avatars", options.avatars},
-                                       {"seen", seen},
+                                       {"seen", seen.drawn + seen.hidden},
+                                       {"hidden", seen.hidden},
+                                       {"triangles_seen", uncut.triangles},
+                                       {"triangles_drawn", seen.triangles},
                                        {"runs", options.runs},
                                        {"ms_people", median(people) * 1e3},
                                        {"ms_quads", median(quads) * 1e3},
@@ -174,6 +192,8 @@ int run(const Options& options) {
                                        {"least_people", least(people) * 1e3},
                                        {"least_quads", least(quads) * 1e3},
                                        {"least_nobody", least(nobody) * 1e3},
+                                       {"ms_all", median(whole) * 1e3},
+                                       {"ms_cull", median(cull) * 1e3},
                                        {"ms_pack", median(pack) * 1e3},
                                        {"ratio", median(ratio)}};
   std::printf("%s\n", json.dump().c_str());
@@ -193,6 +213,7 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.workers, "For culling and packing");
   app.add_option("--point-pixels", options.point_pixels, "Who is no higher is a point, 0: nobody");
   app.add_option("--view-blend", options.view_blend, "Share of the angle between views, 0: none");
+  app.add_flag("--street", options.street, "From a street, not from above");
   app.add_flag("--shadows", options.shadows, "Of avatars");
   app.add_option("--width", options.width, "[px]");
   app.add_option("--height", options.height, "[px]");

@@ -94,6 +94,15 @@ enum class AvatarStyle : uint8_t {
   kPlainQuads,  ///< One rectangle of one colour each, to measure the others against.
 };
 
+/// Whether to ask, while a picture is drawn, what the nearer parts of the scene hide, and leave
+/// that out: avatars and pieces of the scene. The picture is the same, byte for byte. Asking makes
+/// a graphics card wait for its own work, so it pays where a processor draws.
+enum class HiddenCulling : uint8_t {
+  kWhereItPays,  ///< If the driver draws by the processor.
+  kNever,
+  kAlways,
+};
+
 struct DrawingConfig {
   EyeCamera camera;  ///< Relative to the drawing's origin; `aspect` follows from the picture.
   int32_t width = 1280, height = 720;  ///< [px, 16 to 8192]
@@ -111,7 +120,8 @@ struct DrawingConfig {
   double view_blend = 0.4;
   bool avatar_shadows = true;  ///< Those of the scene are always there.
   int32_t sun_pixels = 4096;   ///< Along a side of the sun's picture. [256 to 8192]
-  double edges = 0.5;          ///< How dark edges of the scene are, 0: not drawn. [0 to 1]
+  HiddenCulling culling = HiddenCulling::kWhereItPays;
+  double edges = 0.5;  ///< How dark edges of the scene are, 0: not drawn. [0 to 1]
   /// The scene above this height is left out, for looking into buildings; relative to the origin.
   /// Avatars are the caller's. [m]
   double cut_height = std::numeric_limits<double>::infinity();
@@ -122,7 +132,10 @@ struct DrawingConfig {
 struct DrawingReport {
   size_t avatars = 0;       ///< In all crowds.
   size_t drawn = 0;         ///< Not culled.
+  size_t hidden = 0;        ///< In the picture's frame, but behind the scene.
+  size_t triangles = 0;     ///< Of the scene, drawn for the eye.
   double seconds_pack = 0;  ///< Culling and packing, shadows included.
+  double seconds_cull = 0;  ///< Asking what is hidden, with what the driver must finish for it.
   double seconds_draw = 0;  ///< Upload, draw calls and reading back.
 };
 

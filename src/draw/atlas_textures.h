@@ -5,6 +5,7 @@
 #include <array>
 
 #include "draw/gl_objects.h"
+#include "draw/hidden_avatars.h"
 #include "throng/impostor.h"
 
 namespace throng {
@@ -17,6 +18,7 @@ struct AtlasTextures {
   void bind(const GlProgram& program) const;
 
   Atlas shape;                                      ///< Without texels.
+  std::vector<FigureReach> reaches;                 ///< Of each view.
   std::array<float, 3 * kBodyParts> part_colour{};  ///< Linear.
   GlTexture colour, detail, views;
 };

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.h"
+#include "draw/hidden_avatars.h"
 #include "draw/shaders.h"
 #include "draw/wardrobe.h"
 
@@ -144,6 +146,7 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
     blends_.add({crowd.atlas, crowd.clip, 0, counts.blends, levels});
   }
   drawn_ = meshes_.used + views_.used + points_.used + blends_.used;
+  hidden_ = 0;
   if (!config.avatar_shadows) return;
   for (const DrawnCrowd& crowd : crowds) {
     const PackConfig pack_config{.camera = config.camera,
@@ -159,7 +162,65 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
   }
 }
 
-void CrowdPass::upload() {
+template <class Instance>
+size_t CrowdPass::Level<Instance>::drop(int32_t workers, const auto& is_hidden) {
+  std::vector<uint8_t> hidden(used);
+  size_t kept = 0;
+  for (Run& run : runs) {
+    parallel_ranges(run.count, 2048, workers, [&](size_t begin, size_t end) {
+      for (size_t i = run.first + begin; i < run.first + end; ++i) {
+        hidden[i] = is_hidden(run, instances[i]) ? 1 : 0;
+      }
+    });
+    const size_t first = kept;
+    for (size_t i = run.first; i < run.first + run.count; ++i) {
+      instances[kept] = instances[i];
+      kept += hidden[i] == 0 ? 1 : 0;
+    }
+    run.first = first;
+    run.count = kept - first;
+  }
+  std::erase_if(runs, [](const Run& run) { return run.count == 0; });
+  const size_t dropped = used - kept;
+  used = kept;
+  return dropped;
+}
+
+void CrowdPass::drop_hidden(const DrawingConfig& config, const DepthPyramid& depths) {
+  const HiddenAvatars test(config.camera, depths);
+  const auto middle = [&](const Run& run, const ImpostorInstance& i) {
+    return Vec3d{i.x, i.y + atlases_[run.atlas].shape.shape.centre, i.z};
+  };
+  const bool plain = config.avatars == AvatarStyle::kPlainQuads;
+  const auto reach = [&](const Run& run, uint32_t word) {
+    const AtlasTextures& atlas = atlases_[run.atlas];
+    const double high = atlas.shape.shape.centre;
+    return plain ? FigureReach{static_cast<float>(std::hypot(0.3, high) + 0.01), 0}
+                 : atlas.reaches[word & 0xfffff];
+  };
+  hidden_ = views_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
+    return test.hides(middle(run, i), reach(run, i.view));
+  });
+  hidden_ += blends_.drop(config.workers, [&](const Run& run, const BlendedInstance& b) {
+    FigureReach most = reach(run, b.nearest_below.view);
+    for (const uint32_t other : b.others) {
+      most.across = std::max(most.across, reach(run, other).across);
+      most.front = std::max(most.front, reach(run, other).front);
+    }
+    return test.hides(middle(run, b.nearest_below), most);
+  });
+  hidden_ += meshes_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
+    const auto all = static_cast<float>(
+        models_[run.atlas]->reach(atlases_[run.atlas].shape.shape.centre) + 0.01);
+    return test.hides(middle(run, i), {all, all});
+  });
+  hidden_ += points_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
+    return test.hides_point(middle(run, i), std::max(0.2, atlases_[run.atlas].shape.shape.centre));
+  });
+  drawn_ -= hidden_;
+}
+
+void CrowdPass::upload_shadows() {
   GLsizei rows = 0;
   for_each_level([&](auto& level) {
     level.first_row = rows;
@@ -175,7 +236,13 @@ void CrowdPass::upload() {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
   glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
-  for_each_level([](auto& level) { level.upload(); });
+  thrown_.upload();
+}
+
+void CrowdPass::upload_seen() {
+  glActiveTexture(GL_TEXTURE3);
+  glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
+  meshes_.upload(), views_.upload(), points_.upload(), blends_.upload();
 }
 
 void CrowdPass::draw_runs(const GlProgram& program, const Runs& level, GLenum kind,

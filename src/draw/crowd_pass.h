@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "draw/atlas_textures.h"
+#include "draw/depth_pyramid.h"
 #include "draw/gl_objects.h"
 #include "draw/matrix.h"
 #include "draw/model_mesh.h"
@@ -34,12 +35,17 @@ class CrowdPass {
 
   /// Who is seen by the eye, and who by the sun.
   void pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config, Vec3d to_sun);
-  void upload();
+  /// Leaves out, after pack(), who is behind what `depths` shows of the same view.
+  void drop_hidden(const DrawingConfig& config, const DepthPyramid& depths);
+  /// Who throws shadows, before draw_shadows(); who is seen, before draw().
+  void upload_shadows();
+  void upload_seen();
   /// Into the sun's depth picture.
   void draw_shadows(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up) const;
   /// `begin` puts a program in use and sets what all share.
   void draw(const DrawingConfig& config, const std::function<void(const GlProgram&)>& begin);
-  [[nodiscard]] size_t drawn() const { return drawn_; }  ///< Not culled.
+  [[nodiscard]] size_t drawn() const { return drawn_; }    ///< Not culled.
+  [[nodiscard]] size_t hidden() const { return hidden_; }  ///< By drop_hidden().
 
  private:
   // A run of instances of one crowd, in the one upload.
@@ -64,6 +70,8 @@ class CrowdPass {
     void begin(size_t most);
     [[nodiscard]] GLsizei rows() const;
     void upload();
+    /// Takes out those of which `is_hidden(run, instance)`, and returns how many.
+    size_t drop(int32_t workers, const auto& is_hidden);
   };
   void draw_runs(const GlProgram& program, const Runs& level, GLenum kind, size_t vertices) const;
   void use_run(const GlProgram& program, const Runs& level, const Run& run) const;
@@ -77,7 +85,7 @@ class CrowdPass {
   std::vector<std::optional<ModelMesh>> models_;  // By atlas.
   Level<ImpostorInstance> meshes_, views_, points_, thrown_;
   Level<BlendedInstance> blends_;
-  size_t drawn_ = 0;
+  size_t drawn_ = 0, hidden_ = 0;
   GlTexture instance_texture_, looks_;
   GLsizei instance_rows_ = 0;
 };

@@ -3,18 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/stopwatch.h"
 #include "draw/crowd_pass.h"
+#include "draw/depth_reader.h"
 #include "draw/gl.h"
 #include "draw/gl_objects.h"
 #include "draw/headless.h"
 #include "draw/mark_mesh.h"
 #include "draw/matrix.h"
 #include "draw/panel_mesh.h"
+#include "draw/scene_chunks.h"
 #include "draw/scene_mesh.h"
 #include "draw/shaders.h"
 #include "throng_draw/draw.h"
@@ -30,7 +34,8 @@ constexpr double kNearer = 0.002;  // Of the way to the eye that marks are neare
 // Colour and depth that are no window's.
 struct Target {
   GlFramebuffer frame;
-  GlRenderbuffer colour, depth;
+  GlRenderbuffer colour;
+  GlTexture depth;
   GLsizei width = 0, height = 0;
 };
 
@@ -72,6 +77,7 @@ PreparedScene::~PreparedScene() = default;
 Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
   Result<SceneCorners> corners = scene_corners(scene, origin);
   if (!corners) return corners.error();
+  sort_into_chunks(*corners);
   add_plain(*corners);
   return PreparedScene(std::make_unique<State>(State{*std::move(corners)}));
 }
@@ -87,6 +93,9 @@ struct Drawing::State {
   std::array<MarkMesh, kMarkSlots> marks;
   PanelMesh panel;
   CrowdPass crowd;
+  DepthReader depth_reader;
+  DepthPyramid depths;
+  bool is_software = false;  // A processor draws.
   GlTexture sun_depth;
   GlFramebuffer sun_frame;
   GLsizei sun_pixels = 0;
@@ -100,6 +109,8 @@ struct Drawing::State {
   Result<void> fit_sun(GLsizei pixels);
   Result<void> fit_target(GLsizei width, GLsizei height);
   void draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up, float cut) const;
+  size_t draw_scene(const Matrix& clip_from_world, Vec3d eye,
+                    const std::function<void()>& read_depths);
   void draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const;
   // Everything but the panel, into the target.
   Result<void> paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
@@ -114,6 +125,12 @@ Result<void> Drawing::State::make_programs() {
   panel_program = GlProgram(shaders::panel_vertex(), shaders::panel_fragment());
   if (auto ok = check_linked({&sky, &scene, &depth, &mark, &panel_program}); !ok) return ok;
   nothing = make_vertex_array();
+  const auto* name = reinterpret_cast<const char*>(glGetString(kRendererName));
+  const std::string_view renderer = name == nullptr ? "" : name;
+  for (const char* one : {"llvmpipe", "SwiftShader", "softpipe", "Software"}) {
+    is_software = is_software || renderer.find(one) != std::string_view::npos;
+  }
+  if (auto ok = depth_reader.make_program(); !ok) return ok;
   return crowd.make_programs();
 }
 
@@ -151,16 +168,17 @@ Result<void> Drawing::State::fit_target(GLsizei width, GLsizei height) {
                                    "a pixel"};
   }
   if (target.width == width && target.height == height) return {};
-  target = {make_framebuffer(), make_renderbuffer(), make_renderbuffer(), width, height};
+  target = {make_framebuffer(), make_renderbuffer(), make_texture(), width, height};
   glBindRenderbuffer(GL_RENDERBUFFER, target.colour.get());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-  glBindRenderbuffer(GL_RENDERBUFFER, target.depth.get());
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+  glBindTexture(GL_TEXTURE_2D, target.depth.get());
+  glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT24, width, height);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, target.frame.get());
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
                             target.colour.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-                            target.depth.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth.get(), 0);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return {};
   target = {};
   return Error{Errc::kLimit,
@@ -178,10 +196,46 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_righ
   depth.set("cut", cut);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5F, 2.0F);
-  mesh.draw();
+  mesh.draw(chunks_in_view(mesh.chunks(), sun_from_world, {}));
+  mesh.draw_plain();
   props.draw();
   glDisable(GL_POLYGON_OFFSET_FILL);
   crowd.draw_shadows(sun_from_world, sun_right, sun_up);
+}
+
+// What is near first: it hides much of the rest, which is asked before it is drawn. The order is
+// the same whether anything is left out or not, for where surfaces coincide the last one shows.
+// Returns how many triangles were drawn.
+size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
+                                  const std::function<void()>& read_depths) {
+  constexpr size_t kWorthAsking = 8'000, kNearShare = 8;
+  const std::span<const SceneChunk> chunks = mesh.chunks();
+  std::vector<uint32_t> near = chunks_in_view(chunks, clip_from_world, eye), rest;
+  const auto triangles = [&](const std::vector<uint32_t>& indices) {
+    size_t corners = 0;
+    for (const uint32_t i : indices) corners += chunks[i].count;
+    return corners / 3;
+  };
+  const size_t all = triangles(near);
+  if (all > kWorthAsking) {
+    size_t first = 0, corners = 0;
+    while (corners / 3 < all / kNearShare) corners += chunks[near[first++]].count;
+    rest.assign(near.begin() + static_cast<ptrdiff_t>(first), near.end());
+    near.resize(first);
+  }
+  mesh.draw(near);
+  size_t drawn = triangles(near);
+  if (!rest.empty()) {
+    if (read_depths) {
+      read_depths();
+      drop_hidden_chunks(chunks, clip_from_world, depths, rest);
+      scene.use();
+    }
+    mesh.draw(rest);
+    drawn += triangles(rest);
+  }
+  mesh.draw_plain();
+  return drawn;
 }
 
 void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const {
@@ -324,7 +378,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   crowd.pack(crowds, config, to_sun);
   const double seconds_pack = seconds_since(start);
   const auto draw_start = Clock::now();
-  crowd.upload();
+  crowd.upload_shadows();
 
   // The sun's picture covers what is near the target, as far as shadows can be told apart.
   const EyeCamera& camera = config.camera;
@@ -378,21 +432,44 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthMask(GL_TRUE);
 
+  const bool culls = config.culling == HiddenCulling::kAlways ||
+                     (config.culling == HiddenCulling::kWhereItPays && is_software);
+  double seconds_cull = 0;
+  const std::function<void()> read_depths = [&] {
+    const auto cull_start = Clock::now();
+    depth_reader.read(target.depth, wide, high, depths);
+    glBindFramebuffer(GL_FRAMEBUFFER, target.frame.get());
+    glViewport(0, 0, wide, high);
+    glEnable(GL_DEPTH_TEST);
+    seconds_cull += seconds_since(cull_start);
+  };
+
   begin(scene);
   scene.set("bias", static_cast<float>(2.5 * reach / sun_pixels));
   scene.set("cut", cut);
   scene.set("edges", static_cast<float>(config.edges));
   scene.set("edge_wide", 0.5F * static_cast<float>(config.samples));
   scene.set("prop", 0.0F);
-  mesh.draw();
+  const size_t triangles = draw_scene(clip_from_world, camera.eye, culls ? read_depths : nullptr);
   scene.set("prop", 1.0F);
   props.draw();
 
+  if (culls && crowd.drawn() > 0) {
+    read_depths();
+    const auto cull_start = Clock::now();
+    crowd.drop_hidden(config, depths);
+    seconds_cull += seconds_since(cull_start);
+  }
+  crowd.upload_seen();
   crowd.draw(config, begin);
 
   draw_marks(clip_from_world, config);
 
-  report = {.seconds_pack = seconds_pack, .seconds_draw = seconds_since(draw_start)};
+  report.seconds_pack = seconds_pack;
+  report.seconds_cull = seconds_cull;
+  report.seconds_draw = seconds_since(draw_start) - seconds_cull;
+  report.hidden = crowd.hidden();
+  report.triangles = triangles;
   for (const DrawnCrowd& of_atlas : crowds) report.avatars += of_atlas.avatars.x.size();
   report.drawn = crowd.drawn();
   return {};

@@ -15,6 +15,8 @@ class ModelMesh {
   [[nodiscard]] static Result<ModelMesh> make(const FigureModel& model);
   /// Draws `instances` of a clip, with the program in use that they are set in.
   void draw(const GlProgram& program, size_t clip, size_t instances) const;
+  /// Of any pose from a point this high over the feet. [m]
+  [[nodiscard]] double reach(double centre) const;
 
  private:
   std::vector<AtlasClip> clips_;

@@ -82,7 +82,7 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
                                    " triangles, more than " + std::to_string(kMostTriangles) +
                                    "; draw a part of the model"};
   }
-  SceneCorners out{.corners = {}, .bounds = {}, .origin = origin};
+  SceneCorners out{.corners = {}, .chunks = {}, .bounds = {}, .origin = origin};
   out.corners.reserve(3 * scene.triangles.size() + 3);
   const std::vector<uint32_t> welded = weld(scene.positions);
   std::vector<Vec3d> normals;

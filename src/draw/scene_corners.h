@@ -23,9 +23,16 @@ struct SceneCorner {
 };
 static_assert(sizeof(SceneCorner) == 16);
 
+/// A run of corners, and a box around what they span.
+struct SceneChunk {
+  Box3d box;
+  uint32_t first = 0, count = 0;
+};
+
 struct SceneCorners {
   std::vector<SceneCorner> corners;
-  Box3d bounds;  ///< Of the scene without the plain, relative to the origin.
+  std::vector<SceneChunk> chunks;  ///< See sort_into_chunks. Without the plain.
+  Box3d bounds;                    ///< Of the scene without the plain, relative to the origin.
   Vec3d origin;
 };
 

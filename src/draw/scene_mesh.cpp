@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "draw/scene_mesh.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace throng {
 
 Result<void> SceneMesh::set(const SceneCorners& scene) {
   bounds_ = scene.bounds;
+  chunks_ = scene.chunks;
   array_ = make_vertex_array();
   buffer_ = make_buffer();
   glBindVertexArray(array_.get());
@@ -26,15 +28,36 @@ Result<void> SceneMesh::set(const SceneCorners& scene) {
   corners_ = static_cast<GLsizei>(scene.corners.size());
   if (glGetError() == GL_NO_ERROR) return {};
   corners_ = 0;
+  chunks_.clear();
   return Error{Errc::kLimit,
                "drawing: the model does not fit into the card's memory; draw a part "
                "of it"};
 }
 
-void SceneMesh::draw() const {
-  if (corners_ == 0) return;
+void SceneMesh::draw_corners(uint32_t first, uint32_t count) const {
+  if (count == 0) return;
   glBindVertexArray(array_.get());
-  glDrawArrays(GL_TRIANGLES, 0, corners_);
+  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
+}
+
+void SceneMesh::draw() const { draw_corners(0, static_cast<uint32_t>(corners_)); }
+
+void SceneMesh::draw(std::vector<uint32_t> chunks) const {
+  std::sort(chunks.begin(), chunks.end());
+  uint32_t first = 0, count = 0;  // Neighbours go in one call.
+  for (const uint32_t i : chunks) {
+    if (first + count != chunks_[i].first) {
+      draw_corners(first, count);
+      first = chunks_[i].first, count = 0;
+    }
+    count += chunks_[i].count;
+  }
+  draw_corners(first, count);
+}
+
+void SceneMesh::draw_plain() const {
+  const uint32_t first = chunks_.empty() ? 0 : chunks_.back().first + chunks_.back().count;
+  draw_corners(first, static_cast<uint32_t>(corners_) - first);
 }
 
 }  // namespace throng

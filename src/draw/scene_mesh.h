@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "draw/gl_objects.h"
 #include "draw/scene_corners.h"
 #include "throng/math.h"
@@ -14,7 +18,11 @@ class SceneMesh {
  public:
   /// Fails with kLimit.
   [[nodiscard]] Result<void> set(const SceneCorners& scene);
-  void draw() const;
+  void draw() const;  ///< All of it.
+  /// `chunks` as indices in any order; the pieces are drawn in the order of the mesh.
+  void draw(std::vector<uint32_t> chunks) const;
+  void draw_plain() const;  ///< What is in no chunk.
+  [[nodiscard]] std::span<const SceneChunk> chunks() const { return chunks_; }
   [[nodiscard]] const Box3d& bounds() const {
     return bounds_;
   }  ///< Of the scene, relative to the origin.
@@ -22,7 +30,10 @@ class SceneMesh {
  private:
   GlVertexArray array_;
   GlBuffer buffer_;
+  void draw_corners(uint32_t first, uint32_t count) const;
+
   GLsizei corners_ = 0;
+  std::vector<SceneChunk> chunks_;
   Box3d bounds_;
 };
 

@@ -296,6 +296,30 @@ void main() {
 )";
 }
 
+std::string furthest_vertex() {
+  return std::string(kHead) + R"(
+void main() {
+  gl_Position = vec4(vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 4.0 - 1.0, 0.0, 1.0);
+}
+)";
+}
+
+std::string furthest_fragment() {
+  return std::string(kHead) + R"(
+precision highp sampler2D;
+uniform sampler2D depth;
+out uvec4 bits;
+void main() {
+  ivec2 first = ivec2(gl_FragCoord.xy) * 8, last = textureSize(depth, 0) - 1;
+  float far = 0.0;
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      far = max(far, texelFetch(depth, min(first + ivec2(x, y), last), 0).r);
+  bits = uvec4(floatBitsToUint(far), 0u, 0u, 0u);
+}
+)";
+}
+
 std::string impostor_vertex() {
   return std::string(kHead) + kSunlit + kPull + kFade + kCard + R"(
 out vec3 texel;

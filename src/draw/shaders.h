@@ -13,6 +13,8 @@ std::string scene_vertex();
 std::string scene_fragment();
 std::string depth_vertex();  ///< Of the scene, as the sun sees it.
 std::string depth_fragment();
+std::string furthest_vertex();  ///< The furthest depth of each block of 8 x 8.
+std::string furthest_fragment();
 std::string impostor_vertex();
 std::string impostor_fragment();
 std::string blended_vertex();  ///< Of impostors between two directions or elevations.

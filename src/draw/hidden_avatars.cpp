@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "draw/hidden_avatars.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+std::vector<FigureReach> reaches_of(const Atlas& atlas) {
+  const AtlasShape& shape = atlas.shape;
+  const double texel = shape.side / shape.pixels, middle = 0.5 * shape.pixels;
+  std::vector<FigureReach> out(atlas.views.size());
+  for (size_t i = 0; i < atlas.views.size(); ++i) {
+    const AtlasView& v = atlas.views[i];
+    const double x = std::max(std::fabs(v.left - middle), std::fabs(v.left + v.width - middle));
+    const double y = std::max(std::fabs(v.top - middle), std::fabs(v.top + v.height - middle));
+    uint8_t front = 0;
+    for (size_t row = 0; row < v.height; ++row) {
+      const size_t first = (size_t{v.page} * static_cast<size_t>(atlas.height) + v.y + row) *
+                               static_cast<size_t>(atlas.width) +
+                           v.x;
+      for (size_t column = 0; column < v.width; ++column) {
+        front = std::max<uint8_t>(front, atlas.mask[first + column] & 31);
+      }
+    }
+    // The shader's, 5 cm nearer than the texel says, and one more for rounding.
+    out[i] = {static_cast<float>(std::hypot(x, y) * texel + 0.01),
+              static_cast<float>((front - 16.0) / 30 * shape.side + 0.06)};
+  }
+  return out;
+}
+
+HiddenAvatars::HiddenAvatars(const EyeCamera& camera, const DepthPyramid& depths)
+    : camera_(camera), axes_(camera_axes(camera)), depths_(depths) {
+  up_ = std::tan(0.5 * camera.field_of_view);
+  right_ = up_ * camera.aspect;
+  const double n = camera.nearest, f = camera.furthest;
+  scale_ = -2 * f * n / (f - n);
+  shift_ = (f + n) / (f - n);
+}
+
+bool HiddenAvatars::hides(Vec3d to, double least, double most, double across,
+                          double nearest) const {
+  if (std::min(least, nearest) <= camera_.nearest) return false;
+  const double x = dot(to, axes_.right), y = dot(to, axes_.up);
+  const auto low = [&](double v) { return std::min((v - across) / least, (v - across) / most); };
+  const auto high = [&](double v) { return std::max((v + across) / least, (v + across) / most); };
+  return depths_.hides(
+      {low(x) / right_, high(x) / right_, low(y) / up_, high(y) / up_, shift_ + scale_ / nearest});
+}
+
+bool HiddenAvatars::hides(Vec3d middle, FigureReach reach) const {
+  const Vec3d to = middle - camera_.eye;
+  const double depth = dot(to, axes_.forward);
+  const double along = depth / std::max(length(to), 1e-9);
+  // The card leans by the angle between the ray to it and the view's axis.
+  const double lean = reach.across * std::sqrt(std::max(0.0, 1 - along * along));
+  return hides(to, depth - lean, depth + lean, reach.across,
+               depth - lean - std::max(0.0F, reach.front) * along);
+}
+
+bool HiddenAvatars::hides_point(Vec3d middle, double half_size) const {
+  const Vec3d to = middle - camera_.eye;
+  const double depth = dot(to, axes_.forward);
+  return hides(to, depth, depth, half_size, depth);
+}
+
+}  // namespace throng

@@ -24,6 +24,7 @@ struct AvatarState {
   double radius = 0;     ///< Of the body. [m]
   double heading_x = 0;  ///< Unit vector of the walk.
   double heading_z = 0;
+  bool flies = false;  ///< It is in the air, or on its way up or down.
 };
 
 }  // namespace throng

@@ -30,6 +30,11 @@ struct AvatarId {
   friend bool operator==(AvatarId, AvatarId) = default;
 };
 
+/// Place::level1 of places in the air.
+inline constexpr uint32_t kAirLevel1 = UINT32_MAX;
+/// A place in the air, for a crowd's avatars who fly: to begin at, or to be bound for. Y: the feet.
+[[nodiscard]] inline Place air_place(Vec3d feet) { return {feet, kAirLevel1}; }
+
 /// A region that many are bound for, see Crowd::add_target. 0 is none.
 using TargetId = uint16_t;
 
@@ -66,7 +71,7 @@ struct CrowdConfig {
 
 /// Someone to add.
 struct AvatarSpawn {
-  Place place = {};  ///< Feet on the ground of the class.
+  Place place = {};  ///< Feet on the ground of the class, or air_place if it flies.
   int32_t avatar_class = 0;
   double radius = 0;  ///< Of the body, 0 for the class's. Walls are kept away by the class's. [m]
   double speed = 0;   ///< Wished, and the most, 0 for the class's. [m/s]
@@ -76,6 +81,7 @@ struct AvatarSpawn {
 struct CrowdReport {
   uint64_t step = 0;       ///< Number of the step just made, from 1.
   uint64_t avatars = 0;    ///< All there are.
+  uint64_t flying = 0;     ///< Of these, in the air, or on the way up or down.
   uint64_t stood = 0;      ///< Did not move.
   uint64_t contested = 0;  ///< Could have touched somebody, so went through the rounds.
   uint64_t arrived = 0;  ///< Came within 0.3 m of their goals, or into their targets, in this step.
@@ -108,8 +114,9 @@ class THRONG_API Crowd {
   /// was added.
   [[nodiscard]] Result<std::vector<AvatarId>> add(std::span<const AvatarSpawn> spawns,
                                                   Context& context);
-  /// Adds `count` avatars alike at random places, uniform over where the class can stand. Fails as
-  /// `add` does, and with kLimit and how many fit; then nobody was added.
+  /// Adds `count` avatars alike at random places, uniform over where the class can stand, or, if
+  /// `like.place` is an air_place, over where it can fly. Fails as `add` does, and with kLimit and
+  /// how many fit; then nobody was added.
   [[nodiscard]] Result<std::vector<AvatarId>> scatter(uint32_t count, const AvatarSpawn& like,
                                                       Context& context);
   /// Takes avatars away. Ids of nobody are left out.
@@ -137,7 +144,8 @@ class THRONG_API Crowd {
   [[nodiscard]] std::span<const AvatarId> in_the_way() const;
 
   /// Where they are bound for, one for each id: places of their class. An avatar keeps to its goal
-  /// when it has arrived, and makes way. Nowhere: it stands. Ids of nobody are left out.
+  /// when it has arrived, and makes way. Nowhere: it stands, or hovers. Who flies takes off and
+  /// lands as his way asks for; his goal may be an air_place. Ids of nobody are left out.
   void set_goals(std::span<const AvatarId> ids, std::span<const Place> goals);
   /// Makes a region, the union of prisms, that many can be bound for: one search outwards from it
   /// serves all ([FlowField]). Whoever's middle is inside has arrived. Fails with kBadInput (a
@@ -148,7 +156,7 @@ class THRONG_API Crowd {
   /// are left out. [target: of this crowd]
   void set_targets(std::span<const AvatarId> ids, TargetId target);
   /// How far it is on foot from where an avatar is to a target: in the mean 1 to 2 % above the
-  /// least. Infinite where no way leads there, or there is no such avatar. [m]
+  /// least. Infinite where no way leads there, it is in the air, or there is no such avatar. [m]
   [[nodiscard]] double distance(AvatarId id, TargetId target) const;
   /// Up to some `most` places inside a target where a class can stand, evenly spread. Fails as
   /// `add` does.
@@ -158,7 +166,8 @@ class THRONG_API Crowd {
   void set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds);
 
   /// Velocities wished by the caller instead of goals, until a goal is set; longer ones than an
-  /// avatar's speed are cut. Avoidance and the rule of no overlaps stay. [m/s along X and Z]
+  /// avatar's speed are cut. Avoidance and the rule of no overlaps stay. Who flies takes off when Y
+  /// is above 0, and lands when it is below and there is ground. [m/s; Y: only of who flies]
   void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
 
   /// One step. No allocation once it is warm. Time: linear in the avatars.

@@ -18,6 +18,8 @@
 /// Ways through the air of a baked world, from the ground and back to it.
 namespace throng {
 
+struct FlightSpace;
+
 /// The air of a world.
 struct AirSummary {
   double cell = 0;          ///< Side of an air cell. [m]
@@ -97,6 +99,8 @@ class THRONG_API FlightFinder {
   [[nodiscard]] Place landing(Vec3d feet) const;
 
   [[nodiscard]] FlightSummary summary() const;
+  /// The legal air, for the library itself; as old as the finder and its copies.
+  [[nodiscard]] const FlightSpace& space() const;
 
  private:
   struct Shared;

@@ -19,7 +19,8 @@ struct Body {
     kLast = 2,     // `aim` is the goal itself
     kDriven = 4,   // from outside: `wish` is given
     kHasGoal = 8,
-    kLost = 16,  // asks for another way
+    kLost = 16,    // asks for another way
+    kFlying = 32,  // FlyerEngine's: to those who walk it stands where it is
   };
 
   enum State : uint8_t {

@@ -23,7 +23,8 @@ constexpr double kMostSpeed = 100;   // [m/s]
 constexpr double kMostRadius = 100;  // [m]
 constexpr double kMostHeight = 65;   // [m]
 constexpr int32_t kMostSubSteps = 1000;
-constexpr double kLook = 3;  // [m] of a leg, to see whether it is open
+constexpr double kLook = 3;               // [m] of a leg, to see whether it is open
+constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
 
@@ -55,7 +56,16 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .lanes = {},
                       .room = {}},
                      data.width, data.depth, data.summary.classes.size());
-  auto state = std::make_unique<State>(world, config, std::move(engine));
+  FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                      .sight = static_cast<float>(config.sight),
+                      .rounds = config.rounds,
+                      .patient = config.patient,
+                      .seed = config.seed,
+                      .workers = config.workers,
+                      .steering = {},
+                      .patience = {}},
+                     data.summary.classes.size());
+  auto state = std::make_unique<State>(world, config, std::move(engine), std::move(flyers));
   state->unit = unit;
   state->classes.resize(data.summary.classes.size());
   return Crowd(std::move(state));
@@ -99,7 +109,12 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     made->paths.resize(made->finders.size());
     made->detours.resize(made->finders.size());
   }
+  if (auto ok = open_air(number, *made, context); !ok) return ok;
   parts = std::move(made);
+  if (parts->air) {
+    flyers.set_air(static_cast<size_t>(number), &*parts->air, body_class(number).radius);
+    flights.resize(generation.size());
+  }
   obstacles.open_class(static_cast<size_t>(number), parts->ground);
   for (uint32_t slot = 0; slot < obstacles.all().size(); ++slot) {
     tell_ways(slot, static_cast<size_t>(number));
@@ -139,13 +154,18 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
 
 // Nobody moves further than the smallest radius at a time, so nobody passes through another.
 void Crowd::State::make_room(const Body& body) {
-  if (body.radius <= widest && body.speed <= fastest && body.radius >= narrowest) return;
+  if (body.radius <= widest && body.speed <= fastest && body.radius >= narrowest &&
+      body.height <= tallest) {
+    return;
+  }
+  tallest = std::max<int32_t>(tallest, body.height);
   widest = std::max(widest, body.radius);
   narrowest = std::min(narrowest, body.radius);
   fastest = std::max(fastest, body.speed);
   const double way = fastest * config.dt / unit;
   sub_steps = std::clamp(static_cast<int32_t>(std::ceil(way / narrowest - 1e-9)), 1, 1 << 20);
   engine.fit(widest, fastest, static_cast<float>(config.dt / sub_steps));
+  flyers.fit(widest, fastest, tallest, static_cast<float>(config.dt / sub_steps));
 }
 
 AvatarId Crowd::State::add(Body body) {
@@ -158,6 +178,10 @@ AvatarId Crowd::State::add(Body body) {
   } else {
     body.slot = free_slots.back();
     free_slots.pop_back();
+  }
+  if (!flights.empty() || air_of(body) != nullptr) {
+    flights.resize(generation.size());
+    flights[body.slot] = {};
   }
   where[body.slot] = static_cast<uint32_t>(engine.bodies().size());
   if (body.slot < inside.size()) inside[body.slot] = 0;
@@ -182,6 +206,11 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
   std::vector<AvatarId> ids(spawns.size());
   for (size_t i = 0; i < spawns.size(); ++i) {
     Body& body = bodies[i];
+    if (spawns[i].place.level1 == kAirLevel1) {
+      if (!s.put_in_air(body, spawns[i].place.position)) continue;
+      if (map.add_if_clear(body)) ids[i] = s.add(body);
+      continue;
+    }
     const auto point = ground_point(*s.world.data(), spawns[i].place);
     if (!point) continue;
     const CrowdGround& ground = s.classes[static_cast<size_t>(spawns[i].avatar_class)]->ground;
@@ -202,20 +231,34 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
   const auto body = s.body_of(like);
   if (!body) return body.error();
   ClassParts& parts = *s.classes[static_cast<size_t>(like.avatar_class)];
+  const bool in_air = like.place.level1 == kAirLevel1;
+  if (in_air && !parts.air) {
+    return bad_config("class " + s.body_class(like.avatar_class).name +
+                      " does not fly here: say `flies = true` in the classes' file, and bake the "
+                      "world with it");
+  }
   if (!parts.standing) parts.standing.emplace(parts.ground, s.config.seed);
   StandingMap map(s.engine.bodies(), std::max(s.widest, body->radius), count);
   std::vector<Body> placed;
   placed.reserve(count);
   // Until nine draws of ten fail over a while.
   uint64_t failed = 0, drawn = 0;
-  while (placed.size() < count && !parts.standing->is_empty()) {
+  const auto draw = [&](Body& here) {
+    if (in_air) {
+      const auto point =
+          parts.flight_finders[0].random_point(s.config.seed ^ kAirDraws, s.scattered++);
+      return point && s.put_in_air(here, *point);
+    }
     const StandingDraw::Stand stand = parts.standing->draw(s.scattered++);
-    Body here = *body;
     here.x = static_cast<int32_t>(stand.point.x);
     here.z = static_cast<int32_t>(stand.point.z);
     here.level = stand.level;
     here.y = parts.ground.feet(stand.level, stand.point);
-    if (map.add_if_clear(here)) {
+    return true;
+  };
+  while (placed.size() < count && (in_air || !parts.standing->is_empty())) {
+    Body here = *body;
+    if (draw(here) && map.add_if_clear(here)) {
       placed.push_back(here);
     } else {
       ++failed;
@@ -258,9 +301,13 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
   for (size_t i = 0; i < ids.size(); ++i) {
     Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
-    body->flags = 0;
     body->target = 0;
     body->turn = 0;
+    if (s.air_of(*body) != nullptr) {
+      s.set_goal_of_flyer(*body, goals[i]);
+      continue;
+    }
+    body->flags = 0;
     const auto point = ground_point(*s.world.data(), goals[i]);
     if (!point) continue;
     Route& route = s.routes[body->slot];
@@ -280,15 +327,20 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
     Body* body = state_->body(ids[i]);
     if (body == nullptr) continue;
     const Vec3d& v = velocities[i];
-    double size = std::sqrt(v.x * v.x + v.z * v.z);
+    const bool may_fly = state_->air_of(*body) != nullptr;
+    const double up = may_fly ? v.y : 0;
+    double size = std::sqrt(v.x * v.x + up * up + v.z * v.z);
     if (!std::isfinite(size)) size = INFINITY;
     const double part = size > body->speed ? body->speed / size : 1;
-    body->flags = Body::kDriven;
+    body->flags = (body->flags & Body::kFlying) | Body::kDriven;
     body->target = 0;
     body->turn = 0;
     body->wish = part > 0
                      ? steer::Plane{static_cast<float>(v.x * part), static_cast<float>(v.z * part)}
                      : steer::Plane{};
+    if (may_fly) {
+      state_->flights[body->slot].wish_up = part > 0 ? static_cast<float>(up * part) : 0;
+    }
   }
 }
 
@@ -297,8 +349,13 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
   const auto reach = static_cast<float>(kLook / unit);
   uint64_t asked = 0;
   for (Body& body : bodies) {
-    if (!body.has(Body::kHasGoal)) continue;
+    if (body.has(Body::kFlying)) continue;
     const ClassParts& parts = *classes[body.avatar_class];
+    if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kDriven)) &&
+        plan_on_foot(body, flights[body.slot], worker, planned)) {
+      continue;
+    }
+    if (!body.has(Body::kHasGoal) || config.ways == CrowdWays::kStraight) continue;
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
     if (!body.has(Body::kLost)) {
@@ -306,11 +363,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;
-    if (!plan_way(body, route, ground, worker)) {
-      body.flags = 0;
-      const std::lock_guard lock(stranding);
-      stranded.push_back(id_of(body.slot));
-    }
+    if (!plan_way(body, route, ground, worker)) strand(body);
   }
   if (asked > 0) planned.fetch_add(asked, std::memory_order_relaxed);
 }
@@ -331,12 +384,19 @@ CrowdReport Crowd::step() {
   const CrowdEngine::Before before = [&](std::span<Body> bodies, int32_t worker) {
     s.plan(bodies, worker, planned);
   };
-  const bool has_ways = s.config.ways == CrowdWays::kPaths;
+  const bool has_ways = s.config.ways == CrowdWays::kPaths || !s.flights.empty();
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_ways ? before : CrowdEngine::Before(), counts, times);
-    for (const uint32_t slot : s.engine.arrived()) s.arrived.push_back(s.id_of(slot));
+    for (const uint32_t slot : s.engine.arrived()) {
+      // Who only came to where he takes off is not there yet.
+      if (s.flights.empty() || s.flights[slot].to_port == 0) s.arrived.push_back(s.id_of(slot));
+    }
+    if (!s.flights.empty()) s.fly(counts, planned);
   }
   s.where_is_old = true;
+  if (!s.flights.empty()) {
+    for (const Body& body : s.engine.bodies()) report.flying += body.has(Body::kFlying) ? 1 : 0;
+  }
   s.arrive_in_targets();
   s.find_events();
   for (std::vector<AvatarId>* ids : {&s.arrived, &s.stranded}) {
@@ -364,7 +424,7 @@ CrowdCheck Crowd::check() const {
   bodies.reserve(s.engine.bodies().size());
   for (const Body& b : s.engine.bodies()) {
     bodies.push_back({b.x, b.z, b.y, b.level, b.avatar_class, b.radius * s.unit,
-                      s.body_class(b.avatar_class).height});
+                      s.body_class(b.avatar_class).height, b.has(Body::kFlying)});
   }
   return check_bodies(s.world, bodies, obstacles(), s.config.workers);
 }
@@ -380,7 +440,11 @@ uint64_t Crowd::state_hash() const {
     body.round = 0;
     by_slot.push_back(body);
   }
-  return hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
+  const uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
+  if (s.flights.empty()) return hash;
+  std::vector<Flight> flights;
+  for (const Body& body : by_slot) flights.push_back(s.flights[body.slot]);
+  return hash_bytes(flights.data(), flights.size() * sizeof(Flight), hash);
 }
 
 AvatarState Crowd::State::state_of(const Body& b) const {
@@ -391,7 +455,8 @@ AvatarState Crowd::State::state_of(const Body& b) const {
           .position = {origin.x + (b.x + 0.5) * unit, b.y * 1e-3, origin.z + (b.z + 0.5) * unit},
           .radius = b.radius * unit,
           .heading_x = size > 0 ? b.velocity.x / size : 0,
-          .heading_z = size > 0 ? b.velocity.z / size : 1};
+          .heading_z = size > 0 ? b.velocity.z / size : 1,
+          .flies = b.has(Body::kFlying)};
 }
 
 void Crowd::read(std::vector<AvatarState>& out) const {
@@ -418,7 +483,7 @@ uint64_t Crowd::bytes() const {
   uint64_t bytes = s.engine.bytes() + s.routes.capacity() * sizeof(Route) +
                    (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4;
   for (const auto& parts : s.classes) bytes += parts ? parts->ground.bytes() : 0;
-  bytes += s.obstacles.bytes();
+  bytes += s.obstacles.bytes() + s.flyers.bytes() + s.flights.capacity() * sizeof(Flight);
   return bytes;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "world/air_data.h"
 #include "world/ground.h"
 
 namespace throng {
@@ -51,8 +52,9 @@ uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies
   for (const CheckedBody& body : bodies) {
     const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(body.avatar_class)];
     const double lean = avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180);
+    const double bottom = body.flies ? 0 : std::max(avatar.step, lean);
     entries.push_back({origin.x + (body.x + 0.5) * unit, origin.z + (body.z + 0.5) * unit,
-                       body.y * 1e-3, avatar.radius, std::max(avatar.step, lean), avatar.height});
+                       body.y * 1e-3, avatar.radius, bottom, avatar.height});
     widest = std::max(widest, avatar.radius);
   }
   std::sort(entries.begin(), entries.end(),
@@ -75,6 +77,54 @@ uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies
   return found;
 }
 
+// May a class's feet be there, in the air? By the octrees of the zones, as they were baked; or on
+// the way between the ground and the lowest air straight over it, which begins no higher than the
+// body is.
+class AirCheck {
+ public:
+  AirCheck(const WorldData& data, int32_t avatar_class)
+      : data_(data),
+        avatar_class_(avatar_class),
+        height_(data.summary.classes[static_cast<size_t>(avatar_class)].height * 1e3) {
+    if (data.air == nullptr) return;
+    body_ = air_body(data.summary.classes[static_cast<size_t>(avatar_class)], data.air->shape);
+  }
+
+  [[nodiscard]] bool allows(const CheckedBody& a) const {
+    if (data_.air == nullptr || a.x < 0 || a.z < 0) return false;
+    const AirShape& shape = data_.air->shape;
+    const int32_t across = kUnitsPerCell * shape.multiple;
+    const int32_t x = a.x / across, z = a.z / across;
+    const auto is_air = [&](int32_t layer) {
+      return layer < shape.ceiling && data_.air->is_legal(body_, x, layer, z);
+    };
+    const auto layer_of = [&](int32_t y) {
+      return static_cast<int32_t>(std::floor((y - shape.origin_y) / double{1} / shape.cell));
+    };
+    if (is_air(layer_of(a.y))) return true;
+    const auto [cx, cz] = std::pair{a.x >> kUnitBits, a.z >> kUnitBits};
+    const auto tile = data_.tile_levels(cx >> 6, cz >> 6);
+    for (uint32_t i = tile.first; i < tile.last; ++i) {
+      const GroundLevel level = ground_level(data_, i, avatar_class_);
+      if (level.zone == nullptr || !level.is_legal(cx & 63, cz & 63)) continue;
+      const int32_t feet =
+          level.view.feet(cx & 63, cz & 63, a.x & (kUnitsPerCell - 1), a.z & (kUnitsPerCell - 1));
+      if (feet > a.y) continue;
+      for (int32_t layer = layer_of(a.y);; ++layer) {
+        if (layer * shape.cell + shape.origin_y > feet + height_) break;
+        if (is_air(layer)) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  const WorldData& data_;
+  int32_t avatar_class_;
+  double height_;  // [mm]
+  AirBody body_;
+};
+
 }  // namespace
 
 CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
@@ -82,11 +132,19 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
   const WorldData& data = *world.data();
   const double unit = data.summary.cell / kUnitsPerCell;
 
+  std::vector<AirCheck> air;
+  for (size_t c = 0; c < data.summary.classes.size(); ++c) {
+    air.emplace_back(data, static_cast<int32_t>(c));
+  }
   std::atomic<uint64_t> wall_entries{0}, overlaps{0};
   parallel_ranges(bodies.size(), 1024, workers, [&](size_t begin, size_t end) {
     uint64_t found = 0;
     for (size_t i = begin; i < end; ++i) {
       const CheckedBody& a = bodies[i];
+      if (a.flies) {
+        found += air[static_cast<size_t>(a.avatar_class)].allows(a) ? 0 : 1;
+        continue;
+      }
       const GroundLevel level = ground_level(data, a.level, a.avatar_class);
       const auto [cx, cz] = std::pair{a.x >> kUnitBits, a.z >> kUnitBits};
       const auto tile = data.tile_levels(cx >> 6, cz >> 6);
@@ -121,7 +179,9 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
   const auto clash = [&](const Entry& a, const Entry& b) {
     const double dx = a.x - b.x, dz = a.z - b.z;
     const double reach = a.radius + b.radius - 1e-9;
-    return dx * dx + dz * dz < reach * reach && a.y < b.y + b.height && b.y < a.y + a.height;
+    // One may be exactly over the other.
+    const bool level = a.y < b.y + b.height - 1e-9 && b.y < a.y + a.height - 1e-9;
+    return dx * dx + dz * dz < reach * reach && level;
   };
   parallel_ranges(entries.size(), 1024, workers, [&](size_t begin, size_t end) {
     uint64_t found = 0;

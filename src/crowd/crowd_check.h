@@ -18,6 +18,7 @@ struct CheckedBody {
   uint32_t level = 0;
   int32_t avatar_class = 0;
   double radius = 0, height = 0;  // [m]
+  bool flies = false;             // it is in the air, or between the ground and the air
 };
 
 /// `obstacles`: what nobody may be in, a body with the radius of its class, from its step up.

@@ -39,7 +39,8 @@ bool clash(const Body& a, const Body& at_a, const Body& b, const Body& at_b) {
 
 // On its last leg, and not there yet?
 bool is_bound(const Body& body) {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven;
+  constexpr uint8_t kAll =
+      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven | Body::kFlying;
   // A region has room for many.
   return body.target == 0 && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
@@ -49,7 +50,7 @@ int32_t cells_of(float look) { return static_cast<int32_t>(look) / kUnitsPerCell
 
 // Bound for a corner, not for its goal yet?
 bool turns_corner(const Body& body) {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven;
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven | Body::kFlying;
   return (body.flags & kAll) == Body::kHasGoal;
 }
 
@@ -141,7 +142,7 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
     const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
-      if (b.has(Body::kDriven)) continue;
+      if (b.has(Body::kDriven) || b.has(Body::kFlying)) continue;
       b.wish = b.has(Body::kHasGoal)
                    ? steer::wish_towards(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z),
                                          b.speed, config_.units.dt, turn(b))
@@ -388,6 +389,10 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
   Body& body = bodies_[i];
   Body& place = spare_[i];
   place.round = 0;
+  if (body.has(Body::kFlying)) {
+    body.state = Body::kShut;
+    return;
+  }
   Contest contest;
   contest.body = i;
   contest.first = static_cast<uint32_t>(worker.others.size());
@@ -537,6 +542,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     EngineCounts here;
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
+      if (b.has(Body::kFlying)) continue;
       const Plane way = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
       const Body& place = spare_[i];
       const bool is_alone = b.state == Body::kFree || b.state == Body::kShut;

@@ -69,12 +69,14 @@ void Crowd::State::find_stuck() {
   looked_at.resize(generation.size(), kNeverLooked);
   const double least = kStuck / unit;
   for (const Body& body : engine.bodies()) {
-    auto& [x, z] = looked_at[body.slot];
+    auto& [x, z, y] = looked_at[body.slot];
     const double dx = double{1} * body.x - x, dz = double{1} * body.z - z;
+    const double dy = (double{1} * body.y - y) * 1e-3 / unit;
     const bool walks = body.has(Body::kHasGoal) && !body.has(Body::kArrived);
-    if (walks && dx * dx + dz * dz < least * least) stuck.push_back(id_of(body.slot));
+    if (walks && dx * dx + dy * dy + dz * dz < least * least) stuck.push_back(id_of(body.slot));
     x = body.x;
     z = body.z;
+    y = body.y;
   }
   std::sort(stuck.begin(), stuck.end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
 }

@@ -84,7 +84,8 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
                                       std::vector<AvatarId>* in_their_way) {
   if (in_their_way != nullptr) in_their_way->clear();
   if (slots.empty()) return 0;
-  const auto found = obstacles.in_the_way(slots, engine.bodies(), config.workers);
+  auto found = obstacles.in_the_way(slots, engine.bodies(), config.workers);
+  if (!flights.empty()) add_flyers_in_the_way(slots, found);
   size_t waiting = 0;
   std::vector<uint32_t> settled;
   for (const uint32_t slot : slots) {
@@ -120,6 +121,7 @@ void Crowd::State::ground_changed() {
   for (const auto& parts : classes) {
     if (parts) parts->standing.reset();
   }
+  tell_flyers_of_obstacles();
 }
 
 void Crowd::State::tell_ways(uint32_t slot) {
@@ -176,7 +178,7 @@ void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
   const std::span<Body> bodies = engine.bodies();
   parallel_ranges(bodies.size(), 4096, config.workers, [&](size_t begin, size_t end) {
     for (Body& body : bodies.subspan(begin, end - begin)) {
-      if (!body.has(Body::kHasGoal) || body.has(Body::kLost)) continue;
+      if (!body.has(Body::kHasGoal) || body.has(Body::kLost) || body.has(Body::kFlying)) continue;
       const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const PlanBox& box) {
         return leads_through(body, routes[body.slot], box);
       });

@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x33305744574f5243;  // "CROWDW03"
+constexpr uint64_t kMagic = 0x34305744574f5243;  // "CROWDW04"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -27,9 +27,10 @@ struct Head {
   uint64_t bodies = 0, slots = 0, free_slots = 0;
   uint64_t obstacles = 0, corners = 0, free_obstacles = 0;
   uint64_t target_values = 0;  // doubles
+  uint64_t flights = 0;        // by slot, or none
   int32_t rounds = 0, ways = 0, patient = 0, flows_are_old = 0;
 };
-static_assert(sizeof(Head) == 17 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 18 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
@@ -99,7 +100,8 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
 uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
-         head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 + 8;
+         head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
+         head.flights * sizeof(Flight) + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -153,8 +155,20 @@ bool is_sound(const Body& b, const WorldData& data) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !in_grid(data, b.point()) || b.level >= data.level_count) return false;
+  if (b.has(Body::kFlying)) return true;  // it has no level; is_sound of its flight
   const auto tile = data.tile_levels(b.x >> (kUnitBits + 6), b.z >> (kUnitBits + 6));
   return b.level >= tile.first && b.level < tile.last;
+}
+
+bool is_sound(const Flight& flight, const Body& body, uint32_t levels) {
+  const bool finite = std::isfinite(flight.rise + flight.wish_up + flight.waited);
+  const bool counts = flight.count <= Flight::kPoints && flight.next <= flight.count &&
+                      (flight.count == 0 || flight.next < flight.count);
+  const bool has_way = !body.has(Body::kFlying) || !body.has(Body::kHasGoal) ||
+                       body.has(Body::kLost) || flight.count > 0;
+  const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
+  return finite && counts && has_way && goal && flight.port_low <= flight.port_high &&
+         (flight.in_port == 0 || flight.port_level < levels);
 }
 
 // Targets as numbers: how many prisms, of each how many corners, low, high and the corners.
@@ -213,6 +227,7 @@ std::vector<uint8_t> Crowd::save() const {
   head.free_obstacles = s.obstacles.free_slots().size();
   const std::vector<double> targets = values_of(s.targets);
   head.target_values = targets.size();
+  head.flights = s.flights.size();
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put(out, &head, 1);
@@ -224,6 +239,7 @@ std::vector<uint8_t> Crowd::save() const {
   put(out, corners.data(), head.corners);
   put(out, s.obstacles.free_slots().data(), head.free_obstacles);
   put(out, targets.data(), targets.size());
+  put(out, s.flights.data(), s.flights.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put(out, &sum, 1);
   return out;
@@ -251,7 +267,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   constexpr uint64_t kMost = uint64_t{1} << 32;
   if (head.bodies >= kMost || head.slots >= kMost || head.free_slots >= kMost ||
       head.obstacles >= kMost || head.corners >= kMost || head.free_obstacles >= kMost ||
-      head.target_values >= kMost || saved.size() != size_of(head)) {
+      head.target_values >= kMost || (head.flights != 0 && head.flights != head.slots) ||
+      saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
   }
   uint64_t sum = 0;
@@ -281,6 +298,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   take(free_obstacles.data(), free_obstacles.size());
   std::vector<double> targets(head.target_values);
   take(targets.data(), targets.size());
+  std::vector<Flight> flights(head.flights);
+  take(flights.data(), flights.size());
 
   s.where.assign(head.slots, kNobody);
   std::vector<bool> taken(head.slots, false);
@@ -294,6 +313,9 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   for (const Body& body : bodies) {
     sound = sound && is_sound(body, data) && take_slot(body.slot) &&
             (!body.has(Body::kHasGoal) || is_sound(s.routes[body.slot], data.level_count));
+    const bool flies = body.has(Body::kFlying);
+    sound =
+        sound && (flights.empty() ? !flies : is_sound(flights[body.slot], body, data.level_count));
   }
   auto all = obstacles_of(obstacles, corners);
   sound = sound && all && s.obstacles.restore(std::move(*all), std::move(free_obstacles));
@@ -306,6 +328,15 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();
     s.make_room(body);
     s.engine.add(body);
+  }
+  if (!flights.empty()) s.flights = std::move(flights);
+  for (const Body& body : bodies) {
+    const FlyerAir* air = s.air_of(body);
+    const bool flies = body.has(Body::kFlying);
+    if (flies && (air == nullptr || (!air->is_legal({body.x, body.z, body.y}) &&
+                                     s.flights[body.slot].in_port == 0))) {
+      return bad("is not sound; save the crowd again");
+    }
   }
   s.where_is_old = true;
   s.flows_are_old = head.flows_are_old != 0;  // opening a class found them as they are now

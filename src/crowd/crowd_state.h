@@ -14,19 +14,23 @@
 #include "crowd/crowd_engine.h"
 #include "crowd/crowd_ground.h"
 #include "crowd/detours.h"
+#include "crowd/flight.h"
+#include "crowd/flyer_air.h"
+#include "crowd/flyer_engine.h"
 #include "crowd/obstacle_book.h"
 #include "crowd/placement.h"
 #include "crowd/routes.h"
 #include "crowd/target.h"
 #include "path/flow_points.h"
 #include "throng/crowd.h"
+#include "throng/flight.h"
 #include "throng/live_ground.h"
 
 /// What a crowd holds.
 namespace throng {
 
 inline constexpr uint32_t kNobody = UINT32_MAX;
-inline constexpr std::array<int32_t, 2> kNeverLooked = {INT32_MIN / 2, 0};
+inline constexpr std::array<int32_t, 3> kNeverLooked = {INT32_MIN / 2, 0, 0};
 
 // What a class needs that somebody is of.
 struct ClassParts {
@@ -37,15 +41,21 @@ struct ClassParts {
   std::vector<Path> paths;
   std::vector<DetourScratch> detours;
   std::vector<FlowPoints> flows;  // by target
+  // Of a class that flies, in a world with air.
+  std::optional<FlyerAir> air;
+  std::vector<FlightFinder> flight_finders;  // one a worker
+  std::vector<FlightPath> flights;
+  std::vector<std::vector<Place>> landings;  // by target: where to land
 };
 
 struct Crowd::State {
   World world;
   CrowdConfig config;
   CrowdEngine engine;
+  FlyerEngine flyers;
   std::vector<std::unique_ptr<ClassParts>> classes;
   double unit = 0;  // [m]
-  int32_t widest = 0, narrowest = INT32_MAX;
+  int32_t widest = 0, narrowest = INT32_MAX, tallest = 0;
   float fastest = 0;
   int32_t sub_steps = 1;
   uint64_t step = 0, sub_step = 0;
@@ -56,13 +66,14 @@ struct Crowd::State {
   // By slot.
   std::vector<uint32_t> generation;
   std::vector<Route> routes;
+  std::vector<Flight> flights;  // empty, if no class that is in use flies
   std::vector<uint32_t> free_slots;
   mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
   mutable bool where_is_old = false;
   // Events: what is watched, and by slot where each was.
   std::vector<Target> watched;
   std::vector<uint64_t> inside;                   // a bit for each watched area
-  std::vector<std::array<int32_t, 2>> looked_at;  // [units]
+  std::vector<std::array<int32_t, 3>> looked_at;  // [units, mm]
   std::vector<AreaEntry> entered;
   std::vector<AvatarId> stuck;
   std::vector<Target> targets;  // TargetId less one
@@ -70,10 +81,12 @@ struct Crowd::State {
   std::vector<AvatarId> arrived, stranded, in_the_way;
   std::mutex stranding;
 
-  State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine)
+  State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine,
+        FlyerEngine&& a_flyer_engine)
       : world(a_world),
         config(a_config),
         engine(std::move(an_engine)),
+        flyers(std::move(a_flyer_engine)),
         obstacles(a_world, a_world.data()->summary.classes.size()) {}
 
   [[nodiscard]] const AvatarClass& body_class(int32_t number) const {
@@ -107,6 +120,34 @@ struct Crowd::State {
   void find_stuck();
   [[nodiscard]] AvatarState state_of(const Body& body) const;
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
+  void strand(Body& body);
+
+  // crowd_flights.cpp
+  /// What a class needs beside its ground if it flies, and the world has air.
+  Result<void> open_air(int32_t number, ClassParts& parts, Context& context) const;
+  [[nodiscard]] const FlyerAir* air_of(const Body& body) const {
+    const auto& air = classes[body.avatar_class]->air;
+    return air ? &*air : nullptr;
+  }
+  /// Puts a body into the air, or not: it may not be there.
+  [[nodiscard]] bool put_in_air(Body& body, const Vec3d& feet) const;
+  /// Of a body that flies or could: a goal of any kind. False: it is none.
+  bool set_goal_of_flyer(Body& body, const Place& goal);
+  /// What one who can fly does on foot before he walks. True: he need not ask for a way to walk.
+  bool plan_on_foot(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
+  bool take_off(Body& body, Flight& flight) const;
+  void look_for_room(Body& body, const Flight& flight) const;
+  [[nodiscard]] bool is_clear_of_obstacles(const Body& body, const AirSpot& from,
+                                           const AirSpot& to) const;
+  bool find_way_over(const Body& body, const AirSpot& from, const AirSpot& to,
+                     std::vector<AirSpot>& points) const;
+  void plan_flight(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
+  [[nodiscard]] bool find_flight(const Body& body, Flight& flight, int32_t worker) const;
+  void fly(EngineCounts& counts, std::atomic<uint64_t>& planned);
+  void tell_flyers_of_obstacles();
+  /// Who flies where some obstacles would come or pass, beside those who stand there, in order.
+  void add_flyers_in_the_way(std::span<const uint32_t> slots,
+                             std::vector<std::pair<uint32_t, uint32_t>>& found) const;
 };
 
 }  // namespace throng

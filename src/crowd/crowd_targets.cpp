@@ -36,6 +36,7 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
     s.targets.pop_back();
     for (const auto& parts : s.classes) {
       if (parts && parts->flows.size() > s.targets.size()) parts->flows.pop_back();
+      if (parts && parts->landings.size() > s.targets.size()) parts->landings.pop_back();
     }
     return ok.error();
   }
@@ -60,6 +61,7 @@ Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
     auto flow = FlowPoints::make(parts.lives[0], goals, FlowPoints::kNever, context);
     if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
     parts.flows.push_back(std::move(*flow));
+    if (parts.air) parts.landings.push_back(goals);
   }
   return {};
 }
@@ -75,7 +77,8 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
     body->target = target;
     body->aim_x = body->x;
     body->aim_z = body->z;
-    body->flags = Body::kHasGoal | Body::kLost;
+    if (s.air_of(*body) != nullptr) s.set_goal_of_flyer(*body, {});
+    body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kLost;
   }
 }
 
@@ -84,7 +87,9 @@ double Crowd::distance(AvatarId id, TargetId target) const {
   THRONG_ASSERT(target >= 1 && target <= s.targets.size());
   s.renew_flows();
   const Body* body = s.body(id);
-  if (body == nullptr) return std::numeric_limits<double>::infinity();
+  if (body == nullptr || body->has(Body::kFlying)) {
+    return std::numeric_limits<double>::infinity();
+  }
   ClassParts& parts = *s.classes[body->avatar_class];
   const Place place = place_of(*s.world.data(), *body, {body->x, body->z, body->level});
   return parts.flows[target - 1u].distance(parts.lives[0], place);
@@ -140,6 +145,7 @@ void Crowd::State::renew_flows() {
   for (size_t c = 0; c < classes.size(); ++c) {
     if (!classes[c] || classes[c]->flows.empty()) continue;
     classes[c]->flows.clear();
+    classes[c]->landings.clear();
     const auto ok = find_flows(static_cast<int32_t>(c), context);
     THRONG_ASSERT(ok);  // It was possible before, and nobody cancels it.
   }

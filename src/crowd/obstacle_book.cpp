@@ -162,6 +162,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleBook::in_the_way(std::span<co
   parallel_ranges(bodies.size(), 4096, workers, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Body& body = bodies[i];
+      if (body.has(Body::kFlying)) continue;
       const std::vector<uint32_t>& list = list_of[body.avatar_class];
       if (list.empty() || list[body.level] == 0) continue;
       for (const Asked& asked : lists[list[body.level] - 1]) {

@@ -107,6 +107,7 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
 }
 
 FlightSummary FlightFinder::summary() const { return shared_->summary; }
+const FlightSpace& FlightFinder::space() const { return shared_->space; }
 
 bool FlightFinder::is_legal(Vec3d feet) const { return shared_->ends().in_air(feet).has_value(); }
 

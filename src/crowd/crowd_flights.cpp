@@ -1,0 +1,413 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "crowd/crowd_state.h"
+#include "throng/crowd.h"
+#include "world/place.h"
+
+// What a crowd does about those who fly: when they take off, how they find and follow their ways,
+// and when they are on the ground again. docs/design/012-flyers.md.
+namespace throng {
+namespace {
+
+constexpr double kLook = 3;               // [m] to a bend, to see whether the next one is open
+constexpr double kAtPort = 0.3;           // [m] from where it wanted to take off
+constexpr float kTries = 10;              // [s] there, before it gives up
+constexpr double kReach = 0.5;            // [m] from feet to the ground that is theirs
+constexpr uint64_t kLookEvery = 16;       // steps
+constexpr float kWaits = 2;               // [s] over its landing place, before it looks for another
+constexpr uint64_t kRooms = 0x726f6f6d;   // stream of chance
+constexpr uint64_t kMostBoxes = 1 << 16;  // that a search may look at; then it goes over all
+constexpr int32_t kThere = 20;            // [units, mm] as near to a bend as matters
+
+AirSpot here(const Body& body) { return {body.x, body.z, body.y}; }
+
+void turn_to(Body& body, Flight& flight) {
+  const AirSpot& point = flight.points[flight.next];
+  body.aim_x = point.x;
+  body.aim_z = point.z;
+  flight.aim_y = point.y;
+  body.flags =
+      static_cast<uint8_t>(flight.is_last() ? body.flags | Body::kLast : body.flags & ~Body::kLast);
+}
+
+void set_way(Flight& flight, std::span<const AirSpot> points, bool lands) {
+  flight.count = static_cast<uint8_t>(std::min(points.size(), Flight::kPoints));
+  flight.next = 0;
+  flight.whole = points.size() <= Flight::kPoints ? 1 : 0;
+  flight.lands = lands ? 1 : 0;
+  std::copy_n(points.begin(), flight.count, flight.points.begin());
+}
+
+}  // namespace
+
+Result<void> Crowd::State::open_air(int32_t number, ClassParts& parts, Context& context) const {
+  if (!body_class(number).flies || world.data()->air == nullptr) return {};
+  auto finder =
+      FlightFinder::make(world, {.avatar_class = number, .workers = config.workers}, context);
+  if (!finder) return finder.error();
+  parts.flight_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
+  parts.flights.resize(parts.flight_finders.size());
+  parts.air.emplace(world, parts.flight_finders[0].space(), parts.ground, number);
+  return {};
+}
+
+bool Crowd::State::put_in_air(Body& body, const Vec3d& feet) const {
+  const FlyerAir* air = air_of(body);
+  if (air == nullptr || !air->in_grid(feet)) return false;
+  const AirSpot spot = air->spot(feet);
+  if (!air->is_legal(spot) || flyers.is_blocked(body, spot)) return false;
+  body.x = spot.x;
+  body.z = spot.z;
+  body.y = spot.y;
+  body.level = 0;
+  body.flags = Body::kFlying;
+  return true;
+}
+
+bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
+  const bool flies = body.has(Body::kFlying);
+  body.flags &= Body::kFlying;
+  Flight& flight = flights[body.slot];
+  flight.waited = 0;
+  flight.descends = 0;
+  flight.to_port = 0;
+  flight.lands = 0;
+  flight.count = 0;
+  const FlyerAir& air = *air_of(body);
+  if (goal.level1 == kAirLevel1) {
+    if (!air.in_grid(goal.position)) return false;
+    flight.goal = air.spot(goal.position);
+    flight.goal_level = Flight::kInAir;
+  } else {
+    const auto point = ground_point(*world.data(), goal);
+    if (!point) return false;
+    const CrowdGround& ground = classes[body.avatar_class]->ground;
+    flight.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), 0};
+    flight.goal_level = goal.level1 - 1;
+    flight.goal.y = ground.feet(flight.goal_level, *point);
+    routes[body.slot] = {};
+    routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
+  }
+  body.aim_x = flight.goal.x;
+  body.aim_z = flight.goal.z;
+  flight.aim_y = flight.goal.y;
+  const bool walks = !flies && flight.goal_level != Flight::kInAir;
+  body.flags |= Body::kHasGoal;
+  body.flags |= config.ways == CrowdWays::kStraight && walks ? Body::kLast : Body::kLost;
+  return true;
+}
+
+void Crowd::State::strand(Body& body) {
+  body.flags &= Body::kFlying;
+  const std::lock_guard lock(stranding);
+  stranded.push_back(id_of(body.slot));
+}
+
+bool Crowd::State::take_off(Body& body, Flight& flight) const {
+  const auto high = air_of(body)->take_off(here(body));
+  if (!high) return false;
+  flight.in_port = 1;
+  flight.descends = 0;
+  flight.port_low = body.y;
+  flight.port_high = *high;
+  flight.port_level = body.level;
+  flight.rise = 0;
+  flight.to_port = 0;
+  flight.lands = 0;
+  flight.count = 0;
+  body.turn = 0;
+  const bool has_goal = body.has(Body::kHasGoal);
+  body.flags &= Body::kDriven | Body::kHasGoal;
+  body.flags |= Body::kFlying;
+  if (has_goal) body.flags |= Body::kLost;
+  return true;
+}
+
+bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
+                                std::atomic<uint64_t>& planned) {
+  if (body.has(Body::kDriven)) {
+    if (flight.wish_up > 0) take_off(body, flight);
+    return true;
+  }
+  if (flight.to_port != 0 && body.has(Body::kLast)) {
+    const double dx = static_cast<double>(body.aim_x) - body.x;
+    const double dz = static_cast<double>(body.aim_z) - body.z;
+    const double near = kAtPort / unit;
+    if (dx * dx + dz * dz < near * near) {
+      if (take_off(body, flight)) return true;
+      flight.waited += static_cast<float>(config.dt / sub_steps);
+      if (flight.waited > kTries) {
+        strand(body);
+        return true;
+      }
+    }
+  }
+  if (!body.has(Body::kLost) || body.target != 0) return false;
+  const bool is_straight = config.ways == CrowdWays::kStraight;
+  const bool lands = flight.goal_level != Flight::kInAir;
+  if (is_straight && lands) return false;
+  if (take_off(body, flight)) {
+    // Into the air from where it stands, unless it is shorter on foot.
+    if (!lands) return true;
+    flight.in_port = 0;
+    body.flags = Body::kHasGoal | Body::kLost;
+  } else if (is_straight) {
+    strand(body);
+    return true;
+  }
+  ClassParts& parts = *classes[body.avatar_class];
+  const auto w = static_cast<size_t>(worker);
+  FlightPath& path = parts.flights[w];
+  parts.flight_finders[w].find({.from = parts.air->metres(here(body)),
+                                .to = parts.air->metres(flight.goal),
+                                .reach = kReach,
+                                .max_nodes = kMostBoxes},
+                               path);
+  flight.to_port = 0;
+  if (lands) routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
+  if (path.end != PathEnd::kReached) return false;  // as those who only walk
+  const auto walked =
+      static_cast<size_t>(std::find_if(path.legs.begin(), path.legs.end(),
+                                       [](LegKind leg) { return leg != LegKind::kWalk; }) -
+                          path.legs.begin());
+  if (walked == path.legs.size()) return false;
+  if (walked == 0 && take_off(body, flight)) {
+    planned.fetch_add(1, std::memory_order_relaxed);
+    return true;
+  }
+  const Place port = world.find_place(body.avatar_class, path.points[walked], kReach);
+  if (!port) return false;
+  routes[body.slot].goal = spot_of(*world.data(), port);
+  flight.to_port = 1;
+  return false;
+}
+
+// Is a straight way open, as far as obstacles go that are up now?
+bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirSpot& from,
+                                         const AirSpot& to) const {
+  if (!flyers.has_obstacles()) return true;
+  const double dx = static_cast<double>(to.x) - from.x, dz = static_cast<double>(to.z) - from.z;
+  const double dy = static_cast<double>(to.y) - from.y;
+  const double length = std::sqrt((dx * dx + dz * dz) * unit * unit + dy * dy * 1e-6);
+  const auto steps = static_cast<int32_t>(length / (body.radius * unit)) + 1;
+  for (int32_t i = 1; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    const AirSpot spot{from.x + static_cast<int32_t>(t * dx), from.z + static_cast<int32_t>(t * dz),
+                       from.y + static_cast<int32_t>(t * dy)};
+    if (flyers.is_blocked(body, spot)) return false;
+  }
+  return true;
+}
+
+// Straight up, across, and straight down: no search, but hardly ever short.
+bool Crowd::State::find_way_over(const Body& body, const AirSpot& from, const AirSpot& to,
+                                 std::vector<AirSpot>& points) const {
+  constexpr int32_t kRise = 3000;  // [mm] more at a time
+  const FlyerAir& air = *air_of(body);
+  const auto is_open = [&](const AirSpot& a, const AirSpot& b) {
+    return air.sees(a, b) && is_clear_of_obstacles(body, a, b);
+  };
+  const int32_t ceiling = air.ceiling() - 1;
+  for (int32_t y = std::max(from.y, to.y);; y = std::min(y + kRise, ceiling)) {
+    const AirSpot up{from.x, from.z, y}, down{to.x, to.z, y};
+    if (is_open(from, up) && is_open(up, down) && is_open(down, to)) {
+      points.assign({up, down, to});
+      return true;
+    }
+    if (y >= ceiling) return false;
+  }
+}
+
+// A way from where a flyer is to its goal. False: there is none.
+bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker) const {
+  ClassParts& parts = *classes[body.avatar_class];
+  const FlyerAir& air = *parts.air;
+  AirSpot from = here(body), to = flight.goal;
+  if (flight.in_port != 0) from.y = std::max(from.y, flight.port_high);
+  const bool lands = flight.goal_level != Flight::kInAir;
+  const auto high = lands ? air.take_off(to) : std::nullopt;
+  if (high) to.y = *high;
+  const bool ends_in_air = !lands || high;
+  const bool is_straight = config.ways == CrowdWays::kStraight;
+  if (ends_in_air &&
+      (is_straight || (air.sees(from, to) && is_clear_of_obstacles(body, from, to)))) {
+    set_way(flight, std::span(&to, 1), lands);
+    return true;
+  }
+  if (config.ways == CrowdWays::kStraight) return false;
+  const auto w = static_cast<size_t>(worker);
+  FlightPath& path = parts.flights[w];
+  parts.flight_finders[w].find({.from = air.metres(from),
+                                .to = air.metres(flight.goal),
+                                .reach = kReach,
+                                .max_nodes = kMostBoxes},
+                               path);
+  std::vector<AirSpot> points;
+  if (path.end == PathEnd::kReached) {
+    // What is walked after the landing is asked for then.
+    bool walks_then = false;
+    for (size_t i = 0; i < path.legs.size() && !walks_then; ++i) {
+      if (path.legs[i] == LegKind::kFly) points.push_back(air.spot(path.points[i + 1]));
+      walks_then = path.legs[i] == LegKind::kLand;
+    }
+    if (points.empty()) points.push_back(from);
+    // The finder knows no obstacles. Where one is on its way, there may be one over it.
+    std::vector<AirSpot> over;
+    AirSpot at = from;
+    const bool clear = std::all_of(points.begin(), points.end(), [&](const AirSpot& next) {
+      const AirSpot begin = std::exchange(at, next);
+      return is_clear_of_obstacles(body, begin, next);
+    });
+    const bool goes_over = !clear && ends_in_air && find_way_over(body, from, to, over);
+    set_way(flight, goes_over ? over : points, lands);
+    return true;
+  }
+  if (path.end != PathEnd::kGaveUp || !ends_in_air || !find_way_over(body, from, to, points)) {
+    return false;
+  }
+  set_way(flight, points, lands);
+  return true;
+}
+
+// Others are where it would land: it looks elsewhere, the farther away the longer it has waited.
+void Crowd::State::look_for_room(Body& body, const Flight& flight) const {
+  constexpr double kHalf = 0.70710678;
+  constexpr std::array<std::array<double, 2>, 8> kSides = {{{1, 0},
+                                                            {kHalf, kHalf},
+                                                            {0, 1},
+                                                            {-kHalf, kHalf},
+                                                            {-1, 0},
+                                                            {-kHalf, -kHalf},
+                                                            {0, -1},
+                                                            {kHalf, -kHalf}}};
+  const FlyerAir& air = *air_of(body);
+  const AirSpot& over = flight.points[flight.next];
+  const auto window = static_cast<uint64_t>(static_cast<double>(step) * config.dt / kWaits);
+  const uint64_t side = random_below(config.seed ^ kRooms, body.slot, window, kSides.size());
+  const double far = FlyerEngine::landing_reach(flight) / unit;
+  const AirSpot there{over.x + static_cast<int32_t>(far * kSides[side][0]),
+                      over.z + static_cast<int32_t>(far * kSides[side][1]), over.y};
+  const bool sees = there.x >= 0 && there.z >= 0 && air.sees(here(body), there);
+  body.aim_x = sees ? there.x : over.x;
+  body.aim_z = sees ? there.z : over.z;
+}
+
+void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
+                               std::atomic<uint64_t>& planned) {
+  if (!body.has(Body::kHasGoal)) return;
+  const FlyerAir& air = *air_of(body);
+  const AirSpot at = here(body);
+  if (!body.has(Body::kLost) && flight.in_port == 0) {
+    const double dx = (static_cast<double>(body.aim_x) - body.x) * unit;
+    const double dz = (static_cast<double>(body.aim_z) - body.z) * unit;
+    const double dy = (static_cast<double>(flight.aim_y) - body.y) * 1e-3;
+    const bool is_near = dx * dx + dy * dy + dz * dz < kLook * kLook;
+    if (is_near && !flight.is_last()) {
+      const bool at_end = flight.next + 1 == flight.count;
+      const AirSpot& aim = flight.points[flight.next];
+      const bool there = std::abs(aim.x - at.x) < kThere && std::abs(aim.z - at.z) < kThere &&
+                         std::abs(aim.y - at.y) < kThere;
+      if (at_end) {
+        if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kLost;
+      } else if (there || air.sees(at, flight.points[flight.next + 1u])) {
+        ++flight.next;
+        turn_to(body, flight);
+      }
+    }
+    const bool looks = (sub_step + body.slot) % kLookEvery == 0;
+    if (looks && config.ways == CrowdWays::kPaths) {
+      const AirSpot& aim = flight.points[flight.next];
+      if (!air.sees(at, aim) || !is_clear_of_obstacles(body, at, aim)) body.flags |= Body::kLost;
+    }
+    if (flight.lands != 0 && flight.is_last() && flight.waited > kWaits)
+      look_for_room(body, flight);
+  }
+  if (!body.has(Body::kLost)) return;
+  planned.fetch_add(1, std::memory_order_relaxed);
+  if (body.target != 0) {
+    // The nearest place of its region, in a straight line.
+    const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
+    double least = HUGE_VAL;
+    for (const Place& place : places) {
+      const AirSpot spot = air.spot(place.position);
+      const double dx = static_cast<double>(spot.x) - at.x, dz = static_cast<double>(spot.z) - at.z;
+      const double dy = (static_cast<double>(spot.y) - at.y) * 1e-3 / unit;
+      const double square = dx * dx + dy * dy + dz * dz;
+      if (square >= least) continue;
+      least = square;
+      flight.goal = spot;
+      flight.goal_level = place.level1 - 1;
+    }
+    if (places.empty()) return strand(body);
+  }
+  if (!find_flight(body, flight, worker)) return strand(body);
+  body.flags &= static_cast<uint8_t>(~Body::kLost);
+  turn_to(body, flight);
+}
+
+// The step of those who are in the air; the others have made theirs.
+void Crowd::State::fly(EngineCounts& counts, std::atomic<uint64_t>& planned) {
+  flyers.step(
+      sub_step, engine.bodies(), flights,
+      [&](Body& body, Flight& flight, int32_t worker) {
+        plan_flight(body, flight, worker, planned);
+      },
+      counts);
+  for (const uint32_t slot : flyers.arrived()) arrived.push_back(id_of(slot));
+  for (const uint32_t i : flyers.landed()) {
+    Body& body = engine.bodies()[i];
+    Flight& flight = flights[body.slot];
+    body.level = flight.port_level;
+    body.velocity = {};
+    body.turn = 0;
+    flight.in_port = 0;
+    flight.descends = 0;
+    flight.lands = 0;
+    flight.rise = 0;
+    const bool has_goal = body.has(Body::kHasGoal);
+    body.flags &= Body::kDriven | Body::kHasGoal;
+    if (!has_goal) continue;
+    const bool is_straight = config.ways == CrowdWays::kStraight;
+    body.flags |= is_straight ? Body::kLast : Body::kLost;
+    body.aim_x = flight.goal.x;
+    body.aim_z = flight.goal.z;
+  }
+}
+
+void Crowd::State::add_flyers_in_the_way(std::span<const uint32_t> slots,
+                                         std::vector<std::pair<uint32_t, uint32_t>>& found) const {
+  const Vec3d& origin = world.data()->summary.origin;
+  const std::span<const Body> bodies = engine.bodies();
+  for (const uint32_t slot : slots) {
+    const CrowdObstacle& obstacle = obstacles.all()[slot];
+    if (!obstacle.waits()) continue;
+    const AirObstacle passed(
+        obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted, origin, unit);
+    for (uint32_t i = 0; i < bodies.size(); ++i) {
+      const Body& body = bodies[i];
+      if (!body.has(Body::kFlying)) continue;
+      const double radius = body_class(body.avatar_class).radius;
+      if (passed.holds(here(body), radius, body.height)) found.emplace_back(slot, i);
+    }
+  }
+  std::sort(found.begin(), found.end());
+}
+
+void Crowd::State::tell_flyers_of_obstacles() {
+  std::vector<AirObstacle> all;
+  const Vec3d& origin = world.data()->summary.origin;
+  for (const CrowdObstacle& obstacle : obstacles.all()) {
+    if (obstacle.exists && obstacle.is_up) all.emplace_back(obstacle.place, origin, unit);
+  }
+  flyers.set_obstacles(std::move(all));
+}
+
+}  // namespace throng

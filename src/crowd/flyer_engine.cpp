@@ -1,0 +1,576 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/flyer_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/random.h"
+
+// docs/design/012-flyers.md. Those who walk have made their step clear of where all flyers are;
+// now these go, clear of where everybody is.
+namespace throng {
+namespace {
+
+using steer::Space;
+
+constexpr size_t kGrain = 128;           // flyers that are worth handing to another thread
+constexpr float kThere = 0.3f;           // [m] from its goal a body has arrived
+constexpr uint64_t kRolls = 0x726f6c6c;  // stream of chance
+constexpr float kRoll = 2;               // [s] that one keeps to a side
+constexpr float kSlow = 2;               // [m/s] at most, up or down a port
+constexpr float kPressed = 2;            // [s] that one who lands waits for who is below him
+constexpr float kSpread = 0.5f;          // [m/s] by which one who waits lands farther away
+constexpr float kFarthest = 15;          // [m] from where one would land, at most
+constexpr int32_t kLowOver = 1500;       // [mm] over the ground's air one may begin to land
+constexpr std::array<float, 3> kShorterBy = {0.5f, 0.25f, 0.1f};
+
+bool overlap(int32_t y, int32_t height, int32_t other_y, int32_t other_height) {
+  return y < other_y + other_height && other_y < y + height;
+}
+
+bool clash(const Body& a, const AirSpot& at_a, const Body& b, const AirSpot& at_b) {
+  return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
+         overlap(at_a.y, a.height, at_b.y, b.height);
+}
+
+AirSpot spot_of(const Body& body) { return {body.x, body.z, body.y}; }
+
+}  // namespace
+
+AirObstacle::AirObstacle(const Prism& prism, const Vec3d& origin, double unit)
+    : unit_(unit),
+      x0_(HUGE_VAL),
+      z0_(HUGE_VAL),
+      x1_(-HUGE_VAL),
+      z1_(-HUGE_VAL),
+      low_(static_cast<int32_t>(std::clamp(std::floor(prism.low * 1000), -2e9, 2e9))),
+      high_(static_cast<int32_t>(std::clamp(std::ceil(prism.high * 1000), -2e9, 2e9))) {
+  double area2 = 0;
+  for (size_t i = 0; i < prism.corners.size(); ++i) {
+    const auto& [x, z] = prism.corners[i];
+    const auto& [nx, nz] = prism.corners[(i + 1) % prism.corners.size()];
+    corners_.push_back({(x - origin.x) / unit, (z - origin.z) / unit});
+    area2 += x * nz - nx * z;
+    x0_ = std::min(x0_, corners_.back()[0]);
+    z0_ = std::min(z0_, corners_.back()[1]);
+    x1_ = std::max(x1_, corners_.back()[0]);
+    z1_ = std::max(z1_, corners_.back()[1]);
+  }
+  if (area2 < 0) std::reverse(corners_.begin(), corners_.end());  // inside is on the left
+}
+
+bool AirObstacle::holds(const AirSpot& feet, double radius, int32_t height) const {
+  if (!overlap(feet.y, height, low_, high_ - low_)) return false;
+  const double reach = radius / unit_ + 2;  // and what rounding takes
+  const double x = feet.x + 0.5, z = feet.z + 0.5;
+  if (x < x0_ - reach || x > x1_ + reach || z < z0_ - reach || z > z1_ + reach) return false;
+  bool inside = true;
+  for (size_t i = 0; i < corners_.size(); ++i) {
+    const auto& [ax, az] = corners_[i];
+    const auto& [bx, bz] = corners_[(i + 1) % corners_.size()];
+    const double wx = bx - ax, wz = bz - az, px = x - ax, pz = z - az;
+    inside = inside && wx * pz - wz * px >= 0;
+    const double whole = wx * wx + wz * wz;
+    const double part = whole > 0 ? std::clamp((px * wx + pz * wz) / whole, 0.0, 1.0) : 0;
+    const double dx = px - part * wx, dz = pz - part * wz;
+    if (dx * dx + dz * dz < reach * reach) return true;
+  }
+  return inside;
+}
+
+FlyerEngine::FlyerEngine(const FlyerConfig& config, size_t classes)
+    : config_(config), classes_(classes) {
+  workers_.resize(static_cast<size_t>(worker_count(config.workers)));
+}
+
+void FlyerEngine::set_air(size_t avatar_class, const FlyerAir* air, double radius) {
+  classes_[avatar_class] = {air, radius};
+}
+
+void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) {
+  config_.units.dt = dt;
+  // Far enough to see in time who comes at full speed; and whoever could be touched, all ways.
+  const float unit = config_.units.unit;
+  const float stride = fastest * dt;
+  sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
+  const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
+  const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
+  sight_metres_ = std::max({sight_metres_, touched, high + kLowOver * 1e-3f}) + 0.01f;
+  sight_ = static_cast<int32_t>(sight_metres_ / unit) + 4;
+  grid_.fit(sight_, static_cast<int32_t>(sight_metres_ * 1000) + 4);
+}
+
+bool FlyerEngine::is_blocked(const Body& body, const AirSpot& spot) const {
+  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
+    return obstacle.holds(spot, classes_[body.avatar_class].radius, body.height);
+  });
+}
+
+void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights,
+                       const Before& before, EngineCounts& counts) {
+  arrived_.clear();
+  landed_.clear();
+  bodies_ = bodies;
+  flights_ = flights;
+  flyers_.clear();
+  flyer_of_.resize(bodies.size());
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies[i].has(Body::kFlying)) continue;
+    flyer_of_[i] = static_cast<uint32_t>(flyers_.size());
+    flyers_.push_back(static_cast<uint32_t>(i));
+  }
+  moves_.resize(flyers_.size());
+  for (Worker& worker : workers_) {
+    worker.others.clear();
+    worker.contests.clear();
+    worker.counts = {};
+  }
+  const size_t pieces = (flyers_.size() + kGrain - 1) / kGrain;
+  const auto for_flyers = [&](const auto& act) {
+    parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
+      const size_t end = std::min(flyers_.size(), (piece + 1) * kGrain);
+      for (size_t f = piece * kGrain; f < end; ++f) act(static_cast<uint32_t>(f), worker);
+    });
+  };
+  for_flyers([&](uint32_t f, int32_t worker) {
+    Body& body = bodies_[flyers_[f]];
+    Flight& flight = flights_[body.slot];
+    before(body, flight, worker);
+    wish(body, flight, step);
+  });
+  grid_.build(bodies_, flyers_);
+  for_flyers([&](uint32_t f, int32_t worker) { decide(f, workers_[static_cast<size_t>(worker)]); });
+  // By induction nobody ever touches anybody: a place that is named is clear of where all are who
+  // could touch it, and it is taken only if it is clear of what those before him named, whether or
+  // not they take it. Who walks does not move any more.
+  for (int32_t r = 1; r <= config_.rounds; ++r) {
+    const auto round = static_cast<uint8_t>(r);
+    for_contests([&](const Contest& c, const Worker& owner) {
+      Move& move = moves_[c.flyer];
+      if (move.state == Move::kUndecided && name(c, owner)) move.round = round;
+    });
+    for_contests([&](const Contest& c, const Worker& owner) {
+      Move& move = moves_[c.flyer];
+      if (move.state == Move::kUndecided && move.round == round && holds(c, owner, round, step)) {
+        move.state = Move::kDecided;
+      }
+    });
+  }
+  std::mutex adding;
+  parallel_ranges(flyers_.size(), kGrain, config_.workers, [&](size_t begin, size_t end) {
+    EngineCounts here;
+    for (size_t f = begin; f < end; ++f) settle(static_cast<uint32_t>(f), here);
+    const std::lock_guard lock(adding);
+    counts.add(here);
+  });
+  for (const Worker& worker : workers_) counts.add(worker.counts);
+  for (size_t n = 0; n < flyers_.size(); ++n) {
+    const uint32_t i = flyers_[n];
+    const Body& body = bodies_[i];
+    const Flight& flight = flights_[body.slot];
+    if (moves_[n].arrives) arrived_.push_back(body.slot);
+    if (flight.in_port != 0 && flight.descends != 0 && body.y == flight.port_low) {
+      landed_.push_back(i);
+    }
+  }
+}
+
+// What it wishes for, as if nobody were there.
+void FlyerEngine::wish(Body& body, Flight& flight, uint64_t step) const {
+  if (body.has(Body::kDriven)) {
+    flight.descends = flight.wish_up < 0 ? 1 : 0;
+    return;
+  }
+  const StepUnits& units = config_.units;
+  const auto set = [&](Space v) {
+    body.wish = {v.x, v.z};
+    flight.wish_up = v.y;
+  };
+  if (flight.in_port != 0) {
+    const int32_t to = flight.descends != 0 ? flight.port_low : flight.port_high;
+    const Space way{0, static_cast<float>(to - body.y) * 1e-3f, 0};
+    return set(steer::wish_towards(way, std::min(body.speed, kSlow), units.dt, 0, 0,
+                                   flight.descends != 0));
+  }
+  if (!body.has(Body::kHasGoal)) return set({});
+  const steer::Plane level = units.metres(body.aim_x - body.x, body.aim_z - body.z);
+  const Space way{level.x, static_cast<float>(flight.aim_y - body.y) * 1e-3f, level.z};
+  const auto window = step / static_cast<uint64_t>(std::max(1L, std::lround(kRoll / units.dt)));
+  const auto roll = static_cast<int32_t>(random_below(config_.seed ^ kRolls, body.slot, window, 3));
+  set(steer::wish_towards(way, body.speed, units.dt, body.turn, roll, body.has(Body::kLast)));
+}
+
+float FlyerEngine::landing_reach(const Flight& flight) {
+  return std::min(kSpread * flight.waited, kFarthest);
+}
+
+// Would it land, if there is ground below?
+bool FlyerEngine::wants_down(const Body& body, const Flight& flight) const {
+  if (flight.in_port != 0) return false;
+  if (body.has(Body::kDriven)) return flight.wish_up < 0;
+  if (!body.has(Body::kHasGoal) || flight.lands == 0 || !flight.is_last()) return false;
+  const AirSpot& over = flight.points[flight.next];
+  const steer::Plane off = config_.units.metres(over.x - body.x, over.z - body.z);
+  const float reach = landing_reach(flight) + kThere;
+  return off.x * off.x + off.z * off.z < reach * reach;
+}
+
+// Appends whom the flyer could touch to `others`, and takes in the nearest, by which it steers.
+// `column_is_clear`: nobody is in what it would pass down to the ground.
+void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situation,
+                        bool& column_is_clear, const FlyerAir::Port* port) const {
+  const uint32_t i = flyers_[f];
+  const Body& body = bodies_[i];
+  const StepUnits& units = config_.units;
+  const int32_t stride = units.stride(body.speed);
+  const auto rise_of = [&](float speed) {
+    return static_cast<int32_t>(speed * units.dt * 1000) + 2;
+  };
+  const int32_t rise = rise_of(body.speed);
+  struct Seen {
+    float square;
+    uint32_t slot, body;
+    bool operator<(const Seen& other) const {
+      return square != other.square ? square < other.square : slot < other.slot;
+    }
+  };
+  std::array<Seen, steer::kMostNearInAir> nearest;
+  size_t seen = 0;
+  const float most = sight_metres_ * sight_metres_;
+  for (const auto& cube : grid_.around(body.x, body.z, body.y)) {
+    for (const FlyerGrid::Entry& entry : cube) {
+      if (entry.body == i) continue;
+      const int32_t up = entry.y - body.y;
+      const float dx = static_cast<float>(entry.x - body.x) * units.unit;
+      const float dz = static_cast<float>(entry.z - body.z) * units.unit;
+      const float level = dx * dx + dz * dz;
+      if (level > most) continue;
+      const Body& other = bodies_[entry.body];
+      const bool flies = other.has(Body::kFlying);
+      const int32_t apart = std::max({up - body.height, -up - other.height, 0});
+      const int64_t radii = int64_t{body.radius} + other.radius;
+      const int64_t reach = radii + stride + (flies ? units.stride(other.speed) : 0);
+      if (apart <= rise + (flies ? rise_of(other.speed) : 0) &&
+          nearer_than(entry.x - body.x, entry.z - body.z, reach)) {
+        worker.others.push_back(entry.body);
+      }
+      if (port != nullptr && nearer_than(entry.x - body.x, entry.z - body.z, radii) &&
+          overlap(port->low, body.y + body.height - port->low, entry.y, other.height)) {
+        column_is_clear = false;
+      }
+      const float high = static_cast<float>(apart) * 1e-3f;
+      const Seen one{level + high * high, other.slot, entry.body};
+      if (one.square > most) continue;
+      if (seen == nearest.size() && !(one < nearest.back())) continue;
+      size_t at = seen < nearest.size() ? seen++ : seen - 1;
+      for (; at > 0 && one < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
+      nearest[at] = one;
+    }
+  }
+  const Flight& flight = flights_[body.slot];
+  situation.velocity = {body.velocity.x, flight.rise, body.velocity.z};
+  situation.wish = {body.wish.x, flight.wish_up, body.wish.z};
+  situation.fastest = body.speed;
+  situation.height = static_cast<float>(body.height) * 1e-3f;
+  situation.size = seen;
+  for (size_t n = 0; n < seen; ++n) {
+    const Body& other = bodies_[nearest[n].body];
+    const bool flies = other.has(Body::kFlying);
+    const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
+    const Flight* of_other = flies ? &flights_[other.slot] : nullptr;
+    Space velocity{other.velocity.x, flies ? of_other->rise : 0, other.velocity.z};
+    // Who has arrived makes way for those who would pass, were he not there.
+    const bool makes_way = body.has(Body::kArrived) && flies && other.has(Body::kHasGoal) &&
+                           !other.has(Body::kArrived);
+    if (makes_way) {
+      const steer::Plane left = units.metres(other.aim_x - other.x, other.aim_z - other.z);
+      const Space way{left.x, static_cast<float>(of_other->aim_y - other.y) * 1e-3f, left.z};
+      velocity = steer::wish_towards(way, other.speed, units.dt, 0, 0, false);
+    }
+    situation.near[n] = {{apart.x, static_cast<float>(other.y - body.y) * 1e-3f, apart.z},
+                         velocity,
+                         static_cast<float>(body.radius + other.radius) * units.unit,
+                         static_cast<float>(other.height) * 1e-3f};
+    if (flies && gives_way(body, flight, other, *of_other)) {
+      const Space at = situation.near[n].at;
+      const float far = steer::size_of(at);
+      if (far > 0) situation.wish = (-0.5f * body.speed / far) * at;
+    }
+  }
+}
+
+// Of two who touch before one bend the farther steps back, if the nearer stands.
+bool FlyerEngine::gives_way(const Body& body, const Flight& flight, const Body& other,
+                            const Flight& of_other) const {
+  constexpr float kOneBend = 1.5f, kTouch = 0.3f, kStands = 0.3f;  // [m], [m], of its speed
+  const StepUnits& units = config_.units;
+  const auto turns = [](const Body& b) {
+    constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven;
+    return (b.flags & kAll) == Body::kHasGoal;
+  };
+  if (!turns(body) || !turns(other) || flight.in_port != 0 || of_other.in_port != 0) return false;
+  const auto left = [&](const Body& b, const Flight& f) {
+    const steer::Plane level = units.metres(b.aim_x - b.x, b.aim_z - b.z);
+    return steer::size_of(Space{level.x, static_cast<float>(f.aim_y - b.y) * 1e-3f, level.z});
+  };
+  const steer::Plane aims = units.metres(other.aim_x - body.aim_x, other.aim_z - body.aim_z);
+  const Space between{aims.x, static_cast<float>(of_other.aim_y - flight.aim_y) * 1e-3f, aims.z};
+  if (steer::size_of(between) > kOneBend) return false;
+  const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
+  const int32_t up = other.y - body.y;
+  const float gap = static_cast<float>(std::max({up - body.height, -up - other.height, 0})) * 1e-3f;
+  const float radii = static_cast<float>(body.radius + other.radius) * units.unit;
+  if (gap > kTouch || steer::size_of(apart) > radii + kTouch) return false;
+  const Space velocity{other.velocity.x, of_other.rise, other.velocity.z};
+  if (steer::size_of(velocity) > kStands * other.speed) return false;
+  const float mine = left(body, flight), its = left(other, of_other);
+  return its != mine ? its < mine : other.slot < body.slot;
+}
+
+// Can the body do as it wishes? If not, how far is it to a wall, all around?
+bool FlyerEngine::look_around(const Body& body, steer::AirSituation& situation) const {
+  const FlyerAir& air = *classes_[body.avatar_class].air;
+  const AirSpot here = spot_of(body);
+  const float look = body.speed * config_.steering.wall_horizon;
+  const auto free_way = [&](Space direction) {
+    const auto sees = [&](float far) {
+      const AirSpot there{here.x + static_cast<int32_t>(direction.x * far / config_.units.unit),
+                          here.z + static_cast<int32_t>(direction.z * far / config_.units.unit),
+                          here.y + static_cast<int32_t>(direction.y * far * 1000)};
+      return air.sees(here, there);
+    };
+    if (sees(look)) return std::numeric_limits<float>::infinity();
+    for (float far = look * 0.5f; far > look * 0.1f; far *= 0.5f) {
+      if (sees(far)) return far;
+    }
+    return 0.0f;
+  };
+  situation.has_walls = !air.is_open_around(here, look);
+  const steer::AirFan fan = steer::air_fan(situation.wish);
+  if (situation.has_walls) situation.free_way[0] = free_way(fan[0]);
+  if (steer::wish_is_open(config_.steering, situation)) return true;
+  if (!situation.has_walls) return false;
+  for (size_t d = 1; d < fan.size(); ++d) situation.free_way[d] = free_way(fan[d]);
+  return false;
+}
+
+void FlyerEngine::find_ways(const steer::AirSituation& situation, bool open,
+                            Contest& contest) const {
+  const StepUnits& units = config_.units;
+  contest.ways = 0;
+  const auto add = [&](Space v) {
+    contest.way[contest.ways++] = {units.way(v.x), units.way(v.z),
+                                   static_cast<int32_t>(std::lrint(v.y * (units.dt * 1000)))};
+  };
+  Space best = situation.wish;
+  if (open) {
+    add(best);
+  } else {
+    const steer::AirChoices choices = steer::best_of(config_.steering, situation);
+    for (const Space& v : choices) add(v);
+    best = choices[0];
+  }
+  for (const float part : kShorterBy) add(part * best);
+}
+
+// Sense, steer, and take a place if nobody can object.
+void FlyerEngine::decide(uint32_t f, Worker& worker) {
+  Body& body = bodies_[flyers_[f]];
+  Flight& flight = flights_[body.slot];
+  Move& move = moves_[f];
+  move = {spot_of(body), 0, Move::kStays, false};
+  Contest contest;
+  contest.flyer = f;
+  contest.first = static_cast<uint32_t>(worker.others.size());
+  std::optional<FlyerAir::Port> port;
+  if (wants_down(body, flight)) port = classes_[body.avatar_class].air->port_below(spot_of(body));
+  if (port && body.y - port->high > kLowOver) port.reset();
+  steer::AirSituation situation;
+  bool column_is_clear = true;
+  sense(f, worker, situation, column_is_clear, port ? &*port : nullptr);
+  contest.last = static_cast<uint32_t>(worker.others.size());
+  if (port && column_is_clear) {
+    flight.in_port = 1;
+    flight.descends = 1;
+    flight.port_low = port->low;
+    flight.port_high = port->high;
+    flight.port_level = port->level;
+    body.turn = 0;
+    const float down = -std::min(body.speed, kSlow);
+    situation.wish = {
+        0, std::max(down, static_cast<float>(port->low - body.y) * 1e-3f / config_.units.dt), 0};
+  }
+  if (flight.in_port != 0) {
+    // Up and down only: there is nothing to choose from but how fast.
+    contest.ways = 0;
+    for (const float part : {1.0f, 0.5f, 0.25f}) {
+      const auto up =
+          static_cast<int32_t>(std::lrint(part * situation.wish.y * (config_.units.dt * 1000)));
+      contest.way[contest.ways++] = {0, 0, up};
+    }
+  } else {
+    find_ways(situation, look_around(body, situation), contest);
+  }
+  if (contest.first != contest.last) {
+    ++worker.counts.contested;
+    move.state = Move::kUndecided;
+    worker.contests.push_back(contest);
+    return;
+  }
+  for (size_t w = 0; w < contest.ways; ++w) {
+    if (!try_place(body, contest.way[w], move.place)) continue;
+    move.state = Move::kDecided;
+    return;
+  }
+}
+
+// Where a body would be after a step, if what is between is air.
+bool FlyerEngine::try_place(const Body& body, const AirSpot& way, AirSpot& place) const {
+  const Flight& flight = flights_[body.slot];
+  const FlyerAir& air = *classes_[body.avatar_class].air;
+  const AirSpot here = spot_of(body);
+  AirSpot there{here.x + way.x, here.z + way.z, here.y + way.y};
+  if (flight.in_port != 0) {
+    if (way.x != 0 || way.z != 0) return false;
+    there.y = std::max(there.y, flight.port_low);
+    // What is between the ground and the air is free; all above is looked at.
+    const int32_t from = std::max(here.y, flight.port_high);
+    const int32_t to = std::max(there.y, flight.port_high);
+    if (from != to && !air.sees({here.x, here.z, from}, {here.x, here.z, to})) return false;
+  } else if (!air.sees(here, there)) {
+    return false;
+  }
+  if (!obstacles_.empty() && there != here && is_blocked(body, there)) return false;
+  place = there;
+  return true;
+}
+
+template <class Do>
+void FlyerEngine::for_contests(Do act) {
+  constexpr size_t kPiece = 64;
+  for (Worker& owner : workers_) {
+    const size_t count = owner.contests.size();
+    parallel_ranges(count, kPiece, config_.workers, [&](size_t begin, size_t end) {
+      for (size_t c = begin; c < end; ++c) act(owner.contests[c], owner);
+    });
+  }
+}
+
+// Is a place clear of where everybody is now?
+bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
+                           const AirSpot& place) const {
+  const Body& body = bodies_[flyers_[contest.flyer]];
+  for (uint32_t n = contest.first; n < contest.last; ++n) {
+    const uint32_t j = owner.others[n];
+    const Body& other = bodies_[j];
+    AirSpot there = spot_of(other);
+    if (other.has(Body::kFlying)) {
+      const Move& move = moves_[flyer_of_[j]];
+      if (move.state == Move::kDecided) there = move.place;
+    }
+    if (clash(body, place, other, there)) return false;
+  }
+  return true;
+}
+
+// The first of his ways that is open and clear.
+bool FlyerEngine::name(const Contest& contest, const Worker& owner) {
+  const Body& body = bodies_[flyers_[contest.flyer]];
+  AirSpot place;
+  for (size_t w = 0; w < contest.ways; ++w) {
+    if (!try_place(body, contest.way[w], place) || !is_clear(contest, owner, place)) continue;
+    moves_[contest.flyer].place = place;
+    return true;
+  }
+  return false;
+}
+
+bool FlyerEngine::holds(const Contest& contest, const Worker& owner, uint8_t round,
+                        uint64_t step) const {
+  const Body& body = bodies_[flyers_[contest.flyer]];
+  const auto order = [&](const Body& b) {
+    return std::pair(random_u64(config_.seed, b.slot, step), b.slot);
+  };
+  const auto mine = order(body);
+  for (uint32_t n = contest.first; n < contest.last; ++n) {
+    const Body& other = bodies_[owner.others[n]];
+    if (!other.has(Body::kFlying)) continue;
+    const Move& move = moves_[flyer_of_[owner.others[n]]];
+    if (move.round == round && clash(body, moves_[contest.flyer].place, other, move.place) &&
+        order(other) > mine) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
+  const StepUnits& units = config_.units;
+  Body& body = bodies_[flyers_[f]];
+  Flight& flight = flights_[body.slot];
+  Move& move = moves_[f];
+  const steer::Plane level = units.metres(body.aim_x - body.x, body.aim_z - body.z);
+  const Space way{level.x, static_cast<float>(flight.aim_y - body.y) * 1e-3f, level.z};
+  const bool moves = move.state == Move::kDecided && move.place != spot_of(body);
+  if (moves) {
+    body.velocity = {units.velocity(move.place.x - body.x), units.velocity(move.place.z - body.z)};
+    flight.rise = static_cast<float>(move.place.y - body.y) * (1e-3f / units.dt);
+    body.x = move.place.x;
+    body.z = move.place.z;
+    body.y = move.place.y;
+  } else {
+    body.velocity = {};
+    flight.rise = 0;
+    ++counts.stood;
+  }
+  if (flight.in_port != 0) {
+    if (flight.descends != 0) {
+      body.turn = moves ? 0 : body.turn + units.dt;
+      flight.waited += moves ? 0 : units.dt;
+      if (body.turn > kPressed && !body.has(Body::kDriven)) flight.descends = 0;
+    }
+    if (flight.descends == 0 && body.y >= flight.port_high) {
+      flight.in_port = 0;
+      body.turn = 0;
+    }
+    return;
+  }
+  if (!body.has(Body::kHasGoal) || body.has(Body::kDriven)) return;
+  const Space velocity{body.velocity.x, flight.rise, body.velocity.z};
+  const Space wish{body.wish.x, flight.wish_up, body.wish.z};
+  const float left = steer::size_of(way);
+  const float towards = left > 1e-6f ? steer::dot(velocity, way) / left : 0;
+  counts.progress += std::lrint(towards / body.speed * 1e6f);
+  const bool near_goal = left <= 1 && body.has(Body::kLast);
+  if (config_.patient) {
+    const float content = near_goal ? 1 : towards / body.speed;
+    const float along = steer::dot(velocity, wish) / (body.speed * body.speed);
+    body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
+  }
+  if (flight.lands != 0 && flight.is_last() && left < kFarthest && towards < 0.3f * body.speed) {
+    flight.waited += units.dt;
+  }
+  const steer::Plane rest = units.metres(body.aim_x - body.x, body.aim_z - body.z);
+  const Space off{rest.x, static_cast<float>(flight.aim_y - body.y) * 1e-3f, rest.z};
+  if (body.has(Body::kLast) && flight.lands == 0 && !body.has(Body::kArrived) &&
+      steer::size_of(off) < kThere) {
+    body.flags |= Body::kArrived;
+    move.arrives = true;
+  }
+}
+
+uint64_t FlyerEngine::bytes() const {
+  uint64_t bytes = grid_.bytes() + (flyers_.capacity() + flyer_of_.capacity()) * 4 +
+                   moves_.capacity() * sizeof(Move);
+  for (const Worker& worker : workers_) {
+    bytes += worker.others.capacity() * 4 + worker.contests.capacity() * sizeof(Contest);
+  }
+  return bytes;
+}
+
+}  // namespace throng

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "crowd/body.h"
+#include "crowd/crowd_engine.h"
+#include "crowd/flight.h"
+#include "crowd/flyer_air.h"
+#include "crowd/flyer_grid.h"
+#include "crowd/step_units.h"
+#include "steer/air.h"
+#include "steer/sampled.h"
+#include "throng/prism.h"
+
+/// The step of those who are in the air, after that of those who walk: sense, steer, commit in
+/// rounds, settle. docs/design/012-flyers.md.
+namespace throng {
+
+struct FlyerConfig {
+  StepUnits units;
+  float sight = 5;  // [m]
+  int32_t rounds = 3;
+  bool patient = true;
+  uint64_t seed = 1;
+  int32_t workers = 0;
+  steer::AirSettings steering;
+  steer::Patience patience;
+};
+
+/// An obstacle as flyers know it: nobody's cylinder is in it.
+class AirObstacle {
+ public:
+  /// For a world whose units are so long, from its corner. [m]
+  AirObstacle(const Prism& prism, const Vec3d& origin, double unit);
+  /// Is a body in it whose feet are there? [m, mm]
+  [[nodiscard]] bool holds(const AirSpot& feet, double radius, int32_t height) const;
+
+ private:
+  std::vector<std::array<double, 2>> corners_;  // [units]
+  double unit_;
+  double x0_, z0_, x1_, z1_;  // [units]
+  int32_t low_, high_;        // [mm]
+};
+
+class FlyerEngine {
+ public:
+  /// `classes`: of the world.
+  FlyerEngine(const FlyerConfig& config, size_t classes);
+
+  /// Of a class that somebody is of who flies. `radius`: what the class keeps away from walls. [m]
+  void set_air(size_t avatar_class, const FlyerAir* air, double radius);
+  /// As CrowdEngine::fit; nobody is taller. [mm]
+  void fit(int32_t widest, float fastest, int32_t tallest, float dt);
+  void set_obstacles(std::vector<AirObstacle> obstacles) { obstacles_ = std::move(obstacles); }
+  [[nodiscard]] bool has_obstacles() const { return !obstacles_.empty(); }
+  [[nodiscard]] bool is_blocked(const Body& body, const AirSpot& spot) const;
+
+  /// How far from its landing place one comes down that waits for it. [m]
+  [[nodiscard]] static float landing_reach(const Flight& flight);
+  /// Called for each flyer first, on any worker: he finds and follows his way.
+  using Before = std::function<void(Body&, Flight&, int32_t worker)>;
+  /// One step of all who are flying; `flights` by slot. The others stay where they are.
+  void step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights, const Before& before,
+            EngineCounts& counts);
+  /// Slots of those who arrived in the last step, and bodies of those who came to the ground. They
+  /// are still flying.
+  [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
+  [[nodiscard]] std::span<const uint32_t> landed() const { return landed_; }
+  [[nodiscard]] uint64_t bytes() const;
+
+ private:
+  static constexpr size_t kShorter = 3;
+  struct Contest {
+    uint32_t flyer;        // of flyers_
+    uint32_t first, last;  // of the worker's `others`: whom he could touch
+    uint8_t ways;
+    std::array<AirSpot, steer::kAirChoices + kShorter + 1> way;  // of a step
+  };
+  // What a flyer would do, and whether it is settled.
+  struct Move {
+    AirSpot place;
+    uint8_t round;
+    enum State : uint8_t { kUndecided, kDecided, kStays } state;
+    bool arrives;
+  };
+  struct Worker {
+    std::vector<uint32_t> others;  // bodies
+    std::vector<Contest> contests;
+    EngineCounts counts;
+  };
+
+  void wish(Body& body, Flight& flight, uint64_t step) const;
+  void decide(uint32_t flyer, Worker& worker);
+  void sense(uint32_t flyer, Worker& worker, steer::AirSituation& situation, bool& column_is_clear,
+             const FlyerAir::Port* port) const;
+  bool look_around(const Body& body, steer::AirSituation& situation) const;
+  [[nodiscard]] bool gives_way(const Body& body, const Flight& flight, const Body& other,
+                               const Flight& of_other) const;
+  void find_ways(const steer::AirSituation& situation, bool open, Contest& contest) const;
+  [[nodiscard]] bool wants_down(const Body& body, const Flight& flight) const;
+  [[nodiscard]] bool try_place(const Body& body, const AirSpot& way, AirSpot& place) const;
+  [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
+                              const AirSpot& place) const;
+  bool name(const Contest& contest, const Worker& owner);
+  [[nodiscard]] bool holds(const Contest& contest, const Worker& owner, uint8_t round,
+                           uint64_t step) const;
+  void settle(uint32_t flyer, EngineCounts& counts);
+  template <class Do>
+  void for_contests(Do act);
+
+  FlyerConfig config_;
+  struct OfClass {
+    const FlyerAir* air = nullptr;
+    double radius = 0;  // [m]
+  };
+  std::vector<OfClass> classes_;
+  std::vector<AirObstacle> obstacles_;
+  int32_t sight_ = 0;  // [units]
+  float sight_metres_ = 5;
+  std::span<Body> bodies_;
+  std::span<Flight> flights_;
+  std::vector<uint32_t> flyers_;    // bodies
+  std::vector<uint32_t> flyer_of_;  // by body, in a step
+  std::vector<Move> moves_;         // by flyer
+  FlyerGrid grid_;
+  std::vector<Worker> workers_;
+  std::vector<uint32_t> arrived_, landed_;
+};
+
+}  // namespace throng

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "steer/air.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// Plain floats, square roots and no tables of sines: the same on every machine.
+namespace throng::steer {
+namespace {
+
+constexpr float kSoonest = 0.1f;    // [s] Nothing is more urgent than a touch within this.
+constexpr float kTouching = 1e-6f;  // [m2] Cylinders that touch count as this far apart.
+constexpr float kNever = std::numeric_limits<float>::infinity();
+constexpr float kHalf = 0.70710678f;
+
+// Cosine and sine of a ring's angle from the wish: 20, 45, 70, 100, 140 degrees.
+constexpr std::array<std::array<float, 2>, 5> kRings = {{{0.93969262f, 0.34202014f},
+                                                         {kHalf, kHalf},
+                                                         {0.34202014f, 0.93969262f},
+                                                         {-0.17364818f, 0.98480775f},
+                                                         {-0.76604444f, 0.64278761f}}};
+// Around a ring: right, over right, up, ...
+constexpr std::array<std::array<float, 2>, 8> kAround = {{{1, 0},
+                                                          {kHalf, kHalf},
+                                                          {0, 1},
+                                                          {-kHalf, kHalf},
+                                                          {-1, 0},
+                                                          {-kHalf, -kHalf},
+                                                          {0, -1},
+                                                          {kHalf, -kHalf}}};
+constexpr std::array<float, kAirSpeeds> kSpeeds = {1, 0.6f, 0.25f};
+
+// Ahead, to the right and, at right angles to both, up. Seen from above with X to the right and Z
+// down, the right hand of who looks along X points along Z.
+struct Frame {
+  Space ahead, right, up;
+};
+Frame frame_of(Space wish) {
+  const float size = size_of(wish);
+  const Space ahead = size > 1e-6f ? (1 / size) * wish : Space{1, 0, 0};
+  const float level = std::sqrt(ahead.x * ahead.x + ahead.z * ahead.z);
+  const Space right = level > 1e-3f ? Space{-ahead.z / level, 0, ahead.x / level} : Space{0, 0, 1};
+  const Space up = {right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
+                    right.x * ahead.y - right.y * ahead.x};
+  return {ahead, right, up};
+}
+
+float nearness(float soonness) { return soonness / (1 + kSoonest * soonness); }
+
+float soonness_of_wall(float way, float speed, float horizon) {
+  if (!(speed > 0) || way >= speed * horizon) return 0;
+  return way > 1e-3f ? speed / way : speed * 1e3f;
+}
+
+}  // namespace
+
+float size_of(Space p) { return std::sqrt(dot(p, p)); }
+
+AirFan air_fan(Space wish) {
+  const Frame frame = frame_of(wish);
+  AirFan fan;
+  size_t n = 0;
+  fan[n++] = frame.ahead;
+  for (const auto& [cosine, sine] : kRings) {
+    for (const auto& [right, up] : kAround) {
+      fan[n++] = cosine * frame.ahead + sine * (right * frame.right + up * frame.up);
+    }
+  }
+  fan[n] = -1.0f * frame.ahead;
+  return fan;
+}
+
+// Cylinders touch while their circles overlap in the plan and their heights do, too: two spans of
+// time, each from a gap that is wished for, but never from more than there is now.
+float soonness(const AirSettings& settings, const AirSituation& situation,
+               const AirNeighbour& other, Space velocity) {
+  const Space way = other.velocity - velocity;
+  const float square = other.at.x * other.at.x + other.at.z * other.at.z;
+  const float radii = other.radii + settings.gap;
+  // Real overlap in the plan: one is over the other.
+  const bool stacked = square < other.radii * other.radii;
+  float from = 0, to = kNever;
+  const float a = way.x * way.x + way.z * way.z;
+  const float b = other.at.x * way.x + other.at.z * way.z;
+  if (stacked) {
+    const float c = square - other.radii * other.radii;
+    if (a > 0) to = (std::sqrt(b * b - a * c) - b) / a;
+  } else {
+    const float c = std::max(square - radii * radii, kTouching);
+    const float root = b * b - a * c;
+    if (b >= 0 || root <= 0) return 0;
+    from = c / (std::sqrt(root) - b);
+    to = (std::sqrt(root) - b) / a;
+  }
+  const float y = other.at.y;
+  const bool above = y >= situation.height, below = y <= -other.height;
+  const float top = above ? std::min(situation.height + settings.gap, y) : situation.height;
+  const float bottom = below ? std::max(-other.height - settings.gap, y) : -other.height;
+  if (way.y == 0) {
+    if (above || below) return 0;
+  } else {
+    const float t0 = (top - y) / way.y, t1 = (bottom - y) / way.y;
+    from = std::max(from, std::min(t0, t1));
+    to = std::min(to, std::max(t0, t1));
+  }
+  if (from >= to || from >= settings.horizon) return 0;
+  return from > 1e-3f ? 1 / from : 1e3f;
+}
+
+bool wish_is_open(const AirSettings& settings, const AirSituation& situation) {
+  const float speed = size_of(situation.wish);
+  if (situation.has_walls && situation.free_way[0] < speed * settings.wall_horizon) return false;
+  for (size_t n = 0; n < situation.size; ++n) {
+    if (soonness(settings, situation, situation.near[n], situation.wish) > 0) return false;
+  }
+  return true;
+}
+
+AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
+  const AirFan fan = air_fan(situation.wish);
+  const Frame frame = frame_of(situation.wish);
+  const float wished = size_of(situation.wish), fastest = situation.fastest;
+  std::array<float, kAirTrials + 1> costs;
+  std::array<Space, kAirTrials + 1> trials;
+  for (size_t t = 0; t <= kAirTrials; ++t) {
+    const size_t d = t / kAirSpeeds;
+    // Along the wish it is parts of the wish; the last of all is to hover.
+    const float speed = t == kAirTrials ? 0 : (d == 0 ? wished : fastest) * kSpeeds[t % kAirSpeeds];
+    const Space v = t == kAirTrials ? Space{} : speed * fan[d];
+    trials[t] = v;
+    const float progress = dot(v, frame.ahead) / fastest;
+    float cost = settings.straightness * (wished / fastest - progress) +
+                 (1 - settings.straightness) * size_of(v - situation.wish) / fastest +
+                 settings.keep * size_of(v - situation.velocity) / fastest +
+                 settings.right * std::max(0.0f, -dot(v, frame.right)) / fastest;
+    float soonest = 0;
+    for (size_t n = 0; n < situation.size; ++n) {
+      soonest = std::max(soonest, soonness(settings, situation, situation.near[n], v));
+    }
+    cost += settings.threat * nearness(soonest);
+    if (situation.has_walls && t < kAirTrials) {
+      cost += settings.wall *
+              nearness(soonness_of_wall(situation.free_way[d], speed, settings.wall_horizon));
+    }
+    costs[t] = cost;
+  }
+  AirChoices choices;
+  for (Space& choice : choices) {
+    const auto best = std::min_element(costs.begin(), costs.end()) - costs.begin();
+    choice = trials[static_cast<size_t>(best)];
+    costs[static_cast<size_t>(best)] = kNever;
+  }
+  return choices;
+}
+
+Space wish_towards(Space way, float speed, float dt, float turn, int32_t roll, bool stops) {
+  constexpr float kStop = 0.5f;   // [s]
+  constexpr float kCreep = 0.2f;  // [m/s] Who stops comes to an end.
+  const float left = size_of(way);
+  if (left <= 1e-6f) return {};
+  float most = std::min(speed, left / dt);
+  if (stops) most = std::min(most, std::max(left / kStop, kCreep));
+  const float part = most / left;
+  if (turn == 0) return part * way;
+  const Frame frame = frame_of(way);
+  const Space side =
+      roll == 0 ? frame.right : kHalf * (frame.right + (roll == 1 ? 1.0f : -1.0f) * frame.up);
+  const float scale = 1 / (1 + turn * turn);
+  const float cosine = (1 - turn * turn) * scale, sine = 2 * turn * scale;
+  return most * (cosine * frame.ahead + sine * side);
+}
+
+}  // namespace throng::steer

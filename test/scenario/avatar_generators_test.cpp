@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/avatar_generators.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <vector>
+
+#include "baked.h"
+#include "core/random.h"
+
+namespace throng {
+namespace {
+
+// Blocks of houses, 20 m by 20 m and 12 m high, between streets of 10 m.
+struct Town {
+  Scene scene;
+  std::vector<Box3d> houses;
+  World world;
+  Town() {
+    scene.add_box({0, -1, 0}, {160, 0, 160});
+    for (int32_t z = 0; z < 5; ++z) {
+      for (int32_t x = 0; x < 5; ++x) {
+        const Vec3d low{10.0 + 30 * x, 0, 10.0 + 30 * z};
+        houses.push_back({low, low + Vec3d{20, 12, 20}});
+        scene.add_box(houses.back().min, houses.back().max);
+      }
+    }
+    world = test::bake(scene, 0.25, {default_classes()[0]});
+  }
+};
+
+const Town& town() {
+  static const Town one;
+  return one;
+}
+
+// Does the segment pass through the inside of the box?
+bool cuts(Vec3d from, Vec3d to, const Box3d& box) {
+  double enter = 0, leave = 1;
+  const auto clip = [&](double a, double b, double low, double high) {
+    const double d = b - a;
+    if (std::fabs(d) < 1e-12) {
+      if (a <= low || a >= high) enter = 2;
+      return;
+    }
+    const double t0 = (low - a) / d, t1 = (high - a) / d;
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  };
+  clip(from.x, to.x, box.min.x, box.max.x);
+  clip(from.y, to.y, box.min.y, box.max.y);
+  clip(from.z, to.z, box.min.z, box.max.z);
+  return enter < leave;
+}
+
+// The shadow of a convex body is convex: a box whose corners all lie in one house's is hidden.
+bool can_see(Vec3d eye, const Box3d& box) {
+  return std::none_of(town().houses.begin(), town().houses.end(), [&](const Box3d& house) {
+    for (size_t k = 0; k < 8; ++k) {
+      const Vec3d corner{(k & 1) != 0 ? box.max.x : box.min.x, (k & 2) != 0 ? box.max.y : box.min.y,
+                         (k & 4) != 0 ? box.max.z : box.min.z};
+      if (!cuts(eye, corner, house)) return false;
+    }
+    return true;
+  });
+}
+
+// An oracle that knows triangles alone: is any of some points of a body in sight?
+bool is_body_in_sight(Vec3d eye, Vec3d feet, uint64_t salt) {
+  const Scene& scene = town().scene;
+  for (uint64_t k = 0; k < 40; ++k) {
+    const double turn = 6.283185307 * random_unit(91, salt, 3 * k);
+    const double out = 0.3 * random_unit(91, salt, 3 * k + 1);
+    const Vec3d point =
+        feet + Vec3d{out * std::cos(turn), 0.05 + 1.7 * random_unit(91, salt, 3 * k + 2),
+                     out * std::sin(turn)};
+    const Vec3d ray = point - eye;
+    const bool hidden = std::any_of(
+        scene.triangles.begin(), scene.triangles.end(), [&](const std::array<uint32_t, 3>& t) {
+          const Vec3d a = scene.positions[t[0]], b = scene.positions[t[1]] - a,
+                      c = scene.positions[t[2]] - a;
+          const Vec3d p = cross(ray, c);
+          const double det = dot(b, p);
+          if (std::fabs(det) < 1e-12) return false;
+          const Vec3d s = eye - a;
+          const double u = dot(s, p) / det;
+          const Vec3d q = cross(s, b);
+          const double v = dot(ray, q) / det, w = dot(c, q) / det;
+          return u >= 0 && v >= 0 && u + v <= 1 && w > 1e-9 && w < 1 - 1e-9;
+        });
+    if (!hidden) return true;
+  }
+  return false;
+}
+
+struct Walk {
+  double least = 1e9, most = 0;  // Avatars in sight by those wanted, after a while.
+  double mean = 0;
+  uint64_t added = 0, removed = 0;
+  size_t appeared_in_sight = 0, gone_in_sight = 0;
+  size_t largest = 0;  // Crowd.
+  uint64_t hash = 0;
+};
+
+// Five minutes of a street; `at` is where the eye is after so many steps.
+template <class At>
+Walk walk_and_see(const GeneratorConfig& config, At at, int32_t steps) {
+  Walk out;
+  auto crowd = Crowd::create(town().world, {.dt = 0.2, .seed = 3});
+  EXPECT_TRUE(crowd) << crowd.error().message;
+  Context context;
+  auto generators = AvatarGenerators::make(town().world, config, context);
+  EXPECT_TRUE(generators) << generators.error().message;
+  std::set<uint32_t> before;
+  std::vector<AvatarState> states;
+  std::vector<std::pair<uint32_t, Vec3d>> last;
+  int32_t counted = 0;
+  for (int32_t step = 0; step <= steps; ++step) {
+    const Vec3d eye = at(step);
+    const auto sight = [&](const Box3d& box) { return can_see(eye, box); };
+    crowd->read(states);
+    last.clear();
+    for (const AvatarState& s : states) last.emplace_back(s.id, s.position);
+    const auto report = generators->update(*crowd, eye, sight, context);
+    EXPECT_TRUE(report) << report.error().message;
+    crowd->read(states);
+    if (step > 0) {
+      // Slots are given again, so by place: nobody has moved during the update.
+      const auto key = [](Vec3d p) { return std::array{p.x, p.y, p.z}; };
+      std::set<std::array<double, 3>> then, now;
+      for (const auto& [id, p] : last) then.insert(key(p));
+      for (const AvatarState& s : states) now.insert(key(s.position));
+      for (const auto& p : now) {
+        if (then.count(p) == 0) {
+          out.appeared_in_sight += is_body_in_sight(eye, {p[0], p[1], p[2]}, out.added++) ? 1 : 0;
+        }
+      }
+      for (const auto& p : then) {
+        if (now.count(p) == 0) {
+          out.gone_in_sight += is_body_in_sight(eye, {p[0], p[1], p[2]}, out.removed++) ? 1 : 0;
+        }
+      }
+    }
+    out.largest = std::max<size_t>(out.largest, crowd->size());
+    if (step > steps / 4) {
+      const double share = report->seen_avatars / (config.density * report->seen_area);
+      out.least = std::min(out.least, share);
+      out.most = std::max(out.most, share);
+      out.mean += share;
+      ++counted;
+    }
+    crowd->step();
+  }
+  out.mean /= counted;
+  out.hash = crowd->state_hash();
+  EXPECT_EQ(crowd->check().overlaps, 0U);
+  return out;
+}
+
+GeneratorConfig config_of(double density) {
+  GeneratorConfig config;
+  config.home = town().world.find_place(0, {5, 0, 5}, 1);
+  config.density = density;
+  config.reach = 90;
+  return config;
+}
+
+TEST(AvatarGenerators, KeepAStreetPopulatedWhileOnlyWhatIsSeenIsSimulated) {
+  const GeneratorConfig config = config_of(0.04);
+  Context context;
+  const auto generators = AvatarGenerators::make(town().world, config, context);
+  ASSERT_TRUE(generators);
+  const double all = config.density * generators->area();
+  EXPECT_NEAR(generators->area(), 160 * 160 - 25 * 21 * 21, 1500);  // Bodies keep off walls.
+  const auto stands = [](int32_t) { return Vec3d{35, 1.7, 65}; };
+  const Walk r = walk_and_see(config, stands, 900);
+  std::printf(
+      "standing: %.2f to %.2f of those wanted in sight, mean %.2f; %llu came, %llu went, %zu "
+      "and %zu in sight; at most %zu of %.0f simulated\n",
+      r.least, r.most, r.mean, static_cast<unsigned long long>(r.added),
+      static_cast<unsigned long long>(r.removed), r.appeared_in_sight, r.gone_in_sight, r.largest,
+      all);
+  EXPECT_GT(r.added, 100U);
+  EXPECT_GT(r.removed, 100U);
+  EXPECT_EQ(r.appeared_in_sight, 0U);
+  EXPECT_EQ(r.gone_in_sight, 0U);
+  EXPECT_GT(r.least, 0.65);
+  EXPECT_LT(r.most, 1.35);
+  EXPECT_NEAR(r.mean, 1, 0.06);
+  EXPECT_LT(static_cast<double>(r.largest), 0.8 * all);
+}
+
+TEST(AvatarGenerators, FollowAnEyeThatWalksAroundCorners) {
+  const GeneratorConfig config = config_of(0.04);
+  const auto walks = [](int32_t step) {  // 1.4 m/s around a block.
+    const double way = std::fmod(step * 0.28, 120.0), side = way / 30;
+    const double along = (side - std::floor(side)) * 30;
+    switch (static_cast<int32_t>(side)) {
+      case 0:
+        return Vec3d{35 + along, 1.7, 65};
+      case 1:
+        return Vec3d{65, 1.7, 65 + along};
+      case 2:
+        return Vec3d{65 - along, 1.7, 95};
+      default:
+        return Vec3d{35, 1.7, 95 - along};
+    }
+  };
+  const Walk r = walk_and_see(config, walks, 900);
+  std::printf("walking: %.2f to %.2f, mean %.2f; %llu came, %llu went, %zu and %zu in sight\n",
+              r.least, r.most, r.mean, static_cast<unsigned long long>(r.added),
+              static_cast<unsigned long long>(r.removed), r.appeared_in_sight, r.gone_in_sight);
+  EXPECT_EQ(r.appeared_in_sight, 0U);
+  EXPECT_EQ(r.gone_in_sight, 0U);
+  EXPECT_GT(r.least, 0.65);
+  EXPECT_LT(r.most, 1.35);
+  EXPECT_NEAR(r.mean, 1, 0.06);
+  EXPECT_EQ(walk_and_see(config, walks, 60).hash, walk_and_see(config, walks, 60).hash);
+}
+
+TEST(AvatarGenerators, RefuseWhatCannotBe) {
+  Context context;
+  GeneratorConfig config = config_of(0.04);
+  config.density = 0;
+  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kBadConfig);
+  config = config_of(0.04);
+  config.avatar_class = 7;
+  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kNotFound);
+  config = config_of(0.04);
+  config.home = {};
+  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kBadInput);
+}
+
+}  // namespace
+}  // namespace throng

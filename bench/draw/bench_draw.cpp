@@ -24,7 +24,7 @@ struct Options {
   uint64_t polygons = 30'000;
   size_t avatars = 10'000;
   int32_t runs = 15, samples = 1, workers = 2, width = 1280, height = 720;
-  bool shadows = false, street = false;
+  bool hard = false, shadows = false, street = false;
   double point_pixels = DrawingConfig{}.point_pixels, view_blend = DrawingConfig{}.view_blend;
   std::string picture;
 };
@@ -128,6 +128,7 @@ int run(const Options& options) {
   config.samples = options.samples;
   config.avatar_shadows = options.shadows;
   config.sun_pixels = 1024;
+  config.soft_shadows = !options.hard;
   config.point_pixels = options.point_pixels;
   config.view_blend = options.view_blend;
   config.workers = options.workers;
@@ -213,6 +214,7 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.workers, "For culling and packing");
   app.add_option("--point-pixels", options.point_pixels, "Who is no higher is a point, 0: nobody");
   app.add_option("--view-blend", options.view_blend, "Share of the angle between views, 0: none");
+  app.add_flag("--hard", options.hard, "One look for shadows, not nine");
   app.add_flag("--street", options.street, "From a street, not from above");
   app.add_flag("--shadows", options.shadows, "Of avatars");
   app.add_option("--width", options.width, "[px]");

@@ -119,6 +119,7 @@ struct DrawingConfig {
   /// between them; 0: the nearest view alone. [0 to 1]
   double view_blend = 0.4;
   bool avatar_shadows = true;  ///< Those of the scene are always there.
+  bool soft_shadows = true;    ///< Nine looks a pixel at the sun's picture; else one, filtered.
   int32_t sun_pixels = 4096;   ///< Along a side of the sun's picture. [256 to 8192]
   HiddenCulling culling = HiddenCulling::kWhereItPays;
   double edges = 0.5;  ///< How dark edges of the scene are, 0: not drawn. [0 to 1]

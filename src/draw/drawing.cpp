@@ -432,8 +432,9 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthMask(GL_TRUE);
 
-  const bool culls = config.culling == HiddenCulling::kAlways ||
+  const bool asked = config.culling == HiddenCulling::kAlways ||
                      (config.culling == HiddenCulling::kWhereItPays && is_software);
+  const bool culls = asked && !(mesh.bounds().empty() && props.bounds().empty());
   double seconds_cull = 0;
   const std::function<void()> read_depths = [&] {
     const auto cull_start = Clock::now();
@@ -446,6 +447,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
 
   begin(scene);
   scene.set("bias", static_cast<float>(2.5 * reach / sun_pixels));
+  scene.set("soft", config.soft_shadows ? 1.0F : 0.0F);
   scene.set("cut", cut);
   scene.set("edges", static_cast<float>(config.edges));
   scene.set("edge_wide", 0.5F * static_cast<float>(config.samples));

@@ -243,6 +243,7 @@ in vec3 corner;
 flat in vec3 normal;
 flat in uint kind;
 uniform float bias;
+uniform float soft;      // 1: nine looks at the sun's picture, 0: one.
 uniform float cut;
 uniform float edges;     // How dark.
 uniform float edge_wide; // [px of this target]
@@ -269,7 +270,11 @@ void main() {
   if (tint < 0.5) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
   vec3 albedo = mix(wall, floor_colour, smoothstep(0.5, 0.8, abs(n.y)));
   albedo = mix(albedo, vec3(0.72, 0.42, 0.12), prop);
-  float in_sun = dot(n, to_sun) > 0.0 ? sunlit(world + n * bias) : 0.0;
+  float in_sun = 0.0;
+  if (dot(n, to_sun) > 0.0) {
+    vec3 before = world + n * bias;
+    in_sun = soft > 0.5 ? sunlit(before) : sunlit_once(before);
+  }
   colour = shown(lit(albedo, n, in_sun) * (1.0 - edges * edge), from_eye);
 }
 )";

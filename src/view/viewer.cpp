@@ -283,6 +283,7 @@ DrawingConfig Viewer::State::drawing_config(int32_t width, int32_t height) const
   out.samples = panel.settings.smooth ? 2 : 1;
   out.avatar_shadows = panel.settings.shadows;
   out.sun_pixels = panel.settings.smooth ? 4096 : 1024;
+  out.soft_shadows = panel.settings.smooth;
   out.edges = panel.settings.edges;
   if (panel.is_cut) out.cut_height = panel.cut - origin.y;
   out.workers = config.workers;

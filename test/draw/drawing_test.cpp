@@ -271,6 +271,20 @@ TEST(GlDrawing, ShadowsFallOnTheGround) {
   EXPECT_GT(pixels_that_differ(*with, *without), 60U);
 }
 
+TEST(GlDrawing, SoftAndHardShadowsDifferAtTheirEdgesAlone) {
+  Drawing drawing = made_drawing();
+  ASSERT_TRUE(drawing.set_scene(stage_with_wall(), {}));
+  DrawingConfig config = stage_config();
+  const auto soft = drawing.draw({}, config);
+  config.soft_shadows = false;
+  const auto hard = drawing.draw({}, config);
+  ASSERT_TRUE(soft && hard);
+  size_t off = 0;
+  for (size_t i = 0; i < soft->rgb.size(); i += 3) off += soft->rgb[i] != hard->rgb[i] ? 1 : 0;
+  EXPECT_GT(off, 20U);
+  EXPECT_LT(off, soft->rgb.size() / 3 / 50);
+}
+
 TEST(GlDrawing, TheSamePictureTwiceIsTheSameBytesAndTwoDrawingsDoNotDisturbEachOther) {
   Drawing one = made_drawing(), two = made_drawing();
   for (Drawing* drawing : {&one, &two}) {

@@ -3,7 +3,8 @@
 // node page_test.mjs SITE [FOLDER]: drives the page as a visitor does. FOLDER may hold walk.replay and
 // garage.throng.tar (scripts/test_web makes them); pictures of what went wrong go to $PICTURES.
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { launch, new_page, serve } from './browser.mjs';
 import { changed_pixels } from './pixels.mjs';
@@ -13,6 +14,25 @@ const server = await serve(site, folder);
 const browser = await launch();
 // The garage's upper deck from near: dozens of people large enough to count.
 const kNear = 'camera=52,14,46,30,8.5,20';
+
+const kHall = `seconds = 60
+[plane]
+floor = [[0, 0], [20, 0], [20, 12], [0, 12]]
+[[area]]
+name = "west"
+box = [0.5, 0.5, 4, 11.5]
+[[area]]
+name = "door"
+box = [18, 5, 20, 7]
+[[journey]]
+name = "out"
+stages = [{ leave = "door" }]
+[[source]]
+name = "they"
+area = "west"
+journey = "out"
+count = 20
+`;
 
 const status = (page) => page.evaluate(() => window.throng.status());
 
@@ -161,6 +181,27 @@ const tests = {
     await page.evaluate(() => { window.throng.open([{ name: 'flat.obj', bytes: new TextEncoder().encode('v 0 0 0\nv 20 0 0\nv 20 0 20\nv 0 0 20\nf 4 3 2 1\n') }]); });
     await wait_for(page, 'the model that was dropped', () => window.throng.status().name === 'flat.obj' && window.throng.status().avatars > 10);
     assert.deepEqual(page.complaints.filter((one) => !one.includes('404')), []);
+  },
+
+  async 'takes a scenario and the folder of a world that are dropped on it'(page) {
+    const hall = path.join(mkdtempSync(path.join(tmpdir(), 'throng-drop-')), 'hall.toml');
+    writeFileSync(hall, kHall);
+    const devtools = await page.context().newCDPSession(page);
+    const drop = async (...files) => {
+      const data = { items: [], files, dragOperationsMask: 1 };
+      for (const type of ['dragEnter', 'dragOver', 'drop']) await devtools.send('Input.dispatchDragEvent', { type, x: 300, y: 300, data });
+    };
+    await page.goto(`${server.url}?open=builtin:stairs&avatars=5`);
+    await walking(page, 5);
+    await drop(hall);
+    await wait_for(page, 'the scenario', () => window.throng.status().name === 'hall.toml' && window.throng.status().avatars > 3);
+    const world = path.resolve(folder, 'garage.throng');
+    if (existsSync(world)) {
+      await drop(world);
+      await wait_for(page, 'the world', () => window.throng.status().name === 'garage.throng' && window.throng.status().avatars > 3);
+    }
+    assert.deepEqual(page.complaints, []);
+    return existsSync(world) ? 'both' : 'the scenario alone: no garage.throng';
   },
 
   async 'opens a recording and its world by address'(page) {

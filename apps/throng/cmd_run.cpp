@@ -214,7 +214,8 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--speed", config.speed, "Walking speed, 0 for the class's own [m/s]");
   command
       ->add_option("--goals", options->crowd.goals,
-                   "Walk to goals and avoid each other: 'random', or a file of lines x,y,z")
+                   "Go to goals and avoid each other: 'random', or a file of lines x,y,z. Who "
+                   "flies begins in the air, and half of his random goals are there")
       ->type_name("random|FILE");
   command
       ->add_option("--near", options->crowd.near, "Random goals within so many metres, 0: anywhere")

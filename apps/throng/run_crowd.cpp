@@ -11,14 +11,16 @@
 #include <optional>
 #include <sstream>
 
+#include "throng/flight.h"
 #include "throng/ground_query.h"
 
 namespace throng::app {
 namespace {
 
-constexpr double kNearGround = 2;  // [m] from the ground a goal of a file may be
-constexpr double kStorey = 4;      // [m] up or down a random goal may be
-constexpr uint64_t kTries = 32;    // to find one
+constexpr double kNearGround = 2;    // [m] from the ground a goal of a file may be
+constexpr double kStorey = 4;        // [m] up or down a random goal may be
+constexpr uint64_t kTries = 32;      // to find one
+constexpr uint64_t kAir = 0x616972;  // stream of chance
 
 // Uniform in [0, 1), of a stream.
 double random_number(uint64_t seed, uint64_t stream, uint64_t n) {
@@ -61,6 +63,7 @@ struct Totals {
     sum.arrived += r.arrived;
     sum.planned += r.planned;
     sum.no_way += r.no_way;
+    sum.flying = r.flying;  // at the end
     sum.seconds_plan += r.seconds_plan;
     sum.seconds_sort += r.seconds_sort;
     sum.seconds_steer += r.seconds_steer;
@@ -98,6 +101,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
        {"arrived", t.sum.arrived},
        {"planned", t.sum.planned},
        {"no_way", t.sum.no_way},
+       {"flying", t.sum.flying},
        {"blocked", t.sum.stood},
        {"contested", t.sum.contested},
        {"checks", t.checks},
@@ -144,11 +148,17 @@ Result<GoalCrowd> GoalCrowd::make(const World& world, const CrowdRun& run, Conte
   auto crowd = Crowd::create(world, run.config);
   if (!crowd) return crowd.error();
   GoalCrowd made(world, run, *avatar_class, std::move(*crowd));
-  if (auto ok = made.read_places(); !ok) return ok.error();
-  const AvatarSpawn like{
+  AvatarSpawn like{
       .place = {}, .avatar_class = *avatar_class, .radius = run.radius, .speed = run.speed};
-  const auto ids = made.crowd_.scatter(run.avatars, like, context);
+  const bool flies = world.summary().classes[static_cast<size_t>(*avatar_class)].flies;
+  if (flies) like.place = air_place({});
+  auto ids = made.crowd_.scatter(run.avatars, like, context);
+  if (!ids && flies && ids.error().code == Errc::kBadConfig) {
+    like.place = {};  // Without air who could fly walks.
+    ids = made.crowd_.scatter(run.avatars, like, context);
+  }
   if (!ids) return ids.error();
+  if (auto ok = made.read_places(); !ok) return ok.error();
   made.given_.resize(ids->size());
   made.give(*ids);
   return made;
@@ -168,16 +178,42 @@ Result<void> GoalCrowd::read_places() {
     const auto at = numbers_of(line);
     if (!at) return bad(n, "is no goal; write x,y,z in metres");
     const Place place = query->nearest_place(*at, kNearGround);
-    if (!place) return bad(n, "no avatar of this class can stand within 2 m of it; move it");
-    places_.push_back(place);
+    const FlightFinder* flight = crowd_.flight_finder(avatar_class_);
+    const bool in_air = !place && flight != nullptr && flight->is_legal(*at);
+    if (!place && !in_air) {
+      return bad(n, "no avatar of this class can stand within 2 m of it; move it");
+    }
+    places_.push_back(in_air ? air_place(*at) : place);
   }
   if (places_.empty()) return bad(1, "has no goals; write lines x,y,z in metres");
+  return {};
+}
+
+// In the air; nowhere if none was found.
+Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const {
+  const FlightFinder& flight = *crowd_.flight_finder(avatar_class_);
+  const uint64_t seed = run_.config.seed ^ kAir;
+  if (run_.near <= 0) {
+    const auto point = flight.random_point(seed, uint64_t{slot} << 32 | nth);
+    return point ? air_place(*point) : Place{};
+  }
+  for (uint64_t n = nth * kTries; n < (nth + 1) * kTries; ++n) {
+    const auto offset = [&](uint64_t stream) {
+      return run_.near * (2 * random_number(seed, 3 * uint64_t{slot} + stream, n) - 1);
+    };
+    const Vec3d at{from.x + offset(0), from.y + offset(1), from.z + offset(2)};
+    if (flight.is_legal(at)) return air_place(at);
+  }
   return {};
 }
 
 // The n-th goal of an avatar.
 Place GoalCrowd::goal(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   if (!places_.empty()) return places_[(slot + nth) % places_.size()];
+  if ((slot + nth) % 2 == 0 && crowd_.flight_finder(avatar_class_) != nullptr) {
+    const Place place = goal_in_air(slot, nth, from);
+    if (place) return place;
+  }
   const uint64_t seed = run_.config.seed, draw = nth * kTries;
   if (run_.near <= 0) return world_.random_place(avatar_class_, seed, uint64_t{slot} << 32 | nth);
   for (uint64_t n = draw; n < draw + kTries; ++n) {

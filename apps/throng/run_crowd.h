@@ -31,7 +31,8 @@ struct CrowdRun {
 /// Fills in goals_text. Fails with kNotFound.
 Result<void> read_goals(CrowdRun& run);
 
-/// A crowd whose avatars get goals, one after the other. The same run, the same steps.
+/// A crowd whose avatars get goals, one after the other. The same run, the same steps. Those of a
+/// class that flies begin in the air, and every other goal of theirs is there.
 class GoalCrowd {
  public:
   static Result<GoalCrowd> make(const World& world, const CrowdRun& run, Context& context);
@@ -42,6 +43,7 @@ class GoalCrowd {
   GoalCrowd(const World& world, const CrowdRun& run, int32_t avatar_class, Crowd&& crowd);
   Result<void> read_places();
   [[nodiscard]] Place goal(uint32_t slot, uint64_t nth, const Vec3d& from) const;
+  [[nodiscard]] Place goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   void give(std::span<const AvatarId> ids);
 
   World world_;

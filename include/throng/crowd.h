@@ -30,6 +30,8 @@ struct AvatarId {
   friend bool operator==(AvatarId, AvatarId) = default;
 };
 
+class FlightFinder;
+
 /// Place::level1 of places in the air.
 inline constexpr uint32_t kAirLevel1 = UINT32_MAX;
 /// A place in the air, for a crowd's avatars who fly: to begin at, or to be bound for. Y: the feet.
@@ -194,6 +196,9 @@ class THRONG_API Crowd {
   /// Who was stuck when somebody last looked, if that was in the last step, in order of slot.
   [[nodiscard]] std::span<const AvatarId> stuck() const;
   [[nodiscard]] bool is_alive(AvatarId id) const;
+  /// By which a class finds its ways through the air, to ask or to copy; null if nobody has been of
+  /// the class yet, it does not fly, or the world has no air.
+  [[nodiscard]] const FlightFinder* flight_finder(int32_t avatar_class) const;
 
   /// All that the next steps depend on. Whoever restores it goes on as this crowd would, step by
   /// step to the bit, with any number of workers. For this machine's order of bytes; [format] may

@@ -391,7 +391,7 @@ CrowdReport Crowd::step() {
       // Who only came to where he takes off is not there yet.
       if (s.flights.empty() || s.flights[slot].to_port == 0) s.arrived.push_back(s.id_of(slot));
     }
-    if (!s.flights.empty()) s.fly(counts, planned);
+    if (!s.flights.empty()) s.fly(counts, times, planned);
   }
   s.where_is_old = true;
   if (!s.flights.empty()) {
@@ -475,6 +475,12 @@ std::optional<AvatarState> Crowd::read(AvatarId id) const {
 
 std::span<const AvatarId> Crowd::arrived() const { return state_->arrived; }
 std::span<const AvatarId> Crowd::stranded() const { return state_->stranded; }
+const FlightFinder* Crowd::flight_finder(int32_t avatar_class) const {
+  const State& s = *state_;
+  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= s.classes.size()) return nullptr;
+  const auto& parts = s.classes[static_cast<size_t>(avatar_class)];
+  return parts && parts->air ? &parts->flight_finders[0] : nullptr;
+}
 bool Crowd::is_alive(AvatarId id) const { return state_->body(id) != nullptr; }
 uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->engine.bodies().size()); }
 

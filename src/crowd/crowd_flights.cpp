@@ -354,13 +354,12 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
 }
 
 // The step of those who are in the air; the others have made theirs.
-void Crowd::State::fly(EngineCounts& counts, std::atomic<uint64_t>& planned) {
-  flyers.step(
-      sub_step, engine.bodies(), flights,
-      [&](Body& body, Flight& flight, int32_t worker) {
-        plan_flight(body, flight, worker, planned);
-      },
-      counts);
+void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
+                       std::atomic<uint64_t>& planned) {
+  const FlyerEngine::Before before = [&](Body& body, Flight& flight, int32_t worker) {
+    plan_flight(body, flight, worker, planned);
+  };
+  flyers.step(sub_step, engine.bodies(), flights, before, counts, times);
   for (const uint32_t slot : flyers.arrived()) arrived.push_back(id_of(slot));
   for (const uint32_t i : flyers.landed()) {
     Body& body = engine.bodies()[i];

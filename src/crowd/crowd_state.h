@@ -143,7 +143,7 @@ struct Crowd::State {
                      std::vector<AirSpot>& points) const;
   void plan_flight(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
   [[nodiscard]] bool find_flight(const Body& body, Flight& flight, int32_t worker) const;
-  void fly(EngineCounts& counts, std::atomic<uint64_t>& planned);
+  void fly(EngineCounts& counts, CrowdEngine::Times& times, std::atomic<uint64_t>& planned);
   void tell_flyers_of_obstacles();
   /// Who flies where some obstacles would come or pass, beside those who stand there, in order.
   void add_flyers_in_the_way(std::span<const uint32_t> slots,

@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/stopwatch.h"
 
 // docs/design/012-flyers.md. Those who walk have made their step clear of where all flyers are;
 // now these go, clear of where everybody is.
@@ -100,9 +101,10 @@ void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) 
   sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
   const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
   const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
-  sight_metres_ = std::max({sight_metres_, touched, high + kLowOver * 1e-3f}) + 0.01f;
-  sight_ = static_cast<int32_t>(sight_metres_ / unit) + 4;
-  grid_.fit(sight_, static_cast<int32_t>(sight_metres_ * 1000) + 4);
+  near_metres_ = std::max({sight_metres_ / 2, touched, high + kLowOver * 1e-3f}) + 0.01f;
+  sight_metres_ = std::min(sight_metres_, 2 * near_metres_);
+  grid_.fit(static_cast<int32_t>(near_metres_ / unit) + 4,
+            static_cast<int32_t>(near_metres_ * 1000) + 4);
 }
 
 bool FlyerEngine::is_blocked(const Body& body, const AirSpot& spot) const {
@@ -112,7 +114,12 @@ bool FlyerEngine::is_blocked(const Body& body, const AirSpot& spot) const {
 }
 
 void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights,
-                       const Before& before, EngineCounts& counts) {
+                       const Before& before, EngineCounts& counts, CrowdEngine::Times& times) {
+  auto start = Clock::now();
+  const auto lap = [&](double& seconds) {
+    seconds += seconds_since(start);
+    start = Clock::now();
+  };
   arrived_.clear();
   landed_.clear();
   bodies_ = bodies;
@@ -143,8 +150,11 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
     before(body, flight, worker);
     wish(body, flight, step);
   });
+  lap(times.plan);
   grid_.build(bodies_, flyers_);
+  lap(times.sort);
   for_flyers([&](uint32_t f, int32_t worker) { decide(f, workers_[static_cast<size_t>(worker)]); });
+  lap(times.steer);
   // By induction nobody ever touches anybody: a place that is named is clear of where all are who
   // could touch it, and it is taken only if it is clear of what those before him named, whether or
   // not they take it. Who walks does not move any more.
@@ -161,6 +171,7 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
       }
     });
   }
+  lap(times.commit);
   std::mutex adding;
   parallel_ranges(flyers_.size(), kGrain, config_.workers, [&](size_t begin, size_t end) {
     EngineCounts here;
@@ -178,6 +189,7 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
       landed_.push_back(i);
     }
   }
+  lap(times.settle);
 }
 
 // What it wishes for, as if nobody were there.
@@ -241,18 +253,21 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   };
   std::array<Seen, steer::kMostNearInAir> nearest;
   size_t seen = 0;
-  const float most = sight_metres_ * sight_metres_;
-  for (const auto& cube : grid_.around(body.x, body.z, body.y)) {
-    for (const FlyerGrid::Entry& entry : cube) {
-      if (entry.body == i) continue;
-      const int32_t up = entry.y - body.y;
-      const float dx = static_cast<float>(entry.x - body.x) * units.unit;
-      const float dz = static_cast<float>(entry.z - body.z) * units.unit;
-      const float level = dx * dx + dz * dz;
-      if (level > most) continue;
-      const Body& other = bodies_[entry.body];
+  // Nobody farther away than this can be touched; the exact test follows.
+  const float touch = near_metres_ * near_metres_;
+  float most = sight_metres_ * sight_metres_;
+  const auto look_at = [&](const FlyerGrid::Entry& entry, bool is_near) {
+    const float dx = static_cast<float>(entry.x - body.x) * units.unit;
+    const float dz = static_cast<float>(entry.z - body.z) * units.unit;
+    const int32_t up = entry.y - body.y;
+    const int32_t apart = std::max({up - body.height, -up - entry.height, 0});
+    const float high = static_cast<float>(apart) * 1e-3f;
+    const float level = dx * dx + dz * dz, square = level + high * high;
+    if (square > most && !(is_near && level < touch)) return;
+    if (entry.body == i) return;
+    const Body& other = bodies_[entry.body];
+    if (is_near) {
       const bool flies = other.has(Body::kFlying);
-      const int32_t apart = std::max({up - body.height, -up - other.height, 0});
       const int64_t radii = int64_t{body.radius} + other.radius;
       const int64_t reach = radii + stride + (flies ? units.stride(other.speed) : 0);
       if (apart <= rise + (flies ? rise_of(other.speed) : 0) &&
@@ -263,14 +278,21 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
           overlap(port->low, body.y + body.height - port->low, entry.y, other.height)) {
         column_is_clear = false;
       }
-      const float high = static_cast<float>(apart) * 1e-3f;
-      const Seen one{level + high * high, other.slot, entry.body};
-      if (one.square > most) continue;
-      if (seen == nearest.size() && !(one < nearest.back())) continue;
-      size_t at = seen < nearest.size() ? seen++ : seen - 1;
-      for (; at > 0 && one < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
-      nearest[at] = one;
     }
+    const Seen one{square, other.slot, entry.body};
+    if (square > most || (seen == nearest.size() && !(one < nearest.back()))) return;
+    size_t at = seen < nearest.size() ? seen++ : seen - 1;
+    for (; at > 0 && one < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
+    nearest[at] = one;
+    if (seen == nearest.size()) most = nearest.back().square;
+  };
+  grid_.for_near(body.x, body.z, body.y,
+                 [&](const FlyerGrid::Entry& entry) { look_at(entry, true); });
+  if (seen < nearest.size() || nearest.back().square > touch) {
+    const float per_metre = 1 / (units.unit * units.unit) * 1.0001f;
+    grid_.for_far(
+        body.x, body.z, body.y, [&] { return most * per_metre; },
+        [&](const FlyerGrid::Entry& entry) { look_at(entry, false); });
   }
   const Flight& flight = flights_[body.slot];
   situation.velocity = {body.velocity.x, flight.rise, body.velocity.z};

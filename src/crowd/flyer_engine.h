@@ -67,7 +67,7 @@ class FlyerEngine {
   using Before = std::function<void(Body&, Flight&, int32_t worker)>;
   /// One step of all who are flying; `flights` by slot. The others stay where they are.
   void step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights, const Before& before,
-            EngineCounts& counts);
+            EngineCounts& counts, CrowdEngine::Times& times);
   /// Slots of those who arrived in the last step, and bodies of those who came to the ground. They
   /// are still flying.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
@@ -121,8 +121,7 @@ class FlyerEngine {
   };
   std::vector<OfClass> classes_;
   std::vector<AirObstacle> obstacles_;
-  int32_t sight_ = 0;  // [units]
-  float sight_metres_ = 5;
+  float sight_metres_ = 5, near_metres_ = 5;
   std::span<Body> bodies_;
   std::span<Flight> flights_;
   std::vector<uint32_t> flyers_;    // bodies

@@ -21,28 +21,8 @@ FlyerGrid::Cube FlyerGrid::cube(int32_t x, int32_t z, int32_t y) const {
   return {floor_div(x, width_), floor_div(z, width_), floor_div(y, height_)};
 }
 
-uint32_t FlyerGrid::number(Cube c) const {
-  const uint32_t mask = (1u << bits_xz_) - 1, mask_y = (1u << bits_y_) - 1;
-  return ((static_cast<uint32_t>(c.z) & mask) << bits_xz_ | (static_cast<uint32_t>(c.x) & mask))
-             << bits_y_ |
-         (static_cast<uint32_t>(c.y) & mask_y);
-}
-
-// At least four along each axis, so three beside each other are three.
-template <class Visit>
-void FlyerGrid::for_around(Cube middle, Visit visit) const {
-  for (int32_t dz = -1; dz <= 1; ++dz) {
-    for (int32_t dx = -1; dx <= 1; ++dx) {
-      for (int32_t dy = -1; dy <= 1; ++dy) {
-        visit(number({middle.x + dx, middle.z + dz, middle.y + dy}));
-      }
-    }
-  }
-}
-
 void FlyerGrid::build(std::span<const Body> bodies, std::span<const uint32_t> flyers) {
-  bits_y_ = 3;
-  bits_xz_ = 2;
+  bits_xz_ = 3;
   while ((size_t{1} << (2 * bits_xz_ + bits_y_)) < flyers.size() && bits_xz_ < 10) ++bits_xz_;
   const size_t cubes = size_t{1} << (2 * bits_xz_ + bits_y_);
   const auto number_of = [&](const Body& b) { return number(cube(b.x, b.z, b.y)); };
@@ -53,7 +33,10 @@ void FlyerGrid::build(std::span<const Body> bodies, std::span<const uint32_t> fl
     wanted_.assign(cubes, 0);
     for (const uint32_t i : flyers) {
       const Body& b = bodies[i];
-      for_around(cube(b.x, b.z, b.y), [&](uint32_t n) { wanted_[n] = 1; });
+      const Cube c = cube(b.x, b.z, b.y);
+      for_columns(2, [&](int32_t dx, int32_t dz) {
+        for (int32_t dy = -2; dy <= 2; ++dy) wanted_[number({c.x + dx, c.z + dz, c.y + dy})] = 1;
+      });
     }
     for (size_t i = 0; i < bodies.size(); ++i) {
       if (bodies[i].has(Body::kFlying)) continue;
@@ -69,22 +52,13 @@ void FlyerGrid::build(std::span<const Body> bodies, std::span<const uint32_t> fl
   const auto fill = [&](std::span<const uint32_t> of) {
     for (size_t n = of.size(); n-- > 0;) {
       const Body& b = bodies[of[n]];
-      entries_[--first_[number_of(b) + 1]] = {b.x, b.z, b.y, of[n]};
+      entries_[--first_[number_of(b) + 1]] = {b.x, b.z, b.y, of[n], b.radius, b.height};
     }
   };
   fill(walkers_);
   fill(flyers);
   std::copy(first_.begin() + 1, first_.end(), first_.begin());
   first_.back() = static_cast<uint32_t>(entries_.size());
-}
-
-FlyerGrid::Around FlyerGrid::around(int32_t x, int32_t z, int32_t y) const {
-  Around found;
-  size_t n = 0;
-  for_around(cube(x, z, y), [&](uint32_t c) {
-    found[n++] = {entries_.data() + first_[c], entries_.data() + first_[c + 1]};
-  });
-  return found;
 }
 
 uint64_t FlyerGrid::bytes() const {

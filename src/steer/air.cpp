@@ -122,36 +122,49 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
   const AirFan fan = air_fan(situation.wish);
   const Frame frame = frame_of(situation.wish);
   const float wished = size_of(situation.wish), fastest = situation.fastest;
-  std::array<float, kAirTrials + 1> costs;
-  std::array<Space, kAirTrials + 1> trials;
+  // Who is too far away to be met in time need not be asked for each trial.
+  std::array<const AirNeighbour*, kMostNearInAir> met;
+  size_t count = 0;
+  for (size_t n = 0; n < situation.size; ++n) {
+    const AirNeighbour& other = situation.near[n];
+    const float level = std::sqrt(other.at.x * other.at.x + other.at.z * other.at.z);
+    const float reach = settings.horizon * (fastest + size_of(other.velocity));
+    if (level <= other.radii + settings.gap + reach) met[count++] = &other;
+  }
+  // The best so far, in order. Of equals the first is better, so what already costs as much as the
+  // last of them before anybody is asked cannot be among them.
+  struct Choice {
+    float cost = kNever;
+    Space velocity;
+  };
+  std::array<Choice, kAirChoices> best;
   for (size_t t = 0; t <= kAirTrials; ++t) {
     const size_t d = t / kAirSpeeds;
     // Along the wish it is parts of the wish; the last of all is to hover.
     const float speed = t == kAirTrials ? 0 : (d == 0 ? wished : fastest) * kSpeeds[t % kAirSpeeds];
     const Space v = t == kAirTrials ? Space{} : speed * fan[d];
-    trials[t] = v;
     const float progress = dot(v, frame.ahead) / fastest;
     float cost = settings.straightness * (wished / fastest - progress) +
                  (1 - settings.straightness) * size_of(v - situation.wish) / fastest +
                  settings.keep * size_of(v - situation.velocity) / fastest +
                  settings.right * std::max(0.0f, -dot(v, frame.right)) / fastest;
-    float soonest = 0;
-    for (size_t n = 0; n < situation.size; ++n) {
-      soonest = std::max(soonest, soonness(settings, situation, situation.near[n], v));
-    }
-    cost += settings.threat * nearness(soonest);
     if (situation.has_walls && t < kAirTrials) {
       cost += settings.wall *
               nearness(soonness_of_wall(situation.free_way[d], speed, settings.wall_horizon));
     }
-    costs[t] = cost;
+    if (cost >= best.back().cost) continue;
+    float soonest = 0;
+    for (size_t n = 0; n < count; ++n) {
+      soonest = std::max(soonest, soonness(settings, situation, *met[n], v));
+    }
+    cost += settings.threat * nearness(soonest);
+    if (cost >= best.back().cost) continue;
+    size_t at = best.size() - 1;
+    for (; at > 0 && cost < best[at - 1].cost; --at) best[at] = best[at - 1];
+    best[at] = {cost, v};
   }
   AirChoices choices;
-  for (Space& choice : choices) {
-    const auto best = std::min_element(costs.begin(), costs.end()) - costs.begin();
-    choice = trials[static_cast<size_t>(best)];
-    costs[static_cast<size_t>(best)] = kNever;
-  }
+  for (size_t n = 0; n < choices.size(); ++n) choices[n] = best[n].velocity;
   return choices;
 }
 

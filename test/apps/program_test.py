@@ -22,6 +22,11 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else pathlib.Path("throng")
 
 
+def said_at(trajectories):
+    """Where the first avatar was at first."""
+    return trajectories.read_text().splitlines()[1].split(",")[3:6]
+
+
 class Program(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -274,6 +279,28 @@ class Program(unittest.TestCase):
         check = self.run_throng("replay", "goals.replay", "--check")
         self.assertEqual(check.returncode, 0, check.stderr)
         self.assertIn("all the same", check.stdout)
+
+    def test_those_who_fly_take_off_and_land_and_come_out_the_same(self):
+        done = self.run_throng("bake", "builtin:garage,levels=2", "-o", "air.throng", "--cell", 0.2, "--fly")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        run = ("run", "air.throng", "--class", "flyer", "--avatars", 40, "--steps", 60, "--goals", "random", "--json")
+        done = self.run_throng(*run, "--record", "air.replay", "--trajectories", "air.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said["wall_entries"], said["overlaps"], said["checks"]), (0, 0, 10))
+        self.assertGreater(said["arrived"], 10)
+        self.assertGreater(said["flying"], 0)
+        again = self.run_throng(*run, "--threads", 1)
+        self.assertEqual(json.loads(again.stdout)["state_hash"], said["state_hash"])
+        check = self.run_throng("replay", "air.replay", "--check")
+        self.assertEqual(check.returncode, 0, check.stderr)
+        self.assertIn("all the same", check.stdout)
+        heights = {float(line.split(",")[4]) for line in (self.path / "air.csv").read_text().splitlines()[1:]}
+        self.assertGreater(len(heights), 100)
+        self.assertTrue(any(abs(height) < 0.001 for height in heights))  # on the lowest floor
+        (self.path / "goals.csv").write_text("{},{},{}\n".format(*said_at(self.path / "air.csv")))
+        done = self.run_throng("run", "air.throng", "--class", "flyer", "--avatars", 3, "--steps", 40, "--goals", "goals.csv", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_goals_of_a_file_are_walked_to_and_bad_ones_named(self):
         self.run_throng("run", self.world, "--avatars", 1, "--steps", 1, "--trajectories", "at.csv")

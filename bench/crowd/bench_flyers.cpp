@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+// What a step costs of those who fly: goals at random in open air, or 500 who cross a sphere. One
+// JSON object.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/random.h"
+#include "throng/bake.h"
+#include "throng/crowd.h"
+#include "throng/flight.h"
+#include "throng/scene.h"
+
+namespace {
+
+using namespace throng;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string scene = "random";
+  uint32_t avatars = 10000;
+  double volume = 64;  // for each [m3]
+  double near = 50;
+  uint64_t warm = 50, steps = 50;
+  uint64_t seed = 1;
+  int32_t threads = 0;
+  uint64_t check_every = 25;
+};
+
+constexpr double kHigh = 40;  // [m] of air
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : values[values.size() / 2];
+}
+
+Json fail(const Error& error) { return {{"error", error.message}}; }
+
+Result<World> open_air(double side, double high, double cell) {
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, side}, {side, 0, side}, {side, 0, 0});
+  scene.add_box({0, high, 0}, {1, high + 0.5, 1});  // there is air up to it
+  Context context;
+  return bake_world(scene, {.cell = cell, .classes = {flyer_class()}}, context);
+}
+
+Json run_random(const Options& o) {
+  const double side = std::sqrt(o.volume * o.avatars / kHigh) + 4;
+  const auto world = open_air(side, kHigh, 0.5);
+  if (!world) return fail(world.error());
+  auto crowd = Crowd::create(*world, {.seed = o.seed, .workers = o.threads});
+  if (!crowd) return fail(crowd.error());
+  Context context;
+  const auto ids = crowd->scatter(o.avatars, {.place = air_place({})}, context);
+  if (!ids) return fail(ids.error());
+  const FlightFinder flight = *crowd->flight_finder(0);
+  std::vector<uint64_t> given(o.avatars, 0);
+  std::vector<Place> goals;
+  const auto give = [&](std::span<const AvatarId> to) {
+    goals.clear();
+    for (const AvatarId id : to) {
+      const uint32_t slot = id.slot1 - 1;
+      const Vec3d from = crowd->read(id)->position;
+      Place goal = air_place(from);
+      for (int tries = 0; tries < 64; ++tries) {
+        const auto along = [&](uint64_t stream) {
+          return o.near * (2 * random_unit(o.seed, 3 * uint64_t{slot} + stream, given[slot]) - 1);
+        };
+        const Vec3d at{from.x + along(0), from.y + along(1), from.z + along(2)};
+        ++given[slot];
+        if (!flight.is_legal(at)) continue;
+        goal = air_place(at);
+        break;
+      }
+      goals.push_back(goal);
+    }
+    crowd->set_goals(to, goals);
+  };
+  give(*ids);
+  CrowdReport sum;
+  std::vector<double> seconds;
+  double progress = 0;
+  CrowdCheck found;
+  for (uint64_t step = 1; step <= o.warm + o.steps; ++step) {
+    const CrowdReport r = crowd->step();
+    give(crowd->arrived());
+    if (step % o.check_every == 0) {
+      const CrowdCheck check = crowd->check();
+      found.overlaps += check.overlaps;
+      found.wall_entries += check.wall_entries;
+    }
+    if (step <= o.warm) continue;
+    seconds.push_back(r.seconds_total);
+    progress += r.progress;
+    sum.contested += r.contested;
+    sum.seconds_plan += r.seconds_plan;
+    sum.seconds_sort += r.seconds_sort;
+    sum.seconds_steer += r.seconds_steer;
+    sum.seconds_commit += r.seconds_commit;
+    sum.seconds_settle += r.seconds_settle;
+  }
+  const double each = 1e9 / o.avatars;
+  const double all = each / static_cast<double>(o.steps);
+  return {
+      {"avatars", o.avatars},
+      {"volume", o.volume},
+      {"threads", o.threads},
+      {"ns", median(seconds) * each},
+      {"ns_plan", sum.seconds_plan * all},
+      {"ns_sort", sum.seconds_sort * all},
+      {"ns_steer", sum.seconds_steer * all},
+      {"ns_commit", sum.seconds_commit * all},
+      {"ns_settle", sum.seconds_settle * all},
+      {"contested", static_cast<double>(sum.contested) / o.avatars / static_cast<double>(o.steps)},
+      {"progress", progress / static_cast<double>(o.steps)},
+      {"checked_avatar_steps", (o.warm + o.steps) / o.check_every * o.avatars},
+      {"overlaps", found.overlaps},
+      {"wall_entries", found.wall_entries},
+      {"state_hash", crowd->state_hash()}};
+}
+
+// To the other side of a sphere of a radius of 25 m, evenly from everywhere.
+Json run_sphere(const Options& o) {
+  const auto world = open_air(80, 60, 0.2);
+  if (!world) return fail(world.error());
+  auto crowd = Crowd::create(*world, {.seed = o.seed, .workers = o.threads});
+  if (!crowd) return fail(crowd.error());
+  std::vector<AvatarSpawn> spawns;
+  std::vector<Place> goals;
+  const Vec3d middle{40, 30, 40};
+  for (uint32_t i = 0; i < o.avatars; ++i) {
+    const double y = 1 - (2.0 * i + 1) / o.avatars;
+    const double r = std::sqrt(1 - y * y), turn = 2.399963 * i + static_cast<double>(o.seed);
+    const Vec3d way{25 * r * std::cos(turn), 25 * y, 25 * r * std::sin(turn)};
+    spawns.push_back({.place = air_place(middle + way)});
+    goals.push_back(air_place(middle - way));
+  }
+  Context context;
+  const auto ids = crowd->add(spawns, context);
+  if (!ids) return fail(ids.error());
+  crowd->set_goals(*ids, goals);
+  std::set<uint32_t> there;
+  CrowdCheck found;
+  uint64_t step = 0, begun = 0;
+  for (const AvatarId id : *ids) begun += id ? 1 : 0;
+  while (there.size() < begun && step < 3000) {
+    crowd->step();
+    ++step;
+    for (const AvatarId id : crowd->arrived()) there.insert(id.slot1);
+    const CrowdCheck check = crowd->check();
+    found.overlaps += check.overlaps;
+    found.wall_entries += check.wall_entries;
+  }
+  return {{"avatars", begun},
+          {"arrived", there.size()},
+          {"seconds", static_cast<double>(step) * 0.1},
+          {"checked_avatar_steps", step * begun},
+          {"overlaps", found.overlaps},
+          {"wall_entries", found.wall_entries}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App parser{"What a step of those who fly costs"};
+  Options options;
+  parser.add_option("--scene", options.scene)->check(CLI::IsMember({"random", "sphere"}));
+  parser.add_option("--avatars", options.avatars)->check(CLI::Range(1, 1000000));
+  parser.add_option("--volume", options.volume, "For each [m3]")->check(CLI::Range(2.0, 1e4));
+  parser.add_option("--near", options.near)->check(CLI::Range(1.0, 1e6));
+  parser.add_option("--warm", options.warm);
+  parser.add_option("--steps", options.steps)->check(CLI::PositiveNumber);
+  parser.add_option("--seed", options.seed);
+  parser.add_option("--threads", options.threads)->check(CLI::Range(0, 1024));
+  parser.add_option("--check-every", options.check_every, "Steps")->check(CLI::PositiveNumber);
+  CLI11_PARSE(parser, argc, argv);
+  const Json result = options.scene == "sphere" ? run_sphere(options) : run_random(options);
+  std::puts(result.dump().c_str());
+  return result.contains("error") ? 2 : 0;
+}

@@ -40,6 +40,11 @@ class FlyerAir {
   };
   [[nodiscard]] std::optional<Port> port_below(const AirSpot& spot) const;
 
+  /// Is the ground of a level legal there now?
+  [[nodiscard]] bool may_stand(uint32_t level, const AirSpot& spot) const {
+    return ground_->is_legal(level, (spot.x >> kUnitBits) & 63, (spot.z >> kUnitBits) & 63);
+  }
+
   [[nodiscard]] AirSpot spot(const Vec3d& metres) const;
   [[nodiscard]] Vec3d metres(const AirSpot& spot) const;
   /// Off the world's grid, or too far up or down for millimetres?

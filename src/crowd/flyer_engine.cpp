@@ -460,6 +460,9 @@ bool FlyerEngine::try_place(const Body& body, const AirSpot& way, AirSpot& place
   if (flight.in_port != 0) {
     if (way.x != 0 || way.z != 0) return false;
     there.y = std::max(there.y, flight.port_low);
+    // An obstacle may have come to where one would stand.
+    const bool lands = there.y == flight.port_low && here.y != there.y;
+    if (lands && !air.may_stand(flight.port_level, there)) return false;
     // What is between the ground and the air is free; all above is looked at.
     const int32_t from = std::max(here.y, flight.port_high);
     const int32_t to = std::max(there.y, flight.port_high);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -125,10 +124,9 @@ Result<void> Drawing::State::make_programs() {
   panel_program = GlProgram(shaders::panel_vertex(), shaders::panel_fragment());
   if (auto ok = check_linked({&sky, &scene, &depth, &mark, &panel_program}); !ok) return ok;
   nothing = make_vertex_array();
-  const auto* name = reinterpret_cast<const char*>(glGetString(kRendererName));
-  const std::string_view renderer = name == nullptr ? "" : name;
+  const std::string renderer = renderer_name();
   for (const char* one : {"llvmpipe", "SwiftShader", "softpipe", "Software"}) {
-    is_software = is_software || renderer.find(one) != std::string_view::npos;
+    is_software = is_software || renderer.find(one) != std::string::npos;
   }
   if (auto ok = depth_reader.make_program(); !ok) return ok;
   return crowd.make_programs();
@@ -318,8 +316,7 @@ Result<void> Drawing::check(const DrawingConfig& c) {
 
 std::string Drawing::renderer() const {
   state_->make_current();
-  const auto* name = reinterpret_cast<const char*>(glGetString(kRendererName));
-  return name == nullptr ? "unknown" : name;
+  return renderer_name();
 }
 
 Result<void> Drawing::set_scene(const Scene& scene, Vec3d origin) {
@@ -429,7 +426,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   sky.set("forward", axes.forward);
   glDepthMask(GL_FALSE);
   glBindVertexArray(nothing.get());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDrawArrays(GL_TRIANGLES, 0, 6 * 8 * 64);
   glDepthMask(GL_TRUE);
 
   const bool asked = config.culling == HiddenCulling::kAlways ||
@@ -527,7 +524,8 @@ Result<void> Drawing::show(std::span<const DrawnCrowd> crowds, const DrawingConf
   glBindFramebuffer(GL_READ_FRAMEBUFFER, state.target.frame.get());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glBlitFramebuffer(0, 0, state.target.width, state.target.height, 0, 0, config.width,
-                    config.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+                    config.height, GL_COLOR_BUFFER_BIT,
+                    config.samples == 1 ? GL_NEAREST : GL_LINEAR);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, config.width, config.height);
   state.panel.draw(state.panel_program, panel, config.width, config.height, 1);

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "draw/gl_objects.h"
 
+#ifdef __EMSCRIPTEN__
+#include <emscripten/html5.h>
+#endif
+
 namespace throng {
 namespace {
 
@@ -66,6 +70,16 @@ void GlProgram::set_matrix(const char* uniform, const float* sixteen) const {
 
 void GlProgram::set_colours(const char* uniform, const float* triples, int count) const {
   glUniform3fv(place(uniform), count, triples);
+}
+
+std::string renderer_name() {
+#ifdef __EMSCRIPTEN__
+  // A browser tells only who asks for leave, and counts asking without as a fault.
+  const EMSCRIPTEN_WEBGL_CONTEXT_HANDLE context = emscripten_webgl_get_current_context();
+  if (!emscripten_webgl_enable_extension(context, "WEBGL_debug_renderer_info")) return "unknown";
+#endif
+  const auto* name = reinterpret_cast<const char*>(glGetString(kRendererName));
+  return name == nullptr ? "unknown" : name;
 }
 
 GlTexture make_texture() {

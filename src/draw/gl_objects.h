@@ -66,6 +66,8 @@ class GlProgram {
   std::string fault_;
 };
 
+/// What draws, as the driver calls itself; "unknown" if it does not tell.
+std::string renderer_name();
 GlTexture make_texture();
 GlBuffer make_buffer();
 GlVertexArray make_vertex_array();

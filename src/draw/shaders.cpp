@@ -31,11 +31,12 @@ vec3 lit(vec3 albedo, vec3 normal, float in_sun) {
   vec3 around = mix(kGroundLight, kSkyLight, 0.5 + 0.5 * normal.y);
   return albedo * (kSun * sun + around);
 }
-vec4 shown(vec3 colour, vec3 from_eye) {
-  float far = length(from_eye);
-  float share = 1.0 - exp(-haze * far);
-  vec3 hazy = mix(colour, sky_colour(vec3(0.0)), share);
+vec4 shown_in(vec3 colour, float share) {
+  vec3 hazy = mix(colour, vec3(0.70, 0.77, 0.83), share);
   return vec4(sqrt(clamp(hazy, 0.0, 1.0)), 1.0);
+}
+vec4 shown(vec3 colour, vec3 from_eye) {
+  return shown_in(colour, 1.0 - exp(-haze * length(from_eye)));
 }
 )";
 
@@ -135,11 +136,14 @@ Corner pull() {
 // A card that faces the eye, `offset` from its middle.
 constexpr const char* kCard = R"(
 uniform float centre;  // Over the feet [m].
-out vec3 world;
 flat out vec3 right, up, towards;
 flat out uint look;
 flat out float in_sun;
 flat out float shown_from, shown_to;  // The thresholds between which it is shown.
+uniform float haze;
+flat out float haze_share;
+out vec2 depth;             // z and w of where the card is,
+flat out vec2 depth_ahead;  // and of a metre towards the eye.
 out float height;
 void stand(vec3 feet, vec2 offset, uint clothes) {
   vec3 middle = feet + vec3(0.0, centre, 0.0);
@@ -147,24 +151,29 @@ void stand(vec3 feet, vec2 offset, uint clothes) {
   float flat_length = length(towards.xz);
   right = flat_length > 1e-4 ? vec3(towards.z, 0.0, -towards.x) / flat_length : vec3(1.0, 0.0, 0.0);
   up = cross(towards, right);
-  world = middle + right * offset.x + up * offset.y;
+  vec3 world = middle + right * offset.x + up * offset.y;
   height = offset.y + centre;
   look = clothes;
   in_sun = sunlit_once(middle + to_sun * 0.9);  // In front of its own shadow.
   float far = length(eye - middle);
   shown_from = 1.0 - (mesh_range.y > 0.0 ? share_beyond(mesh_range, far) : 1.0);
   shown_to = 1.0 - share_beyond(point_range, far);
+  haze_share = 1.0 - exp(-haze * far);
   gl_Position = clip_from_world * vec4(world, 1.0);
+  depth = gl_Position.zw;
+  depth_ahead = (clip_from_world * vec4(towards, 0.0)).zw;
 }
 )";
 
 // What a texel of a figure shows, and where.
 constexpr const char* kFigure = R"(
-in vec3 world;
 flat in vec3 right, up, towards;
 flat in uint look;
 flat in float in_sun;
 flat in float shown_from, shown_to;
+flat in float haze_share;
+in vec2 depth;
+flat in vec2 depth_ahead;
 in float height;
 uniform sampler2DArray albedo;
 uniform sampler2DArray detail;
@@ -180,8 +189,8 @@ void show(vec3 texel, vec3 right_of_texels) {
   // A texel knows its place to 7 cm, so it comes 5 cm nearer, or soles would sink into the ground.
   uint mask = uint(d.z * 255.0 + 0.5);
   float in_front = (float(mask & 31u) - 16.0) / 30.0 * side + 0.05;
-  vec4 clip = clip_from_world * vec4(world + towards * in_front, 1.0);
-  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
+  vec2 zw = depth + depth_ahead * in_front;
+  gl_FragDepth = clamp(0.5 * zw.x / zw.y + 0.5, 0.0, 1.0);
   vec2 side_ways = (d.xy * 255.0 - 128.0) / 127.0;
   vec3 n = normalize(right_of_texels * side_ways.x + up * side_ways.y +
                      towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
@@ -189,29 +198,33 @@ void show(vec3 texel, vec3 right_of_texels) {
   vec3 own = stored.rgb * stored.rgb;
   own = dressed(own, part, look, part_colour[part]);
   float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));  // Less light near the ground.
-  colour = shown(lit(own, n, in_sun) * shade, world - eye);
+  colour = shown_in(lit(own, n, in_sun) * shade, haze_share);
 }
 )";
 
 }  // namespace
 
+// A grid of 8 x 64 rectangles: colours are computed at their corners, as a sky changes slowly and a
+// processor that draws has many pixels to fill.
 std::string sky_vertex() {
-  return std::string(kHead) + R"(
+  return std::string(kHead) + kLight + R"(
 uniform vec3 right, up, forward;  // Scaled to the edges of the picture.
-out vec3 towards;
+out vec3 root;
 void main() {
-  vec2 at = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 4.0 - 1.0;
-  towards = forward + right * at.x + up * at.y;
+  int cell = gl_VertexID / 6, corner = gl_VertexID % 6;
+  int k = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
+  vec2 at = vec2(float((cell & 7) + (k & 1)) / 4.0, float((cell >> 3) + (k >> 1)) / 32.0) - 1.0;
+  root = sqrt(sky_colour(normalize(forward + right * at.x + up * at.y)));
   gl_Position = vec4(at, 1.0, 1.0);
 }
 )";
 }
 
 std::string sky_fragment() {
-  return std::string(kHead) + kLight + R"(
-in vec3 towards;
+  return std::string(kHead) + R"(
+in vec3 root;
 out vec4 colour;
-void main() { colour = vec4(sqrt(sky_colour(normalize(towards))), 1.0); }
+void main() { colour = vec4(root, 1.0); }
 )";
 }
 

@@ -42,6 +42,9 @@ Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, const CrowdS
   if (!crowd) return crowd.error();
   std::unique_ptr<CrowdPlayer> player(
       new CrowdPlayer(std::move(world), start, origin, *std::move(crowd)));
+  Result<Graph> graph = Graph::make(player->world_, {.workers = workers}, context);
+  if (!graph) return graph.error();
+  player->graph_ = *std::move(graph);
   const Result<uint32_t> added = player->scatter(start.avatars, context);
   if (!added) return added.error();
   return player;
@@ -67,7 +70,7 @@ Result<uint32_t> CrowdPlayer::scatter(uint32_t count, Context& context) {
     for (uint32_t i = added; i < count; ++i) {
       const uint64_t number = added_++;
       AvatarSpawn spawn = spawn_like(number);
-      spawn.place = world_.random_place(spawn.avatar_class, start_.seed + 17, number);
+      spawn.place = place_of(spawn.avatar_class, start_.seed + 17, number);
       if (spawn.place) spawns.push_back(spawn);
     }
     if (spawns.empty()) break;
@@ -94,6 +97,21 @@ uint32_t CrowdPlayer::add_people(const std::vector<AvatarId>& ids,
   return static_cast<uint32_t>(there.size());
 }
 
+// Not on a roof that nobody can reach: on ground that holds together over a tenth of what the
+// largest such ground has.
+Place CrowdPlayer::place_of(int32_t avatar_class, uint64_t seed, uint64_t stream) const {
+  constexpr double kShare = 0.1;
+  const std::span<const Component> grounds = graph_.components(avatar_class);
+  for (uint64_t n = 0; n < kTries; ++n) {
+    const Place place = world_.random_place(avatar_class, seed, stream + (n << 48));
+    const int32_t ground = place ? graph_.component_at(avatar_class, place) : -1;
+    if (ground >= 0 && grounds[static_cast<size_t>(ground)].area >= kShare * grounds[0].area) {
+      return place;
+    }
+  }
+  return world_.random_place(avatar_class, seed, stream);
+}
+
 Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   const int32_t avatar_class = people_[slot].avatar_class;
   const uint64_t stream = uint64_t{slot} << 32 | nth;
@@ -103,7 +121,7 @@ Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const
     const Place place = world_.find_place(avatar_class, point.at, point.reach);
     if (place) return place;
   }
-  if (start_.near <= 0) return world_.random_place(avatar_class, start_.seed, stream);
+  if (start_.near <= 0) return place_of(avatar_class, start_.seed, stream);
   for (uint64_t n = 0; n < kTries; ++n) {
     const auto offset = [&](uint64_t axis) {
       return start_.near * (2 * random_unit(start_.seed, stream, 2 * n + axis) - 1);

@@ -10,6 +10,7 @@
 
 #include "throng/context.h"
 #include "throng/crowd.h"
+#include "throng/graph.h"
 #include "throng/world.h"
 #include "throng_view/viewer.h"
 #include "view/density_brush.h"
@@ -75,12 +76,14 @@ class CrowdPlayer final : public MomentSource {
 
   CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Crowd&& crowd);
   Result<uint32_t> scatter(uint32_t count, Context& context);
+  Place place_of(int32_t avatar_class, uint64_t seed, uint64_t stream) const;
   uint32_t add_people(const std::vector<AvatarId>& ids, const std::vector<AvatarSpawn>& spawns);
   void give_goals(std::span<const AvatarId> ids);
   [[nodiscard]] Place goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] AvatarSpawn spawn_like(uint64_t number) const;
 
   World world_;
+  Graph graph_;
   CrowdStart start_;
   Vec3d origin_;
   Crowd crowd_;

@@ -27,10 +27,10 @@ struct Options {
   uint32_t avatars = 10000;
   double volume = 64;  // for each [m3]
   double near = 50;
-  uint64_t warm = 50, steps = 50;
+  uint64_t warm = 30, steps = 30;
   uint64_t seed = 1;
   int32_t threads = 0;
-  uint64_t check_every = 25;
+  uint64_t check_every = 30;
 };
 
 constexpr double kHigh = 40;  // [m] of air

@@ -103,6 +103,7 @@ void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) 
   const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
   near_metres_ = std::max({sight_metres_ / 2, touched, high + kLowOver * 1e-3f}) + 0.01f;
   sight_metres_ = std::min(sight_metres_, 2 * near_metres_);
+  fastest_ = fastest;
   grid_.fit(static_cast<int32_t>(near_metres_ / unit) + 4,
             static_cast<int32_t>(near_metres_ * 1000) + 4);
 }
@@ -253,8 +254,9 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   };
   std::array<Seen, steer::kMostNearInAir> nearest;
   size_t seen = 0;
-  // Nobody farther away than this can be touched; the exact test follows.
-  const float touch = near_metres_ * near_metres_;
+  // Nobody farther away than that and his radius can be touched; the exact test follows.
+  const float own_reach =
+      static_cast<float>(body.radius + 2 * units.stride(fastest_) + 1) * units.unit * 1.0001f;
   float most = sight_metres_ * sight_metres_;
   const auto look_at = [&](const FlyerGrid::Entry& entry, bool is_near) {
     const float dx = static_cast<float>(entry.x - body.x) * units.unit;
@@ -263,15 +265,16 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     const int32_t apart = std::max({up - body.height, -up - entry.height, 0});
     const float high = static_cast<float>(apart) * 1e-3f;
     const float level = dx * dx + dz * dz, square = level + high * high;
-    if (square > most && !(is_near && level < touch)) return;
-    if (entry.body == i) return;
+    const float reach = own_reach + static_cast<float>(entry.radius) * units.unit;
+    const bool may_matter = is_near && level < reach * reach;
+    if ((square > most && !may_matter) || entry.body == i) return;
     const Body& other = bodies_[entry.body];
-    if (is_near) {
+    if (may_matter) {
       const bool flies = other.has(Body::kFlying);
       const int64_t radii = int64_t{body.radius} + other.radius;
-      const int64_t reach = radii + stride + (flies ? units.stride(other.speed) : 0);
+      const int64_t touched = radii + stride + (flies ? units.stride(other.speed) : 0);
       if (apart <= rise + (flies ? rise_of(other.speed) : 0) &&
-          nearer_than(entry.x - body.x, entry.z - body.z, reach)) {
+          nearer_than(entry.x - body.x, entry.z - body.z, touched)) {
         worker.others.push_back(entry.body);
       }
       if (port != nullptr && nearer_than(entry.x - body.x, entry.z - body.z, radii) &&
@@ -288,7 +291,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   };
   grid_.for_near(body.x, body.z, body.y,
                  [&](const FlyerGrid::Entry& entry) { look_at(entry, true); });
-  if (seen < nearest.size() || nearest.back().square > touch) {
+  if (seen < nearest.size() || nearest.back().square > near_metres_ * near_metres_) {
     const float per_metre = 1 / (units.unit * units.unit) * 1.0001f;
     grid_.for_far(
         body.x, body.z, body.y, [&] { return most * per_metre; },

@@ -121,7 +121,7 @@ class FlyerEngine {
   };
   std::vector<OfClass> classes_;
   std::vector<AirObstacle> obstacles_;
-  float sight_metres_ = 5, near_metres_ = 5;
+  float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;
   std::span<Body> bodies_;
   std::span<Flight> flights_;
   std::vector<uint32_t> flyers_;    // bodies

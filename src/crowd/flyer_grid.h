@@ -65,8 +65,9 @@ class FlyerGrid {
   }
   template <class Visit>
   static void for_columns(int32_t reach, Visit visit) {
-    for (int32_t dz = -reach; dz <= reach; ++dz) {
-      for (int32_t dx = -reach; dx <= reach; ++dx) visit(dx, dz);
+    constexpr int32_t kInside[] = {0, -1, 1, -2, 2};  // the nearest first
+    for (int32_t z = 0; z <= 2 * reach; ++z) {
+      for (int32_t x = 0; x <= 2 * reach; ++x) visit(kInside[x], kInside[z]);
     }
   }
   template <class Visit>

@@ -311,9 +311,9 @@ TEST(Flyers, ShareStairsAndLevelsWithThoseWhoWalk) {
 // A crowd of walkers and flyers, on its way.
 Crowd mixed(Stage& stage, int32_t workers) {
   Crowd crowd = made(stage.world(), {.workers = workers});
-  const auto walkers = scattered(crowd, 150, {.avatar_class = kAdult});
-  auto flyers = scattered(crowd, 60, {.avatar_class = kFlyer});
-  const auto above = scattered(crowd, 90, {.place = air_place({}), .avatar_class = kFlyer});
+  const auto walkers = scattered(crowd, 60, {.avatar_class = kAdult});
+  auto flyers = scattered(crowd, 25, {.avatar_class = kFlyer});
+  const auto above = scattered(crowd, 35, {.place = air_place({}), .avatar_class = kFlyer});
   flyers.insert(flyers.end(), above.begin(), above.end());
   std::vector<Place> to;
   for (size_t i = 0; i < walkers.size(); ++i)
@@ -334,11 +334,51 @@ TEST(Flyers, SameStateForAnyWorkersAndMachines) {
     for (const int32_t workers : of) {
       Crowd crowd = mixed(stage, workers);
       for (int step = 0; step < 12; ++step) crowd.step();
-      ASSERT_EQ(crowd.state_hash(), 11481515029396461238u) << name << ' ' << workers;
+      ASSERT_EQ(crowd.state_hash(), 18228433875623662309u) << name << ' ' << workers;
     }
   };
   walk("best", {1, 2, 8});
   test::for_every_simd_target([&](const char* name) { walk(name, {1}); });
+}
+
+TEST(Flyers, ThousandsOverACityAmongThoseWhoWalkSlow) {
+  Stage stage(test::builtin({.name = "city", .size = 120, .seed = 2}), 0.2);
+  Crowd crowd = made(stage.world());
+  const auto walkers = scattered(crowd, 1000, {.avatar_class = kAdult});
+  auto flyers = scattered(crowd, 400, {.avatar_class = kFlyer});
+  const auto above = scattered(crowd, 800, {.place = air_place({}), .avatar_class = kFlyer});
+  flyers.insert(flyers.end(), above.begin(), above.end());
+  uint64_t goals = 0;
+  const auto give = [&](std::span<const AvatarId> ids) {
+    for (const AvatarId id : ids) {
+      const AvatarState state = *crowd.read(id);
+      const uint64_t n = goals++;
+      const bool in_air = state.avatar_class == kFlyer && n % 2 == 0;
+      Place goal = stage.world().random_place(state.avatar_class, 11, n);
+      for (uint64_t tries = 0; in_air && tries < 50; ++tries) {  // not too far away
+        const Vec3d at = *stage.flight().random_point(11, n << 8 | tries);
+        if (std::hypot(at.x - state.position.x, at.z - state.position.z) > 40) continue;
+        goal = air_place(at);
+        break;
+      }
+      crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
+    }
+  };
+  give(walkers);
+  give(flyers);
+  Stage::Faults faults;
+  uint64_t arrived = 0;
+  for (int step = 1; step <= 60; ++step) {
+    const CrowdReport report = crowd.step();
+    arrived += report.arrived;
+    const std::vector<AvatarId> there(crowd.arrived().begin(), crowd.arrived().end());
+    give(there);
+    if (step % 10 == 0) stage.look(crowd, faults);
+  }
+  EXPECT_EQ(faults.overlaps, 0u);
+  EXPECT_EQ(faults.entered, 0u);
+  EXPECT_GT(arrived, 100u);
+  EXPECT_EQ(faults.bodies, 6u * 2200);
 }
 
 TEST(Flyers, ARestoredCrowdGoesOnAsTheSavedOneWould) {

@@ -67,25 +67,27 @@ void link_sheet(const Sheet& sheet, const std::array<const TileSheets*, 4>& side
     out.rise[side].fill(0);
     const TileSheets* tile = sides[side];
     if (tile == nullptr || tile->empty()) continue;
-    for (int32_t i = 0; i < kTileSide; ++i) {
-      const int32_t last = kTileSide - 1;
-      const std::array<int32_t, 4> own{i * kTileSide, i * kTileSide + last, i,
-                                       last * kTileSide + i};
-      const std::array<int32_t, 4> across{i * kTileSide + last, i * kTileSide, last * kTileSide + i,
-                                          i};
-      const uint16_t feet = sheet.feet[static_cast<size_t>(own[side])];
-      if (feet == kNone16) continue;
-      int32_t best = max_step + 1;
-      for (size_t s = 0; s < tile->size(); ++s) {
-        const Sheet& other = *(*tile)[s];
-        const uint16_t other_feet = other.feet[static_cast<size_t>(across[side])];
-        if (other_feet == kNone16) continue;
-        const int32_t rise = std::abs(other.base + other_feet - sheet.base - feet);
-        if (rise >= best) continue;
-        best = rise;
-        out.link[side][static_cast<size_t>(i)] = static_cast<int16_t>(s);
-        out.rise[side][static_cast<size_t>(i)] = static_cast<uint16_t>(rise);
+    // Cells of this sheet's border, and across it of the other's: first, and from one to the next.
+    constexpr size_t kEnd = kTileSide - 1;
+    constexpr std::array<size_t, 4> kOwn{0, kEnd, 0, kEnd * kTileSide};
+    constexpr std::array<size_t, 4> kAcross{kEnd, 0, kEnd * kTileSide, 0};
+    const size_t stride = side < 2 ? kTileSide : 1;
+    std::array<int32_t, kTileSide> feet, best;
+    best.fill(max_step + 1);
+    for (size_t i = 0; i < kTileSide; ++i) feet[i] = sheet.feet[kOwn[side] + i * stride];
+    for (size_t s = 0; s < tile->size(); ++s) {
+      const Sheet& other = *(*tile)[s];
+      const int32_t shift = other.base - sheet.base;
+      for (size_t i = 0; i < kTileSide; ++i) {
+        const int32_t other_feet = other.feet[kAcross[side] + i * stride];
+        const int32_t rise = std::abs(other_feet + shift - feet[i]);
+        const bool nearer = feet[i] != kNone16 && other_feet != kNone16 && rise < best[i];
+        best[i] = nearer ? rise : best[i];
+        out.link[side][i] = nearer ? static_cast<int16_t>(s) : out.link[side][i];
       }
+    }
+    for (size_t i = 0; i < kTileSide; ++i) {
+      if (out.link[side][i] >= 0) out.rise[side][i] = static_cast<uint16_t>(best[i]);
     }
   }
 }

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-// Windowed maxima and minima with a disc: rows first, for each width that the disc has, by
-// doubling; then columns. (The horizontal part after van Herk, Gil, Werman; the windows are a few
-// cells, so doubling beats their recurrences.) Everything is 16 bit, so a vector holds a quarter of
-// a row or more.
+// Windowed maxima and minima with a disc: rows first, for each width that the disc has, each from
+// the next smaller one; then columns. (The horizontal part after van Herk, Gil, Werman; the windows
+// are a few cells, so widening beats their recurrences.) Everything is 16 bit, so a vector holds a
+// quarter of a row or more.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/legality.cpp"
@@ -34,15 +34,18 @@ struct Lowest {
   HWY_INLINE VU operator()(VU a, VU b) const { return hn::Min(a, b); }
 };
 
-// out[x] = extreme of in[x - w .. x + w] for x in [0, 64). `in` has w valid cells on both sides.
+// out[x] = extreme of in[x - w .. x + w] for x in [0, 64). `in` has w valid cells on both sides;
+// `inner` is out of the next smaller width, or null for none.
 template <class Op>
-HWY_INLINE void extreme_row(const uint16_t* HWY_RESTRICT in, int32_t w, uint16_t* HWY_RESTRICT out,
-                            Op op) {
+HWY_INLINE void extreme_row(const uint16_t* HWY_RESTRICT in, const uint16_t* inner,
+                            int32_t narrower, int32_t w, uint16_t* HWY_RESTRICT out, Op op) {
   const DU du;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
   for (int32_t x = 0; x < kTileSide; x += lanes) {
-    VU value = hn::LoadU(du, in + x - w);
-    for (int32_t i = 1 - w; i <= w; ++i) value = op(value, hn::LoadU(du, in + x + i));
+    VU value = inner != nullptr ? hn::Load(du, inner + x) : hn::LoadU(du, in + x);
+    for (int32_t i = narrower + 1; i <= w; ++i) {
+      value = op(value, op(hn::LoadU(du, in + x - i), hn::LoadU(du, in + x + i)));
+    }
     hn::Store(value, du, out + x);
   }
 }
@@ -55,6 +58,11 @@ struct RowTable {
   [[nodiscard]] HWY_INLINE uint16_t* row(int32_t k, int32_t q, int32_t z) const {
     return data + (static_cast<size_t>((k * 3 + q) * count + z)) * kTileSide;
   }
+};
+
+// Of the matter and room over some cells.
+struct Extremes {
+  VU high_top, low_top, low_ceiling;
 };
 
 // Cells whose surface the class may stand on, feet or not. False if there are none.
@@ -90,13 +98,19 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const int32_t reach = body.reach;
   const int32_t count = kTileSide + 2 * reach;
 
-  std::array<int32_t, 65> width_index{};
-  std::vector<int32_t> widths;
-  for (int32_t d = 0; d <= reach; ++d) {
-    const int32_t w = body.width[static_cast<size_t>(d)];
-    if (widths.empty() || widths.back() != w) widths.push_back(w);
-    width_index[static_cast<size_t>(d)] = static_cast<int32_t>(widths.size()) - 1;
+  std::vector<int32_t> widths = body.width;  // ascending, each once
+  if (body.fine) widths.insert(widths.end(), body.core.begin(), body.core.end());
+  std::ranges::sort(widths);
+  widths.erase(std::unique(widths.begin(), widths.end()), widths.end());
+  const auto index_of = [&](int32_t w) {
+    return static_cast<int32_t>(std::ranges::lower_bound(widths, w) - widths.begin());
+  };
+  std::array<int32_t, 65> width_index{}, core_index{};
+  for (size_t d = 0; d < body.width.size(); ++d) width_index[d] = index_of(body.width[d]);
+  for (size_t d = 0; d < body.core.size() && body.fine; ++d) {
+    core_index[d] = index_of(body.core[d]);
   }
+  const int32_t core_reach = static_cast<int32_t>(body.core.size()) - 1;
   scratch.rows.resize(widths.size() * 3 * static_cast<size_t>(count) * kTileSide + 64);
   uint16_t* aligned = scratch.rows.data();
   aligned += (64 - reinterpret_cast<uintptr_t>(aligned) % 64) % 64 / sizeof(uint16_t);
@@ -104,11 +118,16 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   for (int32_t z = -reach; z < kTileSide + reach; ++z) {
     const uint16_t* top = &scratch.window.top[scratch.window.index(0, z)];
     const uint16_t* ceiling = &scratch.window.ceiling[scratch.window.index(0, z)];
+    const auto row = [&](int32_t k, int32_t q) {
+      return k < 0 ? nullptr : table.row(k, q, z + reach);
+    };
+    int32_t narrower = 0;
     for (int32_t k = 0; k < static_cast<int32_t>(widths.size()); ++k) {
       const int32_t w = widths[static_cast<size_t>(k)];
-      extreme_row(top, w, table.row(k, 0, z + reach), Highest{});
-      extreme_row(top, w, table.row(k, 1, z + reach), Lowest{});
-      extreme_row(ceiling, w, table.row(k, 2, z + reach), Lowest{});
+      extreme_row(top, row(k - 1, 0), narrower, w, row(k, 0), Highest{});
+      extreme_row(top, row(k - 1, 1), narrower, w, row(k, 1), Lowest{});
+      extreme_row(ceiling, row(k - 1, 2), narrower, w, row(k, 2), Lowest{});
+      narrower = w;
     }
   }
 
@@ -117,7 +136,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const VU height = hn::Set(du, static_cast<uint16_t>(std::min(body.height, 65534)));
   const VU hope = hn::Set(du, static_cast<uint16_t>(body.hope));
   for (int32_t z = 0; z < kTileSide; ++z) {
-    uint64_t legal = 0, stand = 0, slanted = 0;
+    uint64_t legal = 0, stand = 0, slanted = 0, hemmed = 0;
     const uint64_t allowed = ground[static_cast<size_t>(z)];
     if (allowed == 0) continue;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
@@ -125,36 +144,50 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       const VU feet = hn::Load(du, &sheet.feet[cell]);
       const MU stands = hn::Ne(feet, none);
       if (hn::AllFalse(du, stands)) continue;
-      VU high_top = hn::Zero(du), low_top = none, low_ceiling = none;
-      for (int32_t d = -reach; d <= reach; ++d) {
-        const int32_t k = width_index[static_cast<size_t>(d < 0 ? -d : d)];
-        const int32_t row = z + d + reach;
-        high_top = hn::Max(high_top, hn::Load(du, table.row(k, 0, row) + x));
-        low_top = hn::Min(low_top, hn::Load(du, table.row(k, 1, row) + x));
-        low_ceiling = hn::Min(low_ceiling, hn::Load(du, table.row(k, 2, row) + x));
-      }
       const VU tilt = hn::Load(du, &scratch.tilt[cell]);
       const VU feet_low = hn::SaturatedSub(feet, tilt);
       const VU feet_high = hn::SaturatedAdd(feet, tilt);
-      const MU low_enough = at_most(high_top, hn::SaturatedAdd(feet_low, bottom));
-      const MU no_drop = at_most(feet_high, hn::SaturatedAdd(low_top, bottom));
+      const auto look = [&](int32_t far, const auto& index) {
+        Extremes e{hn::Zero(du), none, none};
+        for (int32_t d = -far; d <= far; ++d) {
+          const int32_t k = index[static_cast<size_t>(d < 0 ? -d : d)];
+          const int32_t row = z + d + reach;
+          e.high_top = hn::Max(e.high_top, hn::Load(du, table.row(k, 0, row) + x));
+          e.low_top = hn::Min(e.low_top, hn::Load(du, table.row(k, 1, row) + x));
+          e.low_ceiling = hn::Min(e.low_ceiling, hn::Load(du, table.row(k, 2, row) + x));
+        }
+        return e;
+      };
+      const auto is_even = [&](const Extremes& e) {
+        return hn::And(at_most(e.high_top, hn::SaturatedAdd(feet_low, bottom)),
+                       at_most(feet_high, hn::SaturatedAdd(e.low_top, bottom)));
+      };
       // Saturated, a head passes under the open sky only.
-      const MU room = at_most(hn::SaturatedAdd(feet_high, height), low_ceiling);
-      const MU closed = hn::Ne(high_top, none);
-      const MU open = hn::And(stands, hn::And(room, closed));
-      const MU even = hn::And(low_enough, no_drop);
+      const auto is_open = [&](const Extremes& e) {
+        return hn::And(stands, hn::And(at_most(hn::SaturatedAdd(feet_high, height), e.low_ceiling),
+                                       hn::Ne(e.high_top, none)));
+      };
+      const Extremes all = look(reach, width_index);
+      const MU open = is_open(all), even = is_even(all);
+      const MU free = hn::And(open, even);
       stand |= bits_of(du, stands) << x;
-      legal |= bits_of(du, hn::And(open, even)) << x;
-      const MU near = hn::And(at_most(high_top, hn::SaturatedAdd(feet, hope)),
-                              at_most(feet, hn::SaturatedAdd(low_top, hope)));
+      legal |= bits_of(du, free) << x;
+      const MU near = hn::And(at_most(all.high_top, hn::SaturatedAdd(feet, hope)),
+                              at_most(feet, hn::SaturatedAdd(all.low_top, hope)));
       slanted |= bits_of(du, hn::AndNot(even, hn::And(open, near))) << x;
+      const MU denied = hn::AndNot(free, stands);
+      if (!body.fine || hn::AllFalse(du, denied)) continue;
+      const Extremes core = look(core_reach, core_index);
+      hemmed |= bits_of(du, hn::And(denied, hn::And(is_open(core), is_even(core)))) << x;
     }
     legal &= allowed;
     stand &= allowed;
     slanted &= allowed;
+    hemmed &= allowed;
     out.legal[static_cast<size_t>(z)] = legal;
     out.stands[static_cast<size_t>(z)] = stand;
     out.slanted[static_cast<size_t>(z)] = slanted;
+    out.hemmed[static_cast<size_t>(z)] = hemmed;
   }
 }
 

@@ -23,13 +23,21 @@ struct BodyWindow {
   int32_t step = 0;
   int32_t hope = 0;            // matter further from the feet, up or down, no recheck can pass
   bool barely = false;         // its slope's rise under the rim takes all of the bottom
+  bool fine = false;           // looked at by less than a cell: it reaches all of the next cells
   double radius = 0;           // [cells]
   int32_t reach = 0;           // rows that a body on a cell can touch beyond it
   std::vector<int32_t> width;  // per row distance 0..reach: columns on either side
+  std::vector<int32_t> core;   // likewise, of cells that any matter in them is in reach of
+  /// Per cell that it can touch, row by row: the parts that it can touch, from anywhere on its
+  /// cell; bit 8 j + i is part (i, j) of 8 x 8. Rows are padded with empty cells.
+  std::vector<uint64_t> near_parts;
+  int32_t near_stride = 0;
   uint32_t class_bit = 0;
 };
 
-BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell);
+/// `fine`: BakeConfig::fine.
+BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell,
+                       bool fine = false);
 
 /// Sheets of a tile and its eight neighbours, row by row from (-1, -1); null: no tile there.
 using Neighbourhood = std::array<const TileSheets*, 9>;
@@ -76,6 +84,8 @@ struct LegalCells {
   BitPlane legal{};
   BitPlane stands{};   // feet, and a surface that the class may stand on
   BitPlane slanted{};  // of those, failed only for how high or low the matter around is
+  BitPlane hemmed{};   // of those, of a fine body, failed only for cells that it may just miss
+                       // matter in
 };
 
 /// True if nothing in sight can stop this class anywhere on the sheet, judged by the sheets'
@@ -93,8 +103,18 @@ void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& l
 void recheck_slopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
                     LegalCells& cells);
 
+/// Absolute heights of a gap that a body on one cell needs. [mm]
+struct ColumnNeed {
+  int32_t low_top, high_top;  // of the matter below
+  int32_t ceiling;
+};
+
+/// True if one of the gaps of a tile's column holds the body.
+bool column_is_free(const TileSheets& tile, size_t cell, const ColumnNeed& need);
+
 /// The same test for cells that failed it near a seam, where the window may have followed the wrong
-/// sheet: each column around may show any of its gaps. Slow, exact, for few cells.
+/// sheet: each column around may show any of its gaps. Slow, exact, for few cells. Those
+/// that fail outside of the core become hemmed.
 void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
                    const LegalityScratch& scratch, LegalCells& cells);
 

@@ -14,36 +14,27 @@ namespace {
 
 constexpr int32_t kLast = kTileSide - 1;
 
-// Absolute heights that a body on one cell needs. [mm]
-struct Need {
-  int32_t low_top, high_top, ceiling;
-};
+enum class Fit { kYes, kPerhaps, kNo };
 
-bool column_is_free(const TileSheets& tile, size_t cell, const Need& need) {
-  for (const auto& sheet : tile) {
-    if (sheet->top[cell] == kNone16) continue;
-    const int32_t top = sheet->base + sheet->top[cell];
-    const bool room =
-        sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;
-    if (top <= need.high_top && top >= need.low_top && room) return true;
-  }
-  return false;
-}
-
-bool body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int32_t z,
-               const Need& need) {
-  for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
-    const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
-    for (int32_t dx = -w; dx <= w; ++dx) {
-      const int32_t cx = x + dx, cz = z + dz;
+// kPerhaps: it does not where the body may just miss what is in the way.
+Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int32_t z,
+              const ColumnNeed& need) {
+  // From the middle outward: 0, -1, 1, -2 and so on. What fails mostly does so near by.
+  const auto nth = [](int32_t i) { return (i & 1) != 0 ? -(i + 1) / 2 : i / 2; };
+  for (int32_t i = 0; i <= 2 * body.reach; ++i) {
+    const int32_t dz = nth(i), w = body.width[static_cast<size_t>(std::abs(dz))];
+    for (int32_t k = 0; k <= 2 * w; ++k) {
+      const int32_t cx = x + nth(k), cz = z + dz;
       const int32_t side =
           (cz < 0 ? 0 : (cz > kLast ? 6 : 3)) + (cx < 0 ? 0 : (cx > kLast ? 2 : 1));
       const TileSheets* tile = tiles[static_cast<size_t>(side)];
       const size_t cell = static_cast<size_t>((cz & kLast) * kTileSide + (cx & kLast));
-      if (tile == nullptr || !column_is_free(*tile, cell, need)) return false;
+      if (tile != nullptr && column_is_free(*tile, cell, need)) continue;
+      const auto d = static_cast<size_t>(std::abs(dz));
+      return d < body.core.size() && std::abs(nth(k)) <= body.core[d] ? Fit::kNo : Fit::kPerhaps;
     }
   }
-  return true;
+  return Fit::kYes;
 }
 
 // Cells of a sheet whose neighbour is continued by another sheet of the tile.
@@ -95,6 +86,17 @@ BitPlane widened(const BitPlane& plane, int32_t reach) {
 
 }  // namespace
 
+bool column_is_free(const TileSheets& tile, size_t cell, const ColumnNeed& need) {
+  for (const auto& sheet : tile) {
+    if (sheet->top[cell] == kNone16) continue;
+    const int32_t top = sheet->base + sheet->top[cell];
+    const bool room =
+        sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;
+    if (top <= need.high_top && top >= need.low_top && room) return true;
+  }
+  return false;
+}
+
 void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
                    const LegalityScratch& scratch, LegalCells& cells) {
   const TileSheets& tile = *tiles[4];
@@ -121,9 +123,11 @@ void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& b
       const int32_t x = std::countr_zero(row);
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const int32_t feet = own.base + own.feet[cell], tilt = scratch.tilt[cell];
-      const Need need{feet + tilt - body.bottom, feet - tilt + body.bottom,
-                      feet + tilt + body.height};
-      if (body_fits(tiles, body, x, z, need)) cells.legal[r] |= 1ULL << x;
+      const ColumnNeed need{feet + tilt - body.bottom, feet - tilt + body.bottom,
+                            feet + tilt + body.height};
+      const Fit fit = body_fits(tiles, body, x, z, need);
+      if (fit == Fit::kYes) cells.legal[r] |= 1ULL << x;
+      if (fit == Fit::kPerhaps) cells.hemmed[r] |= 1ULL << x;
     }
   }
 }

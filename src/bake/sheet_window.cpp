@@ -48,9 +48,21 @@ const Sheet* nearest_sheet(const TileSheets& tile, size_t cell, int32_t near_top
   return best;
 }
 
+// The parts, of the cell that lies (dx, dz) from a square's, that are nearer to the square than the
+// radius. [cells]
+uint64_t near_parts_of(int32_t dx, int32_t dz, double radius) {
+  const auto apart = [](double low) { return std::max({low - 1, -(low + 0.125), 0.0}); };
+  uint64_t parts = 0;
+  for (int32_t i = 0; i < 64; ++i) {
+    const double x = apart(dx + i % 8 * 0.125), z = apart(dz + i / 8 * 0.125);
+    if (x * x + z * z < radius * radius) parts |= uint64_t{1} << i;
+  }
+  return parts;
+}
+
 }  // namespace
 
-BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell) {
+BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell, bool fine) {
   BodyWindow body;
   body.bottom = bottom_mm(avatar);
   body.height = height_mm(avatar);
@@ -63,6 +75,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
   // body reaches lie up to r + sqrt(2) away, and their tops half their tilt above their centres.
   body.hope = static_cast<int32_t>(std::min(60000.0, body.bottom * (1 + 2.2 / body.radius))) + 3;
   body.barely = avatar.step < body_bottom(avatar);
+  body.fine = fine && body.radius >= 1.5;  // more than a cell's diagonal
   for (int32_t dz = 0;; ++dz) {
     const double apart = std::max(dz - 1, 0);
     if (apart >= radius) break;
@@ -70,6 +83,19 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
     body.width.push_back(static_cast<int32_t>(std::ceil(half)));
   }
   body.reach = static_cast<int32_t>(body.width.size()) - 1;
+  // From the nearest point of the body's cell, a cell at distance d ends d cells away.
+  for (int32_t dz = 0;; ++dz) {
+    const double far = std::max<double>(dz, 0.5);
+    if (far * far + 0.25 > radius * radius) break;
+    body.core.push_back(static_cast<int32_t>(std::sqrt(radius * radius - far * far)));
+  }
+  body.near_stride = (2 * body.reach + 1 + 7) / 8 * 8;
+  for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
+    for (int32_t i = 0; i < body.near_stride; ++i) {
+      const int32_t dx = i - body.reach;
+      body.near_parts.push_back(dx > body.reach ? 0 : near_parts_of(dx, dz, radius));
+    }
+  }
   return body;
 }
 

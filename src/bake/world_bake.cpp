@@ -93,7 +93,8 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   plan.codes = coder.codes();
   plan.limits = body_limits(config.classes, plan.codes, config.cell);
   for (size_t c = 0; c < config.classes.size(); ++c) {
-    plan.bodies.push_back(body_window(config.classes[c], static_cast<int32_t>(c), config.cell));
+    plan.bodies.push_back(
+        body_window(config.classes[c], static_cast<int32_t>(c), config.cell, config.fine));
     plan.reach = std::max(plan.reach, plan.bodies.back().reach);
     plan.max_step = std::max(plan.max_step, plan.bodies.back().step);
   }

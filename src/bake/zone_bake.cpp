@@ -11,6 +11,7 @@
 #include "bake/columns.h"
 #include "bake/sheet_kernels.h"
 #include "bake/surface_planes.h"
+#include "bake/wall_parts.h"
 #include "bake/zone_builder.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -61,6 +62,7 @@ class ZoneJob {
   void make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void judge(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void clear(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  [[nodiscard]] TileTriangles triangles_around(int32_t column, int32_t row) const;
   void recheck_near_limit(int32_t column, int32_t row, size_t sheet, const BodyWindow& body,
                           ZoneScratch::Worker& worker, LegalCells& cells);
   bool is_open(int32_t column, int32_t row, size_t avatar_class) const;
@@ -81,6 +83,7 @@ struct ZoneScratch::Worker {
   TileGaps gaps;
   LegalityScratch legality;
   CellPlanes planes;
+  WallScratch walls;
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
   uint64_t spans = 0;
   std::vector<ClearancePlanes> clearance;  // of one sheet, per class
@@ -181,6 +184,9 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       recheck_slopes(sheet, body, worker.legality, cells);
       if (body.barely) recheck_near_limit(column, row, s, body, worker, cells);
       recheck_seams(around, s, body, worker.legality, cells);
+      const bool beside_walls =
+          body.fine && recheck_walls(around, s, body, triangles_around(column, row),
+                                     worker.legality, worker.walls, cells);
       verdict.legal = cells.legal;
       uint64_t any = 0, all = ~uint64_t{0};
       for (const uint64_t bits : cells.legal) {
@@ -191,12 +197,26 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       verdict.all = all == ~uint64_t{0};
       // A window that fits within a step makes neighbours safe, but only where the sheet is the
       // only one: at a seam the neighbour that fits is another sheet's, and this one's may be a
-      // storey off.
-      const bool window_is_enough = tile.sheets.size() == 1 && body.bottom <= body.step;
+      // storey off. Beside walls, a neighbour need not fit as a whole.
+      const bool window_is_enough =
+          tile.sheets.size() == 1 && body.bottom <= body.step && !beside_walls;
       verdict.step_safe = any == 0 || window_is_enough || step_safe(sheet, cells.legal, body.step);
     }
   }
   worker.seconds_clearance += seconds_since(start);
+}
+
+TileTriangles ZoneJob::triangles_around(int32_t column, int32_t row) const {
+  TileTriangles triangles{.all = scratch_.triangles,
+                          .items = {},
+                          .cell_x = (first_x_ + column) * kTileSide,
+                          .cell_z = (first_z_ + row) * kTileSide};
+  for (int32_t i = 0; i < 9; ++i) {
+    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
+    if (!in_world(x, z)) continue;
+    triangles.items[static_cast<size_t>(i)] = bins_.square(static_cast<size_t>(z * side_ + x));
+  }
+  return triangles;
 }
 
 // The last word on cells of a slope that is near what a class can climb, from the triangles.
@@ -209,17 +229,8 @@ void ZoneJob::recheck_near_limit(int32_t column, int32_t row, size_t sheet, cons
   uint64_t any = 0;
   for (size_t z = 0; z < kTileSide; ++z) any |= asked[z] = cells.slanted[z] & ~cells.legal[z];
   if (any == 0) return;
-  TileTriangles triangles{.all = scratch_.triangles,
-                          .items = {},
-                          .cell_x = (first_x_ + column) * kTileSide,
-                          .cell_z = (first_z_ + row) * kTileSide};
-  for (int32_t i = 0; i < 9; ++i) {
-    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
-    if (!in_world(x, z)) continue;
-    triangles.items[static_cast<size_t>(i)] = bins_.square(static_cast<size_t>(z * side_ + x));
-  }
-  find_surface_planes(worker.legality.window, tile.sheets[sheet]->base, asked, body, triangles,
-                      worker.planes);
+  find_surface_planes(worker.legality.window, tile.sheets[sheet]->base, asked, body,
+                      triangles_around(column, row), worker.planes);
   recheck_planes(*tile.sheets[sheet], body, worker.planes, worker.legality, cells);
 }
 

@@ -70,6 +70,7 @@ uint64_t zone_input(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
       words.push_back(std::bit_cast<uint64_t>(number));
     }
   }
+  if (plan.config->fine) words.push_back(1);
   words.insert(words.end(), hashes.begin(), hashes.end());
   return hash_span(std::span<const uint64_t>(words));
 }

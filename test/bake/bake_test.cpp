@@ -155,10 +155,12 @@ TEST(Bake, SameContentHoweverItIsStored) {
 }
 
 TEST(Bake, ZoneBordersChangeNothing) {
-  for (const char* name : {"stairs", "garage", "church", "bridge"}) {
+  for (const auto& [name, fine] :
+       {std::pair{"stairs", false}, std::pair{"garage", false}, std::pair{"church", false},
+        std::pair{"bridge", false}, std::pair{"church", true}, std::pair{"bridge", true}}) {
     const Scene scene = builtin(name);
-    const World whole = bake(scene, {.cell = 0.2, .zone = 102.4});
-    const World pieces = bake(scene, {.cell = 0.2, .zone = 12.8});
+    const World whole = bake(scene, {.cell = 0.2, .fine = fine, .zone = 102.4});
+    const World pieces = bake(scene, {.cell = 0.2, .fine = fine, .zone = 12.8});
     EXPECT_LE(whole.summary().zones, 2u) << name;
     EXPECT_GT(pieces.summary().zones, 8u) << name;
     // Margins may: seen from a zone, a floor of the next one can fall into pieces

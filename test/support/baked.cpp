@@ -16,10 +16,10 @@ Scene builtin(const BuiltinWorldConfig& config) {
   return scene ? *std::move(scene) : Scene{};
 }
 
-World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes) {
+World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes, bool fine) {
   Context context;
-  const auto world =
-      bake_world(scene, {.cell = cell, .zone = 25.6, .classes = std::move(classes)}, context);
+  const auto world = bake_world(
+      scene, {.cell = cell, .fine = fine, .zone = 25.6, .classes = std::move(classes)}, context);
   EXPECT_TRUE(world) << world.error().message;
   return world ? *world : World{};
 }

@@ -13,6 +13,7 @@
 namespace throng::test {
 
 Scene builtin(const BuiltinWorldConfig& config);
-World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes = default_classes());
+World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes = default_classes(),
+           bool fine = false);
 
 }  // namespace throng::test

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bake/legality.h"
+#include "bake/surface_planes.h"
+
+/// What a cell's matter fills of it, in 8 x 8 parts: the second look at cells beside walls, where
+/// whole cells deny up to a cell and a half of floor that a body has room on.
+namespace throng {
+
+/// Memory of recheck_walls.
+struct WallScratch {
+  struct Slab {
+    int32_t floor;      // lower tops are drops [mm from the sheet's base]
+    int32_t low, high;  // matter strictly between stops the body
+  };
+  struct Asked {
+    int32_t band;  // of feet, by absolute height: a cell's verdict depends on no other asked cell
+    int32_t cell;
+    auto operator<=>(const Asked&) const = default;
+  };
+  struct Near {
+    const CellTriangle* triangle;
+    int32_t low, high;       // [mm]
+    uint8_t side;            // of the nine tiles; the rest is in its frame
+    uint8_t x0, x1, z0, z1;  // cells that the triangle may touch, the last included
+  };
+  /// Cells that may hold what stops a body, of one of the nine tiles.
+  struct Side {
+    BitPlane wanted{};
+    uint64_t rows = 0, columns = 0;  // that have such cells
+  };
+  std::vector<Asked> asked;
+  std::vector<Near> near;
+  std::array<Side, 9> sides;
+  std::vector<uint64_t> parts;  // at SheetWindow::index; bit 8 j + i is part (i, j)
+};
+
+/// legal_cells' test for its `hemmed` cells that are not legal yet: no part of a cell that the body
+/// can touch, from anywhere on its own, holds matter at its height, by the triangles themselves.
+/// True if any cell passed. Linear in the triangles near, and the cells that they touch.
+bool recheck_walls(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+                   const TileTriangles& triangles, const LegalityScratch& legality,
+                   WallScratch& scratch, LegalCells& cells);
+
+}  // namespace throng

@@ -198,7 +198,7 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--threads", config.workers,
                       "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--fine", options->config.fine,
-                    "Lose next to no room beside walls; takes up to a quarter longer");
+                    "Lose next to no room beside walls; takes up to twice as long");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->add_flag("--nodes", options->nodes,
                     "Also make nodes and links; always done where a class climbs");

@@ -27,7 +27,7 @@ struct BakeConfig {
   /// these which is nearest above 0.4 m. [m]
   double air = 0;
   /// Looks at cells beside walls by parts of a cell, so that next to none of the room is lost; the
-  /// bake takes up to a quarter longer. Classes of at least 1.5 cells in radius.
+  /// bake takes up to twice as long. Classes of at least 1.5 cells in radius.
   bool fine = false;
   double zone = 160;  ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
   std::vector<AvatarClass> classes = default_classes();

@@ -96,6 +96,10 @@ int main(int argc, char** argv) {
   parser.add_option("--neighbours", steering.neighbours)
       ->check(CLI::Range(size_t{1}, steer::kMostNear))
       ->capture_default_str();
+  parser
+      .add_option("--reaction", options.config.reaction,
+                  "Who does as he wants decides anew after it [s]")
+      ->capture_default_str();
   parser.add_flag("!--no-patience", options.config.patient);
   CLI11_PARSE(parser, argc, argv);
   std::puts(run(options).dump().c_str());

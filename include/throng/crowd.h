@@ -64,6 +64,10 @@ struct CrowdConfig {
   bool labels = false;  ///< PathConfig::labels: for small worlds and many long ways.
   bool zones = false;   ///< PathConfig::zones: for large worlds and long ways.
   double sight = 5;     ///< Who is farther away is not avoided yet. [m, 1 to 50]
+  /// Whoever does what he wants most decides anew that often; in the steps between he goes on as he
+  /// does, if nobody and no wall is in his way. Steps that are longer decide in each. Shorter times
+  /// cost more and gain little. [s, 0 to 1]
+  double reaction = 0.2;
   int32_t rounds = 3;   ///< In which claims are settled, a step. [1 to 100]
   bool patient = true;  ///< Who does not get on turns aside by and by.
   /// Who has a goal, has not arrived, and has not come 0.3 m further between two looks, so many

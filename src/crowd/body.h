@@ -21,6 +21,7 @@ struct Body {
     kHasGoal = 8,
     kLost = 16,    // asks for another way
     kFlying = 32,  // FlyerEngine's: to those who walk it stands where it is
+    kKeeps = 64,   // to what it decided: it did that in the last step, and goes on if it can
   };
 
   enum State : uint8_t {
@@ -49,6 +50,7 @@ struct Body {
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }
   [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }
+  void clear(Flag flag) { flags = static_cast<uint8_t>(flags & ~flag); }
 };
 static_assert(sizeof(Body) == 64 && std::is_trivially_copyable_v<Body>);
 

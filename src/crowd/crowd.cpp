@@ -40,6 +40,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.dt > 0 && config.dt <= 1)) return bad_config("dt must be above 0 and at most 1 s");
   if (config.workers < 0) return bad_config("workers must be 0 (all cores) or more");
   if (!(config.sight >= 1 && config.sight <= 50)) return bad_config("sight must be 1 to 50 m");
+  if (!(config.reaction >= 0 && config.reaction <= 1)) {
+    return bad_config("reaction must be 0 to 1 s");
+  }
   if (!(config.rounds >= 1 && config.rounds <= 100)) return bad_config("rounds must be 1 to 100");
   if (!(config.stuck_after >= 0)) return bad_config("stuck_after must be 0 s or more");
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
@@ -49,6 +52,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .sight = static_cast<float>(config.sight),
                       .rounds = config.rounds,
                       .patient = config.patient,
+                      .reaction = static_cast<float>(config.reaction),
                       .seed = config.seed,
                       .workers = config.workers,
                       .steering = {},
@@ -347,19 +351,22 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
 // Follows ways, and asks for those that are missing.
 void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned) {
   const auto reach = static_cast<float>(kLook / unit);
+  const uint64_t every = engine.steps_of_reaction(), step_now = sub_step - 1;
   uint64_t asked = 0;
   for (Body& body : bodies) {
     if (body.has(Body::kFlying)) continue;
     const ClassParts& parts = *classes[body.avatar_class];
     if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kDriven)) &&
         plan_on_foot(body, flights[body.slot], worker, planned)) {
+      body.clear(Body::kKeeps);
       continue;
     }
-    if (!body.has(Body::kHasGoal) || config.ways == CrowdWays::kStraight) continue;
+    if (!body.has(Body::kHasGoal) || body.has(Body::kKeeps) || config.ways == CrowdWays::kStraight)
+      continue;
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
     if (!body.has(Body::kLost)) {
-      follow(body, route, ground, sub_step + body.slot, reach);
+      follow(body, route, ground, (step_now + body.slot) / every, reach);
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;

@@ -13,6 +13,7 @@
 #include "core/random.h"
 #include "core/stopwatch.h"
 #include "crowd/first_come.h"
+#include "crowd/reaction.h"
 #include "crowd/sense_kernel.h"
 #include "steer/sampled_kernel.h"
 
@@ -25,11 +26,12 @@ using steer::Plane;
 
 constexpr size_t kGrain = 256;  // bodies that are worth handing to another thread
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
-constexpr float kThere = 0.3f;        // [m] from its goal a body has arrived
-constexpr uint64_t kSides = 0x51de5;  // stream of chance
-constexpr float kClose = 0.1f;        // [m] to its corner a body turns to no side
-constexpr float kAtOnce = 0.3f;       // [s] Who goes straight meets nobody within.
-constexpr float kEnough = 14;         // bodies, to find the nearest among
+constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
+constexpr uint64_t kSides = 0x51de5;         // stream of chance
+constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
+constexpr float kAtOnce = 0.3f;              // [s] Who goes straight meets nobody within.
+constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
+constexpr float kEnough = 14;                // bodies, to find the nearest among
 
 // Do two bodies clash that stand at these places?
 bool clash(const Body& a, const Body& at_a, const Body& b, const Body& at_b) {
@@ -84,6 +86,7 @@ void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
   config_.units.dt = dt;
   widest_ = widest;
   longest_ = config_.units.stride(fastest);
+  every_ = throng::steps_of_reaction(config_.reaction, dt);
   // Who could be touched within a step must be seen, however short the sight.
   const auto sight = static_cast<int32_t>(std::lround(config_.sight / double{config_.units.unit}));
   sight_ = std::max(sight, 2 * widest_ + 2 * longest_);
@@ -125,6 +128,13 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
   lap(times.settle);
 }
 
+// Does it go on as it did in the last step?
+bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
+  return body.has(Body::kKeeps) && !body.has(Body::kDriven) && !body.has(Body::kLost) &&
+         !body.has(Body::kFlying) && !decides(every_, step, body.slot) &&
+         !is_before({body.aim_x - body.x, body.aim_z - body.z}, config_.units.stride(body.speed));
+}
+
 void CrowdEngine::wish_all(uint64_t step, const Before& before) {
   constexpr float kSide = 2;  // [s] that one keeps to a side
   const auto window = step / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
@@ -140,6 +150,9 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
   parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
     const size_t begin = piece * kGrain;
     const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
+    for (Body& b : bodies) {
+      if (!keeps(b, step)) b.clear(Body::kKeeps);
+    }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
       if (b.has(Body::kDriven) || b.has(Body::kFlying)) continue;
@@ -164,7 +177,9 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
     uint32_t square = UINT32_MAX;
     const size_t end = std::min(size_, (piece + 1) * kGrain);
     for (size_t i = piece * kGrain; i < end; ++i) {
+      prefetch_ground(i);
       const uint32_t here = grid_->square(bodies_[i]);
+      if (bodies_[i].has(Body::kKeeps) && keep_on(static_cast<uint32_t>(i), worker, here)) continue;
       if (here != square) {
         square = here;
         around = grid_->around(square);
@@ -175,10 +190,20 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
   for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
-// Appends whom the body could touch to `others`, and takes in what it steers by.
-void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
-                        bool lists_others) {
-  const Body& body = bodies_[i];
+// Asks for the ground under those who decide next.
+void CrowdEngine::prefetch_ground(size_t i) const {
+  if (i + kFarAhead < size_) {
+    const Body& body = bodies_[i + kFarAhead];
+    grounds_[body.avatar_class].prefetch_level(body.level);
+  }
+  if (i + kAhead < size_) {
+    const Body& body = bodies_[i + kAhead];
+    grounds_[body.avatar_class].prefetch_cell(body.level, body.point());
+  }
+}
+
+// Makes the lists as long as those around may need. Returns how many these are.
+size_t CrowdEngine::fit_lists(const NeighbourGrid::Around& around, Worker& worker) const {
   size_t around_us = 0;
   for (const auto& p : around) around_us += p.last - p.first;
   if (worker.squares.size() < around_us + kSeenSpare) {
@@ -187,10 +212,36 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     }
     worker.squares.resize(worker.entries.size());
   }
-  const Places places{grid_->x(), grid_->z(), grid_->y()};
-  // Nobody farther away than this can be touched; the exact test follows.
+  return around_us;
+}
+
+// Nobody farther away than this can be touched; the exact test follows. [units]
+float CrowdEngine::touch_of(const Body& body) const {
   const int32_t stride = config_.units.stride(body.speed);
-  const float touch = static_cast<float>(body.radius + stride + widest_ + longest_ + 1) * 1.0001f;
+  return static_cast<float>(body.radius + stride + widest_ + longest_ + 1) * 1.0001f;
+}
+
+// Appends whom the body could touch to `others`.
+void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker& worker) const {
+  const int32_t stride = config_.units.stride(body.speed);
+  for (size_t n = 0; n < lists.touches; ++n) {
+    const uint32_t j = lists.touched[n];
+    const Body& other = bodies_[j];
+    const int64_t reach =
+        int64_t{body.radius} + other.radius + stride + config_.units.stride(other.speed);
+    const int32_t rise = body.y - other.y;
+    const bool near = rise < other.height + 2 * kMostRise && -rise < body.height + 2 * kMostRise;
+    if (near && nearer_than(other.x - body.x, other.z - body.z, reach)) worker.others.push_back(j);
+  }
+}
+
+// Takes in what it steers by, and if wanted lists whom it could touch.
+void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
+                        bool lists_others) {
+  const Body& body = bodies_[i];
+  const size_t around_us = fit_lists(around, worker);
+  const Places places{grid_->x(), grid_->z(), grid_->y()};
+  const float touch = touch_of(body);
   // In a dense crowd the nearest are near: if enough are within less, nobody farther matters.
   const float sight = static_cast<float>(sight_) * static_cast<float>(sight_);
   const float across = grid_->width() * NeighbourGrid::kAround;
@@ -215,15 +266,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     eye.most = sight;
     look();
   }
-  for (size_t n = 0; n < lists.touches; ++n) {
-    const uint32_t j = lists.touched[n];
-    const Body& other = bodies_[j];
-    const int64_t reach =
-        int64_t{body.radius} + other.radius + stride + config_.units.stride(other.speed);
-    const int32_t rise = body.y - other.y;
-    const bool near = rise < other.height + 2 * kMostRise && -rise < body.height + 2 * kMostRise;
-    if (near && nearer_than(other.x - body.x, other.z - body.z, reach)) worker.others.push_back(j);
-  }
+  list_touched(body, lists, worker);
   size_t nearest = keep_nearest(lists, wanted);
   if (nearest > wanted) {  // Some are equally far: of these the first slots.
     const auto key = [&](uint32_t j) {
@@ -334,7 +377,7 @@ float CrowdEngine::metres(float way, float look) const {
 void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) const {
   const StrideGround& ground = grounds_[body.avatar_class];
   const float look = wall_look(body);
-  situation.has_walls = !ground.is_plain_around(body.level, body.point(), cells_of(look));
+  situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(look));
   if (!situation.has_walls) return;
   const Plane ahead = steer::fan_around(situation.wish)[0];
   situation.free_way[0] = metres(ground.free_way(body.level, body.point(), ahead, look), look);
@@ -370,6 +413,7 @@ void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Contes
   steer::costs_of_fast(config_.steering, situation, trials, costs);
   contest.ways = 0;
   contest.has_all = true;
+  contest.keeps = false;
   const auto add_way = [&](Plane v) {
     v = if_blocked(v, situation);
     contest.way[contest.ways++] = {config_.units.way(v.x), config_.units.way(v.z)};
@@ -384,11 +428,56 @@ void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Contes
   for (const float part : kShorter) add_way({best.x * part, best.z * part});
 }
 
+// Names the place that a body comes to if it goes on as it did. False, and nothing is changed, if
+// that is not free.
+bool CrowdEngine::keep_on(uint32_t i, Worker& worker, uint32_t square) {
+  Body& body = bodies_[i];
+  Body& place = spare_[i];
+  place.round = 0;
+  place.flags = Body::kKeeps;
+  Contest contest;
+  contest.body = i;
+  contest.ways = 1;
+  contest.has_all = false;
+  contest.keeps = true;
+  contest.way[0] = {config_.units.way(body.velocity.x), config_.units.way(body.velocity.z)};
+  if (!try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place)) return false;
+  const float touch = touch_of(body);
+  const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);
+  fit_lists(around, worker);
+  const Eye eye{.x = body.x,
+                .z = body.z,
+                .y = body.y,
+                .self = i,
+                .most = 0,
+                .tall = 0,
+                .touch = touch * touch,
+                .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMostRise};
+  SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
+  find_seen({grid_->x(), grid_->z(), grid_->y()}, around, eye, lists);
+  contest.first = static_cast<uint32_t>(worker.others.size());
+  list_touched(body, lists, worker);
+  contest.last = static_cast<uint32_t>(worker.others.size());
+  if (contest.first == contest.last) {
+    body.state = Body::kFree;
+    return true;
+  }
+  if (!is_clear(contest, worker, place, /*somebody_moved=*/false)) {
+    worker.others.resize(contest.first);
+    return false;
+  }
+  ++worker.counts.contested;
+  body.state = Body::kUndecided;
+  worker.contests.push_back(contest);
+  return true;
+}
+
 // Sense, steer, and name a place if nobody can object.
 void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
   Body& body = bodies_[i];
   Body& place = spare_[i];
   place.round = 0;
+  place.flags = 0;
   if (body.has(Body::kFlying)) {
     body.state = Body::kShut;
     return;
@@ -408,6 +497,7 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
            : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
   contest.ways = 1;
   contest.has_all = false;
+  contest.keeps = false;
   contest.way[0] = {config_.units.way(best.x), config_.units.way(best.z)};
   bool named = try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place) &&
                (alone || is_clear(contest, worker, place, /*somebody_moved=*/false));
@@ -415,6 +505,7 @@ void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around
     if (open) look_around(body, worker.situation);
     find_ways(worker.situation, open, contest);
   }
+  if (named) place.flags = Body::kKeeps;
   // Known only where one had to look.
   body.near_wall = (!open || !named) && worker.situation.has_walls;
   if (!alone) {
@@ -505,8 +596,10 @@ void CrowdEngine::name(Contest& contest, const Worker& owner, Worker& scratch, u
   uint32_t tried = 0;
   for (; tried < contest.ways; ++tried) {
     if (try_way(tried)) return;
+    spare_[contest.body].clear(Body::kKeeps);  // It comes to do what it did not want first.
   }
   if (contest.has_all) return;
+  if (contest.keeps) tried = 0;  // What it decides now it has not tried.
   // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
   const NeighbourGrid::Around around = grid_->around(grid_->square(body));
   sense(contest.body, scratch, around, /*lists_others=*/false);
@@ -558,6 +651,8 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         b.velocity = {};
         ++here.stood;
       }
+      b.clear(Body::kKeeps);
+      if (may_move) b.flags = static_cast<uint8_t>(b.flags | (place.flags & Body::kKeeps));
       if (!b.has(Body::kHasGoal) || b.has(Body::kDriven)) continue;
       const float left = size_of(way);
       const float towards = left > 1e-6f ? (b.velocity.x * way.x + b.velocity.z * way.z) / left : 0;

@@ -26,6 +26,7 @@ struct EngineConfig {
   float sight = 5;  ///< [m]
   int32_t rounds = 3;
   bool patient = true;
+  float reaction = 0.2f;  ///< Whoever does as he decided decides again after that. [s]
   uint64_t seed = 1;
   int32_t workers = 0;
   steer::SampledSettings steering;
@@ -65,6 +66,8 @@ class CrowdEngine {
   /// first, some at a time, on any worker.
   using Before = std::function<void(std::span<Body>, int32_t worker)>;
   void step(uint64_t step, const Before& before, EngineCounts& counts, Times& times);
+  /// Who keeps to what he decided decides again after so many.
+  [[nodiscard]] uint64_t steps_of_reaction() const { return every_; }
   /// Slots of those who arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
@@ -81,6 +84,7 @@ class CrowdEngine {
     uint32_t first, last;  // of `others`
     uint32_t ways;
     bool has_all;
+    bool keeps;  // its only way is what it did before
     struct Way {
       int32_t x, z;
     };
@@ -96,9 +100,15 @@ class CrowdEngine {
     EngineCounts counts;
   };
 
+  [[nodiscard]] bool keeps(const Body& body, uint64_t step) const;
   void wish_all(uint64_t step, const Before& before);
   void decide_all(EngineCounts& counts);
   void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  void prefetch_ground(size_t i) const;
+  bool keep_on(uint32_t i, Worker& worker, uint32_t square);
+  void list_touched(const Body& body, const SeenLists& lists, Worker& worker) const;
+  size_t fit_lists(const NeighbourGrid::Around& around, Worker& worker) const;
+  [[nodiscard]] float touch_of(const Body& body) const;
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
   bool find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   bool go_straight(const Body& body, steer::Situation& situation) const;
@@ -126,6 +136,7 @@ class CrowdEngine {
   std::vector<StrideGround> grounds_;  // by class
   int32_t width_, depth_;
   int32_t widest_ = 0, longest_ = 0, sight_ = 0;
+  uint64_t every_ = 1;   // steps of a reaction
   int32_t highest_ = 0;  // of all bodies there ever were [mm]
   size_t size_ = 0;
   HugeArray<Body> bodies_;

@@ -118,11 +118,13 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   CrowdGround ground;
   ground.tiles_x_ = world.summary.tiles_x;
   ground.tiles_z_ = world.summary.tiles_z;
+  ground.step_mm_ = step_mm;
   ground.tiles_.resize(static_cast<size_t>(ground.tiles_x_) * static_cast<size_t>(ground.tiles_z_));
   ground.records_.resize(world.level_count);
   ground.heights_.resize(world.level_count);
   ground.views_ = HugeArray<LevelView>(world.level_count);
   ground.lines_ = HugeArray<LevelLine>(world.level_count);
+  ground.open_ = HugeArray<OpenLine>(world.level_count);
   // Room for all levels; what is not written is never taken from the system.
   ground.rows_ = HugeArray<uint64_t>((2 * size_t{world.level_count} + 2) * kRows);
   std::fill_n(ground.rows_.data() + kAllLegal * kRows, kRows, ~uint64_t{0});
@@ -168,6 +170,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
         line.plain_set = any ? sets++ : kNoneLegal;
       }
       line.plain = full_blocks(ground.plain(base + i));
+      ground.find_open(base + i);
       const Heights heights = heights_of(view, ground.legal(base + i));
       ground.heights_[base + i] = heights;
       if (set != kNoneLegal && heights.low <= heights.high) {

@@ -43,6 +43,7 @@ class CrowdGround {
 
   [[nodiscard]] const LevelLine& line(Level level) const { return lines_[level]; }
   [[nodiscard]] const LevelLine* lines() const { return lines_.data(); }
+  [[nodiscard]] const OpenLine& open_line(Level level) const { return open_[level]; }
 
   /// 64 rows of plain cells: legal, and level with the cells beside them. Whoever stands on one may
   /// go wherever all cells between are plain, and stays on the level, at the height of his feet.
@@ -73,6 +74,12 @@ class CrowdGround {
     throng::prefetch(sample - 64);
     throng::prefetch(sample);
     throng::prefetch(sample + 64);
+  }
+  /// Asks for what decides where one may walk on a level,
+  void prefetch_open(Level level) const {
+    throng::prefetch(&open_[level]);
+    throng::prefetch(&lines_[level]);
+    throng::prefetch(&views_[level]);
   }
   /// What is known of a tile's levels, in two goes: the second reads what the first asks for.
   void prefetch_tile(int32_t tile_x, int32_t tile_z) const {
@@ -111,7 +118,8 @@ class CrowdGround {
   };
   [[nodiscard]] const std::vector<Record>& records() const { return records_; }
   [[nodiscard]] uint64_t bytes() const {
-    const uint64_t level = sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + sizeof(LevelLine);
+    const uint64_t level =
+        sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + sizeof(LevelLine) + sizeof(OpenLine);
     return records_.size() * level + tiles_.size() * sizeof(Range) +
            row_sets_ * 64 * sizeof(uint64_t) + sample_sets_ * 4096 * sizeof(uint16_t) +
            baked_.size() * sizeof(Baked);
@@ -146,6 +154,8 @@ class CrowdGround {
   void find_alone(int32_t step_mm);
   void join_blocks();
   void join_side(Level level, LevelLine::Side side);
+  void find_open(Level level);
+  void join_open_side(Level level, LevelLine::Side side);
   [[nodiscard]] const Range* tile(int32_t x, int32_t z) const {
     if (x < 0 || z < 0 || x >= tiles_x_ || z >= tiles_z_) return nullptr;
     return &tiles_[static_cast<size_t>(z) * static_cast<size_t>(tiles_x_) + static_cast<size_t>(x)];
@@ -155,6 +165,7 @@ class CrowdGround {
   }
 
   int32_t tiles_x_ = 0, tiles_z_ = 0;
+  int32_t step_mm_ = 0;
   std::vector<Range> tiles_;
   Heights feet_range_;
   std::vector<Heights> heights_;  // between which a level's legal floors lie [mm]
@@ -162,6 +173,7 @@ class CrowdGround {
   // Copied out of the zones, where one class's rows lie pages apart: here the levels of a tile are
   // neighbours. Set 0 is empty, set 1 is full, for all levels that are.
   HugeArray<LevelLine> lines_;
+  HugeArray<OpenLine> open_;
   HugeArray<LevelView> views_;
   HugeArray<uint64_t> rows_;
   uint32_t row_sets_ = 0;

@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+
 #include "crowd/crowd_ground.h"
+#include "world/walk.h"
 
 // Which plain blocks go on, level, beyond the edge of their tile: found once, so that a step over
 // the edge need not search. A step from a plain cell to an equally high one rises by 0, which no
@@ -37,6 +41,7 @@ void CrowdGround::join_blocks() {
     for (const auto side :
          {LevelLine::kLeft, LevelLine::kRight, LevelLine::kAbove, LevelLine::kBelow}) {
       join_side(level, side);
+      join_open_side(level, side);
     }
   }
 }
@@ -75,6 +80,63 @@ void CrowdGround::join_side(Level level, LevelLine::Side side) {
       line.joined[side] = static_cast<uint16_t>(line.joined[side] | 1u << i);
       break;
     }
+  }
+}
+
+void CrowdGround::find_open(Level level) {
+  open_[level].open = step_safe(level) ? full_blocks(legal(level)) : std::array<uint16_t, 16>{};
+}
+
+// Of the levels that steps over a side lead to, the one that most of them do (the first of equals)
+// is the one beyond.
+void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
+  const bool along_x = side == LevelLine::kLeft || side == LevelLine::kRight;
+  const int32_t toward = side == LevelLine::kLeft || side == LevelLine::kAbove ? -1 : 1;
+  const Record& record = records_[level];
+  OpenLine& line = open_[level];
+  line.beyond[side] = LevelLine::kNone;
+  line.joined[side] = 0;
+  line.cells[side] = 0;
+  if ((lines_[level].legal_set & kSetBits) == kNoneLegal) return;
+  struct Step {
+    Level to = LevelLine::kNone;
+    bool both_ways = false;  // and from an open block to another
+  };
+  std::array<Step, 64> steps;
+  for (int32_t i = 0; i < 64; ++i) {
+    const int32_t rim = toward > 0 ? 63 : 0;
+    const int32_t x = record.tile_x * 64 + (along_x ? rim : i);
+    const int32_t z = record.tile_z * 64 + (along_x ? i : rim);
+    if (!is_legal(level, x & 63, z & 63)) continue;
+    const int32_t nx = x + (along_x ? toward : 0), nz = z + (along_x ? 0 : toward);
+    const auto next = step_to(*this, level, x, z, nx, nz, step_mm_);
+    if (!next) continue;
+    steps[i].to = *next;
+    steps[i].both_ways = line.is_open((x & 63) >> 2, (z & 63) >> 2) &&
+                         open_[*next].is_open((nx & 63) >> 2, (nz & 63) >> 2) &&
+                         step_to(*this, *next, nx, nz, x, z, step_mm_) == level;
+  }
+  const auto lead_to = [&](Level other) {
+    return std::count_if(steps.begin(), steps.end(), [&](const Step& s) { return s.to == other; });
+  };
+  int64_t most = 0;
+  for (const Step& step : steps) {
+    if (step.to == LevelLine::kNone || step.to == line.beyond[side]) continue;
+    const int64_t count = lead_to(step.to);
+    if (count > most) {
+      most = count;
+      line.beyond[side] = step.to;
+    }
+  }
+  for (int32_t i = 0; i < 64; ++i) {
+    line.cells[side] |=
+        uint64_t{steps[i].to != LevelLine::kNone && steps[i].to == line.beyond[side]} << i;
+  }
+  for (int32_t block = 0; block <= kLast; ++block) {
+    const bool joined = std::all_of(&steps[4 * block], &steps[4 * block] + 4, [&](const Step& s) {
+      return s.both_ways && s.to == line.beyond[side];
+    });
+    line.joined[side] = static_cast<uint16_t>(line.joined[side] | int{joined} << block);
   }
 }
 

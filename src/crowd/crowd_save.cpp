@@ -16,13 +16,13 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x34305744574f5243;  // "CROWDW04"
+constexpr uint64_t kMagic = 0x35305744574f5243;  // "CROWDW05"
 
 struct Head {
   uint64_t magic = kMagic;
   uint64_t world = 0;  // hash_of
   uint64_t seed = 0;
-  double dt = 0, sight = 0;
+  double dt = 0, sight = 0, reaction = 0;
   uint64_t step = 0, sub_step = 0, scattered = 0;
   uint64_t bodies = 0, slots = 0, free_slots = 0;
   uint64_t obstacles = 0, corners = 0, free_obstacles = 0;
@@ -30,7 +30,7 @@ struct Head {
   uint64_t flights = 0;        // by slot, or none
   int32_t rounds = 0, ways = 0, patient = 0, flows_are_old = 0;
 };
-static_assert(sizeof(Head) == 18 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 19 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
@@ -124,6 +124,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.seed = config.seed;
   head.dt = config.dt;
   head.sight = config.sight;
+  head.reaction = config.reaction;
   head.rounds = config.rounds;
   head.ways = static_cast<int32_t>(config.ways);
   head.patient = config.patient ? 1 : 0;
@@ -260,8 +261,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   Head expected = head_of(world, config);
   if (head.world != expected.world) return bad("is of another world; open that one");
   if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
-      head.rounds != expected.rounds || head.ways != expected.ways ||
-      head.patient != expected.patient) {
+      head.reaction != expected.reaction || head.rounds != expected.rounds ||
+      head.ways != expected.ways || head.patient != expected.patient) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMost = uint64_t{1} << 32;

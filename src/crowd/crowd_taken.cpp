@@ -57,6 +57,7 @@ void CrowdGround::set_taken(Level level, const CellRows& taken) {
   }
   records_[level].legal_cells = cells;
   line.plain = full_blocks(plain(level));
+  find_open(level);
   if (any) return;
   if (line.legal_set != baked.legal_word) spare_sets_.push_back(line.legal_set & kSetBits);
   line.legal_set = baked.legal_word;
@@ -72,7 +73,10 @@ const CellRows* CrowdGround::baked_legal(Level level) const {
 void CrowdGround::join_tile(int32_t x, int32_t z) {
   const auto join = [&](int32_t tile_x, int32_t tile_z, LevelLine::Side side) {
     const Range* range = tile(tile_x, tile_z);
-    for (Level i = range ? range->first : 0; range && i < range->last; ++i) join_side(i, side);
+    for (Level i = range ? range->first : 0; range && i < range->last; ++i) {
+      join_side(i, side);
+      join_open_side(i, side);
+    }
   };
   for (const auto side :
        {LevelLine::kLeft, LevelLine::kRight, LevelLine::kAbove, LevelLine::kBelow}) {

@@ -45,6 +45,26 @@ struct alignas(64) LevelLine {
 };
 static_assert(sizeof(LevelLine) == 64);
 
+/// Where one walks on a level tile without looking at its cells: two cache lines. A block is open
+/// if all its cells are legal and no step between them, nor to cells of other open blocks of the
+/// tile, is too high. Whoever goes from open block to open block, over edges of tiles where they
+/// are joined, goes where a walk cell by cell would, and comes to the same level.
+struct alignas(64) OpenLine {
+  std::array<uint16_t, 16> open{};  // bit x of word z: block (x, z)
+  // As those of LevelLine: the level beyond a side, and a bit for each block there that is open, as
+  // is the one beyond, and where all steps between the two lead from each to the other.
+  std::array<uint32_t, 4> beyond = {LevelLine::kNone, LevelLine::kNone, LevelLine::kNone,
+                                    LevelLine::kNone};
+  std::array<uint16_t, 4> joined{};
+  // Of a side, bit i: from the i-th cell along it the step over the edge leads to `beyond`.
+  std::array<uint64_t, 4> cells{};
+
+  [[nodiscard]] bool is_open(int32_t x, int32_t z) const {
+    return (open[z & 15] >> (x & 15) & 1) != 0;
+  }
+};
+static_assert(sizeof(OpenLine) == 128);
+
 /// The blocks of which all cells are set in 64 rows.
 std::array<uint16_t, 16> full_blocks(const uint64_t* rows);
 

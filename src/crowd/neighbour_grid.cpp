@@ -66,12 +66,12 @@ void NeighbourGrid::sort(std::span<const Body> bodies, std::span<Body> sorted, i
   });
 }
 
-NeighbourGrid::Around NeighbourGrid::around(uint32_t square) const {
+NeighbourGrid::Around NeighbourGrid::around(uint32_t square, uint32_t reach) const {
   const uint32_t x = square & mask_x_, z = square >> bits_x_;
-  const uint32_t left = (x - kReach) & mask_x_, right = (x + kReach) & mask_x_;
+  const uint32_t left = (x - reach) & mask_x_, right = (x + reach) & mask_x_;
   Around pieces;
-  for (uint32_t row = 0; row < kAround; ++row) {
-    const uint32_t base = ((z + row - kReach) & mask_z_) << bits_x_;
+  for (uint32_t row = 0; row < 2 * reach + 1; ++row) {
+    const uint32_t base = ((z + row - reach) & mask_z_) << bits_x_;
     if (left <= right) {
       pieces[2 * row] = {first_[base + left], first_[base + right + 1]};
     } else {

@@ -32,8 +32,9 @@ class NeighbourGrid {
 
   /// Bodies of the rows of squares around a body, a row in up to two pieces.
   using Around = std::array<Entries, 2 * kAround>;
-  /// Those that may be within sight of the square; pieces that are not needed are empty.
-  [[nodiscard]] Around around(uint32_t square) const;
+  /// Those within so many squares of the square, at most kReach, which are all that may be within
+  /// sight; pieces that are not needed are empty.
+  [[nodiscard]] Around around(uint32_t square, uint32_t reach = kReach) const;
   /// Of a square. [units]
   [[nodiscard]] float width() const { return static_cast<float>(squares_.units()); }
   [[nodiscard]] uint32_t square(const Body& body) const {

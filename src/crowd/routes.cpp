@@ -10,7 +10,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kLookEvery = 16;  // steps
+constexpr uint64_t kLookEvery = 16;  // decisions
 
 void turn_to(Body& body, const Route& route) {
   const Spot& corner = route.corners[route.next];

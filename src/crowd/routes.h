@@ -31,8 +31,8 @@ struct Route {
 };
 
 /// Turns to the next corner where it can be seen, and marks whoever has lost his way. `nth`: of
-/// steps and slots, so that not everybody looks around in the same step. `reach`: how far one looks
-/// along a leg. [units]
+/// decisions, begun at different numbers, so that not everybody looks around in the same step.
+/// `reach`: how far one looks along a leg. [units]
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach);
 
 /// Where a body stands, where it is bound for.

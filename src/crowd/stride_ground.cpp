@@ -26,59 +26,113 @@ bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint
     }
   }
   uint32_t end = level;
-  if (!walk(*ground_, end, from, to, step_mm_)) return false;
+  if (!walk_open(end, from, to) && !walk(*ground_, end, from, to, step_mm_)) return false;
   landing = {end, ground_->feet(end, to)};
   return true;
 }
 
-// Block by block; over the edge of a tile where the blocks there are joined to one level.
-bool StrideGround::box_is_plain(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
-                                int32_t z1) const {
-  const LevelLine& line = ground_->line(level);
-  const auto blocks = [](int32_t low, int32_t high) {  // bits of a row or column of the tile
-    return (~uint32_t{0} >> (31 - (high >> 2 & 15))) & (~uint32_t{0} << (low >> 2 & 15));
-  };
-  const auto joined = [&](LevelLine::Side side, int32_t low, int32_t high) {
-    return (line.joined[side] & blocks(low, high)) == blocks(low, high);
-  };
-  if ((x0 ^ x1) >= 64 || (x0 ^ x1) < 0) {
-    const int32_t edge = x1 & ~63;
-    if ((edge - 1) >> 6 != x0 >> 6 || (z0 >> 6) != (z1 >> 6)) return false;
-    if (!joined(LevelLine::kRight, z0, z1)) return false;
-    return box_is_plain(level, x0, z0, edge - 1, z1) &&
-           box_is_plain(line.beyond[LevelLine::kRight], edge, z0, x1, z1);
-  }
-  if ((z0 ^ z1) >= 64 || (z0 ^ z1) < 0) {
-    const int32_t edge = z1 & ~63;
-    if ((edge - 1) >> 6 != z0 >> 6) return false;
-    if (!joined(LevelLine::kBelow, x0, x1)) return false;
-    return box_is_plain(level, x0, z0, x1, edge - 1) &&
-           box_is_plain(line.beyond[LevelLine::kBelow], x0, edge, x1, z1);
-  }
-  const uint32_t wanted = blocks(x0, x1);
-  for (int32_t row = z0 >> 2 & 15; row <= (z1 >> 2 & 15); ++row) {
-    if ((line.plain[static_cast<size_t>(row)] & wanted) != wanted) return false;
-  }
-  return true;
+namespace {
+
+// Bits of a row or column of a tile's blocks, from one cell to another.
+uint32_t blocks_between(int32_t low, int32_t high) {
+  return (~uint32_t{0} >> (31 - (high >> 2 & 15))) & (~uint32_t{0} << (low >> 2 & 15));
 }
 
-bool StrideGround::is_plain_around(uint32_t level, GroundPoint from, int32_t reach) const {
+bool has_all(uint32_t bits, uint32_t wanted) { return (bits & wanted) == wanted; }
+
+}  // namespace
+
+// Of one tile.
+bool StrideGround::box_is_open(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
+                               int32_t z1) const {
+  const OpenLine& line = ground_->open_line(level);
+  const uint32_t wanted = blocks_between(x0, x1);
+  uint32_t all = wanted;
+  for (int32_t row = z0 >> 2 & 15; row <= (z1 >> 2 & 15); ++row) {
+    all &= line.open[static_cast<size_t>(row)];
+  }
+  return all == wanted;
+}
+
+// The level beyond a side, if all blocks there from one cell to another are joined to it.
+uint32_t StrideGround::beyond(uint32_t level, LevelLine::Side side, int32_t low,
+                              int32_t high) const {
+  const OpenLine& line = ground_->open_line(level);
+  return has_all(line.joined[side], blocks_between(low, high)) ? line.beyond[side]
+                                                               : LevelLine::kNone;
+}
+
+bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t reach) const {
   if (reach > 31) return false;  // of a tile's 64
   const int32_t x = from.cell_x(), z = from.cell_z();
-  // Joins lead to the right and down only, so begin at the left upper corner.
-  const int32_t x0 = x - reach, z0 = z - reach;
-  uint32_t first = level;
-  if (x0 >> 6 != x >> 6) {
-    const LevelLine& line = ground_->line(first);
-    if ((line.joined[LevelLine::kLeft] >> (z >> 2 & 15) & 1) == 0) return false;
-    first = line.beyond[LevelLine::kLeft];
+  const int32_t x0 = x - reach, z0 = z - reach, x1 = x + reach, z1 = z + reach;
+  const bool is_wide = (x0 ^ x1) >> 6 != 0, is_deep = (z0 ^ z1) >> 6 != 0;
+  // Of the body's tile, and of the other one across and down.
+  const int32_t edge_x = is_wide ? x1 & ~63 : x1 + 1, edge_z = is_deep ? z1 & ~63 : z1 + 1;
+  const bool is_right = x >= edge_x, is_low = z >= edge_z;
+  const int32_t own_x0 = is_right ? edge_x : x0, own_x1 = is_right ? x1 : edge_x - 1;
+  const int32_t own_z0 = is_low ? edge_z : z0, own_z1 = is_low ? z1 : edge_z - 1;
+  if (!box_is_open(level, own_x0, own_z0, own_x1, own_z1)) return false;
+  const int32_t far_x0 = is_right ? x0 : edge_x, far_x1 = is_right ? edge_x - 1 : x1;
+  const int32_t far_z0 = is_low ? z0 : edge_z, far_z1 = is_low ? edge_z - 1 : z1;
+  const auto side_x = is_right ? LevelLine::kLeft : LevelLine::kRight;
+  const auto side_z = is_low ? LevelLine::kAbove : LevelLine::kBelow;
+  uint32_t across = level, down = level;
+  if (is_wide) {
+    across = beyond(level, side_x, own_z0, own_z1);
+    if (across == LevelLine::kNone) return false;
+    if (!box_is_open(across, far_x0, own_z0, far_x1, own_z1)) return false;
   }
-  if (z0 >> 6 != z >> 6) {
-    const LevelLine& line = ground_->line(first);
-    if ((line.joined[LevelLine::kAbove] >> ((x0 & 63) >> 2) & 1) == 0) return false;
-    first = line.beyond[LevelLine::kAbove];
+  if (is_deep) {
+    down = beyond(level, side_z, own_x0, own_x1);
+    if (down == LevelLine::kNone) return false;
+    if (!box_is_open(down, own_x0, far_z0, own_x1, far_z1)) return false;
   }
-  return box_is_plain(first, x0, z0, x + reach, z + reach);
+  if (!is_wide || !is_deep) return true;
+  // The fourth tile is the same by both ways.
+  const uint32_t fourth = beyond(across, side_z, far_x0, far_x1);
+  return fourth != LevelLine::kNone && fourth == beyond(down, side_x, far_z0, far_z1) &&
+         box_is_open(fourth, far_x0, far_z0, far_x1, far_z1);
+}
+
+// As throng::walk_far, block by block. False, and the level is as it was: blocks do not tell.
+bool StrideGround::walk_open(uint32_t& level, GroundPoint from, GroundPoint to) const {
+  constexpr int32_t kShift = kUnitBits + 2;  // units of a block
+  auto x = static_cast<int32_t>(from.x >> kShift), z = static_cast<int32_t>(from.z >> kShift);
+  const auto end_x = static_cast<int32_t>(to.x >> kShift);
+  const auto end_z = static_cast<int32_t>(to.z >> kShift);
+  const int64_t dx = std::llabs(to.x - from.x), dz = std::llabs(to.z - from.z);
+  const int32_t sx = to.x > from.x ? 1 : -1, sz = to.z > from.z ? 1 : -1;
+  // Products of the ways along each axis to the next line of blocks: the smaller is crossed first.
+  const auto to_line = [](int64_t at, int32_t block, int32_t toward) {
+    const int64_t line = int64_t{toward > 0 ? block + 1 : block} << kShift;
+    return std::llabs(line - at);
+  };
+  int64_t ax = to_line(from.x, x, sx) * dz, az = to_line(from.z, z, sz) * dx;
+  const int64_t next_x = dz << kShift, next_z = dx << kShift;
+  const OpenLine* line = &ground_->open_line(level);
+  if (!line->is_open(x, z)) return false;
+  uint32_t on = level;
+  while (x != end_x || z != end_z) {
+    const bool cross_x = x != end_x && (z == end_z || ax <= az);
+    const bool cross_z = z != end_z && (x == end_x || az <= ax);
+    if (cross_x && cross_z) return false;  // through a corner
+    const int32_t nx = cross_x ? x + sx : x, nz = cross_z ? z + sz : z;
+    if ((x ^ nx) >> 4 == 0 && (z ^ nz) >> 4 == 0) {
+      if (!line->is_open(nx, nz)) return false;
+    } else {
+      const auto side = cross_x ? (sx < 0 ? LevelLine::kLeft : LevelLine::kRight)
+                                : (sz < 0 ? LevelLine::kAbove : LevelLine::kBelow);
+      if ((line->joined[side] >> ((cross_x ? z : x) & 15) & 1) == 0) return false;
+      on = line->beyond[side];
+      line = &ground_->open_line(on);
+    }
+    (cross_x ? ax : az) += cross_x ? next_x : next_z;
+    x = nx;
+    z = nz;
+  }
+  level = on;
+  return true;
 }
 
 namespace {
@@ -158,6 +212,19 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
   const auto dx = static_cast<double>(to.x - from.x), dz = static_cast<double>(to.z - from.z);
   CrowdGround::Walk walk = ground_->walk(level);
   const auto step = [&](int32_t nx, int32_t nz) {
+    const bool across_x = (x ^ nx) >> 6 != 0, across_z = (z ^ nz) >> 6 != 0;
+    if (across_x || across_z) {
+      const auto side = across_x ? (sx < 0 ? LevelLine::kLeft : LevelLine::kRight)
+                                 : (sz < 0 ? LevelLine::kAbove : LevelLine::kBelow);
+      const OpenLine& line = ground_->open_line(level);
+      if ((line.cells[side] >> ((across_x ? z : x) & 63) & 1) != 0) {
+        level = line.beyond[side];
+        walk = ground_->walk(level);
+        return true;
+      }
+    } else if (walk.is_alone && (walk.legal[nz & 63] >> (nx & 63) & 1) == 0) {
+      return false;
+    }
     const auto next = step_to(*ground_, level, x, z, nx, nz, step_mm_);
     if (!next) return false;
     level = *next;
@@ -210,13 +277,15 @@ bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32
     const float part = most / far;
     to = {from.x + std::lrint(dx * part), from.z + std::lrint(dz * part)};
   }
-  return walk_rows(level, from, to).arrived && (far > most || level == end);
+  const bool arrives = walk_open(level, from, to) || walk_rows(level, from, to).arrived;
+  return arrives && (far > most || level == end);
 }
 
 float StrideGround::free_way(uint32_t level, GroundPoint from, steer::Plane direction,
                              float most) const {
   const GroundPoint to{from.x + std::lrint(direction.x * most),
                        from.z + std::lrint(direction.z * most)};
+  if (walk_open(level, from, to)) return most;
   const WalkStop stop = walk_rows(level, from, to);
   if (stop.arrived) return most;
   // To the border of the last cell that it could not cross.

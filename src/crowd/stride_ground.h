@@ -26,9 +26,8 @@ class StrideGround {
   /// legal, and no step is too high. False: there is a wall.
   bool move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
 
-  /// Is all level ground, as far as a quick look tells, up to a square of cells `reach` to each
-  /// side?
-  [[nodiscard]] bool is_plain_around(uint32_t level, GroundPoint from, int32_t reach) const;
+  /// Is there no wall, as far as a quick look tells, up to a square of cells `reach` to each side?
+  [[nodiscard]] bool is_open_around(uint32_t level, GroundPoint from, int32_t reach) const;
 
   /// What there is around a body, up to a square of cells `reach` to each side.
   enum class Around : uint8_t {
@@ -41,6 +40,13 @@ class StrideGround {
   Around look_around(uint32_t level, int32_t y, GroundPoint from, int32_t reach, int32_t rise,
                      WallWindow& window) const;
 
+  /// Asks for what is read of the ground around a body, in two goes: the second reads what the
+  /// first asks for.
+  void prefetch_level(uint32_t level) const { ground_->prefetch_open(level); }
+  void prefetch_cell(uint32_t level, GroundPoint at) const {
+    ground_->prefetch_cell(level, at.cell_x(), at.cell_z());
+  }
+
   /// Is the straight way from a point to another legal, or its first `most` units? Where it is all
   /// looked at, it must end on `end`.
   [[nodiscard]] bool sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
@@ -52,8 +58,11 @@ class StrideGround {
 
  private:
   WalkStop walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const;
-  [[nodiscard]] bool box_is_plain(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
-                                  int32_t z1) const;
+  bool walk_open(uint32_t& level, GroundPoint from, GroundPoint to) const;
+  [[nodiscard]] bool box_is_open(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
+                                 int32_t z1) const;
+  [[nodiscard]] uint32_t beyond(uint32_t level, LevelLine::Side side, int32_t low,
+                                int32_t high) const;
 
   const CrowdGround* ground_ = nullptr;
   int32_t step_mm_ = 0;

@@ -369,7 +369,7 @@ class Program(unittest.TestCase):
         self.assertEqual(len(set(names)), len(names))
         for test in listed:
             self.assertTrue(test["title"] and test["source"] and (test.get("lacks") or test["method"]), test)
-        cheap = ("rimea.1", "rimea.2", "rimea.3", "rimea.5", "rimea.6", "rimea.10", "rimea.15", "nist.2.1", "nist.2.2", "nist.2.3",
+        cheap = ("rimea.1", "rimea.2", "rimea.3", "rimea.5", "rimea.6", "rimea.10", "nist.2.1", "nist.2.2", "nist.2.3",
                  "nist.2.4", "nist.2.5", "nist.2.9", "nist.4.1")
         runs = []
         for threads in (1, 2, 4):

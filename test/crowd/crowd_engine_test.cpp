@@ -65,6 +65,7 @@ struct LevelGround {
                         .sight = config.sight,
                         .rounds = config.rounds,
                         .patient = config.patient,
+                        .reaction = config.reaction,
                         .seed = config.seed,
                         .workers = workers,
                         .steering = config.steering,
@@ -120,6 +121,20 @@ TEST(CrowdEngine, DoesWhatThePlainStepDoes) {
     for (const uint64_t seed : {1, 2}) {
       Pair pair = ground.pair(scattered(config, 300, area, seed, corner), config, 2);
       for (int step = 0; step < 60; ++step) ASSERT_EQ(pair.step(), "") << area << ' ' << seed;
+    }
+  }
+}
+
+TEST(CrowdEngine, WhoGoesOnDoesWhatThePlainStepDoes) {
+  const LevelGround ground(60);
+  test::PlainConfig config;
+  config.units.dt = 0.05f;
+  const test::Spot corner{config.to_units(15), config.to_units(15)};
+  for (const float reaction : {0.0f, 0.1f, 0.5f}) {
+    config.reaction = reaction;
+    for (const double area : {4.0, 1.0, 0.7}) {
+      Pair pair = ground.pair(scattered(config, 300, area, 3, corner), config, 2);
+      for (int step = 0; step < 80; ++step) ASSERT_EQ(pair.step(), "") << reaction << ' ' << area;
     }
   }
 }

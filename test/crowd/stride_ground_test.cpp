@@ -106,6 +106,57 @@ TEST(StrideGround, FreeWaysEndWhereTheCellByCellWalkDoes) {
   }
 }
 
+// Wherever a square is said to be open, and from wherever to wherever one goes in it, cell by cell;
+// also where obstacles took cells, and gave them back.
+TEST(StrideGround, OpenSquaresHaveNoWalls) {
+  for (const BuiltinWorldConfig& config : kWorlds) {
+    Fixture f(config);
+    uint64_t open = 0, shut = 0, blocked = 0, landed_elsewhere = 0;
+    const auto look = [&](uint64_t first) {
+      for (uint64_t n = first; n < first + 6000; ++n) {
+        const auto s = f.stand(n);
+        if (!f.ground.is_legal(s.level, s.at.cell_x() & 63, s.at.cell_z() & 63)) continue;
+        const auto reach = static_cast<int32_t>(1 + 31 * number(n, 1));
+        const bool is_open = f.stride.is_open_around(s.level, s.at, reach);
+        ++(is_open ? open : shut);
+        for (uint64_t k = 0; k < 8; ++k) {
+          const auto off = [&](uint64_t axis) {
+            return std::lround(reach * kUnitsPerCell * (2 * number(8 * n + k, 2 + axis) - 1));
+          };
+          const GroundPoint to{s.at.x + off(0), s.at.z + off(1)};
+          uint32_t end = s.level;
+          const bool walks = walk(f.ground, end, s.at, to, kStep);
+          blocked += is_open && !walks;
+          StrideGround::Landing landing;
+          const bool moves = f.stride.move(s.level, s.y, s.at, to, landing);
+          landed_elsewhere += moves != walks;
+          if (!moves || !walks) continue;
+          landed_elsewhere += landing.level != end || landing.y != f.ground.feet(end, to);
+        }
+      }
+    };
+    look(0);
+    const uint64_t open_as_baked = open;
+    const size_t levels = f.ground.records().size();
+    const auto take = [&](uint32_t level, const CellRows& cells) {
+      f.ground.set_taken(level, cells);
+      f.ground.join_tile(f.ground.records()[level].tile_x, f.ground.records()[level].tile_z);
+    };
+    CellRows some{};
+    for (size_t z = 20; z < 44; ++z) some[z] = uint64_t{0xffff00000000ffff};
+    for (uint32_t level = 0; level < levels; level += 3) take(level, some);
+    look(10000);
+    for (uint32_t level = 0; level < levels; level += 3) take(level, {});
+    open = 0;
+    look(0);
+    EXPECT_EQ(open, open_as_baked) << config.name;
+    EXPECT_GT(open, 300u) << config.name;
+    EXPECT_GT(shut, 1000u) << config.name;
+    EXPECT_EQ(blocked, 0u) << config.name;
+    EXPECT_EQ(landed_elsewhere, 0u) << config.name;
+  }
+}
+
 // The window says of each square what may be walked on there, and the ways are those of a plain
 // loop over its squares.
 TEST(WallWindow, WaysAreThoseOfAPlainLoop) {

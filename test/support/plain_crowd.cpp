@@ -10,6 +10,7 @@
 
 #include "core/random.h"
 #include "crowd/first_come.h"
+#include "crowd/reaction.h"
 
 namespace throng::test {
 namespace {
@@ -175,6 +176,14 @@ void PlainCrowd::commit() {
   std::vector<Spot> now(count);
   for (size_t i = 0; i < count; ++i) now[i] = bodies_[i].at;
   std::vector<uint8_t> decided(count, 0);
+  const uint64_t every = steps_of_reaction(config_.reaction, config_.units.dt);
+  // Who goes on as he does; who still may do what he wants most, and does.
+  std::vector<uint8_t> keeping(count), first(count, 1), keeps(count, 0);
+  for (uint32_t i = 0; i < count; ++i) {
+    const PlainBody& b = bodies_[i];
+    keeping[i] = b.keeps && !decides(every, steps_, i) &&
+                 !is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed));
+  }
   std::vector<std::optional<Spot>> named(count);
   const auto is_clear = [&](uint32_t i, uint32_t j, Spot a, Spot b) {
     const Spot d = between(a, b);
@@ -194,6 +203,14 @@ void PlainCrowd::commit() {
         named[i] = to;
         return true;
       };
+      if (keeping[i] != 0) {
+        keeps[i] = consider(bodies_[i].velocity);
+        if (keeps[i] != 0) continue;
+        keeping[i] = 0;
+        if (round > 0) first[i] = 0;
+      }
+      if (first[i] != 0) first[i] = consider(choices_[i][0]);
+      keeps[i] = first[i];
       bool found = std::any_of(choices_[i].begin(), choices_[i].end(), consider);
       for (const float part : kShorter) {
         const Plane best = choices_[i][0];
@@ -212,10 +229,11 @@ void PlainCrowd::commit() {
       if (named[i] && decided[i] != 0) now[i] = *named[i];
     }
   }
-  settle(now);
+  for (size_t i = 0; i < count; ++i) keeps[i] = keeps[i] & decided[i];
+  settle(now, keeps);
 }
 
-void PlainCrowd::settle(const std::vector<Spot>& now) {
+void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>& keeps) {
   progress_ = 0;
   ++steps_;
   const StepUnits& units = config_.units;
@@ -229,6 +247,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now) {
         left > 1e-6f ? (body.velocity.x * way.x + body.velocity.z * way.z) / left : 0;
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
+    body.keeps = keeps[i] != 0;
     if (config_.patient) {
       const bool alone = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
         return can_touch(static_cast<uint32_t>(i), n);

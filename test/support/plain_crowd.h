@@ -25,6 +25,7 @@ struct PlainBody {
   int32_t radius = 6144;  // [units] 0.3 m
   float speed = 1.3f;     // wished, and the most [m/s]
   float turn = 0;         // of steer::Patience
+  bool keeps = false;     // to what it decided: it does what it wanted most
   double arrived = -1;    // when it first was within 0.3 m of the goal [s]; not yet: -1
 };
 
@@ -34,6 +35,7 @@ struct PlainConfig {
   float sight = 5;   // [m]
   int32_t rounds = 3;
   bool patient = true;
+  float reaction = 0.2f;  // [s]
   uint64_t seed = 1;
   steer::SampledSettings steering;
   steer::Patience patience;
@@ -69,7 +71,7 @@ class PlainCrowd {
   void sense();
   void steer_all();
   void commit();
-  void settle(const std::vector<Spot>& now);
+  void settle(const std::vector<Spot>& now, const std::vector<uint8_t>& keeps);
 
   std::vector<PlainBody> bodies_;
   PlainConfig config_;

@@ -8,6 +8,8 @@
 #include <functional>
 #include <thread>
 
+#include "throng/base.h"
+
 /// Threads only through here. Bodies write only what their index owns, so results never depend on
 /// the number of workers.
 namespace throng {
@@ -16,9 +18,9 @@ namespace throng {
 int32_t worker_count(int32_t workers);
 
 /// Calls body(begin, end) over [0, count) in pieces of at least `grain`, on up to `workers`
-/// threads.
-void parallel_ranges(size_t count, size_t grain, int32_t workers,
-                     const std::function<void(size_t, size_t)>& body);
+/// threads. Exported for throng_draw, a library of its own.
+THRONG_API void parallel_ranges(size_t count, size_t grain, int32_t workers,
+                                const std::function<void(size_t, size_t)>& body);
 
 /// Calls body(index) for every index in [0, count).
 template <class Body>

@@ -14,6 +14,7 @@
 #include "throng/bake.h"
 #include "throng/crowd.h"
 #include "throng/scene.h"
+#include "time_steps.h"
 
 namespace {
 
@@ -24,17 +25,11 @@ struct Options {
   uint32_t avatars = 10000;
   double area = 4;  // for each [m2]
   double near = 50;
-  uint64_t warm = 50, steps = 50;
+  bench::StepTiming timing;
   uint64_t seed = 1;
   int32_t threads = 0;
   double radius = 0.3, speed = 1.3;
-  uint64_t check_every = 50;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
-}
 
 Json fail(const Error& error) { return {{"error", error.message}}; }
 
@@ -75,51 +70,9 @@ Json run(const Options& o) {
     crowd->set_goals(to, goals);
   };
   give(*ids);
-  CrowdReport sum;
-  std::vector<double> seconds;
-  double progress = 0;
-  CrowdCheck found;
-  uint64_t checked = 0;
-  for (uint64_t step = 1; step <= o.warm + o.steps; ++step) {
-    const CrowdReport r = crowd->step();
-    give(crowd->arrived());
-    if (step % o.check_every == 0) {
-      checked += o.avatars;
-      const CrowdCheck check = crowd->check();
-      found.overlaps += check.overlaps;
-      found.wall_entries += check.wall_entries;
-    }
-    if (step <= o.warm) continue;
-    seconds.push_back(r.seconds_total);
-    progress += r.progress;
-    sum.contested += r.contested;
-    sum.stood += r.stood;
-    sum.seconds_plan += r.seconds_plan;
-    sum.seconds_sort += r.seconds_sort;
-    sum.seconds_steer += r.seconds_steer;
-    sum.seconds_commit += r.seconds_commit;
-    sum.seconds_settle += r.seconds_settle;
-  }
-  const double each = 1e9 / o.avatars;
-  const double all = each / static_cast<double>(o.steps);
-  return {
-      {"avatars", o.avatars},
-      {"area", o.area},
-      {"threads", o.threads},
-      {"ns", median(seconds) * each},
-      {"ns_plan", sum.seconds_plan * all},
-      {"ns_sort", sum.seconds_sort * all},
-      {"ns_steer", sum.seconds_steer * all},
-      {"ns_commit", sum.seconds_commit * all},
-      {"ns_settle", sum.seconds_settle * all},
-      {"contested", static_cast<double>(sum.contested) / o.avatars / static_cast<double>(o.steps)},
-      {"progress", progress / static_cast<double>(o.steps)},
-      {"avatar_steps", (o.warm + o.steps) * o.avatars},
-      {"checked_avatar_steps", checked},
-      {"overlaps", found.overlaps},
-      {"wall_entries", found.wall_entries},
-      {"bytes_an_avatar", static_cast<double>(crowd->bytes()) / o.avatars},
-      {"state_hash", crowd->state_hash()}};
+  Json told = {{"avatars", o.avatars}, {"area", o.area}, {"threads", o.threads}};
+  told.update(bench::time_steps(*crowd, o.timing, give));
+  return told;
 }
 
 }  // namespace
@@ -130,12 +83,13 @@ int main(int argc, char** argv) {
   parser.add_option("--avatars", options.avatars)->check(CLI::Range(1, 10000000));
   parser.add_option("--area", options.area)->check(CLI::Range(0.3, 1000.0));
   parser.add_option("--near", options.near)->check(CLI::Range(1.0, 1e6));
-  parser.add_option("--warm", options.warm);
-  parser.add_option("--steps", options.steps)->check(CLI::PositiveNumber);
+  parser.add_option("--warm", options.timing.warm);
+  parser.add_option("--steps", options.timing.steps)->check(CLI::PositiveNumber);
   parser.add_option("--seed", options.seed);
   parser.add_option("--threads", options.threads)->check(CLI::Range(0, 1024));
   parser.add_option("--radius", options.radius)->check(CLI::Range(0.05, 10.0));
-  parser.add_option("--check-every", options.check_every, "Steps")->check(CLI::PositiveNumber);
+  parser.add_option("--check-every", options.timing.check_every, "Steps")
+      ->check(CLI::PositiveNumber);
   CLI11_PARSE(parser, argc, argv);
   const Json result = run(options);
   std::puts(result.dump().c_str());

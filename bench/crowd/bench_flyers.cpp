@@ -3,7 +3,6 @@
 // What a step costs of those who fly: goals at random in open air, or 500 who cross a sphere. One
 // JSON object.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -16,6 +15,7 @@
 #include "throng/crowd.h"
 #include "throng/flight.h"
 #include "throng/scene.h"
+#include "time_steps.h"
 
 namespace {
 
@@ -27,18 +27,12 @@ struct Options {
   uint32_t avatars = 10000;
   double volume = 64;  // for each [m3]
   double near = 50;
-  uint64_t warm = 30, steps = 30;
+  bench::StepTiming timing{.warm = 30, .steps = 30, .check_every = 30};
   uint64_t seed = 1;
   int32_t threads = 0;
-  uint64_t check_every = 30;
 };
 
 constexpr double kHigh = 40;  // [m] of air
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
-}
 
 Json fail(const Error& error) { return {{"error", error.message}}; }
 
@@ -83,46 +77,9 @@ Json run_random(const Options& o) {
     crowd->set_goals(to, goals);
   };
   give(*ids);
-  CrowdReport sum;
-  std::vector<double> seconds;
-  double progress = 0;
-  CrowdCheck found;
-  for (uint64_t step = 1; step <= o.warm + o.steps; ++step) {
-    const CrowdReport r = crowd->step();
-    give(crowd->arrived());
-    if (step % o.check_every == 0) {
-      const CrowdCheck check = crowd->check();
-      found.overlaps += check.overlaps;
-      found.wall_entries += check.wall_entries;
-    }
-    if (step <= o.warm) continue;
-    seconds.push_back(r.seconds_total);
-    progress += r.progress;
-    sum.contested += r.contested;
-    sum.seconds_plan += r.seconds_plan;
-    sum.seconds_sort += r.seconds_sort;
-    sum.seconds_steer += r.seconds_steer;
-    sum.seconds_commit += r.seconds_commit;
-    sum.seconds_settle += r.seconds_settle;
-  }
-  const double each = 1e9 / o.avatars;
-  const double all = each / static_cast<double>(o.steps);
-  return {
-      {"avatars", o.avatars},
-      {"volume", o.volume},
-      {"threads", o.threads},
-      {"ns", median(seconds) * each},
-      {"ns_plan", sum.seconds_plan * all},
-      {"ns_sort", sum.seconds_sort * all},
-      {"ns_steer", sum.seconds_steer * all},
-      {"ns_commit", sum.seconds_commit * all},
-      {"ns_settle", sum.seconds_settle * all},
-      {"contested", static_cast<double>(sum.contested) / o.avatars / static_cast<double>(o.steps)},
-      {"progress", progress / static_cast<double>(o.steps)},
-      {"checked_avatar_steps", (o.warm + o.steps) / o.check_every * o.avatars},
-      {"overlaps", found.overlaps},
-      {"wall_entries", found.wall_entries},
-      {"state_hash", crowd->state_hash()}};
+  Json told = {{"avatars", o.avatars}, {"volume", o.volume}, {"threads", o.threads}};
+  told.update(bench::time_steps(*crowd, o.timing, give));
+  return told;
 }
 
 // To the other side of a sphere of a radius of 25 m, evenly from everywhere.
@@ -174,11 +131,12 @@ int main(int argc, char** argv) {
   parser.add_option("--avatars", options.avatars)->check(CLI::Range(1, 1000000));
   parser.add_option("--volume", options.volume, "For each [m3]")->check(CLI::Range(2.0, 1e4));
   parser.add_option("--near", options.near)->check(CLI::Range(1.0, 1e6));
-  parser.add_option("--warm", options.warm);
-  parser.add_option("--steps", options.steps)->check(CLI::PositiveNumber);
+  parser.add_option("--warm", options.timing.warm);
+  parser.add_option("--steps", options.timing.steps)->check(CLI::PositiveNumber);
   parser.add_option("--seed", options.seed);
   parser.add_option("--threads", options.threads)->check(CLI::Range(0, 1024));
-  parser.add_option("--check-every", options.check_every, "Steps")->check(CLI::PositiveNumber);
+  parser.add_option("--check-every", options.timing.check_every, "Steps")
+      ->check(CLI::PositiveNumber);
   CLI11_PARSE(parser, argc, argv);
   const Json result = options.scene == "sphere" ? run_sphere(options) : run_random(options);
   std::puts(result.dump().c_str());

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "crowd/crowd_state.h"
+#include "steer/air.h"
 #include "throng/crowd.h"
 #include "world/place.h"
 
@@ -279,22 +280,14 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
 
 // Others are where it would land: it looks elsewhere, the farther away the longer it has waited.
 void Crowd::State::look_for_room(Body& body, const Flight& flight) const {
-  constexpr double kHalf = 0.70710678;
-  constexpr std::array<std::array<double, 2>, 8> kSides = {{{1, 0},
-                                                            {kHalf, kHalf},
-                                                            {0, 1},
-                                                            {-kHalf, kHalf},
-                                                            {-1, 0},
-                                                            {-kHalf, -kHalf},
-                                                            {0, -1},
-                                                            {kHalf, -kHalf}}};
   const FlyerAir& air = *air_of(body);
   const AirSpot& over = flight.points[flight.next];
   const auto window = static_cast<uint64_t>(static_cast<double>(step) * config.dt / kWaits);
-  const uint64_t side = random_below(config.seed ^ kRooms, body.slot, window, kSides.size());
+  const uint64_t side =
+      random_below(config.seed ^ kRooms, body.slot, window, steer::kEighths.size());
   const double far = FlyerEngine::landing_reach(flight) / unit;
-  const AirSpot there{over.x + static_cast<int32_t>(far * kSides[side][0]),
-                      over.z + static_cast<int32_t>(far * kSides[side][1]), over.y};
+  const AirSpot there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
+                      over.z + static_cast<int32_t>(far * steer::kEighths[side][1]), over.y};
   const bool sees = there.x >= 0 && there.z >= 0 && air.sees(here(body), there);
   body.aim_x = sees ? there.x : over.x;
   body.aim_z = sees ? there.z : over.z;

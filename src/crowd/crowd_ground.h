@@ -155,6 +155,7 @@ class CrowdGround {
   void join_blocks();
   void join_side(Level level, LevelLine::Side side);
   void find_open(Level level);
+  void find_beyond(Level level, LevelLine::Side side);
   void join_open_side(Level level, LevelLine::Side side);
   [[nodiscard]] const Range* tile(int32_t x, int32_t z) const {
     if (x < 0 || z < 0 || x >= tiles_x_ || z >= tiles_z_) return nullptr;

@@ -38,19 +38,20 @@ bool is_plain(const LevelLine& line, Cell c) { return (line.plain[c.z / 4] >> (c
 
 void CrowdGround::join_blocks() {
   for (Level level = 0; level < records_.size(); ++level) {
-    for (const auto side :
-         {LevelLine::kLeft, LevelLine::kRight, LevelLine::kAbove, LevelLine::kBelow}) {
+    for (const LevelLine::Side side : LevelLine::kSides) {
       join_side(level, side);
-      join_open_side(level, side);
+      find_beyond(level, side);
     }
+  }
+  for (Level level = 0; level < records_.size(); ++level) {
+    for (const LevelLine::Side side : LevelLine::kSides) join_open_side(level, side);
   }
 }
 
 void CrowdGround::join_side(Level level, LevelLine::Side side) {
   const bool along_x = side == LevelLine::kLeft || side == LevelLine::kRight;
   const bool back = side == LevelLine::kLeft || side == LevelLine::kAbove;
-  const LevelLine::Side opposite = along_x ? (back ? LevelLine::kRight : LevelLine::kLeft)
-                                           : (back ? LevelLine::kBelow : LevelLine::kAbove);
+  const LevelLine::Side opposite = LevelLine::opposite(side);
   const Record& record = records_[level];
   LevelLine& line = lines_[level];
   line.beyond[side] = LevelLine::kNone;
@@ -89,54 +90,53 @@ void CrowdGround::find_open(Level level) {
 
 // Of the levels that steps over a side lead to, the one that most of them do (the first of equals)
 // is the one beyond.
-void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
+void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
   const bool along_x = side == LevelLine::kLeft || side == LevelLine::kRight;
   const int32_t toward = side == LevelLine::kLeft || side == LevelLine::kAbove ? -1 : 1;
   const Record& record = records_[level];
   OpenLine& line = open_[level];
   line.beyond[side] = LevelLine::kNone;
-  line.joined[side] = 0;
   line.cells[side] = 0;
   if ((lines_[level].legal_set & kSetBits) == kNoneLegal) return;
-  struct Step {
-    Level to = LevelLine::kNone;
-    bool both_ways = false;  // and from an open block to another
-  };
-  std::array<Step, 64> steps;
+  std::array<Level, 64> steps;  // where from each cell they lead
   for (int32_t i = 0; i < 64; ++i) {
     const int32_t rim = toward > 0 ? 63 : 0;
     const int32_t x = record.tile_x * 64 + (along_x ? rim : i);
     const int32_t z = record.tile_z * 64 + (along_x ? i : rim);
-    if (!is_legal(level, x & 63, z & 63)) continue;
-    const int32_t nx = x + (along_x ? toward : 0), nz = z + (along_x ? 0 : toward);
-    const auto next = step_to(*this, level, x, z, nx, nz, step_mm_);
-    if (!next) continue;
-    steps[i].to = *next;
-    steps[i].both_ways = line.is_open((x & 63) >> 2, (z & 63) >> 2) &&
-                         open_[*next].is_open((nx & 63) >> 2, (nz & 63) >> 2) &&
-                         step_to(*this, *next, nx, nz, x, z, step_mm_) == level;
+    const auto next = is_legal(level, x & 63, z & 63)
+                          ? step_to(*this, level, x, z, x + (along_x ? toward : 0),
+                                    z + (along_x ? 0 : toward), step_mm_)
+                          : std::nullopt;
+    steps[i] = next ? *next : LevelLine::kNone;
   }
-  const auto lead_to = [&](Level other) {
-    return std::count_if(steps.begin(), steps.end(), [&](const Step& s) { return s.to == other; });
-  };
   int64_t most = 0;
-  for (const Step& step : steps) {
-    if (step.to == LevelLine::kNone || step.to == line.beyond[side]) continue;
-    const int64_t count = lead_to(step.to);
-    if (count > most) {
-      most = count;
-      line.beyond[side] = step.to;
-    }
+  for (const Level to : steps) {
+    if (to == LevelLine::kNone || to == line.beyond[side]) continue;
+    const int64_t count = std::count(steps.begin(), steps.end(), to);
+    if (count <= most) continue;
+    most = count;
+    line.beyond[side] = to;
   }
+  if (most == 0) return;
   for (int32_t i = 0; i < 64; ++i) {
-    line.cells[side] |=
-        uint64_t{steps[i].to != LevelLine::kNone && steps[i].to == line.beyond[side]} << i;
+    line.cells[side] |= uint64_t{steps[i] == line.beyond[side]} << i;
   }
-  for (int32_t block = 0; block <= kLast; ++block) {
-    const bool joined = std::all_of(&steps[4 * block], &steps[4 * block] + 4, [&](const Step& s) {
-      return s.both_ways && s.to == line.beyond[side];
-    });
-    line.joined[side] = static_cast<uint16_t>(line.joined[side] | int{joined} << block);
+}
+
+// After both levels know where their steps lead: blocks join if all do, there and back.
+void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
+  OpenLine& line = open_[level];
+  line.joined[side] = 0;
+  if (line.beyond[side] == LevelLine::kNone) return;
+  const LevelLine::Side back = LevelLine::opposite(side);
+  const OpenLine& other = open_[line.beyond[side]];
+  if (other.beyond[back] != level) return;
+  const uint64_t both_ways = line.cells[side] & other.cells[back];
+  for (int32_t i = 0; i <= kLast; ++i) {
+    const Cell here = rim(side, i), there = rim(back, i);
+    const bool joins = (both_ways >> (4 * i) & 15) == 15 && line.is_open(here.x / 4, here.z / 4) &&
+                       other.is_open(there.x / 4, there.z / 4);
+    line.joined[side] = static_cast<uint16_t>(line.joined[side] | int{joins} << i);
   }
 }
 

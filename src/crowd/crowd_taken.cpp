@@ -71,21 +71,23 @@ const CellRows* CrowdGround::baked_legal(Level level) const {
 }
 
 void CrowdGround::join_tile(int32_t x, int32_t z) {
-  const auto join = [&](int32_t tile_x, int32_t tile_z, LevelLine::Side side) {
-    const Range* range = tile(tile_x, tile_z);
-    for (Level i = range ? range->first : 0; range && i < range->last; ++i) {
-      join_side(i, side);
-      join_open_side(i, side);
-    }
+  // The tile's sides, and from beyond each the one towards it.
+  const auto for_sides = [&](auto act) {
+    const auto for_levels = [&](int32_t tile_x, int32_t tile_z, LevelLine::Side side) {
+      const Range* range = tile(tile_x, tile_z);
+      for (Level i = range ? range->first : 0; range && i < range->last; ++i) act(i, side);
+    };
+    for (const LevelLine::Side side : LevelLine::kSides) for_levels(x, z, side);
+    for_levels(x - 1, z, LevelLine::kRight);
+    for_levels(x + 1, z, LevelLine::kLeft);
+    for_levels(x, z - 1, LevelLine::kBelow);
+    for_levels(x, z + 1, LevelLine::kAbove);
   };
-  for (const auto side :
-       {LevelLine::kLeft, LevelLine::kRight, LevelLine::kAbove, LevelLine::kBelow}) {
-    join(x, z, side);
-  }
-  join(x - 1, z, LevelLine::kRight);
-  join(x + 1, z, LevelLine::kLeft);
-  join(x, z - 1, LevelLine::kBelow);
-  join(x, z + 1, LevelLine::kAbove);
+  for_sides([&](Level level, LevelLine::Side side) {
+    join_side(level, side);
+    find_beyond(level, side);
+  });
+  for_sides([&](Level level, LevelLine::Side side) { join_open_side(level, side); });
 }
 
 }  // namespace throng

@@ -14,6 +14,12 @@ struct alignas(64) LevelLine {
   static constexpr int32_t kBlock = 4;  // cells; who makes longer steps cannot ask blocks
   static constexpr uint32_t kNone = UINT32_MAX;
   enum Side : uint8_t { kLeft, kRight, kAbove, kBelow };  // -x, +x, -z, +z
+  static constexpr std::array<Side, 4> kSides = {kLeft, kRight, kAbove, kBelow};
+  /// The side that is crossed along an axis, and the one beyond it.
+  static constexpr Side side(bool along_x, bool forward) {
+    return along_x ? (forward ? kRight : kLeft) : (forward ? kBelow : kAbove);
+  }
+  static constexpr Side opposite(Side side) { return static_cast<Side>(side ^ 1); }
 
   std::array<uint16_t, 16> plain{};  // bit x of word z: block (x, z)
   // Where a plain block at the rim and the one beyond are equally high: the level beyond, the same
@@ -36,8 +42,7 @@ struct alignas(64) LevelLine {
   [[nodiscard]] uint32_t cross(int32_t x0, int32_t z0, int32_t x1, int32_t z1) const {
     const int32_t tiles_x = (x1 >> 6) - (x0 >> 6), tiles_z = (z1 >> 6) - (z0 >> 6);
     if ((tiles_x != 0) == (tiles_z != 0)) return kNone;
-    const uint32_t side =
-        tiles_x != 0 ? (tiles_x < 0 ? kLeft : kRight) : (tiles_z < 0 ? kAbove : kBelow);
+    const Side side = LevelLine::side(tiles_x != 0, tiles_x + tiles_z > 0);
     const int32_t from = tiles_x != 0 ? z0 : x0, to = tiles_x != 0 ? z1 : x1;
     const uint32_t open = joined[side];
     return (open >> ((from >> 2) & 15) & open >> ((to >> 2) & 15) & 1) != 0 ? beyond[side] : kNone;

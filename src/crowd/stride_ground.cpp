@@ -75,8 +75,8 @@ bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t reac
   if (!box_is_open(level, own_x0, own_z0, own_x1, own_z1)) return false;
   const int32_t far_x0 = is_right ? x0 : edge_x, far_x1 = is_right ? edge_x - 1 : x1;
   const int32_t far_z0 = is_low ? z0 : edge_z, far_z1 = is_low ? edge_z - 1 : z1;
-  const auto side_x = is_right ? LevelLine::kLeft : LevelLine::kRight;
-  const auto side_z = is_low ? LevelLine::kAbove : LevelLine::kBelow;
+  const auto side_x = LevelLine::side(true, !is_right);
+  const auto side_z = LevelLine::side(false, !is_low);
   uint32_t across = level, down = level;
   if (is_wide) {
     across = beyond(level, side_x, own_z0, own_z1);
@@ -121,8 +121,7 @@ bool StrideGround::walk_open(uint32_t& level, GroundPoint from, GroundPoint to) 
     if ((x ^ nx) >> 4 == 0 && (z ^ nz) >> 4 == 0) {
       if (!line->is_open(nx, nz)) return false;
     } else {
-      const auto side = cross_x ? (sx < 0 ? LevelLine::kLeft : LevelLine::kRight)
-                                : (sz < 0 ? LevelLine::kAbove : LevelLine::kBelow);
+      const auto side = LevelLine::side(cross_x, (cross_x ? sx : sz) > 0);
       if ((line->joined[side] >> ((cross_x ? z : x) & 15) & 1) == 0) return false;
       on = line->beyond[side];
       line = &ground_->open_line(on);
@@ -214,8 +213,7 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
   const auto step = [&](int32_t nx, int32_t nz) {
     const bool across_x = (x ^ nx) >> 6 != 0, across_z = (z ^ nz) >> 6 != 0;
     if (across_x || across_z) {
-      const auto side = across_x ? (sx < 0 ? LevelLine::kLeft : LevelLine::kRight)
-                                 : (sz < 0 ? LevelLine::kAbove : LevelLine::kBelow);
+      const auto side = LevelLine::side(across_x, (across_x ? sx : sz) > 0);
       const OpenLine& line = ground_->open_line(level);
       if ((line.cells[side] >> ((across_x ? z : x) & 63) & 1) != 0) {
         level = line.beyond[side];

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "steer/sampled.h"
+
 // Plain floats, square roots and no tables of sines: the same on every machine.
 namespace throng::steer {
 namespace {
 
-constexpr float kSoonest = 0.1f;    // [s] Nothing is more urgent than a touch within this.
-constexpr float kTouching = 1e-6f;  // [m2] Cylinders that touch count as this far apart.
 constexpr float kNever = std::numeric_limits<float>::infinity();
-constexpr float kHalf = 0.70710678f;
+constexpr auto kHalf = static_cast<float>(kDiagonal);
 
 // Cosine and sine of a ring's angle from the wish: 20, 45, 70, 100, 140 degrees.
 constexpr std::array<std::array<float, 2>, 5> kRings = {{{0.93969262f, 0.34202014f},
@@ -21,16 +21,7 @@ constexpr std::array<std::array<float, 2>, 5> kRings = {{{0.93969262f, 0.3420201
                                                          {0.34202014f, 0.93969262f},
                                                          {-0.17364818f, 0.98480775f},
                                                          {-0.76604444f, 0.64278761f}}};
-// Around a ring: right, over right, up, ...
-constexpr std::array<std::array<float, 2>, 8> kAround = {{{1, 0},
-                                                          {kHalf, kHalf},
-                                                          {0, 1},
-                                                          {-kHalf, kHalf},
-                                                          {-1, 0},
-                                                          {-kHalf, -kHalf},
-                                                          {0, -1},
-                                                          {kHalf, -kHalf}}};
-constexpr std::array<float, kAirSpeeds> kSpeeds = {1, 0.6f, 0.25f};
+constexpr std::array<float, kAirSpeeds> kSpeedParts = {1, 0.6f, 0.25f};
 
 // Ahead, to the right and, at right angles to both, up. Seen from above with X to the right and Z
 // down, the right hand of who looks along X points along Z.
@@ -47,8 +38,6 @@ Frame frame_of(Space wish) {
   return {ahead, right, up};
 }
 
-float nearness(float soonness) { return soonness / (1 + kSoonest * soonness); }
-
 float soonness_of_wall(float way, float speed, float horizon) {
   if (!(speed > 0) || way >= speed * horizon) return 0;
   return way > 1e-3f ? speed / way : speed * 1e3f;
@@ -64,7 +53,8 @@ AirFan air_fan(Space wish) {
   size_t n = 0;
   fan[n++] = frame.ahead;
   for (const auto& [cosine, sine] : kRings) {
-    for (const auto& [right, up] : kAround) {
+    for (const auto& eighth : kEighths) {  // right, over right, up, ...
+      const auto right = static_cast<float>(eighth[0]), up = static_cast<float>(eighth[1]);
       fan[n++] = cosine * frame.ahead + sine * (right * frame.right + up * frame.up);
     }
   }
@@ -141,7 +131,8 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
   for (size_t t = 0; t <= kAirTrials; ++t) {
     const size_t d = t / kAirSpeeds;
     // Along the wish it is parts of the wish; the last of all is to hover.
-    const float speed = t == kAirTrials ? 0 : (d == 0 ? wished : fastest) * kSpeeds[t % kAirSpeeds];
+    const float speed =
+        t == kAirTrials ? 0 : (d == 0 ? wished : fastest) * kSpeedParts[t % kAirSpeeds];
     const Space v = t == kAirTrials ? Space{} : speed * fan[d];
     const float progress = dot(v, frame.ahead) / fastest;
     float cost = settings.straightness * (wished / fastest - progress) +

@@ -23,6 +23,17 @@ struct Space {
 inline float dot(Space a, Space b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 float size_of(Space p);
 
+/// Unit vectors of the plane, 45 degrees apart.
+inline constexpr double kDiagonal = 0.70710678;
+inline constexpr std::array<std::array<double, 2>, 8> kEighths = {{{1, 0},
+                                                                   {kDiagonal, kDiagonal},
+                                                                   {0, 1},
+                                                                   {-kDiagonal, kDiagonal},
+                                                                   {-1, 0},
+                                                                   {-kDiagonal, -kDiagonal},
+                                                                   {0, -1},
+                                                                   {kDiagonal, -kDiagonal}}};
+
 /// As steer::SampledSettings has them, but for the gap: who flies keeps farther away.
 struct AirSettings {
   float horizon = 2;          ///< Touching later than that is of no concern. [s, > 0]

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "impostor/view_packer.h"
+#include "blank_atlas.h"
 #include "throng/builtin_worlds.h"
 #include "throng/figure_model.h"
 #include "throng_draw/draw.h"
@@ -54,30 +55,12 @@ Drawing made_drawing() {
 constexpr int32_t kWhiteBit = 12, kBlackBit = 15;
 
 Atlas coded_atlas() {
-  Atlas atlas;
-  atlas.shape = {.pixels = 16,
-                 .directions = 16,
-                 .elevations = 8,
-                 .frames = 10,
-                 .side = 2,
-                 .centre = 1,
-                 .height = 2};
-  atlas.clips = {{.name = "Walk", .first_frame = 0, .frames = 10, .seconds = 1, .stride = 1.5}};
-  atlas.views.assign(1280, {.width = 16, .height = 16});
-  const PageSize size = pack_views(atlas.views);
-  atlas.width = size.width, atlas.height = size.height, atlas.pages = size.pages;
-  const auto texels = static_cast<size_t>(size.width * size.height * size.pages);
-  atlas.colour.assign(texels * 4, 255);
-  atlas.normal.assign(texels * 2, 128);
-  atlas.mask.assign(texels, 16);
+  Atlas atlas = test::blank_atlas(10);
   for (size_t i = 0; i < atlas.views.size(); ++i) {
-    const AtlasView& v = atlas.views[i];
     for (int32_t t = 0; t < 256; ++t) {
       const int32_t bit = t / 64 * 4 + t % 16 / 4;
       if ((i >> bit & 1) != 0 || bit == kWhiteBit) continue;
-      const auto at =
-          static_cast<size_t>((v.page * size.height + v.y + t / 16) * size.width + v.x + t % 16);
-      for (size_t c = 0; c < 3; ++c) atlas.colour[at * 4 + c] = 0;
+      std::fill_n(test::texel_of(atlas, atlas.views[i], t), 3, uint8_t{0});
     }
   }
   return atlas;

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "impostor/view_packer.h"
+#include "blank_atlas.h"
 #include "throng_draw/draw.h"
 
 namespace throng {
@@ -51,28 +51,10 @@ DrawingConfig facing(const AtlasShape& shape, double azimuth, double elevation,
 
 // Views of plain colours: red in odd columns, green in odd rows, blue in their left half.
 Atlas plain_views() {
-  Atlas atlas;
-  atlas.shape = {.pixels = 16,
-                 .directions = 16,
-                 .elevations = 8,
-                 .frames = 2,
-                 .side = 2,
-                 .centre = 1,
-                 .height = 2};
-  atlas.clips = {{.name = "Walk", .first_frame = 0, .frames = 2, .seconds = 1, .stride = 1.5}};
-  atlas.views.assign(256, {.width = 16, .height = 16});
-  const PageSize size = pack_views(atlas.views);
-  atlas.width = size.width, atlas.height = size.height, atlas.pages = size.pages;
-  const auto texels = static_cast<size_t>(size.width * size.height * size.pages);
-  atlas.colour.assign(texels * 4, 255);
-  atlas.normal.assign(texels * 2, 128);
-  atlas.mask.assign(texels, 16);
+  Atlas atlas = test::blank_atlas(2);
   for (size_t i = 0; i < atlas.views.size(); ++i) {
-    const AtlasView& v = atlas.views[i];
     for (int32_t t = 0; t < 256; ++t) {
-      uint8_t* rgb =
-          &atlas.colour[4 * static_cast<size_t>((v.page * size.height + v.y + t / 16) * size.width +
-                                                v.x + t % 16)];
+      uint8_t* rgb = test::texel_of(atlas, atlas.views[i], t);
       rgb[0] = i % 2 != 0 ? 255 : 0;
       rgb[1] = i / 16 % 2 != 0 ? 255 : 0;
       rgb[2] = t % 16 < 8 ? 255 : 0;

@@ -16,7 +16,7 @@ constexpr double kNearLong = 4;       // [s] for so long, and cannot come nearer
 constexpr double kDoorFlow = 2.0;     // [people / (m s)], of who chooses the quickest exit
 constexpr uint64_t kChooseEvery = 3;  // looks around
 constexpr uint64_t kRetryEvery = 5;   // looks around
-constexpr double kBetter = 0.85;      // Another exit must be that much quicker.
+constexpr double kBetter = 0.75;      // Another exit must be that much quicker.
 
 // Not the C library's hypot, which differs between machines.
 double size_of(double x, double z) { return std::sqrt(x * x + z * z); }
@@ -50,6 +50,8 @@ double width_of(const ScenarioArea& area) {
 }
 
 }  // namespace
+
+double door_flow(const ScenarioArea& area) { return std::max(kDoorFlow * width_of(area), 1e-3); }
 
 // Where he is, but for making way for others.
 void Simulation::State::stand(Person& p, Doing doing) {
@@ -118,8 +120,7 @@ void Simulation::State::finish_stage(Person& p) {
 
 void Simulation::State::next_stage(Person& p) {
   const Journey& journey = scenario.journeys[static_cast<size_t>(p.journey)];
-  if (p.area >= 0) --bound[static_cast<size_t>(p.area)];
-  p.area = -1;
+  line_up(p, -1, 0);
   if (p.stage + 1 < journey.stages.size()) {
     ++p.stage;
   } else if (journey.repeat) {
@@ -149,7 +150,7 @@ void Simulation::State::arrive(Person& p) {
 
 // Out of the crowd; the slot is free then.
 void Simulation::State::take_out(Person& p) {
-  if (p.area >= 0) --bound[static_cast<size_t>(p.area)];
+  line_up(p, -1, 0);
   slot_of[p.number] = kNoSlot;
   crowd.remove({&p.id, 1});
   p = {};
@@ -185,31 +186,52 @@ int32_t Simulation::State::area_under(const Person& p) const {
   return nearest;
 }
 
-// Takes the area that is likely to be passed first: by the way there, or by those before its door.
+// Is one of those who chose an area, of another than before, or of none (-1).
+void Simulation::State::line_up(Person& p, int32_t area, double way) {
+  if (p.area >= 0) doors[static_cast<size_t>(p.area)].remove(p.comes);
+  p.area = area;
+  if (area < 0) return;
+  p.comes = DoorQueue::tick(time() + way / p.speed);
+  doors[static_cast<size_t>(area)].add(p.comes);
+}
+
+// As far as it is by now.
+void Simulation::State::line_up_anew(Person& p) {
+  const Stage& stage = stage_of(p);
+  const auto k = static_cast<size_t>(std::find(stage.areas.begin(), stage.areas.end(), p.area) -
+                                     stage.areas.begin());
+  line_up(p, p.area, crowd.distance(p.id, targets_of(p)[k]));
+}
+
+// Takes the area that is likely to be passed first, by the way there and by those who will be at
+// its door before him. The one that he has chosen, or at first the nearest, is left only for one
+// that is clearly quicker.
 void Simulation::State::choose_area(Person& p) {
   const Stage& stage = stage_of(p);
   const std::vector<TargetId>& targets = targets_of(p);
-  const auto seconds = [&](size_t k) {
-    const auto area = static_cast<size_t>(stage.areas[k]);
-    const double way = crowd.distance(p.id, targets[k]) / p.speed;
-    const uint64_t others = bound[area] - (p.area == stage.areas[k] ? 1 : 0);
-    const double door = static_cast<double>(others) / (kDoorFlow * width_of(scenario.areas[area]));
-    return std::max(way, std::isfinite(way) ? door : way);
+  const int32_t before = p.doing == Doing::kWalking ? p.area : -1;
+  line_up(p, -1, 0);
+  const uint32_t now = DoorQueue::tick(time());
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  struct Exit {
+    double way = kNever, seconds = kNever;
+    size_t k = 0;
   };
-  size_t best = 0;
-  double least = std::numeric_limits<double>::infinity(), present = least;
+  Exit best, present;
   for (size_t k = 0; k < targets.size(); ++k) {
-    const double t = seconds(k);
-    if (stage.areas[k] == p.area) present = t;
-    if (t >= least) continue;
-    least = t;
-    best = k;
+    Exit exit{crowd.distance(p.id, targets[k]), kNever, k};
+    if (std::isfinite(exit.way)) {
+      const DoorQueue& door = doors[static_cast<size_t>(stage.areas[k])];
+      exit.seconds = door.passes(DoorQueue::tick(time() + exit.way / p.speed), now) - time();
+    }
+    if (exit.seconds < best.seconds) best = exit;
+    if (before < 0 ? exit.way < present.way : stage.areas[k] == before) present = exit;
   }
-  if (p.doing == Doing::kWalking && p.area >= 0 && least >= present * kBetter) return;
-  if (p.area >= 0) --bound[static_cast<size_t>(p.area)];
-  p.area = stage.areas[best];
-  ++bound[static_cast<size_t>(p.area)];
-  crowd.set_targets({&p.id, 1}, targets[best]);
+  const bool stays = !(best.seconds < present.seconds * kBetter);
+  const Exit& taken = stays ? present : best;
+  line_up(p, stage.areas[taken.k], taken.way);
+  if (before == p.area) return;
+  crowd.set_targets({&p.id, 1}, targets[taken.k]);
   p.doing = Doing::kWalking;
 }
 
@@ -228,6 +250,9 @@ void Simulation::State::end_waits() {
 // Who stands near his spot and cannot come nearer is there; who chose an exit looks at the others.
 void Simulation::State::look_around() {
   const auto look = static_cast<uint64_t>(time() + 0.5);
+  for (Person& p : persons) {
+    if (p.id && p.area >= 0) line_up_anew(p);
+  }
   for (Person& p : persons) {
     if (!p.id) continue;
     if (p.doing == Doing::kWalking && p.area >= 0 && stage_of(p).quickest &&

@@ -110,7 +110,7 @@ Result<void> Simulation::State::prepare(Context& context) {
   }
   classes.push_back(0);
   area_target.assign(scenario.areas.size(), 0);
-  bound.assign(scenario.areas.size(), 0);
+  for (const ScenarioArea& area : scenario.areas) doors.emplace_back(door_flow(area));
   lines.resize(scenario.queues.size());
   for (const Link& link : scenario.links) landings.push_back({{}, link.interval});
   for (const DensityMap& map : scenario.densities) densities.emplace_back(map);

@@ -12,6 +12,7 @@
 
 #include "scenario/arrivals.h"
 #include "scenario/density_draw.h"
+#include "scenario/door_queue.h"
 #include "throng/simulation.h"
 
 /// What a simulation holds.
@@ -43,9 +44,10 @@ struct Person {
   double speed = 0;          // his own wish [m/s]
   uint64_t draws = 0;        // random choices so far
   int32_t group = -1;
-  int32_t area = -1;  // which he chose among areas; -1: all the same to him
-  double pace = 1;    // of the area in which he is
-  Place spot;         // kToSpot, kToQueue, kInQueue
+  int32_t area = -1;   // which he chose among areas; -1: all the same to him
+  uint32_t comes = 0;  // tick of DoorQueue: when he would be there, were he alone
+  double pace = 1;     // of the area in which he is
+  Place spot;          // kToSpot, kToQueue, kInQueue
 };
 
 // People before a counter, by number.
@@ -70,6 +72,9 @@ struct Coming {
   uint64_t companion = UINT64_MAX;  // number of him beside whom he comes
   uint64_t nth = 0;                 // of its source
 };
+
+/// People a second who get out by an area, as who chooses the quickest one takes it.
+double door_flow(const ScenarioArea& area);
 
 struct Simulation::State {
   State(const World& a_world, const Scenario& a_scenario, Crowd&& a_crowd)
@@ -99,7 +104,7 @@ struct Simulation::State {
   std::vector<WaitingLine> lines;             // by queue
   std::vector<Landing> landings;              // by link
   std::vector<std::vector<uint64_t>> groups;  // numbers
-  std::vector<uint64_t> bound;                // by area: who chose it
+  std::vector<DoorQueue> doors;               // by area: who chose it
   std::vector<ObstacleId> obstacles;  // by obstacle; none before it begins, and after it ends
   uint64_t entered = 0, left = 0;
 
@@ -147,6 +152,8 @@ struct Simulation::State {
   void stand(Person& p, Doing doing);
   void walk_to(Person& p, const Place& place, Doing doing);
   void choose_area(Person& p);
+  void line_up(Person& p, int32_t area, double way);
+  void line_up_anew(Person& p);
   void arrive(Person& p);
   void leave(Person& p);
   void take_out(Person& p);

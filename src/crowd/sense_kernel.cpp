@@ -16,8 +16,10 @@ using DI = hn::CappedTag<int32_t, 16>;
 using DF = hn::RebindToFloat<DI>;
 using DU = hn::RebindToUnsigned<DI>;
 
-void FindSeen(const Places& places, std::span<const Entries> around, const Eye& eye,
-              SeenLists& result) {
+// Who sees nobody (`most` 0) only asks whom he could touch.
+template <bool kSees>
+HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around, const Eye& eye,
+                           SeenLists& result) {
   const DI d;
   const DF df;
   const DU du;
@@ -25,21 +27,27 @@ void FindSeen(const Places& places, std::span<const Entries> around, const Eye& 
   const auto most = hn::Set(df, eye.most), touch = hn::Set(df, eye.touch);
   const auto tall = hn::Set(d, eye.tall), touch_tall = hn::Set(d, eye.touch_tall);
   const auto self = hn::Set(du, eye.self);
+  const auto first = hn::Iota(du, 0);  // Iota(du, i) may go by memory.
   SeenLists lists = result;
   const auto look = [&](uint32_t i, uint32_t last) HWY_ATTR {
     const auto dx = hn::ConvertTo(df, hn::Sub(hn::LoadU(d, places.x + i), x));
     const auto dz = hn::ConvertTo(df, hn::Sub(hn::LoadU(d, places.z + i), z));
-    const auto dy = hn::Abs(hn::Sub(hn::LoadU(d, places.y + i), y));
     const auto square = hn::Add(hn::Mul(dx, dx), hn::Mul(dz, dz));
-    const auto entry = hn::Iota(du, i);
+    const auto entry = hn::Add(first, hn::Set(du, i));
     const auto others = hn::AndNot(hn::Eq(entry, self), hn::FirstN(du, last - i));
-    const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, most)), others);
-    const auto seen = hn::And(near, hn::RebindMask(du, hn::Lt(dy, tall)));
-    // Compressing into memory is slow on some machines; there is room for a whole vector.
-    hn::StoreU(hn::Compress(entry, seen), du, lists.entries + lists.seen);
-    hn::StoreU(hn::Compress(square, hn::RebindMask(df, seen)), df, lists.squares + lists.seen);
-    lists.seen += hn::CountTrue(du, seen);
     const auto close = hn::And(hn::RebindMask(du, hn::Lt(square, touch)), others);
+    const bool touches = !hn::AllFalse(du, close);
+    if (!kSees && !touches) return;
+    const auto dy = hn::Abs(hn::Sub(hn::LoadU(d, places.y + i), y));
+    if (kSees) {
+      const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, most)), others);
+      const auto seen = hn::And(near, hn::RebindMask(du, hn::Lt(dy, tall)));
+      // Compressing into memory is slow on some machines; there is room for a whole vector.
+      hn::StoreU(hn::Compress(entry, seen), du, lists.entries + lists.seen);
+      hn::StoreU(hn::Compress(square, hn::RebindMask(df, seen)), df, lists.squares + lists.seen);
+      lists.seen += hn::CountTrue(du, seen);
+    }
+    if (!touches) return;
     const auto touched = hn::And(close, hn::RebindMask(du, hn::Lt(dy, touch_tall)));
     hn::StoreU(hn::Compress(entry, touched), du, lists.touched + lists.touches);
     lists.touches += hn::CountTrue(du, touched);
@@ -49,6 +57,15 @@ void FindSeen(const Places& places, std::span<const Entries> around, const Eye& 
     for (uint32_t i = piece.first; i < piece.last; i += lanes) look(i, piece.last);
   }
   result = lists;
+}
+
+void FindSeen(const Places& places, std::span<const Entries> around, const Eye& eye,
+              SeenLists& lists) {
+  if (eye.most > 0) {
+    FindAround<true>(places, around, eye, lists);
+  } else {
+    FindAround<false>(places, around, eye, lists);
+  }
 }
 
 // Of each, how many are nearer; a vector of them at a time against all, one by one.

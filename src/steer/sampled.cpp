@@ -6,34 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "steer/fan.h"
+
 namespace throng::steer {
 namespace {
 
-// Cosines and sines of multiples of 15 degrees.
-struct Turns {
-  std::array<float, kDirections> cosine, sine;
-};
-constexpr Turns turns() {
-  // cos 0, 15, 30, ... 90; the rest are these.
-  constexpr std::array<double, 7> kCosines = {1,
-                                              0.96592582628906828675,
-                                              0.86602540378443864676,
-                                              0.70710678118654752440,
-                                              0.5,
-                                              0.25881904510252076235,
-                                              0};
-  const auto cosine = [&](size_t k) {  // of k * 15 degrees
-    k %= kDirections;
-    if (k > 12) k = kDirections - k;
-    return k <= 6 ? kCosines[k] : -kCosines[12 - k];
-  };
-  Turns t{};
-  for (size_t k = 0; k < kDirections; ++k) {
-    t.cosine[k] = static_cast<float>(cosine(k));
-    t.sine[k] = static_cast<float>(cosine(k + 18));
-  }
-  return t;
-}
 constexpr Turns kTurns = turns();
 
 }  // namespace
@@ -55,7 +32,7 @@ Trials trials_of(const Situation& s) {
   Trials trials;
   for (size_t k = 0; k < kDirections; ++k) {
     for (size_t i = 0; i < kSpeeds; ++i) {
-      const float part = static_cast<float>(i + 1) / kSpeeds;
+      const float part = part_of_speed(i);
       const Plane full =
           k == 0 && wishes ? s.wish : Plane{fan[k].x * s.fastest, fan[k].z * s.fastest};
       trials.x[k * kSpeeds + i] = full.x * part;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "steer/fan.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "steer/sampled_kernel.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -114,6 +116,60 @@ bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
   return nearness_of_wall(s.free_way[0], wished) <= 1 / (settings.wall_horizon + kSoonest);
 }
 
+bool IsOpposed(const LaneSettings& settings, const Situation& s) {
+  const D d;
+  const V zero = hn::Zero(d);
+  const V wish_x = hn::Set(d, s.wish.x), wish_z = hn::Set(d, s.wish.z);
+  const V wished = hn::Set(d, s.wish.x * s.wish.x + s.wish.z * s.wish.z);
+  const V opposed = hn::Set(d, settings.opposed * settings.opposed);
+  size_t opposers = 0;
+  for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
+    const V wx = hn::Load(d, &s.near.wx[n]), wz = hn::Load(d, &s.near.wz[n]);
+    const V x = hn::Load(d, &s.near.x[n]), z = hn::Load(d, &s.near.z[n]);
+    const V towards = hn::Neg(hn::Add(hn::Mul(wx, wish_x), hn::Mul(wz, wish_z)));
+    const V along = hn::Add(hn::Mul(x, wish_x), hn::Mul(z, wish_z));
+    const V both = hn::Mul(hn::Add(hn::Mul(wx, wx), hn::Mul(wz, wz)), wished);
+    const auto meets = hn::And(hn::Gt(towards, zero), hn::Gt(along, zero));
+    const auto comes = hn::Gt(hn::Mul(towards, towards), hn::Mul(opposed, both));
+    const auto here = hn::FirstN(d, s.near.size - n);
+    opposers += hn::CountTrue(d, hn::And(here, hn::And(meets, comes)));
+  }
+  return opposers >= static_cast<size_t>(std::max(settings.opposers, 0));
+}
+
+// What a trial is of the directions ahead and to the right, and of the fastest speed.
+struct Shares {
+  alignas(64) std::array<float, kTrials> cosine, sine, part;
+};
+constexpr Shares shares() {
+  Shares s{};
+  for (size_t t = 0; t < kTrials; ++t) {
+    s.cosine[t] = turns().cosine[t / kSpeeds];
+    s.sine[t] = turns().sine[t / kSpeeds];
+    s.part[t] = part_of_speed(t % kSpeeds);
+  }
+  return s;
+}
+constexpr Shares kShares = shares();
+
+void FindTrials(const Situation& s, float wished, Plane ahead, Trials& trials) {
+  const D d;
+  const V x = hn::Set(d, ahead.x), z = hn::Set(d, ahead.z), fastest = hn::Set(d, s.fastest);
+  for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
+    const V cosine = hn::Load(d, &kShares.cosine[t]), sine = hn::Load(d, &kShares.sine[t]);
+    const V part = hn::Load(d, &kShares.part[t]);
+    const V fan_x = hn::Sub(hn::Mul(x, cosine), hn::Mul(z, sine));
+    const V fan_z = hn::Add(hn::Mul(x, sine), hn::Mul(z, cosine));
+    hn::Store(hn::Mul(hn::Mul(fan_x, fastest), part), d, &trials.x[t]);
+    hn::Store(hn::Mul(hn::Mul(fan_z, fastest), part), d, &trials.z[t]);
+  }
+  for (size_t i = 0; wished > 1e-6f && i < kSpeeds; ++i) {
+    trials.x[i] = s.wish.x * part_of_speed(i);
+    trials.z[i] = s.wish.z * part_of_speed(i);
+  }
+  trials.x[kTrials / 2] = trials.z[kTrials / 2] = 0;
+}
+
 // Those whom no velocity up to `fastest` can touch within the horizon cost nothing: they are left
 // out. The distance to a touch shrinks fastest at first, so it takes at least (distance - radii) /
 // (speed towards each other) seconds; with some room for rounding.
@@ -152,11 +208,22 @@ size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& n
 class Pricing {
  public:
   Pricing(const SampledSettings& settings, const Situation& s)
-      : settings_(settings), s_(s), trials_(trials_of(s)), count_(CopyNear(settings, s, near_)) {
+      : settings_(settings), s_(s), count_(CopyNear(settings, s, near_)) {
     wished_ = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
     ahead_ = wished_ > 1e-6f ? Plane{s.wish.x / wished_, s.wish.z / wished_} : Plane{1, 0};
+    FindTrials(s, wished_, ahead_, trials_);
   }
   [[nodiscard]] const Trials& trials() const { return trials_; }
+
+  // What is lost of progress: a part of what the trial costs, and so no more.
+  HWY_INLINE V at_least(size_t t) const {
+    const D d;
+    const V x = hn::Load(d, &trials_.x[t]), z = hn::Load(d, &trials_.z[t]);
+    const V along =
+        hn::Add(hn::Mul(x, hn::Set(d, ahead_.x)), hn::Mul(z, hn::Set(d, ahead_.z)));
+    const V lost = hn::Max(hn::Sub(hn::Set(d, wished_), along), hn::Zero(d));
+    return hn::Div(hn::Mul(hn::Set(d, settings_.straightness), lost), hn::Set(d, s_.fastest));
+  }
 
   HWY_INLINE V alone(size_t t) const {
     const D d;
@@ -208,7 +275,7 @@ class Pricing {
  private:
   const SampledSettings& settings_;
   const Situation& s_;
-  const Trials trials_;
+  Trials trials_;
   Relevant near_;
   size_t count_;
   float wished_;
@@ -236,8 +303,10 @@ Plane Best(const SampledSettings& settings, const Situation& s) {
   for (size_t n = 0; n < pieces; ++n) {
     const size_t piece = n % 2 == 0 ? n / 2 : pieces - 1 - n / 2;
     const size_t t = piece * lanes;
+    const V most = hn::Set(d, lowest);
+    if (hn::AllFalse(d, hn::Le(pricing.at_least(t), most))) continue;
     const V alone = pricing.alone(t);
-    if (hn::AllFalse(d, hn::Le(alone, hn::Set(d, lowest)))) continue;
+    if (hn::AllFalse(d, hn::Le(alone, most))) continue;
     const V cost = pricing.among_others(t, alone);
     const float least = hn::GetLane(hn::MinOfLanes(d, cost));
     if (least > lowest) continue;
@@ -275,6 +344,7 @@ namespace throng::steer {
 
 HWY_EXPORT(Following);
 HWY_EXPORT(WishIsOpen);
+HWY_EXPORT(IsOpposed);
 HWY_EXPORT(CostsOf);
 HWY_EXPORT(Best);
 HWY_EXPORT(TakeBest);
@@ -284,6 +354,9 @@ Plane following_fast(const SampledSettings& settings, const Situation& situation
 }
 bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation) {
   return HWY_DYNAMIC_DISPATCH(WishIsOpen)(settings, situation);
+}
+bool is_opposed_fast(const LaneSettings& settings, const Situation& situation) {
+  return HWY_DYNAMIC_DISPATCH(IsOpposed)(settings, situation);
 }
 Plane best_fast(const SampledSettings& settings, const Situation& situation) {
   return HWY_DYNAMIC_DISPATCH(Best)(settings, situation);

@@ -173,6 +173,10 @@ TEST(SampledSteering, MachinesFindTheSameBits) {
       const Plane limited = following_fast({}, s), expected_limit = following({}, s);
       ASSERT_EQ(std::memcmp(&limited, &expected_limit, sizeof limited), 0) << name << ' ' << n;
       ASSERT_EQ(wish_is_open_fast({}, s), wish_is_open({}, s)) << name << ' ' << n;
+      for (const int32_t opposers : {0, 1, 2, 3}) {
+        const LaneSettings lanes{.opposers = opposers};
+        ASSERT_EQ(is_opposed_fast(lanes, s), is_opposed(lanes, s)) << name << ' ' << n;
+      }
       const Trials expected_trials = trials_of(s);
       const Costs expected = costs_of({}, s, expected_trials);
       Trials trials;

@@ -114,7 +114,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
        {"seconds_commit", t.sum.seconds_commit},
        {"seconds_settle", t.sum.seconds_settle},
        {"seconds_total", t.sum.seconds_total},
-       {"crowd_bytes", crowd.bytes()},
+       {"crowd_bytes", crowd.memory().total()},
        {"peak_bytes", peak_memory()}},
       fmt::format("{} {} avatars, {} steps of {} s: {:.1f} ns an avatar a step (median)\n"
                   "{} goals reached, {} ways planned, {} goals without a way; got on at {:.2f} of "

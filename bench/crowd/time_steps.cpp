@@ -56,7 +56,8 @@ nlohmann::ordered_json time_steps(Crowd& crowd, const StepTiming& timing,
           {"checked_avatar_steps", checks * crowd.size()},
           {"overlaps", found.overlaps},
           {"wall_entries", found.wall_entries},
-          {"bytes_an_avatar", static_cast<double>(crowd.bytes()) / avatars},
+          {"bytes_an_avatar", static_cast<double>(crowd.memory().avatars) / avatars},
+          {"bytes_of_ways", static_cast<double>(crowd.memory().ways) / avatars},
           {"state_hash", crowd.state_hash()}};
 }
 

@@ -83,6 +83,14 @@ struct AvatarSpawn {
   double speed = 0;   ///< Wished, and the most, 0 for the class's. [m/s]
 };
 
+/// What a crowd holds. [bytes]
+struct CrowdMemory {
+  uint64_t avatars = 0;  ///< Bodies, who is near whom, ids, events.
+  uint64_t ways = 0;     ///< The next corners of each, or his way through the air.
+  uint64_t ground = 0;   ///< Of the classes in use, and obstacles.
+  [[nodiscard]] uint64_t total() const { return avatars + ways + ground; }
+};
+
 /// What one step did.
 struct CrowdReport {
   uint64_t step = 0;       ///< Number of the step just made, from 1.
@@ -213,7 +221,8 @@ class THRONG_API Crowd {
   [[nodiscard]] static Result<Crowd> restore(const World& world, const CrowdConfig& config,
                                              std::span<const uint8_t> saved, Context& context);
   [[nodiscard]] uint32_t size() const;
-  [[nodiscard]] uint64_t bytes() const;  ///< Memory held by the crowd itself, without path finders.
+  /// Memory held by the crowd itself, without path finders.
+  [[nodiscard]] CrowdMemory memory() const;
 
  private:
   struct State;

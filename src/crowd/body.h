@@ -11,6 +11,13 @@
 /// An avatar of a crowd with goals, as a step touches it.
 namespace throng {
 
+/// Where somebody stands.
+struct Stand {
+  int32_t x = 0, z = 0;  // [units]
+  int32_t y = 0;         // feet [mm]
+  uint32_t level = 0;    // of the world
+};
+
 /// One cache line: whoever is looked at is looked at whole. What is asked rarely (goals, corridors)
 /// lies in tables by slot.
 struct Body {
@@ -46,9 +53,10 @@ struct Body {
   uint16_t target = 0;  // TargetId: it is bound for a region
   State state : 7 = kFree;
   bool near_wall : 1 = false;  // and in need of another way, in the last step
-  uint8_t round = 0;           // of the step in which this place was named, from 1
+  uint8_t unused = 0;
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }
+  [[nodiscard]] Stand stand() const { return {x, z, y, level}; }
   [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }
   void clear(Flag flag) { flags = static_cast<uint8_t>(flags & ~flag); }
 };

@@ -167,9 +167,19 @@ void Crowd::State::make_room(const Body& body) {
   narrowest = std::min(narrowest, body.radius);
   fastest = std::max(fastest, body.speed);
   const double way = fastest * config.dt / unit;
-  sub_steps = std::clamp(static_cast<int32_t>(std::ceil(way / narrowest - 1e-9)), 1, 1 << 20);
+  const double most = std::min(narrowest, CrowdEngine::kLongestStep - 16);  // and what is rounded
+  sub_steps = std::clamp(static_cast<int32_t>(std::ceil(way / most - 1e-9)), 1, 1 << 20);
   engine.fit(widest, fastest, static_cast<float>(config.dt / sub_steps));
   flyers.fit(widest, fastest, tallest, static_cast<float>(config.dt / sub_steps));
+}
+
+void Crowd::State::reserve(size_t more) {
+  const size_t slots = generation.size() + more - std::min(more, free_slots.size());
+  const size_t room = grown(generation.capacity(), slots);
+  generation.reserve(room);
+  routes.reserve(room);
+  where.reserve(room);
+  engine.reserve(engine.bodies().size() + more);
 }
 
 AvatarId Crowd::State::add(Body body) {
@@ -207,6 +217,7 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
     widest = std::max(widest, body->radius);
   }
   StandingMap map(s.engine.bodies(), widest, spawns.size());
+  s.reserve(spawns.size());
   std::vector<AvatarId> ids(spawns.size());
   for (size_t i = 0; i < spawns.size(); ++i) {
     Body& body = bodies[i];
@@ -277,7 +288,7 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
                                    " find room at random places, " + std::to_string(count) +
                                    " were asked for; ask for fewer or take a larger world"};
   }
-  s.engine.reserve(s.engine.bodies().size() + count);
+  s.reserve(count);
   std::vector<AvatarId> ids;
   ids.reserve(count);
   for (const Body& b : placed) ids.push_back(s.add(b));
@@ -444,7 +455,6 @@ uint64_t Crowd::state_hash() const {
     if (i == kNobody) continue;
     Body body = s.engine.bodies()[i];
     body.state = Body::kFree;  // of the step, not of the avatar
-    body.round = 0;
     by_slot.push_back(body);
   }
   const uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
@@ -491,13 +501,17 @@ const FlightFinder* Crowd::flight_finder(int32_t avatar_class) const {
 bool Crowd::is_alive(AvatarId id) const { return state_->body(id) != nullptr; }
 uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->engine.bodies().size()); }
 
-uint64_t Crowd::bytes() const {
+CrowdMemory Crowd::memory() const {
   const State& s = *state_;
-  uint64_t bytes = s.engine.bytes() + s.routes.capacity() * sizeof(Route) +
-                   (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4;
-  for (const auto& parts : s.classes) bytes += parts ? parts->ground.bytes() : 0;
-  bytes += s.obstacles.bytes() + s.flyers.bytes() + s.flights.capacity() * sizeof(Flight);
-  return bytes;
+  CrowdMemory memory;
+  memory.avatars =
+      s.engine.bytes() + s.flyers.bytes() +
+      (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
+      s.inside.capacity() * sizeof(uint64_t) + s.looked_at.capacity() * sizeof(s.looked_at[0]);
+  memory.ways = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight);
+  for (const auto& parts : s.classes) memory.ground += parts ? parts->ground.bytes() : 0;
+  memory.ground += s.obstacles.bytes();
+  return memory;
 }
 
 }  // namespace throng

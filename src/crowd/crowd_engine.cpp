@@ -32,9 +32,10 @@ constexpr float kClose = 0.1f;               // [m] to its corner a body turns t
 constexpr float kAtOnce = 0.3f;              // [s] Who goes straight meets nobody within.
 constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
 constexpr float kEnough = 14;                // bodies, to find the nearest among
+constexpr size_t kBits = 64;                 // of a word
 
 // Do two bodies clash that stand at these places?
-bool clash(const Body& a, const Body& at_a, const Body& b, const Body& at_b) {
+bool clash(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
          at_a.y < at_b.y + b.height && at_b.y < at_a.y + a.height;
 }
@@ -45,6 +46,13 @@ bool is_bound(const Body& body) {
       Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven | Body::kFlying;
   // A region has room for many.
   return body.target == 0 && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
+}
+
+// Part of a way.
+template <class Way>
+Way shorter(Way way, float part) {
+  return {static_cast<int16_t>(std::lrint(static_cast<float>(way.x) * part)),
+          static_cast<int16_t>(std::lrint(static_cast<float>(way.z) * part))};
 }
 
 // A square of so many cells to each side holds all that is looked at.
@@ -86,6 +94,7 @@ void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
   config_.units.dt = dt;
   widest_ = widest;
   longest_ = config_.units.stride(fastest);
+  THRONG_ASSERT(longest_ <= kLongestStep);
   every_ = throng::steps_of_reaction(config_.reaction, dt);
   // Who could be touched within a step must be seen, however short the sight.
   const auto sight = static_cast<int32_t>(std::lround(config_.sight / double{config_.units.unit}));
@@ -95,16 +104,18 @@ void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
 
 void CrowdEngine::reserve(size_t bodies) {
   if (bodies <= bodies_.size()) return;
+  bodies = grown(bodies_.size(), std::max<size_t>(1024, bodies));
   HugeArray<Body> larger(bodies);
   std::copy_n(bodies_.data(), size_, larger.data());
   bodies_ = std::move(larger);
   spare_ = HugeArray<Body>(bodies);
+  contests_.resize((bodies + kBits - 1) / kBits);
   grid_.emplace(width_, depth_, sight_, bodies);
 }
 
 void CrowdEngine::add(const Body& body) {
   highest_ = std::max<int32_t>(highest_, body.height);
-  if (size_ == bodies_.size()) reserve(std::max<size_t>(1024, 2 * size_));
+  reserve(size_ + 1);
   bodies_[size_++] = body;
 }
 
@@ -167,24 +178,30 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
 void CrowdEngine::decide_all(EngineCounts& counts) {
   for (Worker& worker : workers_) {
     worker.others.clear();
-    worker.contests.clear();
     worker.counts = {};
   }
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
-  parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t w) {
-    Worker& worker = workers_[static_cast<size_t>(w)];
+  parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
+    const auto w = static_cast<uint16_t>(worker);
     NeighbourGrid::Around around;
     uint32_t square = UINT32_MAX;
     const size_t end = std::min(size_, (piece + 1) * kGrain);
     for (size_t i = piece * kGrain; i < end; ++i) {
+      uint64_t& contests = contests_[i / kBits];
+      if (i % kBits == 0) contests = 0;
       prefetch_ground(i);
       const uint32_t here = grid_->square(bodies_[i]);
-      if (bodies_[i].has(Body::kKeeps) && keep_on(static_cast<uint32_t>(i), worker, here)) continue;
-      if (here != square) {
-        square = here;
-        around = grid_->around(square);
+      std::optional<bool> contested;
+      if (bodies_[i].has(Body::kKeeps)) contested = keep_on(static_cast<uint32_t>(i), w, here);
+      if (!contested) {
+        if (here != square) {
+          square = here;
+          around = grid_->around(square);
+        }
+        contested = decide(static_cast<uint32_t>(i), w, around);
       }
-      decide(static_cast<uint32_t>(i), worker, around);
+      contests |= uint64_t{*contested} << (i % kBits);
+      workers_[w].counts.contested += *contested ? 1 : 0;
     }
   });
   for (const Worker& worker : workers_) counts.add(worker.counts);
@@ -338,7 +355,7 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
 bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];
   steer::Situation& situation = worker.situation;
-  if (!steer::is_opposed(config_.lanes, situation)) return false;
+  if (!steer::is_opposed_fast(config_.lanes, situation)) return false;
   const Eye eye{.x = body.x,
                 .z = body.z,
                 .y = body.y,
@@ -407,41 +424,49 @@ void CrowdEngine::look_around(const Body& body, steer::Situation& situation) con
   }
 }
 
-void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Contest& contest) {
+void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Ways& ways) {
   steer::Trials trials;
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
-  contest.ways = 0;
-  contest.has_all = true;
-  contest.keeps = false;
-  const auto add_way = [&](Plane v) {
-    v = if_blocked(v, situation);
-    contest.way[contest.ways++] = {config_.units.way(v.x), config_.units.way(v.z)};
-  };
-  Plane best = situation.wish;
-  if (open) add_way(best);
-  while (contest.ways < steer::kChoices) {
-    const Plane choice = steer::take_best_fast(trials, costs);
-    if (contest.ways == 0) best = choice;
-    add_way(choice);
+  size_t n = 0;
+  if (open) ways[n++] = way_of(if_blocked(situation.wish, situation));
+  while (n < ways.size()) {
+    ways[n++] = way_of(if_blocked(steer::take_best_fast(trials, costs), situation));
   }
-  for (const float part : kShorter) add_way({best.x * part, best.z * part});
 }
 
-// Names the place that a body comes to if it goes on as it did. False, and nothing is changed, if
-// that is not free.
-bool CrowdEngine::keep_on(uint32_t i, Worker& worker, uint32_t square) {
+std::span<const uint32_t> CrowdEngine::others_of(const Claim& claim) const {
+  const uint32_t* const end = claim.words.data() + kWords;
+  if (!claim.is_far) return {end - claim.others, end};
+  const Worker& worker = workers_[claim.words[kWords - 2]];
+  return {worker.others.data() + claim.words[kWords - 1], claim.others};
+}
+
+// Puts whom a worker has listed last into the claim, if there is room.
+void CrowdEngine::keep_others(Claim& claim, uint16_t worker, size_t first) {
+  std::vector<uint32_t>& others = workers_[worker].others;
+  claim.others = static_cast<uint32_t>(others.size() - first);
+  claim.is_far = claim.ways + size_t{claim.others} > kWords;
+  if (claim.is_far) {
+    claim.words[kWords - 2] = worker;
+    claim.words[kWords - 1] = static_cast<uint32_t>(first);
+    return;
+  }
+  std::copy(others.begin() + static_cast<std::ptrdiff_t>(first), others.end(),
+            claim.words.end() - claim.others);
+  others.resize(first);
+}
+
+// Names the place that a body comes to if it goes on as it did, and tells whether it could touch
+// anybody. None if that is not free.
+std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square) {
+  Worker& worker = workers_[w];
   Body& body = bodies_[i];
-  Body& place = spare_[i];
-  place.round = 0;
-  place.flags = Body::kKeeps;
-  Contest contest;
-  contest.body = i;
-  contest.ways = 1;
-  contest.has_all = false;
-  contest.keeps = true;
-  contest.way[0] = {config_.units.way(body.velocity.x), config_.units.way(body.velocity.z)};
-  if (!try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place)) return false;
+  Claim& claim = claims()[i];
+  claim = {};
+  claim.flags = Body::kKeeps;
+  const Way way = way_of(body.velocity);
+  if (!try_way(body, way, claim.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);
   fit_lists(around, worker);
@@ -455,97 +480,113 @@ bool CrowdEngine::keep_on(uint32_t i, Worker& worker, uint32_t square) {
                 .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMostRise};
   SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
   find_seen({grid_->x(), grid_->z(), grid_->y()}, around, eye, lists);
-  contest.first = static_cast<uint32_t>(worker.others.size());
+  const size_t first = worker.others.size();
   list_touched(body, lists, worker);
-  contest.last = static_cast<uint32_t>(worker.others.size());
-  if (contest.first == contest.last) {
+  if (worker.others.size() == first) {
     body.state = Body::kFree;
-    return true;
-  }
-  if (!is_clear(contest, worker, place, /*somebody_moved=*/false)) {
-    worker.others.resize(contest.first);
     return false;
   }
-  ++worker.counts.contested;
+  const std::span others(worker.others.begin() + static_cast<std::ptrdiff_t>(first),
+                         worker.others.end());
+  if (!is_clear(body, claim.place, others, /*somebody_moved=*/false)) {
+    worker.others.resize(first);
+    return std::nullopt;
+  }
   body.state = Body::kUndecided;
-  worker.contests.push_back(contest);
+  claim.round = 1;
+  claim.add_way(way);
+  keep_others(claim, w, first);
   return true;
 }
 
-// Sense, steer, and name a place if nobody can object.
-void CrowdEngine::decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+// Sense, steer, and name a place if nobody can object. Could it touch anybody?
+bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around) {
+  Worker& worker = workers_[w];
   Body& body = bodies_[i];
-  Body& place = spare_[i];
-  place.round = 0;
-  place.flags = 0;
+  Claim& claim = claims()[i];
+  claim = {};
   if (body.has(Body::kFlying)) {
     body.state = Body::kShut;
-    return;
+    return false;
   }
-  Contest contest;
-  contest.body = i;
-  contest.first = static_cast<uint32_t>(worker.others.size());
+  const size_t first = worker.others.size();
   sense(i, worker, around, true);
-  contest.last = static_cast<uint32_t>(worker.others.size());
-  const bool alone = contest.first == contest.last;
+  const std::span others(worker.others.begin() + static_cast<std::ptrdiff_t>(first),
+                         worker.others.end());
   const bool open = find_open_wish(i, worker, around);
-  worker.counts.contested += alone ? 0 : 1;
   // The best of his ways is enough as long as nobody objects to it.
   if (!open) look_around(body, worker.situation);
   const Plane best =
       open ? worker.situation.wish
            : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
-  contest.ways = 1;
-  contest.has_all = false;
-  contest.keeps = false;
-  contest.way[0] = {config_.units.way(best.x), config_.units.way(best.z)};
-  bool named = try_place(body, body.x + contest.way[0].x, body.z + contest.way[0].z, place) &&
-               (alone || is_clear(contest, worker, place, /*somebody_moved=*/false));
-  if (!named) {
+  Ways ways{way_of(best)};
+  bool named = try_way(body, ways[0], claim.place) &&
+               is_clear(body, claim.place, others, /*somebody_moved=*/false);
+  if (named) {
+    claim.flags = Body::kKeeps;
+    claim.round = others.empty() ? 0 : 1;
+  } else {
     if (open) look_around(body, worker.situation);
-    find_ways(worker.situation, open, contest);
+    find_ways(worker.situation, open, ways);
+    claim.has_all = true;
   }
-  if (named) place.flags = Body::kKeeps;
   // Known only where one had to look.
   body.near_wall = (!open || !named) && worker.situation.has_walls;
-  if (!alone) {
-    body.state = Body::kUndecided;
-    worker.contests.push_back(contest);
-    return;
+  if (others.empty()) {
+    if (!named) named = try_ways(body, ways, others, claim.place);
+    body.state = named ? Body::kFree : Body::kShut;
+    return false;
   }
-  for (uint32_t w = 0; !named && w < contest.ways; ++w) {
-    named = try_place(body, body.x + contest.way[w].x, body.z + contest.way[w].z, place);
-  }
-  body.state = named ? Body::kFree : Body::kShut;
+  body.state = Body::kUndecided;
+  for (size_t n = 0; n < (named ? 1 : ways.size()); ++n) claim.add_way(ways[n]);
+  keep_others(claim, w, first);
+  return true;
 }
 
 // Where a body would stand after a step, if the ground lets it.
-bool CrowdEngine::try_place(const Body& body, int32_t x, int32_t z, Body& place) const {
+bool CrowdEngine::try_way(const Body& body, Way way, Stand& place) const {
+  const GroundPoint to{int64_t{body.x} + way.x, int64_t{body.z} + way.z};
   StrideGround::Landing landing;
-  if (!grounds_[body.avatar_class].move(body.level, body.y, body.point(), {x, z}, landing)) {
+  if (!grounds_[body.avatar_class].move(body.level, body.y, body.point(), to, landing)) {
     return false;
   }
   if (std::abs(landing.y - body.y) > kMostRise) return false;
-  place.x = x;
-  place.z = z;
-  place.y = landing.y;
-  place.level = landing.level;
+  place = {static_cast<int32_t>(to.x), static_cast<int32_t>(to.z), landing.y, landing.level};
   return true;
+}
+
+// The first of the ways that is open and clear, then a shorter one.
+bool CrowdEngine::try_ways(const Body& body, const Ways& ways, std::span<const uint32_t> others,
+                           Stand& place) const {
+  const auto is_free = [&](Way way) {
+    Stand to;
+    if (!try_way(body, way, to) || !is_clear(body, to, others, /*somebody_moved=*/true)) {
+      return false;
+    }
+    place = to;
+    return true;
+  };
+  return std::any_of(ways.begin(), ways.end(), is_free) ||
+         std::any_of(kShorter.begin(), kShorter.end(),
+                     [&](float part) { return is_free(shorter(ways[0], part)); });
 }
 
 template <class Do>
 void CrowdEngine::for_contests(Do act) {
-  constexpr size_t kPiece = 64;
-  for (Worker& owner : workers_) {
-    const size_t count = owner.contests.size();
-    parallel_for_worker((count + kPiece - 1) / kPiece, config_.workers,
-                        [&](size_t piece, int32_t worker) {
-                          const size_t last = std::min(count, (piece + 1) * kPiece);
-                          for (size_t c = piece * kPiece; c < last; ++c) {
-                            act(owner.contests[c], owner, workers_[static_cast<size_t>(worker)]);
+  static_assert(kGrain % kBits == 0);
+  const size_t words = (size_ + kBits - 1) / kBits;
+  constexpr size_t kPiece = kGrain / kBits;
+  parallel_for_worker((words + kPiece - 1) / kPiece, config_.workers,
+                      [&](size_t piece, int32_t worker) {
+                        const size_t last = std::min(words, (piece + 1) * kPiece);
+                        for (size_t word = piece * kPiece; word < last; ++word) {
+                          for (uint64_t left = contests_[word]; left != 0; left &= left - 1) {
+                            const auto bit = static_cast<size_t>(std::countr_zero(left));
+                            act(static_cast<uint32_t>(word * kBits + bit),
+                                workers_[static_cast<size_t>(worker)]);
                           }
-                        });
-  }
+                        }
+                      });
 }
 
 // By induction nobody ever touches anybody: a place that is named is clear of where all stand who
@@ -554,78 +595,76 @@ void CrowdEngine::for_contests(Do act) {
 void CrowdEngine::commit(uint64_t step) {
   for (int32_t r = 1; r <= config_.rounds; ++r) {
     const auto round = static_cast<uint8_t>(r);
-    for_contests([&](Contest& c, const Worker& owner, Worker& scratch) {
-      if (bodies_[c.body].state == Body::kUndecided) name(c, owner, scratch, round);
+    for_contests([&](uint32_t i, Worker& scratch) {
+      const bool has_named = claims()[i].round == round;  // when it decided: nobody has moved yet
+      if (bodies_[i].state == Body::kUndecided && !has_named) name(i, scratch, round);
     });
-    for_contests([&](const Contest& c, const Worker& owner, Worker&) {
-      if (spare_[c.body].round != round || !holds(c, owner, round, step)) return;
-      bodies_[c.body].state = Body::kDecided;
+    for_contests([&](uint32_t i, Worker&) {
+      if (claims()[i].round == round && holds(i, step)) bodies_[i].state = Body::kDecided;
     });
   }
 }
 
-// Is a place clear of where everybody stands now?
-bool CrowdEngine::is_clear(const Contest& contest, const Worker& owner, const Body& place,
+// Is a place clear of where the others stand now?
+bool CrowdEngine::is_clear(const Body& body, const Stand& place, std::span<const uint32_t> others,
                            bool somebody_moved) const {
-  for (uint32_t n = contest.first; n < contest.last; ++n) {
-    const uint32_t j = owner.others[n];
+  return std::none_of(others.begin(), others.end(), [&](uint32_t j) {
     const Body& other = bodies_[j];
     const bool moved = somebody_moved && other.state == Body::kDecided;
-    if (clash(bodies_[contest.body], place, other, moved ? spare_[j] : other)) return false;
-  }
-  return true;
+    return clash(body, place, other, moved ? claims()[j].place : other.stand());
+  });
 }
 
-// The first of his ways that is open and clear.
-void CrowdEngine::name(Contest& contest, const Worker& owner, Worker& scratch, uint8_t round) {
-  const Body& body = bodies_[contest.body];
-  Body place;
-  const auto try_way = [&](uint32_t w) {
-    if (!try_place(body, body.x + contest.way[w].x, body.z + contest.way[w].z, place) ||
-        !is_clear(contest, owner, place, /*somebody_moved=*/true)) {
-      return false;
-    }
-    Body& named = spare_[contest.body];
-    named.x = place.x;
-    named.z = place.z;
-    named.y = place.y;
-    named.level = place.level;
-    named.round = round;
-    return true;
+// Names the first of his ways that is open and clear, if there is one.
+void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
+  const Body& body = bodies_[i];
+  Claim& claim = claims()[i];
+  const std::span<const uint32_t> others = others_of(claim);
+  Stand place;
+  const auto take = [&](bool found) {
+    if (!found) return;
+    claim.place = place;
+    claim.round = round;
   };
-  uint32_t tried = 0;
-  for (; tried < contest.ways; ++tried) {
-    if (try_way(tried)) return;
-    spare_[contest.body].clear(Body::kKeeps);  // It comes to do what it did not want first.
+  if (!claim.has_all && !claim.forgets) {
+    const bool found = try_way(body, claim.way(0), place) &&
+                       is_clear(body, place, others, /*somebody_moved=*/true);
+    if (found) return take(true);
   }
-  if (contest.has_all) return;
-  if (contest.keeps) tried = 0;  // What it decides now it has not tried.
+  claim.flags = 0;  // It comes to do what it did not want first.
+  Ways ways;
+  if (claim.has_all) {
+    for (size_t n = 0; n < ways.size(); ++n) ways[n] = claim.way(static_cast<uint32_t>(n));
+    return take(try_ways(body, ways, others, place));
+  }
   // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
   const NeighbourGrid::Around around = grid_->around(grid_->square(body));
-  sense(contest.body, scratch, around, /*lists_others=*/false);
-  const bool open = find_open_wish(contest.body, scratch, around);
+  sense(i, scratch, around, /*lists_others=*/false);
+  const bool open = find_open_wish(i, scratch, around);
   look_around(body, scratch.situation);
-  find_ways(scratch.situation, open, contest);
-  for (; tried < contest.ways; ++tried) {
-    if (try_way(tried)) return;
+  find_ways(scratch.situation, open, ways);
+  claim.forgets = !claim.has_room(ways.size());
+  if (!claim.forgets) {
+    claim.ways = 0;
+    for (const Way way : ways) claim.add_way(way);
+    claim.has_all = true;
   }
+  take(try_ways(body, ways, others, place));
 }
 
-bool CrowdEngine::holds(const Contest& contest, const Worker& owner, uint8_t round,
-                        uint64_t step) const {
-  const Body& body = bodies_[contest.body];
+bool CrowdEngine::holds(uint32_t i, uint64_t step) const {
+  const Body& body = bodies_[i];
+  const Claim& claim = claims()[i];
   const auto order = [&](const Body& b) {
     return std::pair(random_u64(config_.seed, b.slot, step), b.slot);
   };
   const auto mine = order(body);
-  for (uint32_t n = contest.first; n < contest.last; ++n) {
-    const uint32_t j = owner.others[n];
-    if (spare_[j].round == round && clash(body, spare_[contest.body], bodies_[j], spare_[j]) &&
-        order(bodies_[j]) > mine) {
-      return false;
-    }
-  }
-  return true;
+  const std::span<const uint32_t> others = others_of(claim);
+  return std::none_of(others.begin(), others.end(), [&](uint32_t j) {
+    const Claim& other = claims()[j];
+    return other.round == claim.round && clash(body, claim.place, bodies_[j], other.place) &&
+           order(bodies_[j]) > mine;
+  });
 }
 
 void CrowdEngine::settle_all(EngineCounts& counts) {
@@ -637,7 +676,8 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       Body& b = bodies_[i];
       if (b.has(Body::kFlying)) continue;
       const Plane way = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
-      const Body& place = spare_[i];
+      const Claim& claim = claims()[i];
+      const Stand& place = claim.place;
       const bool is_alone = b.state == Body::kFree || b.state == Body::kShut;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
@@ -652,7 +692,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         ++here.stood;
       }
       b.clear(Body::kKeeps);
-      if (may_move) b.flags = static_cast<uint8_t>(b.flags | (place.flags & Body::kKeeps));
+      if (may_move) b.flags = static_cast<uint8_t>(b.flags | claim.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kDriven)) continue;
       const float left = size_of(way);
       const float towards = left > 1e-6f ? (b.velocity.x * way.x + b.velocity.z * way.z) / left : 0;
@@ -678,12 +718,11 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
 }
 
 uint64_t CrowdEngine::bytes() const {
-  uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + (grid_ ? grid_->bytes() : 0);
+  uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + contests_.size() * sizeof(uint64_t) +
+                   (grid_ ? grid_->bytes() : 0);
   for (const Worker& worker : workers_) {
-    bytes += worker.contests.capacity() * sizeof(Contest) +
-             (worker.squares.capacity() + worker.entries.capacity() + worker.touched.capacity() +
-              worker.others.capacity()) *
-                 4;
+    bytes += 4 * (worker.squares.capacity() + worker.entries.capacity() +
+                  worker.touched.capacity() + worker.others.capacity());
   }
   return bytes;
 }

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -20,6 +22,12 @@
 /// The step of a crowd with goals as passes over arrays: sort, sense and steer, commit in rounds,
 /// settle. test/support/plain_crowd.h is the same, as plainly as it can be written.
 namespace throng {
+
+/// Size of an array of `capacity` in which `needed` are to have room: doubling, as vectors do it,
+/// would leave up to half of the memory unused.
+inline size_t grown(size_t capacity, size_t needed) {
+  return needed <= capacity ? capacity : std::max(needed, capacity + capacity / 4);
+}
 
 struct EngineConfig {
   StepUnits units;
@@ -75,37 +83,52 @@ class CrowdEngine {
   /// Heights of two bodies' feet between which, and of what they can rise in a step, they could
   /// touch. [mm]
   static constexpr int32_t kMostRise = 450;
+  /// The longest step. [units]
+  static constexpr int32_t kLongestStep = 32000;
 
  private:
-  // Somebody who could touch others: whom, and where he would go, the best first; the others are
-  // found when they are needed.
-  struct Contest {
-    uint32_t body;
-    uint32_t first, last;  // of `others`
-    uint32_t ways;
-    bool has_all;
-    bool keeps;  // its only way is what it did before
-    struct Way {
-      int32_t x, z;
-    };
-    std::array<Way, steer::kChoices + 3> way;
+  // Ways of a contest and whom it could touch are words of four bytes; what does not fit into a
+  // claim lies in the list of the worker that decided.
+  static constexpr size_t kWords = 10;
+  struct Way {
+    int16_t x, z;  // [units]
   };
+  // Where a body would go in this step. If it could touch others also whom, and its ways, the best
+  // first: those after the first are found when they are needed.
+  struct Claim {
+    Stand place;
+    uint8_t round;  // in which it was named, from 1; 0: before
+    uint8_t flags;  // Body::kKeeps
+    uint8_t ways;
+    bool has_all : 1;
+    bool forgets : 1;  // There is no room for its ways: they are found again.
+    bool is_far : 1;   // The last words say where in whose list the others lie.
+    uint32_t others;   // how many
+    std::array<uint32_t, kWords> words;  // ways from the front, others from the back
+
+    [[nodiscard]] Way way(uint32_t w) const { return std::bit_cast<Way>(words[w]); }
+    void add_way(Way way) { words[ways++] = std::bit_cast<uint32_t>(way); }
+    [[nodiscard]] bool has_room(size_t more_ways) const {
+      return more_ways + (is_far ? 2 : others) <= kWords;
+    }
+  };
+  static_assert(sizeof(Claim) == sizeof(Body) && std::is_trivially_copyable_v<Claim>);
   struct Worker {
     std::vector<float> squares;
     std::vector<uint32_t> entries, touched;
     std::vector<uint32_t> others;
-    std::vector<Contest> contests;
     steer::Situation situation;
     bool waits = false;  // for another, instead of doing as he wishes
     EngineCounts counts;
   };
+  using Ways = std::array<Way, steer::kChoices>;
 
   [[nodiscard]] bool keeps(const Body& body, uint64_t step) const;
   void wish_all(uint64_t step, const Before& before);
   void decide_all(EngineCounts& counts);
-  void decide(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  bool decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around);
   void prefetch_ground(size_t i) const;
-  bool keep_on(uint32_t i, Worker& worker, uint32_t square);
+  std::optional<bool> keep_on(uint32_t i, uint16_t w, uint32_t square);
   void list_touched(const Body& body, const SeenLists& lists, Worker& worker) const;
   size_t fit_lists(const NeighbourGrid::Around& around, Worker& worker) const;
   [[nodiscard]] float touch_of(const Body& body) const;
@@ -120,17 +143,26 @@ class CrowdEngine {
   [[nodiscard]] float wall_look(const Body& body) const {  // [units]
     return body.speed * config_.steering.wall_horizon / config_.units.unit;
   }
-  void find_ways(const steer::Situation& situation, bool open, Contest& contest);
+  void find_ways(const steer::Situation& situation, bool open, Ways& ways);
+  [[nodiscard]] Way way_of(steer::Plane velocity) const {
+    return {static_cast<int16_t>(config_.units.way(velocity.x)),
+            static_cast<int16_t>(config_.units.way(velocity.z))};
+  }
   void commit(uint64_t step);
   void settle_all(EngineCounts& counts);
-  void name(Contest& contest, const Worker& owner, Worker& scratch, uint8_t round);
-  [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner, const Body& place,
-                              bool somebody_moved) const;
-  [[nodiscard]] bool holds(const Contest& contest, const Worker& owner, uint8_t round,
-                           uint64_t step) const;
+  void name(uint32_t i, Worker& scratch, uint8_t round);
+  [[nodiscard]] std::span<const uint32_t> others_of(const Claim& claim) const;
+  void keep_others(Claim& claim, uint16_t worker, size_t first);
+  [[nodiscard]] bool is_clear(const Body& body, const Stand& place,
+                              std::span<const uint32_t> others, bool somebody_moved) const;
+  [[nodiscard]] bool holds(uint32_t i, uint64_t step) const;
   template <class Do>
   void for_contests(Do act);
-  bool try_place(const Body& body, int32_t x, int32_t z, Body& place) const;
+  bool try_way(const Body& body, Way way, Stand& place) const;
+  bool try_ways(const Body& body, const Ways& ways, std::span<const uint32_t> others,
+                Stand& place) const;
+  /// What bodies claim lies where they were before they were sorted.
+  [[nodiscard]] Claim* claims() const { return static_cast<Claim*>(static_cast<void*>(spare_.data())); }
 
   EngineConfig config_;
   std::vector<StrideGround> grounds_;  // by class
@@ -140,7 +172,8 @@ class CrowdEngine {
   int32_t highest_ = 0;  // of all bodies there ever were [mm]
   size_t size_ = 0;
   HugeArray<Body> bodies_;
-  HugeArray<Body> spare_;  // while sorting: where from; then: where to
+  HugeArray<Body> spare_;           // while sorting: where from; then: claims
+  std::vector<uint64_t> contests_;  // a bit for each body: could it touch others?
   std::optional<NeighbourGrid> grid_;
   std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_;

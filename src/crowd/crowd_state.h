@@ -98,6 +98,8 @@ struct Crowd::State {
   Result<void> open_class(int32_t number, Context& context);
   Result<Body> body_of(const AvatarSpawn& spawn) const;
   void make_room(const Body& body);
+  /// Makes room for so many more.
+  void reserve(size_t more);
   AvatarId add(Body body);
   /// Those obstacles that wait and in whose way nobody stands come up or move on. Returns how many
   /// still wait.

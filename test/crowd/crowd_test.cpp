@@ -208,6 +208,32 @@ TEST(Crowd, FastAndSmallOnesDoNotPassThroughOthers) {
   }
 }
 
+// A step is no longer than 16 bits hold: longer ones are taken in parts.
+TEST(Crowd, GiantsWithLongStepsTouchNobody) {
+  const World world = test::bake(worlds::flat(60), 0.02);
+  Crowd crowd = made(world, {.dt = 0.5});
+  const auto giants = scattered(crowd, 6, {.radius = 2, .speed = 8});
+  const auto others = scattered(crowd, 60, {.speed = 1.5});
+  crowd.set_goals(giants, random_goals(world, giants.size(), 1));
+  crowd.set_goals(others, random_goals(world, others.size(), 2));
+  for (int step = 0; step < 30; ++step) {
+    crowd.step();
+    expect_no_faults(crowd);
+  }
+}
+
+TEST(Crowd, AnAvatarTakesNoMoreThan160BytesBesideItsWay) {
+  const World world = test::bake(worlds::flat(200), 0.1);
+  for (const uint32_t count : {20'000u, 21'846u, 32'769u}) {
+    Crowd crowd = made(world);
+    const auto ids = scattered(crowd, count, {.radius = 0.2});
+    crowd.set_goals(ids, random_goals(world, count, 3));
+    for (int step = 0; step < 5; ++step) crowd.step();
+    EXPECT_LE(crowd.memory().avatars, 160 * count);
+    EXPECT_GE(crowd.memory().ways, 100 * count);
+  }
+}
+
 TEST(Crowd, ARestoredCrowdGoesOnAsTheSavedOneWould) {
   const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
   Crowd crowd = made(world);

@@ -194,15 +194,18 @@ void PlainCrowd::commit() {
     for (uint32_t i = 0; i < count; ++i) {
       named[i].reset();
       if (decided[i] != 0) continue;
-      const auto consider = [&](Plane velocity) {
-        const Spot to{now[i].x + config_.units.way(velocity.x),
-                      now[i].z + config_.units.way(velocity.z)};
+      const auto consider_way = [&](Spot way) {
+        const Spot to{now[i].x + way.x, now[i].z + way.z};
         for (const Near& n : near_[i]) {
           if (can_touch(i, n) && !is_clear(i, n.other, to, now[n.other])) return false;
         }
         named[i] = to;
         return true;
       };
+      const auto way_of = [&](Plane velocity) {
+        return Spot{config_.units.way(velocity.x), config_.units.way(velocity.z)};
+      };
+      const auto consider = [&](Plane velocity) { return consider_way(way_of(velocity)); };
       if (keeping[i] != 0) {
         keeps[i] = consider(bodies_[i].velocity);
         if (keeps[i] != 0) continue;
@@ -213,8 +216,11 @@ void PlainCrowd::commit() {
       keeps[i] = first[i];
       bool found = std::any_of(choices_[i].begin(), choices_[i].end(), consider);
       for (const float part : kShorter) {
-        const Plane best = choices_[i][0];
-        found = found || consider({best.x * part, best.z * part});
+        const Spot best = way_of(choices_[i][0]);
+        const auto shorter = [&](int32_t way) {
+          return static_cast<int32_t>(std::lrint(static_cast<float>(way) * part));
+        };
+        found = found || consider_way({shorter(best.x), shorter(best.z)});
       }
     }
     for (uint32_t i = 0; i < count; ++i) {

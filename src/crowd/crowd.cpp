@@ -504,10 +504,10 @@ uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->engine.bodie
 CrowdMemory Crowd::memory() const {
   const State& s = *state_;
   CrowdMemory memory;
-  memory.avatars =
-      s.engine.bytes() + s.flyers.bytes() +
-      (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
-      s.inside.capacity() * sizeof(uint64_t) + s.looked_at.capacity() * sizeof(s.looked_at[0]);
+  memory.avatars = s.engine.bytes() + s.flyers.bytes() +
+                   (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
+                   s.inside.capacity() * sizeof(uint64_t) +
+                   s.looked_at.capacity() * sizeof(s.looked_at[0]);
   memory.ways = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight);
   for (const auto& parts : s.classes) memory.ground += parts ? parts->ground.bytes() : 0;
   memory.ground += s.obstacles.bytes();

@@ -576,17 +576,16 @@ void CrowdEngine::for_contests(Do act) {
   static_assert(kGrain % kBits == 0);
   const size_t words = (size_ + kBits - 1) / kBits;
   constexpr size_t kPiece = kGrain / kBits;
-  parallel_for_worker((words + kPiece - 1) / kPiece, config_.workers,
-                      [&](size_t piece, int32_t worker) {
-                        const size_t last = std::min(words, (piece + 1) * kPiece);
-                        for (size_t word = piece * kPiece; word < last; ++word) {
-                          for (uint64_t left = contests_[word]; left != 0; left &= left - 1) {
-                            const auto bit = static_cast<size_t>(std::countr_zero(left));
-                            act(static_cast<uint32_t>(word * kBits + bit),
-                                workers_[static_cast<size_t>(worker)]);
-                          }
-                        }
-                      });
+  parallel_for_worker(
+      (words + kPiece - 1) / kPiece, config_.workers, [&](size_t piece, int32_t worker) {
+        const size_t last = std::min(words, (piece + 1) * kPiece);
+        for (size_t word = piece * kPiece; word < last; ++word) {
+          for (uint64_t left = contests_[word]; left != 0; left &= left - 1) {
+            const auto bit = static_cast<size_t>(std::countr_zero(left));
+            act(static_cast<uint32_t>(word * kBits + bit), workers_[static_cast<size_t>(worker)]);
+          }
+        }
+      });
 }
 
 // By induction nobody ever touches anybody: a place that is named is clear of where all stand who

@@ -101,9 +101,9 @@ class CrowdEngine {
     uint8_t flags;  // Body::kKeeps
     uint8_t ways;
     bool has_all : 1;
-    bool forgets : 1;  // There is no room for its ways: they are found again.
-    bool is_far : 1;   // The last words say where in whose list the others lie.
-    uint32_t others;   // how many
+    bool forgets : 1;                    // There is no room for its ways: they are found again.
+    bool is_far : 1;                     // The last words say where in whose list the others lie.
+    uint32_t others;                     // how many
     std::array<uint32_t, kWords> words;  // ways from the front, others from the back
 
     [[nodiscard]] Way way(uint32_t w) const { return std::bit_cast<Way>(words[w]); }
@@ -162,7 +162,9 @@ class CrowdEngine {
   bool try_ways(const Body& body, const Ways& ways, std::span<const uint32_t> others,
                 Stand& place) const;
   /// What bodies claim lies where they were before they were sorted.
-  [[nodiscard]] Claim* claims() const { return static_cast<Claim*>(static_cast<void*>(spare_.data())); }
+  [[nodiscard]] Claim* claims() const {
+    return static_cast<Claim*>(static_cast<void*>(spare_.data()));
+  }
 
   EngineConfig config_;
   std::vector<StrideGround> grounds_;  // by class

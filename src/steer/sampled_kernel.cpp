@@ -219,8 +219,7 @@ class Pricing {
   HWY_INLINE V at_least(size_t t) const {
     const D d;
     const V x = hn::Load(d, &trials_.x[t]), z = hn::Load(d, &trials_.z[t]);
-    const V along =
-        hn::Add(hn::Mul(x, hn::Set(d, ahead_.x)), hn::Mul(z, hn::Set(d, ahead_.z)));
+    const V along = hn::Add(hn::Mul(x, hn::Set(d, ahead_.x)), hn::Mul(z, hn::Set(d, ahead_.z)));
     const V lost = hn::Max(hn::Sub(hn::Set(d, wished_), along), hn::Zero(d));
     return hn::Div(hn::Mul(hn::Set(d, settings_.straightness), lost), hn::Set(d, s_.fastest));
   }

@@ -5,7 +5,8 @@
 #include "steer/lanes.h"
 #include "steer/sampled.h"
 
-/// steer/sampled.h and what is asked often of steer/lanes.h, for machines: many trials, or many neighbours, at a time. The same bits.
+/// steer/sampled.h and what is asked often of steer/lanes.h, for machines: many trials, or many
+/// neighbours, at a time. The same bits.
 namespace throng::steer {
 
 Plane following_fast(const SampledSettings& settings, const Situation& situation);

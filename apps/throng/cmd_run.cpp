@@ -137,6 +137,9 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
 }
 
 int run_wanderers(Session& session, const World& world, const RunOptions& options) {
+  if (options.crowd.config.model != SteeringModel::kSampled) {
+    return fail({Errc::kBadConfig, "--model goes with --goals, or with a scenario file"});
+  }
   Result<Wanderers> crowd = Wanderers::create(world, options.config);
   if (!crowd) return fail(crowd.error());
   Sinks sinks(options.sinks);
@@ -171,12 +174,14 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
                   .text = {},
                   .steps = {},
                   .seed = {},
+                  .model = {},
                   .check_every = options.check_every,
                   .workers = options.config.workers,
                   .visits = options.visits,
                   .sinks = options.sinks};
   if (command.count("--steps") > 0) run.steps = options.steps;
   if (command.count("--seed") > 0) run.seed = options.config.seed;
+  if (command.count("--model") > 0) run.model = options.crowd.config.model;
   return run_scenario(session, run);
 }
 
@@ -225,6 +230,7 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_flag("--labels", options->crowd.config.labels,
                     "Label corners: faster ways, for small worlds");
   command->add_flag("--zones", options->crowd.config.zones, "Ways by zones: for large worlds");
+  add_model(*command, options->crowd.config.model);
   command->add_option("--trajectories", options->sinks.trajectories, "Write positions to this file")
       ->type_name("FILE.csv");
   command->add_option("--record", options->sinks.record, "Record the run in this file")

@@ -232,6 +232,7 @@ void add_validate(CLI::App& parser, Session& session) {
   command->add_option("test", options->names,
                       "Tests, standards (rimea, nist), scenario files, or a test of recordings and "
                       "their folder; all that need no recordings if none is named");
+  add_model(*command, options->config.model);
   command->add_flag("--list", options->list, "Say what tests there are, and run none");
   command->add_flag("--brief", options->config.brief,
                     "Fewer points and shorter runs; not of scenario files");

@@ -13,6 +13,7 @@
 #include "throng/ground_query.h"
 #include "throng/math.h"
 #include "throng/result.h"
+#include "throng/steering_model.h"
 #include "throng/world.h"
 
 /// What every command of the program shares. One file a command: it adds its options to the parser
@@ -50,6 +51,9 @@ void note(const std::string& sentence);
 /// command a line, run one after the other in an empty folder by scripts/test_examples.
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
+
+/// The option --model.
+void add_model(CLI::App& command, SteeringModel& model);
 
 /// Index of the class that --class names. Fails with kNotFound and the names to choose from.
 Result<int32_t> class_named(const World& world, const std::string& name);

@@ -59,6 +59,9 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
               [](const Json& j) { return j.is_string(); });
   }
   if (ok) ok = need(settings, {"labels", "zones"}, [](const Json& j) { return j.is_boolean(); });
+  if (ok && settings.contains("model")) {
+    ok = need(settings, {"model"}, [](const Json& j) { return j.is_string(); });
+  }
   if (!ok) return ok.error();
   CrowdRun run;
   run.class_name = settings.at("class");
@@ -73,6 +76,14 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.config.labels = settings.at("labels");
   run.config.zones = settings.at("zones");
   run.config.workers = workers;
+  const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
+  if (!model) {
+    return Error{
+        Errc::kBadFile,
+        "the recording is of a model that this program does not know; use the program that "
+        "recorded it"};
+  }
+  run.config.model = *model;
   Context context;
   Result<GoalCrowd> made = GoalCrowd::make(world, run, context);
   if (!made) return made.error();
@@ -124,10 +135,18 @@ Json wanderers_settings(const WanderConfig& config, const std::string& class_nam
 }
 
 Json crowd_settings(const CrowdRun& run) {
-  return {{"avatars", run.avatars},       {"class", run.class_name}, {"goals", run.goals},
-          {"goals_text", run.goals_text}, {"near", run.near},        {"dt", run.config.dt},
-          {"speed", run.speed},           {"radius", run.radius},    {"labels", run.config.labels},
-          {"zones", run.config.zones},    {"seed", run.config.seed}};
+  return {{"avatars", run.avatars},
+          {"class", run.class_name},
+          {"goals", run.goals},
+          {"goals_text", run.goals_text},
+          {"near", run.near},
+          {"dt", run.config.dt},
+          {"speed", run.speed},
+          {"radius", run.radius},
+          {"labels", run.config.labels},
+          {"zones", run.config.zones},
+          {"seed", run.config.seed},
+          {"model", name_of(run.config.model)}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

@@ -90,6 +90,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
       {{"world", run.world_name},
        {"class", run.class_name},
        {"goals", run.goals},
+       {"model", name_of(run.config.model)},
        {"avatars", crowd.size()},
        {"steps", t.seconds.size()},
        {"dt", run.config.dt},

@@ -91,6 +91,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
        {"steps", t.steps},
        {"seconds", t.last.time},
        {"dt", scenario.dt},
+       {"model", name_of(scenario.steering)},
        {"seed", scenario.seed},
        {"threads", run.workers},
        {"entered", t.last.entered},
@@ -164,12 +165,16 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   auto scenario = parse_scenario(run.text, run.file);
   if (!scenario) return scenario.error();
   if (run.seed) scenario->seed = *run.seed;
+  if (run.model) scenario->steering = *run.model;
   const auto world = open_world(*scenario, session.context);
   if (!world) return world.error();
   auto simulation = Simulation::make(*world, *scenario, run.workers, session.context);
   if (!simulation) return simulation.error();
   Sinks sinks(run.sinks);
-  const Json settings = {{"scenario", run.text}, {"file", run.file}, {"seed", scenario->seed}};
+  const Json settings = {{"scenario", run.text},
+                         {"file", run.file},
+                         {"seed", scenario->seed},
+                         {"model", name_of(scenario->steering)}};
   auto ok = sinks.open(*world, scenario->world.empty() ? run.file : scenario->world, scenario->dt,
                        kScenarioModel, settings);
   if (!ok) return ok.error();
@@ -207,7 +212,19 @@ Result<Scenario> recorded_scenario(const Json& settings) {
                  "with this program"};
   }
   auto scenario = parse_scenario(text->get<std::string>(), file->get<std::string>());
-  if (scenario) scenario->seed = *seed;
+  if (!scenario) return scenario;
+  scenario->seed = *seed;
+  const auto name = settings.find("model");
+  if (name == settings.end()) return scenario;  // as the file says
+  const auto model =
+      name->is_string() ? find_steering_model(name->get<std::string>()) : std::nullopt;
+  if (!model) {
+    return Error{
+        Errc::kBadFile,
+        "the recording is of a model that this program does not know; use the program that "
+        "recorded it"};
+  }
+  scenario->steering = *model;
   return scenario;
 }
 

@@ -16,10 +16,11 @@ namespace throng::app {
 
 struct ScenarioRun {
   std::string file;
-  std::string text;               // what the file holds
-  std::optional<uint64_t> steps;  // instead of the scenario's seconds
-  std::optional<uint64_t> seed;   // instead of the scenario's
-  uint64_t check_every = 0;       // 0: ten times a run
+  std::string text;                    // what the file holds
+  std::optional<uint64_t> steps;       // instead of the scenario's seconds
+  std::optional<uint64_t> seed;        // instead of the scenario's
+  std::optional<SteeringModel> model;  // instead of the scenario's
+  uint64_t check_every = 0;            // 0: ten times a run
   int32_t workers = 0;
   std::string visits;  // CSV of who came and went; empty: none
   SinkOptions sinks;

@@ -183,6 +183,22 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   return command;
 }
 
+void add_model(CLI::App& command, SteeringModel& model) {
+  command
+      .add_option_function<std::string>(
+          "--model",
+          [&model](const std::string& name) {
+            const auto found = find_steering_model(name);
+            if (!found) {
+              throw CLI::ValidationError("--model",
+                                         std::string("must be ") + steering_model_names());
+            }
+            model = *found;
+          },
+          "Who steers those on foot: sampled (ours), caacd or social-force")
+      ->type_name("MODEL");
+}
+
 Result<int32_t> class_named(const World& world, const std::string& name) {
   if (const auto index = world.find_class(name)) return *index;
   std::string known;

@@ -26,6 +26,11 @@ struct Options {
 Json run(const Options& options) {
   test::PlainConfig config = options.config;
   config.seed = options.seed;
+  if (config.model != SteeringModel::kSampled) {  // as Crowd has it
+    config.patient = false;
+    config.reaction = 0;
+    config.steering.neighbours = steer::kMostNear;
+  }
   const bool circle = options.scene == "circle";
   std::vector<test::PlainBody> bodies =
       circle ? test::ring_bodies(config, options.bodies, 60)
@@ -55,11 +60,9 @@ Json run(const Options& options) {
       body.arrived = -1;
     }
   }
-  Json json = {{"scene", options.scene},
-               {"bodies", options.bodies},
-               {"seed", options.seed},
-               {"seconds", crowd.time()},
-               {"overlaps", overlaps}};
+  Json json = {{"scene", options.scene},   {"model", name_of(config.model)},
+               {"bodies", options.bodies}, {"seed", options.seed},
+               {"seconds", crowd.time()},  {"overlaps", overlaps}};
   json["progress"] = counted > 0 ? progress / static_cast<double>(counted) : 0;
   if (circle) {
     json["arrived"] = arrived;
@@ -100,6 +103,16 @@ int main(int argc, char** argv) {
       .add_option("--reaction", options.config.reaction,
                   "Who does as he wants decides anew after it [s]")
       ->capture_default_str();
+  parser
+      .add_option_function<std::string>("--model",
+                                        [&](const std::string& name) {
+                                          const auto model = find_steering_model(name);
+                                          if (!model)
+                                            throw CLI::ValidationError("--model",
+                                                                       steering_model_names());
+                                          options.config.model = *model;
+                                        })
+      ->type_name("MODEL");
   parser.add_flag("!--no-patience", options.config.patient);
   CLI11_PARSE(parser, argc, argv);
   std::puts(run(options).dump().c_str());

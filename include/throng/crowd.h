@@ -16,6 +16,7 @@
 #include "throng/path.h"
 #include "throng/prism.h"
 #include "throng/result.h"
+#include "throng/steering_model.h"
 #include "throng/world.h"
 
 /// The crowd: avatars with goals that find their ways through a baked world and avoid each other,
@@ -61,6 +62,9 @@ struct CrowdConfig {
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
   CrowdWays ways = CrowdWays::kPaths;
+  /// How those on foot avoid each other. `reaction` and `patient` are of kSampled alone: others
+  /// decide in each step.
+  SteeringModel model = SteeringModel::kSampled;
   bool labels = false;  ///< PathConfig::labels: for small worlds and many long ways.
   bool zones = false;   ///< PathConfig::zones: for large worlds and long ways.
   double sight = 5;     ///< Who is farther away is not avoided yet. [m, 1 to 50]

@@ -12,6 +12,7 @@
 #include "throng/chart.h"
 #include "throng/context.h"
 #include "throng/result.h"
+#include "throng/steering_model.h"
 
 /// Experiments with crowds whose outcome is known from real people or asked by a standard. Each
 /// runs on `Crowd` as anybody's program would, measures by a method that it states, and judges
@@ -52,6 +53,8 @@ struct ValidationConfig {
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   bool brief = false;   ///< Fewer points and shorter runs, for a quick look.
+  /// Who steers the crowds; trials are steered as they say, unless this is another than ours.
+  SteeringModel model = SteeringModel::kSampled;
 };
 
 struct ValidationResult {

@@ -48,14 +48,18 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
   const WorldData& data = *world.data();
   const double unit = data.summary.cell / kUnitsPerCell;
+  const bool is_sampled = config.model == SteeringModel::kSampled;
+  steer::SampledSettings steering;
+  if (!is_sampled) steering.neighbours = steer::kMostNear;
   CrowdEngine engine({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                       .sight = static_cast<float>(config.sight),
                       .rounds = config.rounds,
-                      .patient = config.patient,
-                      .reaction = static_cast<float>(config.reaction),
+                      .patient = is_sampled && config.patient,
+                      .reaction = is_sampled ? static_cast<float>(config.reaction) : 0,
                       .seed = config.seed,
                       .workers = config.workers,
-                      .steering = {},
+                      .model = config.model,
+                      .steering = steering,
                       .patience = {},
                       .lanes = {},
                       .room = {}},

@@ -293,6 +293,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
               [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
     nearest = wanted;
   }
+  if (config_.model != SteeringModel::kSampled) return prefer(i, {lists.entries, nearest}, worker);
   steer::Situation& situation = worker.situation;
   situation.velocity = body.velocity;
   situation.wish = body.wish;
@@ -326,6 +327,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
 
 // Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
 bool CrowdEngine::find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+  if (config_.model != SteeringModel::kSampled) return true;
   const Body& body = bodies_[i];
   if (!worker.waits && go_straight(body, worker.situation)) return true;
   const auto is_open = [&] {
@@ -425,6 +427,12 @@ void CrowdEngine::look_around(const Body& body, steer::Situation& situation) con
 }
 
 void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Ways& ways) {
+  if (config_.model != SteeringModel::kSampled) {
+    const steer::Choices choices = steer::ways_about(situation.wish);
+    std::transform(choices.begin(), choices.end(), ways.begin(),
+                   [&](Plane way) { return way_of(way); });
+    return;
+  }
   steer::Trials trials;
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);

@@ -17,6 +17,7 @@
 #include "crowd/step_units.h"
 #include "crowd/stride_ground.h"
 #include "steer/lanes.h"
+#include "steer/models.h"
 #include "steer/sampled.h"
 
 /// The step of a crowd with goals as passes over arrays: sort, sense and steer, commit in rounds,
@@ -37,6 +38,7 @@ struct EngineConfig {
   float reaction = 0.2f;  ///< Whoever does as he decided decides again after that. [s]
   uint64_t seed = 1;
   int32_t workers = 0;
+  SteeringModel model = SteeringModel::kSampled;
   steer::SampledSettings steering;
   steer::Patience patience;
   steer::LaneSettings lanes;
@@ -133,6 +135,7 @@ class CrowdEngine {
   size_t fit_lists(const NeighbourGrid::Around& around, Worker& worker) const;
   [[nodiscard]] float touch_of(const Body& body) const;
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
+  void prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const;
   bool find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   bool go_straight(const Body& body, steer::Situation& situation) const;
   bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);

@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x35305744574f5243;  // "CROWDW05"
+constexpr uint64_t kMagic = 0x36305744574f5243;  // "CROWDW06"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -29,8 +29,9 @@ struct Head {
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
   int32_t rounds = 0, ways = 0, patient = 0, flows_are_old = 0;
+  int32_t model = 0, reserved = 0;
 };
-static_assert(sizeof(Head) == 19 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 20 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
@@ -128,6 +129,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.rounds = config.rounds;
   head.ways = static_cast<int32_t>(config.ways);
   head.patient = config.patient ? 1 : 0;
+  head.model = static_cast<int32_t>(config.model);
   return head;
 }
 
@@ -262,7 +264,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   if (head.world != expected.world) return bad("is of another world; open that one");
   if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
       head.reaction != expected.reaction || head.rounds != expected.rounds ||
-      head.ways != expected.ways || head.patient != expected.patient) {
+      head.ways != expected.ways || head.patient != expected.patient ||
+      head.model != expected.model) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMost = uint64_t{1} << 32;

@@ -262,7 +262,8 @@ class File {
 void File::read_top() {
   Reader r(name_, root_, "scenario");
   r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
-          "area", "density", "profile", "queue", "link", "journey", "source", "obstacle",
+          "steering", "area", "density", "profile", "queue", "link", "journey", "source",
+          "obstacle",
           // What is expected of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
@@ -290,6 +291,13 @@ void File::read_top() {
   }
   out_.labels = ways == "labels";
   out_.zones = ways == "zones";
+  std::string steering = throng::name_of(out_.steering);
+  r.text("steering", steering);
+  if (const auto model = find_steering_model(steering)) {
+    out_.steering = *model;
+  } else if (const ConfigNode* node = r.find("steering"); node != nullptr) {
+    r.fail(*node, std::string("steering must be ") + steering_model_names());
+  }
   keep(r);
   if (const ConfigNode* table = r.find("builtin"); table != nullptr) {
     Reader b(name_, *table, "builtin");

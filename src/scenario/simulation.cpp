@@ -33,6 +33,7 @@ Result<Simulation> Simulation::make(const World& world, const Scenario& scenario
   auto crowd = Crowd::create(world, {.dt = scenario.dt,
                                      .seed = scenario.seed,
                                      .workers = workers,
+                                     .model = scenario.steering,
                                      .labels = scenario.labels,
                                      .zones = scenario.zones});
   if (!crowd) return crowd.error();

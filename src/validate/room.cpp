@@ -26,8 +26,11 @@ Result<Room> Room::build(const PlaneConfig& plane, const AvatarClass& body, Crow
   auto world = bake_world(
       *scene, {.cell = kCell, .zone = 51.2, .classes = {body}, .workers = config.workers}, context);
   if (!world) return world.error();
-  auto crowd = Crowd::create(
-      *world, {.dt = kStep, .seed = config.seed, .workers = config.workers, .ways = ways});
+  auto crowd = Crowd::create(*world, {.dt = kStep,
+                                      .seed = config.seed,
+                                      .workers = config.workers,
+                                      .ways = ways,
+                                      .model = config.model});
   if (!crowd) return crowd.error();
   return Room(*std::move(world), *std::move(crowd));
 }

@@ -289,6 +289,7 @@ Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& c
   const auto start = Clock::now();
   Scenario scenario = trial.scenario;
   scenario.seed += config.seed - 1;
+  if (config.model != SteeringModel::kSampled) scenario.steering = config.model;
   const auto world = open_world(scenario, context);
   if (!world) return world.error();
   auto simulation = Simulation::make(*world, scenario, config.workers, context);

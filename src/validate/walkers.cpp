@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "steer/social_force.h"
 #include "throng/caacd.h"
 #include "validate/room.h"
-#include "validate/social_force.h"
 #include "validate/tests.h"
 #include "validate/tracks.h"
 
@@ -101,11 +101,12 @@ Ways constant_ways(const std::vector<Walker>& walkers) {
 }
 
 Ways force_ways(const std::vector<Walker>& walkers) {
-  std::vector<ForceWalker> moved;
+  std::vector<steer::ForceWalker> moved;
   for (const Walker& w : walkers) moved.push_back({w.begin.x, w.begin.z, w.vx, w.vz, w.vx, w.vz});
   Ways ways(walkers.size());
   for (size_t i = 0; i < kAhead; ++i) {
-    for (int step = 0; step < kStepsASample; ++step) step_social_force(moved, Room::kStep, {});
+    for (int step = 0; step < kStepsASample; ++step)
+      steer::step_social_force(moved, Room::kStep, {});
     for (size_t n = 0; n < walkers.size(); ++n) ways[n][i] = {moved[n].x, moved[n].z};
   }
   return ways;

@@ -280,6 +280,22 @@ class Program(unittest.TestCase):
         self.assertEqual(check.returncode, 0, check.stderr)
         self.assertIn("all the same", check.stdout)
 
+    def test_any_model_steers_and_is_recorded(self):
+        run = ("run", self.world, "--avatars", 30, "--steps", 30, "--goals", "random", "--json")
+        hashes = set()
+        for model in ("sampled", "caacd", "social-force"):
+            done = self.run_throng(*run, "--model", model, "--record", "model.replay")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            said = json.loads(done.stdout)
+            self.assertEqual((said["wall_entries"], said["overlaps"], said["model"]), (0, 0, model))
+            hashes.add(said["state_hash"])
+            check = self.run_throng("replay", "model.replay", "--check", "--threads", 1)
+            self.assertEqual(check.returncode, 0, check.stderr)
+            self.assertIn("all the same", check.stdout)
+        self.assertEqual(len(hashes), 3)
+        self.assert_refused(self.run_throng(*run, "--model", "orca"), "sampled, caacd or social-force")
+        self.assert_refused(self.run_throng("run", self.world, "--model", "caacd"), "--goals")
+
     def test_those_who_fly_take_off_and_land_and_come_out_the_same(self):
         done = self.run_throng("bake", "builtin:garage,levels=2", "-o", "air.throng", "--cell", 0.2, "--fly")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -340,6 +356,10 @@ class Program(unittest.TestCase):
             self.assertIn("all the same", again.stdout)
         other = json.loads(self.run_throng("run", file, "--seed", 2, "--steps", 50, "--json").stdout)
         self.assertNotEqual(other["state_hash"], result["state_hash"])
+        done = self.run_throng("run", file, "--model", "social-force", "--steps", 50, "--json", "--record", "force.replay")
+        self.assertEqual(json.loads(done.stdout)["model"], "social-force", done.stderr)
+        again = self.run_throng("replay", "force.replay", "--check")
+        self.assertIn("all the same", again.stdout)
 
     def test_the_schema_of_scenarios_knows_the_keys_that_the_program_knows(self):
         schema = json.loads((ROOT / "docs" / "scenario.schema.json").read_text())["properties"]

@@ -68,6 +68,7 @@ struct LevelGround {
                         .reaction = config.reaction,
                         .seed = config.seed,
                         .workers = workers,
+                        .model = config.model,
                         .steering = config.steering,
                         .patience = config.patience,
                         .lanes = config.lanes,
@@ -145,6 +146,28 @@ TEST(CrowdEngine, RingsDoWhatThePlainStepDoes) {
   const test::Spot middle{config.to_units(30), config.to_units(30)};
   Pair pair = ground.pair(ring_bodies(config, 120, 8, middle), config, 1);
   for (int step = 0; step < 300; ++step) ASSERT_EQ(pair.step(), "");
+}
+
+TEST(CrowdEngine, OtherModelsDoWhatThePlainStepDoes) {
+  const LevelGround ground(60);
+  test::PlainConfig config;
+  config.patient = false;
+  config.reaction = 0;
+  config.steering.neighbours = steer::kMostNear;
+  const test::Spot corner{config.to_units(15), config.to_units(15)};
+  const test::Spot middle{config.to_units(30), config.to_units(30)};
+  for (const SteeringModel model : {SteeringModel::kCurvilinear, SteeringModel::kSocialForce}) {
+    config.model = model;
+    for (const double area : {4.0, 1.0, 0.7}) {
+      Pair pair = ground.pair(scattered(config, 300, area, 3, corner), config, 2);
+      for (int step = 0; step < 60; ++step) {
+        ASSERT_EQ(pair.step(), "") << name_of(model) << ' ' << area;
+      }
+      EXPECT_EQ(pair.plain.overlaps(), 0U);
+    }
+    Pair ring = ground.pair(ring_bodies(config, 60, 8, middle), config, 1);
+    for (int step = 0; step < 150; ++step) ASSERT_EQ(ring.step(), "") << name_of(model);
+  }
 }
 
 TEST(CrowdEngine, EveryMachineDoesTheSame) {

@@ -162,6 +162,16 @@ std::string changed(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
+TEST(ScenarioFile, names_who_steers) {
+  const std::string labels = "ways = \"labels\"";
+  const auto ours = parse_scenario(kFull, "full.toml");
+  const auto other =
+      parse_scenario(changed(labels, labels + "\nsteering = \"caacd\""), "full.toml");
+  ASSERT_TRUE(ours && other);
+  EXPECT_EQ(ours->steering, SteeringModel::kSampled);
+  EXPECT_EQ(other->steering, SteeringModel::kCurvilinear);
+}
+
 TEST(ScenarioFile, says_where_and_what_is_wrong) {
   const struct {
     const char *from, *to, *says;
@@ -169,6 +179,8 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
       {"seconds = 30", "seconds = \"long\"", "full.toml:1: scenario: seconds must be a number"},
       {"dt = 0.05", "dt = 2", "full.toml:2: scenario: dt = 2 is outside"},
       {"ways = \"labels\"", "ways = \"magic\"", "full.toml:4: scenario: ways must be"},
+      {"ways = \"labels\"", "ways = \"labels\"\nsteering = \"orca\"",
+       "full.toml:5: scenario: steering must be sampled, caacd or social-force"},
       {"seed = 7", "sead = 7", "full.toml:3: scenario: unknown key 'sead'"},
       {"[plane]\n", "world = \"x\"\n[plane]\n", "give one of: world"},
       {"box = [0.5, 1, 3, 9]", "box = [0.5, 1, 3]", "box must be a list of 4 numbers"},

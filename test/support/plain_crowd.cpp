@@ -112,8 +112,36 @@ void PlainCrowd::sense() {
   }
 }
 
+// By another model than ours.
+void PlainCrowd::prefer(uint32_t i) {
+  const PlainBody& body = bodies_[i];
+  std::vector<steer::Other> others;
+  for (const Near& n : near_[i]) {
+    if (others.size() == static_cast<size_t>(config_.steering.neighbours)) break;
+    const PlainBody& other = bodies_[n.other];
+    others.push_back({.at = config_.units.metres(n.at.x, n.at.z),
+                      .velocity = other.velocity,
+                      .radius = static_cast<float>(other.radius) * config_.units.unit,
+                      .slot = n.other});
+  }
+  const steer::View view{
+      .velocity = body.velocity,
+      .wish = wish_of(body),
+      .way = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z),
+      .stops = true,
+      .fastest = body.speed,
+      .radius = static_cast<float>(body.radius) * config_.units.unit,
+      .slot = i,
+      .others = others};
+  choices_[i] = steer::ways_about(steer::preferred_velocity(config_.model, view, config_.units.dt));
+}
+
 void PlainCrowd::steer_all() {
   for (uint32_t i = 0; i < bodies_.size(); ++i) {
+    if (config_.model != SteeringModel::kSampled) {
+      prefer(i);
+      continue;
+    }
     const PlainBody& body = bodies_[i];
     steer::Situation situation{.velocity = body.velocity,
                                .wish = wish_of(body),

@@ -7,6 +7,7 @@
 
 #include "crowd/step_units.h"
 #include "steer/lanes.h"
+#include "steer/models.h"
 #include "steer/sampled.h"
 
 /// The crowd's step as plainly as it can be written: an open plane, discs with goals, one loop
@@ -37,6 +38,7 @@ struct PlainConfig {
   bool patient = true;
   float reaction = 0.2f;  // [s]
   uint64_t seed = 1;
+  SteeringModel model = SteeringModel::kSampled;
   steer::SampledSettings steering;
   steer::Patience patience;
   steer::LaneSettings lanes;
@@ -70,6 +72,7 @@ class PlainCrowd {
   [[nodiscard]] bool can_touch(uint32_t i, const Near& n) const;
   void sense();
   void steer_all();
+  void prefer(uint32_t i);
   void commit();
   void settle(const std::vector<Spot>& now, const std::vector<uint8_t>& keeps);
 

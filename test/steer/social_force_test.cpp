@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "validate/social_force.h"
+#include "steer/social_force.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-namespace throng::validate {
+namespace throng::steer {
 namespace {
 
 TEST(SocialForce, WhoStandsPushesByDistanceAlone) {
@@ -65,4 +65,4 @@ TEST(SocialForce, AWishIsTakenUpInHalfASecondAndNobodyRuns) {
 }
 
 }  // namespace
-}  // namespace throng::validate
+}  // namespace throng::steer

@@ -4,9 +4,9 @@
 
 #include <span>
 
-/// The social force model as it was published, plainly, to hold other models against.
-/// Source: [HM95].
-namespace throng::validate {
+/// The social force model as it was published, plainly, to hold other models against. The same
+/// bytes everywhere. Source: [HM95].
+namespace throng::steer {
 
 /// Somebody who is moved by forces. [m, m/s]
 struct ForceWalker {
@@ -24,6 +24,8 @@ struct SocialForceConfig {
   double sight_cosine = -0.17364817766693033;  ///< Of 100 degrees: half of the field of view.
   double behind = 0.5;                         ///< Weight of what is outside of it.
   double most = 1.3;                           ///< Speed, by the wished one.
+  double wall_strength = 10;                   ///< Of the repulsion by walls. [m2/s2]
+  double wall_reach = 0.2;                     ///< Of it. [m]
 };
 
 struct Force {
@@ -34,7 +36,15 @@ struct Force {
 /// place.
 Force repulsion(const ForceWalker& a, const ForceWalker& b, const SocialForceConfig& config);
 
+/// What takes up the wish of `a`.
+Force drive(const ForceWalker& a, const SocialForceConfig& config);
+/// Adds what `a` feels of `b`, less of who is outside of his field of view.
+void add_repulsion(Force& sum, const ForceWalker& a, const ForceWalker& b,
+                   const SocialForceConfig& config);
+/// Adds what he feels of a wall whose nearest point is `x`, `z` from him.
+void add_wall(Force& sum, double x, double z, const SocialForceConfig& config);
+
 /// One step of all, by Euler's rule. [dt: s]
 void step_social_force(std::span<ForceWalker> walkers, double dt, const SocialForceConfig& config);
 
-}  // namespace throng::validate
+}  // namespace throng::steer

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "crowd/crowd_engine.h"
+
+// Bodies that are steered by another model than steer/sampled.h: the model gives a velocity, which
+// takes the place of an open wish. Rounds and walls are the same for all.
+namespace throng {
+
+using steer::Plane;
+
+// What it would do goes into `worker.situation.wish`.
+void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const {
+  const Body& body = bodies_[i];
+  const auto key = [&](uint32_t j) {
+    return std::pair(near_square(bodies_[j].x - body.x, bodies_[j].z - body.z), bodies_[j].slot);
+  };
+  std::sort(nearest.begin(), nearest.end(),
+            [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+  std::array<steer::Other, steer::kMostNear> others;
+  const size_t count = std::min(nearest.size(), others.size());
+  for (size_t n = 0; n < count; ++n) {
+    const Body& other = bodies_[nearest[n]];
+    others[n] = {.at = config_.units.metres(other.x - body.x, other.z - body.z),
+                 .velocity = other.velocity,
+                 .radius = static_cast<float>(other.radius) * config_.units.unit,
+                 .slot = other.slot};
+  }
+  steer::View view{.velocity = body.velocity,
+                   .wish = body.wish,
+                   .way = config_.units.metres(body.aim_x - body.x, body.aim_z - body.z),
+                   .stops = body.has(Body::kLast) && body.target == 0,
+                   .fastest = body.speed,
+                   .radius = static_cast<float>(body.radius) * config_.units.unit,
+                   .slot = body.slot,
+                   .others = {others.data(), count}};
+  // Whoever has no goal of his own goes on as he is led.
+  if (body.has(Body::kDriven) || !body.has(Body::kHasGoal)) {
+    view.way = body.wish;
+    view.stops = false;
+  }
+  steer::Situation& situation = worker.situation;
+  situation.wish = body.wish;
+  if (config_.model == SteeringModel::kSocialForce) {
+    look_ahead(body, situation);
+    look_around(body, situation);
+    const steer::Fan fan = steer::fan_around(situation.wish);
+    const auto& free = situation.free_way;
+    const auto nearest_wall =
+        static_cast<size_t>(std::min_element(free.begin(), free.end()) - free.begin());
+    view.has_wall =
+        situation.has_walls && free[nearest_wall] < std::numeric_limits<float>::infinity();
+    const float far = free[nearest_wall] + view.radius;
+    if (view.has_wall) view.wall = {fan[nearest_wall].x * far, fan[nearest_wall].z * far};
+  }
+  situation.has_walls = false;
+  worker.waits = false;
+  situation.wish = steer::preferred_velocity(config_.model, view, config_.units.dt);
+}
+
+}  // namespace throng

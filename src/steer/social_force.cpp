@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "steer/social_force.h"
+
+#include <cmath>
+#include <vector>
+
+#include "core/exponential.h"
+
+// Around everybody lies a potential whose lines are ellipses along his next step, eq. 4; the force
+// is its gradient, eq. 3, weaker from behind, eq. 8 and 9. Walls push by their nearest point,
+// eq. 5.
+namespace throng::steer {
+namespace {
+
+// Not the C library's hypot, which differs between machines.
+double size_of(double x, double z) { return std::sqrt(x * x + z * z); }
+
+}  // namespace
+
+Force repulsion(const ForceWalker& a, const ForceWalker& b, const SocialForceConfig& config) {
+  const double rx = a.x - b.x, rz = a.z - b.z;
+  const double sx = rx - b.vx * config.stride, sz = rz - b.vz * config.stride;
+  const double r = size_of(rx, rz), s = size_of(sx, sz);
+  const double step = size_of(b.vx, b.vz) * config.stride;
+  const double twice = (r + s) * (r + s) - step * step;  // (2 b) squared
+  if (r == 0 || s == 0 || twice <= 0) return {};
+  const double axis = std::sqrt(twice) / 2;
+  const double size =
+      config.strength / config.reach * exp_of(-axis / config.reach) * (r + s) / (4 * axis);
+  return {size * (rx / r + sx / s), size * (rz / r + sz / s)};
+}
+
+Force drive(const ForceWalker& a, const SocialForceConfig& config) {
+  return {(a.wish_x - a.vx) / config.relaxation, (a.wish_z - a.vz) / config.relaxation};
+}
+
+void add_repulsion(Force& sum, const ForceWalker& a, const ForceWalker& b,
+                   const SocialForceConfig& config) {
+  const double wish = size_of(a.wish_x, a.wish_z);
+  const Force force = repulsion(a, b, config);
+  // It pushes away from what is seen: that lies against the force.
+  const double ahead = wish > 0 ? -(force.x * a.wish_x + force.z * a.wish_z) / wish : 0;
+  const bool seen = ahead >= size_of(force.x, force.z) * config.sight_cosine;
+  sum.x += (seen ? 1 : config.behind) * force.x;
+  sum.z += (seen ? 1 : config.behind) * force.z;
+}
+
+void add_wall(Force& sum, double x, double z, const SocialForceConfig& config) {
+  const double far = size_of(x, z);
+  if (far == 0) return;
+  const double size =
+      config.wall_strength / config.wall_reach * exp_of(-far / config.wall_reach) / far;
+  sum.x -= size * x;
+  sum.z -= size * z;
+}
+
+void step_social_force(std::span<ForceWalker> walkers, double dt, const SocialForceConfig& config) {
+  std::vector<Force> forces;
+  for (size_t i = 0; i < walkers.size(); ++i) {
+    Force& sum = forces.emplace_back(drive(walkers[i], config));
+    for (size_t j = 0; j < walkers.size(); ++j) {
+      if (i != j) add_repulsion(sum, walkers[i], walkers[j], config);
+    }
+  }
+  for (size_t i = 0; i < walkers.size(); ++i) {
+    ForceWalker& a = walkers[i];
+    a.vx += forces[i].x * dt;
+    a.vz += forces[i].z * dt;
+    const double most = config.most * size_of(a.wish_x, a.wish_z);
+    const double speed = size_of(a.vx, a.vz);
+    if (speed > most) {
+      a.vx *= most / speed;
+      a.vz *= most / speed;
+    }
+    a.x += a.vx * dt;
+    a.z += a.vz * dt;
+  }
+}
+
+}  // namespace throng::steer

@@ -29,6 +29,10 @@ struct Options {
   uint64_t seed = 1;
   int32_t threads = 0;
   double radius = 0.3, speed = 1.3;
+  double view = -1;  // radius of a view in the middle [m]; below 0: none
+  double dt = 0.1;
+  int32_t far_steps = CrowdConfig().far_steps;
+  double far_reaction = CrowdConfig().far_reaction;
 };
 
 Json fail(const Error& error) { return {{"error", error.message}}; }
@@ -44,9 +48,17 @@ Json run(const Options& o) {
   bake.classes.resize(1);
   const auto world = bake_world(scene, bake, context);
   if (!world) return fail(world.error());
-  auto crowd =
-      Crowd::create(*world, {.seed = o.seed, .workers = o.threads, .ways = CrowdWays::kStraight});
+  auto crowd = Crowd::create(*world, {.dt = o.dt,
+                                      .seed = o.seed,
+                                      .workers = o.threads,
+                                      .ways = CrowdWays::kStraight,
+                                      .far_steps = o.far_steps,
+                                      .far_reaction = o.far_reaction});
   if (!crowd) return fail(crowd.error());
+  if (o.view >= 0) {
+    const CrowdView view{{side / 2, 0, side / 2}, o.view};
+    crowd->set_views({&view, 1});
+  }
   const auto ids = crowd->scatter(o.avatars, {.radius = o.radius, .speed = o.speed}, context);
   if (!ids) return fail(ids.error());
   std::vector<uint64_t> given(o.avatars, 0);
@@ -88,6 +100,10 @@ int main(int argc, char** argv) {
   parser.add_option("--seed", options.seed);
   parser.add_option("--threads", options.threads)->check(CLI::Range(0, 1024));
   parser.add_option("--radius", options.radius)->check(CLI::Range(0.05, 10.0));
+  parser.add_option("--view", options.view, "One view in the middle of this radius [m]");
+  parser.add_option("--dt", options.dt)->check(CLI::Range(0.001, 1.0));
+  parser.add_option("--far-steps", options.far_steps)->check(CLI::Range(1, 16));
+  parser.add_option("--far-reaction", options.far_reaction)->check(CLI::Range(0.0, 10.0));
   parser.add_option("--check-every", options.timing.check_every, "Steps")
       ->check(CLI::PositiveNumber);
   CLI11_PARSE(parser, argc, argv);

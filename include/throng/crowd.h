@@ -72,8 +72,13 @@ struct CrowdConfig {
   /// does, if nobody and no wall is in his way. Steps that are longer decide in each. Shorter times
   /// cost more and gain little. [s, 0 to 1]
   double reaction = 0.2;
-  int32_t rounds = 3;   ///< In which claims are settled, a step. [1 to 100]
-  bool patient = true;  ///< Who does not get on turns aside by and by.
+  /// Beyond all views (set_views) everybody takes as many steps at once as the narrowest body's
+  /// radius allows, at most so many; if that is more than one, he looks at nobody before he could
+  /// touch him. [1 to 16]
+  int32_t far_steps = 4;
+  double far_reaction = 0.4;  ///< `reaction` there. [s, 0 to 10]
+  int32_t rounds = 3;         ///< In which claims are settled, a step. [1 to 100]
+  bool patient = true;        ///< Who does not get on turns aside by and by.
   /// Who has a goal, has not arrived, and has not come 0.3 m further between two looks, so many
   /// seconds apart, is told by stuck(). 0: nobody looks. Never changes what happens. [s, >= 0]
   double stuck_after = 0;
@@ -85,6 +90,12 @@ struct AvatarSpawn {
   int32_t avatar_class = 0;
   double radius = 0;  ///< Of the body, 0 for the class's. Walls are kept away by the class's. [m]
   double speed = 0;   ///< Wished, and the most, 0 for the class's. [m/s]
+};
+
+/// From where a crowd is looked at: whoever is within is simulated in full.
+struct CrowdView {
+  Vec3d position;
+  double radius = 50;  ///< [m]
 };
 
 /// What a crowd holds. [bytes]
@@ -101,6 +112,8 @@ struct CrowdReport {
   uint64_t avatars = 0;    ///< All there are.
   uint64_t flying = 0;     ///< Of these, in the air, or on the way up or down.
   uint64_t stood = 0;      ///< Did not move.
+  uint64_t far = 0;        ///< Beyond all views.
+  uint64_t held = 0;       ///< Of these, stood because it was not their turn; not in `stood`.
   uint64_t contested = 0;  ///< Could have touched somebody, so went through the rounds.
   uint64_t arrived = 0;  ///< Came within 0.3 m of their goals, or into their targets, in this step.
   uint64_t planned = 0;  ///< Got a way, or another one.
@@ -188,6 +201,10 @@ class THRONG_API Crowd {
   /// is above 0, and lands when it is below and there is ground. [m/s; Y: only of who flies]
   void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
 
+  /// From where the crowd is looked at from now on; nowhere, as at the beginning: all are simulated
+  /// in full. Who is far is coarser, and as safe: whatever the views, nobody ever touches anybody.
+  /// Flyers and who is driven are always near. Time of a step: avatars times views.
+  void set_views(std::span<const CrowdView> views);
   /// One step. No allocation once it is warm. Time: linear in the avatars.
   CrowdReport step();
 

@@ -29,6 +29,7 @@ struct Body {
     kLost = 16,    // asks for another way
     kFlying = 32,  // FlyerEngine's: to those who walk it stands where it is
     kKeeps = 64,   // to what it decided: it did that in the last step, and goes on if it can
+    kFar = 128,    // from all who look: of the coarse level of detail
   };
 
   enum State : uint8_t {
@@ -53,7 +54,7 @@ struct Body {
   uint16_t target = 0;  // TargetId: it is bound for a region
   State state : 7 = kFree;
   bool near_wall : 1 = false;  // and in need of another way, in the last step
-  uint8_t unused = 0;
+  uint8_t steps = 1;           // that it takes at once in this step; 0: not its turn
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }
   [[nodiscard]] Stand stand() const { return {x, z, y, level}; }

@@ -44,6 +44,12 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
     return bad_config("reaction must be 0 to 1 s");
   }
   if (!(config.rounds >= 1 && config.rounds <= 100)) return bad_config("rounds must be 1 to 100");
+  if (!(config.far_reaction >= 0 && config.far_reaction <= 10)) {
+    return bad_config("far_reaction must be 0 to 10 s");
+  }
+  if (!(config.far_steps >= 1 && config.far_steps <= 16)) {
+    return bad_config("far_steps must be 1 to 16");
+  }
   if (!(config.stuck_after >= 0)) return bad_config("stuck_after must be 0 s or more");
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
   const WorldData& data = *world.data();
@@ -366,10 +372,10 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
 // Follows ways, and asks for those that are missing.
 void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned) {
   const auto reach = static_cast<float>(kLook / unit);
-  const uint64_t every = engine.steps_of_reaction(), step_now = sub_step - 1;
+  const uint64_t step_now = sub_step - 1;
   uint64_t asked = 0;
   for (Body& body : bodies) {
-    if (body.has(Body::kFlying)) continue;
+    if (body.has(Body::kFlying) || body.steps == 0) continue;
     const ClassParts& parts = *classes[body.avatar_class];
     if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kDriven)) &&
         plan_on_foot(body, flights[body.slot], worker, planned)) {
@@ -381,13 +387,23 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
     if (!body.has(Body::kLost)) {
-      follow(body, route, ground, (step_now + body.slot) / every, reach);
+      follow(body, route, ground, (step_now + body.slot) / engine.steps_of_reaction(body), reach);
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;
     if (!plan_way(body, route, ground, worker)) strand(body);
   }
   if (asked > 0) planned.fetch_add(asked, std::memory_order_relaxed);
+}
+
+void Crowd::set_views(std::span<const CrowdView> views) {
+  const Vec3d& origin = state_->world.data()->summary.origin;
+  state_->views.clear();
+  for (const CrowdView& v : views) {
+    state_->views.push_back({static_cast<float>(v.position.x - origin.x),
+                             static_cast<float>(v.position.z - origin.z),
+                             static_cast<float>(v.position.y), static_cast<float>(v.radius)});
+  }
 }
 
 CrowdReport Crowd::step() {
@@ -406,6 +422,10 @@ CrowdReport Crowd::step() {
   const CrowdEngine::Before before = [&](std::span<Body> bodies, int32_t worker) {
     s.plan(bodies, worker, planned);
   };
+  s.engine.set_detail({.views = s.views,
+                       .steps = s.config.far_steps,
+                       .reaction = static_cast<float>(s.config.far_reaction),
+                       .narrowest = s.narrowest});
   const bool has_ways = s.config.ways == CrowdWays::kPaths || !s.flights.empty();
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_ways ? before : CrowdEngine::Before(), counts, times);
@@ -427,6 +447,8 @@ CrowdReport Crowd::step() {
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
   report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
   report.contested = counts.contested;
+  report.far = counts.far / static_cast<uint64_t>(s.sub_steps);
+  report.held = counts.held / static_cast<uint64_t>(s.sub_steps);
   report.arrived = s.arrived.size();
   report.planned = planned;
   report.no_way = s.stranded.size();
@@ -459,6 +481,7 @@ uint64_t Crowd::state_hash() const {
     if (i == kNobody) continue;
     Body body = s.engine.bodies()[i];
     body.state = Body::kFree;  // of the step, not of the avatar
+    body.steps = 0;
     by_slot.push_back(body);
   }
   const uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));

@@ -69,6 +69,17 @@ bool is_held_up(const Body& body) {
   return body.turn != 0 && (!body.has(Body::kLast) || body.near_wall);
 }
 
+// Speed towards where it is bound for, `way` from it. [m/s]
+float speed_towards(const Body& body, Plane way) {
+  const float left = size_of(way);
+  return left > 1e-6f ? (body.velocity.x * way.x + body.velocity.z * way.z) / left : 0;
+}
+
+// By the wished speed. [millionths]
+int64_t progress_of(const Body& body, Plane way) {
+  return std::lrint(speed_towards(body, way) / body.speed * 1e6f);
+}
+
 Bound bound(const Body& body) {
   return {body.x, body.z, body.aim_x, body.aim_z, body.radius, body.slot};
 }
@@ -79,6 +90,8 @@ void EngineCounts::add(const EngineCounts& other) {
   contested += other.contested;
   stood += other.stood;
   progress += other.progress;
+  far += other.far;
+  held += other.held;
 }
 
 CrowdEngine::CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes)
@@ -93,12 +106,31 @@ void CrowdEngine::set_ground(size_t avatar_class, const StrideGround& ground) {
 void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
   config_.units.dt = dt;
   widest_ = widest;
-  longest_ = config_.units.stride(fastest);
-  THRONG_ASSERT(longest_ <= kLongestStep);
+  fastest_ = fastest;
   every_ = throng::steps_of_reaction(config_.reaction, dt);
+  sight_ = 0;
+  fit_grid();
+}
+
+void CrowdEngine::set_detail(const EngineDetail& detail) {
+  detail_ = detail;
+  detail_.narrowest = std::min(detail.narrowest, kLongestStep);
+  if (size_ > 0) fit_grid();
+}
+
+void CrowdEngine::fit_grid() {
+  longest_ = config_.units.stride(fastest_);
+  if (!detail_.views.empty() && detail_.steps > 1) {
+    StepUnits units = config_.units;
+    units.dt *= static_cast<float>(detail_.steps);
+    longest_ = std::max(longest_, std::min(detail_.narrowest, units.stride(fastest_)));
+  }
+  THRONG_ASSERT(longest_ <= kLongestStep);
   // Who could be touched within a step must be seen, however short the sight.
   const auto sight = static_cast<int32_t>(std::lround(config_.sight / double{config_.units.unit}));
-  sight_ = std::max(sight, 2 * widest_ + 2 * longest_);
+  const int32_t wanted = std::max(sight, 2 * widest_ + 2 * longest_);
+  if (wanted == sight_) return;
+  sight_ = wanted;
   if (bodies_.size() > 0) grid_.emplace(width_, depth_, sight_, bodies_.size());
 }
 
@@ -142,8 +174,8 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
 // Does it go on as it did in the last step?
 bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
   return body.has(Body::kKeeps) && !body.has(Body::kDriven) && !body.has(Body::kLost) &&
-         !body.has(Body::kFlying) && !decides(every_, step, body.slot) &&
-         !is_before({body.aim_x - body.x, body.aim_z - body.z}, config_.units.stride(body.speed));
+         !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
+         !is_before({body.aim_x - body.x, body.aim_z - body.z}, stride_of(body));
 }
 
 void CrowdEngine::wish_all(uint64_t step, const Before& before) {
@@ -162,14 +194,15 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
     const size_t begin = piece * kGrain;
     const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
     for (Body& b : bodies) {
-      if (!keeps(b, step)) b.clear(Body::kKeeps);
+      choose_detail(b, step);
+      if (b.steps > 0 && !keeps(b, step)) b.clear(Body::kKeeps);
     }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
-      if (b.has(Body::kDriven) || b.has(Body::kFlying)) continue;
+      if (b.has(Body::kDriven) || b.has(Body::kFlying) || b.steps == 0) continue;
       b.wish = b.has(Body::kHasGoal)
                    ? steer::wish_towards(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z),
-                                         b.speed, config_.units.dt, turn(b))
+                                         b.speed, units_of(b).dt, turn(b))
                    : Plane{};
     }
   });
@@ -190,6 +223,11 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       uint64_t& contests = contests_[i / kBits];
       if (i % kBits == 0) contests = 0;
       prefetch_ground(i);
+      if (bodies_[i].steps == 0) {
+        claims()[i] = {};
+        bodies_[i].state = Body::kShut;
+        continue;
+      }
       const uint32_t here = grid_->square(bodies_[i]);
       std::optional<bool> contested;
       if (bodies_[i].has(Body::kKeeps)) contested = keep_on(static_cast<uint32_t>(i), w, here);
@@ -234,18 +272,16 @@ size_t CrowdEngine::fit_lists(const NeighbourGrid::Around& around, Worker& worke
 
 // Nobody farther away than this can be touched; the exact test follows. [units]
 float CrowdEngine::touch_of(const Body& body) const {
-  const int32_t stride = config_.units.stride(body.speed);
-  return static_cast<float>(body.radius + stride + widest_ + longest_ + 1) * 1.0001f;
+  return static_cast<float>(body.radius + stride_of(body) + widest_ + longest_ + 1) * 1.0001f;
 }
 
 // Appends whom the body could touch to `others`.
 void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker& worker) const {
-  const int32_t stride = config_.units.stride(body.speed);
+  const int32_t stride = stride_of(body);
   for (size_t n = 0; n < lists.touches; ++n) {
     const uint32_t j = lists.touched[n];
     const Body& other = bodies_[j];
-    const int64_t reach =
-        int64_t{body.radius} + other.radius + stride + config_.units.stride(other.speed);
+    const int64_t reach = int64_t{body.radius} + other.radius + stride + stride_of(other);
     const int32_t rise = body.y - other.y;
     const bool near = rise < other.height + 2 * kMostRise && -rise < body.height + 2 * kMostRise;
     if (near && nearer_than(other.x - body.x, other.z - body.z, reach)) worker.others.push_back(j);
@@ -269,7 +305,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
           .z = body.z,
           .y = body.y,
           .self = i,
-          .most = std::min(sight, enough),
+          .most = goes_blind(body) ? 0 : std::min(sight, enough),
           .tall = body.height,
           .touch = lists_others ? touch * touch : 0,
           .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMostRise};
@@ -279,11 +315,17 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     find_seen(places, around, eye, lists);
   };
   look();
-  if (lists.seen < wanted && eye.most < sight) {
+  if (lists.seen < wanted && eye.most < sight && !goes_blind(body)) {
     eye.most = sight;
     look();
   }
   list_touched(body, lists, worker);
+  if (goes_blind(body)) {  // It looks no farther.
+    worker.situation.wish = body.wish;
+    worker.situation.has_walls = false;
+    worker.waits = false;
+    return;
+  }
   size_t nearest = keep_nearest(lists, wanted);
   if (nearest > wanted) {  // Some are equally far: of these the first slots.
     const auto key = [&](uint32_t j) {
@@ -327,8 +369,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
 
 // Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
 bool CrowdEngine::find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
-  if (config_.model != SteeringModel::kSampled) return true;
   const Body& body = bodies_[i];
+  if (!is_sampled(body)) return true;
   if (!worker.waits && go_straight(body, worker.situation)) return true;
   const auto is_open = [&] {
     look_ahead(body, worker.situation);
@@ -343,7 +385,7 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
   const Plane turned = situation.wish;
   situation.wish =
       steer::wish_towards(config_.units.metres(body.aim_x - body.x, body.aim_z - body.z),
-                          body.speed, config_.units.dt, 0);
+                          body.speed, units_of(body).dt, 0);
   situation.wish = steer::following_fast(config_.steering, situation);
   look_ahead(body, situation);
   steer::SampledSettings at_once = config_.steering;
@@ -426,20 +468,21 @@ void CrowdEngine::look_around(const Body& body, steer::Situation& situation) con
   }
 }
 
-void CrowdEngine::find_ways(const steer::Situation& situation, bool open, Ways& ways) {
-  if (config_.model != SteeringModel::kSampled) {
+void CrowdEngine::find_ways(const Body& body, const steer::Situation& situation, bool open,
+                            Ways& ways) {
+  if (!is_sampled(body)) {
     const steer::Choices choices = steer::ways_about(situation.wish);
     std::transform(choices.begin(), choices.end(), ways.begin(),
-                   [&](Plane way) { return way_of(way); });
+                   [&](Plane way) { return way_of(body, way); });
     return;
   }
   steer::Trials trials;
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
   size_t n = 0;
-  if (open) ways[n++] = way_of(if_blocked(situation.wish, situation));
+  if (open) ways[n++] = way_of(body, if_blocked(situation.wish, situation));
   while (n < ways.size()) {
-    ways[n++] = way_of(if_blocked(steer::take_best_fast(trials, costs), situation));
+    ways[n++] = way_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
   }
 }
 
@@ -473,7 +516,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
   Claim& claim = claims()[i];
   claim = {};
   claim.flags = Body::kKeeps;
-  const Way way = way_of(body.velocity);
+  const Way way = way_of(body, body.velocity);
   if (!try_way(body, way, claim.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);
@@ -527,7 +570,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   const Plane best =
       open ? worker.situation.wish
            : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
-  Ways ways{way_of(best)};
+  Ways ways{way_of(body, best)};
   bool named = try_way(body, ways[0], claim.place) &&
                is_clear(body, claim.place, others, /*somebody_moved=*/false);
   if (named) {
@@ -535,7 +578,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
     claim.round = others.empty() ? 0 : 1;
   } else {
     if (open) look_around(body, worker.situation);
-    find_ways(worker.situation, open, ways);
+    find_ways(body, worker.situation, open, ways);
     claim.has_all = true;
   }
   // Known only where one had to look.
@@ -649,7 +692,7 @@ void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
   sense(i, scratch, around, /*lists_others=*/false);
   const bool open = find_open_wish(i, scratch, around);
   look_around(body, scratch.situation);
-  find_ways(scratch.situation, open, ways);
+  find_ways(body, scratch.situation, open, ways);
   claim.forgets = !claim.has_room(ways.size());
   if (!claim.forgets) {
     claim.ways = 0;
@@ -682,14 +725,21 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
       if (b.has(Body::kFlying)) continue;
+      here.far += b.has(Body::kFar) ? 1 : 0;
       const Plane way = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
+      if (b.steps == 0) {  // To all others it is as if it had moved evenly.
+        ++here.held;
+        if (b.has(Body::kHasGoal)) here.progress += progress_of(b, way);
+        continue;
+      }
+      const StepUnits units = units_of(b);
       const Claim& claim = claims()[i];
       const Stand& place = claim.place;
       const bool is_alone = b.state == Body::kFree || b.state == Body::kShut;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
       if (moves) {
-        b.velocity = {config_.units.velocity(place.x - b.x), config_.units.velocity(place.z - b.z)};
+        b.velocity = {units.velocity(place.x - b.x), units.velocity(place.z - b.z)};
         b.x = place.x;
         b.z = place.z;
         b.y = place.y;
@@ -702,15 +752,15 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | claim.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kDriven)) continue;
       const float left = size_of(way);
-      const float towards = left > 1e-6f ? (b.velocity.x * way.x + b.velocity.z * way.z) / left : 0;
-      here.progress += std::lrint(towards / b.speed * 1e6f);
+      const float towards = speed_towards(b, way);
+      here.progress += progress_of(b, way);
       const bool near_goal = left <= 1 && b.has(Body::kLast);
       // Nobody is in the way of who is alone, so there is nobody to be turned away from.
       const float content = near_goal || is_alone ? 1 : towards / b.speed;
       if (config_.patient) {
         const float along =
             (b.velocity.x * b.wish.x + b.velocity.z * b.wish.z) / (b.speed * b.speed);
-        b.turn = steer::next_turn(config_.patience, b.turn, content, along, config_.units.dt);
+        b.turn = steer::next_turn(config_.patience, b.turn, content, along, units.dt);
       }
       const Plane rest = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
       if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kThere) {

@@ -30,6 +30,18 @@ inline size_t grown(size_t capacity, size_t needed) {
   return needed <= capacity ? capacity : std::max(needed, capacity + capacity / 4);
 }
 
+/// Who is far, and what that means. docs/design/008-engine.md, "Levels of detail".
+struct EngineDetail {
+  struct View {
+    float x = 0, z = 0, y = 0;  ///< From the world's corner. [m]
+    float radius = 0;           ///< Who is within is near. [m]
+  };
+  std::span<const View> views;  ///< None: all are near.
+  int32_t steps = 1;            ///< At once, at most.
+  float reaction = 1;           ///< [s]
+  int32_t narrowest = 0;        ///< No move is longer. [units]
+};
+
 struct EngineConfig {
   StepUnits units;
   float sight = 5;  ///< [m]
@@ -49,6 +61,8 @@ struct EngineConfig {
 struct EngineCounts {
   uint64_t contested = 0;  // could touch somebody
   uint64_t stood = 0;
+  uint64_t far = 0;      // of the coarse level of detail
+  uint64_t held = 0;     // of these, it was not their turn
   int64_t progress = 0;  // speeds towards aims by those wished, millionths
 
   void add(const EngineCounts& other);
@@ -62,6 +76,8 @@ class CrowdEngine {
   void set_ground(size_t avatar_class, const StrideGround& ground);
   /// No body may be wider than so many units, nor faster. Before the first body that is.
   void fit(int32_t widest, float fastest, float dt);
+  /// From the next step on; the views must stay until it is over.
+  void set_detail(const EngineDetail& detail);
   /// Makes room for so many. Bodies stay.
   void reserve(size_t bodies);
   [[nodiscard]] std::span<Body> bodies() const { return {bodies_.data(), size_}; }
@@ -76,8 +92,8 @@ class CrowdEngine {
   /// first, some at a time, on any worker.
   using Before = std::function<void(std::span<Body>, int32_t worker)>;
   void step(uint64_t step, const Before& before, EngineCounts& counts, Times& times);
-  /// Who keeps to what he decided decides again after so many.
-  [[nodiscard]] uint64_t steps_of_reaction() const { return every_; }
+  /// Who keeps to what he decided decides again after so many steps.
+  [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
   /// Slots of those who arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
@@ -125,6 +141,26 @@ class CrowdEngine {
   };
   using Ways = std::array<Way, steer::kChoices>;
 
+  void fit_grid();
+  void choose_detail(Body& body, uint64_t step) const;
+  [[nodiscard]] bool is_near(const Body& body) const;
+  [[nodiscard]] uint64_t steps_of_far(const Body& body) const;
+  // Between its velocity and what it moves in this step.
+  [[nodiscard]] StepUnits units_of(const Body& body) const {
+    const auto steps = static_cast<float>(body.steps);
+    return {config_.units.unit, body.steps < 2 ? config_.units.dt : config_.units.dt * steps};
+  }
+  // No move of it in this step is longer. [units]
+  [[nodiscard]] int32_t stride_of(const Body& body) const {
+    return body.steps == 0 ? 0 : units_of(body).stride(body.speed);
+  }
+  // Who takes several steps at once goes by claims alone. Who is far and takes one is steered in
+  // full: by claims alone he would be in others' way so often that it costs more than looking.
+  static bool goes_blind(const Body& body) { return body.steps > 1; }
+  // By our model; else by another one, or blind.
+  [[nodiscard]] bool is_sampled(const Body& body) const {
+    return config_.model == SteeringModel::kSampled && !goes_blind(body);
+  }
   [[nodiscard]] bool keeps(const Body& body, uint64_t step) const;
   void wish_all(uint64_t step, const Before& before);
   void decide_all(EngineCounts& counts);
@@ -146,10 +182,11 @@ class CrowdEngine {
   [[nodiscard]] float wall_look(const Body& body) const {  // [units]
     return body.speed * config_.steering.wall_horizon / config_.units.unit;
   }
-  void find_ways(const steer::Situation& situation, bool open, Ways& ways);
-  [[nodiscard]] Way way_of(steer::Plane velocity) const {
-    return {static_cast<int16_t>(config_.units.way(velocity.x)),
-            static_cast<int16_t>(config_.units.way(velocity.z))};
+  void find_ways(const Body& body, const steer::Situation& situation, bool open, Ways& ways);
+  [[nodiscard]] Way way_of(const Body& body, steer::Plane velocity) const {
+    const StepUnits units = units_of(body);
+    return {static_cast<int16_t>(units.way(velocity.x)),
+            static_cast<int16_t>(units.way(velocity.z))};
   }
   void commit(uint64_t step);
   void settle_all(EngineCounts& counts);
@@ -173,7 +210,9 @@ class CrowdEngine {
   std::vector<StrideGround> grounds_;  // by class
   int32_t width_, depth_;
   int32_t widest_ = 0, longest_ = 0, sight_ = 0;
-  uint64_t every_ = 1;   // steps of a reaction
+  uint64_t every_ = 1;  // steps of a reaction
+  float fastest_ = 0;   // of all bodies [m/s]
+  EngineDetail detail_;
   int32_t highest_ = 0;  // of all bodies there ever were [mm]
   size_t size_ = 0;
   HugeArray<Body> bodies_;

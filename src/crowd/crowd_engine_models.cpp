@@ -59,7 +59,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   }
   situation.has_walls = false;
   worker.waits = false;
-  situation.wish = steer::preferred_velocity(config_.model, view, config_.units.dt);
+  situation.wish = steer::preferred_velocity(config_.model, view, units_of(body).dt);
 }
 
 }  // namespace throng

@@ -29,9 +29,11 @@ struct Head {
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
   int32_t rounds = 0, ways = 0, patient = 0, flows_are_old = 0;
-  int32_t model = 0, reserved = 0;
+  int32_t model = 0, far_steps = 0;
+  uint64_t views = 0;
+  double far_reaction = 0;
 };
-static_assert(sizeof(Head) == 20 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 22 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
@@ -102,7 +104,7 @@ uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
-         head.flights * sizeof(Flight) + 8;
+         head.flights * sizeof(Flight) + head.views * sizeof(EngineDetail::View) + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -130,6 +132,8 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.ways = static_cast<int32_t>(config.ways);
   head.patient = config.patient ? 1 : 0;
   head.model = static_cast<int32_t>(config.model);
+  head.far_steps = config.far_steps;
+  head.far_reaction = config.far_reaction;
   return head;
 }
 
@@ -231,6 +235,7 @@ std::vector<uint8_t> Crowd::save() const {
   const std::vector<double> targets = values_of(s.targets);
   head.target_values = targets.size();
   head.flights = s.flights.size();
+  head.views = s.views.size();
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put(out, &head, 1);
@@ -243,6 +248,7 @@ std::vector<uint8_t> Crowd::save() const {
   put(out, s.obstacles.free_slots().data(), head.free_obstacles);
   put(out, targets.data(), targets.size());
   put(out, s.flights.data(), s.flights.size());
+  put(out, s.views.data(), s.views.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put(out, &sum, 1);
   return out;
@@ -265,14 +271,15 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
       head.reaction != expected.reaction || head.rounds != expected.rounds ||
       head.ways != expected.ways || head.patient != expected.patient ||
-      head.model != expected.model) {
+      head.model != expected.model || head.far_steps != expected.far_steps ||
+      head.far_reaction != expected.far_reaction) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMost = uint64_t{1} << 32;
   if (head.bodies >= kMost || head.slots >= kMost || head.free_slots >= kMost ||
       head.obstacles >= kMost || head.corners >= kMost || head.free_obstacles >= kMost ||
-      head.target_values >= kMost || (head.flights != 0 && head.flights != head.slots) ||
-      saved.size() != size_of(head)) {
+      head.target_values >= kMost || head.views >= kMost ||
+      (head.flights != 0 && head.flights != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
   }
   uint64_t sum = 0;
@@ -304,6 +311,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   take(targets.data(), targets.size());
   std::vector<Flight> flights(head.flights);
   take(flights.data(), flights.size());
+  s.views.resize(head.views);
+  take(s.views.data(), s.views.size());
 
   s.where.assign(head.slots, kNobody);
   std::vector<bool> taken(head.slots, false);

@@ -74,6 +74,7 @@ struct Crowd::State {
   std::vector<Target> watched;
   std::vector<uint64_t> inside;                   // a bit for each watched area
   std::vector<std::array<int32_t, 3>> looked_at;  // [units, mm]
+  std::vector<EngineDetail::View> views;
   std::vector<AreaEntry> entered;
   std::vector<AvatarId> stuck;
   std::vector<Target> targets;  // TargetId less one

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "crowd/crowd_engine.h"
+#include "crowd/reaction.h"
+
+// Levels of detail: docs/design/008-engine.md. Who is far moves some steps at once when it is his
+// turn, and stands in between. Each step by itself commits as ever, so whoever is near or far, and
+// changes between, touches nobody.
+namespace throng {
+
+bool CrowdEngine::is_near(const Body& body) const {
+  const float unit = config_.units.unit;
+  const float x = static_cast<float>(body.x) * unit, z = static_cast<float>(body.z) * unit,
+              y = static_cast<float>(body.y) * 1e-3f;
+  return std::any_of(detail_.views.begin(), detail_.views.end(), [&](const EngineDetail::View& v) {
+    const float dx = x - v.x, dz = z - v.z, dy = y - v.y;
+    return dx * dx + dz * dz + dy * dy <= v.radius * v.radius;
+  });
+}
+
+// So many that it moves less than the narrowest is wide: nobody jumps through another.
+uint64_t CrowdEngine::steps_of_far(const Body& body) const {
+  constexpr float kRounded = 4;  // [units]
+  const float way = body.speed * (config_.units.dt / config_.units.unit);
+  const float most = (static_cast<float>(detail_.narrowest) - kRounded) / way;
+  return static_cast<uint64_t>(std::clamp(most, 1.0f, static_cast<float>(detail_.steps)));
+}
+
+uint64_t CrowdEngine::steps_of_reaction(const Body& body) const {
+  if (!body.has(Body::kFar)) return every_;
+  const uint64_t steps = steps_of_far(body);
+  return steps *
+         throng::steps_of_reaction(detail_.reaction, config_.units.dt * static_cast<float>(steps));
+}
+
+// Far, or near? And if far, is it his turn?
+void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
+  body.steps = 1;
+  const bool is_far = !detail_.views.empty() && !body.has(Body::kDriven) &&
+                      !body.has(Body::kFlying) && !is_near(body);
+  if (!is_far) {
+    body.clear(Body::kFar);
+    return;
+  }
+  body.flags |= Body::kFar;
+  const uint64_t steps = steps_of_far(body);
+  body.steps = (step + body.slot) % steps == 0 ? static_cast<uint8_t>(steps) : 0;
+}
+
+}  // namespace throng

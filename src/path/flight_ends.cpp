@@ -67,31 +67,53 @@ std::optional<AirPoint> FlightEnds::take_off(const Place& place) const {
   return {};
 }
 
-FlightEnds::TakeOff FlightEnds::nearest_take_off(const Place& from, uint64_t most,
-                                                 CircleFlood& flood) const {
+template <class Visit>
+bool FlightEnds::for_take_offs(const Place& from, uint64_t most, CircleFlood& flood,
+                               Visit visit) const {
   const auto start = ground_point(world_, from);
-  if (!start) return {};
+  if (!start) return false;
   const GroundLevel level = ground_level(world_, from.level1 - 1, ground_.avatar_class);
-  if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return {};
-  Place found;
+  if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return false;
   uint64_t seen = 0;
-  bool gave_up = false;
+  bool more = true, gave_up = false;
   flood.start(level, start->cell_x(), start->cell_z());
   flood.run(
       ground_, step_mm(avatar_),
       [&](int32_t, int32_t) {
-        gave_up = !found && seen == most;
-        return !found && !gave_up;
+        gave_up = more && seen == most;
+        return more && !gave_up;
       },
       [&](const CircleFlood::Cell& cell) {
         ++seen;
         const Place place = place_at(world_, cell.level,
                                      {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
                                       (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2});
-        if (take_off(place)) found = place;
+        const auto up = take_off(place);
+        if (up) more = visit(place, space_.component[space_.box_at(*up)]);
       },
       [](const CircleFlood::Cell&, int32_t, int32_t) {});
+  return gave_up;
+}
+
+FlightEnds::TakeOff FlightEnds::nearest_take_off(const Place& from, uint64_t most,
+                                                 uint32_t component, CircleFlood& flood) const {
+  Place found;
+  const bool gave_up = for_take_offs(from, most, flood, [&](const Place& place, uint32_t leads_to) {
+    if (component == kNoBox || leads_to == component) found = place;
+    return !found;
+  });
   return {found, gave_up};
+}
+
+bool FlightEnds::components_over(const Place& from, uint64_t most, CircleFlood& flood,
+                                 std::vector<uint32_t>& components) const {
+  components.clear();
+  return for_take_offs(from, most, flood, [&](const Place&, uint32_t leads_to) {
+    if (std::find(components.begin(), components.end(), leads_to) == components.end()) {
+      components.push_back(leads_to);
+    }
+    return true;
+  });
 }
 
 uint32_t FlightEnds::lowest_box(AirPoint p) const {

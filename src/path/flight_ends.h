@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "path/circle_flood.h"
 #include "path/flight_space.h"
@@ -26,18 +27,28 @@ class FlightEnds {
   /// the other's head, so is all that is passed between them.
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
   /// The nearest place, in steps, from which feet come into the air; `most` cells are looked at.
+  /// Only into air of this component (see FlightSpace), unless it is kNoBox.
   struct TakeOff {
     Place place;           ///< Null if there is none among them.
     bool gave_up = false;  ///< There were more cells.
   };
-  [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t most,
+  [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t most, uint32_t component,
                                          CircleFlood& flood) const;
+  /// Fills `components` with all that feet come into from there, the nearest first. True if there
+  /// were more than `most` cells.
+  bool components_over(const Place& from, uint64_t most, CircleFlood& flood,
+                       std::vector<uint32_t>& components) const;
   /// The best place to land on under a box that holds no air below it.
   [[nodiscard]] Place best_landing(uint32_t box) const;
   /// The lowest box straight under a point of the air.
   [[nodiscard]] uint32_t lowest_box(AirPoint p) const;
 
  private:
+  /// Calls visit(place, component of the air over it) for every cell that steps join to a place,
+  /// until it says false or there are too many cells: then it is true.
+  template <class Visit>
+  bool for_take_offs(const Place& from, uint64_t most, CircleFlood& flood, Visit visit) const;
+
   const WorldData& world_;
   const FlightSpace& space_;
   WorldGround ground_;

@@ -18,6 +18,9 @@ namespace {
 
 constexpr int32_t kLargestBox = 32;            // air cells: larger ones hide good ways
 constexpr uint64_t kMostFloodCells = 1 << 18;  // on foot to where one can take off
+// The same where the nearest take-off leads into a pocket: most that hold people are rooms, and
+// over open ground, where nothing else will be found either, the search must end.
+constexpr uint64_t kMostPocketCells = 1 << 15;
 
 double distance(Vec3d a, Vec3d b) {
   const Vec3d d = a - b;
@@ -46,6 +49,7 @@ struct FlightFinder::Scratch {
   std::optional<PathFinder> walker;
   std::vector<AirPoint> way;
   Path walk_there, walk_on, walk_all;
+  std::vector<uint32_t> over_from, over_to;  // components of the air
 };
 
 FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
@@ -159,17 +163,48 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     return static_cast<bool>(end.ground);
   };
   bool gave_up = false;  // somewhere: then what was not found may be there all the same
-  const auto to_port = [&](End& end) {  // from the ground into the air
-    if (end.air) return true;
+  const FlightSpace& space = shared_->space;
+  const auto component_of = [&](AirPoint p) { return space.component[space.box_at(p)]; };
+  // From the ground into the air: into this component of it, or any (kNoBox).
+  const auto to_port = [&](End& end, uint32_t component) {
+    if (!end.ground) return end.air.has_value();
     end.port = end.ground;
     end.air = ends.take_off(end.port);
-    if (!end.air) {
-      const auto nearest = ends.nearest_take_off(end.ground, kMostFloodCells, scratch.flood);
+    if (!end.air || (component != kNoBox && component_of(*end.air) != component)) {
+      const auto nearest = ends.nearest_take_off(
+          end.ground, end.air ? kMostPocketCells : kMostFloodCells, component, scratch.flood);
       gave_up = gave_up || nearest.gave_up;
       end.port = nearest.place;
       end.air = ends.take_off(end.port);
     }
     return end.air.has_value();
+  };
+  // The nearest ways into the air may lead into pockets of it, a room or a yard under a net: then
+  // from one further off into air that leads to the other end.
+  const auto to_ports = [&](End& a, End& b) {
+    if (!a.ground && !b.ground) return true;
+    if (!a.ground) return to_port(b, component_of(*a.air));
+    if (!b.ground) return to_port(a, component_of(*b.air));
+    if (to_port(a, kNoBox) && to_port(b, kNoBox) && space.hold_together(*a.air, *b.air)) {
+      return true;
+    }
+    if (!a.air || !b.air) return false;
+    for (const auto& [end, over] :
+         {std::pair{&a, &scratch.over_from}, std::pair{&b, &scratch.over_to}}) {
+      if (query.cancel != nullptr && *query.cancel) return false;
+      gave_up |= ends.components_over(end->ground, kMostPocketCells, scratch.flood, *over);
+    }
+    size_t least = SIZE_MAX;
+    uint32_t common = kNoBox;
+    for (size_t i = 0; i < scratch.over_from.size(); ++i) {
+      const auto found =
+          std::find(scratch.over_to.begin(), scratch.over_to.end(), scratch.over_from[i]);
+      const size_t rank = i + static_cast<size_t>(found - scratch.over_to.begin());
+      if (found == scratch.over_to.end() || rank >= least) continue;
+      least = rank;
+      common = scratch.over_from[i];
+    }
+    return common != kNoBox && to_port(a, common) && to_port(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
     reset(ground);
@@ -206,7 +241,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     }
   };
 
-  const bool ports = to_port(from) && to_port(to);
+  const bool ports = to_ports(from, to);
   SearchResult result = SearchResult::kNone;
   if (ports && shared_->space.hold_together(*from.air, *to.air)) {
     result = scratch.search.find(shared_->space, *from.air, *to.air, query.max_nodes, query.cancel,

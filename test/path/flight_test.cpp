@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -77,6 +78,36 @@ TEST(Flight, WalksToWhereOneCanTakeOff) {
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(path.legs.front(), LegKind::kWalk);
   EXPECT_EQ(path.legs.back(), LegKind::kLand);
+}
+
+// A hall with a door that one walks through and cannot fly through: the nearest take-off leads
+// nowhere, the one outside does.
+TEST(Flight, LeavesAClosedPocketOfAirOnFoot) {
+  Scene scene = two_floors();
+  scene.add_box({1, -0.1, 1}, {7, 6, 1.2});
+  scene.add_box({1, -0.1, 6.8}, {7, 6, 7});
+  scene.add_box({1, -0.1, 1}, {1.2, 6, 7});
+  scene.add_box({6.8, -0.1, 1}, {7, 6, 3.45});
+  scene.add_box({6.8, -0.1, 4.55}, {7, 6, 7});
+  scene.add_box({6.8, 2, 3}, {7, 6, 5});
+  scene.add_box({1, 5.8, 1}, {7, 6, 7});
+  const World world = bake(scene);
+  FlightFinder flight = finder(world);
+  const Vec3d inside{3, 0, 3}, beyond{32, 3, 4}, above{32, 6, 4};
+  ASSERT_TRUE(flight.take_off(world.find_place(0, inside, 0.1)));
+  ASSERT_TRUE(flight.is_legal(above));
+  const auto find = [&](Vec3d from, Vec3d to) {
+    FlightPath path;
+    flight.find({.from = from, .to = to}, path);
+    EXPECT_EQ(path.end, PathEnd::kReached);
+    return path.legs.empty() ? std::vector<LegKind>{LegKind::kFly} : path.legs;
+  };
+  for (const Vec3d there : {beyond, above}) {
+    const std::vector<LegKind> out = find(inside, there), in = find(there, inside);
+    EXPECT_EQ(out.front(), LegKind::kWalk);
+    EXPECT_EQ(in.back(), LegKind::kWalk);
+    EXPECT_NE(std::find(out.begin(), out.end(), LegKind::kTakeOff), out.end());
+  }
 }
 
 TEST(Flight, LandsOnTheMostOpenGroundBelow) {

@@ -6,13 +6,16 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "command.h"
 #include "throng/flight.h"
 #include "throng/live_ground.h"
+#include "throng/node_path.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -27,6 +30,7 @@ struct PathOptions {
   double reach = 1.0;
   int32_t threads = 0;
   bool fly = false;
+  bool nodes = false;
   std::vector<double> blocks;      // six numbers a box
   std::vector<double> jumps;       // six numbers a jump
   std::vector<double> area_costs;  // a kind and its cost
@@ -220,6 +224,103 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
 }
 
+Json node_path_json(const PathOptions& options, const NodePath& path, const NodePlace& to,
+                    const NodePathSummary& summary, double seconds) {
+  Json points = Json::array(), normals = Json::array(), links = Json::array();
+  for (const NodePathPoint& p : path.points) {
+    points.push_back(numbers(p.place.feet));
+    normals.push_back(numbers(p.place.normal));
+  }
+  for (const NodePathLink& link : path.links) {
+    links.push_back(
+        {{"point", link.point}, {"kind", app::word_for(link.kind)}, {"leaps", link.leaps}});
+  }
+  Json json = {{"world", options.world},
+               {"class", options.avatar_class},
+               {"end", word_for(path.end)},
+               {"length", path.length},
+               {"cost", path.cost},
+               {"points", points},
+               {"normals", normals},
+               {"links", links},
+               {"corridor", path.corridor},
+               {"nodes", path.nodes},
+               {"seconds", seconds},
+               {"finder",
+                {{"blocks", summary.blocks},
+                 {"crossings", summary.crossings},
+                 {"bytes", summary.bytes},
+                 {"seconds", summary.seconds}}}};
+  if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
+    const Vec3d nearest = path.points.back().place.feet;
+    json["nearest"] = {{"place", numbers(nearest)},
+                       {"distance", length(nearest - to.feet)},
+                       {"obstacle", app::word_for(path.obstacle)}};
+  }
+  return json;
+}
+
+std::string node_path_text(const PathOptions& options, const NodePath& path, const NodePlace& to,
+                           double seconds) {
+  std::string text;
+  if (path.end == PathEnd::kReached) {
+    text = fmt::format("{:.3f} m for {} over {} nodes, found in {:.3f} ms\n", path.length,
+                       options.avatar_class, path.corridor.size(), seconds * 1e3);
+  } else {
+    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+    if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
+    const Vec3d nearest = path.points.back().place.feet;
+    text += fmt::format("  gets to ({}), {:.3f} m from there; what is in the way: {}\n",
+                        where(nearest), length(nearest - to.feet), app::word_for(path.obstacle));
+  }
+  size_t link = 0;
+  for (size_t i = 0; i < path.points.size(); ++i) {
+    const NodePlace& place = path.points[i].place;
+    text += fmt::format("  {}  {:3.0f} deg", where(place.feet),
+                        std::acos(std::clamp(place.normal.y, -1.0, 1.0)) * 180 / std::numbers::pi);
+    for (; link < path.links.size() && path.links[link].point == i; ++link) {
+      if (path.links[link].kind == LinkKind::kWalk) continue;
+      text += fmt::format("  {}{}", app::word_for(path.links[link].kind),
+                          path.links[link].leaps ? " over a gap" : "");
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+int go_over_nodes(Session& session, const PathOptions& options, const World& world,
+                  int32_t avatar_class) {
+  const auto from_position = position_of(world, options, options.from, "--from");
+  if (!from_position) return fail(from_position.error());
+  const auto to_position = position_of(world, options, options.to, "--to");
+  if (!to_position) return fail(to_position.error());
+  const Result<Nodes> nodes = Nodes::open(options.world);
+  if (!nodes) return fail(nodes.error());
+  auto finder = NodePathFinder::make(
+      *nodes,
+      {.avatar_class = avatar_class, .slope_cost = options.slope_cost, .workers = options.threads},
+      session.context);
+  if (!finder) return fail(finder.error());
+  const NodePlace from = finder->find_place(*from_position, options.reach);
+  const NodePlace to = finder->find_place(*to_position, options.reach);
+  for (const auto& [place, position, option] :
+       {std::tuple{from, *from_position, "--from"}, std::tuple{to, *to_position, "--to"}}) {
+    if (place) continue;
+    return fail(bad_end(options, position, option,
+                        fmt::format("is no place on nodes where class {} can be, within {} m; see "
+                                    "`throng picture --nodes`, or give a wider --reach",
+                                    options.avatar_class, options.reach)));
+  }
+  NodePath found;
+  const auto start = std::chrono::steady_clock::now();
+  finder->find(from, to, found);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  print_result(session, node_path_json(options, found, to, finder->summary(), seconds),
+               node_path_text(options, found, to, seconds));
+  return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
+}
+
 Vec3d point_of(const std::vector<double>& numbers, size_t first) {
   return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
@@ -278,7 +379,19 @@ int path(Session& session, const PathOptions& options) {
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());
+  const bool climbs = world->summary().classes[static_cast<size_t>(*avatar_class)].climb_slope > 0;
+  if (options.fly && options.nodes) {
+    return fail({Errc::kBadConfig, "--fly leads through the air, --nodes over the ground"});
+  }
   if (options.fly) return fly(session, options, *world, *avatar_class);
+  if (options.nodes || climbs) {
+    if (!options.blocks.empty() || !options.jumps.empty() || !options.area_costs.empty()) {
+      return fail({Errc::kBadConfig,
+                   "--block, --jump and --area-cost change the ground of level tiles; ways over "
+                   "nodes take jumps from `throng bake --jumps`"});
+    }
+    return go_over_nodes(session, options, *world, *avatar_class);
+  }
   const auto from = place_of(*world, options, *avatar_class, options.from, "--from");
   if (!from) return fail(from.error());
   const auto to = place_of(*world, options, *avatar_class, options.to, "--to");
@@ -325,7 +438,9 @@ void add_path(CLI::App& parser, Session& session) {
                   "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult\n"
                   "throng path garage.throng --from 14,0,8 --to 20,0,8 --block 16,0,0,17,2,9\n"
                   "throng bake builtin:bridge --fly -o bridge.throng\n"
-                  "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer --fly");
+                  "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer --fly\n"
+                  "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
+                  "throng path hills.throng --from 20,5,20 --to 120,5,90 --reach 20 --nodes");
   const auto options = std::make_shared<PathOptions>();
   const auto add_place = [&](const char* name, std::vector<double>& at, const char* what) {
     command->add_option(name, at, what)
@@ -344,6 +459,8 @@ void add_path(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_flag("--fly", options->fly,
                     "Through the air, for a class that flies; either end may be on the ground");
+  command->add_flag("--nodes", options->nodes,
+                    "Over the world's nodes, as classes that climb always go");
   const auto add_list = [&](const char* name, std::vector<double>& list, const char* what,
                             char between, int count, const char* type) {
     command->add_option(name, list, what)

@@ -23,7 +23,7 @@ struct VerifyOptions {
   std::string world;
   SourceOptions sources;
   std::string class_name = "all";
-  bool nodes = false;
+  bool nodes = false, paths = false;
   VerifyConfig config;
 };
 
@@ -233,6 +233,71 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
   return passed ? kDone : kAnswerIsNo;
 }
 
+bool passes(const NodePathReport& report) {
+  return report.entered + report.unsupported + report.torn + report.disagree == 0;
+}
+
+// Ways over the nodes of a world, gone from end to end.
+int verify_node_ways(Session& session, VerifyOptions& options, const std::vector<int32_t>& picked,
+                     const Scene& scene) {
+  const Result<Nodes> nodes = Nodes::open(options.world);
+  if (!nodes) return fail(nodes.error());
+  const std::vector<AvatarClass> classes = nodes->summary().classes;
+  Json list = Json::array();
+  std::string text;
+  bool passed = true;
+  for (const int32_t index : picked) {
+    options.config.avatar_class = index;
+    const auto found = verify_node_paths(*nodes, scene, options.config, session.context);
+    if (!found) return fail(found.error());
+    const NodePathReport& report = *found;
+    const std::string& name = classes[static_cast<size_t>(index)].name;
+    passed = passed && passes(report);
+    Json kinds = Json::object();
+    for (uint8_t k = 0; k < kLinkKinds; ++k) {
+      if (report.links_of_kind[k] != 0) {
+        kinds[word_for(static_cast<LinkKind>(k))] = report.links_of_kind[k];
+      }
+    }
+    list.push_back({{"class", name},
+                    {"pairs", report.pairs},
+                    {"reached", report.reached},
+                    {"parted", report.parted},
+                    {"legs", report.legs},
+                    {"links", kinds},
+                    {"leaps", report.leaps},
+                    {"poses", report.poses},
+                    {"entered", report.entered},
+                    {"unsupported", report.unsupported},
+                    {"torn", report.torn},
+                    {"disagree", report.disagree},
+                    {"length", report.length},
+                    {"straight", report.straight},
+                    {"search_seconds", report.search_seconds},
+                    {"make_seconds", report.make_seconds},
+                    {"finder_bytes", report.finder_bytes},
+                    {"seconds", report.seconds}});
+    text += fmt::format(
+        "{}: {} pairs, {} reached, {} in different parts; {} legs, {} leaps, {} bodies on them in "
+        "{:.1f} s\n"
+        "  entered {}, unsupported {}, torn {}, against the parts {}\n",
+        name, report.pairs, report.reached, report.parted, report.legs, report.leaps, report.poses,
+        report.seconds, report.entered, report.unsupported, report.torn, report.disagree);
+    for (const VerifyFault& fault : report.faults) {
+      text += fmt::format("  {} at {:.4f} {:.4f} {:.4f}\n", fault.what, fault.position.x,
+                          fault.position.y, fault.position.z);
+    }
+  }
+  text += passed ? "passed\n" : "NOT passed\n";
+  print_result(session,
+               {{"world", options.world},
+                {"seed", options.config.seed},
+                {"classes", list},
+                {"passed", passed}},
+               text);
+  return passed ? kDone : kAnswerIsNo;
+}
+
 int verify(Session& session, VerifyOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
@@ -240,6 +305,7 @@ int verify(Session& session, VerifyOptions& options) {
   if (!picked) return fail(picked.error());
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
+  if (options.paths) return verify_node_ways(session, options, *picked, *scene);
   if (options.nodes) return verify_all_nodes(session, options, *picked, *scene);
 
   const std::vector<AvatarClass> classes = world->summary().classes;
@@ -284,6 +350,8 @@ void add_verify(CLI::App& parser, Session& session) {
   command->add_option("--class", options->class_name, "Avatar class by name, or all")
       ->capture_default_str();
   command->add_flag("--nodes", options->nodes, "Test the world's nodes, not its level tiles");
+  command->add_flag("--paths", options->paths,
+                    "Go the ways over the world's nodes between as many pairs of places");
   command->add_option("--threads", options->config.workers, "Threads, 0 for all cores");
   command->callback([&session, options] { session.exit_code = verify(session, *options); });
 }

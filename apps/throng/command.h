@@ -12,6 +12,7 @@
 #include "throng/context.h"
 #include "throng/ground_query.h"
 #include "throng/math.h"
+#include "throng/nodes.h"
 #include "throng/result.h"
 #include "throng/steering_model.h"
 #include "throng/world.h"
@@ -60,6 +61,8 @@ Result<int32_t> class_named(const World& world, const std::string& name);
 
 /// "nothing", "too low", ...
 const char* word_for(Obstacle obstacle);
+/// "walk", "climb", ...
+const char* word_for(LinkKind kind);
 
 /// A position as JSON and for people, in millimetres.
 Json numbers(const Vec3d& p);

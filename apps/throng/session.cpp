@@ -240,6 +240,26 @@ const char* word_for(Obstacle obstacle) {
   return "";
 }
 
+const char* word_for(LinkKind kind) {
+  switch (kind) {
+    case LinkKind::kWalk:
+      return "walk";
+    case LinkKind::kStep:
+      return "step";
+    case LinkKind::kClimb:
+      return "climb";
+    case LinkKind::kDrop:
+      return "drop";
+    case LinkKind::kJump:
+      return "jump";
+    case LinkKind::kLand:
+      return "land";
+    case LinkKind::kTakeOff:
+      return "take off";
+  }
+  return "";
+}
+
 Json numbers(const Vec3d& p) { return {p.x, p.y, p.z}; }
 
 std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }

@@ -129,7 +129,8 @@ struct NodePlace {
   uint32_t node1 = 0;  ///< Node plus one.
   Vec3d feet;          ///< [m]
   Vec3d axis;
-  Vec3d normal;  ///< Of the surface; straight up on level tiles.
+  Vec3d normal;         ///< Of the surface; straight up on level tiles.
+  double s = 0, t = 0;  ///< Where on the node's patch. [0 to 1]
   [[nodiscard]] explicit operator bool() const { return node1 != 0; }
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -74,6 +75,36 @@ struct NodeVerifyReport {
                                                                const Scene& source,
                                                                const VerifyConfig& config,
                                                                Context& context);
+
+/// What the oracle found of ways over nodes.
+struct NodePathReport {
+  uint64_t pairs = 0;    ///< Random pairs of places of the class.
+  uint64_t reached = 0;  ///< Of these, with a way.
+  uint64_t parted = 0;   ///< Of these, without one, and in different parts of Nodes::reach.
+  uint64_t legs = 0;     ///< Of the ways, point to point.
+  uint64_t links = 0;    ///< Used by them.
+  std::array<uint64_t, kLinkKinds> links_of_kind{};
+  uint64_t leaps = 0;        ///< Of these, between places that do not touch.
+  uint64_t poses = 0;        ///< Of bodies on them, at most a quarter of a radius apart.
+  uint64_t entered = 0;      ///< Legs whose body meets a triangle. Must be 0.
+  uint64_t unsupported = 0;  ///< Legs with no surface at the feet, but for leaps. Must be 0.
+  uint64_t torn = 0;      ///< Legs that leave their node, or do not begin where the last ended. 0.
+  uint64_t disagree = 0;  ///< Pairs that have a way though they hold not together, or none. 0.
+  double length = 0;      ///< Of all ways. [m]
+  double straight = 0;    ///< Of the straight lines between their ends. [m]
+  double search_seconds = 0;  ///< Of all queries, one thread each.
+  double make_seconds = 0;    ///< Of the finder.
+  uint64_t finder_bytes = 0;
+  std::vector<VerifyFault> faults;  ///< The first few of each kind.
+  double seconds = 0;
+};
+
+/// Goes the ways between `config.samples` random pairs of places of a class on nodes, with its body
+/// against all triangles. Fails like verify_world.
+[[nodiscard]] THRONG_API Result<NodePathReport> verify_node_paths(const Nodes& nodes,
+                                                                  const Scene& source,
+                                                                  const VerifyConfig& config,
+                                                                  Context& context);
 
 /// Time: about samples x triangles near a body. Fails with kBadConfig, kBadInput, kCancelled.
 [[nodiscard]] THRONG_API Result<VerifyReport> verify_world(const World& world, const Scene& source,

@@ -189,7 +189,9 @@ class NodeBaker {
                                  .classes = data_.summary.classes,
                                  .cells = cells_,
                                  .size = config_.size};
-      take(link_edges(input, config_.workers), bezier_, bezier_);
+      EdgeLinks edges = link_edges(input, config_.workers);
+      doors_ = std::move(edges.doors);
+      take(std::move(edges.pairs), bezier_, bezier_);
       take(link_holes(input, config_.workers), bezier_, bezier_);
       if (has_tiles_) take(link_tiles(input, config_.workers), bezier_, level_);
     }
@@ -401,6 +403,7 @@ class NodeBaker {
         for (const Vec3d& point : scene_.patches.patches[source.source].points) {
           content.points.insert(content.points.end(), {point.x, point.y, point.z});
         }
+        add_doors(source.source, zone, content);
       }
       for (size_t n = 0; n < tree.nodes.size(); ++n) {
         const PatchNode& node = tree.nodes[n];
@@ -424,6 +427,18 @@ class NodeBaker {
       }
     }
     return node_slot(content);
+  }
+
+  // The doors of the patch that was written last.
+  void add_doors(uint32_t patch, const ZoneRange& zone, ZoneContent& content) {
+    const auto of = [](const PatchDoor& door, uint32_t p) { return door.patch < p; };
+    for (auto door = std::lower_bound(doors_.begin(), doors_.end(), patch, of);
+         door != doors_.end() && door->patch == patch; ++door) {
+      content.doors.emplace_back(static_cast<uint32_t>(content.patches.size() - 1),
+                                 target(forest_.first[bezier_[door->to_patch]], zone, content),
+                                 door->classes, door->edge, door->to_edge, door->first, door->last,
+                                 door->to_first, door->to_last);
+    }
   }
 
   void add_leap(const ArcRecord& arc, ZoneContent& content) const {
@@ -462,6 +477,7 @@ class NodeBaker {
   std::vector<uint32_t> bezier_, level_;  // where they are in the forest
   NodeForest forest_;
   std::vector<CellPair> pairs_;
+  std::vector<PatchDoor> doors_;  // by patch of the scene
   std::vector<Leap> leaps_;
   std::vector<NodeLink> links_;
   std::vector<std::pair<int32_t, int32_t>> tile_place_;  // by level of the world

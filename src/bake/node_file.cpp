@@ -44,7 +44,7 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
       content.patches.size() * sizeof(format::NodePatch) +
       content.nodes.size() * sizeof(format::Node) + content.arcs.size() * sizeof(format::Arc) +
       content.leaps.size() * sizeof(format::Leap) + content.far.size() * sizeof(format::FarNode) +
-      content.points.size() * sizeof(double);
+      content.doors.size() * sizeof(format::Door) + content.points.size() * sizeof(double);
   if (bytes > (uint64_t{1} << 31) - (1 << 20)) {
     return Error{Errc::kLimit, name + ": more than 2 GiB of nodes; use smaller zones"};
   }
@@ -54,9 +54,10 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
   const auto arcs = builder.CreateVectorOfStructs(content.arcs);
   const auto leaps = builder.CreateVectorOfStructs(content.leaps);
   const auto far = builder.CreateVectorOfStructs(content.far);
+  const auto doors = builder.CreateVectorOfStructs(content.doors);
   const auto points = builder.CreateVector(content.points);
   builder.Finish(format::CreateNodeZone(builder, kNodeVersion, content.x, content.z, patches, nodes,
-                                        arcs, far, leaps, points),
+                                        arcs, far, leaps, doors, points),
                  "THNZ");
   auto zone = NodeZone::from_bytes(builder.Release(), name);
   if (!zone) return zone.error();

@@ -41,6 +41,7 @@ struct ZoneContent {
   std::vector<format::Arc> arcs;
   std::vector<format::Leap> leaps;
   std::vector<format::FarNode> far;
+  std::vector<format::Door> doors;
   std::vector<double> points;
 
   /// What an arc's `to` says for a node of another zone.

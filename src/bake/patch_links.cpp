@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "graph/patch_pairs.h"
+#include "world/node_data.h"
 #include "world/place.h"
 
 namespace throng {
@@ -38,6 +39,30 @@ bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const
   return judge.is_free(body, from, to);
 }
 
+// The part of the edges that a pair touches along, as a door of its own or the end of the last one.
+void add_door(const EdgePair& pair, uint16_t classes, std::vector<PatchDoor>& doors) {
+  const auto along = [](double at) { return static_cast<uint16_t>(std::lround(at * kEdgeUnits)); };
+  const PatchDoor door{.patch = pair.side_a.patch,
+                       .to_patch = pair.side_b.patch,
+                       .edge = static_cast<uint8_t>(pair.side_a.edge),
+                       .to_edge = static_cast<uint8_t>(pair.side_b.edge),
+                       .classes = classes,
+                       .first = along(pair.at_a - pair.half_a),
+                       .last = along(pair.at_a + pair.half_a),
+                       .to_first = along(pair.at_b + pair.half_b),
+                       .to_last = along(pair.at_b - pair.half_b)};
+  if (!doors.empty()) {
+    PatchDoor& last = doors.back();
+    if (last.to_patch == door.to_patch && last.edge == door.edge && last.to_edge == door.to_edge &&
+        last.classes == classes && last.first == door.last && last.to_first == door.to_last) {
+      last.first = door.first;
+      last.to_first = door.to_first;
+      return;
+    }
+  }
+  doors.push_back(door);
+}
+
 std::vector<CellPair> merged(std::vector<std::vector<CellPair>>& lists) {
   std::vector<CellPair> all;
   for (auto& list : lists) all.insert(all.end(), list.begin(), list.end());
@@ -47,12 +72,13 @@ std::vector<CellPair> merged(std::vector<std::vector<CellPair>>& lists) {
 
 }  // namespace
 
-std::vector<CellPair> link_edges(const PatchLinkInput& input, int32_t workers) {
+EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers) {
   const PatchSet& set = input.triangles->scene().patches;
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
   std::vector<int32_t> depth;
   for (const BezierCells& cells : input.cells) depth.push_back(cells.promise.depth);
   std::vector<std::vector<CellPair>> lists(set.size());
+  std::vector<std::vector<PatchDoor>> doors(set.size());
   parallel_for(set.size(), workers, [&](size_t p) {
     MotionJudge judge(*input.triangles);
     for (const EdgePair& pair : edge_pairs(set, depth, static_cast<uint32_t>(p))) {
@@ -72,10 +98,15 @@ std::vector<CellPair> link_edges(const PatchLinkInput& input, int32_t workers) {
         if (body.climbs && creased && !judge.is_free(body, a, b)) continue;
         cells.classes |= body.bit;
       }
-      if (cells.classes != 0) lists[p].push_back(cells);
+      if (cells.classes == 0) continue;
+      lists[p].push_back(cells);
+      add_door(pair, cells.classes, doors[p]);
     }
   });
-  return merged(lists);
+  EdgeLinks links;
+  links.pairs = merged(lists);
+  for (const auto& list : doors) links.doors.insert(links.doors.end(), list.begin(), list.end());
+  return links;
 }
 
 namespace {

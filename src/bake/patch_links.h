@@ -22,9 +22,23 @@ struct PatchLinkInput {
   double size = 1;                     ///< Of cells. [m]
 };
 
-/// Pairs of cells over all edges that patches share. Where the surface has a crease, a climber must
-/// be able to turn over it.
-[[nodiscard]] std::vector<CellPair> link_edges(const PatchLinkInput& input, int32_t workers);
+/// A part of an edge over which the same classes go to the patch beyond and back, in 256ths of the
+/// edges: `first` meets `to_first`, and the edge beyond runs the opposite way.
+struct PatchDoor {
+  uint32_t patch = 0, to_patch = 0;
+  uint8_t edge = 0, to_edge = 0;
+  uint16_t classes = 0;
+  uint16_t first = 0, last = 0, to_first = 0, to_last = 0;
+};
+
+struct EdgeLinks {
+  std::vector<CellPair> pairs;
+  std::vector<PatchDoor> doors;  ///< By patch.
+};
+
+/// Pairs of cells over all edges that patches share, and where exactly they touch. Where the
+/// surface has a crease, a climber must be able to turn over it.
+[[nodiscard]] EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers);
 
 /// For each class, each cell of a patch with holes that lacks a neighbour, and each patch that made
 /// the holes: the nearest of its cells to which the body can go straight. Source: [PACS00] 1.2.3.6.

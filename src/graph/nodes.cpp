@@ -8,9 +8,9 @@
 #include "core/disjoint_sets.h"
 #include "core/hash.h"
 #include "core/random.h"
-#include "throng/patch.h"
+#include "graph/node_surface.h"
 #include "world/node_data.h"
-#include "world/place.h"
+#include "world/zone_data.h"
 
 namespace throng {
 namespace {
@@ -32,29 +32,6 @@ NodeInfo info_of(const format::NodePatch& patch, const format::Node& node) {
           .area = node.area()};
 }
 
-BezierPatch surface_of(const NodeZone& zone, const format::NodePatch& patch) {
-  BezierPatch out;
-  const double* at = zone.points(patch);
-  for (Vec3d& p : out.points) {
-    p = {at[0], at[1], at[2]};
-    at += 3;
-  }
-  return out;
-}
-
-// The ground of a level tile at parameters (s, t).
-Vec3d on_tile(const WorldData& world, uint32_t level, double s, double t) {
-  const GroundLevel ground = ground_level(world, level, 0);
-  const auto [tile_x, tile_z] = tile_of(world, *ground.zone, *ground.view.record);
-  const auto unit = [](int32_t tile, double at) {
-    const double cells = std::clamp(at, 0.0, 1.0) * 64;
-    const auto units =
-        static_cast<int64_t>(std::min(cells * kUnitsPerCell, 64.0 * kUnitsPerCell - 1));
-    return (int64_t{tile} * 64 << kUnitBits) + units;
-  };
-  return place_at(world, ground, {unit(tile_x, s), unit(tile_z, t)}).position;
-}
-
 // Only jumps may lead one way; no two places hold together by one that does.
 bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::Arc& arc) {
   if (arc.kind() != static_cast<uint8_t>(LinkKind::kJump)) return true;
@@ -66,10 +43,6 @@ bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::A
     return back.kind() == arc.kind() && (back.classes() & arc.classes()) == arc.classes() &&
            data.target(slot, *zone, back) == from;
   });
-}
-
-bool is_bezier(const format::NodePatch& patch) {
-  return patch.kind() == static_cast<uint8_t>(PatchKind::kBezier);
 }
 
 }  // namespace
@@ -170,9 +143,7 @@ Vec3d Nodes::point(uint32_t node, double s, double t) const {
   THRONG_ASSERT(node < node_count());
   const auto [zone, local] = data_->find(node);
   if (zone == nullptr) return {};
-  const format::NodePatch& patch = zone->patch_of(local);
-  return is_bezier(patch) ? surface_of(*zone, patch).at(s, t)
-                          : on_tile(*data_->world.data(), patch.source(), s, t);
+  return surface_of(*data_, *zone, zone->patch_of(local)).at(s, t);
 }
 
 NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) const {
@@ -186,14 +157,10 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
   const bool inside = s * blocks >= found.s() && s * blocks <= found.s() + 1 &&
                       t * blocks >= found.t() && t * blocks <= found.t() + 1;
   if (!inside || (found.classes() >> avatar_class & 1) == 0) return {};
-  const format::NodePatch& patch = zone->patch_of(local);
-  if (!is_bezier(patch)) {
-    return {node + 1, on_tile(*data_->world.data(), patch.source(), s, t), {0, 1, 0}, {0, 1, 0}};
-  }
-  const BezierPatch surface = surface_of(*zone, patch);
+  const NodeSurface surface = surface_of(*data_, *zone, zone->patch_of(local));
   const bool climbs = classes[static_cast<size_t>(avatar_class)].climb_slope > 0;
   const Vec3d normal = surface.normal(s, t);
-  return {node + 1, surface.at(s, t), climbs ? normal : Vec3d{0, 1, 0}, normal};
+  return {node + 1, surface.at(s, t), climbs ? normal : Vec3d{0, 1, 0}, normal, s, t};
 }
 
 NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const {

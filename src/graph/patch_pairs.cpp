@@ -70,7 +70,9 @@ std::vector<EdgePair> edge_pairs(const PatchSet& set, std::span<const int32_t> d
                          .side_a = self,
                          .side_b = other,
                          .at_a = at_a,
-                         .at_b = at_b});
+                         .at_b = at_b,
+                         .half_a = 0.5 / steps / parts,
+                         .half_b = 0.5 / steps});
       }
     }
   }

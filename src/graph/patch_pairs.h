@@ -17,6 +17,7 @@ struct EdgePair {
   CellPair cells;
   PatchSide side_a, side_b;
   double at_a = 0, at_b = 0;
+  double half_a = 0, half_b = 0;  ///< Half the length along which they touch, likewise.
 };
 
 /// All pairs over the edges of one patch that it shares as the first, or the bigger, of the two;

@@ -14,6 +14,7 @@
 #include "verify/claims.h"
 #include "verify/cylinder.h"
 #include "verify/triangle_tree.h"
+#include "verify/turned_body.h"
 
 // Nodes against the triangles. A body on a node stands along the place's axis: its exact cylinder,
 // from where it climbs over things to its top, is turned upright together with the triangles near
@@ -23,20 +24,13 @@ namespace throng {
 namespace {
 
 using verify::Corners;
-using verify::Cylinder;
+using verify::Pose;
 using verify::TriangleTree;
 
 constexpr size_t kFaultsOfAKind = 8;
 constexpr size_t kBatch = 4096;        // samples between two looks at `cancel`
 constexpr int kLeapParts = 24;         // poses looked at on a leap
 constexpr double kAngleMargin = 1e-3;  // of slopes, for planes at exactly a limit [degrees]
-// Patches are cut into triangles to within centimetres, and neighbours' curves may differ by a
-// tenth of a metre.
-constexpr double kOnSurface = 0.15;  // [m]
-
-struct Pose {
-  Vec3d feet, axis;
-};
 
 struct Sample {
   bool exists = false, entered = false, unsupported = false, steeper = false, lower = false;
@@ -63,7 +57,7 @@ class NodeJudge {
     sample.exists = true;
     sample.feet = place.feet;
     look({place.feet, place.axis}, sample);
-    sample.unsupported = !is_supported(place.feet);
+    sample.unsupported = !verify::turned_support(tree_, avatar_, place.feet);
     check_promises(place, sample);
     check_arcs(place.node1 - 1, n, sample);
     return sample;
@@ -74,57 +68,20 @@ class NodeJudge {
     return avatar.climb_slope > 0 ? avatar.step : body_bottom(avatar);
   }
 
-  // Triangles near a body, turned so that its axis points up and its feet are the origin.
-  template <class Visit>
-  bool for_each_turned(const Pose& pose, double radius, double top, Visit visit) const {
-    const Vec3d up = pose.axis;
-    const Vec3d other = std::fabs(up.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
-    Vec3d side = cross(other, up);
-    side = side * (1 / length(side));
-    const Vec3d front = cross(side, up);
-    const double reach = std::sqrt(radius * radius + top * top);
-    Box3d box;
-    box.add(pose.feet - Vec3d{reach, reach, reach});
-    box.add(pose.feet + Vec3d{reach, reach, reach});
-    return tree_.find(box, [&](uint32_t triangle, const Corners& corners) {
-      Corners turned;
-      for (size_t i = 0; i < 3; ++i) {
-        const Vec3d d = corners[i] - pose.feet;
-        turned[i] = {dot(d, side), dot(d, up), dot(d, front)};
-      }
-      return visit(triangle, turned);
-    });
-  }
-
   void look(const Pose& pose, Sample& sample) const {
-    const bool climbs = avatar_.climb_slope > 0;
-    const bool upright = pose.axis.y > 1 - 1e-12;
-    // Where a climber walks, on level tiles, it is a walker.
-    const double bottom = climbs && upright ? body_bottom(avatar_) : bottom_of(avatar_);
-    const Cylinder body{0, 0, bottom, avatar_.height, avatar_.radius};
-    for_each_turned(pose, avatar_.radius, avatar_.height, [&](uint32_t triangle, const Corners& c) {
-      if (!meets(body, c)) return false;
-      if (!sample.entered) {
-        sample.entered_at = pose.feet;
-        sample.triangle = triangle;
-      }
-      sample.entered = true;
-      return true;
-    });
-  }
-
-  [[nodiscard]] bool is_supported(Vec3d feet) const {
-    const double reach = std::max(kOnSurface, avatar_.step + 0.01);
-    const Cylinder around{feet.x, feet.z, feet.y - reach, feet.y + reach, reach};
-    return tree_.find(around.bounds(), [&](uint32_t triangle, const Corners& corners) {
-      return tree_.scene().area[triangle] != kAreaBlocked && meets(around, corners, -1e-9);
-    });
+    const auto triangle = verify::turned_intruder(tree_, avatar_, pose);
+    if (!triangle) return;
+    if (!sample.entered) {
+      sample.entered_at = pose.feet;
+      sample.triangle = *triangle;
+    }
+    sample.entered = true;
   }
 
   // Free height from `from` above the feet, up to `most`. [m]
   [[nodiscard]] double free_height(const Pose& pose, double from, double most) const {
     double least = most;
-    for_each_turned(pose, 0.01, most, [&](uint32_t, const Corners& corners) {
+    verify::for_each_turned(tree_, pose, 0.01, most, [&](uint32_t, const Corners& corners) {
       const auto height = verify::height_at(corners, 0, 0);
       if (height && *height > from && *height < least) least = *height;
       return false;

@@ -45,7 +45,7 @@ Result<void> NodeZone::attach(const std::string& name) {
                                ", this program reads " + std::to_string(kNodeVersion));
   }
   if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() || !root_->leaps() ||
-      !root_->points() || !is_aligned(*root_->points())) {
+      !root_->doors() || !root_->points() || !is_aligned(*root_->points())) {
     return bad_nodes(name, "an array is missing");
   }
   patches_ = structs(*root_->patches());
@@ -53,6 +53,7 @@ Result<void> NodeZone::attach(const std::string& name) {
   arcs_ = structs(*root_->arcs());
   leaps_ = structs(*root_->leaps());
   far_ = structs(*root_->far());
+  doors_ = structs(*root_->doors());
   points_ = {root_->points()->data(), root_->points()->size()};
   if (const char* what = fault()) return bad_nodes(name, what);
   return {};
@@ -109,6 +110,17 @@ const char* NodeZone::fault() const {
   for (const format::Leap& leap : leaps_) {
     if (leap.arc() < next_arc || leap.arc() >= arcs_.size()) return "its leaps are out of order";
     next_arc = uint64_t{leap.arc()} + 1;
+  }
+  for (const format::Door& door : doors_) {
+    const bool is_far = (door.to() & kFarNode) != 0;
+    const uint32_t index = door.to() & ~kFarNode;
+    if (index >= (is_far ? far_.size() : nodes_.size()) || door.patch() >= patches_.size() ||
+        patches_[door.patch()].kind() != static_cast<uint8_t>(PatchKind::kBezier) ||
+        door.edge() > 3 || door.to_edge() > 3 || door.first() >= door.last() ||
+        door.last() > kEdgeUnits || door.to_last() >= door.to_first() ||
+        door.to_first() > kEdgeUnits) {
+      return "a door leads nowhere";
+    }
   }
   return nullptr;
 }
@@ -205,9 +217,9 @@ const NodeData::AreaList& NodeData::areas_before(int32_t avatar_class) const {
   return areas.list;
 }
 
-uint32_t NodeData::target(size_t slot, const NodeZone& from, const format::Arc& arc) const {
-  if ((arc.to() & kFarNode) == 0) return slots[slot]->first_node + arc.to();
-  const format::FarNode& far = from.far()[arc.to() & ~kFarNode];
+uint32_t NodeData::target(size_t slot, const NodeZone& from, uint32_t to) const {
+  if ((to & kFarNode) == 0) return slots[slot]->first_node + to;
+  const format::FarNode& far = from.far()[to & ~kFarNode];
   return slots[slot_at(far.x(), far.z())]->first_node + far.node();
 }
 

@@ -21,11 +21,12 @@
 /// Nodes in memory: zones mapped from files, or owned after they were made.
 namespace throng {
 
-inline constexpr uint32_t kNodeVersion = 1;
+inline constexpr uint32_t kNodeVersion = 2;
 inline constexpr const char* kNodeIndexName = "index.thn";
 inline constexpr const char* kNodeFolder = "nodes";
 inline constexpr uint32_t kFarNode = uint32_t{1} << 31;
 inline constexpr uint8_t kDeepestPatch = 6;
+inline constexpr uint16_t kEdgeUnits = 256;  // of an edge, as doors count along it
 
 /// A zone's bytes after the verifier and the checks of its numbers.
 class NodeZone : public ZoneFile<NodeZone> {
@@ -35,6 +36,7 @@ class NodeZone : public ZoneFile<NodeZone> {
   [[nodiscard]] std::span<const format::NodePatch> patches() const { return patches_; }
   [[nodiscard]] std::span<const format::Node> nodes() const { return nodes_; }
   [[nodiscard]] std::span<const format::FarNode> far() const { return far_; }
+  [[nodiscard]] std::span<const format::Door> doors() const { return doors_; }
   [[nodiscard]] std::span<const format::Arc> arcs(uint32_t node) const;
   [[nodiscard]] const format::Arc* first_arc() const { return arcs_.data(); }
   /// The leap of an arc, or null.
@@ -57,6 +59,7 @@ class NodeZone : public ZoneFile<NodeZone> {
   std::span<const format::Arc> arcs_;
   std::span<const format::Leap> leaps_;
   std::span<const format::FarNode> far_;
+  std::span<const format::Door> doors_;
   std::span<const double> points_;
 };
 
@@ -93,7 +96,10 @@ struct NodeData {
   /// the area up to and with each. Made when first asked for.
   [[nodiscard]] const AreaList& areas_before(int32_t avatar_class) const;
   /// Where an arc of a slot's zone leads to, as a node of all.
-  [[nodiscard]] uint32_t target(size_t slot, const NodeZone& zone, const format::Arc& arc) const;
+  [[nodiscard]] uint32_t target(size_t slot, const NodeZone& zone, const format::Arc& arc) const {
+    return target(slot, zone, arc.to());
+  }
+  [[nodiscard]] uint32_t target(size_t slot, const NodeZone& zone, uint32_t to) const;
 };
 
 std::string node_file_name(int32_t x, int32_t z);

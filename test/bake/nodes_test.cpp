@@ -47,22 +47,7 @@ std::vector<AvatarClass> many_classes() {
 }
 
 // A landscape of Bezier patches only, all kinds of neighbours among them.
-Scene net_scene(double relief, int32_t side = 3) {
-  Scene scene;
-  const PatchSet set = test::make_net({.side = side, .cell = 8, .relief = relief});
-  scene.patches = set;
-  Context context;
-  const auto mesh = tessellate_patches(set, {}, context);
-  EXPECT_TRUE(mesh);
-  scene.positions = mesh->positions;
-  scene.triangles = mesh->triangles;
-  scene.area.assign(scene.triangles.size(), kAreaWalkable);
-  for (uint32_t p = 0; p < set.size(); ++p) {
-    scene.patch_of_triangle.insert(scene.patch_of_triangle.end(),
-                                   mesh->first[p + 1] - mesh->first[p], p);
-  }
-  return scene;
-}
+Scene net_scene(double relief) { return test::net_scene({.side = 3, .cell = 8, .relief = relief}); }
 
 TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
   for (const char* name : {"garage", "stairs", "bridge", "maze"}) {

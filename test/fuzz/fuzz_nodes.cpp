@@ -25,5 +25,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
       sum = sum + (leap != nullptr ? leap->to_s() : 0u);
     }
   }
+  for (const format::Door& door : (*zone)->doors()) {
+    const uint32_t to = door.to() & ~kFarNode;
+    const bool far = (door.to() & kFarNode) != 0;
+    sum = sum + (far ? (*zone)->far()[to].node() : (*zone)->nodes()[to].level());
+    sum = sum + (*zone)->patches()[door.patch()].depth();
+  }
   return 0;
 }

@@ -326,4 +326,22 @@ double worst_distance(const PatchSet& set, const PatchMesh& mesh, uint32_t p, in
   return worst;
 }
 
+Scene net_scene(const NetConfig& config) {
+  Scene scene;
+  const PatchSet set = make_net(config);
+  scene.patches = set;
+  Context context;
+  const auto mesh = tessellate_patches(set, {}, context);
+  EXPECT_TRUE(mesh);
+  if (!mesh) return scene;
+  scene.positions = mesh->positions;
+  scene.triangles = mesh->triangles;
+  scene.area.assign(scene.triangles.size(), kAreaWalkable);
+  for (uint32_t p = 0; p < set.size(); ++p) {
+    scene.patch_of_triangle.insert(scene.patch_of_triangle.end(),
+                                   mesh->first[p + 1] - mesh->first[p], p);
+  }
+  return scene;
+}
+
 }  // namespace throng::test

@@ -25,6 +25,8 @@ struct NetConfig {
 /// A net of cells with neighbours of all kinds (1, 2, 4), each patch turned at random. Open nets
 /// have their border in the planes x, z = 0 and side * cell.
 PatchSet make_net(const NetConfig& config);
+/// The same as a scene of its triangles, all of them walkable.
+Scene net_scene(const NetConfig& config);
 
 /// The same surface with vertex k as vertex k + 1, `turns` times.
 BezierPatch turn(BezierPatch patch, uint32_t turns);

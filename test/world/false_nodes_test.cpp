@@ -60,6 +60,11 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
         sum += leap != nullptr ? leap->to_s() : 0;
       }
     }
+    for (const format::Door& door : found->doors()) {
+      const uint32_t to = door.to() & ~kFarNode;
+      sum += (door.to() & kFarNode) != 0 ? found->far()[to].node() : found->nodes()[to].level();
+      sum += found->patches()[door.patch()].depth();
+    }
     used += sum > 0 ? 1 : 0;
   }
   EXPECT_GT(refused, 100u);

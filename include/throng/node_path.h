@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/context.h"
+#include "throng/nodes.h"
+#include "throng/path.h"
+#include "throng/result.h"
+
+/// Ways over nodes, for every class and with it for climbers: over walls and under ceilings.
+/// Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
+namespace throng {
+
+struct NodePathConfig {
+  int32_t avatar_class = 0;
+  /// A metre over ground that inclines by an angle a costs 1 + slope_cost * (1 - cos a): flat
+  /// ground 1, a wall 1 + slope_cost, a ceiling 1 + 2 slope_cost. [>= 0]
+  double slope_cost = 0;
+  int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
+};
+
+/// A point of a way and how it is reached from the one before it.
+struct NodePathPoint {
+  /// In its node, which also holds the next point if that is reached on the surface.
+  NodePlace place;
+  /// On the surface: straight by the parameters of the last point's patch, whose node holds both.
+  /// Otherwise the feet go straight through the air, and the axis turns evenly: over the edge of a
+  /// patch, where there is nearly nothing to go, or along a leap.
+  bool on_surface = true;
+};
+
+/// A link that a way uses: the one by which it comes from another node to `point`.
+struct NodePathLink {
+  uint32_t point = 0;
+  LinkKind kind = LinkKind::kWalk;
+  bool leaps = false;  ///< Between places that do not touch.
+};
+
+struct NodePath {
+  PathEnd end = PathEnd::kNoPlace;
+  std::vector<NodePathPoint> points;
+  std::vector<NodePathLink> links;  ///< In order of their points.
+  std::vector<uint32_t> corridor;   ///< Nodes, from the start's to the goal's.
+  double length = 0;                ///< Of the line through the points. [m]
+  double cost = 0;                  ///< Metres times what they cost.
+  /// Of the crossings by which the search came, before the way was pulled taut.
+  double searched_cost = 0;
+  /// If the goal is unreachable, `points` lead to the place that comes nearest to it, in all three
+  /// dimensions, of those where the way crosses from block to block; and what is in the way there.
+  Obstacle obstacle = Obstacle::kNone;
+  uint64_t nodes = 0;  ///< Crossings that the search looked at.
+};
+
+struct NodePathSummary {
+  uint64_t blocks = 0;     ///< Squares of patches where the class can stand.
+  uint64_t crossings = 0;  ///< Where it gets from one to the next.
+  uint64_t bytes = 0;
+  double seconds = 0;  ///< To make them.
+};
+
+/// Finds ways for one class over nodes. The nodes are shared by all copies; each copy has its own
+/// memory for searching: give every thread one. No allocation once it is warm.
+class THRONG_API NodePathFinder {
+ public:
+  /// Reads all nodes once. Fails with kBadConfig, kBadFile (a zone cannot be used) or kCancelled.
+  [[nodiscard]] static Result<NodePathFinder> make(const Nodes& nodes, const NodePathConfig& config,
+                                                   Context& context);
+  NodePathFinder(const NodePathFinder& other);
+  NodePathFinder& operator=(const NodePathFinder& other);
+  NodePathFinder(NodePathFinder&&) noexcept;
+  NodePathFinder& operator=(NodePathFinder&&) noexcept;
+  ~NodePathFinder();
+
+  /// The place of the class that is nearest to a position, or nowhere within `reach`. [m, m]
+  [[nodiscard]] NodePlace find_place(Vec3d position, double reach) const;
+
+  /// A way of little cost: A* over the middles of the lines along which nodes touch, then pulled
+  /// taut within the nodes that it leads over. `spacing` is how far its points on curved ground
+  /// are apart at most. [m, > 0] `path` is reused: its memory stays. Gives up after `max_nodes`.
+  void find(const NodePlace& from, const NodePlace& to, NodePath& path, double spacing = 0.25,
+            uint64_t max_nodes = UINT64_MAX);
+
+  [[nodiscard]] NodePathSummary summary() const;
+
+ private:
+  struct Shared;
+  struct Scratch;
+  explicit NodePathFinder(std::shared_ptr<const Shared> shared);
+
+  std::shared_ptr<const Shared> shared_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace throng

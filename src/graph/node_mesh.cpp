@@ -1,0 +1,390 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "graph/node_mesh.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "graph/patch_pairs.h"
+#include "graph/tile_cells.h"
+
+// The class's largest nodes tile all that it can stand on: of the nodes around a cell that hold its
+// bit, the outermost. Inside one nothing is in the way, so what is left to know is where two of
+// them touch. Within a patch that follows from the squares (and the tile's steps), over the edges
+// of Bezier patches from the doors that the bake proved, over tiles from the moves' own rule, and
+// across gaps from the leaps. The arcs between nodes are not read for that; that both tell the
+// same is a test.
+namespace throng {
+namespace {
+
+constexpr double kInset = 1e-5;  // into a tile's cell, whose far border is the next cell's
+
+// Where a cell of a patch comes in the order of a quadtree.
+uint32_t quad_order(uint32_t s, uint32_t t, int32_t level) {
+  uint32_t order = 0;
+  for (int32_t k = level; k-- > 0;) order = order << 2 | (t >> k & 1) << 1 | (s >> k & 1);
+  return order;
+}
+
+}  // namespace
+
+Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_t workers,
+                                Context& context) {
+  if (auto ok = nodes.check_all(); !ok) return ok.error();
+  NodeMesh mesh(nodes, avatar_class);
+  const NodeData& data = *nodes.data();
+  double steepest = 0;
+  for (const AvatarClass& avatar : data.world.data()->summary.classes) {
+    steepest = std::max(steepest, avatar.max_slope);
+  }
+  mesh.walking_ = data.summary.bins.inclination_code(steepest);
+  mesh.list_blocks();
+  std::vector<std::vector<NodePortal>> lists(mesh.patches_.size());
+  parallel_for(lists.size(), workers, [&](size_t p) {
+    if (!context.cancel) lists[p] = mesh.inside_patch(static_cast<uint32_t>(p));
+  });
+  for (const auto& list : lists) {
+    mesh.portals_.insert(mesh.portals_.end(), list.begin(), list.end());
+  }
+  mesh.open_doors();
+  const WorldData& world = *data.world.data();
+  const bool tiles = std::any_of(mesh.patches_.begin(), mesh.patches_.end(),
+                                 [](const NodeSurface& p) { return p.points == nullptr; });
+  const int32_t tiles_x = world.summary.tiles_x, tiles_z = world.summary.tiles_z;
+  lists.assign(tiles ? static_cast<size_t>(tiles_x) * static_cast<size_t>(tiles_z) : 0, {});
+  parallel_for(lists.size(), workers, [&](size_t i) {
+    const auto tile = static_cast<int32_t>(i);
+    if (!context.cancel) lists[i] = mesh.over_tile(tile % tiles_x, tile / tiles_x);
+  });
+  for (const auto& list : lists) {
+    mesh.portals_.insert(mesh.portals_.end(), list.begin(), list.end());
+  }
+  mesh.add_leaps();
+  if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
+  mesh.index_portals();
+  return mesh;
+}
+
+void NodeMesh::list_blocks() {
+  const NodeData& data = *nodes_.data();
+  first_block_ = {0};
+  of_level_.assign(data.world.data()->level_count, kNoNode);
+  for (size_t s = 0; s < data.slots.size(); ++s) {
+    const NodeZone& zone = *data.zone(s);
+    const uint32_t first = data.slots[s]->first_node;
+    for (const format::NodePatch& patch : zone.patches()) {
+      const auto p = static_cast<uint32_t>(patches_.size());
+      patches_.push_back(surface_of(data, zone, patch));
+      first_node_.push_back(first + patch.first_node());
+      if (patches_[p].points == nullptr) of_level_[patch.source()] = p;
+      const auto stands = [&](const format::Node& node) {
+        return (node.classes() >> avatar_class_ & 1) != 0;
+      };
+      for (uint32_t n = patch.first_node(); n < patch.first_node() + patch.nodes(); ++n) {
+        const format::Node& node = zone.nodes()[n];
+        const bool inside = node.parent() != UINT32_MAX && stands(zone.nodes()[node.parent()]);
+        if (!stands(node) || inside) continue;
+        cut_block(p, {.patch = p,
+                      .node = first + n,
+                      .level = node.level(),
+                      .s = node.s(),
+                      .t = node.t(),
+                      .inclination = static_cast<uint8_t>(node.surface() >> 4)});
+      }
+      first_block_.push_back(static_cast<uint32_t>(blocks_.size()));
+    }
+  }
+}
+
+// Quarters, quarters of quarters ... until a block is small enough. Flat or bent, its diagonals
+// tell: a patch that comes back to where it began is cut by its depth.
+void NodeMesh::cut_block(uint32_t patch, NodeBlock block) {
+  const NodeSurface& surface = patches_[patch];
+  const double side = block.side(), s = block.s * side, t = block.t * side;
+  const Vec3d middle = surface.at(s + side / 2, t + side / 2);
+  double longest = 0;
+  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+    const double inset = surface.points == nullptr ? kInset : 0;
+    longest = std::max(longest,
+                       length(surface.at(s + i * (side - inset), t + j * (side - inset)) - middle));
+  }
+  if (block.level >= surface.depth || longest <= kLargestBlock * 0.7072) {
+    blocks_.push_back(block);
+    return;
+  }
+  for (uint8_t q = 0; q < 4; ++q) {
+    NodeBlock quarter = block;
+    ++quarter.level;
+    quarter.s = static_cast<uint8_t>(2 * block.s + q % 2);
+    quarter.t = static_cast<uint8_t>(2 * block.t + q / 2);
+    cut_block(patch, quarter);
+  }
+}
+
+uint32_t NodeMesh::block_at(uint32_t patch, double s, double t) const {
+  const uint8_t depth = patches_[patch].depth;
+  const auto cell = [&](double at) {
+    return static_cast<uint32_t>(std::clamp(at * (1 << depth), 0.0, (1 << depth) - 1.0));
+  };
+  const uint32_t cs = cell(s), ct = cell(t), order = quad_order(cs, ct, depth);
+  const auto begin = blocks_.begin() + first_block_[patch];
+  const auto end = blocks_.begin() + first_block_[patch + 1];
+  const auto after = std::upper_bound(begin, end, order, [&](uint32_t at, const NodeBlock& b) {
+    return at < quad_order(b.s, b.t, b.level) << (2 * (depth - b.level));
+  });
+  if (after == begin) return kNoNode;
+  const NodeBlock& found = *(after - 1);
+  const int32_t up = depth - found.level;
+  if (cs >> up != found.s || ct >> up != found.t) return kNoNode;
+  return static_cast<uint32_t>(after - 1 - blocks_.begin());
+}
+
+uint32_t NodeMesh::patch_of_level(uint32_t level) const {
+  return level < of_level_.size() ? of_level_[level] : kNoNode;
+}
+
+uint32_t NodeMesh::patch_of_node(uint32_t node) const {
+  // Patches without nodes begin where the next one does.
+  const auto after = std::upper_bound(first_node_.begin(), first_node_.end(), node);
+  return static_cast<uint32_t>(after - first_node_.begin()) - 1;
+}
+
+LinkKind NodeMesh::kind_between(uint32_t a, uint32_t b) const {
+  return std::max(blocks_[a].inclination, blocks_[b].inclination) > walking_ ? LinkKind::kClimb
+                                                                             : LinkKind::kWalk;
+}
+
+// Cells beside each other of different blocks, runs of them together.
+std::vector<NodePortal> NodeMesh::inside_patch(uint32_t patch) const {
+  std::vector<NodePortal> found;
+  const uint32_t first = first_block_[patch], last = first_block_[patch + 1];
+  if (last - first < 2) return found;
+  const NodeSurface& surface = patches_[patch];
+  const int32_t side = 1 << surface.depth;
+  const auto index = [&](int32_t s, int32_t t) {
+    return (static_cast<size_t>(t) << surface.depth) + static_cast<size_t>(s);
+  };
+  std::vector<uint32_t> owner(static_cast<size_t>(side) * static_cast<size_t>(side), kNoNode);
+  for (uint32_t b = first; b < last; ++b) {
+    const int32_t size = side >> blocks_[b].level;
+    for (int32_t t = blocks_[b].t * size; t < (blocks_[b].t + 1) * size; ++t) {
+      for (int32_t s = blocks_[b].s * size; s < (blocks_[b].s + 1) * size; ++s) {
+        owner[index(s, t)] = b;
+      }
+    }
+  }
+  PatchCells cells;  // only of tiles are cells cut
+  const bool tile = surface.points == nullptr;
+  if (tile) {
+    cells =
+        tile_cells(nodes_.data()->world, surface.source, UINT16_MAX, nodes_.data()->summary.bins);
+  }
+  const double unit = 1.0 / side, inset = tile ? kInset : 0;
+  // Along `t` if the cells lie beside each other along s.
+  const auto visit = [&](bool by_s, const std::vector<uint16_t>& cuts) {
+    for (int32_t i = 0; i + 1 < side; ++i) {
+      uint32_t last_a = kNoNode, last_b = kNoNode;
+      LinkKind last_kind = LinkKind::kWalk;
+      for (int32_t k = 0; k < side; ++k) {
+        const size_t here = by_s ? index(i, k) : index(k, i);
+        const uint32_t a = owner[here], b = owner[by_s ? index(i + 1, k) : index(k, i + 1)];
+        const uint16_t cut = cuts.empty() ? uint16_t{0} : cuts[here];
+        if (a == b || a == kNoNode || b == kNoNode || (cut >> avatar_class_ & 1) != 0) {
+          last_a = last_b = kNoNode;
+          continue;
+        }
+        LinkKind kind = kind_between(a, b);
+        if (cut != 0 && kind == LinkKind::kWalk) kind = LinkKind::kStep;
+        const double to = (k + 1) * unit - inset;
+        if (a == last_a && b == last_b && kind == last_kind) {
+          NodePortal& portal = found.back();
+          (by_s ? portal.on_a[3] : portal.on_a[2]) = to;
+          (by_s ? portal.on_b[3] : portal.on_b[2]) = to;
+          continue;
+        }
+        const double from = k * unit + inset, at = (i + 1) * unit;
+        NodePortal portal{.a = a, .b = b, .on_a = {}, .on_b = {}, .kind = kind};
+        // (The line itself is of the further cell; both blocks hold it.)
+        if (by_s) {
+          portal.on_a = portal.on_b = {at, from, at, to};
+        } else {
+          portal.on_a = portal.on_b = {from, at, to, at};
+        }
+        portal.inside = blocks_[a].node == blocks_[b].node;
+        found.push_back(portal);
+        last_a = a;
+        last_b = b;
+        last_kind = kind;
+      }
+    }
+  };
+  visit(true, cells.cut_s);
+  visit(false, cells.cut_t);
+  return found;
+}
+
+// A door is cut where the blocks on either side end.
+void NodeMesh::open_doors() {
+  const NodeData& data = *nodes_.data();
+  uint32_t first_patch = 0;
+  for (size_t s = 0; s < data.slots.size(); ++s) {
+    const NodeZone& zone = *data.zone(s);
+    for (const format::Door& door : zone.doors()) {
+      if ((door.classes() >> avatar_class_ & 1) == 0) continue;
+      const uint32_t a_patch = first_patch + door.patch();
+      const uint32_t b_patch = patch_of_node(data.target(s, zone, door.to()));
+      if (patches_[b_patch].points == nullptr) continue;  // A foreign file may say so.
+      const double scale =
+          static_cast<double>(door.to_last() - door.to_first()) / (door.last() - door.first());
+      const auto on_a = [&](double at) { return edge_parameters(door.edge(), at / kEdgeUnits); };
+      const auto on_b = [&](double at) {
+        return edge_parameters(door.to_edge(),
+                               (door.to_first() + (at - door.first()) * scale) / kEdgeUnits);
+      };
+      uint32_t last_a = kNoNode, last_b = kNoNode;
+      for (int32_t k = door.first(); k < door.last(); ++k) {
+        const auto in_a = on_a(k + 0.5), in_b = on_b(k + 0.5);
+        const uint32_t a = block_at(a_patch, in_a[0], in_a[1]);
+        const uint32_t b = block_at(b_patch, in_b[0], in_b[1]);
+        if (a == kNoNode || b == kNoNode) {
+          last_a = last_b = kNoNode;
+          continue;
+        }
+        const auto end_a = on_a(k + 1), end_b = on_b(k + 1);
+        if (a != last_a || b != last_b) {
+          const auto from_a = on_a(k), from_b = on_b(k);
+          portals_.push_back({.a = a,
+                              .b = b,
+                              .on_a = {from_a[0], from_a[1], 0, 0},
+                              .on_b = {from_b[0], from_b[1], 0, 0},
+                              .kind = kind_between(a, b)});
+          last_a = a;
+          last_b = b;
+        }
+        NodePortal& portal = portals_.back();
+        portal.on_a[2] = end_a[0];
+        portal.on_a[3] = end_a[1];
+        portal.on_b[2] = end_b[0];
+        portal.on_b[3] = end_b[1];
+      }
+    }
+    first_patch += static_cast<uint32_t>(zone.patches().size());
+  }
+}
+
+// Borders and seams of the levels of a tile, towards greater x and z.
+std::vector<NodePortal> NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
+  struct Touch {
+    uint32_t a, b;
+    uint8_t side;   // 2: the cells lie beside each other along s, 1: along t
+    int32_t at, k;  // the border on a's patch, and the cell along it, in cells
+    LinkKind kind;
+  };
+  std::vector<Touch> touches;
+  for (const CellPair& pair : tile_pairs(*nodes_.data()->world.data(), tile_x, tile_z)) {
+    if ((pair.classes >> avatar_class_ & 1) == 0) continue;
+    const uint32_t pa = patch_of_level(pair.patch_a), pb = patch_of_level(pair.patch_b);
+    if (pa == kNoNode || pb == kNoNode) continue;
+    const auto middle = [](uint32_t cell) {
+      return std::pair{(cell % 64 + 0.5) / 64, (cell / 64 + 0.5) / 64};
+    };
+    const auto [as, at] = middle(pair.cell_a);
+    const auto [bs, bt] = middle(pair.cell_b);
+    const uint32_t a = block_at(pa, as, at), b = block_at(pb, bs, bt);
+    if (a == kNoNode || b == kNoNode) continue;
+    const auto s = static_cast<int32_t>(pair.cell_a % 64),
+               t = static_cast<int32_t>(pair.cell_a / 64);
+    const bool by_s = pair.side_a == 2;
+    touches.push_back({a, b, pair.side_a, (by_s ? s : t) + 1, by_s ? t : s, kind_between(a, b)});
+  }
+  std::sort(touches.begin(), touches.end(), [](const Touch& p, const Touch& q) {
+    return std::tie(p.a, p.b, p.side, p.at, p.k) < std::tie(q.a, q.b, q.side, q.at, q.k);
+  });
+  std::vector<NodePortal> found;
+  for (size_t i = 0; i < touches.size();) {
+    const Touch& t = touches[i];
+    size_t j = i + 1;
+    while (j < touches.size() && touches[j].a == t.a && touches[j].b == t.b &&
+           touches[j].side == t.side && touches[j].at == t.at &&
+           touches[j].k == touches[j - 1].k + 1) {
+      ++j;
+    }
+    const double from = t.k / 64.0 + kInset, to = (touches[j - 1].k + 1) / 64.0 - kInset;
+    const double on_a = t.at / 64.0 - kInset, on_b = t.at % 64 / 64.0;
+    NodePortal portal{.a = t.a, .b = t.b, .on_a = {}, .on_b = {}, .kind = t.kind};
+    if (t.side == 2) {
+      portal.on_a = {on_a, from, on_a, to};
+      portal.on_b = {on_b, from, on_b, to};
+    } else {
+      portal.on_a = {from, on_a, to, on_a};
+      portal.on_b = {from, on_b, to, on_b};
+    }
+    found.push_back(portal);
+    i = j;
+  }
+  return found;
+}
+
+// Each direction has an arc of its own. A node around another may have the same leap.
+void NodeMesh::add_leaps() {
+  const NodeData& data = *nodes_.data();
+  using Key = std::tuple<uint32_t, uint32_t, uint8_t, uint8_t, uint8_t, uint8_t>;
+  std::map<Key, size_t> known;
+  for (size_t s = 0; s < data.slots.size(); ++s) {
+    const NodeZone& zone = *data.zone(s);
+    const uint32_t first = data.slots[s]->first_node;
+    for (uint32_t n = 0; n < zone.nodes().size(); ++n) {
+      for (const format::Arc& arc : zone.arcs(n)) {
+        if ((arc.classes() >> avatar_class_ & 1) == 0) continue;
+        const auto* leap = zone.leap_of(static_cast<uint32_t>(&arc - zone.first_arc()));
+        if (leap == nullptr) continue;
+        const uint32_t pa = patch_of_node(first + n);
+        const uint32_t pb = patch_of_node(data.target(s, zone, arc));
+        const auto middle = [&](uint32_t patch, uint8_t cs, uint8_t ct) {
+          const double side = 1 << patches_[patch].depth;
+          return std::array{(cs + 0.5) / side, (ct + 0.5) / side};
+        };
+        const auto from = middle(pa, leap->from_s(), leap->from_t());
+        const auto to = middle(pb, leap->to_s(), leap->to_t());
+        const uint32_t a = block_at(pa, from[0], from[1]), b = block_at(pb, to[0], to[1]);
+        if (a == kNoNode || b == kNoNode || a == b) continue;
+        const Key key{a, b, leap->from_s(), leap->from_t(), leap->to_s(), leap->to_t()};
+        if (!known.try_emplace(key, portals_.size()).second) continue;
+        portals_.push_back({.a = a,
+                            .b = b,
+                            .on_a = {from[0], from[1], from[0], from[1]},
+                            .on_b = {to[0], to[1], to[0], to[1]},
+                            .kind = static_cast<LinkKind>(arc.kind()),
+                            .leaps = true,
+                            .one_way = true});
+      }
+    }
+  }
+}
+
+void NodeMesh::index_portals() {
+  first_portal_.assign(blocks_.size() + 1, 0);
+  for (const NodePortal& p : portals_) {
+    ++first_portal_[p.a + 1];
+    ++first_portal_[p.b + 1];
+  }
+  for (size_t b = 0; b < blocks_.size(); ++b) first_portal_[b + 1] += first_portal_[b];
+  portal_of_.resize(first_portal_.back());
+  std::vector<uint32_t> next(first_portal_.begin(), first_portal_.end() - 1);
+  for (uint32_t i = 0; i < portals_.size(); ++i) {
+    portal_of_[next[portals_[i].a]++] = i;
+    portal_of_[next[portals_[i].b]++] = i;
+  }
+}
+
+uint64_t NodeMesh::bytes() const {
+  return patches_.size() * sizeof(NodeSurface) + blocks_.size() * sizeof(NodeBlock) +
+         portals_.size() * sizeof(NodePortal) +
+         (first_node_.size() + of_level_.size() + first_block_.size() + first_portal_.size() +
+          portal_of_.size()) *
+             sizeof(uint32_t);
+}
+
+}  // namespace throng

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "throng/math.h"
+#include "throng/nodes.h"
+#include "world/node_data.h"
+
+/// The ground of a node's patch.
+namespace throng {
+
+/// A Bezier patch or a level tile, by parameters from 0 to 1. Points into the nodes' data.
+struct NodeSurface {
+  PatchKind kind = PatchKind::kLevelTile;
+  uint8_t depth = 0;               ///< 2^depth x 2^depth cells.
+  uint32_t source = 0;             ///< Bezier patch of the scene, or level of the world.
+  const double* points = nullptr;  ///< A Bezier patch's 48 numbers.
+  const WorldData* world = nullptr;
+
+  [[nodiscard]] Vec3d at(double s, double t) const;
+  /// Straight up on level tiles.
+  [[nodiscard]] Vec3d normal(double s, double t) const;
+};
+
+[[nodiscard]] NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
+                                     const format::NodePatch& patch);
+
+}  // namespace throng

@@ -1,0 +1,351 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "path/node_pull.h"
+#include "path/node_search.h"
+#include "path/obstacle.h"
+#include "throng/node_path.h"
+#include "world/place.h"
+
+namespace throng {
+namespace {
+
+constexpr int kNewtonSteps = 12;
+constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
+constexpr size_t kMostPieces = 4096;
+
+// Box of a patch's control points, which holds it.
+Box3d box_of(const NodeSurface& surface) {
+  Box3d box;
+  for (size_t i = 0; i < 16; ++i) {
+    box.add({surface.points[3 * i], surface.points[3 * i + 1], surface.points[3 * i + 2]});
+  }
+  return box;
+}
+
+double distance_to(const Box3d& box, Vec3d p) {
+  const auto out = [](double low, double high, double at) {
+    return std::max({low - at, at - high, 0.0});
+  };
+  return length({out(box.min.x, box.max.x, p.x), out(box.min.y, box.max.y, p.y),
+                 out(box.min.z, box.max.z, p.z)});
+}
+
+// The point of a block nearest to a position: from its middle by Gauss and Newton's steps, kept
+// inside.
+std::pair<double, double> nearest_in(const NodeSurface& surface, const NodeBlock& block,
+                                     Vec3d position) {
+  const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
+  double s = s0 + side / 2, t = t0 + side / 2;
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const Vec3d at = surface.at(s, t);
+    const Vec3d ds =
+        (surface.at(s + kEdgeStep, t) - surface.at(s - kEdgeStep, t)) * (0.5 / kEdgeStep);
+    const Vec3d dt =
+        (surface.at(s, t + kEdgeStep) - surface.at(s, t - kEdgeStep)) * (0.5 / kEdgeStep);
+    const Vec3d left = position - at;
+    const double a = dot(ds, ds), b = dot(ds, dt), c = dot(dt, dt);
+    const double det = a * c - b * b;
+    if (!(det > 1e-12 * a * c)) break;
+    const double u = dot(left, ds), v = dot(left, dt);
+    s = std::clamp(s + (c * u - b * v) / det, s0, s0 + side);
+    t = std::clamp(t + (a * v - b * u) / det, t0, t0 + side);
+  }
+  return {s, t};
+}
+
+}  // namespace
+
+struct NodePathFinder::Shared {
+  Shared(NodeMesh made, const NodePathConfig& config)
+      : mesh(std::move(made)), cost(mesh, config.slope_cost) {}
+  Shared(const Shared&) = delete;  // `cost` points to `mesh`
+  Shared& operator=(const Shared&) = delete;
+  NodeMesh mesh;
+  PieceCost cost;
+  double seconds = 0;
+};
+
+struct NodePathFinder::Scratch {
+  explicit Scratch(const Shared& shared)
+      : search(shared.mesh, shared.cost), pull(shared.mesh, shared.cost) {}
+  NodeSearch search;
+  NodePull pull;
+  std::vector<Crossing> way;
+  std::vector<PulledCrossing> pulled;
+};
+
+namespace {
+
+// A way as it is told: points along the surface, links, corridor.
+class Teller {
+ public:
+  Teller(const NodeMesh& mesh, const PieceCost& cost, double spacing, NodePath& path)
+      : mesh_(mesh), cost_(cost), spacing_(spacing), path_(path) {}
+
+  void begin(const BlockPoint& at) {
+    add(at, true);
+    last_ = at;
+    path_.corridor.push_back(node_of(at));
+  }
+
+  void go_on(const BlockPoint& to) {
+    const Vec3d from_at = path_.points.back().place.feet;
+    const NodeSurface& surface = mesh_.surface(to.block);
+    const Vec3d to_at = surface.at(to.s, to.t);
+    const auto piece = cost_(last_.block, last_.s, last_.t, from_at, to.s, to.t, to_at);
+    path_.cost += piece.cost;
+    const auto parts = static_cast<size_t>(
+        std::clamp(std::ceil(piece.length / spacing_), 1.0, static_cast<double>(kMostPieces)));
+    for (size_t k = 1; k <= parts; ++k) {
+      const double f = static_cast<double>(k) / static_cast<double>(parts);
+      const auto along = [&](double a, double b) { return k == parts ? b : a + (b - a) * f; };
+      add({to.block, along(last_.s, to.s), along(last_.t, to.t)}, true);
+    }
+    last_ = to;
+  }
+
+  void cross(const PulledCrossing& crossing) {
+    const NodePortal& portal = mesh_.portals()[crossing.crossing.portal];
+    path_.cost += length(crossing.in_at - crossing.out_at);
+    const bool same_patch =
+        mesh_.blocks()[crossing.out.block].patch == mesh_.blocks()[crossing.in.block].patch;
+    if (same_patch && !portal.leaps) {
+      // One point of both blocks: it becomes the next one's.
+      path_.points.back().place.node1 = node_of(crossing.in) + 1;
+    } else {
+      add(crossing.in, false);
+    }
+    last_ = crossing.in;
+    if (portal.inside) return;
+    path_.links.push_back(
+        {static_cast<uint32_t>(path_.points.size() - 1), portal.kind, portal.leaps});
+    path_.corridor.push_back(node_of(crossing.in));
+  }
+
+ private:
+  [[nodiscard]] uint32_t node_of(const BlockPoint& at) const {
+    return mesh_.blocks()[at.block].node;
+  }
+
+  void add(const BlockPoint& at, bool on_surface) {
+    const NodeSurface& surface = mesh_.surface(at.block);
+    const auto& classes = mesh_.nodes().data()->world.data()->summary.classes;
+    const bool climbs = classes[static_cast<size_t>(mesh_.avatar_class())].climb_slope > 0;
+    const Vec3d normal = surface.normal(at.s, at.t), feet = surface.at(at.s, at.t);
+    if (!path_.points.empty()) path_.length += length(feet - path_.points.back().place.feet);
+    path_.points.push_back(
+        {.place = {node_of(at) + 1, feet, climbs ? normal : Vec3d{0, 1, 0}, normal, at.s, at.t},
+         .on_surface = on_surface});
+  }
+
+  const NodeMesh& mesh_;
+  const PieceCost& cost_;
+  double spacing_;
+  NodePath& path_;
+  BlockPoint last_;
+};
+
+// What keeps the class from going on from a block towards a position.
+Obstacle obstacle_towards(const NodeMesh& mesh, const BlockPoint& from, Vec3d goal) {
+  const NodeBlock& block = mesh.blocks()[from.block];
+  const NodeSurface& surface = mesh.surface(from.block);
+  const auto& classes = mesh.nodes().data()->world.data()->summary.classes;
+  const AvatarClass& avatar = classes[static_cast<size_t>(mesh.avatar_class())];
+  // Just beyond the side of the block that lies nearest to the goal.
+  const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
+  const double beyond = 0.5 / (1 << surface.depth);
+  const double s1 = s0 + side / 2, t1 = t0 + side / 2;
+  double s = s1, t = t1, nearest = std::numeric_limits<double>::infinity();
+  bool outside = true;
+  for (const auto& [i, j] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+    const double edge_s = s1 + i * side / 2, edge_t = t1 + j * side / 2;
+    const Vec3d at = surface.at(edge_s - i * kEdgeStep, edge_t - j * kEdgeStep);
+    const double far = length(goal - at);
+    if (far >= nearest) continue;
+    nearest = far;
+    s = edge_s + i * beyond;
+    t = edge_t + j * beyond;
+    outside = s < 0 || t < 0 || s > 1 || t > 1;
+  }
+  if (surface.points == nullptr) {
+    const WorldData& world = *surface.world;
+    const GroundLevel level = ground_level(world, surface.source, mesh.avatar_class());
+    const auto [x, z] = tile_of(world, *level.zone, *level.view.record);
+    const WorldGround ground{world, mesh.avatar_class()};
+    const Vec3d feet = surface.at(std::clamp(s, s0, s0 + side - kEdgeStep),
+                                  std::clamp(t, t0, t0 + side - kEdgeStep));
+    return obstacle_at(ground, x * 64 + static_cast<int32_t>(std::floor(s * 64)),
+                       z * 64 + static_cast<int32_t>(std::floor(t * 64)),
+                       static_cast<int32_t>(std::lround(feet.y * 1000)));
+  }
+  if (outside) return Obstacle::kGap;
+  const double limit = avatar.climb_slope > 0 ? avatar.climb_slope : avatar.max_slope;
+  const double slope =
+      std::acos(std::clamp(surface.normal(s, t).y, -1.0, 1.0)) * 180 / std::numbers::pi;
+  if (slope > limit) return Obstacle::kSteep;
+  // Others that can stand there tell what is too much of this one.
+  const Nodes& nodes = mesh.nodes();
+  Obstacle found = Obstacle::kNarrow;
+  for (uint32_t node = block.node; node < nodes.node_count(); ++node) {
+    const NodeInfo info = nodes.node(node);
+    if (info.kind != PatchKind::kBezier || info.source != surface.source) break;
+    const double blocks = 1 << info.level;
+    if (s * blocks < info.s || s * blocks > info.s + 1 || t * blocks < info.t ||
+        t * blocks > info.t + 1) {
+      continue;
+    }
+    for (size_t c = 0; c < classes.size(); ++c) {
+      if ((info.classes >> c & 1) == 0) continue;
+      if (classes[c].radius >= avatar.radius && classes[c].height < avatar.height) {
+        found = Obstacle::kLow;
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+NodePathFinder::NodePathFinder(std::shared_ptr<const Shared> shared)
+    : shared_(std::move(shared)), scratch_(std::make_unique<Scratch>(*shared_)) {}
+NodePathFinder::NodePathFinder(const NodePathFinder& other) : NodePathFinder(other.shared_) {}
+NodePathFinder& NodePathFinder::operator=(const NodePathFinder& other) {
+  if (this != &other) *this = NodePathFinder(other.shared_);
+  return *this;
+}
+NodePathFinder::NodePathFinder(NodePathFinder&&) noexcept = default;
+NodePathFinder& NodePathFinder::operator=(NodePathFinder&&) noexcept = default;
+NodePathFinder::~NodePathFinder() = default;
+
+Result<NodePathFinder> NodePathFinder::make(const Nodes& nodes, const NodePathConfig& config,
+                                            Context& context) {
+  const auto start = std::chrono::steady_clock::now();
+  if (nodes.data() == nullptr) return Error{Errc::kBadInput, "path: there are no nodes"};
+  const size_t classes = nodes.data()->world.data()->summary.classes.size();
+  if (config.avatar_class < 0 || static_cast<size_t>(config.avatar_class) >= classes) {
+    return Error{Errc::kBadConfig, "path: the world has no avatar class " +
+                                       std::to_string(config.avatar_class) + "; it has " +
+                                       std::to_string(classes)};
+  }
+  if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
+    return Error{Errc::kBadConfig, "path: slope_cost must be 0 to 1000"};
+  }
+  if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
+  auto mesh = NodeMesh::make(nodes, config.avatar_class, config.workers, context);
+  if (!mesh) return mesh.error();
+  auto shared = std::make_shared<Shared>(std::move(*mesh), config);
+  shared->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return NodePathFinder(std::move(shared));
+}
+
+NodePathSummary NodePathFinder::summary() const {
+  const NodeMesh& mesh = shared_->mesh;
+  return {.blocks = mesh.blocks().size(),
+          .crossings = mesh.portals().size(),
+          .bytes = mesh.bytes(),
+          .seconds = shared_->seconds};
+}
+
+NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
+  const NodeMesh& mesh = shared_->mesh;
+  if (!std::isfinite(position.x + position.y + position.z) || !(reach >= 0)) return {};
+  double nearest = reach;
+  NodePlace best;
+  const auto consider = [&](uint32_t block, double s, double t) {
+    const NodePlace place =
+        mesh.nodes().place(mesh.avatar_class(), mesh.blocks()[block].node, s, t);
+    if (!place) return;
+    const double far = length(place.feet - position);
+    if (far > nearest || (best && far == nearest)) return;
+    nearest = far;
+    best = place;
+  };
+  const World& world = mesh.nodes().data()->world;
+  if (const Place place = world.find_place(mesh.avatar_class(), position, reach)) {
+    if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != kNoNode) {
+      const GroundPoint at = to_ground(*world.data(), place.position.x, place.position.z);
+      const auto along = [](int64_t unit) {
+        return (static_cast<double>(unit & (64 * kUnitsPerCell - 1)) + 0.5) / (64 * kUnitsPerCell);
+      };
+      const double s = along(at.x), t = along(at.z);
+      if (const uint32_t block = mesh.block_at(patch, s, t); block != kNoNode) {
+        consider(block, s, t);
+      }
+    }
+  }
+  for (uint32_t p = 0; p < mesh.patches().size(); ++p) {
+    const NodeSurface& surface = mesh.patches()[p];
+    if (surface.points == nullptr || distance_to(box_of(surface), position) > nearest) continue;
+    const auto blocks = mesh.blocks_of(p);
+    for (uint32_t b = 0; b < blocks.size(); ++b) {
+      const auto [s, t] = nearest_in(surface, blocks[b], position);
+      consider(mesh.first_block(p) + b, s, t);
+    }
+  }
+  return best;
+}
+
+void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& path,
+                          double spacing, uint64_t max_nodes) {
+  THRONG_ASSERT(spacing > 0);
+  const NodeMesh& mesh = shared_->mesh;
+  path.end = PathEnd::kNoPlace;
+  path.points.clear();
+  path.links.clear();
+  path.corridor.clear();
+  path.length = path.cost = path.searched_cost = 0;
+  path.obstacle = Obstacle::kNone;
+  path.nodes = 0;
+  const auto block_of = [&](const NodePlace& place) {
+    BlockPoint at{kNoNode, place.s, place.t};
+    if (!place || place.node1 > mesh.nodes().node_count()) return at;
+    if (!(place.s >= 0 && place.s <= 1 && place.t >= 0 && place.t <= 1)) return at;
+    at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
+    // On the border of a cell the other one may be meant.
+    if (at.block == kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
+      const NodeInfo info = mesh.nodes().node(place.node1 - 1);
+      const double side = 1.0 / (1 << info.level), in = 1e-9;
+      const double s = std::clamp(place.s, info.s * side + in, (info.s + 1) * side - in);
+      const double t = std::clamp(place.t, info.t * side + in, (info.t + 1) * side - in);
+      const uint32_t other = mesh.block_at(mesh.patch_of_node(place.node1 - 1), s, t);
+      if (other != kNoNode && std::fabs(s - place.s) + std::fabs(t - place.t) < 1e-6) {
+        at.block = other;
+      }
+    }
+    return at;
+  };
+  const BlockPoint start = block_of(from), goal = block_of(to);
+  if (start.block == kNoNode || goal.block == kNoNode) return;
+  Scratch& scratch = *scratch_;
+  path.end = scratch.search.find(start, goal, max_nodes, scratch.way);
+  path.nodes = scratch.search.looked_at();
+  if (path.end == PathEnd::kGaveUp) return;
+  path.searched_cost = scratch.search.cost();
+  BlockPoint last = goal;
+  if (path.end == PathEnd::kUnreachable) {
+    last = start;
+    if (!scratch.way.empty()) {
+      const Crossing& end = scratch.way.back();
+      const NodePortal& portal = mesh.portals()[end.portal];
+      const auto& in = end.backward ? portal.on_a : portal.on_b;
+      last = {end.backward ? portal.a : portal.b, (in[0] + in[2]) / 2, (in[1] + in[3]) / 2};
+    }
+    path.obstacle = obstacle_towards(mesh, last, to.feet);
+  }
+  scratch.pull.pull(start, last, scratch.way, scratch.pulled);
+  Teller teller(mesh, shared_->cost, spacing, path);
+  teller.begin(start);
+  for (const PulledCrossing& crossing : scratch.pulled) {
+    teller.go_on(crossing.out);
+    teller.cross(crossing);
+  }
+  teller.go_on(last);
+}
+
+}  // namespace throng

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "path/node_search.h"
+
+/// Pulls a way over blocks of nodes taut.
+namespace throng {
+
+/// A portal of a way, and where the way goes through it.
+struct PulledCrossing {
+  Crossing crossing;
+  double along = 0.5;  ///< From the portal's beginning to its end.
+  BlockPoint out, in;  ///< In the block that it leaves, and in the one that it comes to.
+  Vec3d out_at, in_at;
+};
+
+class NodePull {
+ public:
+  NodePull(const NodeMesh& mesh, const PieceCost& cost) : mesh_(&mesh), cost_(&cost) {}
+
+  /// Moves where the way goes through each portal, as long as that makes it cheaper.
+  void pull(const BlockPoint& from, const BlockPoint& to, const std::vector<Crossing>& way,
+            std::vector<PulledCrossing>& out) const;
+
+ private:
+  void place(PulledCrossing& crossing, double along) const;
+  [[nodiscard]] double cost_around(const std::vector<PulledCrossing>& way, size_t i,
+                                   const PulledCrossing& crossing, const BlockPoint& from,
+                                   Vec3d from_at, const BlockPoint& to, Vec3d to_at) const;
+
+  const NodeMesh* mesh_;
+  const PieceCost* cost_;
+};
+
+}  // namespace throng

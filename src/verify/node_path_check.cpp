@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/parallel.h"
+#include "throng/node_path.h"
+#include "throng/verify.h"
+#include "verify/claims.h"
+#include "verify/turned_body.h"
+
+// Every way that the finder tells is gone: along each leg by the parameters of its patch, or
+// straight and turning evenly where it crosses from one to the next, and everywhere the class's
+// exact cylinder stands along the axis against all triangles.
+namespace throng {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t kFaultsOfAKind = 8;
+constexpr size_t kBatch = 256;        // pairs between two looks at `cancel`
+constexpr double kSame = 1e-6;        // [m]
+constexpr double kSeam = 0.12;        // between neighbours' edges [m]
+constexpr double kMostPoses = 20000;  // of a leg
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Gone {
+  bool exists = false, reached = false, together = false;
+  uint64_t legs = 0, links = 0, leaps = 0, poses = 0, entered = 0, unsupported = 0, torn = 0;
+  std::array<uint64_t, kLinkKinds> kinds{};
+  double length = 0, straight = 0, seconds = 0;
+  Vec3d at, entered_at, unsupported_at, torn_at;
+  uint32_t triangle = 0;
+};
+
+class Follower {
+ public:
+  Follower(const Nodes& nodes, const Scene& scene, const VerifyConfig& config)
+      : nodes_(nodes),
+        config_(config),
+        tree_(scene, config.workers),
+        avatar_(nodes.summary().classes[static_cast<size_t>(config.avatar_class)]) {
+    (void)nodes.reach(config.avatar_class, &part_);
+  }
+
+  Gone go(NodePathFinder& finder, NodePath& path, uint64_t n) const {
+    Gone gone;
+    const NodePlace from = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n);
+    const NodePlace to = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n + 1);
+    if (!from || !to) return gone;
+    gone.exists = true;
+    gone.at = from.feet;
+    gone.together = part_[from.node1 - 1] == part_[to.node1 - 1];
+    const auto start = Clock::now();
+    finder.find(from, to, path);
+    gone.seconds = seconds_since(start);
+    gone.reached = path.end == PathEnd::kReached;
+    // Where there is none, the way to where it stops must be one, too.
+    gone.length = gone.reached ? path.length : 0;
+    gone.straight = gone.reached ? length(to.feet - from.feet) : 0;
+    if (path.points.empty()) return gone;
+    if (length(path.points.front().place.feet - from.feet) > kSame ||
+        (gone.reached && length(path.points.back().place.feet - to.feet) > kSame)) {
+      tear(gone, from.feet);
+    }
+    for (const NodePathLink& link : path.links) {
+      ++gone.links;
+      ++gone.kinds[static_cast<size_t>(link.kind)];
+      gone.leaps += link.leaps ? 1 : 0;
+    }
+    size_t next = 0;
+    for (size_t i = 1; i < path.points.size(); ++i) {
+      while (next < path.links.size() && path.links[next].point < i) ++next;
+      const bool linked = next < path.links.size() && path.links[next].point == i;
+      const bool leaps = linked && path.links[next].leaps;
+      // What a jump crosses is the user's own.
+      if (leaps && path.links[next].kind == LinkKind::kJump) continue;
+      leg(path.points[i - 1], path.points[i], leaps, gone);
+    }
+    return gone;
+  }
+
+ private:
+  static void tear(Gone& gone, Vec3d at) {
+    if (gone.torn++ == 0) gone.torn_at = at;
+  }
+
+  void leg(const NodePathPoint& from, const NodePathPoint& to, bool leaps, Gone& gone) const {
+    ++gone.legs;
+    const double way = length(to.place.feet - from.place.feet) +
+                       avatar_.height * length(to.place.axis - from.place.axis);
+    const int parts =
+        1 + static_cast<int>(std::min(kMostPoses, std::ceil(4 * way / avatar_.radius)));
+    if (!to.on_surface && !leaps && length(to.place.feet - from.place.feet) > kSeam) {
+      tear(gone, to.place.feet);
+    }
+    bool entered = false, unsupported = false, torn = false;
+    for (int k = 0; k <= parts; ++k) {
+      const double f = static_cast<double>(k) / parts;
+      verify::Pose pose;
+      if (to.on_surface) {
+        const auto along = [&](double a, double b) { return k == parts ? b : a + (b - a) * f; };
+        const NodePlace place =
+            nodes_.place(config_.avatar_class, from.place.node1 - 1,
+                         along(from.place.s, to.place.s), along(from.place.t, to.place.t));
+        torn |= !place || (k == 0 && length(place.feet - from.place.feet) > kSame) ||
+                (k == parts && length(place.feet - to.place.feet) > kSeam);
+        if (!place) break;
+        pose = {place.feet, place.axis};
+      } else {
+        const Vec3d axis = from.place.axis * (1 - f) + to.place.axis * f;
+        pose = {from.place.feet * (1 - f) + to.place.feet * f, axis * (1 / length(axis))};
+      }
+      ++gone.poses;
+      if (const auto triangle = verify::turned_intruder(tree_, avatar_, pose)) {
+        if (gone.entered == 0 && !entered) {
+          gone.entered_at = pose.feet;
+          gone.triangle = *triangle;
+        }
+        entered = true;
+      }
+      // (A climber that leaps goes over a gap.)
+      if (!leaps && !verify::turned_support(tree_, avatar_, pose.feet)) {
+        if (gone.unsupported == 0 && !unsupported) gone.unsupported_at = pose.feet;
+        unsupported = true;
+      }
+    }
+    gone.entered += entered ? 1 : 0;
+    gone.unsupported += unsupported ? 1 : 0;
+    if (torn) tear(gone, from.place.feet);
+  }
+
+  const Nodes& nodes_;
+  const VerifyConfig& config_;
+  const verify::TriangleTree tree_;
+  AvatarClass avatar_;
+  std::vector<uint32_t> part_;
+};
+
+}  // namespace
+
+Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source,
+                                         const VerifyConfig& config, Context& context) {
+  const auto start = Clock::now();
+  if (auto sound = verify::check_source(source, config); !sound) return sound.error();
+  auto finder = NodePathFinder::make(
+      nodes, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
+  if (!finder) return finder.error();
+  const Follower follower(nodes, source, config);
+  NodePathReport report;
+  report.make_seconds = finder->summary().seconds;
+  report.finder_bytes = finder->summary().bytes;
+  std::vector<NodePathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
+  std::vector<NodePath> paths(finders.size());
+  std::vector<Gone> gone;
+  for (uint64_t begin = 0; begin < config.samples; begin += kBatch) {
+    if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
+    if (context.on_progress) context.on_progress({"verify", begin, config.samples});
+    gone.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
+    parallel_for_worker(gone.size(), config.workers, [&](size_t i, int32_t worker) {
+      const auto w = static_cast<size_t>(worker);
+      gone[i] = follower.go(finders[w], paths[w], begin + i);
+    });
+    for (const Gone& g : gone) {
+      if (!g.exists) continue;
+      const auto count = [&](uint64_t bad, uint64_t& counter, const char* what, Vec3d at) {
+        if (bad == 0) return;
+        if (counter < kFaultsOfAKind) report.faults.push_back({what, at, g.triangle});
+        counter += bad;
+      };
+      ++report.pairs;
+      report.reached += g.reached ? 1 : 0;
+      report.parted += !g.reached && !g.together ? 1 : 0;
+      count(g.reached != g.together ? 1 : 0, report.disagree, "disagree", g.at);
+      count(g.entered, report.entered, "entered", g.entered_at);
+      count(g.unsupported, report.unsupported, "unsupported", g.unsupported_at);
+      count(g.torn, report.torn, "torn", g.torn_at);
+      report.legs += g.legs;
+      report.links += g.links;
+      report.leaps += g.leaps;
+      report.poses += g.poses;
+      report.length += g.length;
+      report.straight += g.straight;
+      report.search_seconds += g.seconds;
+      for (size_t k = 0; k < kLinkKinds; ++k) report.links_of_kind[k] += g.kinds[k];
+    }
+  }
+  report.seconds = seconds_since(start);
+  return report;
+}
+
+}  // namespace throng

@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/node_path.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "baked.h"
+#include "graph/node_mesh.h"
+#include "patch_nets.h"
+#include "path/node_search.h"
+#include "throng/path.h"
+#include "throng/verify.h"
+
+namespace throng {
+namespace {
+
+using test::bake;
+using test::builtin;
+
+std::vector<AvatarClass> classes() {
+  std::vector<AvatarClass> all = default_classes();
+  all.push_back({.name = "climber"});
+  all.back().climb_slope = 180;
+  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  all.back().climb_slope = 95;
+  return all;
+}
+
+Scene net_scene(double relief) { return test::net_scene({.side = 3, .cell = 8, .relief = relief}); }
+
+Nodes make(const Scene& scene, double cell, double size) {
+  Context context;
+  const auto nodes = Nodes::make(bake(scene, cell, classes()), scene, {.size = size}, context);
+  EXPECT_TRUE(nodes) << nodes.error().message;
+  return nodes ? *nodes : Nodes{};
+}
+
+NodePathFinder finder(const Nodes& nodes, int32_t avatar_class, double slope_cost = 0) {
+  Context context;
+  auto made = NodePathFinder::make(nodes, {.avatar_class = avatar_class, .slope_cost = slope_cost},
+                                   context);
+  EXPECT_TRUE(made) << made.error().message;
+  return *std::move(made);
+}
+
+// The oracle of src/verify goes them; it also compares who reaches whom with the arcs' parts.
+TEST(NodePath, EveryWayCanBeGoneByItsBody) {
+  Context context;
+  const auto check = [&](const char* name, const Scene& scene, double cell, double size,
+                         uint64_t pairs, uint64_t& leaps) {
+    const Nodes nodes = make(scene, cell, size);
+    for (int32_t c = 0; c < 6; ++c) {
+      const auto report = verify_node_paths(
+          nodes, scene, {.samples = pairs, .seed = 5, .avatar_class = c}, context);
+      ASSERT_TRUE(report) << report.error().message;
+      EXPECT_EQ(report->entered, 0u) << name << ", class " << c;
+      EXPECT_EQ(report->unsupported, 0u) << name << ", class " << c;
+      EXPECT_EQ(report->torn, 0u) << name << ", class " << c;
+      EXPECT_EQ(report->disagree, 0u) << name << ", class " << c;
+      EXPECT_EQ(report->reached + report->parted, report->pairs) << name << ", class " << c;
+      leaps += report->leaps;
+    }
+  };
+  uint64_t leaps = 0;
+  check("net", net_scene(6), 0.25, 0.7, 100, leaps);
+  check("garage", builtin({.name = "garage"}), 0.25, 1, 60, leaps);
+  check("bridge", builtin({.name = "bridge"}), 0.25, 1, 40, leaps);
+  check("landscape", builtin({.name = "landscape", .size = 100, .seed = 3}), 0.5, 1.5, 25, leaps);
+  EXPECT_GT(leaps, 0u);
+}
+
+// Dijkstra's algorithm with a plain queue over the same crossings, without a bound or a goal.
+TEST(NodePath, SearchFindsTheCheapestCrossings) {
+  Context context;
+  for (const double slope_cost : {0.0, 3.0}) {
+    const Nodes nodes = make(net_scene(7), 0.25, 1);
+    for (const int32_t c : {0, 4}) {
+      const auto mesh = NodeMesh::make(nodes, c, 1, context);
+      ASSERT_TRUE(mesh);
+      const PieceCost piece(*mesh, slope_cost);
+      NodePathFinder found = finder(nodes, c, slope_cost);
+      for (uint64_t n = 0; n < 20; ++n) {
+        const NodePlace from = nodes.random_place(c, 3, 2 * n),
+                        to = nodes.random_place(c, 3, 2 * n + 1);
+        const auto block_of = [&](const NodePlace& place) {
+          return mesh->block_at(mesh->patch_of_node(place.node1 - 1), place.s, place.t);
+        };
+        const uint32_t first = block_of(from), last = block_of(to);
+        ASSERT_NE(first, kNoNode);
+        // A state is a block as it is entered by a portal, 2 p + (1 if backward), or the start.
+        const size_t states = 2 * mesh->portals().size() + 1;
+        std::vector<double> cost(states, std::numeric_limits<double>::infinity());
+        using Entry = std::pair<double, size_t>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        cost.back() = 0;
+        queue.push({0, states - 1});
+        double best = std::numeric_limits<double>::infinity();
+        while (!queue.empty()) {
+          const auto [so_far, state] = queue.top();
+          queue.pop();
+          if (so_far > cost[state]) continue;
+          uint32_t block = first;
+          double s = from.s, t = from.t;
+          if (state + 1 < states) {
+            const NodePortal& portal = mesh->portals()[state / 2];
+            const auto& in = state % 2 != 0 ? portal.on_a : portal.on_b;
+            block = state % 2 != 0 ? portal.a : portal.b;
+            s = (in[0] + in[2]) / 2;
+            t = (in[1] + in[3]) / 2;
+          }
+          const Vec3d at = mesh->surface(block).at(s, t);
+          if (block == last) {
+            best = std::min(best, so_far + piece(block, s, t, at, to.s, to.t, to.feet).cost);
+          }
+          for (const uint32_t p : mesh->portals_of(block)) {
+            const NodePortal& portal = mesh->portals()[p];
+            const bool backward = portal.a != block;
+            if (backward && portal.one_way) continue;
+            const auto& out = backward ? portal.on_b : portal.on_a;
+            const auto& in = backward ? portal.on_a : portal.on_b;
+            const double s1 = (out[0] + out[2]) / 2, t1 = (out[1] + out[3]) / 2;
+            const Vec3d here = mesh->surface(block).at(s1, t1);
+            const Vec3d there = mesh->surface(backward ? portal.a : portal.b)
+                                    .at((in[0] + in[2]) / 2, (in[1] + in[3]) / 2);
+            const double next =
+                so_far + piece(block, s, t, at, s1, t1, here).cost + length(there - here);
+            const size_t to_state = 2 * size_t{p} + (backward ? 1 : 0);
+            if (next >= cost[to_state]) continue;
+            cost[to_state] = next;
+            queue.push({next, to_state});
+          }
+        }
+        NodePath path;
+        found.find(from, to, path);
+        EXPECT_EQ(path.end == PathEnd::kReached, best < std::numeric_limits<double>::infinity());
+        if (path.end != PathEnd::kReached) continue;
+        EXPECT_NEAR(path.searched_cost, best, 1e-9 * best) << "class " << c << ", pair " << n;
+        EXPECT_LE(path.cost, best * (1 + 1e-9));  // Pulling taut only gains.
+      }
+    }
+  }
+}
+
+// The exact any-angle finder of level tiles shares no code with nodes.
+TEST(NodePath, OnLevelTilesWaysAreNearlyTheShortest) {
+  Context context;
+  for (const char* name : {"garage", "stairs", "church"}) {
+    const Scene scene = builtin({.name = name});
+    const Nodes nodes = make(scene, 0.2, 1);
+    const World world = nodes.data()->world;
+    auto exact = PathFinder::make(world, {.avatar_class = 0}, context);
+    ASSERT_TRUE(exact);
+    NodePathFinder found = finder(nodes, 0);
+    double sum = 0, most = 0;
+    int count = 0;
+    for (uint64_t n = 0; n < 200; ++n) {
+      const NodePlace from = nodes.random_place(0, 1, 2 * n),
+                      to = nodes.random_place(0, 1, 2 * n + 1);
+      Path shortest;
+      exact->find(world.find_place(0, from.feet, 0.1), world.find_place(0, to.feet, 0.1), shortest);
+      NodePath path;
+      found.find(from, to, path, 1e9);
+      ASSERT_EQ(path.end == PathEnd::kReached, shortest.end == PathEnd::kReached) << name;
+      if (path.end != PathEnd::kReached || shortest.length < 2) continue;
+      double plan = 0;
+      for (size_t i = 1; i < path.points.size(); ++i) {
+        const Vec3d d = path.points[i].place.feet - path.points[i - 1].place.feet;
+        plan += std::hypot(d.x, d.z);
+      }
+      sum += plan / shortest.length;
+      most = std::max(most, plan / shortest.length);
+      ++count;
+    }
+    EXPECT_GT(count, 50) << name;
+    EXPECT_GE(sum / count, 1 - 1e-3) << name;
+    EXPECT_LE(sum / count, 1.01) << name;
+    EXPECT_LE(most, 1.1) << name;
+    RecordProperty(name, std::to_string(sum / count) + ", at most " + std::to_string(most));
+  }
+}
+
+TEST(NodePath, WhereItEndsIsSaid) {
+  Scene scene;  // A floor, a gap, another floor with a wall across.
+  scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
+  scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
+  const Nodes nodes = make(scene, 0.2, 1);
+  NodePathFinder found = finder(nodes, 0);
+  const NodePlace from = found.find_place({1, 0, 3}, 1), to = found.find_place({13, 0, 3}, 1);
+  ASSERT_TRUE(from);
+  ASSERT_TRUE(to);
+  NodePath path;
+  found.find(from, to, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_EQ(path.obstacle, Obstacle::kGap);
+  ASSERT_FALSE(path.points.empty());
+  EXPECT_GT(path.points.back().place.feet.x, 4);
+  EXPECT_LT(path.points.back().place.feet.x, 6);
+  found.find({}, to, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace);
+  found.find(from, from, path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.length, 0);
+  EXPECT_FALSE(found.find_place({7, 0, 3}, 0.1));
+  EXPECT_FALSE(found.find_place({std::nan(""), 0, 3}, 1));
+}
+
+TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
+  scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
+  Context context;
+  const auto nodes = Nodes::make(
+      bake(scene, 0.2), scene,
+      {.jumps = {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .both_ways = false}}},
+      context);
+  ASSERT_TRUE(nodes);
+  NodePathFinder found = finder(*nodes, 0);
+  const NodePlace here = found.find_place({1, 0, 3}, 1), there = found.find_place({13, 0, 3}, 1);
+  NodePath path;
+  found.find(here, there, path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+  EXPECT_NEAR(path.length, 12, 0.05);
+  const auto jump = std::find_if(path.links.begin(), path.links.end(),
+                                 [](const NodePathLink& l) { return l.kind == LinkKind::kJump; });
+  ASSERT_NE(jump, path.links.end());
+  EXPECT_TRUE(jump->leaps);
+  EXPECT_NEAR(path.points[jump->point].place.feet.x, 10, 0.21);
+  found.find(there, here, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+}
+
+TEST(NodePath, SteepGroundIsAvoidedForACost) {
+  const Nodes nodes = make(net_scene(8), 0.25, 0.7);
+  NodePathFinder straight = finder(nodes, 4), level = finder(nodes, 4, 20);
+  const auto rise = [](const NodePath& path) {
+    double sum = 0;
+    for (size_t i = 1; i < path.points.size(); ++i) {
+      const NodePlace &a = path.points[i - 1].place, &b = path.points[i].place;
+      sum += length(b.feet - a.feet) * (2 - a.normal.y - b.normal.y) / 2;
+    }
+    return sum;
+  };
+  double steep = 0, gentle = 0, length_straight = 0, length_gentle = 0;
+  for (uint64_t n = 0; n < 60; ++n) {
+    NodePath a, b;
+    const NodePlace from = nodes.random_place(4, 9, 2 * n),
+                    to = nodes.random_place(4, 9, 2 * n + 1);
+    straight.find(from, to, a);
+    level.find(from, to, b);
+    ASSERT_EQ(a.end, b.end);
+    steep += rise(a);
+    gentle += rise(b);
+    length_straight += a.length;
+    length_gentle += b.length;
+  }
+  EXPECT_LT(gentle, 0.9 * steep);
+  EXPECT_GT(length_gentle, length_straight);
+}
+
+TEST(NodePath, TheNearestPlaceIsFound) {
+  const Nodes nodes = make(net_scene(6), 0.25, 1);
+  const NodePathFinder found = finder(nodes, 4);
+  for (uint64_t n = 0; n < 100; ++n) {
+    const NodePlace place = nodes.random_place(4, 2, n);
+    const Vec3d near = place.feet + place.normal * 0.2;
+    const NodePlace back = found.find_place(near, 1);
+    ASSERT_TRUE(back);
+    EXPECT_LE(length(back.feet - near), 0.2 + 1e-6);
+    // No place of a thousand others is nearer.
+    for (uint64_t k = 0; k < 1000; ++k) {
+      EXPECT_GE(length(nodes.random_place(4, 77, k).feet - near), length(back.feet - near) - 1e-3);
+    }
+  }
+}
+
+TEST(NodePath, WaysAreTheSameForCopiesAndAnyThreads) {
+  Context context;
+  const Nodes nodes = make(builtin({.name = "landscape", .size = 100}), 0.5, 2);
+  std::vector<double> first;
+  for (const int32_t workers : {1, 2, 0}) {
+    auto made = NodePathFinder::make(nodes, {.avatar_class = 4, .workers = workers}, context);
+    ASSERT_TRUE(made);
+    NodePathFinder copy = *made;
+    std::vector<double> all;
+    NodePath path;
+    for (uint64_t n = 0; n < 20; ++n) {
+      (n % 2 == 0 ? *made : copy)
+          .find(nodes.random_place(4, 1, 2 * n), nodes.random_place(4, 1, 2 * n + 1), path);
+      all.push_back(path.cost);
+      for (const NodePathPoint& p : path.points) all.push_back(p.place.s + p.place.feet.y);
+    }
+    if (first.empty()) first = all;
+    EXPECT_EQ(all, first);
+  }
+}
+
+TEST(NodePath, BadInputIsRefusedAndNamed) {
+  Context context;
+  const auto message = [&](const Nodes& nodes, const NodePathConfig& config) {
+    const auto made = NodePathFinder::make(nodes, config, context);
+    EXPECT_FALSE(made);
+    return made ? std::string() : made.error().message;
+  };
+  const Nodes nodes = make(builtin({.name = "cube"}), 0.25, 1);
+  EXPECT_EQ(message({}, {}), "path: there are no nodes");
+  EXPECT_EQ(message(nodes, {.avatar_class = 9}), "path: the world has no avatar class 9; it has 6");
+  EXPECT_EQ(message(nodes, {.slope_cost = -1}), "path: slope_cost must be 0 to 1000");
+  EXPECT_EQ(message(nodes, {.workers = -1}), "path: workers must be 0 or more");
+  context.cancel = true;
+  EXPECT_EQ(message(nodes, {}), "path: cancelled");
+}
+
+}  // namespace
+}  // namespace throng

@@ -111,9 +111,9 @@ int picture(Session& session, PictureOptions& options) {
     options.config.title = (path.has_filename() ? path : path.parent_path()).stem().string();
   }
   show_progress(session, "draw", 0, 0);
-  if (!options.nodes &&
-      (options.node_config.links || !options.area.empty() || !options.path.empty())) {
-    return fail({Errc::kBadConfig, "--links, --area and --path draw nodes: add --nodes"});
+  if (!options.nodes && (options.node_config.links || options.node_config.air ||
+                         !options.area.empty() || !options.path.empty())) {
+    return fail({Errc::kBadConfig, "--links, --air, --area and --path draw nodes: add --nodes"});
   }
   const Result<Image> image =
       options.nodes ? draw_all_nodes(options) : draw_world(*world, avatars, options.config);
@@ -152,6 +152,8 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_option("--class", options->avatar_class, "Whose floors to show")->type_name("NAME");
   command->add_flag("--nodes", options->nodes, "Draw the world's nodes, by inclination");
   command->add_flag("--links", options->node_config.links, "With --nodes: also their links");
+  command->add_flag("--air", options->node_config.air,
+                    "With --nodes: also the links of the air, and between air and ground");
   command->add_option("--area", options->area, "With --nodes: only this part of the ground [m]")
       ->expected(4)
       ->delimiter(',')

@@ -33,8 +33,9 @@ struct PictureConfig {
 struct NodePictureConfig {
   int32_t width = 1600;  ///< Of the whole picture. [px, 200 to 16000]
   bool links = false;
-  int32_t storey = -1;      ///< Only level tiles of this storey, or all nodes (-1).
-  Box3d area;               ///< Only nodes whose middle lies in its x and z; empty: all. [m]
+  bool air = false;     ///< Links of the air, and between air and ground; the world must have air.
+  int32_t storey = -1;  ///< Only level tiles of this storey, or all nodes (-1).
+  Box3d area;           ///< Only nodes whose middle lies in its x and z; empty: all. [m]
   std::vector<Vec3d> path;  ///< A way to draw over them.
   std::string title;
 };
@@ -52,7 +53,8 @@ struct Image {
                                                   std::span<const PictureAvatar> avatars,
                                                   const PictureConfig& config);
 
-/// Nodes seen at a slant: green flat, yellow steep, red overhanging; links in the same colours.
+/// Nodes seen at a slant: green flat, yellow steep, red overhanging; links in the same colours,
+/// those of the air violet, those between the air and the ground blue.
 [[nodiscard]] THRONG_API Result<Image> draw_nodes(const Nodes& nodes,
                                                   const NodePictureConfig& config);
 

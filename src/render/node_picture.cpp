@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "render/air_lines.h"
 #include "render/canvas.h"
 #include "render/text.h"
 #include "throng/nodes.h"
@@ -39,6 +40,7 @@ constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
                                                   {91, {232, 106, 66}},
                                                   {180, {176, 34, 46}}}};
 constexpr Rgb kWalkLink{24, 92, 52}, kSteepLink{150, 104, 8}, kOverLink{140, 20, 32};
+constexpr Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
 constexpr Rgb kLeapLink{20, 20, 26}, kUnderlay{226, 228, 232}, kPath{20, 60, 220};
 
 Rgb inclination_colour(double degrees) {
@@ -171,6 +173,15 @@ class NodePicture {
     if (shown_.empty()) {
       return Error{Errc::kNotFound, "picture: no node lies in the area and storey asked for"};
     }
+    if (config_.air) {
+      auto lines = air_lines(nodes_.data()->world, config_.area);
+      if (!lines) return lines.error();
+      air_ = *std::move(lines);
+      for (const AirLine& line : air_) {
+        include(view_(line.a));
+        include(view_(line.b));
+      }
+    }
     fit();
     DepthCanvas large(static_cast<int32_t>(width_) * kSamples,
                       static_cast<int32_t>(height_) * kSamples);
@@ -178,6 +189,10 @@ class NodePicture {
     for (const uint32_t n : shown_) surface(large, n);
     if (config_.links) {
       for (const uint32_t n : shown_) links(large, n);
+    }
+    for (const AirLine& line : air_) {
+      large.line(at(line.a), at(line.b, line.to_ground ? 0.3 : 0), line.to_ground ? 4 : 2,
+                 line.to_ground ? kGroundAirLink : kAirLink);
     }
     path(large);
     Canvas sheet(config_.width, static_cast<int32_t>(kHeader + height_ + kFooter), kPaper);
@@ -209,16 +224,17 @@ class NodePicture {
         continue;
       }
       shown_.push_back(n);
-      for (const Vec3d& c : corners) {
-        const Seen s = view_(c);
-        low_x_ = std::min(low_x_, s.x);
-        high_x_ = std::max(high_x_, s.x);
-        low_y_ = std::min(low_y_, s.y);
-        high_y_ = std::max(high_y_, s.y);
-      }
+      for (const Vec3d& c : corners) include(view_(c));
       terminal_ += info.terminal ? 1 : 0;
       if (whole && info.kind == PatchKind::kBezier) first_of_patch_.try_emplace(info.source, n);
     }
+  }
+
+  void include(const Seen& s) {
+    low_x_ = std::min(low_x_, s.x);
+    high_x_ = std::max(high_x_, s.x);
+    low_y_ = std::min(low_y_, s.y);
+    high_y_ = std::max(high_y_, s.y);
   }
 
   void fit() {
@@ -353,16 +369,20 @@ class NodePicture {
     }
     draw_text(sheet, {x, y + 10}, "degrees", {.size = 8});
     x += 70;
+    const auto key = [&](Rgb colour, const char* label) {
+      sheet.line({x, y + 6}, {x + 20, y + 6}, 2, colour);
+      draw_text(sheet, {x + 26, y + 10}, label, {.size = 8});
+      x += 40 + text_width(label, {.size = 8});
+    };
     if (config_.links) {
-      const auto key = [&](Rgb colour, const char* label) {
-        sheet.line({x, y + 6}, {x + 20, y + 6}, 2, colour);
-        draw_text(sheet, {x + 26, y + 10}, label, {.size = 8});
-        x += 40 + text_width(label, {.size = 8});
-      };
       key(kWalkLink, "link");
       key(kSteepLink, "steep");
       key(kOverLink, "overhanging");
       key(kLeapLink, "over a hole");
+    }
+    if (config_.air) {
+      key(kAirLink, "air");
+      key(kGroundAirLink, "air to ground");
     }
     // A length of 1, 2 or 5 times a power of ten, along the slanted x axis.
     double metres = 1;
@@ -381,6 +401,7 @@ class NodePicture {
   std::vector<int32_t> storeys_;
   View view_;
   std::vector<uint32_t> shown_;
+  std::vector<AirLine> air_;
   std::map<uint32_t, uint32_t> first_of_patch_;  // a node of each Bezier patch
   uint64_t terminal_ = 0;
   double low_x_ = 1e30, high_x_ = -1e30, low_y_ = 1e30, high_y_ = -1e30;

@@ -626,6 +626,18 @@ void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
   gaps.max_count = std::max(gaps.max_count, hn::GetLane(hn::MaxOfLanes(di, most)));
 }
 
+// Matter has at least the sky above it.
+void BareColumns(const TileGaps& gaps, std::array<uint64_t, kTileSide>& bare) {
+  const DI di;
+  for (size_t z = 0; z < kTileSide; ++z) {
+    bare[z] = 0;
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(di)) {
+      const VI count = hn::Load(di, &gaps.count[z * kTileSide + x]);
+      bare[z] |= bits_of(di, hn::Eq(count, hn::Zero(di))) << x;
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace throng
 HWY_AFTER_NAMESPACE();
@@ -635,6 +647,7 @@ namespace throng {
 
 HWY_EXPORT(RasteriseTile);
 HWY_EXPORT(FindGaps);
+HWY_EXPORT(BareColumns);
 
 void rasterise_tile(std::span<const CellTriangle> triangles, std::span<const uint32_t> items,
                     int32_t cell_x, int32_t cell_z, const TileRect& rect, int32_t join,
@@ -644,6 +657,12 @@ void rasterise_tile(std::span<const CellTriangle> triangles, std::span<const uin
 
 void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
   HWY_DYNAMIC_DISPATCH(FindGaps)(columns, min_gap, gaps);
+}
+
+std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps) {
+  std::array<uint64_t, kTileSide> bare;
+  HWY_DYNAMIC_DISPATCH(BareColumns)(gaps, bare);
+  return bare;
 }
 
 std::span<const TileColumns::Spill> TileColumns::spills_of(int32_t cell) const {

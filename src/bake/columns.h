@@ -88,6 +88,9 @@ struct TileGaps {
       layers;  // ascending; layer k of cell c holds if k < count[c]
 };
 
+/// Bit x of row z: column (x, z) of the tile has no matter at all.
+std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps);
+
 /// Joins spans that are less than `min_gap` apart and lists what is free above each run.
 void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps);
 

@@ -99,11 +99,11 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const int32_t count = kTileSide + 2 * reach;
 
   std::vector<int32_t> widths = body.width;  // ascending, each once
-  if (body.fine) widths.insert(widths.end(), body.core.begin(), body.core.end());
   std::ranges::sort(widths);
   widths.erase(std::unique(widths.begin(), widths.end()), widths.end());
-  const auto index_of = [&](int32_t w) {
-    return static_cast<int32_t>(std::ranges::lower_bound(widths, w) - widths.begin());
+  const auto index_of = [&](int32_t w) {  // -1: not in the table
+    const auto at = std::ranges::lower_bound(widths, w);
+    return at != widths.end() && *at == w ? static_cast<int32_t>(at - widths.begin()) : -1;
   };
   std::array<int32_t, 65> width_index{}, core_index{};
   for (size_t d = 0; d < body.width.size(); ++d) width_index[d] = index_of(body.width[d]);
@@ -135,6 +135,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const VU bottom = hn::Set(du, static_cast<uint16_t>(std::min(body.bottom, 65535)));
   const VU height = hn::Set(du, static_cast<uint16_t>(std::min(body.height, 65534)));
   const VU hope = hn::Set(du, static_cast<uint16_t>(body.hope));
+  const VU gentle = hn::Set(du, static_cast<uint16_t>(body.gentle));
   for (int32_t z = 0; z < kTileSide; ++z) {
     uint64_t legal = 0, stand = 0, slanted = 0, hemmed = 0;
     const uint64_t allowed = ground[static_cast<size_t>(z)];
@@ -151,6 +152,17 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
         Extremes e{hn::Zero(du), none, none};
         for (int32_t d = -far; d <= far; ++d) {
           const int32_t k = index[static_cast<size_t>(d < 0 ? -d : d)];
+          if (k < 0) {  // Of the core, for few vectors: not worth a table of all rows.
+            const int32_t w = body.core[static_cast<size_t>(d < 0 ? -d : d)];
+            const size_t at = scratch.window.index(x - w, z + d);
+            for (size_t i = at; i <= at + static_cast<size_t>(2 * w); ++i) {
+              const VU top = hn::LoadU(du, &scratch.window.top[i]);
+              e.high_top = hn::Max(e.high_top, top);
+              e.low_top = hn::Min(e.low_top, top);
+              e.low_ceiling = hn::Min(e.low_ceiling, hn::LoadU(du, &scratch.window.ceiling[i]));
+            }
+            continue;
+          }
           const int32_t row = z + d + reach;
           e.high_top = hn::Max(e.high_top, hn::Load(du, table.row(k, 0, row) + x));
           e.low_top = hn::Min(e.low_top, hn::Load(du, table.row(k, 1, row) + x));
@@ -175,8 +187,8 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       const MU near = hn::And(at_most(all.high_top, hn::SaturatedAdd(feet, hope)),
                               at_most(feet, hn::SaturatedAdd(all.low_top, hope)));
       slanted |= bits_of(du, hn::AndNot(even, hn::And(open, near))) << x;
-      const MU denied = hn::AndNot(free, stands);
-      if (!body.fine || hn::AllFalse(du, denied)) continue;
+      const MU denied = hn::AndNot(free, hn::And(stands, at_most(tilt, gentle)));
+      if (!body.fine || (bits_of(du, denied) & allowed >> x) == 0) continue;
       const Extremes core = look(core_reach, core_index);
       hemmed |= bits_of(du, hn::And(denied, hn::And(is_open(core), is_even(core)))) << x;
     }

@@ -24,6 +24,7 @@ struct BodyWindow {
   int32_t hope = 0;            // matter further from the feet, up or down, no recheck can pass
   bool barely = false;         // its slope's rise under the rim takes all of the bottom
   bool fine = false;           // looked at by less than a cell: it reaches all of the next cells
+  int32_t gentle = 0;          // a fine body is not looked at on ground of a larger tilt [mm]
   double radius = 0;           // [cells]
   int32_t reach = 0;           // rows that a body on a cell can touch beyond it
   std::vector<int32_t> width;  // per row distance 0..reach: columns on either side
@@ -50,6 +51,7 @@ class SheetWindow {
   void assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach, int32_t max_step,
                 int32_t min_gap);
 
+  [[nodiscard]] int32_t reach() const { return reach_; }
   [[nodiscard]] int32_t pad() const { return pad_; }
   [[nodiscard]] int32_t stride() const { return stride_; }
   /// Cell (x, z) may lie up to `reach` outside the tile.
@@ -66,6 +68,7 @@ class SheetWindow {
   void fill_corner(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
   void fill_holes(const TileSheets& tile, size_t sheet, int32_t max_step, int32_t min_gap);
 
+  int32_t reach_ = 0;
   int32_t pad_ = 0;
   int32_t stride_ = 0;
   std::vector<GapLine> lines_;     // of one line of cells, per sheet
@@ -84,8 +87,8 @@ struct LegalCells {
   BitPlane legal{};
   BitPlane stands{};   // feet, and a surface that the class may stand on
   BitPlane slanted{};  // of those, failed only for how high or low the matter around is
-  BitPlane hemmed{};   // of those, of a fine body, failed only for cells that it may just miss
-                       // matter in
+  BitPlane hemmed{};  // of those, on gentle ground, failed only for cells that a fine body may just
+                      // miss matter in
 };
 
 /// True if nothing in sight can stop this class anywhere on the sheet, judged by the sheets'

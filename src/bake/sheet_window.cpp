@@ -76,6 +76,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
   body.hope = static_cast<int32_t>(std::min(60000.0, body.bottom * (1 + 2.2 / body.radius))) + 3;
   body.barely = avatar.step < body_bottom(avatar);
   body.fine = fine && body.radius >= 1.5;  // more than a cell's diagonal
+  body.gentle = body.bottom / 16;
   for (int32_t dz = 0;; ++dz) {
     const double apart = std::max(dz - 1, 0);
     if (apart >= radius) break;
@@ -101,6 +102,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
 
 void SheetWindow::assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach,
                            int32_t max_step, int32_t min_gap) {
+  reach_ = reach;
   pad_ = (reach + 31) / 32 * 32;
   stride_ = kTileSide + 2 * pad_;
   const size_t size = static_cast<size_t>(stride_) * static_cast<size_t>(stride_);

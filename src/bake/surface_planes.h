@@ -29,6 +29,7 @@ struct CellPlanes {
 struct TileTriangles {
   std::span<const CellTriangle> all;
   std::array<std::span<const uint32_t>, 9> items;  // of `all`, that may touch the tile
+  std::array<const BitPlane*, 9> bare{};           // columns without any matter; null: not known
   int32_t cell_x = 0, cell_z = 0;                  // first cell of the middle tile
 };
 

@@ -32,6 +32,23 @@ struct PlanEdge {
 struct PlanPart {
   std::array<PlanEdge, 8> edges;
   size_t count;
+  double x0, x1, z0, z1;
+};
+
+// Parts of cells, the last included.
+struct PartBox {
+  int32_t x0, x1, z0, z1;
+
+  [[nodiscard]] uint64_t of_cell(int32_t x, int32_t z) const {
+    const auto range = [](int32_t first, int32_t last) {  // 1 to 8 bits
+      return 0xFFU >> (7 - std::min(last, 7)) & 0xFFU << std::max(first, 0) & 0xFFU;
+    };
+    const uint64_t bytes = range(z0 - 8 * z, z1 - 8 * z);  // bit j: row j
+    // Bit j of the eight to the lowest bit of byte j, then the row's bits into each such byte.
+    uint64_t rows = 0;
+    for (int32_t j = 0; j < 8; ++j) rows |= (bytes >> j & 1) << (8 * j);
+    return rows * range(x0 - 8 * x, x1 - 8 * x);
+  }
 };
 
 inline uint64_t bits_between(int32_t first, int32_t last) {
@@ -64,6 +81,7 @@ HWY_INLINE V clamped(V v, V low, V high) {
 // from which part to which. [parts, the last included; -1 to 512]
 struct PartRows {
   alignas(32) int32_t first[8], last[8];
+  int32_t least = 511, most = 0;  // that lie in the row of tiles
 
   HWY_INLINE PartRows(const PlanPart& polygon, size_t z) {
     const DF df;
@@ -91,9 +109,15 @@ struct PartRows {
         const VF part = hn::Mul(v, hn::Set(df, 8));
         return hn::DemoteTo(di, hn::Floor(clamped(part, hn::Set(df, -1), hn::Set(df, 512))));
       };
-      hn::Store(part_of(hn::Sub(low, hn::Set(df, kWiden))), di, first + j);
-      hn::Store(part_of(hn::Add(high, hn::Set(df, kWiden))), di, last + j);
+      const VI from = part_of(hn::Sub(low, hn::Set(df, kWiden)));
+      const VI to = part_of(hn::Add(high, hn::Set(df, kWiden)));
+      hn::Store(from, di, first + j);
+      hn::Store(to, di, last + j);
+      least = std::min(least, hn::GetLane(hn::MinOfLanes(di, from)));
+      most = std::max(most, hn::GetLane(hn::MaxOfLanes(di, to)));
     }
+    least = std::max(least, 0);
+    most = std::min(most, 511);
   }
 
   // The parts of the row's cell x.
@@ -122,23 +146,31 @@ struct PartRows {
 // and `stride` is from row to row.
 void FillParts(const PlanPart& polygon, const WallScratch::Near& near, const BitPlane& wanted,
                uint64_t* parts, ptrdiff_t first_cell, ptrdiff_t stride) {
-  const uint64_t columns = bits_between(near.x0, near.x1);
-  double low = 1e30, high = -1e30;
-  for (size_t i = 0; i < polygon.count; ++i) {
-    low = std::min(low, polygon.edges[i].z0);
-    high = std::max(high, polygon.edges[i].z1);
-  }
-  const auto row_of = [](double z) { return static_cast<size_t>(std::clamp<double>(z, 0, 63)); };
-  const size_t last_row = std::min<size_t>(row_of(high + kWiden), near.z1);
-  for (size_t z = std::max<size_t>(row_of(low - kWiden), near.z0); z <= last_row; ++z) {
-    uint64_t cells = wanted[z] & columns;
+  const auto part_of = [](double v) { return static_cast<int32_t>(std::floor(v * 8)); };
+  const PartBox box{part_of(polygon.x0 - kWiden), part_of(polygon.x1 + kWiden),
+                    part_of(polygon.z0 - kWiden), part_of(polygon.z1 + kWiden)};
+  const int32_t z0 = std::max<int32_t>(box.z0 >> 3, near.z0);
+  const int32_t z1 = std::min<int32_t>(box.z1 >> 3, near.z1);
+  const int32_t x0 = std::max<int32_t>(box.x0 >> 3, near.x0);
+  const int32_t x1 = std::min<int32_t>(box.x1 >> 3, near.x1);
+  if (x0 > x1 || z0 > z1) return;
+  const uint64_t columns = bits_between(x0, x1);
+  // What is a part wide touches all of its box: walls along the grid, and small triangles.
+  const bool is_box = box.x0 == box.x1 || box.z0 == box.z1;
+  for (int32_t z = z0; z <= z1; ++z) {
+    uint64_t cells = wanted[static_cast<size_t>(z)] & columns;
     if (cells == 0) continue;
-    const PartRows rows(polygon, z);
-    const int32_t first = std::max(*std::min_element(rows.first, rows.first + 8), 0);
-    const int32_t last = std::min(*std::max_element(rows.last, rows.last + 8), 511);
-    if (first > last) continue;
-    const ptrdiff_t row = first_cell + static_cast<ptrdiff_t>(z) * stride;
-    for (cells &= bits_between(first / 8, last / 8); cells != 0; cells &= cells - 1) {
+    const ptrdiff_t row = first_cell + z * stride;
+    if (is_box) {
+      for (; cells != 0; cells &= cells - 1) {
+        const int32_t x = std::countr_zero(cells);
+        parts[row + x] |= box.of_cell(x, z);
+      }
+      continue;
+    }
+    const PartRows rows(polygon, static_cast<size_t>(z));
+    if (rows.least > rows.most) continue;
+    for (cells &= bits_between(rows.least / 8, rows.most / 8); cells != 0; cells &= cells - 1) {
       const int32_t x = std::countr_zero(cells);
       parts[row + x] |= rows.of_cell(x);
     }
@@ -177,6 +209,35 @@ void KeepClosed(const SheetWindow& window, ptrdiff_t first, WallScratch::Slab sl
   }
 }
 
+// Of some rows of a tile, marks the columns in which one gap holds the whole slab, but begins below
+// its floor: drops. `base` is what the slab's heights are from.
+// Nonzero if there are any.
+uint64_t MarkDrops(const TileSheets& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
+                   BitPlane& drops) {
+  uint64_t any = 0;
+  const hn::CappedTag<uint16_t, 32> du;
+  const size_t lanes = hn::Lanes(du);
+  for (const auto& sheet : tile) {
+    const int32_t floor = slab.floor + base - sheet->base, high = slab.high + base - sheet->base;
+    if (floor <= sheet->low_top) continue;
+    const auto floors = hn::Set(du, static_cast<uint16_t>(std::min<int32_t>(floor, kNone16)));
+    const auto ceilings = hn::Set(du, static_cast<uint16_t>(std::clamp<int32_t>(high, 0, kNone16)));
+    for (uint64_t left = rows; left != 0; left &= left - 1) {
+      const auto z = static_cast<size_t>(std::countr_zero(left));
+      for (size_t x = 0; x < kTileSide; x += lanes) {
+        const auto top = hn::Load(du, &sheet->top[z * kTileSide + x]);
+        const auto ceiling = hn::Load(du, &sheet->ceiling[z * kTileSide + x]);
+        const auto low = hn::Ne(hn::Max(top, floors), top);
+        const uint64_t found =
+            bits_of(du, hn::And(low, hn::Eq(hn::Max(ceiling, ceilings), ceiling))) << x;
+        drops[z] |= found;
+        any |= found;
+      }
+    }
+  }
+  return any;
+}
+
 // Makes legal the asked cells from where the body, anywhere on its cell, touches no part that is
 // filled. True if there are any.
 bool PassFree(std::span<const WallScratch::Asked> asked, const SheetWindow& window,
@@ -213,6 +274,7 @@ namespace throng {
 
 HWY_EXPORT(FillParts);
 HWY_EXPORT(KeepClosed);
+HWY_EXPORT(MarkDrops);
 HWY_EXPORT(PassFree);
 
 namespace {
@@ -247,14 +309,31 @@ PlanPart cut_slab(const CellTriangle& t, double cell_x, double cell_z, double lo
   if (t.low < low) keep(low, 1);
   if (t.high > high) keep(high, -1);
   PlanPart out;
-  out.count = count;
-  for (size_t i = 0; i < count; ++i) {
-    const Point* a = &from[i];
-    const Point* b = &from[i + 1 == count ? 0 : i + 1];
+  out.count = 0;
+  if (count == 0) return out;
+  const auto add_edge = [&](const Point* a, const Point* b) {
     if (a->z > b->z) std::swap(a, b);
     const double slope = b->z > a->z ? (b->x - a->x) / (b->z - a->z) : 0;
-    out.edges[i] = {a->z, b->z, a->x, slope};
+    out.edges[out.count++] = {a->z, b->z, a->x, slope};
+  };
+  const Point *least_x = from, *most_x = from, *least_z = from, *most_z = from;
+  for (const Point* p = from; p != from + count; ++p) {
+    if (p->x < least_x->x) least_x = p;
+    if (p->x > most_x->x) most_x = p;
+    if (p->z < least_z->z) least_z = p;
+    if (p->z > most_z->z) most_z = p;
   }
+  out.x0 = least_x->x;
+  out.x1 = most_x->x;
+  out.z0 = least_z->z;
+  out.z1 = most_z->z;
+  const auto same = [&](size_t i, size_t k) { return t.x[i] == t.x[k] && t.z[i] == t.z[k]; };
+  if (same(0, 1) || same(1, 2) || same(2, 0)) {  // Upright: a line from above.
+    const bool along_x = out.x1 - out.x0 > out.z1 - out.z0;
+    add_edge(along_x ? least_x : least_z, along_x ? most_x : most_z);
+    return out;
+  }
+  for (size_t i = 0; i < count; ++i) add_edge(&from[i], &from[i + 1 == count ? 0 : i + 1]);
   return out;
 }
 
@@ -286,7 +365,9 @@ class WallCheck {
   using Slab = WallScratch::Slab;
 
   void list(const LegalCells& cells);
+  void leave_out_hopeless();
   void want(std::span<const Asked> asked, Slab slab);
+  void list_around(size_t side);
   void gather(Slab slab);
   void fill(Slab slab);
   template <class Visit>
@@ -307,7 +388,6 @@ class WallCheck {
   const std::array<uint16_t, kTileArea>& tilt_;
   WallScratch& scratch_;
   int32_t band_ = std::max(1, body_.bottom / 4);  // of feet that share a filling [mm]
-  int32_t tilt_limit_ = body_.bottom / 16;  // On steeper ground the body's slab meets the ground.
 };
 
 void WallCheck::list(const LegalCells& cells) {
@@ -317,17 +397,83 @@ void WallCheck::list(const LegalCells& cells) {
     for (; row != 0; row &= row - 1) {
       const auto cell = static_cast<size_t>(z * kTileSide + std::countr_zero(row));
       const int32_t feet = sheet_.feet[cell], tilt = tilt_[cell];
-      if (tilt > tilt_limit_) continue;
+      if (tilt > body_.gentle) continue;  // On steeper ground the slab meets the ground.
       const int32_t band = (sheet_.base + feet - tilt + kBandZero) / band_;
       scratch_.asked.push_back({band, static_cast<int32_t>(cell)});
     }
   }
 }
 
+// Takes off the list what is within reach of a column without matter at the height of any body
+// asked for, and without a floor: nothing will excuse that one.
+void WallCheck::leave_out_hopeless() {
+  const auto [low, high] = std::ranges::minmax(scratch_.asked, {}, &Asked::band);
+  Slab slab = slab_of(low.band, low.band);
+  slab.high = slab_of(high.band, high.band).high;
+  const int32_t reach = body_.reach;
+  uint64_t rows = 0, columns = 0;
+  for (const Asked& a : scratch_.asked) {
+    rows |= uint64_t{1} << a.cell / kTileSide;
+    columns |= uint64_t{1} << a.cell % kTileSide;
+  }
+  // Of a row or column of tiles, the cells that are within reach of the asked ones.
+  const auto near_of = [&](uint64_t cells) {
+    std::array<uint64_t, 3> near{0, cells, 0};
+    for (int32_t d = 1; d <= reach; ++d) {
+      near[0] |= cells << (64 - d);
+      near[2] |= cells >> (64 - d);
+      if (d < 64) near[1] |= cells << d | cells >> d;
+    }
+    return near;
+  };
+  const std::array<uint64_t, 3> near_rows = near_of(rows), near_columns = near_of(columns);
+  uint64_t any = 0;
+  for (size_t s = 0; s < 9; ++s) {
+    if (near_rows[s / 3] == 0 || near_columns[s % 3] == 0) continue;
+    BitPlane& drops = scratch_.drops[s];
+    const BitPlane* bare = triangles_.bare[s];
+    const uint64_t all = tiles_[s] == nullptr || triangles_.items[s].empty() ? ~uint64_t{0} : 0;
+    for (uint64_t left = near_rows[s / 3]; left != 0; left &= left - 1) {
+      const auto z = static_cast<size_t>(std::countr_zero(left));
+      drops[z] = bare != nullptr ? (*bare)[z] : all;
+      any |= drops[z];
+    }
+    if (tiles_[s] == nullptr) continue;
+    any |= HWY_DYNAMIC_DISPATCH(MarkDrops)(*tiles_[s], near_rows[s / 3], sheet_.base, slab, drops);
+  }
+  if (any == 0) return;
+  BitPlane hopeless{};
+  for (int32_t z = -reach; z < kTileSide + reach; ++z) {
+    const auto side = static_cast<size_t>(z < 0 ? 0 : (z > kLast ? 6 : 3));
+    const auto r = static_cast<size_t>(z & kLast);
+    if ((near_rows[side / 3] >> r & 1) == 0) continue;
+    const auto row_of = [&](size_t i) {
+      return near_columns[i] == 0 ? 0 : scratch_.drops[side + i][r];
+    };
+    const uint64_t left = row_of(0), middle = row_of(1), right = row_of(2);
+    if ((left | middle | right) == 0) continue;
+    // From the outermost rows, the narrowest, inward.
+    int32_t w = 0;
+    uint64_t near = middle;
+    for (int32_t d = reach; d >= 0; --d) {
+      while (w < body_.width[static_cast<size_t>(d)]) {
+        ++w;
+        near |= left >> (64 - w) | right << (64 - w);
+        if (w < 64) near |= middle << w | middle >> w;
+      }
+      if (z - d >= 0 && z - d <= kLast) hopeless[static_cast<size_t>(z - d)] |= near;
+      if (z + d >= 0 && z + d <= kLast) hopeless[static_cast<size_t>(z + d)] |= near;
+    }
+  }
+  std::erase_if(scratch_.asked, [&](const Asked& a) {
+    return (hopeless[static_cast<size_t>(a.cell / kTileSide)] >> a.cell % kTileSide & 1) != 0;
+  });
+}
+
 // What bodies need whose feet are in one of the bands, anywhere on their cells.
 WallCheck::Slab WallCheck::slab_of(int32_t first_band, int32_t last_band) const {
   const int32_t lowest = first_band * band_ - kBandZero - sheet_.base;
-  const int32_t highest = (last_band + 1) * band_ - 1 - kBandZero - sheet_.base + 2 * tilt_limit_;
+  const int32_t highest = (last_band + 1) * band_ - 1 - kBandZero - sheet_.base + 2 * body_.gentle;
   return {highest - body_.bottom, lowest + body_.bottom, highest + body_.height};
 }
 
@@ -375,28 +521,46 @@ void WallCheck::want(std::span<const Asked> asked, Slab slab) {
   }
 }
 
-// Lists the triangles that may touch a wanted cell, at some height between.
+// Lists the triangles of one of the nine tiles that some body on the middle one may touch, once for
+// all sheets and classes.
+void WallCheck::list_around(size_t side) {
+  const auto s = static_cast<int32_t>(side);
+  std::vector<WallScratch::Near>& around = scratch_.around[side];
+  around.clear();
+  scratch_.known |= 1U << side;
+  const double cell_x = triangles_.cell_x + (s % 3 - 1) * kTileSide;
+  const double cell_z = triangles_.cell_z + (s / 3 - 1) * kTileSide;
+  const auto cell_of = [](double v) {
+    return static_cast<uint8_t>(std::clamp<double>(v, 0, kLast));
+  };
+  // The part of the tile that is near the middle one.
+  const auto range = [&](int32_t d) -> std::pair<double, double> {
+    return {d < 0 ? kTileSide - window_.reach() : 0, d > 0 ? window_.reach() : kTileSide};
+  };
+  const auto [first_x, end_x] = range(s % 3 - 1);
+  const auto [first_z, end_z] = range(s / 3 - 1);
+  for (const uint32_t item : triangles_.items[side]) {
+    const CellTriangle& t = triangles_.all[item];
+    const double z0 = t.z[0] - cell_z - kWiden, z1 = t.z[2] - cell_z + kWiden;
+    if (z0 > end_z || z1 < first_z) continue;
+    const double x0 = std::min({t.x[0], t.x[1], t.x[2]}) - cell_x - kWiden;
+    const double x1 = std::max({t.x[0], t.x[1], t.x[2]}) - cell_x + kWiden;
+    if (x0 > end_x || x1 < first_x) continue;
+    around.push_back({&t, t.low, t.high, static_cast<uint8_t>(s), cell_of(x0), cell_of(x1),
+                      cell_of(z0), cell_of(z1)});
+  }
+}
+
+// Lists those that may touch a wanted cell, at some height between.
 void WallCheck::gather(Slab slab) {
   scratch_.near.clear();
   const int32_t low = sheet_.base + slab.low, high = sheet_.base + slab.high;
-  for (int32_t s = 0; s < 9; ++s) {
-    const WallScratch::Side& side = scratch_.sides[static_cast<size_t>(s)];
-    if (side.rows == 0) continue;
-    const double cell_x = triangles_.cell_x + (s % 3 - 1) * kTileSide;
-    const double cell_z = triangles_.cell_z + (s / 3 - 1) * kTileSide;
-    const auto cell_of = [](double v) {
-      return static_cast<uint8_t>(std::clamp<double>(v, 0, kLast));
-    };
-    for (const uint32_t item : triangles_.items[static_cast<size_t>(s)]) {
-      const CellTriangle& t = triangles_.all[item];
-      if (t.high <= low || t.low >= high) continue;
-      const double x0 = std::min({t.x[0], t.x[1], t.x[2]}) - cell_x - kWiden;
-      const double x1 = std::max({t.x[0], t.x[1], t.x[2]}) - cell_x + kWiden;
-      const double z0 = t.z[0] - cell_z - kWiden, z1 = t.z[2] - cell_z + kWiden;
-      if (x0 > kTileSide || x1 < 0 || z0 > kTileSide || z1 < 0) continue;
-      const WallScratch::Near near{&t,          t.low,       t.high,      static_cast<uint8_t>(s),
-                                   cell_of(x0), cell_of(x1), cell_of(z0), cell_of(z1)};
-      if (touches_wanted(side, near)) scratch_.near.push_back(near);
+  for (size_t s = 0; s < 9; ++s) {
+    if (scratch_.sides[s].rows == 0) continue;
+    if ((scratch_.known >> s & 1) == 0) list_around(s);
+    for (const WallScratch::Near& near : scratch_.around[s]) {
+      if (near.high <= low || near.low >= high) continue;
+      if (touches_wanted(scratch_.sides[s], near)) scratch_.near.push_back(near);
     }
   }
 }
@@ -443,6 +607,8 @@ void WallCheck::fill(Slab slab) {
 bool WallCheck::run(LegalCells& cells) {
   list(cells);
   std::vector<Asked>& all = scratch_.asked;
+  if (all.empty()) return false;
+  leave_out_hopeless();
   if (all.empty()) return false;
   scratch_.parts.resize(std::max(scratch_.parts.size(), window_.top.size() + 8), 0);
   const auto [low, high] = std::ranges::minmax(all, {}, &Asked::band);

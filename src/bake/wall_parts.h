@@ -36,14 +36,18 @@ struct WallScratch {
     uint64_t rows = 0, columns = 0;  // that have such cells
   };
   std::vector<Asked> asked;
-  std::vector<Near> near;
+  uint32_t known = 0;                       // bit s: around[s] is; to be cleared for another tile
+  std::array<std::vector<Near>, 9> around;  // triangles that bodies on the tile may touch
+  std::vector<Near> near;                   // those of them that the cells asked for may touch
   std::array<Side, 9> sides;
-  std::vector<uint64_t> parts;  // at SheetWindow::index; bit 8 j + i is part (i, j)
+  std::array<BitPlane, 9> drops;  // columns that surely stop every body within reach
+  std::vector<uint64_t> parts;    // at SheetWindow::index; bit 8 j + i is part (i, j)
 };
 
 /// legal_cells' test for its `hemmed` cells that are not legal yet: no part of a cell that the body
 /// can touch, from anywhere on its own, holds matter at its height, by the triangles themselves.
-/// True if any cell passed. Linear in the triangles near, and the cells that they touch.
+/// `scratch.known` must be 0 for the first sheet of a tile. True if any cell passed. Linear in the
+/// triangles near, and the cells that they touch.
 bool recheck_walls(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
                    const TileTriangles& triangles, const LegalityScratch& legality,
                    WallScratch& scratch, LegalCells& cells);

@@ -27,6 +27,7 @@ constexpr int32_t kBand = 8;  // tile rows
 
 struct TileState {
   TileSheets sheets;
+  std::unique_ptr<BitPlane> bare;  // columns without any matter; of fine bakes
   std::vector<FloorPlane> planes;
   TileLegality legality;
 };
@@ -142,6 +143,9 @@ void ZoneJob::make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& work
 
   const auto deal_start = Clock::now();
   TileState& tile = at(column, row);
+  if (plan_.config->fine) {
+    tile.bare = std::make_unique<BitPlane>(bare_columns(worker.gaps));
+  }
   deal_gaps(worker.gaps, plan_.limits, scratch_.pool, tile.sheets);
   for (auto& sheet : tile.sheets) tile.planes.push_back(fit_plane(*sheet));
   worker.seconds_levels += seconds_since(deal_start);
@@ -159,6 +163,7 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
   }
   sides = {around[3], around[5], around[1], around[7]};
   tile.legality.resize(tile.sheets.size());
+  worker.walls.known = 0;
   for (size_t s = 0; s < tile.sheets.size(); ++s) {
     const Sheet& sheet = *tile.sheets[s];
     SheetLegality& legality = tile.legality[s];
@@ -209,12 +214,14 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
 TileTriangles ZoneJob::triangles_around(int32_t column, int32_t row) const {
   TileTriangles triangles{.all = scratch_.triangles,
                           .items = {},
+                          .bare = {},
                           .cell_x = (first_x_ + column) * kTileSide,
                           .cell_z = (first_z_ + row) * kTileSide};
   for (int32_t i = 0; i < 9; ++i) {
     const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
     if (!in_world(x, z)) continue;
     triangles.items[static_cast<size_t>(i)] = bins_.square(static_cast<size_t>(z * side_ + x));
+    triangles.bare[static_cast<size_t>(i)] = tiles_[static_cast<size_t>(z * side_ + x)].bare.get();
   }
   return triangles;
 }

@@ -245,7 +245,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
   for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
-// Asks for the ground under those who decide next.
+// Asks for the ground that those who decide next come to, if they go on as they did.
 void CrowdEngine::prefetch_ground(size_t i) const {
   if (i + kFarAhead < size_) {
     const Body& body = bodies_[i + kFarAhead];
@@ -253,7 +253,9 @@ void CrowdEngine::prefetch_ground(size_t i) const {
   }
   if (i + kAhead < size_) {
     const Body& body = bodies_[i + kAhead];
-    grounds_[body.avatar_class].prefetch_cell(body.level, body.point());
+    const Way way = way_of(body, body.velocity);
+    grounds_[body.avatar_class].prefetch_cell(body.level,
+                                              {int64_t{body.x} + way.x, int64_t{body.z} + way.z});
   }
 }
 
@@ -440,7 +442,7 @@ void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) cons
   const float look = wall_look(body);
   situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(look));
   if (!situation.has_walls) return;
-  const Plane ahead = steer::fan_around(situation.wish)[0];
+  const Plane ahead = steer::ahead_of(situation.wish);
   situation.free_way[0] = metres(ground.free_way(body.level, body.point(), ahead, look), look);
 }
 

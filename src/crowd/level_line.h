@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 /// What a step asks of a level first.
@@ -67,8 +69,26 @@ struct alignas(64) OpenLine {
   [[nodiscard]] bool is_open(int32_t x, int32_t z) const {
     return (open[z & 15] >> (x & 15) & 1) != 0;
   }
+  /// Are these blocks of the rows from one to another all open? Four rows at a time: boxes are of
+  /// all sizes, and loops over them are mispredicted.
+  [[nodiscard]] bool has_all(int32_t first, int32_t last, uint32_t blocks) const {
+    uint64_t missing = 0;
+    for (int32_t w = 0; w < 4; ++w) {
+      const auto begin = static_cast<uint32_t>(std::clamp(first - 4 * w, 0, 4));
+      const auto end = static_cast<uint32_t>(std::clamp(last + 1 - 4 * w, 0, 4));
+      missing |= ~std::bit_cast<std::array<uint64_t, 4>>(open)[static_cast<size_t>(w)] &
+                 rows_before(end) & ~rows_before(begin);
+    }
+    return (missing & (blocks * uint64_t{0x0001000100010001})) == 0;
+  }
+
+ private:
+  // Bits of the first so many of four rows.
+  static uint64_t rows_before(uint32_t rows) {
+    return rows == 4 ? ~uint64_t{0} : (uint64_t{1} << (16 * rows)) - 1;
+  }
 };
-static_assert(sizeof(OpenLine) == 128);
+static_assert(sizeof(OpenLine) == 128 && std::endian::native == std::endian::little);
 
 /// The blocks of which all cells are set in 64 rows.
 std::array<uint16_t, 16> full_blocks(const uint64_t* rows);

@@ -38,28 +38,20 @@ uint32_t blocks_between(int32_t low, int32_t high) {
   return (~uint32_t{0} >> (31 - (high >> 2 & 15))) & (~uint32_t{0} << (low >> 2 & 15));
 }
 
-bool has_all(uint32_t bits, uint32_t wanted) { return (bits & wanted) == wanted; }
-
 }  // namespace
 
 // Of one tile.
 bool StrideGround::box_is_open(uint32_t level, int32_t x0, int32_t z0, int32_t x1,
                                int32_t z1) const {
-  const OpenLine& line = ground_->open_line(level);
-  const uint32_t wanted = blocks_between(x0, x1);
-  uint32_t all = wanted;
-  for (int32_t row = z0 >> 2 & 15; row <= (z1 >> 2 & 15); ++row) {
-    all &= line.open[static_cast<size_t>(row)];
-  }
-  return all == wanted;
+  return ground_->open_line(level).has_all(z0 >> 2 & 15, z1 >> 2 & 15, blocks_between(x0, x1));
 }
 
 // The level beyond a side, if all blocks there from one cell to another are joined to it.
 uint32_t StrideGround::beyond(uint32_t level, LevelLine::Side side, int32_t low,
                               int32_t high) const {
   const OpenLine& line = ground_->open_line(level);
-  return has_all(line.joined[side], blocks_between(low, high)) ? line.beyond[side]
-                                                               : LevelLine::kNone;
+  const uint32_t wanted = blocks_between(low, high);
+  return (line.joined[side] & wanted) == wanted ? line.beyond[side] : LevelLine::kNone;
 }
 
 bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t reach) const {

@@ -15,9 +15,13 @@ constexpr Turns kTurns = turns();
 
 }  // namespace
 
-Fan fan_around(Plane wish) {
+Plane ahead_of(Plane wish) {
   const float wished = size_of(wish);
-  const Plane ahead = wished > 1e-6f ? Plane{wish.x / wished, wish.z / wished} : Plane{1, 0};
+  return wished > 1e-6f ? Plane{wish.x / wished, wish.z / wished} : Plane{1, 0};
+}
+
+Fan fan_around(Plane wish) {
+  const Plane ahead = ahead_of(wish);
   Fan fan;
   for (size_t k = 0; k < kDirections; ++k) {
     fan[k] = {ahead.x * kTurns.cosine[k] - ahead.z * kTurns.sine[k],
@@ -95,7 +99,7 @@ bool wish_is_open(const SampledSettings& settings, const Situation& s) {
 
 Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials& trials) {
   const float wished = size_of(s.wish);
-  const Plane ahead = fan_around(s.wish)[0];
+  const Plane ahead = ahead_of(s.wish);
   const float least = 1 / (settings.horizon + kSoonest);
   const float least_of_wall = 1 / (settings.wall_horizon + kSoonest);
   Costs costs;

@@ -88,6 +88,9 @@ struct Situation {
   bool has_walls = false;
 };
 
+/// Which way it is to a wish: a unit vector, along X if there is none.
+Plane ahead_of(Plane wish);
+
 /// Unit vectors, 15 degrees apart, the first along the wish (or X, if there is none).
 using Fan = std::array<Plane, kDirections>;
 Fan fan_around(Plane wish);

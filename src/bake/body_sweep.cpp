@@ -78,32 +78,12 @@ double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep) {
     return kNever;
   }
   Clipped polygon{{a, b, c}, 3};
-  // What is left of it is no nearer than all of it.
-  if ((low < sweep.low || high > sweep.high) && distance2(polygon) > r * r) return kNever;
   if (low < sweep.low) polygon = clip(polygon, sweep.low, 1);
   if (high > sweep.high) polygon = clip(polygon, sweep.high, -1);
   if (polygon.count == 0 || distance2(polygon) > r * r) return kNever;
   double lowest = kNever;
   for (size_t i = 0; i < polygon.count; ++i) lowest = std::min(lowest, polygon.corners[i].z);
   return lowest;
-}
-
-bool turn_between(const BodyFrame& frame, const LocalTriangle& triangle, const BodySweep& sweep,
-                  LocalTriangle& out) {
-  std::array<Vec3d, 3> from;
-  for (size_t i = 0; i < 3; ++i) {
-    from[i] = triangle[i] - frame.centre;
-    out[i].z = dot(from[i], frame.up);
-  }
-  if (std::min({out[0].z, out[1].z, out[2].z}) > sweep.high ||
-      std::max({out[0].z, out[1].z, out[2].z}) < sweep.low) {
-    return false;
-  }
-  for (size_t i = 0; i < 3; ++i) {
-    out[i].x = dot(from[i], frame.side);
-    out[i].y = dot(from[i], frame.front);
-  }
-  return true;
 }
 
 Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep) {
@@ -279,11 +259,9 @@ void TriangleSquares::find_patches(const BodyFrame& frame, const BodySweep& swee
       return;
     }
     for (uint32_t i = cluster.first; i < cluster.last; ++i) {
-      LocalTriangle local;
-      if (!turn_between(frame, corners(order_[i]), sweep, local) ||
-          lowest_entry(local, sweep) == kNever) {
-        continue;
-      }
+      LocalTriangle local = corners(order_[i]);
+      for (Vec3d& corner : local) corner = frame.local(corner);
+      if (lowest_entry(local, sweep) == kNever) continue;
       out.push_back(cluster.patch);
       return;
     }

@@ -37,10 +37,6 @@ using LocalTriangle = std::array<Vec3d, 3>;
 /// height is at most the true one.
 [[nodiscard]] double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep);
 
-/// Turns a triangle into a frame; false, and nothing else done, if it lies above or below a sweep.
-[[nodiscard]] bool turn_between(const BodyFrame& frame, const LocalTriangle& triangle,
-                                const BodySweep& sweep, LocalTriangle& out);
-
 /// The box that holds a sweep.
 [[nodiscard]] Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep);
 

@@ -282,11 +282,9 @@ void PatchJudge::judge_posture(const BodyFrame& frame, const SurfaceBound& surfa
   triangles_->find(frame, all, found_);
   local_.clear();
   for (const uint32_t triangle : found_) {
-    LocalTriangle local;
-    if (!turn_between(frame, triangles_->corners(triangle), all, local) ||
-        lowest_entry(local, all) == kNever) {
-      continue;
-    }
+    LocalTriangle local = triangles_->corners(triangle);
+    for (Vec3d& corner : local) corner = frame.local(corner);
+    if (lowest_entry(local, all) == kNever) continue;
     local_.push_back(local);
   }
   promise.classes |= asked;

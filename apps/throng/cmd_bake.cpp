@@ -22,6 +22,7 @@ struct BakeOptions {
   SourceOptions sources;
   std::string output;
   std::string classes;
+  bool coarse = false;
   bool fresh = false;
   bool nodes = false;
   std::string jumps;
@@ -147,6 +148,7 @@ int bake(Session& session, BakeOptions& options) {
     options.config.classes = *std::move(classes);
   }
   if (options.fly) options.config.classes.push_back(flyer_class());
+  options.config.fine = !options.coarse;
   if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
   const Result<Scene> scene = read_sources(options.sources, session.context);
   const auto read = agree_over_ranks(scene ? Result<void>() : scene.error());
@@ -197,8 +199,8 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)");
   command->add_option("--threads", config.workers,
                       "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
-  command->add_flag("--fine", options->config.fine,
-                    "Lose next to no room beside walls; takes up to twice as long");
+  command->add_flag("--coarse", options->coarse,
+                    "Know matter by whole cells: faster, and loses up to a cell beside walls");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->add_flag("--nodes", options->nodes,
                     "Also make nodes and links; always done where a class climbs");

@@ -14,6 +14,6 @@ namespace throng::test {
 
 Scene builtin(const BuiltinWorldConfig& config);
 World bake(const Scene& scene, double cell, std::vector<AvatarClass> classes = default_classes(),
-           bool fine = false);
+           bool fine = true);
 
 }  // namespace throng::test

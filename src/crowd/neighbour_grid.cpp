@@ -11,7 +11,7 @@ namespace throng {
 namespace {
 
 constexpr size_t kSpare = 64;     // entries that a vector may read past the end
-constexpr size_t kLeast = 16384;   // squares of a table, however few bodies there are
+constexpr size_t kLeast = 16384;  // squares of a table, however few bodies there are
 constexpr size_t kMostParts = 4;  // of the bodies: each has a table while they are sorted
 
 uint32_t squares_of(int32_t cells, int32_t square) {

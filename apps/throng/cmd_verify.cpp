@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -187,6 +188,28 @@ bool passes(const NodeVerifyReport& report) {
   return report.entered + report.unsupported + report.steeper + report.lower + report.one_way == 0;
 }
 
+std::string told_faults(const std::vector<VerifyFault>& faults) {
+  std::string text;
+  for (const VerifyFault& fault : faults) {
+    text += fmt::format("  {} at {:.4f} {:.4f} {:.4f}\n", fault.what, fault.position.x,
+                        fault.position.y, fault.position.z);
+  }
+  return text;
+}
+
+// The end of what is told of nodes: their classes one by one, and the verdict.
+int tell(Session& session, const VerifyOptions& options, const Json& classes, bool passed,
+         std::string text) {
+  text += passed ? "passed\n" : "NOT passed\n";
+  print_result(session,
+               {{"world", options.world},
+                {"seed", options.config.seed},
+                {"classes", classes},
+                {"passed", passed}},
+               text);
+  return passed ? kDone : kAnswerIsNo;
+}
+
 // The nodes of a world instead of its level tiles.
 int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector<int32_t>& picked,
                      const Scene& scene) {
@@ -218,19 +241,9 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
         "  entered {}, unsupported {}, steeper {}, lower {}, one way {}\n",
         name, report->places, report->arcs, report->leaps, report->seconds, report->entered,
         report->unsupported, report->steeper, report->lower, report->one_way);
-    for (const VerifyFault& fault : report->faults) {
-      text += fmt::format("  {} at {:.4f} {:.4f} {:.4f}\n", fault.what, fault.position.x,
-                          fault.position.y, fault.position.z);
-    }
+    text += told_faults(report->faults);
   }
-  text += passed ? "passed\n" : "NOT passed\n";
-  print_result(session,
-               {{"world", options.world},
-                {"seed", options.config.seed},
-                {"classes", list},
-                {"passed", passed}},
-               text);
-  return passed ? kDone : kAnswerIsNo;
+  return tell(session, options, list, passed, std::move(text));
 }
 
 bool passes(const NodePathReport& report) {
@@ -283,19 +296,9 @@ int verify_node_ways(Session& session, VerifyOptions& options, const std::vector
         "  entered {}, unsupported {}, torn {}, against the parts {}\n",
         name, report.pairs, report.reached, report.parted, report.legs, report.leaps, report.poses,
         report.seconds, report.entered, report.unsupported, report.torn, report.disagree);
-    for (const VerifyFault& fault : report.faults) {
-      text += fmt::format("  {} at {:.4f} {:.4f} {:.4f}\n", fault.what, fault.position.x,
-                          fault.position.y, fault.position.z);
-    }
+    text += told_faults(report.faults);
   }
-  text += passed ? "passed\n" : "NOT passed\n";
-  print_result(session,
-               {{"world", options.world},
-                {"seed", options.config.seed},
-                {"classes", list},
-                {"passed", passed}},
-               text);
-  return passed ? kDone : kAnswerIsNo;
+  return tell(session, options, list, passed, std::move(text));
 }
 
 int verify(Session& session, VerifyOptions& options) {

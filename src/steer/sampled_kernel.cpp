@@ -210,7 +210,7 @@ class Pricing {
   Pricing(const SampledSettings& settings, const Situation& s)
       : settings_(settings), s_(s), count_(CopyNear(settings, s, near_)) {
     wished_ = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
-    ahead_ = wished_ > 1e-6f ? Plane{s.wish.x / wished_, s.wish.z / wished_} : Plane{1, 0};
+    ahead_ = ahead_of(s.wish);
     FindTrials(s, wished_, ahead_, trials_);
   }
   [[nodiscard]] const Trials& trials() const { return trials_; }

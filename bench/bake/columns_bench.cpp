@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bake/columns.h"
+#include "bake/gaps.h"
 #include "throng/builtin_worlds.h"
 
 namespace {

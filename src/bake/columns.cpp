@@ -20,7 +20,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-#include "bake/vector_bits-inl.h"
+#include "bake/cell_blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace throng {
@@ -28,13 +28,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using DF = hn::CappedTag<float, 16>;
-using DI = hn::RebindToSigned<DF>;
 using VF = hn::Vec<DF>;
-using VI = hn::Vec<DI>;
-using MI = hn::Mask<DI>;
 
-// Integer comparisons that Highway leaves out.
-HWY_INLINE MI at_least(VI a, VI b) { return hn::Not(hn::Lt(a, b)); }
 HWY_INLINE MI within(VI index, int32_t first, int32_t last) {
   const DI di;
   return hn::And(at_least(index, hn::Set(di, first)), at_least(hn::Set(di, last), index));
@@ -47,8 +42,8 @@ HWY_INLINE SpanLayer& layer_at(TileColumns& columns, int32_t k) {
   return *columns.layers[static_cast<size_t>(k)];
 }
 
-// Keeps the spans for which no layer is left.
-void spill(TileColumns& columns, int32_t cell, MI mask, VI low, VI high, VI support) {
+// Keeps the spans for which no layer is left; (x, z) is the block's first cell.
+void spill(TileColumns& columns, int32_t x, int32_t z, MI mask, VI low, VI high, VI support) {
   const DI di;
   alignas(64) int32_t lows[16], highs[16], supports[16], set[16];
   hn::Store(low, di, lows);
@@ -56,16 +51,17 @@ void spill(TileColumns& columns, int32_t cell, MI mask, VI low, VI high, VI supp
   hn::Store(support, di, supports);
   hn::Store(hn::IfThenElseZero(mask, hn::Set(di, 1)), di, set);
   for (int32_t lane = 0; lane < static_cast<int32_t>(hn::Lanes(di)); ++lane) {
-    if (set[lane] != 0)
-      columns.spills.push_back({cell + lane, lows[lane], highs[lane], supports[lane]});
+    if (set[lane] == 0) continue;
+    const int32_t cell = (z + lane / block_width()) * kTileSide + x + lane % block_width();
+    columns.spills.push_back({cell, lows[lane], highs[lane], supports[lane]});
   }
 }
 
-// Adds a span to each cell of one vector where mask is set.
-HWY_INLINE void insert(TileColumns& columns, int32_t cell, MI mask, VI low, VI high, VI support,
-                       int32_t join) {
+// Adds a span to each cell of one block where mask is set; (x, z) is its first cell.
+HWY_INLINE void insert(TileColumns& columns, int32_t x, int32_t z, MI mask, VI low, VI high,
+                       VI support, int32_t join) {
   const DI di;
-  const size_t c = static_cast<size_t>(cell);
+  const auto c = static_cast<size_t>(z * kTileSide + x * block_height());
   uint8_t& depth = columns.depth[c / hn::Lanes(di)];
   const VI reach_low = hn::Sub(low, hn::Set(di, join));
   const VI reach_high = hn::Add(high, hn::Set(di, join));
@@ -98,7 +94,7 @@ HWY_INLINE void insert(TileColumns& columns, int32_t cell, MI mask, VI low, VI h
     return;
   }
   if (HWY_UNLIKELY(depth == TileColumns::kMaxLayers)) {
-    spill(columns, cell, mask, low, high, support);
+    spill(columns, x, z, mask, low, high, support);
     return;
   }
   SpanLayer& layer = layer_at(columns, depth++);
@@ -330,20 +326,71 @@ HWY_INLINE void set_gradient(const Corners<double>& c, TileTriangle& t) {
   t.margin = 0.05f + static_cast<float>(t.high - t.low) * 0x1p-20f;
 }
 
-// The triangle's heights over one vector of cells of its row.
-HWY_INLINE void row_heights(const TileTriangle& t, const RowBatch& rows, size_t r, int32_t begin,
-                            VF x, VI& low, VI& high) {
+// What the rows of a block are cut by: lane i has what its row has.
+struct BlockRows {
+  VI x0, x1, c0, c1;
+  VF y_low, y_high;
+  // Points on the lines that bound the highest and the lowest, moved to the ends of cells.
+  VF high_x, high_y, low_x, low_y;
+  VF centre_x, centre_y;
+};
+
+// Takes rows [r, r + block height) of a batch.
+HWY_INLINE BlockRows take_rows(const TileTriangle& t, const RowBatch& rows, size_t r) {
   const DF df;
   const DI di;
-  VF y_low = hn::Max(hn::Load(df, t.side_low + begin), hn::Set(df, rows.y_low[r]));
-  VF y_high = hn::Min(hn::Load(df, t.side_high + begin), hn::Set(df, rows.y_high[r]));
+  // Whole vectors as they were stored: others would have to wait for the store.
+  const size_t lanes = hn::Lanes(di);
+  const size_t from = r & ~(lanes - 1);
+  const VI lane = hn::Add(row_in_block(), hn::Set(di, static_cast<int32_t>(r - from)));
+  const auto in_floats = hn::IndicesFromVec(df, lane);
+  const auto in_ints = hn::IndicesFromVec(di, lane);
+  const auto floats = [&](const float* values) {
+    return hn::TableLookupLanes(hn::Load(df, values + from), in_floats);
+  };
+  const auto ints = [&](const int32_t* values) {
+    return hn::TableLookupLanes(hn::Load(di, values + from), in_ints);
+  };
+  BlockRows out;
+  out.x0 = ints(rows.x0);
+  out.x1 = ints(rows.x1);
+  out.c0 = ints(rows.c0);
+  out.c1 = ints(rows.c1);
+  if (t.flat) return out;
+  const size_t above = t.rises_in_z ? 1 : 0, below = 1 - above;
+  out.y_low = floats(rows.y_low);
+  out.y_high = floats(rows.y_high);
+  out.high_x = hn::Sub(floats(rows.cap_x[above]), hn::Set(df, t.highest_end));
+  out.high_y = floats(rows.cap_y[above]);
+  out.low_x = hn::Sub(floats(rows.cap_x[below]), hn::Set(df, t.lowest_end));
+  out.low_y = floats(rows.cap_y[below]);
+  out.centre_x = floats(rows.centre_x);
+  out.centre_y = floats(rows.centre_y);
+  return out;
+}
+
+// The bound by the sides over the columns of a block, the same in all its rows.
+HWY_INLINE VF side_bound(const float* bounds) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Load(DF(), bounds);
+#else
+  return hn::LoadDup128(DF(), bounds);
+#endif
+}
+
+// The triangle's heights over one block of cells that begins at column `begin`.
+HWY_INLINE void block_heights(const TileTriangle& t, const BlockRows& rows, int32_t begin, VF x,
+                              VI& low, VI& high) {
+  const DF df;
+  const DI di;
+  VF y_low = hn::Max(side_bound(t.side_low + begin), rows.y_low);
+  VF y_high = hn::Min(side_bound(t.side_high + begin), rows.y_high);
   if (!t.upright) {
-    const size_t above = t.rises_in_z ? 1 : 0, below = 1 - above;
     const VF slope = hn::Set(df, t.gradient);
-    const VF to_high = hn::Sub(x, hn::Set(df, rows.cap_x[above][r] - t.highest_end));
-    const VF to_low = hn::Sub(x, hn::Set(df, rows.cap_x[below][r] - t.lowest_end));
-    y_high = hn::Min(y_high, hn::Add(hn::Set(df, rows.cap_y[above][r]), hn::Mul(to_high, slope)));
-    y_low = hn::Max(y_low, hn::Add(hn::Set(df, rows.cap_y[below][r]), hn::Mul(to_low, slope)));
+    const VF to_high = hn::Sub(x, rows.high_x);
+    const VF to_low = hn::Sub(x, rows.low_x);
+    y_high = hn::Min(y_high, hn::Add(rows.high_y, hn::Mul(to_high, slope)));
+    y_low = hn::Max(y_low, hn::Add(rows.low_y, hn::Mul(to_low, slope)));
   }
   // Where the cell is only touched for being widened, the bounds may have crossed.
   const VF margin = hn::Set(df, t.margin);
@@ -354,39 +401,54 @@ HWY_INLINE void row_heights(const TileTriangle& t, const RowBatch& rows, size_t 
   low = hn::Add(low, hn::Max(hn::Zero(di), hn::ConvertTo(di, hn::Floor(bottom))));
 }
 
-HWY_INLINE void fill_row(TileColumns& columns, const TileTriangle& t, const RowBatch& rows,
-                         size_t r, int32_t row, const TileRect& rect, int32_t join) {
+// Fills the rows of a triangle that lie in one row of blocks: entry r of the batch is row `row`,
+// those outside `within_rows` are not to be filled.
+HWY_INLINE void fill_blocks(TileColumns& columns, const TileTriangle& t, const RowBatch& batch,
+                            size_t r, int32_t row, const TileRect& part, int32_t join) {
   const DF df;
   const DI di;
-  const int32_t lanes = static_cast<int32_t>(hn::Lanes(df));
-  const int32_t x0 = std::max(rows.x0[r], rect.x0), x1 = std::min(rows.x1[r], rect.x1 - 1);
-  const int32_t c0 = rows.c0[r], c1 = rows.c1[r];
+  const int32_t from = std::max(row, part.z0), to = std::min(row + block_height(), part.z1);
+  int32_t x_first = part.x1, x_last = -1;
+  for (int32_t z = from; z < to; ++z) {
+    const size_t i = r + static_cast<size_t>(z - row);
+    x_first = std::min(x_first, batch.x0[i]);
+    x_last = std::max(x_last, batch.x1[i]);
+  }
+  x_first = std::max(x_first, part.x0);
+  x_last = std::min(x_last, part.x1 - 1);
+  if (x_first > x_last) return;
+  const BlockRows rows = take_rows(t, batch, r);
+  const VI z = hn::Add(row_in_block(), hn::Set(di, row));
+  const VI x0 = hn::Max(rows.x0, hn::Set(di, part.x0));
+  const VI x1 = hn::IfThenElse(within(z, from, to - 1), hn::Min(rows.x1, hn::Set(di, part.x1 - 1)),
+                               hn::Set(di, -1));
   const VI tri_low = hn::Set(di, t.low);
   const VI tri_high = hn::Set(di, t.high);
   const VI tri_tall = hn::Set(di, t.high - t.low);
-  for (int32_t begin = x0 & ~(lanes - 1); begin <= x1; begin += lanes) {
-    const VI index = counting_from(di, begin);
+  for (int32_t begin = x_first & ~(block_width() - 1); begin <= x_last; begin += block_width()) {
+    const VI index = hn::Add(column_in_block(), hn::Set(di, begin));
+    const MI mask = hn::And(at_least(index, x0), at_least(x1, index));
+    if (hn::AllFalse(di, mask)) continue;
     const VF x = hn::ConvertTo(df, index);
-    const MI mask = within(index, x0, x1);
     VI low = tri_low;
     VI high = tri_high;
-    if (!t.flat) row_heights(t, rows, r, begin, x, low, high);
+    if (!t.flat) block_heights(t, rows, begin, x, low, high);
     VI support = hn::Set(di, kNoSupport);
-    if (c0 <= c1 && c1 >= begin && c0 < begin + lanes) {
+    const MI covered = hn::And(at_least(index, rows.c0), at_least(rows.c1, index));
+    if (!hn::AllFalse(di, covered)) {
       VI height = tri_low;
       if (!t.flat) {
-        const VF along = hn::Sub(hn::Add(x, hn::Set(df, 0.5f)), hn::Set(df, rows.centre_x[r]));
-        const VF y =
-            hn::Add(hn::Set(df, rows.centre_y[r]), hn::Mul(along, hn::Set(df, t.gradient)));
+        const VF along = hn::Sub(hn::Add(x, hn::Set(df, 0.5f)), rows.centre_x);
+        const VF y = hn::Add(rows.centre_y, hn::Mul(along, hn::Set(df, t.gradient)));
         const VI above = hn::Min(tri_tall, hn::Max(hn::Zero(di), hn::NearestInt(y)));
         height = hn::Add(tri_low, above);
       }
       // Over 8 km above the tile's lowest matter there is nothing to stand on.
-      const MI near = hn::And(within(index, c0, c1), hn::Lt(height, hn::Set(di, 1 << 23)));
+      const MI near = hn::And(covered, hn::Lt(height, hn::Set(di, 1 << 23)));
       const VI packed = hn::Or(hn::ShiftLeft<8>(height), hn::Set(di, t.code));
       support = hn::IfThenElse(near, packed, support);
     }
-    insert(columns, row * kTileSide + begin, mask, low, high, support, join);
+    insert(columns, begin, row, mask, low, high, support, join);
   }
 }
 
@@ -399,15 +461,16 @@ HWY_INLINE void fill_triangle(const Corners<T>& corners, const TileTriangle& t,
   const double z_last = std::floor(static_cast<double>(corners.z[2]) + kWiden);
   const int32_t row0 = static_cast<int32_t>(std::max<double>(z_first, rect.z0));
   const int32_t row1 = static_cast<int32_t>(std::min<double>(z_last, rect.z1 - 1));
+  const TileRect part{rect.x0, row0, rect.x1, row1 + 1};
   const RowCutter<D> cutter(corners);
   RowBatch rows;
-  for (int32_t begin = row0; begin <= row1; begin += kBatch) {
+  for (int32_t begin = row0 & ~(block_height() - 1); begin <= row1; begin += kBatch) {
     const int32_t count = std::min(kBatch, row1 - begin + 1);
     for (int32_t i = 0; i < count; i += static_cast<int32_t>(hn::Lanes(d))) {
       cutter.cut(begin + i, static_cast<size_t>(i), t.flat, rows);
     }
-    for (int32_t i = 0; i < count; ++i) {
-      fill_row(columns, t, rows, static_cast<size_t>(i), begin + i, rect, join);
+    for (int32_t i = 0; i < count; i += block_height()) {
+      fill_blocks(columns, t, rows, static_cast<size_t>(i), begin + i, part, join);
     }
   }
 }
@@ -466,178 +529,6 @@ void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint
                    [](const auto& a, const auto& b) { return a.cell < b.cell; });
 }
 
-// Spans of one vector of columns, while they are sorted.
-constexpr size_t kNetwork = 16;  // deepest column that the vector path sorts
-
-struct SpanVectors {
-  VI low[kNetwork], high[kNetwork], support[kNetwork];
-
-  // Puts the lower of two spans first, lane by lane.
-  HWY_INLINE void order(size_t a, size_t b) {
-    const MI swap = hn::Gt(low[a], low[b]);
-    exchange(swap, low[a], low[b]);
-    exchange(swap, high[a], high[b]);
-    exchange(swap, support[a], support[b]);
-  }
-
-  // Batcher's odd-even merge sort of the first n.
-  HWY_INLINE void sort(size_t n) {
-    for (size_t p = 1; p < n; p *= 2) {
-      for (size_t k = p; k >= 1; k /= 2) {
-        for (size_t j = k % p; j + k < n; j += 2 * k) {
-          for (size_t i = 0; i < std::min(k, n - j - k); ++i) {
-            if ((i + j) / (p * 2) == (i + j + k) / (p * 2)) order(i + j, i + j + k);
-          }
-        }
-      }
-    }
-  }
-
- private:
-  static HWY_INLINE void exchange(MI swap, VI& a, VI& b) {
-    const VI old = a;
-    a = hn::IfThenElse(swap, b, old);
-    b = hn::IfThenElse(swap, old, b);
-  }
-};
-
-HWY_INLINE GapLayer& gap_layer_at(TileGaps& gaps, int32_t k) {
-  while (static_cast<int32_t>(gaps.layers.size()) <= k) {
-    gaps.layers.push_back(std::make_unique_for_overwrite<GapLayer>());
-  }
-  return *gaps.layers[static_cast<size_t>(k)];
-}
-
-// One deep column, by plain sorting.
-void gaps_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_gap, TileGaps& gaps,
-                         std::vector<TileColumns::Spill>& spans) {
-  const size_t c = static_cast<size_t>(cell);
-  spans.clear();
-  for (int32_t k = 0; k < columns.depth[c / static_cast<size_t>(columns.lanes)]; ++k) {
-    const SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
-    if (layer.low[c] == kNoSpan) continue;
-    spans.push_back({cell, layer.low[c], layer.high[c], layer.support[c]});
-  }
-  const auto spilled = columns.spills_of(cell);
-  spans.insert(spans.end(), spilled.begin(), spilled.end());
-  std::sort(spans.begin(), spans.end(), [](const auto& a, const auto& b) {
-    return a.low != b.low ? a.low < b.low : a.high < b.high;
-  });
-  if (spans.empty()) return;
-  int32_t found = 0;
-  TileColumns::Spill run = spans.front();
-  const auto emit = [&](int32_t ceiling) {
-    GapLayer& layer = gap_layer_at(gaps, found++);
-    layer.top[c] = run.high;
-    layer.ceiling[c] = ceiling;
-    layer.support[c] = run.support;
-  };
-  for (const auto& next : spans) {
-    if (next.low - run.high >= min_gap) {
-      emit(next.low);
-      run = next;
-    } else {
-      run.high = std::max(run.high, next.high);
-      run.support = std::max(run.support, next.support);
-    }
-  }
-  emit(kOpenSkyMm);
-  gaps.count[c] = found;
-  gaps.max_count = std::max(gaps.max_count, found);
-  gaps.spans += static_cast<uint64_t>(found);
-}
-
-// Writes one gap to each lane of `mask`, into the layer that the lane has reached.
-HWY_INLINE void emit(TileGaps& gaps, size_t c, MI mask, VI found, int32_t deepest, VI top,
-                     VI ceiling, VI support) {
-  const DI di;
-  for (int32_t k = 0; k <= deepest; ++k) {
-    const MI here = hn::And(mask, hn::Eq(found, hn::Set(di, k)));
-    if (hn::AllFalse(di, here)) continue;
-    GapLayer& layer = gap_layer_at(gaps, k);
-    hn::BlendedStore(top, here, di, &layer.top[c]);
-    hn::BlendedStore(ceiling, here, di, &layer.ceiling[c]);
-    hn::BlendedStore(support, here, di, &layer.support[c]);
-  }
-}
-
-// Gaps of one vector of columns of at most kNetwork spans.
-HWY_INLINE VI find_vector(const TileColumns& columns, size_t c, size_t n, int32_t min_gap,
-                          TileGaps& gaps) {
-  static_assert(kNoSpan == kOpenSkyMm);  // A span that is not there sorts last, as the sky.
-  const DI di;
-  const VI sky = hn::Set(di, kOpenSkyMm);
-  SpanVectors spans;
-  for (size_t k = 0; k < n; ++k) {
-    const SpanLayer& layer = *columns.layers[k];
-    spans.low[k] = hn::Load(di, &layer.low[c]);
-    spans.high[k] = hn::Load(di, &layer.high[c]);
-    spans.support[k] = hn::Load(di, &layer.support[c]);
-  }
-  spans.sort(n);
-  VI top = spans.high[0], support = spans.support[0], found = hn::Zero(di);
-  int32_t deepest = 0;
-  for (size_t k = 1; k < n; ++k) {
-    const VI low = spans.low[k], high = spans.high[k];
-    const MI has = hn::Lt(low, sky);
-    // Spans lie within 2^31 mm of each other; the sentinel is masked by `has`.
-    const MI apart = hn::And(has, at_least(hn::Sub(low, top), hn::Set(di, min_gap)));
-    if (!hn::AllFalse(di, apart)) {
-      emit(gaps, c, apart, found, deepest, top, low, support);
-      found = hn::Add(found, hn::IfThenElseZero(apart, hn::Set(di, 1)));
-      ++deepest;
-    }
-    const MI joined = hn::AndNot(apart, has);
-    top = hn::IfThenElse(apart, high, hn::IfThenElse(joined, hn::Max(top, high), top));
-    support = hn::IfThenElse(apart, spans.support[k],
-                             hn::IfThenElse(joined, hn::Max(support, spans.support[k]), support));
-  }
-  const MI any = hn::Lt(spans.low[0], sky);
-  emit(gaps, c, any, found, deepest, top, sky, support);
-  return hn::IfThenElseZero(any, hn::Add(found, hn::Set(di, 1)));
-}
-
-void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
-  const DI di;
-  const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
-  gaps.base = columns.base;
-  gaps.max_count = 0;
-  gaps.spans = 0;
-  std::vector<TileColumns::Spill> scratch;
-  VI total = hn::Zero(di);
-  VI most = hn::Zero(di);
-  for (int32_t cell = 0; cell < kTileArea; cell += lanes) {
-    const size_t c = static_cast<size_t>(cell);
-    const size_t n = columns.depth[c / hn::Lanes(di)];
-    if (n > kNetwork) {
-      for (int32_t i = cell; i < cell + lanes; ++i) {
-        gaps.count[static_cast<size_t>(i)] = 0;
-        gaps_of_deep_column(columns, i, min_gap, gaps, scratch);
-      }
-      continue;
-    }
-    VI found = hn::Zero(di);
-    if (n > 0) found = find_vector(columns, c, n, min_gap, gaps);
-    hn::Store(found, di, &gaps.count[c]);
-    total = hn::Add(total, found);
-    most = hn::Max(most, found);
-  }
-  gaps.spans += static_cast<uint64_t>(hn::GetLane(hn::SumOfLanes(di, total)));
-  gaps.max_count = std::max(gaps.max_count, hn::GetLane(hn::MaxOfLanes(di, most)));
-}
-
-// Matter has at least the sky above it.
-void BareColumns(const TileGaps& gaps, std::array<uint64_t, kTileSide>& bare) {
-  const DI di;
-  for (size_t z = 0; z < kTileSide; ++z) {
-    bare[z] = 0;
-    for (size_t x = 0; x < kTileSide; x += hn::Lanes(di)) {
-      const VI count = hn::Load(di, &gaps.count[z * kTileSide + x]);
-      bare[z] |= bits_of(di, hn::Eq(count, hn::Zero(di))) << x;
-    }
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace throng
 HWY_AFTER_NAMESPACE();
@@ -646,23 +537,11 @@ HWY_AFTER_NAMESPACE();
 namespace throng {
 
 HWY_EXPORT(RasteriseTile);
-HWY_EXPORT(FindGaps);
-HWY_EXPORT(BareColumns);
 
 void rasterise_tile(std::span<const CellTriangle> triangles, std::span<const uint32_t> items,
                     int32_t cell_x, int32_t cell_z, const TileRect& rect, int32_t join,
                     TileColumns& columns) {
   HWY_DYNAMIC_DISPATCH(RasteriseTile)(triangles, items, cell_x, cell_z, rect, join, columns);
-}
-
-void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
-  HWY_DYNAMIC_DISPATCH(FindGaps)(columns, min_gap, gaps);
-}
-
-std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps) {
-  std::array<uint64_t, kTileSide> bare;
-  HWY_DYNAMIC_DISPATCH(BareColumns)(gaps, bare);
-  return bare;
 }
 
 std::span<const TileColumns::Spill> TileColumns::spills_of(int32_t cell) const {
@@ -679,12 +558,13 @@ void sort_spans(const TileColumns& columns, TileSpans& spans) {
   spans.high.clear();
   std::vector<std::pair<int32_t, int32_t>> column;
   for (int32_t cell = 0; cell < kTileArea; ++cell) {
-    const size_t c = static_cast<size_t>(cell);
+    const auto c = static_cast<size_t>(cell);
+    const size_t p = columns.place(c);
     column.clear();
-    for (int32_t k = 0; k < columns.depth[c / static_cast<size_t>(columns.lanes)]; ++k) {
+    for (int32_t k = 0; k < columns.depth[p / static_cast<size_t>(columns.lanes)]; ++k) {
       const SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
-      if (layer.low[c] == kNoSpan) continue;
-      column.emplace_back(layer.low[c] + columns.base, layer.high[c] + columns.base);
+      if (layer.low[p] == kNoSpan) continue;
+      column.emplace_back(layer.low[p] + columns.base, layer.high[p] + columns.base);
     }
     for (const auto& spilled : columns.spills_of(cell)) {
       column.emplace_back(spilled.low + columns.base, spilled.high + columns.base);

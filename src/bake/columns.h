@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -18,7 +19,7 @@ inline constexpr int32_t kNoSupport = INT32_MIN;
 inline constexpr int32_t kNoSpan = INT32_MAX;  // as the low end of one that is not there
 inline constexpr double kWiden = 1e-4;         // cells
 
-/// Up to one span per cell. Cell (x, z) of the tile is index z * 64 + x.
+/// Up to one span per cell, at the cell's TileColumns::place.
 struct SpanLayer {
   alignas(64) std::array<int32_t, kTileArea> low;
   alignas(64) std::array<int32_t, kTileArea> high;
@@ -34,15 +35,25 @@ struct TileColumns {
   static constexpr int32_t kMaxLayers = 64;
 
   int32_t base = 0;                                // [mm]
-  int32_t lanes = 1;                               // cells that are filled together
-  std::array<uint8_t, kTileArea> depth;            // layers in use, per `lanes` cells
+  int32_t lanes = 1;                               // cells of a block: filled together
+  std::array<uint8_t, kTileArea> depth;            // layers in use, per block
   std::vector<std::unique_ptr<SpanLayer>> layers;  // unsorted
   std::vector<Spill> spills;                       // by cell
 
+  /// Where layers keep what they have of cell (x, z) of the tile, z * 64 + x: by blocks of up to
+  /// four columns and lanes / 4 rows, blocks and the cells in them by rows.
+  [[nodiscard]] size_t place(size_t cell) const {
+    const size_t wide = std::min<size_t>(static_cast<size_t>(lanes), 4);
+    const size_t high = static_cast<size_t>(lanes) / wide;
+    const size_t x = cell % kTileSide, z = cell / kTileSide;
+    const size_t block = z / high * (kTileSide / wide) + x / wide;
+    return block * static_cast<size_t>(lanes) + z % high * wide + x % wide;
+  }
   /// Does layer k hold a span of this cell?
   [[nodiscard]] bool holds(int32_t k, size_t cell) const {
-    return k < depth[cell / static_cast<size_t>(lanes)] &&
-           layers[static_cast<size_t>(k)]->low[cell] != kNoSpan;
+    const size_t at = place(cell);
+    return k < depth[at / static_cast<size_t>(lanes)] &&
+           layers[static_cast<size_t>(k)]->low[at] != kNoSpan;
   }
   [[nodiscard]] std::span<const Spill> spills_of(int32_t cell) const;
 };
@@ -69,29 +80,5 @@ struct TileSpans {
 
 /// Sorts and merges spans that touch or overlap.
 void sort_spans(const TileColumns& columns, TileSpans& spans);
-
-/// Free space over solid matter, up to one per cell. Heights from the columns' base.
-struct GapLayer {
-  alignas(64) std::array<int32_t, kTileArea> top;      // of the matter below
-  alignas(64) std::array<int32_t, kTileArea> ceiling;  // kOpenSkyMm where nothing is above
-  alignas(64) std::array<int32_t, kTileArea> support;  // as in SpanLayer
-};
-
-inline constexpr int32_t kOpenSkyMm = INT32_MAX;
-
-struct TileGaps {
-  int32_t base = 0;
-  int32_t max_count = 0;
-  uint64_t spans = 0;  // after joining
-  alignas(64) std::array<int32_t, kTileArea> count;
-  std::vector<std::unique_ptr<GapLayer>>
-      layers;  // ascending; layer k of cell c holds if k < count[c]
-};
-
-/// Bit x of row z: column (x, z) of the tile has no matter at all.
-std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps);
-
-/// Joins spans that are less than `min_gap` apart and lists what is free above each run.
-void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps);
 
 }  // namespace throng

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/columns.h"
+#include "bake/gaps.h"
 #include "bake/grid.h"
 #include "bake/triangles.h"
 #include "throng/avatar_class.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "bake/clearance.h"
-#include "bake/columns.h"
+#include "bake/gaps.h"
 #include "bake/sheet_kernels.h"
 #include "bake/surface_planes.h"
 #include "bake/wall_parts.h"

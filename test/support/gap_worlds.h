@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/columns.h"
+#include "bake/gaps.h"
 #include "bake/sheets.h"
 
 /// Columns made by hand, for the stages between the rasteriser and the baked world: 3 x 3 tiles of

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bake/columns.h"
+
+/// What is free above the solid spans of a tile's columns.
+namespace throng {
+
+/// Free space over solid matter, up to one per cell. Heights from the columns' base.
+struct GapLayer {
+  alignas(64) std::array<int32_t, kTileArea> top;      // of the matter below
+  alignas(64) std::array<int32_t, kTileArea> ceiling;  // kOpenSkyMm where nothing is above
+  alignas(64) std::array<int32_t, kTileArea> support;  // as in SpanLayer
+};
+
+inline constexpr int32_t kOpenSkyMm = INT32_MAX;
+
+struct TileGaps {
+  int32_t base = 0;
+  int32_t max_count = 0;
+  uint64_t spans = 0;  // after joining
+  alignas(64) std::array<int32_t, kTileArea> count;
+  std::vector<std::unique_ptr<GapLayer>>
+      layers;  // ascending; layer k of cell c holds if k < count[c]
+};
+
+/// Bit x of row z: column (x, z) of the tile has no matter at all.
+std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps);
+
+/// Joins spans that are less than `min_gap` apart and lists what is free above each run.
+void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps);
+
+}  // namespace throng

@@ -260,71 +260,203 @@ class RowCutter {
 // above it reach there, or the row's highest point if that is less; likewise the lowest. The lines
 // are the triangle's sides and the two that cut the row out; a line reaches highest at the end of
 // the cell towards which it rises. A line that is left out only adds matter.
-// Nothing here branches on a triangle's shape: shapes are as good as random.
 constexpr double kUnbound = 1e30;
+// How far beyond a cell's low end a line that rises reaches highest; one that falls.
+constexpr double kRisingEnd = 1 + kWiden, kFallingEnd = -kWiden;
+constexpr size_t kGroup = 8;  // triangles that are set up together
 
-// How far beyond a cell's low end a line of this slope reaches highest; lowest for its negative.
-HWY_INLINE double highest_end(double slope) {
-  return static_cast<double>(slope >= 0) * (1 + 2 * kWiden) - kWiden;
-}
-
-HWY_INLINE void bound_by_sides(const Corners<double>& corners, TileTriangle& t, int32_t x_first,
-                               int32_t x_last) {
-  const DF df;
-  const int32_t lanes = static_cast<int32_t>(hn::Lanes(df));
+// Triangles in the tile's frame, and what their rows and cells are bounded by. Nothing here
+// branches on a triangle's shape: shapes are as good as random.
+class TriangleGroup {
+ public:
   struct Line {
-    float x, y, slope;
+    alignas(64) float x[kGroup], y[kGroup], slope[kGroup];
   };
-  Line above[3], below[3];
-  constexpr size_t kEnds[3][3] = {{0, 2, 1}, {0, 1, 2}, {1, 2, 0}};
-  for (size_t side = 0; side < 3; ++side) {
-    const auto& [i, j, k] = kEnds[side];
-    const double dx = corners.x[j] - corners.x[i], dy = corners.y[j] - corners.y[i];
-    const auto sloped = static_cast<double>(std::fabs(dx) >= 1e-3);
-    const double slope = sloped * dy / (dx + (1 - sloped));
-    const double over = corners.y[i] + slope * (corners.x[k] - corners.x[i]) - corners.y[k];
+
+  size_t size = 0;
+  const CellTriangle* source[kGroup];
+  double x_low[kGroup], x_high[kGroup];
+
+  // Takes a triangle unless it misses the part of the tile.
+  HWY_INLINE void take(const CellTriangle& triangle, int32_t cell_x, int32_t cell_z,
+                       const TileRect& part) {
+    for (size_t i = 0; i < 3; ++i) {
+      x_[i][size] = triangle.x[i] - cell_x;
+      y_[i][size] = triangle.y[i] - triangle.low;
+      z_[i][size] = triangle.z[i] - cell_z;
+    }
+    source[size] = &triangle;
+    x_low[size] = std::min({x_[0][size], x_[1][size], x_[2][size]});
+    x_high[size] = std::max({x_[0][size], x_[1][size], x_[2][size]});
+    const bool misses = x_high[size] < part.x0 - kWiden || x_low[size] > part.x1 + kWiden ||
+                        z_[2][size] < part.z0 - kWiden || z_[0][size] > part.z1 + kWiden;
+    size += misses ? 0 : 1;
+  }
+
+  HWY_INLINE void set_up() {
+    for (size_t i = 0; i < kGroup; i += hn::Lanes(D())) {
+      set_gradients(i);
+      set_corners(i);
+      for (size_t side = 0; side < 3; ++side) set_lines(side, i);
+    }
+  }
+
+  HWY_INLINE TileTriangle triangle(size_t i, int32_t base) const {
+    TileTriangle t;
+    t.low = source[i]->low - base;
+    t.high = source[i]->high - base;
+    t.code = source[i]->code;
+    t.flat = t.low == t.high;
+    t.upright = upright_[i] != 0;
+    t.rises_in_z = rises_in_z_[i] != 0;
+    t.gradient = gradient_[i];
+    t.highest_end =
+        t.gradient >= 0 ? static_cast<float>(kRisingEnd) : static_cast<float>(kFallingEnd);
+    t.lowest_end =
+        t.gradient <= 0 ? static_cast<float>(kRisingEnd) : static_cast<float>(kFallingEnd);
+    t.margin = 0.05f + static_cast<float>(t.high - t.low) * 0x1p-20f;
+    return t;
+  }
+
+  // Bounds the heights over columns [x_first, x_last] by the triangle's sides.
+  HWY_INLINE void bound_by_sides(size_t i, int32_t x_first, int32_t x_last, TileTriangle& t) const {
+    const DF df;
+    const auto lanes = static_cast<int32_t>(hn::Lanes(df));
+    for (int32_t begin = x_first & ~(lanes - 1); begin <= x_last; begin += lanes) {
+      const VF x = hn::ConvertTo(df, counting_from(DI(), begin));
+      VF low = hn::Zero(df);
+      VF high = hn::Set(df, static_cast<float>(t.high - t.low));
+      const auto reach = [&](const Line& line) {
+        return hn::Add(hn::Set(df, line.y[i]),
+                       hn::Mul(hn::Sub(x, hn::Set(df, line.x[i])), hn::Set(df, line.slope[i])));
+      };
+      for (size_t side = 0; side < 3; ++side) {
+        high = hn::Min(high, reach(above_[side]));
+        low = hn::Max(low, reach(below_[side]));
+      }
+      hn::Store(low, df, t.side_low + begin);
+      hn::Store(high, df, t.side_high + begin);
+    }
+  }
+
+  [[nodiscard]] HWY_INLINE bool near(size_t i) const {
+    return x_low[i] > -256 && x_high[i] < 256 && z_[0][i] > -256 && z_[2][i] < 256;
+  }
+  HWY_INLINE Corners<float> near_corners(size_t i) const {
+    Corners<float> out;
+    for (size_t k = 0; k < 3; ++k) {
+      out.x[k] = corners_[k][i];
+      out.y[k] = corners_[3 + k][i];
+      out.z[k] = corners_[6 + k][i];
+    }
+    out.kx02 = along_[0][i];
+    out.ky02 = along_[1][i];
+    out.kx01 = along_[2][i];
+    out.ky01 = along_[3][i];
+    out.kx12 = along_[4][i];
+    out.ky12 = along_[5][i];
+    return out;
+  }
+  HWY_INLINE Corners<double> far_corners(size_t i) const {
+    Corners<double> out;
+    for (size_t k = 0; k < 3; ++k) {
+      out.x[k] = x_[k][i];
+      out.y[k] = y_[k][i];
+      out.z[k] = z_[k][i];
+    }
+    out.derive();
+    return out;
+  }
+
+ private:
+  using D = hn::CappedTag<double, kGroup>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DS = hn::Rebind<float, D>;
+  using VS = hn::Vec<DS>;
+  static HWY_INLINE V load(const double* from) { return hn::Load(D(), from); }
+  static HWY_INLINE V set(double value) { return hn::Set(D(), value); }
+  static HWY_INLINE void store(V v, float* to) { hn::StoreU(hn::DemoteTo(DS(), v), DS(), to); }
+  static HWY_INLINE void store(M mask, double* to) {
+    hn::Store(hn::IfThenElseZero(mask, set(1)), D(), to);
+  }
+
+  HWY_INLINE void set_gradients(size_t i) {
+    const D d;
+    constexpr double kSteepest = 1e6;  // mm per cell
+    const auto from_first = [&](const double(&of)[3][kGroup], size_t k) {
+      return hn::Sub(load(&of[k][i]), load(&of[0][i]));
+    };
+    const V ax = from_first(x_, 1), ay = from_first(y_, 1), az = from_first(z_, 1);
+    const V bx = from_first(x_, 2), by = from_first(y_, 2), bz = from_first(z_, 2);
+    const V normal_y = hn::Sub(hn::Mul(az, bx), hn::Mul(ax, bz));
+    const V rise_x = hn::Sub(hn::Mul(az, by), hn::Mul(ay, bz));
+    const V rise_z = hn::Sub(hn::Mul(ay, bx), hn::Mul(ax, by));
+    const M upright = hn::Not(hn::Lt(hn::Abs(rise_x), hn::Mul(set(kSteepest), hn::Abs(normal_y))));
+    const V gradient = hn::Div(rise_x, hn::IfThenElse(upright, set(1), normal_y));
+    store(hn::IfThenElse(upright, hn::Zero(d), gradient), &gradient_[i]);
+    store(upright, &upright_[i]);
+    store(hn::Not(hn::Xor(hn::Ge(rise_z, hn::Zero(d)), hn::Gt(normal_y, hn::Zero(d)))),
+          &rises_in_z_[i]);
+  }
+
+  // In floats, as Corners::derive.
+  HWY_INLINE void set_corners(size_t i) {
+    const DS ds;
+    VS x[3], y[3], z[3];
+    for (size_t k = 0; k < 3; ++k) {
+      x[k] = hn::DemoteTo(ds, load(&x_[k][i]));
+      y[k] = hn::DemoteTo(ds, load(&y_[k][i]));
+      z[k] = hn::DemoteTo(ds, load(&z_[k][i]));
+      hn::StoreU(x[k], ds, &corners_[k][i]);
+      hn::StoreU(y[k], ds, &corners_[3 + k][i]);
+      hn::StoreU(z[k], ds, &corners_[6 + k][i]);
+    }
+    constexpr size_t kEnds[3][2] = {{0, 2}, {0, 1}, {1, 2}};
+    for (size_t side = 0; side < 3; ++side) {
+      const auto& [a, b] = kEnds[side];
+      const auto has_length = hn::Gt(z[b], z[a]);
+      const VS length = hn::IfThenElse(has_length, hn::Sub(z[b], z[a]), hn::Set(ds, 1));
+      const VS per_row = hn::IfThenElseZero(has_length, hn::Div(hn::Set(ds, 1), length));
+      hn::StoreU(hn::Mul(hn::Sub(x[b], x[a]), per_row), ds, &along_[2 * side][i]);
+      hn::StoreU(hn::Mul(hn::Sub(y[b], y[a]), per_row), ds, &along_[2 * side + 1][i]);
+    }
+  }
+
+  HWY_INLINE void set_lines(size_t side, size_t i) {
+    const D d;
+    constexpr size_t kEnds[3][3] = {{0, 2, 1}, {0, 1, 2}, {1, 2, 0}};
+    const auto& [a, b, c] = kEnds[side];
+    const V x_a = load(&x_[a][i]), y_a = load(&y_[a][i]);
+    const V dx = hn::Sub(load(&x_[b][i]), x_a), dy = hn::Sub(load(&y_[b][i]), y_a);
+    const M sloped = hn::Ge(hn::Abs(dx), set(1e-3));
+    const V slope = hn::IfThenElseZero(sloped, hn::Div(dy, hn::IfThenElse(sloped, dx, set(1))));
+    const V to_c = hn::Sub(load(&x_[c][i]), x_a);
+    const V over = hn::Sub(hn::Add(y_a, hn::Mul(slope, to_c)), load(&y_[c][i]));
     // From a point near the tile on: a far one would cost the float its precision.
-    const double x = std::clamp(corners.x[i], -1.0, kTileSide + 1.0);
-    const double y = corners.y[i] + slope * (x - corners.x[i]);
+    const V x = hn::Min(hn::Max(x_a, set(-1)), set(kTileSide + 1));
+    const V y = hn::Add(y_a, hn::Mul(slope, hn::Sub(x, x_a)));
     // Of a triangle seen edge-on, thinner than the floats tell, each side bounds both ways.
     constexpr double kThin = 0.01;  // mm
-    const double is_above = sloped * static_cast<double>(over > -kThin);
-    const double is_below = sloped * static_cast<double>(over < kThin);
-    above[side] = {static_cast<float>(x - highest_end(slope)),
-                   static_cast<float>(y + (1 - is_above) * kUnbound), static_cast<float>(slope)};
-    below[side] = {static_cast<float>(x - highest_end(-slope)),
-                   static_cast<float>(y - (1 - is_below) * kUnbound), static_cast<float>(slope)};
+    const M is_above = hn::And(sloped, hn::Gt(over, set(-kThin)));
+    const M is_below = hn::And(sloped, hn::Lt(over, set(kThin)));
+    const V rising = hn::Sub(x, set(kRisingEnd)), falling = hn::Sub(x, set(kFallingEnd));
+    store(hn::IfThenElse(hn::Ge(slope, hn::Zero(d)), rising, falling), &above_[side].x[i]);
+    store(hn::IfThenElse(hn::Le(slope, hn::Zero(d)), rising, falling), &below_[side].x[i]);
+    store(hn::IfThenElse(is_above, y, set(kUnbound)), &above_[side].y[i]);
+    store(hn::IfThenElse(is_below, y, set(-kUnbound)), &below_[side].y[i]);
+    store(slope, &above_[side].slope[i]);
+    store(slope, &below_[side].slope[i]);
   }
-  for (int32_t begin = x_first & ~(lanes - 1); begin <= x_last; begin += lanes) {
-    const VF x = hn::ConvertTo(df, counting_from(DI(), begin));
-    VF low = hn::Zero(df);
-    VF high = hn::Set(df, static_cast<float>(t.high - t.low));
-    const auto reach = [&](const Line& line) {
-      return hn::Add(hn::Set(df, line.y),
-                     hn::Mul(hn::Sub(x, hn::Set(df, line.x)), hn::Set(df, line.slope)));
-    };
-    for (size_t side = 0; side < 3; ++side) {
-      high = hn::Min(high, reach(above[side]));
-      low = hn::Max(low, reach(below[side]));
-    }
-    hn::Store(low, df, t.side_low + begin);
-    hn::Store(high, df, t.side_high + begin);
-  }
-}
 
-HWY_INLINE void set_gradient(const Corners<double>& c, TileTriangle& t) {
-  constexpr double kSteepest = 1e6;  // mm per cell
-  const double ax = c.x[1] - c.x[0], ay = c.y[1] - c.y[0], az = c.z[1] - c.z[0];
-  const double bx = c.x[2] - c.x[0], by = c.y[2] - c.y[0], bz = c.z[2] - c.z[0];
-  const double normal_y = az * bx - ax * bz;
-  const double rise_x = az * by - ay * bz, rise_z = ay * bx - ax * by;
-  t.upright = !(std::fabs(rise_x) < kSteepest * std::fabs(normal_y));
-  t.gradient = t.upright ? 0 : static_cast<float>(rise_x / normal_y);
-  t.highest_end = static_cast<float>(highest_end(t.gradient));
-  t.lowest_end = static_cast<float>(highest_end(-static_cast<double>(t.gradient)));
-  t.rises_in_z = (rise_z >= 0) == (normal_y > 0);
-  t.margin = 0.05f + static_cast<float>(t.high - t.low) * 0x1p-20f;
-}
+  // Zero at first, for the lanes of a last group that is not full.
+  alignas(64) double x_[3][kGroup] = {}, y_[3][kGroup] = {}, z_[3][kGroup] = {};
+  alignas(64) double upright_[kGroup], rises_in_z_[kGroup];
+  alignas(64) float gradient_[kGroup];
+  alignas(64) float corners_[9][kGroup];
+  alignas(64) float along_[6][kGroup];  // x and y per row, along three sides
+  Line above_[3], below_[3];
+};
 
 // What the rows of a block are cut by: lane i has what its row has.
 struct BlockRows {
@@ -475,6 +607,21 @@ HWY_INLINE void fill_triangle(const Corners<T>& corners, const TileTriangle& t,
   }
 }
 
+HWY_INLINE void fill_triangle_of(const TriangleGroup& group, size_t i, const TileRect& rect,
+                                 int32_t join, TileColumns& columns) {
+  TileTriangle t = group.triangle(i, columns.base);
+  if (!t.flat) {
+    const auto x_first = static_cast<int32_t>(std::max<double>(group.x_low[i] - 1, rect.x0));
+    const auto x_last = static_cast<int32_t>(std::min<double>(group.x_high[i] + 1, rect.x1 - 1));
+    group.bound_by_sides(i, x_first, x_last, t);
+  }
+  if (group.near(i)) {
+    fill_triangle<DF>(group.near_corners(i), t, rect, join, columns);
+  } else {
+    fill_triangle<hn::CappedTag<double, 8>>(group.far_corners(i), t, rect, join, columns);
+  }
+}
+
 void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint32_t> items,
                    int32_t cell_x, int32_t cell_z, const TileRect& rect, int32_t join,
                    TileColumns& columns) {
@@ -484,46 +631,14 @@ void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint
   columns.base = items.empty() ? 0 : INT32_MAX;
   for (const uint32_t item : items) columns.base = std::min(columns.base, triangles[item].low);
 
-  for (const uint32_t item : items) {
-    const CellTriangle& source = triangles[item];
-    Corners<double> corners;
-    double x_low = 1e300, x_high = -1e300;
-    for (size_t i = 0; i < 3; ++i) {
-      corners.x[i] = source.x[i] - cell_x;
-      corners.y[i] = source.y[i] - source.low;
-      corners.z[i] = source.z[i] - cell_z;
-      x_low = std::min(x_low, corners.x[i]);
-      x_high = std::max(x_high, corners.x[i]);
+  TriangleGroup group;
+  for (size_t next = 0; next < items.size();) {
+    group.size = 0;
+    while (group.size < kGroup && next < items.size()) {
+      group.take(triangles[items[next++]], cell_x, cell_z, rect);
     }
-    if (x_high < rect.x0 - kWiden || x_low > rect.x1 + kWiden || corners.z[2] < rect.z0 - kWiden ||
-        corners.z[0] > rect.z1 + kWiden) {
-      continue;
-    }
-    TileTriangle t;
-    t.low = source.low - columns.base;
-    t.high = source.high - columns.base;
-    t.code = source.code;
-    t.flat = t.low == t.high;
-    set_gradient(corners, t);
-    if (!t.flat) {
-      const auto x_first = static_cast<int32_t>(std::max<double>(x_low - 1, rect.x0));
-      const auto x_last = static_cast<int32_t>(std::min<double>(x_high + 1, rect.x1 - 1));
-      bound_by_sides(corners, t, x_first, x_last);
-    }
-    const bool near = x_low > -256 && x_high < 256 && corners.z[0] > -256 && corners.z[2] < 256;
-    if (near) {
-      Corners<float> small;
-      for (size_t i = 0; i < 3; ++i) {
-        small.x[i] = static_cast<float>(corners.x[i]);
-        small.y[i] = static_cast<float>(corners.y[i]);
-        small.z[i] = static_cast<float>(corners.z[i]);
-      }
-      small.derive();
-      fill_triangle<DF>(small, t, rect, join, columns);
-      continue;
-    }
-    corners.derive();
-    fill_triangle<hn::CappedTag<double, 8>>(corners, t, rect, join, columns);
+    group.set_up();
+    for (size_t i = 0; i < group.size; ++i) fill_triangle_of(group, i, rect, join, columns);
   }
   std::stable_sort(columns.spills.begin(), columns.spills.end(),
                    [](const auto& a, const auto& b) { return a.cell < b.cell; });

@@ -47,13 +47,13 @@ int film(Session& session, const FilmOptions& options) {
                             .workers = options.workers,
                             .panel = false});
   if (!viewer) return fail(viewer.error());
+  const std::vector<double>& c = options.camera;
+  if (!c.empty()) viewer->look_at({c[0], c[1], c[2]}, {c[3], c[4], c[5]});
   viewer->load(short_name(options.target.path), stage_of(options.target));
   viewer->wait_until_loaded();
   if (const std::string error = viewer->status().error; !error.empty()) {
     return fail({Errc::kBadFile, error});
   }
-  const std::vector<double>& c = options.camera;
-  if (!c.empty()) viewer->look_at({c[0], c[1], c[2]}, {c[3], c[4], c[5]});
   viewer->play_for(options.from / options.speed);
   // Of a recording all that is left, of a crowd ten seconds.
   double seconds = options.seconds;
@@ -144,6 +144,13 @@ void add_film(CLI::App& parser, Session& session) {
   command->add_option("--near", target.start.near, "Goals within so many metres, 0: anywhere")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_flag("--only-seen", target.start.only_seen,
+                    "For a camera in a street: simulate only who could be seen from it");
+  command->add_option("--sight", target.start.sight, "With --only-seen: so far [m]")
+      ->check(CLI::Range(1.0, 2000.0))
+      ->capture_default_str();
+  command->add_flag("--coarse-far", target.start.coarse_far,
+                    "Simulate who is more than 300 m away in longer steps");
   command->add_option("--atlas", target.atlases, "Who walks, made by throng atlas; may be repeated")
       ->type_name("FILE.atlas")
       ->allow_extra_args(false);

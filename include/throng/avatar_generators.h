@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "throng/base.h"
 #include "throng/context.h"
@@ -66,6 +67,8 @@ class THRONG_API AvatarGenerators {
   /// and in the cells within reach.
   [[nodiscard]] Result<GeneratorReport> update(Crowd& crowd, Vec3d eye, const Sight& can_see,
                                                Context& context);
+  /// Whom they have added, and not removed.
+  [[nodiscard]] std::span<const AvatarId> members() const;
   /// Area of all ground that one can walk to from home. [m^2]
   [[nodiscard]] double area() const;
 

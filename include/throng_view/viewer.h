@@ -34,6 +34,12 @@ struct CrowdStart {
   double dt = 0.1;          ///< Length of a step. [s, 0.01 to 0.5]
   uint64_t seed = 1;
   bool zones = false;  ///< Ways by zones: for large worlds.
+  /// Only what the eye can see within `sight`, and a band around it, is populated and simulated, as
+  /// densely as `avatars` would be over the ground that is walked to from under the eye. Nobody
+  /// comes or goes in sight. All are of the class with the largest share.
+  bool only_seen = false;
+  double sight = 150;       ///< [m, > 0]
+  bool coarse_far = false;  ///< Who is too far for it to be seen takes steps more rarely.
   /// Where goals lie, as likely as the weights; empty or all 0: see `near`.
   std::vector<DensityMap> density = {};
 };

@@ -297,6 +297,8 @@ Result<AvatarGenerators> AvatarGenerators::make(const World& world, const Genera
   return AvatarGenerators(std::move(state));
 }
 
+std::span<const AvatarId> AvatarGenerators::members() const { return state_->members; }
+
 double AvatarGenerators::area() const { return state_->area; }
 
 Result<GeneratorReport> AvatarGenerators::populate(Crowd& crowd, Vec3d eye, const Sight& can_see,

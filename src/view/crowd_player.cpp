@@ -12,9 +12,10 @@
 namespace throng {
 namespace {
 
-constexpr double kStorey = 4;      // [m] up or down a goal may be
-constexpr uint64_t kTries = 24;    // to find one
-constexpr double kNearGround = 1;  // [m] from the ground a place may be
+constexpr double kStorey = 4;       // [m] up or down a goal may be
+constexpr uint64_t kTries = 24;     // to find one
+constexpr double kNearGround = 1;   // [m] from the ground a place may be
+constexpr double kLookMargin = 10;  // [m] Bodies and tiles that begin within sight end there.
 
 }  // namespace
 
@@ -35,6 +36,7 @@ CrowdPlayer::CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Cro
 
 Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, const CrowdStart& start,
                                                        int32_t workers, Vec3d origin,
+                                                       std::shared_ptr<const Occluders> occluders,
                                                        Context& context) {
   const CrowdConfig config{
       .dt = start.dt, .seed = start.seed, .workers = workers, .zones = start.zones};
@@ -45,6 +47,13 @@ Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, const CrowdS
   Result<Graph> graph = Graph::make(player->world_, {.workers = workers}, context);
   if (!graph) return graph.error();
   player->graph_ = *std::move(graph);
+  player->workers_ = workers;
+  if (start.only_seen && start.avatars > 0 && occluders) {
+    if (context.on_progress) context.on_progress({"what hides what", 0, 0});
+    SeenOnly& seen_only = player->seen_only_.emplace();
+    seen_only.sights.assign(3, EyeSight(std::move(occluders)));
+    return player;
+  }
   const Result<uint32_t> added = player->scatter(start.avatars, context);
   if (!added) return added.error();
   return player;
@@ -97,17 +106,19 @@ uint32_t CrowdPlayer::add_people(const std::vector<AvatarId>& ids,
   return static_cast<uint32_t>(there.size());
 }
 
+bool CrowdPlayer::is_on_large_ground(int32_t avatar_class, Place place) const {
+  constexpr double kShare = 0.1;
+  const std::span<const Component> grounds = graph_.components(avatar_class);
+  const int32_t ground = place ? graph_.component_at(avatar_class, place) : -1;
+  return ground >= 0 && grounds[static_cast<size_t>(ground)].area >= kShare * grounds[0].area;
+}
+
 // Not on a roof that nobody can reach: on ground that holds together over a tenth of what the
 // largest such ground has.
 Place CrowdPlayer::place_of(int32_t avatar_class, uint64_t seed, uint64_t stream) const {
-  constexpr double kShare = 0.1;
-  const std::span<const Component> grounds = graph_.components(avatar_class);
   for (uint64_t n = 0; n < kTries; ++n) {
     const Place place = world_.random_place(avatar_class, seed, stream + (n << 48));
-    const int32_t ground = place ? graph_.component_at(avatar_class, place) : -1;
-    if (ground >= 0 && grounds[static_cast<size_t>(ground)].area >= kShare * grounds[0].area) {
-      return place;
-    }
+    if (is_on_large_ground(avatar_class, place)) return place;
   }
   return world_.random_place(avatar_class, seed, stream);
 }
@@ -141,7 +152,7 @@ void CrowdPlayer::give_goals(std::span<const AvatarId> ids) {
   for (const AvatarId id : ids) {
     const uint32_t slot = id.slot1 - 1;
     Person& person = people_[slot];
-    if (person.driven) continue;
+    if (person.driven || person.generated) continue;
     const auto at = std::lower_bound(states_.begin(), states_.end(), slot,
                                      [](const AvatarState& s, uint32_t i) { return s.id < i; });
     if (at == states_.end() || at->id != slot) continue;
@@ -160,6 +171,7 @@ void CrowdPlayer::set_density(const std::vector<DensityMap>& maps) {
   crowd_.read(states_);
   for (const AvatarState& s : states_) {
     const Person& person = people_[s.id];
+    if (person.generated) continue;
     if (!person.goal || painted_.weight_at(person.goal.position) == 0) {
       elsewhere.push_back(person.id);
     }
@@ -168,9 +180,16 @@ void CrowdPlayer::set_density(const std::vector<DensityMap>& maps) {
 }
 
 std::shared_ptr<const Moment> CrowdPlayer::next() {
+  if (seen_only_ && (!place_ || !seen_only_->fault.empty())) return nullptr;
+  set_views();
+  if (last_) {
+    report_ = crowd_.step();
+    time_ += start_.dt;
+  }
+  if (seen_only_) {
+    if (const Result<void> ok = keep_populated(); !ok) seen_only_->fault = ok.error().message;
+  }
   if (!last_) return again();
-  report_ = crowd_.step();
-  time_ += start_.dt;
   give_goals(crowd_.stranded());
   give_goals(crowd_.arrived());
   return again();
@@ -182,6 +201,10 @@ std::shared_ptr<const Moment> CrowdPlayer::again() {
   moment->time = time_;
   moment->report = report_;
   put_states(states_, origin_, *moment);
+  if (seen_only_) {
+    moment->fault = seen_only_->fault;
+    for (const AvatarState& s : states_) moment->lives.push_back(people_[s.id].id.generation);
+  }
   follow(last_ ? *last_ : Moment{}, *moment);
   last_ = moment;
   return moment;
@@ -240,6 +263,111 @@ std::optional<AvatarDetail> CrowdPlayer::detail(uint64_t id) const {
                       .driven = person.driven};
   if (person.goal) detail.goal = person.goal.position;
   return detail;
+}
+
+int32_t CrowdPlayer::commonest_class() const {
+  size_t best = 0;
+  const auto share = [&](size_t i) { return mix_up_to_[i] - (i > 0 ? mix_up_to_[i - 1] : 0); };
+  for (size_t i = 1; i < mix_up_to_.size(); ++i) {
+    if (share(i) > share(best)) best = i;
+  }
+  return static_cast<int32_t>(best);
+}
+
+// Ground that many can walk to: below the eye, else near it, else anywhere.
+Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
+  constexpr double kDeep = 60, kStep = 0.5, kAround = 40;  // [m]
+  for (uint64_t n = 0; n < 4 * kTries; ++n) {
+    const auto offset = [&](uint64_t axis) {
+      return n == 0 ? 0 : kAround * (2 * random_unit(start_.seed, 21, 2 * n + axis) - 1);
+    };
+    for (double down = -kStorey; down < kDeep; down += kStep) {
+      const Vec3d at{eye.x + offset(0), eye.y - down, eye.z + offset(1)};
+      const Place place = world_.find_place(avatar_class, at, 0.6 * kStep);
+      if (place && is_on_large_ground(avatar_class, place)) return place;
+    }
+  }
+  return place_of(avatar_class, start_.seed, 0);
+}
+
+// The eye goes on while what is made now is shown: who is added must be hidden from where it was,
+// is, and may be by then.
+Result<void> CrowdPlayer::keep_populated() {
+  constexpr double kJump = 10;  // [m] a step
+  constexpr double kAhead = 3;  // [steps]
+  SeenOnly& s = *seen_only_;
+  Context quiet;
+  const EyePlace now = *place_;
+  const bool jumped =
+      !s.looked || length(now.eye - s.looked->eye) > kJump || now.cut != s.looked->cut;
+  if (jumped || !(now == *s.looked)) {
+    if (!jumped) std::swap(s.sights[0], s.sights[1]);
+    s.sights[0].look_from(now, start_.sight + kLookMargin);
+    s.used = jumped ? 1 : 2;
+    if (!jumped && now.eye != s.looked->eye) {
+      EyePlace soon = now;
+      soon.eye = now.eye + (now.eye - s.looked->eye) * kAhead;
+      s.sights[s.used++].look_from(soon, start_.sight + kLookMargin);
+    }
+  } else {
+    s.used = 1;
+  }
+  const Sight can_see = [&s](const Box3d& box) {
+    return std::any_of(s.sights.begin(), s.sights.begin() + static_cast<ptrdiff_t>(s.used),
+                       [&box](const EyeSight& sight) { return sight.sees(box); });
+  };
+  if (!s.generators) {
+    GeneratorConfig config;
+    config.avatar_class = commonest_class();
+    config.home = place_under(now.eye, config.avatar_class);
+    config.reach = start_.sight;
+    config.seed = start_.seed;
+    config.workers = workers_;
+    // How dense it is to be follows from how large the ground is.
+    Result<AvatarGenerators> measure = AvatarGenerators::make(world_, config, quiet);
+    if (!measure) return measure.error();
+    config.density = std::clamp(start_.avatars / std::max(1.0, measure->area()), 1e-6, 1.0);
+    Result<AvatarGenerators> made = AvatarGenerators::make(world_, config, quiet);
+    if (!made) return made.error();
+    s.generators = *std::move(made);
+  }
+  const Result<GeneratorReport> done = jumped
+                                           ? s.generators->populate(crowd_, now.eye, can_see, quiet)
+                                           : s.generators->update(crowd_, now.eye, can_see, quiet);
+  if (!done) return done.error();
+  s.looked = now;
+  std::vector<AvatarId> fresh;
+  std::vector<double> speeds;
+  for (const AvatarId id : s.generators->members()) {
+    const uint32_t slot = id.slot1 - 1;
+    if (people_.size() <= slot) people_.resize(slot + size_t{1});
+    if (people_[slot].id == id) continue;
+    AvatarSpawn like = spawn_like(added_++);
+    const int32_t avatar_class = commonest_class();
+    like.speed *= start_.speed > 0 ? 1
+                                   : classes_[static_cast<size_t>(avatar_class)].speed /
+                                         classes_[static_cast<size_t>(like.avatar_class)].speed;
+    people_[slot] = {.id = id,
+                     .avatar_class = avatar_class,
+                     .speed = like.speed,
+                     .goal = {},
+                     .goals_given = 0,
+                     .driven = false,
+                     .generated = true};
+    fresh.push_back(id);
+    speeds.push_back(like.speed);
+  }
+  crowd_.set_speeds(fresh, speeds);
+  return {};
+}
+
+// Who takes four steps at once is shown to jump by half a metre: from where that is a pixel and a
+// half of a picture 720 high, nobody sees it.
+void CrowdPlayer::set_views() {
+  if (!start_.coarse_far || !place_) return;
+  constexpr double kUnseen = 300;  // [m]
+  const CrowdView view{.position = place_->eye, .radius = kUnseen};
+  crowd_.set_views({&view, 1});
 }
 
 std::optional<uint64_t> CrowdPlayer::add_driven(Vec3d where, int32_t avatar_class, double speed,

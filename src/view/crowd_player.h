@@ -5,15 +5,18 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "throng/avatar_generators.h"
 #include "throng/context.h"
 #include "throng/crowd.h"
 #include "throng/graph.h"
 #include "throng/world.h"
 #include "throng_view/viewer.h"
 #include "view/density_brush.h"
+#include "view/eye_sight.h"
 #include "view/moment_feed.h"
 
 namespace throng {
@@ -34,11 +37,13 @@ struct AvatarDetail {
 class CrowdPlayer final : public MomentSource {
  public:
   /// Fails as Crowd::create and Crowd::scatter do, save that a world too small for all is filled
-  /// with as many as fit in a few tries.
-  [[nodiscard]] static Result<std::unique_ptr<CrowdPlayer>> make(World world,
-                                                                 const CrowdStart& start,
-                                                                 int32_t workers, Vec3d origin,
-                                                                 Context& context);
+  /// with as many as fit in a few tries. With CrowdStart::only_seen nobody is there, and no moment
+  /// comes, before it is told from where one looks.
+  [[nodiscard]] static Result<std::unique_ptr<CrowdPlayer>> make(
+      World world, const CrowdStart& start, int32_t workers, Vec3d origin,
+      std::shared_ptr<const Occluders> occluders, Context& context);
+  /// From where one looks from the next step on.
+  void look_from(const EyePlace& place) { place_ = place; }
   std::shared_ptr<const Moment> next() override;
   std::shared_ptr<const Moment> seek(double) override { return nullptr; }  // Time only goes on.
 
@@ -72,6 +77,15 @@ class CrowdPlayer final : public MomentSource {
     Place goal = {};
     uint32_t goals_given = 0;
     bool driven = false;
+    bool generated = false;  // Its goals are not ours to give.
+  };
+  // What CrowdStart::only_seen needs.
+  struct SeenOnly {
+    std::vector<EyeSight> sights;  // From where the eye is, was, and may be soon.
+    size_t used = 0;
+    std::optional<AvatarGenerators> generators;
+    std::optional<EyePlace> looked;
+    std::string fault;
   };
 
   CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Crowd&& crowd);
@@ -81,6 +95,11 @@ class CrowdPlayer final : public MomentSource {
   void give_goals(std::span<const AvatarId> ids);
   [[nodiscard]] Place goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] AvatarSpawn spawn_like(uint64_t number) const;
+  [[nodiscard]] int32_t commonest_class() const;
+  [[nodiscard]] Place place_under(Vec3d eye, int32_t avatar_class) const;
+  [[nodiscard]] bool is_on_large_ground(int32_t avatar_class, Place place) const;
+  Result<void> keep_populated();
+  void set_views();
 
   World world_;
   Graph graph_;
@@ -96,6 +115,9 @@ class CrowdPlayer final : public MomentSource {
   uint64_t added_ = 0;
   double time_ = 0;
   CrowdReport report_;
+  std::optional<EyePlace> place_;
+  std::optional<SeenOnly> seen_only_;
+  int32_t workers_ = 0;
   std::shared_ptr<const Moment> last_;
 };
 

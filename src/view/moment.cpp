@@ -32,13 +32,15 @@ size_t clip_for(const Atlas& atlas, bool moves) {
   return 0;
 }
 
-// Calls each(i, j) for all i of `b`; j is the index of the same id in `a`, or a.size().
+// Calls each(i, j) for all i of `b`; j is the index of the same one in `a`, or a.size().
 template <class Each>
 void for_each_pair(const Moment& a, const Moment& b, Each each) {
+  const auto life = [](const Moment& m, size_t k) { return m.lives.empty() ? 0 : m.lives[k]; };
   size_t j = 0;
   for (size_t i = 0; i < b.size(); ++i) {
     while (j < a.size() && a.ids[j] < b.ids[i]) ++j;
-    each(i, j < a.size() && a.ids[j] == b.ids[i] ? j : a.size());
+    const bool same = j < a.size() && a.ids[j] == b.ids[i] && life(a, j) == life(b, i);
+    each(i, same ? j : a.size());
   }
 }
 

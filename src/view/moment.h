@@ -27,6 +27,8 @@ struct SceneFlow {
 struct Moment {
   double time = 0;
   std::vector<uint64_t> ids;
+  /// Who has an id that was another's tells so by another number; empty: no id is given twice.
+  std::vector<uint32_t> lives;
   std::vector<uint8_t> classes;
   std::vector<float> x, y, z;
   std::vector<float> heading;  ///< From +Z towards +X. [turns, 0 to 1]

@@ -115,6 +115,12 @@ void MomentFeed::finish_posted() {
   idle_.wait_for(*task_, lock, [&] { return posted_.empty() && !working_; });
 }
 
+void MomentFeed::finish() {
+  std::unique_lock lock(mutex_);
+  idle_.wait_for(*task_, lock,
+                 [&] { return posted_.empty() && !working_ && !seeking_ && !wants_more(); });
+}
+
 void MomentFeed::wait_for(double time) {
   std::unique_lock lock(mutex_);
   wanted_ = time;

@@ -51,6 +51,8 @@ class MomentFeed {
   void post(std::function<void(MomentSource&)> work, bool at_once);
   /// Waits until all work that was posted has been done.
   void finish_posted();
+  /// Waits until that, and until all moments are there that at() has asked for.
+  void finish();
   /// Waits until there is a moment after `time`, or no more come: then at(time) is the same however
   /// fast the source is.
   void wait_for(double time);

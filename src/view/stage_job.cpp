@@ -10,8 +10,8 @@
 
 namespace throng {
 
-StageJob::StageJob(std::string name, LoadStage load, int32_t workers, Vec3d origin, World world)
-    : name_(std::move(name)), workers_(workers), origin_(origin), world_(std::move(world)) {
+StageJob::StageJob(std::string name, LoadStage load, int32_t workers, StageBefore before)
+    : name_(std::move(name)), workers_(workers), before_(std::move(before)) {
   context_.on_progress = [this](const Progress& progress) {
     {
       const std::lock_guard lock(mutex_);
@@ -49,11 +49,13 @@ Result<void> StageJob::start_walking() {
   context_.on_progress({"ways", 0, 0});
   std::unique_ptr<MomentSource> source;
   if (scenario_) {
-    auto player = ScenarioPlayer::make(world_, *scenario_, workers_, origin_, context_);
+    auto player =
+        ScenarioPlayer::make(before_.world, *scenario_, workers_, before_.origin, context_);
     if (!player) return player.error();
     source = *std::move(player);
   } else {
-    auto player = CrowdPlayer::make(world_, *crowd_, workers_, origin_, context_);
+    auto player = CrowdPlayer::make(before_.world, *crowd_, workers_, before_.origin,
+                                    before_.occluders, context_);
     if (!player) return player.error();
     source = *std::move(player);
   }
@@ -83,18 +85,20 @@ Result<void> StageParts::set_scene(const Scene& scene) {
   const Box3d bounds = scene.bounds();
   const Vec3d middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
   // Whole metres, so that positions relative to it read like those of the world.
-  job.origin_ = {std::round(middle.x), std::round(bounds.empty() ? 0 : bounds.min.y),
-                 std::round(middle.z)};
-  Result<PreparedScene> prepared = PreparedScene::make(scene, job.origin_);
+  job.before_.origin = {std::round(middle.x), std::round(bounds.empty() ? 0 : bounds.min.y),
+                        std::round(middle.z)};
+  Result<PreparedScene> prepared = PreparedScene::make(scene, job.before_.origin);
   if (!prepared) return prepared.error();
+  job.before_.occluders = occluders_of(scene, job.before_.origin);
   const std::lock_guard lock(job.mutex_);
+  job.mail_.occluders = job.before_.occluders;
   job.mail_.scene = *std::move(prepared);
   return {};
 }
 
 void StageParts::set_world(World world, std::optional<Nodes> nodes) {
   StageJob& job = job_;
-  job.world_ = world;
+  job.before_.world = world;
   {
     const std::lock_guard lock(job.mutex_);
     job.mail_.world = world;
@@ -127,7 +131,9 @@ void StageParts::set_figures(std::vector<std::vector<ViewFigure>> of_class) {
 void StageParts::set_crowd(const CrowdStart& start) {
   const std::lock_guard lock(job_.mutex_);
   job_.crowd_ = start;
-  job_.mail_.crowd = start;
+  job_.crowd_->only_seen |= job_.before_.only_seen;
+  job_.crowd_->coarse_far |= job_.before_.coarse_far;
+  job_.mail_.crowd = job_.crowd_;
 }
 
 void StageParts::set_scenario(const Scenario& scenario) {
@@ -141,8 +147,8 @@ void StageParts::set_replay(Replay replay) {
   const ReplaySpan span = replay_span(replay);
   std::vector<std::string> names;
   for (const RecordedClass& c : replay.info().classes) names.push_back(c.name);
-  auto feed =
-      std::make_unique<MomentFeed>(std::make_unique<ReplayPlayer>(std::move(replay), job.origin_));
+  auto feed = std::make_unique<MomentFeed>(
+      std::make_unique<ReplayPlayer>(std::move(replay), job.before_.origin));
   const std::lock_guard lock(job.mutex_);
   job.mail_.replay = span;
   job.mail_.class_names = std::move(names);

@@ -29,15 +29,23 @@ struct StageMail {
   std::optional<ReplaySpan> replay;
   std::optional<CrowdStart> crowd;
   std::optional<Scenario> scenario;
+  std::shared_ptr<const Occluders> occluders;
   std::vector<std::string> class_names;
   std::unique_ptr<MomentFeed> feed;
+};
+
+/// What a load that sets no scene goes on from, and what the user has set.
+struct StageBefore {
+  Vec3d origin = {};
+  World world = {};
+  std::shared_ptr<const Occluders> occluders = {};
+  bool only_seen = false, coarse_far = false;  // Besides those of CrowdStart.
 };
 
 /// A load beside the window.
 class StageJob {
  public:
-  /// A load that sets no scene goes on from the origin and world given.
-  StageJob(std::string name, LoadStage load, int32_t workers, Vec3d origin, World world);
+  StageJob(std::string name, LoadStage load, int32_t workers, StageBefore before);
   StageJob(const StageJob&) = delete;
   StageJob& operator=(const StageJob&) = delete;
   ~StageJob();  ///< Cancels and waits.
@@ -66,8 +74,7 @@ class StageJob {
   double share_ = -1;
   std::atomic<bool> done_ = false;
   // Of the task.
-  Vec3d origin_;
-  World world_;
+  StageBefore before_;
   std::optional<CrowdStart> crowd_;
   std::optional<Scenario> scenario_;
   std::optional<SideTask> task_;  // Last, so that it ends before what it uses.

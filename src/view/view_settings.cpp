@@ -22,10 +22,10 @@ void take(const Json& json, const char* name, double& value, double low, double 
 }  // namespace
 
 std::string settings_text(const ViewSettings& s) {
-  const Json json = {
-      {"panel", s.panel},         {"shadows", s.shadows}, {"smooth", s.smooth},
-      {"hints", s.hints},         {"edges", s.edges},     {"view_angle", s.view_angle},
-      {"fly_speed", s.fly_speed}, {"speed", s.speed},     {"layout", s.layout}};
+  const Json json = {{"panel", s.panel}, {"shadows", s.shadows},       {"smooth", s.smooth},
+                     {"hints", s.hints}, {"only_seen", s.only_seen},   {"coarse_far", s.coarse_far},
+                     {"edges", s.edges}, {"view_angle", s.view_angle}, {"fly_speed", s.fly_speed},
+                     {"speed", s.speed}, {"layout", s.layout}};
   return json.dump(2) + "\n";
 }
 
@@ -39,6 +39,8 @@ Result<ViewSettings> read_settings(const std::string& text) {
   take(json, "shadows", s.shadows);
   take(json, "smooth", s.smooth);
   take(json, "hints", s.hints);
+  take(json, "only_seen", s.only_seen);
+  take(json, "coarse_far", s.coarse_far);
   take(json, "edges", s.edges, 0, 1);
   take(json, "view_angle", s.view_angle, 10, 120);
   take(json, "fly_speed", s.fly_speed, 0.1, 1000);

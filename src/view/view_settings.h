@@ -14,6 +14,8 @@ struct ViewSettings {
   bool shadows = true;
   bool smooth = true;      ///< 2 x 2 samples a pixel.
   bool hints = true;       ///< The line that tells of F1.
+  bool only_seen = false;  ///< CrowdStart::only_seen.
+  bool coarse_far = false;
   double edges = 0.5;      ///< [0 to 1]
   double view_angle = 45;  ///< [degrees, 10 to 120]
   double fly_speed = 8;    ///< [m/s]

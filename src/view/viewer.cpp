@@ -56,6 +56,7 @@ void Viewer::State::take_parts() {
     figures = {};
     drawing.clear_atlases();
     panel.has_world = panel.has_crowd = false;
+    occluders = std::move(mail.occluders);
     panel.replay.reset();
     panel.scenario.reset();
     scenario.reset();
@@ -114,6 +115,8 @@ void Viewer::State::take_parts() {
   if (mail.crowd) {
     panel.crowd = *mail.crowd;
     panel.avatars_wanted = static_cast<int32_t>(mail.crowd->avatars);
+    panel.settings.only_seen = mail.crowd->only_seen;
+    panel.settings.coarse_far = mail.crowd->coarse_far;
     painted = mail.crowd->density;
   }
   if (mail.scenario) {
@@ -128,6 +131,8 @@ void Viewer::State::take_parts() {
     feed = std::move(mail.feed);
     panel.has_crowd = !panel.replay && !panel.scenario;
     time = panel.replay ? panel.replay->first : 0;
+    told_place.reset();
+    tell_place();
   }
   if (done) {
     if (!job->error().empty()) panel.status.error = job->error();
@@ -146,8 +151,12 @@ void Viewer::State::act_on_panel() {
   if (std::exchange(panel.set_count, false) && panel.has_crowd) {
     const auto count = static_cast<uint32_t>(std::max(0, panel.avatars_wanted));
     panel.crowd.avatars = count;
-    change_crowd(
-        [count](CrowdPlayer& player, Context& context) { player.set_count(count, context); });
+    if (panel.crowd.only_seen) {
+      panel.restart = true;  // As many more or fewer where nobody looks would be a strange sight.
+    } else {
+      change_crowd(
+          [count](CrowdPlayer& player, Context& context) { player.set_count(count, context); });
+    }
   }
   if (std::exchange(panel.unpaint_all, false)) {
     painted.clear();
@@ -163,6 +172,26 @@ void Viewer::State::act_on_panel() {
   }
   panel.seek.reset();
   if (std::exchange(panel.walk, false)) begin_walk();
+}
+
+// From where one looks: who simulates only what is seen, or less of what is far, must know.
+void Viewer::State::tell_place() {
+  if (!panel.has_crowd || !(panel.crowd.only_seen || panel.crowd.coarse_far)) return;
+  const EyePlace place{.eye = rig.eye() + origin,
+                       .nearest = rig.camera(aspect).nearest,
+                       .cut = panel.is_cut ? panel.cut : 1e9};
+  if (told_place && *told_place == place) return;
+  told_place = place;
+  feed->post([place](MomentSource& source) { static_cast<CrowdPlayer&>(source).look_from(place); },
+             /*at_once=*/false);
+}
+
+StageBefore Viewer::State::stage_before() const {
+  return {.origin = origin,
+          .world = world,
+          .occluders = occluders,
+          .only_seen = panel.settings.only_seen,
+          .coarse_far = panel.settings.coarse_far};
 }
 
 void Viewer::State::change_crowd(std::function<void(CrowdPlayer&, Context&)> change) {
@@ -190,6 +219,8 @@ void Viewer::State::change_scenario(std::function<Result<void>(ScenarioPlayer&)>
 void Viewer::State::restart_crowd() {
   leave_walk();
   CrowdStart start = panel.crowd;
+  start.only_seen = panel.settings.only_seen;
+  start.coarse_far = panel.settings.coarse_far;
   start.density = painted;
   if (scenario) scenario->densities = painted;
   retire_job();
@@ -203,7 +234,7 @@ void Viewer::State::restart_crowd() {
         }
         return {};
       },
-      config.workers, origin, world);
+      config.workers, stage_before());
 }
 
 void Viewer::State::retire_job() {
@@ -310,6 +341,7 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
     if (!answers->fault.empty()) panel.status.error = std::exchange(answers->fault, {});
   }
   follow_driven(seconds);
+  if (feed) tell_place();
   look_up_picked();
   show_overlays();
   panel.status.time = time;
@@ -367,7 +399,7 @@ void Viewer::load(const std::string& name, LoadStage load) {
   s.panel.status.name = name;
   s.panel.status.error.clear();
   s.panel.status.loading = true;
-  s.job = std::make_unique<StageJob>(name, std::move(load), s.config.workers, Vec3d{}, World{});
+  s.job = std::make_unique<StageJob>(name, std::move(load), s.config.workers, s.stage_before());
 }
 
 Result<void> Viewer::frame(double now, int32_t width, int32_t height) {
@@ -442,6 +474,9 @@ void Viewer::play_for(double seconds) {
   State& s = *state_;
   if (!s.feed) return;
   const double most = s.panel.replay ? s.panel.replay->last : std::numeric_limits<double>::max();
+  // Whatever was made so far was made as one looked then, on every machine.
+  s.feed->finish();
+  s.tell_place();
   // In small steps, so that no moment is passed over.
   const double end = std::min(s.time + seconds * s.panel.settings.speed, most);
   while (true) {

@@ -52,6 +52,8 @@ struct Viewer::State {
   std::unique_ptr<StageJob> job;
   std::vector<std::unique_ptr<StageJob>> retired;  // Cancelled, not yet at their ends.
   std::unique_ptr<MomentFeed> feed;
+  std::shared_ptr<const Occluders> occluders;
+  std::optional<EyePlace> told_place;  // To the crowd.
   BlendedCrowd crowd;
   std::optional<Nodes> nodes;
   std::unique_ptr<OverlayMaker> overlay_maker;
@@ -105,6 +107,8 @@ struct Viewer::State {
   void send_painted();
   void change_crowd(std::function<void(CrowdPlayer&, Context&)> change);
   void act_on_panel();
+  void tell_place();
+  [[nodiscard]] StageBefore stage_before() const;
   void advance_time(double seconds);
   void step_once();
   void look_up_crowd();

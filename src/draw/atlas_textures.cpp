@@ -3,8 +3,10 @@
 #include "draw/atlas_textures.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace throng {
@@ -24,6 +26,66 @@ void upload_pages(const Atlas& atlas, const std::vector<uint8_t>& four_bytes) {
                GL_UNSIGNED_BYTE, four_bytes.data());
 }
 
+#ifndef GL_COMPRESSED_RGBA_S3TC_DXT1_EXT
+#define GL_COMPRESSED_RGBA_S3TC_DXT1_EXT 0x83F1
+#define GL_COMPRESSED_RGBA_S3TC_DXT5_EXT 0x83F3
+#endif
+
+bool in_blocks(const Atlas& atlas) {
+  return atlas.format == AtlasFormat::kBc1 || atlas.format == AtlasFormat::kBc3;
+}
+
+// Half as many texels either way, as a card makes its next level, but that a colour counts as much
+// as it covers. Rows and columns are filled up to whole blocks.
+Atlas half_of(const Atlas& atlas) {
+  Atlas out;
+  out.pages = atlas.pages;
+  const int32_t across = atlas.width / 2, down = atlas.height / 2;
+  out.width = (across + 3) / 4 * 4;
+  out.height = (down + 3) / 4 * 4;
+  const size_t texels = static_cast<size_t>(out.width) * static_cast<size_t>(out.height) *
+                        static_cast<size_t>(out.pages);
+  out.colour.resize(4 * texels);
+  out.normal.resize(2 * texels);
+  for (int32_t page = 0; page < atlas.pages; ++page) {
+    for (int32_t y = 0; y < down; ++y) {
+      for (int32_t x = 0; x < across; ++x) {
+        std::array<uint32_t, 4> sum{};
+        for (int32_t k = 0; k < 4; ++k) {
+          const auto row = static_cast<size_t>(page * atlas.height + 2 * y + k / 2);
+          const uint8_t* from = atlas.colour.data() + 4 * (row * static_cast<size_t>(atlas.width) +
+                                                           static_cast<size_t>(2 * x + k % 2));
+          for (size_t c = 0; c < 3; ++c) sum[c] += uint32_t{from[c]} * from[3];
+          sum[3] += from[3];
+        }
+        const auto row = static_cast<size_t>(page * out.height + y);
+        uint8_t* to =
+            out.colour.data() + 4 * (row * static_cast<size_t>(out.width) + static_cast<size_t>(x));
+        for (size_t c = 0; c < 3; ++c) {
+          to[c] = static_cast<uint8_t>(sum[3] > 0 ? sum[c] / sum[3] : 0);
+        }
+        to[3] = static_cast<uint8_t>(sum[3] / 4);
+      }
+    }
+  }
+  return out;
+}
+
+// As blocks, which the card reads as they are: no card makes their levels, so we do.
+void upload_blocks(const Atlas& packed, const Atlas& unpacked) {
+  const GLenum kind = packed.format == AtlasFormat::kBc1 ? GL_COMPRESSED_RGBA_S3TC_DXT1_EXT
+                                                         : GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+  const auto upload = [&](GLint level, const std::vector<uint8_t>& blocks) {
+    glCompressedTexImage3D(GL_TEXTURE_2D_ARRAY, level, kind, packed.width >> level,
+                           packed.height >> level, packed.pages, 0,
+                           static_cast<GLsizei>(blocks.size()), blocks.data());
+  };
+  upload(0, packed.colour);
+  Atlas smaller = half_of(unpacked);
+  upload(1, convert_atlas(smaller, packed.format).colour);
+  upload(2, convert_atlas(half_of(smaller), packed.format).colour);
+}
+
 void upload_views(const Atlas& atlas) {
   const size_t rows = (atlas.views.size() * 2 + kViewsWide - 1) / kViewsWide;
   std::vector<uint16_t> words(rows * kViewsWide * 4);
@@ -37,6 +99,23 @@ void upload_views(const Atlas& atlas) {
 }
 
 }  // namespace
+
+bool takes_blocks() {
+  // The desktop's name, and the browser's with either prefix.
+  constexpr std::array<std::string_view, 3> kNames{"GL_EXT_texture_compression_s3tc",
+                                                   "GL_WEBGL_compressed_texture_s3tc",
+                                                   "WEBGL_compressed_texture_s3tc"};
+  GLint count = 0;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    const auto* name =
+        reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+    if (name != nullptr && std::find(kNames.begin(), kNames.end(), name) != kNames.end()) {
+      return true;
+    }
+  }
+  return false;
+}
 
 Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
   GLint largest = 0, layers = 0;
@@ -59,10 +138,16 @@ Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
   }
   out.colour = make_texture();
   glBindTexture(GL_TEXTURE_2D_ARRAY, out.colour.get());
-  upload_pages(atlas, atlas.colour);
   // Views keep to blocks of four texels, so two levels do not mix them.
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, 2);
-  glGenerateMipmap(GL_TEXTURE_2D_ARRAY);
+  out.colour_bytes = in_blocks(packed) && takes_blocks() ? packed.colour.size() : 0;
+  if (out.colour_bytes > 0) {
+    upload_blocks(packed, atlas);
+  } else {
+    upload_pages(atlas, atlas.colour);
+    glGenerateMipmap(GL_TEXTURE_2D_ARRAY);
+    out.colour_bytes = atlas.colour.size();
+  }
   filter(GL_TEXTURE_2D_ARRAY, GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
   std::vector<uint8_t> detail(atlas.colour.size());
   for (size_t i = 0; i < atlas.mask.size(); ++i) {

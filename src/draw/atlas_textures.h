@@ -10,6 +10,9 @@
 
 namespace throng {
 
+/// Can the card read colours as blocks of 4 x 4 texels (S3TC)?
+[[nodiscard]] bool takes_blocks();
+
 /// An atlas in the card's memory, and what the processor needs of it.
 struct AtlasTextures {
   /// Fails with kLimit: pages larger than textures may be.
@@ -20,6 +23,7 @@ struct AtlasTextures {
   Atlas shape;                                      ///< Without texels.
   std::vector<FigureReach> reaches;                 ///< Of each view.
   std::array<float, 3 * kBodyParts> part_colour{};  ///< Linear.
+  size_t colour_bytes = 0;  ///< Of the largest level: blocks stay blocks where the card reads them.
   GlTexture colour, detail, views;
 };
 

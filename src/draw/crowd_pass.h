@@ -26,6 +26,7 @@ class CrowdPass {
   [[nodiscard]] Result<void> make_programs();
   /// Fails with kLimit.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
+  [[nodiscard]] size_t colour_bytes(size_t atlas) const { return atlases_[atlas].colour_bytes; }
   void clear_atlases() {
     atlases_.clear();
     models_.clear();

@@ -354,6 +354,13 @@ Result<size_t> Drawing::add_atlas(const Atlas& atlas) {
   return state_->crowd.add_atlas(atlas);
 }
 
+size_t Drawing::colour_bytes(size_t atlas) const { return state_->crowd.colour_bytes(atlas); }
+
+bool Drawing::takes_blocks() const {
+  state_->make_current();
+  return throng::takes_blocks();
+}
+
 Result<void> Drawing::set_model(size_t atlas, const FigureModel& model) {
   state_->make_current();
   return state_->crowd.set_model(atlas, model);

@@ -213,8 +213,8 @@ void draw_main(PanelState& s, float scale, int32_t height) {
   if (!open) s.settings.panel = false;
   ImGui::PushItemWidth(ImGui::GetWindowWidth() * 0.52F);
   ImGui::TextWrapped("%s", s.status.name.c_str());
-  ImGui::TextDisabled("%zu avatars, %zu in the picture, %.0f frames/s", s.status.avatars,
-                      s.status.drawn, s.times.frame > 0 ? 1 / s.times.frame : 0);
+  ImGui::TextDisabled("%zu avatars, %zu drawn, %.0f frames/s", s.status.avatars, s.status.drawn,
+                      s.times.frame > 0 ? 1 / s.times.frame : 0);
   if (!s.status.error.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4{1.0F, 0.55F, 0.45F, 1.0F});
     ImGui::TextWrapped("%s", s.status.error.c_str());

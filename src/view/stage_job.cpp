@@ -121,7 +121,8 @@ void StageParts::set_atlases(std::vector<std::vector<Atlas>> of_class) {
 void StageParts::set_figures(std::vector<std::vector<ViewFigure>> of_class) {
   for (auto& row : of_class) {
     for (auto& [atlas, model] : row) {
-      if (atlas.format != AtlasFormat::kRgba8) atlas = convert_atlas(atlas, AtlasFormat::kRgba8);
+      // Cards read neither; blocks stay as they are where they do.
+      if (atlas.format == AtlasFormat::kRgb5a1) atlas = convert_atlas(atlas, AtlasFormat::kRgba8);
     }
   }
   const std::lock_guard lock(job_.mutex_);

@@ -66,6 +66,55 @@ Atlas coded_atlas() {
   return atlas;
 }
 
+// What the card makes of blocks is what we make of them, near and far.
+TEST(GlDrawing, AtlasesOfBlocksStayBlocksAndLookTheSame) {
+  AtlasConfig made;
+  made.frames = 4;
+  Context context;
+  const auto atlas = build_atlas(built_in_character(), made, context);
+  ASSERT_TRUE(atlas);
+  Avatars avatars;
+  for (int32_t i = 0; i < 200; ++i) {
+    avatars.add({(i % 20 - 9.5) * 0.8, 0, -3.0 * (i / 20)}, i * 0.07, i * 0.13,
+                static_cast<uint16_t>(i));
+  }
+  const DrawnCrowd crowd = avatars.crowd();
+  DrawingConfig config;
+  config.width = 640;
+  config.height = 360;
+  config.camera.eye = {0, 3, 9};
+  config.camera.target = {0, 1, -6};
+  for (const AtlasFormat format : {AtlasFormat::kBc1, AtlasFormat::kBc3}) {
+    const Atlas blocks = convert_atlas(*atlas, format);
+    Drawing on_card = made_drawing(), unpacked = made_drawing();
+    ASSERT_TRUE(on_card.add_atlas(blocks));
+    ASSERT_TRUE(unpacked.add_atlas(convert_atlas(blocks, AtlasFormat::kRgba8)));
+    if (!on_card.takes_blocks()) GTEST_SKIP() << on_card.renderer() << " reads no blocks";
+    EXPECT_EQ(on_card.colour_bytes(0), blocks.colour.size());
+    EXPECT_EQ(unpacked.colour_bytes(0) / on_card.colour_bytes(0),
+              format == AtlasFormat::kBc1 ? 8U : 4U);
+    const auto a = on_card.draw({&crowd, 1}, config), b = unpacked.draw({&crowd, 1}, config);
+    ASSERT_TRUE(a && b);
+    size_t differ = 0, people = 0;
+    const auto empty = on_card.draw({}, config);
+    ASSERT_TRUE(empty);
+    for (size_t i = 0; i < a->rgb.size(); i += 3) {
+      const auto far = [&](const Image& image, const Image& other) {
+        int32_t most = 0;
+        for (size_t c = i; c < i + 3; ++c) {
+          most = std::max(most, std::abs(image.rgb[c] - other.rgb[c]));
+        }
+        return most > 8;
+      };
+      people += far(*b, *empty) ? 1 : 0;
+      differ += far(*a, *b) ? 1 : 0;
+    }
+    EXPECT_GT(people, 10000U);
+    // Smaller levels are made of other blocks than the card would make of the texels.
+    EXPECT_LT(differ * 20, people) << word_for(format) << ": " << differ << " of " << people;
+  }
+}
+
 // [TC00]: all 32 directions, 8 elevations and 10 frames, through the processor, the card's textures
 // and shaders, down to the pixels.
 TEST(GlDrawing, EveryDirectionElevationAndFrameShowsTheRightView) {

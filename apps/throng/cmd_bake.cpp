@@ -31,11 +31,11 @@ struct BakeOptions {
   NodeConfig node_config;
 };
 
-// Nodes are made when they are asked for, and whenever a class climbs: only they carry climbers.
+// Nodes are made when they are asked for, and whenever a class climbs or drops: only they carry it.
 bool wants_nodes(const BakeOptions& options) {
   return options.nodes || !options.jumps.empty() ||
          std::any_of(options.config.classes.begin(), options.config.classes.end(),
-                     [](const AvatarClass& avatar) { return avatar.climb_slope > 0; });
+                     [](const AvatarClass& avatar) { return goes_over_nodes(avatar); });
 }
 
 bool read_point(const Json& entry, const char* key, Vec3d& out) {
@@ -203,7 +203,7 @@ void add_bake(CLI::App& parser, Session& session) {
                     "Know matter by whole cells: faster, and loses up to a cell beside walls");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->add_flag("--nodes", options->nodes,
-                    "Also make nodes and links; always done where a class climbs");
+                    "Also make nodes and links; always done where a class climbs or drops");
   command->add_option("--jumps", options->jumps, "With nodes: ways given by hand (JSON)")
       ->type_name("FILE.json");
   command

@@ -45,6 +45,8 @@ Json info_json(const InfoOptions& options, const WorldSummary& summary,
                        {"step", avatar.step},
                        {"max_slope", avatar.max_slope},
                        {"speed", avatar.speed},
+                       {"climb_slope", avatar.climb_slope},
+                       {"max_drop", avatar.max_drop},
                        {"flies", avatar.flies},
                        {"walkable_area", summary.walkable_area[i]}});
   }
@@ -68,6 +70,14 @@ Json info_json(const InfoOptions& options, const WorldSummary& summary,
   return json;
 }
 
+std::string info_of_moves(const AvatarClass& avatar) {
+  std::string text;
+  if (avatar.climb_slope > 0) text += fmt::format(", climbs to {:.0f} deg", avatar.climb_slope);
+  if (avatar.max_drop > 0) text += fmt::format(", drops {:.2f} m", avatar.max_drop);
+  if (avatar.flies) text += ", flies";
+  return text;
+}
+
 std::string info_text(const InfoOptions& options, const WorldSummary& summary,
                       const std::optional<AirSummary>& air) {
   const Vec3d size = summary.bounds.max - summary.bounds.min;
@@ -84,8 +94,7 @@ std::string info_text(const InfoOptions& options, const WorldSummary& summary,
     text += fmt::format(
         "  {:<12} {:.2f} m high, radius {:.2f} m, step {:.2f} m, slope {:.1f} deg: ", avatar.name,
         avatar.height, avatar.radius, avatar.step, avatar.max_slope);
-    text += fmt::format("{:.1f} m2 walkable{}\n", summary.walkable_area[i],
-                        avatar.flies ? ", flies" : "");
+    text += fmt::format("{:.1f} m2 walkable{}\n", summary.walkable_area[i], info_of_moves(avatar));
   }
   if (air) {
     text += fmt::format(

@@ -260,6 +260,10 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
   return json;
 }
 
+const char* word_of_gap(const NodePathLink& link) {
+  return link.leaps && link.kind != LinkKind::kDrop ? " over a gap" : "";
+}
+
 std::string node_path_text(const PathOptions& options, const NodePath& path, const NodePlace& to,
                            double seconds) {
   std::string text;
@@ -278,10 +282,11 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
     const NodePlace& place = path.points[i].place;
     text += fmt::format("  {}  {:3.0f} deg", where(place.feet),
                         std::acos(std::clamp(place.normal.y, -1.0, 1.0)) * 180 / std::numbers::pi);
+    if (!path.points[i].place) text += "  over the edge";
     for (; link < path.links.size() && path.links[link].point == i; ++link) {
       if (path.links[link].kind == LinkKind::kWalk) continue;
       text += fmt::format("  {}{}", app::word_for(path.links[link].kind),
-                          path.links[link].leaps ? " over a gap" : "");
+                          word_of_gap(path.links[link]));
     }
     text += '\n';
   }
@@ -379,12 +384,12 @@ int path(Session& session, const PathOptions& options) {
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());
-  const bool climbs = world->summary().classes[static_cast<size_t>(*avatar_class)].climb_slope > 0;
+  const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
   if (options.fly && options.nodes) {
     return fail({Errc::kBadConfig, "--fly leads through the air, --nodes over the ground"});
   }
   if (options.fly) return fly(session, options, *world, *avatar_class);
-  if (options.nodes || climbs) {
+  if (options.nodes || goes_over_nodes(avatar)) {
     if (!options.blocks.empty() || !options.jumps.empty() || !options.area_costs.empty()) {
       return fail({Errc::kBadConfig,
                    "--block, --jump and --area-cost change the ground of level tiles; ways over "

@@ -24,6 +24,9 @@ struct AvatarClass {
   /// Steepest surface of a curved patch that it climbs, its axis along the normal: 90 is a wall,
   /// 180 a ceiling. 0: it does not climb. [degrees, 0 to 180]
   double climb_slope = 0;
+  /// Deepest that it lets itself down over an edge, one way: a longer way down than its step that
+  /// ways over nodes may take. 0: it does not. [m, 0 to 1000]
+  double max_drop = 0;
   bool flies = false;  ///< Moves through the air, too.
 };
 

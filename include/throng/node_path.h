@@ -26,11 +26,12 @@ struct NodePathConfig {
 
 /// A point of a way and how it is reached from the one before it.
 struct NodePathPoint {
-  /// In its node, which also holds the next point if that is reached on the surface.
+  /// In its node, which also holds the next point if that is reached on the surface. Nowhere, but
+  /// with feet and axis, in the air above the place that a body drops to.
   NodePlace place;
   /// On the surface: straight by the parameters of the last point's patch, whose node holds both.
   /// Otherwise the feet go straight through the air, and the axis turns evenly: over the edge of a
-  /// patch, where there is nearly nothing to go, or along a leap.
+  /// patch, where there is nearly nothing to go, along a leap, or out over an edge and then down.
   bool on_surface = true;
 };
 

@@ -27,8 +27,8 @@ enum class LinkKind : uint8_t {
   kWalk = 0,
   kStep,     ///< Over a rise that some class cannot take.
   kClimb,    ///< One end is steeper than any walker's limit, or a gap between patches lies between.
-  kDrop,     ///< One way, down. (None are made yet.)
-  kJump,     ///< Given by hand; the only one that may lead one way.
+  kDrop,     ///< One way: out over an edge and down. For classes with a `max_drop`.
+  kJump,     ///< Given by hand; may lead one way.
   kLand,     ///< From the air. (Reserved.)
   kTakeOff,  ///< To the air. (Reserved.)
 };
@@ -92,13 +92,15 @@ struct NodeInfo {
   float area = 0;        ///< [m^2]
 };
 
-/// A way out of a node. Its opposite stands at the other node, always, save of jumps one way.
+/// A way out of a node. Its opposite stands at the other node, always, save of drops and of jumps
+/// one way.
 struct NodeArc {
   uint32_t to = 0;
   uint16_t classes = 0;  ///< Who can go.
   LinkKind kind = LinkKind::kWalk;
   /// The nodes do not touch: a body goes straight between these two of their places, by parameters
-  /// of their patches, turning evenly.
+  /// of their patches, turning evenly; or, if it drops, level from the first to above the second,
+  /// upright there, and straight down.
   bool leaps = false;
   double from_s = 0, from_t = 0, to_s = 0, to_t = 0;
 };

@@ -64,7 +64,7 @@ struct NodeVerifyReport {
   uint64_t unsupported = 0;  ///< Places without a surface at the feet.
   uint64_t steeper = 0;      ///< Places on a steeper surface than a node around them promises.
   uint64_t lower = 0;        ///< Places with less free height than a node around them promises.
-  uint64_t one_way = 0;      ///< Arcs without one back.
+  uint64_t one_way = 0;      ///< Arcs without one back, and drops that are none.
   std::vector<VerifyFault> faults;  ///< The first few of each kind.
   double seconds = 0;
 };
@@ -80,7 +80,7 @@ struct NodeVerifyReport {
 struct NodePathReport {
   uint64_t pairs = 0;    ///< Random pairs of places of the class.
   uint64_t reached = 0;  ///< Of these, with a way.
-  uint64_t parted = 0;   ///< Of these, without one, and in different parts of Nodes::reach.
+  uint64_t parted = 0;   ///< Of these, without one, and no arcs lead there.
   uint64_t legs = 0;     ///< Of the ways, point to point.
   uint64_t links = 0;    ///< Used by them.
   std::array<uint64_t, kLinkKinds> links_of_kind{};
@@ -89,7 +89,7 @@ struct NodePathReport {
   uint64_t entered = 0;      ///< Legs whose body meets a triangle. Must be 0.
   uint64_t unsupported = 0;  ///< Legs with no surface at the feet, but for leaps. Must be 0.
   uint64_t torn = 0;      ///< Legs that leave their node, or do not begin where the last ended. 0.
-  uint64_t disagree = 0;  ///< Pairs that have a way though they hold not together, or none. 0.
+  uint64_t disagree = 0;  ///< Pairs that have a way though no arcs lead there, or the reverse. 0.
   double length = 0;      ///< Of all ways. [m]
   double straight = 0;    ///< Of the straight lines between their ends. [m]
   double search_seconds = 0;  ///< Of all queries, one thread each.

@@ -57,6 +57,15 @@ double distance2(const Clipped& polygon) {
   return left != right ? 0 : nearest;  // All edges turn one way around the axis.
 }
 
+// Squared distance between the segments from a to b and from the axis to p, seen along it.
+double distance2_to_way(Vec3d a, Vec3d b, Vec3d p) {
+  const auto side = [](Vec3d u, Vec3d v) { return u.x * v.y - u.y * v.x; };
+  const Vec3d ab = b - a, ap = p - a, ao = a * -1;
+  if (side(p, a) * side(p, b) < 0 && side(ab, ao) * side(ab, ap) < 0) return 0;
+  return std::min({distance2_to_segment(a, b), distance2_to_segment(a - p, b - p),
+                   distance2_to_segment(ao, ap), distance2_to_segment(b * -1, p - b)});
+}
+
 }  // namespace
 
 BodyFrame BodyFrame::around(Vec3d centre, Vec3d up) {
@@ -84,6 +93,29 @@ double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep) {
   double lowest = kNever;
   for (size_t i = 0; i < polygon.count; ++i) lowest = std::min(lowest, polygon.corners[i].z);
   return lowest;
+}
+
+bool enters_on_way(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d along) {
+  const auto& [a, b, c] = triangle;
+  const double low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});
+  if (low > sweep.high || high < sweep.low) return false;
+  const double r = sweep.radius;
+  if (std::min({a.x, b.x, c.x}) > std::max(0.0, along.x) + r ||
+      std::max({a.x, b.x, c.x}) < std::min(0.0, along.x) - r ||
+      std::min({a.y, b.y, c.y}) > std::max(0.0, along.y) + r ||
+      std::max({a.y, b.y, c.y}) < std::min(0.0, along.y) - r) {
+    return false;
+  }
+  Clipped polygon{{a, b, c}, 3};
+  if (low < sweep.low) polygon = clip(polygon, sweep.low, 1);
+  if (high > sweep.high) polygon = clip(polygon, sweep.high, -1);
+  if (polygon.count == 0) return false;
+  if (distance2(polygon) == 0) return true;  // The way begins in it.
+  for (size_t i = 0; i < polygon.count; ++i) {
+    const Vec3d p = polygon.corners[i], q = polygon.corners[(i + 1) % polygon.count];
+    if (distance2_to_way(p, q, along) <= r * r) return true;
+  }
+  return false;
 }
 
 Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep) {

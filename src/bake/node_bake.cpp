@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "bake/node_drops.h"
 #include "bake/node_file.h"
 #include "bake/patch_links.h"
 #include "core/file_map.h"
@@ -75,6 +76,8 @@ class NodeBaker {
       return Error{Errc::kLimit, "nodes: more than 2^31 nodes; use a larger cell or node size"};
     }
     find_pairs();
+    if (context_.cancel) return cancelled();
+    add_drops();
     if (auto ok = add_jumps(); !ok) return ok.error();
     if (context_.cancel) return cancelled();
     link();
@@ -105,8 +108,12 @@ class NodeBaker {
   }
 
   void judge_patches() {
+    for (size_t c = 0; c < data_.summary.classes.size(); ++c) {
+      const bool asked = (config_.classes >> c & 1) != 0;
+      if (asked && data_.summary.classes[c].max_drop > 0) drops_ = true;
+    }
+    if (has_patches_ || drops_) triangles_.emplace(scene_, config_.workers);
     if (!has_patches_) return;
-    triangles_.emplace(scene_, config_.workers);
     cells_.resize(scene_.patches.size());
     std::vector<uint8_t> blocked(cells_.size(), 0);
     for (size_t t = 0; t < scene_.triangles.size(); ++t) {
@@ -184,13 +191,10 @@ class NodeBaker {
       }
     };
     if (has_patches_) {
-      const PatchLinkInput input{.triangles = &*triangles_,
-                                 .world = &world_,
-                                 .classes = data_.summary.classes,
-                                 .cells = cells_,
-                                 .size = config_.size};
+      const PatchLinkInput input = link_input();
       EdgeLinks edges = link_edges(input, config_.workers);
       doors_ = std::move(edges.doors);
+      if (drops_) edges_ = edges.pairs;
       take(std::move(edges.pairs), bezier_, bezier_);
       take(link_holes(input, config_.workers), bezier_, bezier_);
       if (has_tiles_) take(link_tiles(input, config_.workers), bezier_, level_);
@@ -204,6 +208,38 @@ class NodeBaker {
       if (!context_.cancel) lists[i] = tile_pairs(data_, tile % tiles_x, tile / tiles_x);
     });
     for (auto& list : lists) take(std::move(list), level_, level_);
+  }
+
+  [[nodiscard]] PatchLinkInput link_input() const {
+    return {.triangles = &*triangles_,
+            .world = &world_,
+            .classes = data_.summary.classes,
+            .cells = cells_,
+            .size = config_.size};
+  }
+
+  void add_drops() {
+    if (!drops_) return;
+    const DropInput input{
+        .links = link_input(), .edges = edges_, .tiles = has_tiles_, .wanted = config_.classes};
+    for (const NodeDrop& drop : find_drops(input, config_.workers)) {
+      const auto patch_of = [&](const DropEnd& end) {
+        return (end.kind == PatchKind::kBezier ? bezier_ : level_)[end.source];
+      };
+      // Of level tiles one from each block of 8 x 8 cells will do.
+      const bool on_tile = drop.from.kind == PatchKind::kLevelTile;
+      const uint32_t block = drop.from.cell / 512 * 8 + drop.from.cell % 64 / 8;
+      leaps_.push_back({patch_of(drop.from), drop.from.cell, patch_of(drop.to), drop.to.cell});
+      pairs_.push_back({.patch_a = patch_of(drop.from),
+                        .cell_a = drop.from.cell,
+                        .patch_b = patch_of(drop.to),
+                        .cell_b = drop.to.cell,
+                        .classes = drop.classes,
+                        .kind = LinkKind::kDrop,
+                        .leap1 = static_cast<uint32_t>(leaps_.size()),
+                        .one_way = true,
+                        .spot = on_tile ? block : drop.from.cell});
+    }
   }
 
   // The cell nearest to a point, of those on which a class may stand within a metre.
@@ -470,14 +506,15 @@ class NodeBaker {
   Context& context_;
   NodeBins bins_;
   bool has_patches_ = false, has_tiles_ = false;
+  bool drops_ = false;       // does a class drop?
   uint16_t on_patches_ = 0;  // classes
   std::optional<TriangleSquares> triangles_;
   std::vector<BezierCells> cells_;        // by Bezier patch
   std::vector<PatchSource> sources_;      // patches of the forest
   std::vector<uint32_t> bezier_, level_;  // where they are in the forest
   NodeForest forest_;
-  std::vector<CellPair> pairs_;
-  std::vector<PatchDoor> doors_;  // by patch of the scene
+  std::vector<CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
+  std::vector<PatchDoor> doors_;         // by patch of the scene
   std::vector<Leap> leaps_;
   std::vector<NodeLink> links_;
   std::vector<std::pair<int32_t, int32_t>> tile_place_;  // by level of the world

@@ -25,13 +25,14 @@ struct Limit {
   const char* unit;
 };
 
-constexpr std::array<Limit, 6> kLimits{{
+constexpr std::array<Limit, 7> kLimits{{
     {"height", &AvatarClass::height, 0.1, 30, "m"},
     {"radius", &AvatarClass::radius, 0.01, 5, "m"},
     {"step", &AvatarClass::step, 0, 15, "m"},
     {"max_slope", &AvatarClass::max_slope, 0, 89, "degrees"},
     {"speed", &AvatarClass::speed, 1e-6, 1000, "m/s"},
     {"climb_slope", &AvatarClass::climb_slope, 0, 180, "degrees"},
+    {"max_drop", &AvatarClass::max_drop, 0, 1000, "m"},
 }};
 
 // The limit that `avatar` breaks, as words, or nothing.
@@ -44,6 +45,10 @@ std::string broken_limit(const AvatarClass& avatar) {
   }
   if (avatar.step > avatar.height / 2) {
     return fmt::format("step = {} is more than half the height {}", avatar.step, avatar.height);
+  }
+  if (avatar.max_drop > 0 && avatar.max_drop <= avatar.step) {
+    return fmt::format("max_drop = {} is no more than the step {}; 0 asks for no drops",
+                       avatar.max_drop, avatar.step);
   }
   return {};
 }
@@ -117,14 +122,16 @@ Result<std::vector<AvatarClass>> read_classes(const ConfigNode& root, const std:
     ConfigReader reader(name, *table, fmt::format("avatar class {}", classes.size() + 1));
     reader.require("name");
     reader.text("name", avatar.name);
-    reader.only({"name", "height", "radius", "step", "max_slope", "speed", "climb_slope", "flies"});
+    reader.only({"name", "height", "radius", "step", "max_slope", "speed", "climb_slope",
+                 "max_drop", "flies"});
     reader.flag("flies", avatar.flies);
     for (const Limit& limit : kLimits) {
       reader.number(limit.key, avatar.*limit.member, limit.low, limit.high);
     }
     if (!reader.ok()) return reader.error();
     if (const std::string broken = broken_limit(avatar); !broken.empty()) {
-      const ConfigNode* step = reader.find("step");
+      const bool drops = broken.starts_with("max_drop");
+      const ConfigNode* step = reader.find(drops ? "max_drop" : "step");
       reader.fail(step != nullptr ? *step : *table, broken);
       return reader.error();
     }

@@ -40,7 +40,7 @@ void NodeLinker::add(uint32_t a, uint32_t b, uint16_t classes, LinkKind kind) {
       return;
     }
   }
-  links_.push_back({a, b, classes, kind, leap1_, turned, one_way_});
+  links_.push_back({a, b, classes, kind, leap1_, turned, one_way_, spot_});
 }
 
 void NodeLinker::link_chains(uint32_t patch_a, uint32_t leaf_a, uint32_t patch_b, uint32_t leaf_b,
@@ -126,9 +126,11 @@ void NodeLinker::link(const CellPair& pair) {
       node(pair.patch_a, a).promise.classes & node(pair.patch_b, b).promise.classes & pair.classes;
   leap1_ = pair.leap1;
   one_way_ = pair.one_way;
+  spot_ = pair.spot;
   if (classes != 0) link_chains(pair.patch_a, a, pair.patch_b, b, classes, pair.kind);
   leap1_ = 0;
   one_way_ = false;
+  spot_ = 0;
 }
 
 std::vector<NodeLink> NodeLinker::take() {
@@ -169,9 +171,11 @@ void merge_node_links(std::vector<NodeLink>& links) {
     }
     // A leap that serves no class that an earlier one does not serve is left out.
     uint16_t served = 0;
-    // (Jumps are given one by one, and some lead one way: all are kept.)
+    // (Jumps are given one by one, and some lead one way: all are kept. Of drops one from each spot
+    // is: a ledge may be long.)
     for (size_t k = group; k < kept && link.kind != LinkKind::kJump; ++k) {
-      served |= links[k].classes;
+      const bool same = links[k].spot == link.spot && links[k].turned == link.turned;
+      if (same || link.kind != LinkKind::kDrop) served |= links[k].classes;
     }
     if ((link.classes & ~served) == 0) continue;
     links[kept++] = link;

@@ -36,6 +36,7 @@ struct CellPair {
   uint8_t side_a = 4, side_b = 4;  ///< Sides of the cells where they touch, like a patch's edges.
   uint32_t leap1 = 0;              ///< If they do not touch: number of the leap, plus one.
   bool one_way = false;            ///< From a to b only.
+  uint32_t spot = 0;               ///< Of a drop: where it begins, to some cells.
 };
 
 /// A link between two nodes of all, a < b: every class in `classes` goes both ways.
@@ -46,13 +47,14 @@ struct NodeLink {
   uint32_t leap1 = 0;    ///< As of the pair of cells; 0: the nodes touch.
   bool turned = false;   ///< The leap leads from b to a.
   bool one_way = false;  ///< Only the way that the leap leads.
+  uint32_t spot = 0;     ///< As of the pair of cells.
 };
 
 /// Links nodes whose cells lie beside each other. Of the nodes around one cell, a node is linked to
 /// the largest around the other that is no more restrictive; where neither of two is, they are
 /// linked for what both allow. What a smaller node could reach by its parents is not linked again:
 /// a parent's classes go in and out of its children. Sorted by (a, b, kind), each pair once, or
-/// as often as its classes need different leaps.
+/// as often as its classes need different leaps; drops once for every spot that they lead from.
 class NodeLinker {
  public:
   explicit NodeLinker(const NodeForest& forest) : forest_(&forest) {}
@@ -78,6 +80,7 @@ class NodeLinker {
   std::vector<NodeLink> links_;
   uint32_t leap1_ = 0;  // of the pair that is being linked
   bool one_way_ = false;
+  uint32_t spot_ = 0;
 };
 
 /// Sorts pairs and makes one of those that name the same cells and sides, for all their classes.

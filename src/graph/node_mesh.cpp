@@ -3,6 +3,7 @@
 #include "graph/node_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -29,6 +30,12 @@ uint32_t quad_order(uint32_t s, uint32_t t, int32_t level) {
 }
 
 }  // namespace
+
+double portal_length(const NodePortal& portal, Vec3d out, Vec3d in) {
+  const Vec3d way = in - out;
+  if (portal.kind != LinkKind::kDrop) return length(way);
+  return std::sqrt(way.x * way.x + way.z * way.z) + std::fabs(way.y);
+}
 
 Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_t workers,
                                 Context& context) {

@@ -41,6 +41,10 @@ struct NodePortal {
   bool inside = false;   ///< Within one node: no link.
 };
 
+/// How far a body goes from one end of a portal to the other: straight, or, where it drops, level
+/// out and then down. [m]
+[[nodiscard]] double portal_length(const NodePortal& portal, Vec3d out, Vec3d in);
+
 class NodeMesh {
  public:
   /// Reads all nodes once. Fails with kBadFile (a zone cannot be used) or kCancelled.

@@ -32,8 +32,9 @@ NodeInfo info_of(const format::NodePatch& patch, const format::Node& node) {
           .area = node.area()};
 }
 
-// Only jumps may lead one way; no two places hold together by one that does.
+// Drops lead one way, and jumps may; no two places hold together by one that does.
 bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::Arc& arc) {
+  if (arc.kind() == static_cast<uint8_t>(LinkKind::kDrop)) return false;
   if (arc.kind() != static_cast<uint8_t>(LinkKind::kJump)) return true;
   const size_t slot = data.slot_of(to);
   const NodeZone* zone = data.zone(slot);

@@ -112,13 +112,14 @@ class Teller {
 
   void cross(const PulledCrossing& crossing) {
     const NodePortal& portal = mesh_.portals()[crossing.crossing.portal];
-    path_.cost += length(crossing.in_at - crossing.out_at);
+    path_.cost += portal_length(portal, crossing.out_at, crossing.in_at);
     const bool same_patch =
         mesh_.blocks()[crossing.out.block].patch == mesh_.blocks()[crossing.in.block].patch;
     if (same_patch && !portal.leaps) {
       // One point of both blocks: it becomes the next one's.
       path_.points.back().place.node1 = node_of(crossing.in) + 1;
     } else {
+      if (portal.kind == LinkKind::kDrop) add_over(crossing.in_at);
       add(crossing.in, false);
     }
     last_ = crossing.in;
@@ -131,6 +132,14 @@ class Teller {
  private:
   [[nodiscard]] uint32_t node_of(const BlockPoint& at) const {
     return mesh_.blocks()[at.block].node;
+  }
+
+  // Level with the last point, above where the body drops to.
+  void add_over(Vec3d to) {
+    const Vec3d last = path_.points.back().place.feet, feet{to.x, last.y, to.z}, up{0, 1, 0};
+    path_.length += length(feet - last);
+    path_.points.push_back(
+        {.place = {.feet = feet, .axis = up, .normal = up}, .on_surface = false});
   }
 
   void add(const BlockPoint& at, bool on_surface) {

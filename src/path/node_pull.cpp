@@ -50,7 +50,8 @@ double NodePull::cost_around(const std::vector<PulledCrossing>& way, size_t i,
   return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? way[i - 1].in_at : from_at,
                   crossing.out.s, crossing.out.t, crossing.out_at)
              .cost +
-         length(crossing.in_at - crossing.out_at) +
+         portal_length(mesh_->portals()[crossing.crossing.portal], crossing.out_at,
+                       crossing.in_at) +
          (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
                   i + 1 < way.size() ? way[i + 1].out_at : to_at)
              .cost;

@@ -71,7 +71,7 @@ void NodeSearch::expand(uint32_t block, double s, double t, Vec3d at, double cos
     const uint32_t into = backward ? portal.a : portal.b;
     const Vec3d there =
         mesh_->surface(into).at((beyond[0] + beyond[2]) / 2, (beyond[1] + beyond[3]) / 2);
-    next += length(there - here);
+    next += portal_length(portal, here, there);
     if (state.query == query_ && state.cost <= next) continue;
     state = {query_, parent, next, there, false};
     push(next + length(goal_ - there), id);

@@ -41,7 +41,8 @@ constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
                                                   {180, {176, 34, 46}}}};
 constexpr Rgb kWalkLink{24, 92, 52}, kSteepLink{150, 104, 8}, kOverLink{140, 20, 32};
 constexpr Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
-constexpr Rgb kLeapLink{20, 20, 26}, kUnderlay{226, 228, 232}, kPath{20, 60, 220};
+constexpr Rgb kLeapLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232},
+    kPath{20, 60, 220};
 
 Rgb inclination_colour(double degrees) {
   for (size_t i = 1; i < kRamp.size(); ++i) {
@@ -325,7 +326,9 @@ class NodePicture {
   void links(DepthCanvas& canvas, uint32_t node) const {
     const NodeInfo info = nodes_.node(node);
     for (const NodeArc& arc : nodes_.arcs(node)) {
-      if (arc.to < node) continue;
+      // Both directions of a link are arcs: one is enough, but for drops.
+      const bool drops = arc.kind == LinkKind::kDrop;
+      if (arc.to < node && !drops) continue;
       const NodeInfo other = nodes_.node(arc.to);
       if (!on_storey(other)) continue;
       // Large nodes that hold smaller ones would only add lines across them.
@@ -336,6 +339,12 @@ class NodePicture {
       if (arc.leaps) colour = kLeapLink;
       const Vec3d a = arc.leaps ? nodes_.point(node, arc.from_s, arc.from_t) : middle(info, node);
       const Vec3d b = arc.leaps ? nodes_.point(arc.to, arc.to_s, arc.to_t) : middle(other, arc.to);
+      if (drops) {
+        const Vec3d over{b.x, a.y, b.z};
+        canvas.line(at(a, 0.6), at(over, 0.6), 3, kDropLink);
+        canvas.line(at(over, 0.6), at(b, 0.6), 3, kDropLink);
+        continue;
+      }
       canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
     }
   }
@@ -379,6 +388,9 @@ class NodePicture {
       key(kSteepLink, "steep");
       key(kOverLink, "overhanging");
       key(kLeapLink, "over a hole");
+      const bool drop = std::any_of(summary_.classes.begin(), summary_.classes.end(),
+                                    [](const AvatarClass& c) { return c.max_drop > 0; });
+      if (drop) key(kDropLink, "drop");
     }
     if (config_.air) {
       key(kAirLink, "air");

@@ -118,11 +118,14 @@ class NodeJudge {
     if (arcs.empty()) return;
     const NodeArc& arc = arcs[random_below(config_.seed, n, 9, arcs.size())];
     sample.arcs = 1;
-    const std::vector<NodeArc> back = nodes_.arcs(arc.to);
-    const bool returns = std::any_of(back.begin(), back.end(), [&](const NodeArc& b) {
-      return b.to == node && b.kind == arc.kind && b.classes == arc.classes;
-    });
-    sample.one_way = returns ? 0 : 1;
+    const bool drops = arc.kind == LinkKind::kDrop;
+    if (!drops) {
+      const std::vector<NodeArc> back = nodes_.arcs(arc.to);
+      const bool returns = std::any_of(back.begin(), back.end(), [&](const NodeArc& b) {
+        return b.to == node && b.kind == arc.kind && b.classes == arc.classes;
+      });
+      sample.one_way = returns ? 0 : 1;
+    }
     if (!arc.leaps) return;
     sample.leaps = 1;
     const int32_t c = config_.avatar_class;
@@ -132,6 +135,20 @@ class NodeJudge {
       sample.unsupported = true;
       return;
     }
+    const Pose begin{from.feet, from.axis}, end{to.feet, to.axis};
+    if (!drops) {
+      look_between(begin, end, sample);
+      return;
+    }
+    const Pose over{{end.feet.x, begin.feet.y, end.feet.z}, {0, 1, 0}};
+    look_between(begin, over, sample);
+    look_between(over, end, sample);
+    // What the class asked for, and no more.
+    const double down = begin.feet.y - end.feet.y;
+    if (!(down > 0 && down <= avatar_.max_drop + 1e-9)) sample.one_way = 1;
+  }
+
+  void look_between(const Pose& from, const Pose& to, Sample& sample) const {
     for (int k = 0; k <= kLeapParts; ++k) {
       const double t = static_cast<double>(k) / kLeapParts;
       const Vec3d axis = from.axis * (1 - t) + to.axis * t;

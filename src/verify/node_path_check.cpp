@@ -4,7 +4,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
@@ -48,6 +50,16 @@ class Follower {
         tree_(scene, config.workers),
         avatar_(nodes.summary().classes[static_cast<size_t>(config.avatar_class)]) {
     (void)nodes.reach(config.avatar_class, &part_);
+    // What leads one way joins no parts, but leads from one into another.
+    const auto bit = static_cast<uint16_t>(1u << config.avatar_class);
+    for (uint32_t n = 0; n < nodes.node_count(); ++n) {
+      if (part_[n] == UINT32_MAX) continue;
+      for (const NodeArc& arc : nodes.arcs(n)) {
+        if ((arc.classes & bit) != 0 && part_[arc.to] != part_[n]) {
+          out_of_.insert({part_[n], part_[arc.to]});
+        }
+      }
+    }
   }
 
   Gone go(NodePathFinder& finder, NodePath& path, uint64_t n) const {
@@ -57,7 +69,7 @@ class Follower {
     if (!from || !to) return gone;
     gone.exists = true;
     gone.at = from.feet;
-    gone.together = part_[from.node1 - 1] == part_[to.node1 - 1];
+    gone.together = leads(part_[from.node1 - 1], part_[to.node1 - 1]);
     const auto start = Clock::now();
     finder.find(from, to, path);
     gone.seconds = seconds_since(start);
@@ -79,15 +91,46 @@ class Follower {
     for (size_t i = 1; i < path.points.size(); ++i) {
       while (next < path.links.size() && path.links[next].point < i) ++next;
       const bool linked = next < path.links.size() && path.links[next].point == i;
-      const bool leaps = linked && path.links[next].leaps;
+      // (Where a body begins to fall it is in the air.)
+      const bool in_air = !path.points[i].place;
+      const bool leaps = in_air || (linked && path.links[next].leaps);
+      if (linked && path.links[next].kind == LinkKind::kDrop) {
+        check_drop(path.points, i, gone);
+      }
       // What a jump crosses is the user's own.
-      if (leaps && path.links[next].kind == LinkKind::kJump) continue;
+      if (linked && path.links[next].kind == LinkKind::kJump) continue;
       leg(path.points[i - 1], path.points[i], leaps, gone);
     }
     return gone;
   }
 
  private:
+  // Do arcs lead from one part to another, both ways or one?
+  [[nodiscard]] bool leads(uint32_t from, uint32_t to) const {
+    std::vector<uint32_t> reached{from};
+    for (size_t i = 0; i < reached.size(); ++i) {
+      if (reached[i] == to) return true;
+      for (auto next = out_of_.lower_bound({reached[i], 0});
+           next != out_of_.end() && next->first == reached[i]; ++next) {
+        if (std::find(reached.begin(), reached.end(), next->second) == reached.end()) {
+          reached.push_back(next->second);
+        }
+      }
+    }
+    return false;
+  }
+
+  // Level out, upright, and straight down, as far as the class lets itself down and no farther.
+  void check_drop(const std::vector<NodePathPoint>& points, size_t landing, Gone& gone) const {
+    const NodePlace &over = points[landing - 1].place, &to = points[landing].place;
+    const bool sound = landing >= 2 && !over && over.axis.y == 1 &&
+                       points[landing - 2].place.feet.y == over.feet.y &&
+                       over.feet.x == to.feet.x && over.feet.z == to.feet.z &&
+                       over.feet.y > to.feet.y &&
+                       over.feet.y - to.feet.y <= avatar_.max_drop + kSame;
+    if (!sound) tear(gone, to.feet);
+  }
+
   static void tear(Gone& gone, Vec3d at) {
     if (gone.torn++ == 0) gone.torn_at = at;
   }
@@ -98,7 +141,11 @@ class Follower {
                        avatar_.height * length(to.place.axis - from.place.axis);
     const int parts =
         1 + static_cast<int>(std::min(kMostPoses, std::ceil(4 * way / avatar_.radius)));
-    if (!to.on_surface && !leaps && length(to.place.feet - from.place.feet) > kSeam) {
+    // From one level tile to the next there may be a step.
+    const Vec3d seam = to.place.feet - from.place.feet;
+    if (!to.on_surface && !leaps &&
+        (std::hypot(seam.x, seam.z) > kSeam ||
+         std::fabs(seam.y) > std::max(kSeam, avatar_.step + kSame))) {
       tear(gone, to.place.feet);
     }
     bool entered = false, unsupported = false, torn = false;
@@ -142,6 +189,7 @@ class Follower {
   const verify::TriangleTree tree_;
   AvatarClass avatar_;
   std::vector<uint32_t> part_;
+  std::set<std::pair<uint32_t, uint32_t>> out_of_;  // parts, and those that arcs lead to from them
 };
 
 }  // namespace

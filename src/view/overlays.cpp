@@ -103,7 +103,7 @@ const char* legend_of(Overlay overlay) {
       "Where the first class may stand: red beside what stops it, blue where there is most room",
       "Sheets of ground, each in its colour",
       "Terminal nodes: green level, red steep. A world baked with --nodes has them",
-      "Between nodes: white walk, orange step, magenta climb, blue jump",
+      "Between nodes: white walk, orange step, magenta climb, blue jump, red drop",
       "Where a flyer's feet may be, at the height of the cut. A world baked with a flying class "
       "has "
       "it",
@@ -170,8 +170,17 @@ Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   const Vec3d lift = Vec3d{0, 3 * kAbove, 0} - origin;
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     for (const NodeArc& arc : nodes.arcs(n)) {
-      // Both directions of a link are arcs: one is enough.
-      if (arc.to < n || marks.lines.size() > kMost) continue;
+      // Both directions of a link are arcs: one is enough, but for drops.
+      const bool drops = arc.kind == LinkKind::kDrop;
+      if ((arc.to < n && !drops) || marks.lines.size() > kMost) continue;
+      if (drops) {
+        const Rgba colour = rgba(230, 40, 40, 255);
+        const Vec3d from = nodes.point(n, arc.from_s, arc.from_t) + lift;
+        const Vec3d to = nodes.point(arc.to, arc.to_s, arc.to_t) + lift, over{to.x, from.y, to.z};
+        add_line(marks, from, over, colour);
+        add_line(marks, over, to, colour);
+        continue;
+      }
       Rgba colour = rgba(255, 255, 255, 170);
       if (arc.kind == LinkKind::kStep) colour = rgba(255, 150, 30, 220);
       if (arc.kind == LinkKind::kClimb) colour = rgba(240, 60, 220, 220);

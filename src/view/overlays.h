@@ -43,7 +43,7 @@ inline constexpr size_t kOverlays = 10;
 [[nodiscard]] Marks level_marks(const World& world, Vec3d origin, Context& context);
 /// Terminal nodes: green level, over yellow to red steep.
 [[nodiscard]] Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context);
-/// Arcs between them: white walk, orange step, magenta climb, blue jump.
+/// Arcs between them: white walk, orange step, magenta climb, blue jump, red drop.
 [[nodiscard]] Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context);
 /// Where feet of a flyer may be at one height [m, world]. Fails with what FlightFinder::make does.
 [[nodiscard]] Result<Marks> air_marks(const World& world, double height, Vec3d origin,

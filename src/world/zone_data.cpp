@@ -265,7 +265,8 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
                                .step = entry.step(),
                                .max_slope = entry.max_slope(),
                                .speed = entry.speed(),
-                               .climb_slope = entry.climb_slope()});
+                               .climb_slope = entry.climb_slope(),
+                               .max_drop = entry.max_drop()});
     summary.walkable_area.push_back(entry.walkable_area());
     world->class_index.push_back(std::make_unique<ClassIndex>());
   }
@@ -307,9 +308,9 @@ std::vector<uint8_t> write_manifest(const WorldData& world) {
   const WorldSummary& s = world.summary;
   for (size_t c = 0; c < s.classes.size(); ++c) {
     const AvatarClass& a = s.classes[c];
-    classes.push_back(format::CreateClassEntryDirect(builder, a.name.c_str(), a.height, a.radius,
-                                                     a.step, a.max_slope, a.speed,
-                                                     s.walkable_area[c], a.climb_slope));
+    classes.push_back(format::CreateClassEntryDirect(
+        builder, a.name.c_str(), a.height, a.radius, a.step, a.max_slope, a.speed,
+        s.walkable_area[c], a.climb_slope, a.max_drop));
   }
   std::vector<format::ZoneEntry> zones;
   for (const auto& slot : world.slots) zones.push_back(slot->entry);

@@ -83,11 +83,13 @@ TEST(AvatarClass, AWrongSettingIsNamedByLineKeyAndLimit) {
             ":4: avatar class 2: radius = 9 is outside 0.01 to 5");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nheigth = 1\n"),
             ":3: avatar class 1: unknown key 'heigth'; known are name, height, radius, step, "
-            "max_slope, speed, climb_slope, flies");
+            "max_slope, speed, climb_slope, max_drop, flies");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nradius = \"wide\"\n"),
             ":3: avatar class 1: radius must be a number");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nheight = 1\nstep = 0.6\n"),
             ":4: avatar class 1: step = 0.6 is more than half the height 1");
+  EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nmax_drop = 0.4\n"),
+            ":3: avatar class 1: max_drop = 0.4 is no more than the step 0.4; 0 asks for no drops");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nheight = 1\n"), ":1: avatar class 1: name is missing");
   EXPECT_EQ(refusal("c.toml", "speed = 1\n"),
             ":1: avatar classes: unknown key 'speed'; known are class");

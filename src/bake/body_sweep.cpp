@@ -261,33 +261,35 @@ void TriangleSquares::find(const Box3d& box, std::vector<uint32_t>& out) const {
   });
 }
 
-bool TriangleSquares::may_enter(const Cluster& cluster, const BodyFrame& frame,
-                                const BodySweep& sweep) {
+TriangleSquares::Seen::Seen(const Cluster& cluster, const BodyFrame& frame) {
   const Vec3d d = cluster.centre - frame.centre;
   const double height = dot(d, frame.up), along = std::fabs(dot(cluster.axis, frame.up));
   const double across = std::sqrt(std::max(0.0, 1 - along * along)) + 1e-9;
   const double up = along * cluster.thick + across * cluster.radius;
-  if (height + up < sweep.low || height - up > sweep.high) return false;
-  const double side2 = dot(d, d) - height * height;
-  const double near = sweep.radius + cluster.radius + across * cluster.thick + 1e-9;
-  return side2 <= near * near;
+  low = height - up;
+  high = height + up;
+  side2 = dot(d, d) - height * height;
+  reach = cluster.radius + across * cluster.thick + 1e-9;
 }
 
-void TriangleSquares::find(const BodyFrame& frame, const BodySweep& sweep,
+void TriangleSquares::find(const BodyFrame& frame, const BodySweep& sweep, const BodySweep& other,
                            std::vector<uint32_t>& out) const {
-  for_each_near(sweep_box(frame, sweep), [&](const Cluster& cluster) {
-    if (!may_enter(cluster, frame, sweep)) return;
+  const BodySweep both{.radius = std::max(sweep.radius, other.radius),
+                       .low = std::min(sweep.low, other.low),
+                       .high = std::max(sweep.high, other.high)};
+  for_each_near(sweep_box(frame, both), [&](const Cluster& cluster) {
+    const Seen seen(cluster, frame);
+    if (!seen.may_enter(sweep) && !seen.may_enter(other)) return;
     out.insert(out.end(), order_.begin() + cluster.first, order_.begin() + cluster.last);
   });
 }
 
 void TriangleSquares::find_patches(const BodyFrame& frame, const BodySweep& sweep,
-                                   std::span<const uint32_t> not_of,
+                                   std::span<const uint8_t> not_of,
                                    std::vector<uint32_t>& out) const {
   for_each_near(sweep_box(frame, sweep), [&](const Cluster& cluster) {
     if (cluster.patch == kNoPatch || (!out.empty() && out.back() == cluster.patch) ||
-        std::find(not_of.begin(), not_of.end(), cluster.patch) != not_of.end() ||
-        !may_enter(cluster, frame, sweep)) {
+        not_of[cluster.patch] != 0 || !Seen(cluster, frame).may_enter(sweep)) {
       return;
     }
     for (uint32_t i = cluster.first; i < cluster.last; ++i) {

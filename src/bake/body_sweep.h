@@ -52,11 +52,12 @@ class TriangleSquares {
 
   /// Appends the triangles of clusters whose boxes overlap `box`, each once.
   void find(const Box3d& box, std::vector<uint32_t>& out) const;
-  /// Appends the triangles of clusters that may come into a sweep, each once.
-  void find(const BodyFrame& frame, const BodySweep& sweep, std::vector<uint32_t>& out) const;
-  /// Appends the patches, but for those in `not_of`, whose triangles come into a sweep.
-  void find_patches(const BodyFrame& frame, const BodySweep& sweep,
-                    std::span<const uint32_t> not_of, std::vector<uint32_t>& out) const;
+  /// Appends the triangles of clusters that may come into one sweep or the other, each once.
+  void find(const BodyFrame& frame, const BodySweep& sweep, const BodySweep& other,
+            std::vector<uint32_t>& out) const;
+  /// Appends the patches whose triangles come into a sweep, but for those marked in `not_of`.
+  void find_patches(const BodyFrame& frame, const BodySweep& sweep, std::span<const uint8_t> not_of,
+                    std::vector<uint32_t>& out) const;
   [[nodiscard]] LocalTriangle corners(uint32_t triangle) const;
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
@@ -70,8 +71,15 @@ class TriangleSquares {
     uint32_t patch = kNoPatch;     ///< That all its triangles belong to.
   };
 
-  [[nodiscard]] static bool may_enter(const Cluster& cluster, const BodyFrame& frame,
-                                      const BodySweep& sweep);
+  /// A cluster as a body sees it: heights along its axis, and how far its axis' line is away.
+  struct Seen {
+    double low = 0, high = 0, side2 = 0, reach = 0;
+    Seen(const Cluster& cluster, const BodyFrame& frame);
+    [[nodiscard]] bool may_enter(const BodySweep& sweep) const {
+      const double near = sweep.radius + reach;
+      return high >= sweep.low && low <= sweep.high && side2 <= near * near;
+    }
+  };
   void make_clusters(int32_t workers);
   [[nodiscard]] Cluster measure(uint32_t first, uint32_t last) const;
   template <class Visit>

@@ -21,8 +21,25 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kWidestCone = 0.94;   // sine of its half angle
-constexpr double kMargin = 1e-6;       // of envelopes, so that they hold every body's rounding [m]
 constexpr double kSlopeMargin = 1e-6;  // a plane at exactly a limit keeps it
+
+// A triangle's box in a frame: most come into no body, and are not looked at more closely.
+struct LocalBox {
+  double left, right, back, front, low, high;
+
+  explicit LocalBox(const LocalTriangle& t)
+      : left(std::min(std::min(t[0].x, t[1].x), t[2].x)),
+        right(std::max(std::max(t[0].x, t[1].x), t[2].x)),
+        back(std::min(std::min(t[0].y, t[1].y), t[2].y)),
+        front(std::max(std::max(t[0].y, t[1].y), t[2].y)),
+        low(std::min(std::min(t[0].z, t[1].z), t[2].z)),
+        high(std::max(std::max(t[0].z, t[1].z), t[2].z)) {}
+
+  [[nodiscard]] bool meets(const BodySweep& sweep) const {
+    return low <= sweep.high && high >= sweep.low && left <= sweep.radius &&
+           right >= -sweep.radius && back <= sweep.radius && front >= -sweep.radius;
+  }
+};
 
 double sine_of(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
 
@@ -139,14 +156,7 @@ PatchJudge::PatchJudge(const TriangleSquares& triangles, std::span<const AvatarC
   }
   tallest_ = bins.height.back();
   least_bottom_ = kNever;
-  for (const PatchBody& body : bodies_) {
-    least_bottom_ = std::min(least_bottom_, body.bottom);
-    auto& envelope = envelope_[body.climbs ? 1 : 0];
-    if (!envelope) envelope = body;
-    envelope->radius = std::max(envelope->radius, body.radius);
-    envelope->height = std::max(envelope->height, body.height);
-    envelope->bottom = std::min(envelope->bottom, body.bottom);
-  }
+  for (const PatchBody& body : bodies_) least_bottom_ = std::min(least_bottom_, body.bottom);
 }
 
 int32_t PatchJudge::depth_of(const BezierPatch& patch) const {
@@ -176,6 +186,8 @@ BezierCells PatchJudge::judge(uint32_t patch) {
       }
     }
   }
+  is_beside_.resize(set_->size());
+  for (const uint32_t p : beside_) is_beside_[p] = 1;
   BezierCells out;
   const BezierPatch& whole = set_->patches[patch];
   out.promise.depth = depth_of(whole);
@@ -183,6 +195,7 @@ BezierCells PatchJudge::judge(uint32_t patch) {
   out.promise.cells.resize(cells);
   out.shape.resize(cells);
   visit(whole, 0, 0, 0, out);
+  for (const uint32_t p : beside_) is_beside_[p] = 0;
   std::sort(out.makers.begin(), out.makers.end());
   out.makers.erase(std::unique(out.makers.begin(), out.makers.end()), out.makers.end());
   return out;
@@ -237,7 +250,7 @@ void PatchJudge::judge_cell(const BezierPatch& part, size_t cell, BezierCells& o
   promise.height = promise.headroom = open;
   triangles_->find_patches(bound->frame,
                            {.radius = bound->radius, .low = bound->low, .high = bound->high},
-                           beside_, out.makers);
+                           is_beside_, out.makers);
   judge_posture(bound->frame, *bound, true, steepest, promise);
   if (bound->frame.up.y <= bound->sine) {  // It may lean over: it is its own ceiling.
     promise.headroom = 0;
@@ -263,45 +276,46 @@ void PatchJudge::judge_cell(const BezierPatch& part, size_t cell, BezierCells& o
 // Tests the classes of one posture, and the free height along it.
 void PatchJudge::judge_posture(const BodyFrame& frame, const SurfaceBound& surface, bool climbs,
                                double steepest, Promise& promise) {
-  const auto& envelope = envelope_[climbs ? 1 : 0];
-  BodySweep all{.radius = surface.radius + tallest_ * surface.sine,
-                .low = surface.low + least_bottom_ * surface.cosine,
-                .high = surface.high + tallest_};
-  const BodySweep prism = all;
-  uint16_t asked = 0;
+  const BodySweep prism{.radius = surface.radius + tallest_ * surface.sine,
+                        .low = surface.low + least_bottom_ * surface.cosine,
+                        .high = surface.high + tallest_};
+  asked_.clear();
+  BodySweep bodies;
   for (const PatchBody& body : bodies_) {
-    if (body.climbs == climbs && steepest >= body.steepest) asked |= body.bit;
+    if (body.climbs != climbs || !(steepest >= body.steepest)) continue;
+    promise.classes |= body.bit;
+    const BodySweep sweep = sweep_of(surface, body);
+    if (asked_.empty()) bodies = sweep;
+    bodies = {.radius = std::max(bodies.radius, sweep.radius),
+              .low = std::min(bodies.low, sweep.low),
+              .high = std::max(bodies.high, sweep.high)};
+    asked_.push_back({sweep, body.bit});
   }
-  if (asked != 0) {
-    const BodySweep bodies = sweep_of(surface, *envelope);
-    all = {.radius = std::max(all.radius, bodies.radius) + kMargin,
-           .low = std::min(all.low, bodies.low) - kMargin,
-           .high = std::max(all.high, bodies.high) + kMargin};
-  }
+  // Bodies are wider than what tells the height, but begin higher: one cylinder around both would
+  // hold the ground at their feet.
   found_.clear();
-  triangles_->find(frame, all, found_);
-  local_.clear();
+  triangles_->find(frame, prism, asked_.empty() ? prism : bodies, found_);
+  double free = kNever;
+  bool measures = true;  // until nothing can be promised any more
   for (const uint32_t triangle : found_) {
+    if (!measures && asked_.empty()) break;
     LocalTriangle local = triangles_->corners(triangle);
     for (Vec3d& corner : local) corner = frame.local(corner);
-    if (lowest_entry(local, all) == kNever) continue;
-    local_.push_back(local);
-  }
-  promise.classes |= asked;
-  if (local_.empty()) return;
-  double free = kNever;
-  for (const LocalTriangle& local : local_) free = std::min(free, lowest_entry(local, prism));
-  // The highest feet have the least.
-  const uint8_t code = free == kNever ? static_cast<uint8_t>(bins_->height.size())
-                                      : bins_->height_code(std::max(0.0, free - surface.high));
-  (climbs ? promise.height : promise.headroom) = code;
-  for (const PatchBody& body : bodies_) {
-    if ((asked & body.bit) == 0) continue;
-    const BodySweep sweep = sweep_of(surface, body);
-    const bool blocked = std::any_of(local_.begin(), local_.end(), [&](const LocalTriangle& l) {
-      return lowest_entry(l, sweep) < kNever;
+    const LocalBox box(local);
+    if (measures && box.low < free && box.meets(prism)) {
+      free = std::min(free, lowest_entry(local, prism));
+      measures = free == kNever || bins_->height_code(std::max(0.0, free - surface.high)) > 0;
+    }
+    std::erase_if(asked_, [&](const AskedBody& body) {
+      if (!box.meets(body.sweep) || lowest_entry(local, body.sweep) == kNever) return false;
+      promise.classes = static_cast<uint16_t>(promise.classes & ~body.bit);
+      return true;
     });
-    if (blocked) promise.classes = static_cast<uint16_t>(promise.classes & ~body.bit);
+  }
+  // The highest feet have the least.
+  if (free < kNever) {
+    (climbs ? promise.height : promise.headroom) =
+        bins_->height_code(std::max(0.0, free - surface.high));
   }
 }
 

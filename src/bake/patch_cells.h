@@ -86,11 +86,15 @@ class PatchJudge {
   std::vector<double> bin_cosine_;
   double size_;
   double tallest_ = 0, least_bottom_ = 0;
-  std::array<std::optional<PatchBody>, 2> envelope_;  // of walkers, of climbers
 
-  std::vector<uint32_t> beside_;  // patches that go on from this one
+  std::vector<uint32_t> beside_;    // patches that go on from this one
+  std::vector<uint8_t> is_beside_;  // by patch
   std::vector<uint32_t> found_;
-  std::vector<LocalTriangle> local_;
+  struct AskedBody {
+    BodySweep sweep;
+    uint16_t bit = 0;
+  };
+  std::vector<AskedBody> asked_;  // classes of the posture that no triangle has stopped yet
 };
 
 }  // namespace throng

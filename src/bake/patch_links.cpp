@@ -17,6 +17,7 @@ namespace {
 constexpr double kSmooth = 0.9962;    // cosine of 5 degrees: no crease
 constexpr double kWalkSpacing = 0.1;  // between the points where a walker's way is looked at [m]
 constexpr size_t kTries = 6;          // cells of a patch that are tried for one link
+constexpr size_t kBoxedCells = 8;     // of a patch, told to be far away together
 
 const CellShape& shape_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
   return input.cells[patch].shape[cell];
@@ -120,6 +121,15 @@ std::vector<uint32_t> cells_of(const BezierCells& cells, uint16_t bit) {
   return found;
 }
 
+double distance2(const Box3d& box, Vec3d p) {
+  const auto out = [](double low, double high, double at) {
+    return std::max({low - at, at - high, 0.0});
+  };
+  const Vec3d d{out(box.min.x, box.max.x, p.x), out(box.min.y, box.max.y, p.y),
+                out(box.min.z, box.max.z, p.z)};
+  return dot(d, d);
+}
+
 // Does a neighbour within the patch, or whatever lies over its border, lack the class?
 bool lacks_neighbour(const PatchCells& cells, uint32_t cell, uint16_t bit) {
   const int32_t side = cells.side(), s = static_cast<int32_t>(cell) % side,
@@ -142,20 +152,33 @@ std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
     if (here.makers.empty()) return;
     MotionJudge judge(*input.triangles);
     std::vector<std::pair<double, uint32_t>> nearest;
+    std::vector<Box3d> boxes;  // of so many cells of a maker
     for (size_t c = 0; c < bodies.size(); ++c) {
       const PatchBody& body = bodies[c];
       const double widest = 3 * input.size + 2 * body.radius;  // of the gap between cells' middles
       const std::vector<uint32_t> from = cells_of(here, body.bit);
       for (const uint32_t maker : here.makers) {
         const std::vector<uint32_t> to = cells_of(input.cells[maker], body.bit);
+        boxes.assign((to.size() + kBoxedCells - 1) / kBoxedCells, {});
+        for (size_t k = 0; k < to.size(); ++k) {
+          const CellShape& cell = shape_of(input, maker, to[k]);
+          boxes[k / kBoxedCells].add({cell.x, cell.y, cell.z});
+        }
         for (const uint32_t a : from) {
           if (!lacks_neighbour(here.promise, a, body.bit)) continue;
           const CellShape& at = shape_of(input, static_cast<uint32_t>(p), a);
+          const Vec3d middle{at.x, at.y, at.z};
           nearest.clear();
-          for (const uint32_t b : to) {
-            const CellShape& other = shape_of(input, maker, b);
-            const Vec3d d{double{other.x} - at.x, double{other.y} - at.y, double{other.z} - at.z};
-            if (const double far = dot(d, d); far <= widest * widest) nearest.push_back({far, b});
+          for (size_t run = 0; run < boxes.size(); ++run) {
+            if (distance2(boxes[run], middle) > widest * widest) continue;
+            const size_t end = std::min(to.size(), (run + 1) * kBoxedCells);
+            for (size_t k = run * kBoxedCells; k < end; ++k) {
+              const CellShape& other = shape_of(input, maker, to[k]);
+              const Vec3d d{double{other.x} - at.x, double{other.y} - at.y, double{other.z} - at.z};
+              if (const double far = dot(d, d); far <= widest * widest) {
+                nearest.push_back({far, to[k]});
+              }
+            }
           }
           std::sort(nearest.begin(), nearest.end());
           const BodyPose start = pose_on(input, body, static_cast<uint32_t>(p), a);

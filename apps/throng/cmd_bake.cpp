@@ -125,6 +125,11 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"peak_bytes", peak_memory()}};
 }
 
+bool stands_nowhere(const BakeReport& report) {
+  return std::all_of(report.walkable_area.begin(), report.walkable_area.end(),
+                     [](double area) { return area == 0; });
+}
+
 std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
   std::string text = fmt::format(
       "{}: {} triangles in {:.2f} s, {} zones ({} kept), {} level tiles ({} of them flat), {}\n",
@@ -133,6 +138,11 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
+  }
+  if (report.air_zones == 0 && stands_nowhere(report)) {
+    text +=
+        "  nobody of these can stand anywhere: check the unit (--scale), the up axis (--up) and "
+        "the classes (--classes)\n";
   }
   if (report.air_zones > 0) {
     text += fmt::format("  air over {} zones, {}, in {:.2f} s of the above\n", report.air_zones,

@@ -205,6 +205,16 @@ uint64_t count_outside(const Scene& scene, const Box3d& bulk, double margin) {
   return count;
 }
 
+void warn_of_dropped(Scene& scene, const std::string& name) {
+  const SceneReport& report = scene.report;
+  const uint64_t dropped = report.non_finite + report.bad_index;
+  if (dropped == 0) return;
+  scene.report.warnings.push_back(fmt::format(
+      "{}: {} of {} triangles are left out: {} with corners that are not finite, {} with "
+      "bad indices",
+      name, dropped, report.triangles_read, report.non_finite, report.bad_index));
+}
+
 void warn_of_size(Scene& scene, const std::string& name, double side) {
   std::string what;
   if (side < 0.5) what = fmt::format("only {:.3g} m across", side);
@@ -227,6 +237,7 @@ Result<void> clean_scene(Scene& scene, const std::string& name, Context& context
                     name, report.triangles_read, report.ignored, report.non_finite,
                     report.bad_index)};
   }
+  warn_of_dropped(scene, name);
   drop_unused_vertices(scene);
   if (context.cancel) return Error{Errc::kCancelled, "cancelled while cleaning"};
   const Box3d all = scene.bounds();

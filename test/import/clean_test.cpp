@@ -47,9 +47,14 @@ TEST(Clean, BrokenTrianglesAreDroppedAndCountedAndPartsFollow) {
   scene.triangles.back()[1] = 999;
   scene.add_triangle({0, 0, 0}, {9, inf, 0}, {0, 0, 7});
   scene.add_triangle({0, 0, 0}, {9, 0, 0}, {0, 0, 6}, 5);
+  scene.report.triangles_read = 5;
   ASSERT_TRUE(clean(scene));
   EXPECT_EQ(scene.report.non_finite, 2u);
   EXPECT_EQ(scene.report.bad_index, 1u);
+  EXPECT_EQ(
+      scene.report.warnings,
+      std::vector<std::string>{"m.obj: 3 of 5 triangles are left out: 2 with corners that are "
+                               "not finite, 1 with bad indices"});
   EXPECT_EQ(scene.triangles.size(), 2u);
   EXPECT_EQ(scene.area, (std::vector<AreaKind>{4, 5}));
   EXPECT_EQ(scene.positions.size(), 6u);

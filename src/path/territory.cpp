@@ -135,6 +135,7 @@ void choose_posts(const WorldData& world, const std::vector<std::vector<uint32_t
     for (const uint32_t t : c.territories) {
       graph.territories[t].posts.push_back(post);
       graph.territories[t].post_gates.push_back(graph.territories[t].place_of_gate(c.gate));
+      graph.territories[t].post_at.push_back(graph.gates[c.gate].at);
     }
   }
 }
@@ -168,7 +169,8 @@ uint64_t ZoneGraph::bytes() const {
   for (const ZoneWays& ways : zones) bytes += sizeof(ZoneWays) + ways.bytes();
   for (const Territory& t : territories) {
     bytes += t.labels.bytes() +
-             (t.gates.size() + t.posts.size() + t.post_gates.size()) * sizeof(uint32_t);
+             (t.gates.size() + t.posts.size() + t.post_gates.size()) * sizeof(uint32_t) +
+             t.post_at.size() * sizeof(CellPoint);
   }
   return bytes;
 }

@@ -23,6 +23,7 @@ struct Territory {
   TwoHopLabels labels;               // of places in `gates`: ways inside the territory
   std::vector<uint32_t> posts;       // on its borders, rising
   std::vector<uint32_t> post_gates;  // their places in `gates`
+  std::vector<CellPoint> post_at;    // where they are, side by side: a query looks at all of them
 
   [[nodiscard]] uint32_t place_of_gate(uint32_t gate) const;
 };

@@ -99,7 +99,7 @@ void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop
     const Territory& territory = graph.territories[end.territory];
     end.posts.resize(territory.posts.size());
     for (size_t p = 0; p < end.posts.size(); ++p) {
-      const CellPoint at = graph.gates[territory.gates[territory.post_gates[p]]].at;
+      const CellPoint at = territory.post_at[p];
       const auto beyond = static_cast<float>(distance(at, there));
       end.posts[p] = {kNever, 0, beyond, static_cast<float>(distance(here, at)) + beyond};
     }
@@ -128,8 +128,8 @@ void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop
   const Territory& goal = graph.territories[goal_.territory];
   const Meeting met = meet(graph.post_labels, start.posts[*first], goal.posts[*last]);
   constexpr float kSlack = 1.00001f;  // floats
-  const float known = kSlack * std::min(best.length, start_.posts[*first].length + met.length +
-                                                         goal_.posts[*last].length);
+  float known = kSlack * std::min(best.length, start_.posts[*first].length + met.length +
+                                                   goal_.posts[*last].length);
   const auto each_within = [&](End& end, auto visit) {
     for (size_t p = 0; p < end.posts.size(); ++p) {
       if (!(end.posts[p].bound <= known)) continue;
@@ -149,6 +149,7 @@ void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop
       const float here = hub->length + label.length + goal_.posts[p].length;
       if (here < best.length) best = {here, true, label.hub, hub->from, static_cast<uint32_t>(p)};
     }
+    known = std::min(known, kSlack * best.length);
   });
 }
 

@@ -149,7 +149,21 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
     return CellBox{at(b[0], origin_x_), at(b[3], origin_x_), at(b[2], origin_z_),
                    at(b[5], origin_z_)};
   };
-  bins_ = bin_boxes(clusters_.size(), box, 0, 0, squares(width), squares(depth), 1, 0);
+  const TriangleBins bins =
+      bin_boxes(clusters_.size(), box, 0, 0, squares(width), squares(depth), 1, 0);
+  squares_x_ = bins.squares_x;
+  squares_z_ = bins.squares_z;
+  first_.assign(bins.first.begin(), bins.first.end());
+  items_.reserve(bins.items.size());
+  for (int32_t s = 0; s < squares_x_ * squares_z_; ++s) {
+    for (uint32_t i = first_[static_cast<size_t>(s)]; i < first_[static_cast<size_t>(s) + 1]; ++i) {
+      const auto& b = clusters_[bins.items[i]].box;
+      items_.push_back({.box = b,
+                        .cluster = bins.items[i],
+                        .begins_x = square(b[0], origin_x_, squares_x_) == s % squares_x_,
+                        .begins_z = square(b[2], origin_z_, squares_z_) == s / squares_x_});
+    }
+  }
 }
 
 // Runs of triangles that follow each other are sorted by cubes of kCube metres, and what lies in
@@ -225,31 +239,36 @@ TriangleSquares::Cluster TriangleSquares::measure(uint32_t first, uint32_t last)
   return cluster;
 }
 
+int32_t TriangleSquares::square(double v, double origin, int32_t count) const {
+  return static_cast<int32_t>(
+      std::clamp((v - origin) / side_, 0.0, static_cast<double>(count - 1)));
+}
+
 // A cluster in several squares is visited in the first one that the box has in common with it.
 template <class Visit>
 void TriangleSquares::for_each_near(const Box3d& box, Visit visit) const {
-  const auto square = [&](double v, double origin, int32_t count) {
-    return static_cast<int32_t>(
-        std::clamp((v - origin) / side_, 0.0, static_cast<double>(count - 1)));
-  };
-  const int32_t x0 = square(box.min.x, origin_x_, bins_.squares_x);
-  const int32_t x1 = square(box.max.x, origin_x_, bins_.squares_x);
-  const int32_t z0 = square(box.min.z, origin_z_, bins_.squares_z);
-  const int32_t z1 = square(box.max.z, origin_z_, bins_.squares_z);
+  const int32_t x0 = square(box.min.x, origin_x_, squares_x_);
+  const int32_t x1 = square(box.max.x, origin_x_, squares_x_);
+  const int32_t z0 = square(box.min.z, origin_z_, squares_z_);
+  const int32_t z1 = square(box.max.z, origin_z_, squares_z_);
+  // Rounded outward, as the clusters' are.
+  const auto above = [](double v) { return std::nextafter(static_cast<float>(v), INFINITY); };
+  const auto below = [](double v) { return std::nextafter(static_cast<float>(v), -INFINITY); };
+  const std::array<float, 6> b{below(box.min.x), below(box.min.y), below(box.min.z),
+                               above(box.max.x), above(box.max.y), above(box.max.z)};
   for (int32_t z = z0; z <= z1; ++z) {
     for (int32_t x = x0; x <= x1; ++x) {
-      const auto s =
-          static_cast<size_t>(z) * static_cast<size_t>(bins_.squares_x) + static_cast<size_t>(x);
-      for (uint32_t i = bins_.first[s]; i < bins_.first[s + 1]; ++i) {
-        const Cluster& cluster = clusters_[bins_.items[i]];
-        const auto& b = cluster.box;
-        if (!(b[0] <= box.max.x && b[3] >= box.min.x && b[1] <= box.max.y && b[4] >= box.min.y &&
-              b[2] <= box.max.z && b[5] >= box.min.z)) {
+      const size_t s =
+          static_cast<size_t>(z) * static_cast<size_t>(squares_x_) + static_cast<size_t>(x);
+      for (uint32_t i = first_[s]; i < first_[s + 1]; ++i) {
+        const Item& item = items_[i];
+        if (!(item.box[0] <= b[3] && item.box[3] >= b[0] && item.box[1] <= b[4] &&
+              item.box[4] >= b[1] && item.box[2] <= b[5] && item.box[5] >= b[2])) {
           continue;
         }
-        const bool earlier_x = x > x0 && square(b[0], origin_x_, bins_.squares_x) < x;
-        const bool earlier_z = z > z0 && square(b[2], origin_z_, bins_.squares_z) < z;
-        if (!earlier_x && !earlier_z) visit(cluster);
+        if ((x == x0 || item.begins_x) && (z == z0 || item.begins_z)) {
+          visit(clusters_[item.cluster]);
+        }
       }
     }
   }

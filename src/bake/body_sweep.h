@@ -71,6 +71,12 @@ class TriangleSquares {
     uint32_t patch = kNoPatch;     ///< That all its triangles belong to.
   };
 
+  /// A cluster in one of its squares, with all that tells most of them to be out of reach.
+  struct Item {
+    std::array<float, 6> box;
+    uint32_t cluster = 0;
+    bool begins_x = false, begins_z = false;  ///< No square before this one has it.
+  };
   /// A cluster as a body sees it: heights along its axis, and how far its axis' line is away.
   struct Seen {
     double low = 0, high = 0, side2 = 0, reach = 0;
@@ -82,6 +88,7 @@ class TriangleSquares {
   };
   void make_clusters(int32_t workers);
   [[nodiscard]] Cluster measure(uint32_t first, uint32_t last) const;
+  [[nodiscard]] int32_t square(double v, double origin, int32_t count) const;
   template <class Visit>
   void for_each_near(const Box3d& box, Visit visit) const;
 
@@ -90,7 +97,9 @@ class TriangleSquares {
   double origin_x_ = 0, origin_z_ = 0;
   std::vector<uint32_t> order_;  // triangles
   std::vector<Cluster> clusters_;
-  TriangleBins bins_;  // of clusters
+  std::vector<Item> items_;      // by square
+  std::vector<uint32_t> first_;  // squares and the end
+  int32_t squares_x_ = 0, squares_z_ = 0;
 };
 
 }  // namespace throng

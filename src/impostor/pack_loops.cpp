@@ -46,6 +46,7 @@ void FindViews(const PackShared& shared, const PackInput& input, PackBlock& bloc
   const PackShared s = shared;  // A copy: nobody else's writes can change it in the loop.
   const PackInput in = input;
   FindSeen(s, in, block);
+  if (block.seen_any == 0) return;  // Nobody asks for their views.
   for (size_t i = 0; i < in.count; ++i) {
     const float x = block.to_x[i], y = block.to_y[i], z = block.to_z[i];
     const uint32_t sector = view_sector(x, z, in.heading[i], 2 * s.directions);

@@ -45,7 +45,7 @@ struct PackBlock {
   uint32_t seen_any = 0;                              ///< All of `seen`, or-ed.
 };
 
-/// Fills `view`, `seen` and `seen_any`.
+/// Fills `seen` and `seen_any`, and `view` if anybody is seen.
 void find_views(const PackShared& shared, const PackInput& input, PackBlock& block);
 
 }  // namespace throng

@@ -59,6 +59,9 @@ void draw_crowd(PanelState& s) {
   if (ImGui::Checkbox("Only what is seen", &s.settings.only_seen)) s.restart = true;
   tip("For eyes in a street: who cannot be seen from there is not simulated, and nobody comes or\n"
       "goes in sight. As many a square metre as the avatars above would be in all of the ground");
+  if (s.crowd.only_seen && s.status.avatars == 0 && !s.status.loading) {
+    ImGui::TextWrapped("Nobody: no ground within %.0f m of the eye. Go nearer.", s.crowd.sight);
+  }
   if (ImGui::Checkbox("Far ones coarser", &s.settings.coarse_far)) s.restart = true;
   tip("Who is more than 300 m away decides and moves in longer steps");
   if (ImGui::Button("Start again")) s.restart = true;

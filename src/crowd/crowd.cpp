@@ -23,7 +23,6 @@ constexpr double kMostSpeed = 100;   // [m/s]
 constexpr double kMostRadius = 100;  // [m]
 constexpr double kMostHeight = 65;   // [m]
 constexpr int32_t kMostSubSteps = 1000;
-constexpr double kLook = 3;               // [m] of a leg, to see whether it is open
 constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
@@ -371,7 +370,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
 
 // Follows ways, and asks for those that are missing.
 void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned) {
-  const auto reach = static_cast<float>(kLook / unit);
+  const auto metre = static_cast<float>(1 / unit);
   const uint64_t step_now = sub_step - 1;
   uint64_t asked = 0;
   for (Body& body : bodies) {
@@ -387,7 +386,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
     if (!body.has(Body::kLost)) {
-      follow(body, route, ground, (step_now + body.slot) / engine.steps_of_reaction(body), reach);
+      follow(body, route, ground, (step_now + body.slot) / engine.steps_of_reaction(body), metre);
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;

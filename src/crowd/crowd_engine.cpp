@@ -29,7 +29,7 @@ constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
 constexpr uint64_t kSides = 0x51de5;         // stream of chance
 constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
-constexpr float kAtOnce = 0.3f;              // [s] Who goes straight meets nobody within.
+constexpr float kAtOnce = 0.1f;              // [s] Who goes straight meets nobody within.
 constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
 constexpr float kEnough = 14;                // bodies, to find the nearest among
 constexpr size_t kBits = 64;                 // of a word
@@ -385,9 +385,13 @@ bool CrowdEngine::find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid
 bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) const {
   if (!is_held_up(body)) return false;
   const Plane turned = situation.wish;
-  situation.wish =
-      steer::wish_towards(config_.units.metres(body.aim_x - body.x, body.aim_z - body.z),
-                          body.speed, units_of(body).dt, 0);
+  const Plane left = config_.units.metres(body.aim_x - body.x, body.aim_z - body.z);
+  situation.wish = steer::wish_towards(left, body.speed, units_of(body).dt, 0);
+  // Who is a step from his corner stops there: whether he would touch somebody beyond is no matter.
+  if (!body.has(Body::kLast) && size_of(left) <= body.speed * units_of(body).dt) {
+    look_ahead(body, situation);
+    return true;
+  }
   situation.wish = steer::following_fast(config_.steering, situation);
   look_ahead(body, situation);
   steer::SampledSettings at_once = config_.steering;

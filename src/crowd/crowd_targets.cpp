@@ -134,7 +134,7 @@ bool Crowd::State::plan_way(Body& body, Route& route, const StrideGround& ground
       lead_around(data, parts.lives[w], ground, path, parts.detours[w]);
     }
   }
-  return take_way(data, path, body, route);
+  return take_way(data, path, ground, body, route);
 }
 
 // The rectangles that flows name are of the ground as it was.

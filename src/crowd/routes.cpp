@@ -3,7 +3,9 @@
 #include "crowd/routes.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "crowd/own_place.h"
 #include "crowd/step_units.h"
 #include "world/place.h"
 
@@ -11,18 +13,35 @@ namespace throng {
 namespace {
 
 constexpr uint64_t kLookEvery = 16;  // decisions
+constexpr uint64_t kHeldLooksEvery = 4;
+constexpr float kLook = 3;     // [m] of a leg, to see whether it is open
+constexpr float kSoon = 0.3f;  // [m] before his own place one turns to the next
 
-void turn_to(Body& body, const Route& route) {
-  const Spot& corner = route.corners[route.next];
-  body.aim_x = corner.x;
-  body.aim_z = corner.z;
+void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
+  const Spot place = own_place(body, route, ground, metre);
+  body.aim_x = place.x;
+  body.aim_z = place.z;
   const bool last = route.whole && route.next + 1 == route.count;
   body.flags = static_cast<uint8_t>(last ? body.flags | Body::kLast : body.flags & ~Body::kLast);
 }
 
+// Has it come as far as its own place, on the way to the next corner? Who turned as soon as he sees
+// that one would go along the inner wall after all.
+bool is_at_own_place(const Body& body, const Route& route, float metre) {
+  const Spot& corner = route.corners[route.next];
+  if (corner.x == body.aim_x && corner.z == body.aim_z) return true;
+  const Spot& next = route.corners[route.next + 1u];
+  const auto x = static_cast<float>(next.x - body.aim_x);
+  const auto z = static_cast<float>(next.z - body.aim_z);
+  const float along =
+      static_cast<float>(body.x - body.aim_x) * x + static_cast<float>(body.z - body.aim_z) * z;
+  return along > -kSoon * metre * std::sqrt(x * x + z * z);
+}
+
 }  // namespace
 
-void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach) {
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre) {
+  const float reach = kLook * metre;
   const auto sees = [&](const Spot& spot) {
     return ground.sees(body.level, body.point(), {spot.x, spot.z}, spot.level, reach);
   };
@@ -30,9 +49,10 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
   if (!body.has(Body::kLast) && square < reach * reach / 4) {
     const bool at_end = route.next + 1 == route.count;
     const bool there = square < 16;  // a few units: as near as steps come
-    if (!at_end && (there || sees(route.corners[route.next + 1u]))) {
+    if (!at_end &&
+        (there || (is_at_own_place(body, route, metre) && sees(route.corners[route.next + 1u])))) {
       ++route.next;
-      turn_to(body, route);
+      turn_to(body, route, ground, metre);
       return;
     }
     if (at_end) {  // Corners are used up; the rest of the way is a new one.
@@ -40,7 +60,10 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
       return;
     }
   }
-  if (nth % kLookEvery == 0 && !sees(route.corners[route.next])) body.flags |= Body::kLost;
+  // Who was pushed back behind a corner sees it no more, and is held up until he looks.
+  const bool held = body.turn != 0 && body.near_wall;
+  if (nth % (held ? kHeldLooksEvery : kLookEvery) != 0) return;
+  if (!sees({body.aim_x, body.aim_z, route.corners[route.next].level})) body.flags |= Body::kLost;
 }
 
 bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
@@ -76,7 +99,9 @@ Spot spot_of(const WorldData& world, const Place& place) {
   return {static_cast<int32_t>(point.x), static_cast<int32_t>(point.z), place.level1 - 1};
 }
 
-bool take_way(const WorldData& world, const Path& path, Body& body, Route& route) {
+bool take_way(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
+              Route& route) {
+  const float metre = kUnitsPerCell / static_cast<float>(world.summary.cell);
   body.flags = static_cast<uint8_t>(body.flags & ~Body::kLost);
   if (path.end != PathEnd::kReached) return false;
   if (path.points.size() < 2) {  // It stands on its goal.
@@ -84,7 +109,7 @@ bool take_way(const WorldData& world, const Path& path, Body& body, Route& route
     route.count = 1;
     route.next = 0;
     route.whole = true;
-    turn_to(body, route);
+    turn_to(body, route, ground, metre);
     return true;
   }
   const size_t legs = path.points.size() - 1;
@@ -94,7 +119,7 @@ bool take_way(const WorldData& world, const Path& path, Body& body, Route& route
   for (size_t i = 0; i < route.count; ++i) {
     route.corners[i] = spot_of(world, path.points[i + 1]);
   }
-  turn_to(body, route);
+  turn_to(body, route, ground, metre);
   return true;
 }
 

@@ -32,15 +32,16 @@ struct Route {
 
 /// Turns to the next corner where it can be seen, and marks whoever has lost his way. `nth`: of
 /// decisions, begun at different numbers, so that not everybody looks around in the same step.
-/// `reach`: how far one looks along a leg. [units]
-void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float reach);
+/// `metre`: [units]
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre);
 
 /// Where a body stands, where it is bound for.
 Place place_of(const WorldData& world, const Body& body, const Spot& spot);
 Spot spot_of(const WorldData& world, const Place& place);
 
 /// Takes the next corners of a way that was found, from where the body is. False: none was.
-bool take_way(const WorldData& world, const Path& path, Body& body, Route& route);
+bool take_way(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
+              Route& route);
 
 /// A rectangle of the plane. [units]
 struct PlanBox {

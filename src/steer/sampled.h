@@ -35,12 +35,12 @@ struct SampledSettings {
   float wall = 0.5f;          ///< Cost of walking up to a wall,
   float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
   int32_t neighbours = 8;     ///< The nearest so many are looked at. [1 to kMostNear]
-  float headway = 0.45f;      ///< Time between two who walk close behind each other. [s, > 0]
+  float headway = 0.43f;      ///< Time between two who walk close behind each other. [s, > 0]
   float body = 0.4f;          ///< Of their distance, what is not room, if they are that wide. [m]
   float lane = 0.75f;         ///< Who is ahead: not further aside than this part of both radii,
   float same_way = 0.8f;      ///< and wishes to go one's way: cosine of the angle between wishes.
   float unbound = 1.1f;       ///< What room without end allows, by the fastest.
-  float foresight = 0.35f;    ///< Share of a leader's being faster that the room does not limit.
+  float foresight = 0.3f;     ///< Share of a leader's being faster that the room does not limit.
 };
 
 inline constexpr size_t kMostNear = 16;

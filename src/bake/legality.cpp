@@ -99,10 +99,10 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const int32_t count = kTileSide + 2 * reach;
 
   std::vector<int32_t> widths = body.width;  // ascending, each once
-  std::ranges::sort(widths);
+  std::sort(widths.begin(), widths.end());
   widths.erase(std::unique(widths.begin(), widths.end()), widths.end());
   const auto index_of = [&](int32_t w) {  // -1: not in the table
-    const auto at = std::ranges::lower_bound(widths, w);
+    const auto at = std::lower_bound(widths.begin(), widths.end(), w);
     return at != widths.end() && *at == w ? static_cast<int32_t>(at - widths.begin()) : -1;
   };
   std::array<int32_t, 65> width_index{}, core_index{};

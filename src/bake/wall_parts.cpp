@@ -617,7 +617,7 @@ bool WallCheck::run(LegalCells& cells) {
     const Slab slab = slab_of(low.band, high.band);
     want(all, slab);
     gather(slab);
-    std::ranges::sort(all);
+    std::sort(all.begin(), all.end());
   }
   bool any = false;
   for (size_t begin = 0, end = 0; begin < all.size(); begin = end) {

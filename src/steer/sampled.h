@@ -40,7 +40,7 @@ struct SampledSettings {
   float lane = 0.75f;         ///< Who is ahead: not further aside than this part of both radii,
   float same_way = 0.8f;      ///< and wishes to go one's way: cosine of the angle between wishes.
   float unbound = 1.1f;       ///< What room without end allows, by the fastest.
-  float foresight = 0.3f;     ///< Share of a leader's being faster that the room does not limit.
+  float foresight = 0.29f;    ///< Share of a leader's being faster that the room does not limit.
 };
 
 inline constexpr size_t kMostNear = 16;

@@ -86,7 +86,7 @@ TEST(SampledSteering, OvertakesAndLetsThoseAheadBe) {
 
 // The speed that a room of so many metres leaves, worked out in other terms.
 double speed_for(double room, double fastest) {
-  const double u = room / (0.45 * fastest);
+  const double u = room / (SampledSettings{}.headway * fastest);
   return 1.1 * fastest * (u + u * u / 2 + u * u * u / 2) / (1 + u + u * u / 2 + u * u * u / 2);
 }
 
@@ -101,9 +101,10 @@ TEST(SampledSteering, FollowsNoFasterThanTheRoomAllows) {
   EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.28f, wish}).x, speed_for(0.5, 1.3), 1e-5);  // and the gap
   EXPECT_EQ(speed({{0.4f, 0}, {}, 0.38f, wish}).x, 0);
   EXPECT_EQ(speed({{3, 0}, {}, 0.5f, wish}).x, 1.3f);
-  // A leader who is faster lets 0.35 of that through.
-  const double limit = speed_for(0.2, 1.3);
-  EXPECT_NEAR(speed({{0.6f, 0}, {1.2f, 0.4f}, 0.5f, wish}).x, limit + 0.35 * (1.2 - limit), 1e-5);
+  // A leader who is faster lets a part of that through.
+  const double limit = speed_for(0.2, 1.3), foresight = SampledSettings{}.foresight;
+  EXPECT_NEAR(speed({{0.6f, 0}, {1.2f, 0.4f}, 0.5f, wish}).x, limit + foresight * (1.2 - limit),
+              1e-5);
   EXPECT_NEAR(speed({{0.6f, 0}, {0.1f, 0}, 0.5f, wish}).x, limit, 1e-5);
   // Behind, beside, bound elsewhere, or without a wish: nobody to follow.
   EXPECT_EQ(speed({{-0.8f, 0}, {}, 0.6f, wish}).x, 1.3f);

@@ -192,8 +192,9 @@ class DropFinder {
       return std::pair{static_cast<int32_t>(std::clamp(middle - more, 0.0, cells - 1.0)),
                        static_cast<int32_t>(std::clamp(middle + more, 0.0, cells - 1.0))};
     };
-    const auto [x0, x1] = range(from.feet.x, world_.summary.origin.x, world_.width);
-    const auto [z0, z1] = range(from.feet.z, world_.summary.origin.z, world_.depth);
+    const auto columns = range(from.feet.x, world_.summary.origin.x, world_.width);
+    const auto rows = range(from.feet.z, world_.summary.origin.z, world_.depth);
+    const int32_t x0 = columns.first, x1 = columns.second, z0 = rows.first, z1 = rows.second;
     for (int32_t tile_z = z0 >> 6; tile_z <= z1 >> 6; ++tile_z) {
       for (int32_t tile_x = x0 >> 6; tile_x <= x1 >> 6; ++tile_x) {
         ground_.for_tile(tile_x, tile_z, 0, 0, [&](const GroundLevel& level) {

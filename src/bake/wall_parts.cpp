@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 // Cells that are asked stand near matter that may or may not reach into the body. What a triangle
 // has at the body's height is a convex polygon; its plan is filled, conservatively, into the parts
@@ -346,6 +347,12 @@ bool touches_wanted(const WallScratch::Side& side, const WallScratch::Near& near
   return false;
 }
 
+// The lowest and the highest band of some that are asked for.
+std::pair<int32_t, int32_t> bands_of(const std::vector<WallScratch::Asked>& asked) {
+  const auto [low, high] = std::minmax_element(asked.begin(), asked.end());  // bands come first
+  return {low->band, high->band};
+}
+
 class WallCheck {
  public:
   WallCheck(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
@@ -407,9 +414,9 @@ void WallCheck::list(const LegalCells& cells) {
 // Takes off the list what is within reach of a column without matter at the height of any body
 // asked for, and without a floor: nothing will excuse that one.
 void WallCheck::leave_out_hopeless() {
-  const auto [low, high] = std::ranges::minmax(scratch_.asked, {}, &Asked::band);
-  Slab slab = slab_of(low.band, low.band);
-  slab.high = slab_of(high.band, high.band).high;
+  const auto [low, high] = bands_of(scratch_.asked);
+  Slab slab = slab_of(low, low);
+  slab.high = slab_of(high, high).high;
   const int32_t reach = body_.reach;
   uint64_t rows = 0, columns = 0;
   for (const Asked& a : scratch_.asked) {
@@ -611,10 +618,10 @@ bool WallCheck::run(LegalCells& cells) {
   leave_out_hopeless();
   if (all.empty()) return false;
   scratch_.parts.resize(std::max(scratch_.parts.size(), window_.top.size() + 8), 0);
-  const auto [low, high] = std::ranges::minmax(all, {}, &Asked::band);
-  const bool one_band = low.band == high.band;
+  const auto [low, high] = bands_of(all);
+  const bool one_band = low == high;
   if (!one_band) {
-    const Slab slab = slab_of(low.band, high.band);
+    const Slab slab = slab_of(low, high);
     want(all, slab);
     gather(slab);
     std::sort(all.begin(), all.end());

@@ -543,8 +543,8 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
     body.state = Body::kFree;
     return false;
   }
-  const std::span others(worker.others.begin() + static_cast<std::ptrdiff_t>(first),
-                         worker.others.end());
+  const std::span<const uint32_t> others(worker.others.data() + first,
+                                         worker.others.size() - first);
   if (!is_clear(body, claim.place, others, /*somebody_moved=*/false)) {
     worker.others.resize(first);
     return std::nullopt;
@@ -568,8 +568,8 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   }
   const size_t first = worker.others.size();
   sense(i, worker, around, true);
-  const std::span others(worker.others.begin() + static_cast<std::ptrdiff_t>(first),
-                         worker.others.end());
+  const std::span<const uint32_t> others(worker.others.data() + first,
+                                         worker.others.size() - first);
   const bool open = find_open_wish(i, worker, around);
   // The best of his ways is enough as long as nobody objects to it.
   if (!open) look_around(body, worker.situation);

@@ -32,6 +32,15 @@ struct AvatarDetail {
   bool driven = false;
 };
 
+/// What CrowdStart::only_seen needs.
+struct SeenOnly {
+  std::vector<EyeSight> sights;  // From where the eye is, was, and may be soon.
+  size_t used = 0;
+  std::optional<AvatarGenerators> generators;
+  std::optional<EyePlace> looked;
+  std::string fault;
+};
+
 /// Steps a crowd in which everybody gets one goal after the other. The same start, the same steps,
 /// until somebody meddles.
 class CrowdPlayer final : public MomentSource {
@@ -78,14 +87,6 @@ class CrowdPlayer final : public MomentSource {
     uint32_t goals_given = 0;
     bool driven = false;
     bool generated = false;  // Its goals are not ours to give.
-  };
-  // What CrowdStart::only_seen needs.
-  struct SeenOnly {
-    std::vector<EyeSight> sights;  // From where the eye is, was, and may be soon.
-    size_t used = 0;
-    std::optional<AvatarGenerators> generators;
-    std::optional<EyePlace> looked;
-    std::string fault;
   };
 
   CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Crowd&& crowd);

@@ -118,23 +118,7 @@ void add_view(CLI::App& parser, Session& session) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--zones", target.start.zones, "Ways by zones: for large worlds");
-  command->add_flag("--only-seen", target.start.only_seen,
-                    "For a camera in a street: simulate only who could be seen from it");
-  command->add_option("--sight", target.start.sight, "With --only-seen: so far [m]")
-      ->check(CLI::Range(1.0, 2000.0))
-      ->capture_default_str();
-  command->add_flag("--coarse-far", target.start.coarse_far,
-                    "Simulate who is more than 300 m away in longer steps");
-  command->add_option("--atlas", target.atlases, "Who walks, made by throng atlas; may be repeated")
-      ->type_name("FILE.atlas")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--character", target.characters,
-                   "Who walks, with a skeleton (fbx, glb ...); may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command->add_option("--world", target.world, "World of a recording, if it is not where it was")
-      ->type_name("WORLD");
+  add_people_options(command, target);
   command->add_option("--cell", target.cell, "Side of a cell, to bake a model with [m]")
       ->capture_default_str();
   add_source_options(command, target.sources, "--source");

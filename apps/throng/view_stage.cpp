@@ -203,6 +203,26 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
 
 }  // namespace
 
+void add_people_options(CLI::App* command, ViewTarget& target) {
+  command->add_flag("--only-seen", target.start.only_seen,
+                    "For a camera in a street: simulate only who could be seen from it");
+  command->add_option("--sight", target.start.sight, "With --only-seen: so far [m]")
+      ->check(CLI::Range(1.0, 2000.0))
+      ->capture_default_str();
+  command->add_flag("--coarse-far", target.start.coarse_far,
+                    "Simulate who is more than 300 m away in longer steps");
+  command->add_option("--atlas", target.atlases, "Who walks, made by throng atlas; may be repeated")
+      ->type_name("FILE.atlas")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--character", target.characters,
+                   "Who walks, with a skeleton (fbx, glb ...); may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command->add_option("--world", target.world, "World of a recording, if it is not where it was")
+      ->type_name("WORLD");
+}
+
 LoadStage stage_of(const ViewTarget& target) {
   return [target](StageParts& parts, Context& context) -> Result<void> {
     const fs::path path(target.path);

@@ -26,6 +26,10 @@ struct ViewTarget {
   CrowdStart start;
 };
 
+/// The options that say who walks and how closely: --only-seen, --sight, --coarse-far, --atlas,
+/// --character, and --world.
+void add_people_options(CLI::App* command, ViewTarget& target);
+
 /// How to load it; what goes wrong is told when it is loaded.
 [[nodiscard]] LoadStage stage_of(const ViewTarget& target);
 

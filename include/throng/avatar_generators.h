@@ -21,7 +21,10 @@ namespace throng {
 struct GeneratorConfig {
   Place home = {};  ///< People are where one can walk to from here.
   int32_t avatar_class = 0;
-  double density = 0.05;      ///< Avatars on a square metre of that ground. [1/m^2, > 0, <= 1]
+  double density = 0.05;  ///< Avatars on a square metre of that ground. [1/m^2, > 0, <= 1]
+  /// Instead of a density, if not 0: so many on all of that ground, at most one on each square
+  /// metre. [>= 0]
+  double people = 0;
   double reach = 100;         ///< Ground further from the eye is left alone. [m, > 0]
   double band = 16;           ///< How far unseen ground beside what is seen is populated. [m, > 0]
   int32_t steps_a_look = 10;  ///< Between two questions of what can be seen. [steps, > 0]

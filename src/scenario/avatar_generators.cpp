@@ -243,11 +243,12 @@ AvatarGenerators::~AvatarGenerators() = default;
 Result<AvatarGenerators> AvatarGenerators::make(const World& world, const GeneratorConfig& config,
                                                 Context& context) {
   const bool sound = config.density > 0 && config.density <= 1 && config.reach > 0 &&
-                     config.band > 0 && config.steps_a_look > 0 && config.workers >= 0;
+                     config.band > 0 && config.steps_a_look > 0 && config.workers >= 0 &&
+                     config.people >= 0 && std::isfinite(config.people);
   if (!sound) {
     return Error{Errc::kBadConfig,
-                 "generators: need a density over 0 and up to 1, and reach, band and "
-                 "steps_a_look over 0"};
+                 "generators: need a density over 0 and up to 1, no people less than none, and "
+                 "reach, band and steps_a_look over 0"};
   }
   const WorldSummary summary = world.summary();
   if (config.avatar_class < 0 ||
@@ -293,6 +294,9 @@ Result<AvatarGenerators> AvatarGenerators::make(const World& world, const Genera
     }
   });
   for (const GroundCell& cell : s.cells) s.area += cell.area;
+  if (config.people > 0) {
+    s.config.density = std::clamp(config.people / std::max(1.0, s.area), 1e-6, 1.0);
+  }
   s.counts.assign(s.cells.size(), 0);
   return AvatarGenerators(std::move(state));
 }

@@ -323,10 +323,7 @@ Result<void> CrowdPlayer::keep_populated() {
     config.reach = start_.sight;
     config.seed = start_.seed;
     config.workers = workers_;
-    // How dense it is to be follows from how large the ground is.
-    Result<AvatarGenerators> measure = AvatarGenerators::make(world_, config, quiet);
-    if (!measure) return measure.error();
-    config.density = std::clamp(start_.avatars / std::max(1.0, measure->area()), 1e-6, 1.0);
+    config.people = start_.avatars;
     Result<AvatarGenerators> made = AvatarGenerators::make(world_, config, quiet);
     if (!made) return made.error();
     s.generators = *std::move(made);

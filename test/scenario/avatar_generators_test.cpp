@@ -13,6 +13,7 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "rays.h"
 
 namespace throng {
 namespace {
@@ -81,19 +82,12 @@ bool is_body_in_sight(Vec3d eye, Vec3d feet, uint64_t salt) {
         feet + Vec3d{out * std::cos(turn), 0.05 + 1.7 * random_unit(91, salt, 3 * k + 2),
                      out * std::sin(turn)};
     const Vec3d ray = point - eye;
-    const bool hidden = std::any_of(
-        scene.triangles.begin(), scene.triangles.end(), [&](const std::array<uint32_t, 3>& t) {
-          const Vec3d a = scene.positions[t[0]], b = scene.positions[t[1]] - a,
-                      c = scene.positions[t[2]] - a;
-          const Vec3d p = cross(ray, c);
-          const double det = dot(b, p);
-          if (std::fabs(det) < 1e-12) return false;
-          const Vec3d s = eye - a;
-          const double u = dot(s, p) / det;
-          const Vec3d q = cross(s, b);
-          const double v = dot(ray, q) / det, w = dot(c, q) / det;
-          return u >= 0 && v >= 0 && u + v <= 1 && w > 1e-9 && w < 1 - 1e-9;
-        });
+    const bool hidden = std::any_of(scene.triangles.begin(), scene.triangles.end(),
+                                    [&](const std::array<uint32_t, 3>& t) {
+                                      const auto at = meet(scene, t, eye, ray);
+                                      return at && at->u >= 0 && at->v >= 0 && at->u + at->v <= 1 &&
+                                             at->along > 1e-9 && at->along < 1 - 1e-9;
+                                    });
     if (!hidden) return true;
   }
   return false;
@@ -194,6 +188,20 @@ TEST(AvatarGenerators, KeepAStreetPopulatedWhileOnlyWhatIsSeenIsSimulated) {
   EXPECT_LT(r.most, 1.35);
   EXPECT_NEAR(r.mean, 1, 0.06);
   EXPECT_LT(static_cast<double>(r.largest), 0.8 * all);
+}
+
+TEST(AvatarGenerators, TakeANumberOfPeopleInPlaceOfADensity) {
+  Context context;
+  GeneratorConfig config = config_of(0.04);
+  const auto by_density = AvatarGenerators::make(town().world, config, context);
+  ASSERT_TRUE(by_density);
+  const auto stands = [](int32_t) { return Vec3d{35, 1.7, 65}; };
+  const uint64_t wanted = walk_and_see(config, stands, 30).hash;
+  config.people = 0.04 * by_density->area();
+  config.density = 0.9;
+  EXPECT_EQ(walk_and_see(config, stands, 30).hash, wanted);
+  config.people = -1;
+  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kBadConfig);
 }
 
 TEST(AvatarGenerators, FollowAnEyeThatWalksAroundCorners) {

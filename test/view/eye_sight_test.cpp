@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "core/random.h"
+#include "rays.h"
 #include "throng/builtin_worlds.h"
 
 namespace throng {
@@ -24,17 +25,10 @@ bool is_free(const Scene& scene, Vec3d eye, Vec3d point, double nearest) {
   const double far = length(ray);
   return std::none_of(
       scene.triangles.begin(), scene.triangles.end(), [&](const std::array<uint32_t, 3>& t) {
-        const Vec3d a = scene.positions[t[0]], b = scene.positions[t[1]] - a,
-                    c = scene.positions[t[2]] - a;
-        const Vec3d p = cross(ray, c);
-        const double det = dot(b, p);
-        if (std::abs(det) < 1e-12) return false;
-        const Vec3d s = eye - a;
-        const double u = dot(s, p) / det;
-        const Vec3d q = cross(s, b);
-        const double v = dot(ray, q) / det, w = dot(c, q) / det;
+        const auto at = meet(scene, t, eye, ray);
         // A hair wider than the triangle: the oracle's rays must not slip through its seams.
-        return u >= -1e-9 && v >= -1e-9 && u + v <= 1 + 1e-9 && w * far > nearest && w < 1;
+        return at && at->u >= -1e-9 && at->v >= -1e-9 && at->u + at->v <= 1 + 1e-9 &&
+               at->along * far > nearest && at->along < 1;
       });
 }
 

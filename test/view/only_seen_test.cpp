@@ -12,6 +12,7 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "rays.h"
 #include "throng_view/viewer.h"
 #include "view/crowd_player.h"
 #include "view/view_settings.h"
@@ -46,16 +47,9 @@ bool is_free(Vec3d eye, Vec3d point) {
   const Vec3d ray = point - eye;
   return std::none_of(scene.triangles.begin(), scene.triangles.end(),
                       [&](const std::array<uint32_t, 3>& t) {
-                        const Vec3d a = scene.positions[t[0]], b = scene.positions[t[1]] - a,
-                                    c = scene.positions[t[2]] - a;
-                        const Vec3d p = cross(ray, c);
-                        const double det = dot(b, p);
-                        if (std::abs(det) < 1e-12) return false;
-                        const Vec3d s = eye - a;
-                        const double u = dot(s, p) / det;
-                        const Vec3d q = cross(s, b);
-                        const double v = dot(ray, q) / det, w = dot(c, q) / det;
-                        return u >= 0 && v >= 0 && u + v <= 1 && w > 0 && w < 1;
+                        const auto at = meet(scene, t, eye, ray);
+                        return at && at->u >= 0 && at->v >= 0 && at->u + at->v <= 1 &&
+                               at->along > 0 && at->along < 1;
                       });
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_set>
 #include <utility>
 
 namespace throng {
@@ -36,6 +35,53 @@ std::span<const CrossCells::Cell> CrossCells::beside(uint32_t patch, uint32_t ce
 }
 
 namespace {
+
+// A set of keys that is emptied often: slots of earlier rounds count as free.
+class KeySet {
+ public:
+  void clear() {
+    count_ = 0;
+    if (++round_ != 0) return;
+    std::fill(slots_.begin(), slots_.end(), Slot{});
+    round_ = 1;
+  }
+
+  // False if the key was there already.
+  bool insert(uint64_t key) {
+    if (2 * (count_ + 1) > slots_.size()) grow();
+    Slot& slot = slot_of(key);
+    if (slot.round == round_) return false;
+    slot = {key, round_};
+    ++count_;
+    return true;
+  }
+
+ private:
+  struct Slot {
+    uint64_t key = 0;
+    uint32_t round = 0;
+  };
+
+  // The key's slot, or the free one where it belongs.
+  Slot& slot_of(uint64_t key) {
+    const size_t mask = slots_.size() - 1;
+    size_t i = (key * 0x9E3779B97F4A7C15U) >> 32 & mask;
+    while (slots_[i].round == round_ && slots_[i].key != key) i = (i + 1) & mask;
+    return slots_[i];
+  }
+
+  void grow() {
+    std::vector<Slot> old(std::max<size_t>(64, 2 * slots_.size()));
+    old.swap(slots_);
+    for (const Slot& slot : old) {
+      if (slot.round == round_) slot_of(slot.key) = slot;
+    }
+  }
+
+  std::vector<Slot> slots_;  // a power of two, at most half full
+  size_t count_ = 0;
+  uint32_t round_ = 1;
+};
 
 class Flood {
  public:
@@ -87,7 +133,7 @@ class Flood {
   }
 
   void enter(uint32_t patch, uint32_t cell) {
-    if (!seen_.insert(key_of(patch, cell)).second) return;
+    if (!seen_.insert(key_of(patch, cell))) return;
     const double far = distance(patch, cell);
     if (far >= nearest_) return;
     const PatchTree& tree = forest_.trees[patch];
@@ -129,7 +175,7 @@ class Flood {
   CellBall middle_;
   Promise promise_;
   double nearest_ = 0;
-  std::unordered_set<uint64_t> seen_;
+  KeySet seen_;
   std::vector<std::pair<uint32_t, uint32_t>> ring_, last_;
 };
 

@@ -45,14 +45,14 @@ bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const Bod
   }
   found_.clear();
   triangles_->find(box, found_);
-  near_.clear();
-  for (const uint32_t t : found_) near_.push_back(triangles_->corners(t));
+  near_.clear(from.feet);
+  for (const uint32_t t : found_) near_.add(t, triangles_->corners(t));
   return is_free(body, from, to, way, 0, 1);
 }
 
 // The part of a motion from t0 to t1, halved until the grown body is free.
 bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to,
-                          double way, double t0, double t1) const {
+                          double way, double t0, double t1) {
   const double t = (t0 + t1) / 2, growth = way * (t1 - t0) / 2;
   const Vec3d axis = from.axis * (1 - t) + to.axis * t;
   const BodyFrame frame =
@@ -60,13 +60,22 @@ bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const Bod
   const BodySweep exact{.radius = body.radius, .low = body.bottom, .high = body.height};
   const BodySweep grown{
       .radius = body.radius + growth, .low = body.bottom - growth, .high = body.height + growth};
-  bool free = true;
-  for (const LocalTriangle& triangle : near_) {
-    LocalTriangle local;
-    for (size_t i = 0; i < 3; ++i) local[i] = frame.local(triangle[i]);
-    if (lowest_entry(local, grown) == kNever) continue;
-    if (growth <= kGrowth || lowest_entry(local, exact) < kNever) return false;
-    free = false;
+  // At the end there is no room to give.
+  const bool last = growth <= kGrowth;
+  const std::array<SieveTube, 2> tubes{
+      {{.whole = exact, .decisive = exact}, {.whole = grown, .decisive = grown}}};
+  const uint32_t answered =
+      sieve(near_, {.frame = frame, .first = grown, .second = grown, .tubes = tubes}, hits_);
+  if ((answered & (last ? 3 : 1)) != 0) return false;
+  bool free = (answered & 2) == 0;
+  for (size_t i = 0; i < hits_.count; ++i) {
+    LocalTriangle local = triangles_->corners(hits_.triangle[i]);
+    for (Vec3d& corner : local) corner = frame.local(corner);
+    if (free && lowest_entry(local, grown) < kNever) {
+      if (last) return false;
+      free = false;
+    }
+    if ((hits_.tubes[i] & 1) != 0 && lowest_entry(local, exact) < kNever) return false;
   }
   return free || (is_free(body, from, to, way, t0, t) && is_free(body, from, to, way, t, t1));
 }

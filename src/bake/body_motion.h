@@ -28,11 +28,12 @@ class MotionJudge {
 
  private:
   [[nodiscard]] bool is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to,
-                             double way, double t0, double t1) const;
+                             double way, double t0, double t1);
 
   const TriangleSquares* triangles_;
   std::vector<uint32_t> found_;
-  std::vector<LocalTriangle> near_;
+  SieveList near_;
+  SieveHits hits_;
 };
 
 }  // namespace throng

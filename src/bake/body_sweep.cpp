@@ -200,7 +200,6 @@ void TriangleSquares::make_clusters(int32_t workers) {
       while (j < keys.size() && j - i < kMost && same_cube(keys[i], keys[j])) ++j;
       lists[run].push_back(
           measure(static_cast<uint32_t>(begin + i), static_cast<uint32_t>(begin + j)));
-      lists[run].back().patch = std::get<0>(keys[i]);
       i = j;
     }
   });
@@ -212,28 +211,11 @@ TriangleSquares::Cluster TriangleSquares::measure(uint32_t first, uint32_t last)
   cluster.first = first;
   cluster.last = last;
   Box3d box;
-  Vec3d normal;
   for (uint32_t i = first; i < last; ++i) {
-    const LocalTriangle c = corners(order_[i]);
-    for (const Vec3d& p : c) box.add(p);
-    normal = normal + cross(c[1] - c[0], c[2] - c[0]);
-  }
-  const double size = length(normal);
-  cluster.axis = size > 0 ? normal * (1 / size) : Vec3d{0, 1, 0};
-  cluster.centre = (box.min + box.max) * 0.5;
-  double radius = 0, thick = 0;
-  for (uint32_t i = first; i < last; ++i) {
-    for (const Vec3d& p : corners(order_[i])) {
-      const Vec3d d = p - cluster.centre;
-      const double along = dot(d, cluster.axis);
-      thick = std::max(thick, std::fabs(along));
-      radius = std::max(radius, dot(d, d) - along * along);
-    }
+    for (const Vec3d& p : corners(order_[i])) box.add(p);
   }
   const auto above = [](double v) { return std::nextafter(static_cast<float>(v), INFINITY); };
   const auto below = [](double v) { return std::nextafter(static_cast<float>(v), -INFINITY); };
-  cluster.radius = above(std::sqrt(std::max(0.0, radius)) + 1e-9);
-  cluster.thick = above(thick + 1e-9);
   cluster.box = {below(box.min.x), below(box.min.y), below(box.min.z),
                  above(box.max.x), above(box.max.y), above(box.max.z)};
   return cluster;
@@ -244,9 +226,8 @@ int32_t TriangleSquares::square(double v, double origin, int32_t count) const {
       std::clamp((v - origin) / side_, 0.0, static_cast<double>(count - 1)));
 }
 
-// A cluster in several squares is visited in the first one that the box has in common with it.
-template <class Visit>
-void TriangleSquares::for_each_near(const Box3d& box, Visit visit) const {
+// A cluster in several squares is found in the first one that the box has in common with it.
+void TriangleSquares::find(const Box3d& box, std::vector<uint32_t>& out) const {
   const int32_t x0 = square(box.min.x, origin_x_, squares_x_);
   const int32_t x1 = square(box.max.x, origin_x_, squares_x_);
   const int32_t z0 = square(box.min.z, origin_z_, squares_z_);
@@ -267,58 +248,12 @@ void TriangleSquares::for_each_near(const Box3d& box, Visit visit) const {
           continue;
         }
         if ((x == x0 || item.begins_x) && (z == z0 || item.begins_z)) {
-          visit(clusters_[item.cluster]);
+          const Cluster& cluster = clusters_[item.cluster];
+          out.insert(out.end(), order_.begin() + cluster.first, order_.begin() + cluster.last);
         }
       }
     }
   }
-}
-
-void TriangleSquares::find(const Box3d& box, std::vector<uint32_t>& out) const {
-  for_each_near(box, [&](const Cluster& cluster) {
-    out.insert(out.end(), order_.begin() + cluster.first, order_.begin() + cluster.last);
-  });
-}
-
-TriangleSquares::Seen::Seen(const Cluster& cluster, const BodyFrame& frame) {
-  const Vec3d d = cluster.centre - frame.centre;
-  const double height = dot(d, frame.up), along = std::fabs(dot(cluster.axis, frame.up));
-  const double across = std::sqrt(std::max(0.0, 1 - along * along)) + 1e-9;
-  const double up = along * cluster.thick + across * cluster.radius;
-  low = height - up;
-  high = height + up;
-  side2 = dot(d, d) - height * height;
-  reach = cluster.radius + across * cluster.thick + 1e-9;
-}
-
-void TriangleSquares::find(const BodyFrame& frame, const BodySweep& sweep, const BodySweep& other,
-                           std::vector<uint32_t>& out) const {
-  const BodySweep both{.radius = std::max(sweep.radius, other.radius),
-                       .low = std::min(sweep.low, other.low),
-                       .high = std::max(sweep.high, other.high)};
-  for_each_near(sweep_box(frame, both), [&](const Cluster& cluster) {
-    const Seen seen(cluster, frame);
-    if (!seen.may_enter(sweep) && !seen.may_enter(other)) return;
-    out.insert(out.end(), order_.begin() + cluster.first, order_.begin() + cluster.last);
-  });
-}
-
-void TriangleSquares::find_patches(const BodyFrame& frame, const BodySweep& sweep,
-                                   std::span<const uint8_t> not_of,
-                                   std::vector<uint32_t>& out) const {
-  for_each_near(sweep_box(frame, sweep), [&](const Cluster& cluster) {
-    if (cluster.patch == kNoPatch || (!out.empty() && out.back() == cluster.patch) ||
-        not_of[cluster.patch] != 0 || !Seen(cluster, frame).may_enter(sweep)) {
-      return;
-    }
-    for (uint32_t i = cluster.first; i < cluster.last; ++i) {
-      LocalTriangle local = corners(order_[i]);
-      for (Vec3d& corner : local) corner = frame.local(corner);
-      if (lowest_entry(local, sweep) == kNever) continue;
-      out.push_back(cluster.patch);
-      return;
-    }
-  });
 }
 
 LocalTriangle TriangleSquares::corners(uint32_t triangle) const {

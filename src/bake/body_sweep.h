@@ -44,31 +44,20 @@ using LocalTriangle = std::array<Vec3d, 3>;
 /// The box that holds a sweep.
 [[nodiscard]] Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep);
 
-/// Triangles of a scene in small flat clusters, by squares of the ground: smooth ground is told to
-/// lie below a body a cluster at a time.
+/// Triangles of a scene in small clusters, by squares of the ground.
 class TriangleSquares {
  public:
   TriangleSquares(const Scene& scene, int32_t workers);
 
   /// Appends the triangles of clusters whose boxes overlap `box`, each once.
   void find(const Box3d& box, std::vector<uint32_t>& out) const;
-  /// Appends the triangles of clusters that may come into one sweep or the other, each once.
-  void find(const BodyFrame& frame, const BodySweep& sweep, const BodySweep& other,
-            std::vector<uint32_t>& out) const;
-  /// Appends the patches whose triangles come into a sweep, but for those marked in `not_of`.
-  void find_patches(const BodyFrame& frame, const BodySweep& sweep, std::span<const uint8_t> not_of,
-                    std::vector<uint32_t>& out) const;
   [[nodiscard]] LocalTriangle corners(uint32_t triangle) const;
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
  private:
-  /// All corners lie within `radius` of the axis through `centre` and within `thick` along it.
   struct Cluster {
-    Vec3d centre, axis;
-    float radius = 0, thick = 0;
     std::array<float, 6> box;      ///< Rounded outward.
     uint32_t first = 0, last = 0;  ///< of order_
-    uint32_t patch = kNoPatch;     ///< That all its triangles belong to.
   };
 
   /// A cluster in one of its squares, with all that tells most of them to be out of reach.
@@ -77,20 +66,9 @@ class TriangleSquares {
     uint32_t cluster = 0;
     bool begins_x = false, begins_z = false;  ///< No square before this one has it.
   };
-  /// A cluster as a body sees it: heights along its axis, and how far its axis' line is away.
-  struct Seen {
-    double low = 0, high = 0, side2 = 0, reach = 0;
-    Seen(const Cluster& cluster, const BodyFrame& frame);
-    [[nodiscard]] bool may_enter(const BodySweep& sweep) const {
-      const double near = sweep.radius + reach;
-      return high >= sweep.low && low <= sweep.high && side2 <= near * near;
-    }
-  };
   void make_clusters(int32_t workers);
   [[nodiscard]] Cluster measure(uint32_t first, uint32_t last) const;
   [[nodiscard]] int32_t square(double v, double origin, int32_t count) const;
-  template <class Visit>
-  void for_each_near(const Box3d& box, Visit visit) const;
 
   const Scene* scene_;
   double side_ = 2;  // [m]

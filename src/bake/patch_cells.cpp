@@ -3,6 +3,7 @@
 #include "bake/patch_cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -20,28 +21,19 @@ namespace throng {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kWidestCone = 0.94;   // sine of its half angle
+constexpr size_t kRegion = 256;        // cells that look for triangles together
+constexpr size_t kPart = 32;           // cells of a region that choose among these together
+constexpr size_t kSquare = 4;          // cells of a part that choose again
 constexpr double kSlopeMargin = 1e-6;  // a plane at exactly a limit keeps it
 
-// A triangle's box in a frame: most come into no body, and are not looked at more closely.
-struct LocalBox {
-  double left, right, back, front, low, high;
+bool overlap(const Box3d& a, const Box3d& b) {
+  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
+         a.min.z <= b.max.z && b.min.z <= a.max.z;
+}
 
-  explicit LocalBox(const LocalTriangle& t)
-      : left(std::min(std::min(t[0].x, t[1].x), t[2].x)),
-        right(std::max(std::max(t[0].x, t[1].x), t[2].x)),
-        back(std::min(std::min(t[0].y, t[1].y), t[2].y)),
-        front(std::max(std::max(t[0].y, t[1].y), t[2].y)),
-        low(std::min(std::min(t[0].z, t[1].z), t[2].z)),
-        high(std::max(std::max(t[0].z, t[1].z), t[2].z)) {}
-
-  [[nodiscard]] bool meets(const BodySweep& sweep) const {
-    return low <= sweep.high && high >= sweep.low && left <= sweep.radius &&
-           right >= -sweep.radius && back <= sweep.radius && front >= -sweep.radius;
-  }
-};
-
-double sine_of(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
+BodySweep surface_sweep(const SurfaceBound& surface) {
+  return {.radius = surface.radius, .low = surface.low, .high = surface.high};
+}
 
 // To 9 digits: the last bits of cos() differ between machines' libraries.
 double rounded_cosine(double degrees) {
@@ -64,78 +56,6 @@ std::vector<PatchBody> patch_bodies(std::span<const AvatarClass> classes) {
          .bit = static_cast<uint16_t>(1u << c)});
   }
   return bodies;
-}
-
-double SurfaceBound::steepest_cosine() const {
-  const double up = std::clamp(frame.up.y, -1.0, 1.0), across = sine_of(up);
-  if (across * cosine + up * sine < 0) return -1;  // The cone holds straight down.
-  return up * cosine - across * sine;
-}
-
-std::optional<SurfaceBound> bound_surface(const BezierPatch& patch) {
-  const auto& p = patch.points;
-  std::array<Vec3d, 12> along_s, along_t;
-  Vec3d mean_s, mean_t, centre;
-  for (size_t j = 0; j < 4; ++j) {
-    for (size_t i = 0; i < 3; ++i) {
-      along_s[3 * j + i] = (p[4 * j + i + 1] - p[4 * j + i]) * 3;
-      along_t[3 * j + i] = (p[4 * (i + 1) + j] - p[4 * i + j]) * 3;
-      mean_s = mean_s + along_s[3 * j + i];
-      mean_t = mean_t + along_t[3 * j + i];
-    }
-  }
-  mean_s = mean_s * (1.0 / 12);
-  mean_t = mean_t * (1.0 / 12);
-  for (const Vec3d& point : p) centre = centre + point;
-  centre = centre * (1.0 / 16);
-  double off_s = 0, off_t = 0;
-  for (size_t k = 0; k < 12; ++k) {
-    const Vec3d ds = along_s[k] - mean_s, dt = along_t[k] - mean_t;
-    off_s = std::max(off_s, dot(ds, ds));
-    off_t = std::max(off_t, dot(dt, dt));
-  }
-  off_s = std::sqrt(off_s);
-  off_t = std::sqrt(off_t);
-  const Vec3d normal = cross(mean_t, mean_s);
-  const double size = length(normal);
-  // (t + dt) x (s + ds) differs from t x s by at most this.
-  const double off = off_t * length(mean_s) + length(mean_t) * off_s + off_t * off_s;
-  if (!(size > 0) || !(off < kWidestCone * size)) return std::nullopt;
-  SurfaceBound bound;
-  bound.sine = off / size;
-  bound.cosine = std::sqrt(1 - bound.sine * bound.sine);
-  bound.frame = BodyFrame::around(centre, normal * (1 / size));
-  bound.area = size;
-  bound.low = kNever;
-  bound.high = -kNever;
-  double radius2 = 0;
-  for (const Vec3d& point : p) {
-    const Vec3d q = bound.frame.local(point);
-    radius2 = std::max(radius2, q.x * q.x + q.y * q.y);
-    bound.low = std::min(bound.low, q.z);
-    bound.high = std::max(bound.high, q.z);
-  }
-  bound.radius = std::sqrt(radius2);
-  return bound;
-}
-
-// The normals' heights lie in the hull of those of all products: a wall that bends sideways is
-// nowhere steeper than a wall, which the cone cannot tell.
-double steepest_cosine(const BezierPatch& patch, const SurfaceBound& bound) {
-  const auto& p = patch.points;
-  double least = kNever;
-  for (size_t j = 0; j < 4; ++j) {
-    for (size_t i = 0; i < 3; ++i) {
-      const Vec3d s = p[4 * j + i + 1] - p[4 * j + i];
-      for (size_t k = 0; k < 12; ++k) {
-        const Vec3d t = p[k + 4] - p[k];
-        least = std::min(least, 9 * (t.z * s.x - t.x * s.z));
-      }
-    }
-  }
-  // The normal's length: within `sine` of the mean's.
-  const double length = bound.area * (least > 0 ? 1 + bound.sine : 1 - bound.sine);
-  return std::max(-1.0, least / length);
 }
 
 BodySweep sweep_of(const SurfaceBound& surface, const PatchBody& body) {
@@ -195,16 +115,19 @@ BezierCells PatchJudge::judge(uint32_t patch) {
   out.promise.cells.resize(cells);
   out.shape.resize(cells);
   visit(whole, 0, 0, 0, out);
+  judge_pending(out);
   for (const uint32_t p : beside_) is_beside_[p] = 0;
+  for (const uint32_t p : out.makers) is_beside_[p] = 0;
   std::sort(out.makers.begin(), out.makers.end());
-  out.makers.erase(std::unique(out.makers.begin(), out.makers.end()), out.makers.end());
   return out;
 }
 
 void PatchJudge::visit(const BezierPatch& part, int32_t level, int32_t s, int32_t t,
                        BezierCells& out) {
   if (level == out.promise.depth) {
-    judge_cell(part, out.promise.index(s, t), out);
+    parts_.push_back(part);
+    part_cell_.push_back(out.promise.index(s, t));
+    if (parts_.size() >= kRegion) judge_pending(out);
     return;
   }
   const auto by_s = split_s(part, 0.5);
@@ -216,105 +139,223 @@ void PatchJudge::visit(const BezierPatch& part, int32_t level, int32_t s, int32_
   }
 }
 
-void PatchJudge::judge_cell(const BezierPatch& part, size_t cell, BezierCells& out) {
-  const auto bound = bound_surface(part);
-  Promise& promise = out.promise.cells[cell];
-  promise = {.classes = 0, .inclination = 15, .height = 0, .headroom = 0};
-  CellShape& shape = out.shape[cell];
-  if (!bound) {
-    const Box3d box = part.bounds();
-    const Vec3d middle = (box.min + box.max) * 0.5;
-    shape = {static_cast<float>(middle.x), static_cast<float>(middle.y),
-             static_cast<float>(middle.z), static_cast<float>(length(box.max - middle)), 0};
-    return;
-  }
-  const Vec3d c = bound->frame.centre;
-  const double deep = std::max(-bound->low, bound->high);
-  shape = {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
-           static_cast<float>(std::sqrt(bound->radius * bound->radius + deep * deep)),
-           static_cast<float>(bound->area)};
+// What the surfaces alone tell; cells on which a body might stand are left pending.
+void PatchJudge::bound_cells(BezierCells& out) {
+  bounds_.resize(parts_.size());
+  bound_cells_of(parts_, bounds_);
   const auto bin_of = [&](double cosine) {
     uint8_t code = 0;
     while (code < bin_cosine_.size() && cosine < bin_cosine_[code]) ++code;
     return code;
   };
-  double steepest = bound->steepest_cosine();
-  promise.inclination = bin_of(steepest);
-  // Every class's limit is an edge, so a closer look can change a verdict only if it can change
-  // the bin.
-  if (promise.inclination != bin_of(bound->frame.up.y)) {
-    steepest = std::max(steepest, steepest_cosine(part, *bound));
-    promise.inclination = bin_of(steepest);
-  }
   const auto open = static_cast<uint8_t>(bins_->height.size());
-  promise.height = promise.headroom = open;
-  triangles_->find_patches(bound->frame,
-                           {.radius = bound->radius, .low = bound->low, .high = bound->high},
-                           is_beside_, out.makers);
-  judge_posture(bound->frame, *bound, true, steepest, promise);
-  if (bound->frame.up.y <= bound->sine) {  // It may lean over: it is its own ceiling.
-    promise.headroom = 0;
-    return;
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    Promise& promise = out.promise.cells[part_cell_[i]];
+    promise = {.classes = 0, .inclination = 15, .height = 0, .headroom = 0};
+    CellShape& shape = out.shape[part_cell_[i]];
+    if (!bounds_[i].valid) {
+      const Box3d box = parts_[i].bounds();
+      const Vec3d middle = (box.min + box.max) * 0.5;
+      shape = {static_cast<float>(middle.x), static_cast<float>(middle.y),
+               static_cast<float>(middle.z), static_cast<float>(length(box.max - middle)), 0};
+      continue;
+    }
+    const SurfaceBound& bound = bounds_[i].along;
+    const Vec3d c = bound.frame.centre;
+    const double deep = std::max(-bound.low, bound.high);
+    shape = {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
+             static_cast<float>(std::sqrt(bound.radius * bound.radius + deep * deep)),
+             static_cast<float>(bound.area)};
+    double steepest = bound.steepest_cosine();
+    promise.inclination = bin_of(steepest);
+    // Every class's limit is an edge, so a closer look can change a verdict only if it can change
+    // the bin.
+    if (promise.inclination != bin_of(bound.frame.up.y)) {
+      steepest = std::max(steepest, steepest_cosine(parts_[i], bound));
+      promise.inclination = bin_of(steepest);
+    }
+    promise.height = promise.headroom = open;
+    Pending& pending = pending_.emplace_back();
+    pending.cell = part_cell_[i];
+    pending.steepest = steepest;
+    pending.surface = {bound, bounds_[i].upright};
+    add_posture(0, pending);
+    if (bound.frame.up.y <= bound.sine) {  // It may lean over: it is its own ceiling.
+      promise.headroom = 0;
+    } else {
+      add_posture(1, pending);
+    }
   }
-  SurfaceBound upright = *bound;
-  upright.frame = {bound->frame.centre, {1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-  upright.sine = 0;
-  upright.cosine = 1;
-  upright.low = kNever;
-  upright.high = -kNever;
-  double radius2 = 0;
-  for (const Vec3d& point : part.points) {
-    const Vec3d q = point - c;
-    radius2 = std::max(radius2, q.x * q.x + q.z * q.z);
-    upright.low = std::min(upright.low, q.y);
-    upright.high = std::max(upright.high, q.y);
-  }
-  upright.radius = std::sqrt(radius2);
-  judge_posture(upright.frame, upright, false, steepest, promise);
+  parts_.clear();
+  part_cell_.clear();
 }
 
-// Tests the classes of one posture, and the free height along it.
-void PatchJudge::judge_posture(const BodyFrame& frame, const SurfaceBound& surface, bool climbs,
-                               double steepest, Promise& promise) {
-  const BodySweep prism{.radius = surface.radius + tallest_ * surface.sine,
-                        .low = surface.low + least_bottom_ * surface.cosine,
-                        .high = surface.high + tallest_};
-  asked_.clear();
-  BodySweep bodies;
+void PatchJudge::add_posture(size_t posture, Pending& cell) const {
+  const SurfaceBound& surface = cell.surface[posture];
+  BodySweep& prism = cell.prism[posture];
+  prism = {.radius = surface.radius + tallest_ * surface.sine,
+           .low = surface.low + least_bottom_ * surface.cosine,
+           .high = surface.high + tallest_};
+  BodySweep& bodies = cell.bodies[posture];
+  bool any = false;
   for (const PatchBody& body : bodies_) {
-    if (body.climbs != climbs || !(steepest >= body.steepest)) continue;
-    promise.classes |= body.bit;
+    if (!is_asked(body, posture, cell)) continue;
     const BodySweep sweep = sweep_of(surface, body);
-    if (asked_.empty()) bodies = sweep;
+    if (!any) bodies = sweep;
+    any = true;
     bodies = {.radius = std::max(bodies.radius, sweep.radius),
               .low = std::min(bodies.low, sweep.low),
               .high = std::max(bodies.high, sweep.high)};
-    asked_.push_back({sweep, body.bit});
   }
-  // Bodies are wider than what tells the height, but begin higher: one cylinder around both would
-  // hold the ground at their feet.
-  found_.clear();
-  triangles_->find(frame, prism, asked_.empty() ? prism : bodies, found_);
-  double free = kNever;
-  bool measures = true;  // until nothing can be promised any more
-  for (const uint32_t triangle : found_) {
-    if (!measures && asked_.empty()) break;
-    LocalTriangle local = triangles_->corners(triangle);
-    for (Vec3d& corner : local) corner = frame.local(corner);
-    const LocalBox box(local);
-    if (measures && box.low < free && box.meets(prism)) {
-      free = std::min(free, lowest_entry(local, prism));
-      measures = free == kNever || bins_->height_code(std::max(0.0, free - surface.high)) > 0;
+  if (!any) bodies = prism;
+  cell.box[posture] = sweep_box(surface.frame, {.radius = std::max(prism.radius, bodies.radius),
+                                                .low = std::min(prism.low, bodies.low),
+                                                .high = std::max(prism.high, bodies.high)});
+  cell.postures = static_cast<int32_t>(posture) + 1;
+}
+
+// The cells of a region look for triangles together, then squares of them choose among these.
+void PatchJudge::judge_pending(BezierCells& out) {
+  bound_cells(out);
+  if (pending_.empty()) return;
+  const auto box_of = [&](std::span<const Pending> cells, size_t posture) {
+    Box3d box;
+    for (const Pending& cell : cells) {
+      if (posture >= static_cast<size_t>(cell.postures)) continue;
+      box.add(cell.box[posture].min);
+      box.add(cell.box[posture].max);
     }
-    std::erase_if(asked_, [&](const AskedBody& body) {
-      if (!box.meets(body.sweep) || lowest_entry(local, body.sweep) == kNever) return false;
-      promise.classes = static_cast<uint16_t>(promise.classes & ~body.bit);
-      return true;
-    });
+    return box;
+  };
+  const auto join = [](Box3d& box, const Box3d& other) {
+    if (other.empty()) return;
+    box.add(other.min);
+    box.add(other.max);
+  };
+  const std::span<const Pending> all = pending_;
+  Box3d box;
+  for (const Pending& cell : all) {  // Makers come into the surface itself, below all bodies.
+    join(box, sweep_box(cell.surface[0].frame, surface_sweep(cell.surface[0])));
+  }
+  join(box, box_of(all, 0));
+  join(box, box_of(all, 1));
+  gather(box);
+  for (size_t begin = 0; begin < all.size(); begin += kPart) {
+    const auto part = all.subspan(begin, std::min(kPart, all.size() - begin));
+    Box3d around = box_of(part, 0);
+    join(around, box_of(part, 1));
+    narrow(near_, around, part_);
+    for (size_t k = 0; k < part.size(); k += kSquare) {
+      const auto cells = part.subspan(k, std::min(kSquare, part.size() - k));
+      find_makers(cells, out);
+      for (size_t posture = 0; posture < 2; ++posture) {
+        narrow(part_, box_of(cells, posture), block_);
+        for (const Pending& cell : cells) {
+          if (posture >= static_cast<size_t>(cell.postures)) continue;
+          judge_posture(cell, posture, out.promise.cells[cell.cell]);
+        }
+      }
+    }
+  }
+  pending_.clear();
+}
+
+void PatchJudge::gather(const Box3d& box) {
+  const Vec3d middle = (box.min + box.max) * 0.5;
+  near_.clear(middle);
+  foreign_.clear(middle);
+  found_.clear();
+  triangles_->find(box, found_);
+  const auto& patch_of = triangles_->scene().patch_of_triangle;
+  for (const uint32_t triangle : found_) {
+    const LocalTriangle corners = triangles_->corners(triangle);
+    Box3d around;
+    for (const Vec3d& corner : corners) around.add(corner);
+    if (!overlap(around, box)) continue;
+    near_.add(triangle, corners);
+    const uint32_t patch = patch_of.empty() ? kNoPatch : patch_of[triangle];
+    if (patch != kNoPatch && is_beside_[patch] == 0) foreign_.add(triangle, corners);
+  }
+}
+
+// Patches whose triangles come into the surfaces of cells.
+void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
+  if (foreign_.count == 0) return;
+  Box3d box;
+  for (const Pending& cell : cells) {
+    const Box3d b = sweep_box(cell.surface[0].frame, surface_sweep(cell.surface[0]));
+    box.add(b.min);
+    box.add(b.max);
+  }
+  narrow(foreign_, box, block_);
+  if (block_.count == 0) return;
+  for (const Pending& cell : cells) {
+    const BodyFrame& frame = cell.surface[0].frame;
+    const BodySweep sweep = surface_sweep(cell.surface[0]);
+    const SieveTube tube{.whole = sweep, .decisive = {.radius = 0}};
+    (void)sieve(block_,
+                {.frame = frame, .first = sweep, .second = sweep, .tubes = std::span(&tube, 1)},
+                hits_);
+    for (size_t i = 0; i < hits_.count; ++i) {
+      const uint32_t triangle = hits_.triangle[i];
+      const uint32_t patch = triangles_->scene().patch_of_triangle[triangle];
+      if (is_beside_[patch] != 0) continue;
+      LocalTriangle local = triangles_->corners(triangle);
+      for (Vec3d& corner : local) corner = frame.local(corner);
+      if (lowest_entry(local, sweep) == kNever) continue;
+      out.makers.push_back(patch);
+      is_beside_[patch] = 1;
+    }
+  }
+}
+
+// Tests the classes of one posture, and the free height along it.
+void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& promise) {
+  const SurfaceBound& surface = cell.surface[posture];
+  const BodyFrame& frame = surface.frame;
+  const BodySweep& prism = cell.prism[posture];
+  tubes_.clear();
+  tube_bit_.clear();
+  SieveTube& room = tubes_.emplace_back();
+  room = {.whole = prism,
+          .decisive = prism};  // What is deeper than any height asks for leaves none.
+  room.decisive.high = std::min(prism.high, surface.high + bins_->height.front());
+  for (const PatchBody& body : bodies_) {
+    if (!is_asked(body, posture, cell)) continue;
+    const BodySweep sweep = sweep_of(surface, body);
+    tubes_.push_back({.whole = sweep, .decisive = sweep});
+    tube_bit_.push_back(body.bit);
+  }
+  const uint32_t answered = sieve(
+      block_, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
+      hits_);
+  const uint32_t all = (1u << tubes_.size()) - 1;
+  uint32_t entered = answered;  // bit 0: no height; then bodies that matter has stopped
+  double free = (answered & 1) != 0 ? surface.high : kNever;
+  for (size_t i = 0; i < hits_.count && entered != all; ++i) {
+    uint32_t asked = hits_.tubes[i] & ~entered;
+    if (asked == 0) continue;
+    LocalTriangle local = triangles_->corners(hits_.triangle[i]);
+    for (Vec3d& corner : local) corner = frame.local(corner);
+    if ((asked & 1) != 0) {
+      const double low = std::min({local[0].z, local[1].z, local[2].z});
+      if (low < free) free = std::min(free, lowest_entry(local, prism));
+      if (free < kNever && bins_->height_code(std::max(0.0, free - surface.high)) == 0) {
+        entered |= 1;
+      }
+      asked &= ~1u;
+    }
+    for (; asked != 0; asked &= asked - 1) {
+      const auto b = static_cast<size_t>(std::countr_zero(asked));
+      if (lowest_entry(local, tubes_[b].whole) < kNever) entered |= 1u << b;
+    }
+  }
+  for (size_t b = 1; b < tubes_.size(); ++b) {
+    if ((entered >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
   }
   // The highest feet have the least.
   if (free < kNever) {
-    (climbs ? promise.height : promise.headroom) =
+    (posture == 0 ? promise.height : promise.headroom) =
         bins_->height_code(std::max(0.0, free - surface.high));
   }
 }

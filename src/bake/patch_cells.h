@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "bake/body_sweep.h"
+#include "bake/surface_bound.h"
+#include "bake/triangle_sieve.h"
 #include "graph/quadtree.h"
 #include "throng/nodes.h"
 #include "throng/patch.h"
@@ -26,26 +29,6 @@ struct PatchBody {
 };
 
 [[nodiscard]] std::vector<PatchBody> patch_bodies(std::span<const AvatarClass> classes);
-
-/// Where all surface points of a sub-patch and their normals are: a cone around `frame.up` of the
-/// normals, a cylinder around the frame's axis of the points.
-struct SurfaceBound {
-  BodyFrame frame;
-  double sine = 1, cosine = 0;  ///< Of the cone's half angle; valid if sine < 1.
-  double radius = 0;            ///< [m]
-  double low = 0, high = 0;     ///< Heights along the axis. [m]
-  double area = 0;              ///< About. [m^2]
-
-  /// Of the steepest normal's angle to the vertical.
-  [[nodiscard]] double steepest_cosine() const;
-};
-
-/// By the hulls of the derivatives, whose products are the normals. None where the cone would be
-/// more than about 70 degrees wide: a sub-patch that collapses or folds.
-[[nodiscard]] std::optional<SurfaceBound> bound_surface(const BezierPatch& patch);
-
-/// The same, closer and slower: by the heights of the normals.
-[[nodiscard]] double steepest_cosine(const BezierPatch& patch, const SurfaceBound& bound);
 
 /// Where the body is while its feet are anywhere on the surface.
 [[nodiscard]] BodySweep sweep_of(const SurfaceBound& surface, const PatchBody& body);
@@ -72,12 +55,29 @@ class PatchJudge {
   [[nodiscard]] BezierCells judge(uint32_t patch);
 
  private:
+  /// A cell whose surface is known, but not yet who may stand on it.
+  struct Pending {
+    size_t cell = 0;
+    double steepest = 0;
+    std::array<SurfaceBound, 2> surface;  ///< Along the normal, and upright.
+    std::array<BodySweep, 2> prism;       ///< What tells the height.
+    std::array<BodySweep, 2> bodies;      ///< All that may stand there, by their inclination.
+    std::array<Box3d, 2> box;             ///< Of both.
+    int32_t postures = 0;
+  };
+
   /// How often a patch is halved.
   [[nodiscard]] int32_t depth_of(const BezierPatch& patch) const;
   void visit(const BezierPatch& part, int32_t level, int32_t s, int32_t t, BezierCells& out);
-  void judge_cell(const BezierPatch& part, size_t cell, BezierCells& out);
-  void judge_posture(const BodyFrame& frame, const SurfaceBound& surface, bool climbs,
-                     double steepest, Promise& promise);
+  void bound_cells(BezierCells& out);
+  void add_posture(size_t posture, Pending& cell) const;
+  [[nodiscard]] bool is_asked(const PatchBody& body, size_t posture, const Pending& cell) const {
+    return body.climbs == (posture == 0) && cell.steepest >= body.steepest;
+  }
+  void judge_pending(BezierCells& out);
+  void gather(const Box3d& box);
+  void find_makers(std::span<const Pending> cells, BezierCells& out);
+  void judge_posture(const Pending& cell, size_t posture, Promise& promise);
 
   const TriangleSquares* triangles_;
   const PatchSet* set_;
@@ -88,13 +88,17 @@ class PatchJudge {
   double tallest_ = 0, least_bottom_ = 0;
 
   std::vector<uint32_t> beside_;    // patches that go on from this one
-  std::vector<uint8_t> is_beside_;  // by patch
+  std::vector<uint8_t> is_beside_;  // by patch; and those known to pierce it
+  std::vector<BezierPatch> parts_;  // of so many cells of the patch
+  std::vector<size_t> part_cell_;   // which they are
+  std::vector<CellBounds> bounds_;
+  std::vector<Pending> pending_;  // in the order of a quadtree: runs of 4^n make a square
+  SieveList near_, foreign_;      // triangles near them; those of other patches, not beside
+  SieveList part_, block_;        // those near a part of the region, and near a square of cells
   std::vector<uint32_t> found_;
-  struct AskedBody {
-    BodySweep sweep;
-    uint16_t bit = 0;
-  };
-  std::vector<AskedBody> asked_;  // classes of the posture that no triangle has stopped yet
+  SieveHits hits_;
+  std::vector<SieveTube> tubes_;    // where a height ends, then bodies of the posture
+  std::vector<uint16_t> tube_bit_;  // by body of the posture: its class
 };
 
 }  // namespace throng

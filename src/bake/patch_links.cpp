@@ -160,14 +160,17 @@ std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
       for (const uint32_t maker : here.makers) {
         const std::vector<uint32_t> to = cells_of(input.cells[maker], body.bit);
         boxes.assign((to.size() + kBoxedCells - 1) / kBoxedCells, {});
+        Box3d whole;
         for (size_t k = 0; k < to.size(); ++k) {
           const CellShape& cell = shape_of(input, maker, to[k]);
           boxes[k / kBoxedCells].add({cell.x, cell.y, cell.z});
+          whole.add({cell.x, cell.y, cell.z});
         }
         for (const uint32_t a : from) {
-          if (!lacks_neighbour(here.promise, a, body.bit)) continue;
           const CellShape& at = shape_of(input, static_cast<uint32_t>(p), a);
           const Vec3d middle{at.x, at.y, at.z};
+          if (distance2(whole, middle) > widest * widest) continue;
+          if (!lacks_neighbour(here.promise, a, body.bit)) continue;
           nearest.clear();
           for (size_t run = 0; run < boxes.size(); ++run) {
             if (distance2(boxes[run], middle) > widest * widest) continue;
@@ -180,6 +183,7 @@ std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
               }
             }
           }
+          if (nearest.empty()) continue;
           std::sort(nearest.begin(), nearest.end());
           const BodyPose start = pose_on(input, body, static_cast<uint32_t>(p), a);
           for (size_t k = 0; k < std::min(kTries, nearest.size()); ++k) {

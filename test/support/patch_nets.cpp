@@ -326,9 +326,10 @@ double worst_distance(const PatchSet& set, const PatchMesh& mesh, uint32_t p, in
   return worst;
 }
 
-Scene net_scene(const NetConfig& config) {
+Scene net_scene(const NetConfig& config) { return patch_scene(make_net(config)); }
+
+Scene patch_scene(const PatchSet& set) {
   Scene scene;
-  const PatchSet set = make_net(config);
   scene.patches = set;
   Context context;
   const auto mesh = tessellate_patches(set, {}, context);

@@ -27,6 +27,8 @@ struct NetConfig {
 PatchSet make_net(const NetConfig& config);
 /// The same as a scene of its triangles, all of them walkable.
 Scene net_scene(const NetConfig& config);
+/// Any patches as a scene of their triangles.
+Scene patch_scene(const PatchSet& set);
 
 /// The same surface with vertex k as vertex k + 1, `turns` times.
 BezierPatch turn(BezierPatch patch, uint32_t turns);

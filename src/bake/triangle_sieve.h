@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/body_sweep.h"
+
+/// Triangles near some bodies in single precision, looked at a vector at a time: which of them
+/// surely stay outside, and which bodies are surely entered. Each comparison gives way by more than
+/// its rounding, so whoever looks at the rest exactly finds the same as if all had been looked at.
+namespace throng {
+
+/// Triangles around an origin. Coordinate k of corner c of triangle i is
+/// corner[(3 * c + k) * stride + i].
+struct SieveList {
+  Vec3d origin;
+  double extent = 0;  ///< No coordinate is larger. [m]
+  size_t count = 0;
+  size_t stride = 0;  ///< Room for `count` and a vector.
+  std::vector<float> corner;
+  std::vector<uint32_t> triangle;
+
+  void clear(Vec3d around);
+  void add(uint32_t id, const LocalTriangle& corners);
+};
+
+/// Replaces `out` by those triangles of `list` whose boxes may overlap `box`. Linear.
+void narrow(const SieveList& list, const Box3d& box, SieveList& out);
+
+/// A cylinder around a question's axis. Matter that enters `decisive`, which is a part of it,
+/// answers all that is asked about it.
+struct SieveTube {
+  BodySweep whole, decisive;
+};
+
+/// What is asked of a list. Nothing outside of `first` and `second` enters any tube.
+struct SieveQuestion {
+  BodyFrame frame;
+  BodySweep first, second;
+  std::span<const SieveTube> tubes;  ///< [at most 31]
+};
+
+/// Triangles that may enter tubes: hit i those of which tubes[i] has the bits.
+struct SieveHits {
+  size_t count = 0;
+  std::vector<uint32_t> triangle, tubes;  ///< With room for more than `count`.
+};
+
+/// Replaces `hits` by what may enter tubes that are not answered. Returns those that are: bit i, if
+/// a corner is surely inside tubes[i].decisive. If all are, hits are missing. Linear.
+[[nodiscard]] uint32_t sieve(const SieveList& list, const SieveQuestion& question, SieveHits& hits);
+
+}  // namespace throng

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/patch_cells.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "baked.h"
+#include "graph/node_bins.h"
+#include "patch_nets.h"
+
+namespace throng {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// A cell's surface, cut out of its patch as PatchJudge cuts it.
+BezierPatch cell_of(const BezierPatch& patch, int32_t depth, int32_t s, int32_t t) {
+  BezierPatch part = patch;
+  for (int32_t bit = depth - 1; bit >= 0; --bit) {
+    part = split_s(part, 0.5)[static_cast<size_t>(s >> bit & 1)];
+    part = split_t(part, 0.5)[static_cast<size_t>(t >> bit & 1)];
+  }
+  return part;
+}
+
+// Every cell by itself against every triangle of the scene.
+class Naive {
+ public:
+  Naive(const Scene& scene, std::span<const AvatarClass> classes, const NodeBins& bins)
+      : scene_(scene), classes_(classes), bins_(bins) {}
+
+  // Heights as promised, and the classes that no triangle stops, whatever the inclination.
+  Promise judge(const SurfaceBound& along, const SurfaceBound& upright) const {
+    Promise promise;
+    for (const PatchBody& body : patch_bodies(classes_)) {
+      const SurfaceBound& surface = body.climbs ? along : upright;
+      if (entry(surface.frame, sweep_of(surface, body)) == kNever) promise.classes |= body.bit;
+    }
+    promise.height = height(along);
+    promise.headroom = height(upright);
+    return promise;
+  }
+
+  // Patches but `beside` that come into the surface.
+  void add_makers(const SurfaceBound& along, const std::set<uint32_t>& beside,
+                  std::set<uint32_t>& makers) const {
+    const BodySweep sweep{along.radius, along.low, along.high};
+    for (size_t t = 0; t < scene_.triangles.size(); ++t) {
+      const uint32_t patch = scene_.patch_of_triangle[t];
+      if (patch == kNoPatch || beside.contains(patch)) continue;
+      if (lowest_entry(local(along.frame, t), sweep) < kNever) makers.insert(patch);
+    }
+  }
+
+ private:
+  LocalTriangle local(const BodyFrame& frame, size_t triangle) const {
+    LocalTriangle corners;
+    for (size_t i = 0; i < 3; ++i) {
+      corners[i] = frame.local(scene_.positions[scene_.triangles[triangle][i]]);
+    }
+    return corners;
+  }
+
+  double entry(const BodyFrame& frame, const BodySweep& sweep) const {
+    double lowest = kNever;
+    for (size_t t = 0; t < scene_.triangles.size(); ++t) {
+      lowest = std::min(lowest, lowest_entry(local(frame, t), sweep));
+    }
+    return lowest;
+  }
+
+  uint8_t height(const SurfaceBound& surface) const {
+    const double tallest = bins_.height.back();
+    double bottom = kNever;
+    for (const PatchBody& body : patch_bodies(classes_)) bottom = std::min(bottom, body.bottom);
+    const double free =
+        entry(surface.frame, {surface.radius + tallest * surface.sine,
+                              surface.low + bottom * surface.cosine, surface.high + tallest});
+    return bins_.height_code(std::max(0.0, free - surface.high));
+  }
+
+  const Scene& scene_;
+  std::span<const AvatarClass> classes_;
+  const NodeBins& bins_;
+};
+
+// The patch, its neighbours and theirs.
+std::set<uint32_t> beside(const PatchSet& set, uint32_t patch) {
+  std::set<uint32_t> all{patch};
+  for (int ring = 0; ring < 2; ++ring) {
+    for (const uint32_t p : std::set<uint32_t>(all)) {
+      for (const PatchEdge& edge : set.edges[p]) {
+        for (const PatchSide& side : edge.next) {
+          if (side.patch != kNoPatch) all.insert(side.patch);
+        }
+      }
+    }
+  }
+  return all;
+}
+
+TEST(PatchCells, PromiseWhatALookAtEveryTriangleOfTheSceneFinds) {
+  std::vector<AvatarClass> classes{{.name = "adult"},
+                                   {.name = "giant", .height = 3, .radius = 0.5, .step = 0.8},
+                                   {.name = "climber"},
+                                   {.name = "gecko", .height = 0.5, .radius = 0.2, .step = 0.25}};
+  classes[2].climb_slope = 120;
+  classes[3].climb_slope = 180;
+  const NodeBins bins = make_bins(classes);
+  size_t stopped = 0, stands = 0, low = 0, made = 0;
+  for (const bool rocks : {false, true}) {
+    const Scene scene = rocks ? test::builtin({.name = "landscape", .size = 64})
+                              : test::net_scene({.side = 3, .cell = 8, .relief = 5});
+    ASSERT_GT(scene.patches.size(), 0u);
+    const TriangleSquares triangles(scene, 1);
+    const Naive naive(scene, classes, bins);
+    PatchJudge judge(triangles, classes, bins, 1.5);
+    // The landscape's rocks come last: few cells each, and all pierce the ground.
+    for (uint32_t p = rocks ? 22 : 0; p < scene.patches.size(); p += 2) {
+      const BezierCells cells = judge.judge(p);
+      const auto around = beside(scene.patches, p);
+      std::set<uint32_t> makers;
+      for (int32_t t = 0; t < cells.promise.side(); ++t) {
+        for (int32_t s = 0; s < cells.promise.side(); ++s) {
+          const BezierPatch part = cell_of(scene.patches.patches[p], cells.promise.depth, s, t);
+          const Promise& found = cells.promise.cells[cells.promise.index(s, t)];
+          const auto along = bound_surface(part);
+          if (!along) {
+            EXPECT_EQ(found.classes, 0);
+            continue;
+          }
+          naive.add_makers(*along, around, makers);
+          if ((s + t + static_cast<int32_t>(p)) % 3 != 0) continue;  // The rest takes long.
+          const SurfaceBound upright = upright_bound(part, *along);
+          const Promise expected = naive.judge(*along, upright);
+          EXPECT_EQ(found.height, expected.height);
+          const bool leans = along->frame.up.y <= along->sine;
+          EXPECT_EQ(found.headroom, leans ? 0 : expected.headroom);
+          uint16_t allowed = 0;  // by inclination
+          const double steepest = std::max(along->steepest_cosine(), steepest_cosine(part, *along));
+          for (const PatchBody& body : patch_bodies(classes)) {
+            if (steepest >= body.steepest && (body.climbs || !leans)) allowed |= body.bit;
+          }
+          EXPECT_EQ(found.classes, expected.classes & allowed);
+          stands += found.classes != 0;
+          stopped += (allowed & ~found.classes) != 0;
+          low += found.height < bins.height.size();
+        }
+      }
+      EXPECT_EQ(std::vector<uint32_t>(makers.begin(), makers.end()), cells.makers) << p;
+      made += makers.size();
+    }
+  }
+  EXPECT_GT(stands, 100u);
+  EXPECT_GT(stopped, 20u);
+  EXPECT_GT(low, 20u);
+  EXPECT_GT(made, 4u);
+}
+
+// Bodies begin above their feet, but makers are whatever comes into the surface.
+TEST(PatchCells, APatchInTheSurfaceIsAMakerThoughItLiesBelowAllBodies) {
+  PatchSet set;
+  set.begin_run("", "", "");
+  for (const double size : {1.0, 0.25}) {
+    BezierPatch patch;
+    for (size_t k = 0; k < 16; ++k) {
+      patch.points[k] = {size * static_cast<double>(k % 4), 0, size * static_cast<double>(k / 4)};
+    }
+    set.add(patch);
+  }
+  const Scene scene = test::patch_scene(set);
+  const std::vector<AvatarClass> classes{{.name = "adult"}};
+  const NodeBins bins = make_bins(classes);
+  const TriangleSquares triangles(scene, 1);
+  PatchJudge judge(triangles, classes, bins, 1);
+  EXPECT_EQ(judge.judge(0).makers, std::vector<uint32_t>{1});
+  EXPECT_EQ(judge.judge(1).makers, std::vector<uint32_t>{0});
+}
+
+}  // namespace
+}  // namespace throng

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "path/block_squares.h"
 #include "path/node_pull.h"
 #include "path/node_search.h"
 #include "path/obstacle.h"
@@ -15,59 +16,19 @@
 namespace throng {
 namespace {
 
-constexpr int kNewtonSteps = 12;
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
 constexpr size_t kMostPieces = 4096;
-
-// Box of a patch's control points, which holds it.
-Box3d box_of(const NodeSurface& surface) {
-  Box3d box;
-  for (size_t i = 0; i < 16; ++i) {
-    box.add({surface.points[3 * i], surface.points[3 * i + 1], surface.points[3 * i + 2]});
-  }
-  return box;
-}
-
-double distance_to(const Box3d& box, Vec3d p) {
-  const auto out = [](double low, double high, double at) {
-    return std::max({low - at, at - high, 0.0});
-  };
-  return length({out(box.min.x, box.max.x, p.x), out(box.min.y, box.max.y, p.y),
-                 out(box.min.z, box.max.z, p.z)});
-}
-
-// The point of a block nearest to a position: from its middle by Gauss and Newton's steps, kept
-// inside.
-std::pair<double, double> nearest_in(const NodeSurface& surface, const NodeBlock& block,
-                                     Vec3d position) {
-  const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
-  double s = s0 + side / 2, t = t0 + side / 2;
-  for (int k = 0; k < kNewtonSteps; ++k) {
-    const Vec3d at = surface.at(s, t);
-    const Vec3d ds =
-        (surface.at(s + kEdgeStep, t) - surface.at(s - kEdgeStep, t)) * (0.5 / kEdgeStep);
-    const Vec3d dt =
-        (surface.at(s, t + kEdgeStep) - surface.at(s, t - kEdgeStep)) * (0.5 / kEdgeStep);
-    const Vec3d left = position - at;
-    const double a = dot(ds, ds), b = dot(ds, dt), c = dot(dt, dt);
-    const double det = a * c - b * b;
-    if (!(det > 1e-12 * a * c)) break;
-    const double u = dot(left, ds), v = dot(left, dt);
-    s = std::clamp(s + (c * u - b * v) / det, s0, s0 + side);
-    t = std::clamp(t + (a * v - b * u) / det, t0, t0 + side);
-  }
-  return {s, t};
-}
 
 }  // namespace
 
 struct NodePathFinder::Shared {
   Shared(NodeMesh made, const NodePathConfig& config)
-      : mesh(std::move(made)), cost(mesh, config.slope_cost) {}
+      : mesh(std::move(made)), cost(mesh, config.slope_cost), squares(mesh) {}
   Shared(const Shared&) = delete;  // `cost` points to `mesh`
   Shared& operator=(const Shared&) = delete;
   NodeMesh mesh;
   PieceCost cost;
+  BlockSquares squares;
   double seconds = 0;
 };
 
@@ -257,7 +218,7 @@ NodePathSummary NodePathFinder::summary() const {
   const NodeMesh& mesh = shared_->mesh;
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
-          .bytes = mesh.bytes(),
+          .bytes = mesh.bytes() + shared_->squares.bytes(),
           .seconds = shared_->seconds};
 }
 
@@ -265,14 +226,17 @@ NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
   const NodeMesh& mesh = shared_->mesh;
   if (!std::isfinite(position.x + position.y + position.z) || !(reach >= 0)) return {};
   double nearest = reach;
+  uint64_t best_rank = 0;  // Of places as near as each other it is the first: level ground, then
+                           // blocks in their order.
   NodePlace best;
-  const auto consider = [&](uint32_t block, double s, double t) {
+  const auto consider = [&](uint32_t block, double s, double t, uint64_t rank) {
     const NodePlace place =
         mesh.nodes().place(mesh.avatar_class(), mesh.blocks()[block].node, s, t);
     if (!place) return;
     const double far = length(place.feet - position);
-    if (far > nearest || (best && far == nearest)) return;
+    if (far > nearest || (best && far == nearest && rank > best_rank)) return;
     nearest = far;
+    best_rank = rank;
     best = place;
   };
   const World& world = mesh.nodes().data()->world;
@@ -284,19 +248,14 @@ NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
       };
       const double s = along(at.x), t = along(at.z);
       if (const uint32_t block = mesh.block_at(patch, s, t); block != kNoNode) {
-        consider(block, s, t);
+        consider(block, s, t, 0);
       }
     }
   }
-  for (uint32_t p = 0; p < mesh.patches().size(); ++p) {
-    const NodeSurface& surface = mesh.patches()[p];
-    if (surface.points == nullptr || distance_to(box_of(surface), position) > nearest) continue;
-    const auto blocks = mesh.blocks_of(p);
-    for (uint32_t b = 0; b < blocks.size(); ++b) {
-      const auto [s, t] = nearest_in(surface, blocks[b], position);
-      consider(mesh.first_block(p) + b, s, t);
-    }
-  }
+  shared_->squares.for_each_near(position, nearest, [&](uint32_t block) {
+    const auto [s, t] = nearest_in(mesh.surface(block), mesh.blocks()[block], position);
+    consider(block, s, t, uint64_t{block} + 1);
+  });
   return best;
 }
 

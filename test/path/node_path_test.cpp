@@ -10,8 +10,10 @@
 #include <queue>
 
 #include "baked.h"
+#include "core/random.h"
 #include "graph/node_mesh.h"
 #include "patch_nets.h"
+#include "path/block_squares.h"
 #include "path/node_search.h"
 #include "throng/path.h"
 #include "throng/verify.h"
@@ -275,6 +277,41 @@ TEST(NodePath, TheNearestPlaceIsFound) {
     for (uint64_t k = 0; k < 1000; ++k) {
       EXPECT_GE(length(nodes.random_place(4, 77, k).feet - near), length(back.feet - near) - 1e-3);
     }
+  }
+}
+
+TEST(NodePath, FindPlaceFindsWhatASearchThroughAllBlocksFinds) {
+  Context context;
+  for (const bool rocks : {false, true}) {
+    const Nodes nodes = rocks ? make(builtin({.name = "landscape", .size = 64}), 0.5, 2)
+                              : make(net_scene(6), 0.25, 1);
+    const NodePathFinder found = finder(nodes, 4);
+    const auto mesh = NodeMesh::make(nodes, 4, 1, context);
+    ASSERT_TRUE(mesh);
+    size_t places = 0;
+    for (uint64_t n = 0; n < 300; ++n) {
+      const NodePlace place = nodes.random_place(4, 5, n);
+      const Vec3d near = place.feet + place.normal * (random_unit(9, 1, n) * 3 - 1);
+      const double reach = random_unit(9, 2, n) * 2;
+      double nearest = reach;
+      std::optional<Vec3d> best;
+      for (uint32_t b = 0; b < mesh->blocks().size(); ++b) {
+        const auto [s, t] = nearest_in(mesh->surface(b), mesh->blocks()[b], near);
+        const Vec3d feet = mesh->surface(b).at(s, t);
+        const double far = length(feet - near);
+        if (far > nearest || (best && far == nearest)) continue;
+        nearest = far;
+        best = feet;
+      }
+      const NodePlace here = found.find_place(near, reach);
+      ASSERT_EQ(static_cast<bool>(here), best.has_value()) << n;
+      if (best) {
+        EXPECT_EQ(here.feet, *best) << n;
+      }
+      places += best.has_value();
+    }
+    EXPECT_GT(places, 100u);
+    EXPECT_LT(places, 280u);
   }
 }
 

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "graph/node_mesh.h"
+#include "throng/math.h"
+
+/// Which blocks of Bezier patches lie near a point.
+namespace throng {
+
+/// The parameters of a block's point nearest to a position: from its middle by Gauss and Newton's
+/// steps, kept inside.
+[[nodiscard]] std::pair<double, double> nearest_in(const NodeSurface& surface,
+                                                   const NodeBlock& block, Vec3d position);
+
+/// Balls around the blocks of Bezier patches, by the square of the ground that holds their middle.
+class BlockSquares {
+ public:
+  explicit BlockSquares(const NodeMesh& mesh);
+
+  /// Calls visit(block) for each block that may have a point no farther than `reach`, which the
+  /// calls may lessen. In no order.
+  template <class Visit>
+  void for_each_near(Vec3d position, const double& reach, Visit visit) const {
+    if (balls_.empty()) return;
+    const double far = std::min(reach, 1e9) + largest_;
+    const auto [x0, z0] = square(position.x - far, position.z - far);
+    const auto [x1, z1] = square(position.x + far, position.z + far);
+    for (size_t z = z0; z <= z1; ++z) {
+      for (size_t k = first_[z * squares_x_ + x0]; k < first_[z * squares_x_ + x1 + 1]; ++k) {
+        const Ball& ball = balls_[k];
+        const Vec3d d{ball.x - position.x, ball.y - position.y, ball.z - position.z};
+        const double within = reach + ball.radius;
+        if (dot(d, d) <= within * within) visit(ball.block);
+      }
+    }
+  }
+  [[nodiscard]] uint64_t bytes() const;
+
+ private:
+  /// Holds all of the block's points.
+  struct Ball {
+    float x = 0, y = 0, z = 0, radius = 0;
+    uint32_t block = 0;
+  };
+  /// The nearest square: outermost ones for what lies outside.
+  [[nodiscard]] std::pair<size_t, size_t> square(double x, double z) const {
+    const auto along = [&](double at, size_t count) {
+      return static_cast<size_t>(std::clamp(at / side_, 0.0, static_cast<double>(count - 1)));
+    };
+    return {along(x - origin_x_, squares_x_), along(z - origin_z_, squares_z_)};
+  }
+
+  double origin_x_ = 0, origin_z_ = 0, side_ = 1, largest_ = 0;
+  size_t squares_x_ = 0, squares_z_ = 0;
+  std::vector<uint32_t> first_;  // squares, row by row, and the end
+  std::vector<Ball> balls_;      // by square
+};
+
+}  // namespace throng

@@ -24,7 +24,9 @@ struct AvatarState {
   double radius = 0;     ///< Of the body. [m]
   double heading_x = 0;  ///< Unit vector of the walk.
   double heading_z = 0;
-  bool flies = false;  ///< It is in the air, or on its way up or down.
+  bool flies = false;   ///< It is in the air, or on its way up or down.
+  bool climbs = false;  ///< It goes over nodes.
+  Vec3d up{0, 1, 0};    ///< Along the body, from its feet; of who climbs the surface's normal.
 };
 
 }  // namespace throng

@@ -13,6 +13,7 @@
 #include "throng/base.h"
 #include "throng/context.h"
 #include "throng/crowd_obstacle.h"
+#include "throng/nodes.h"
 #include "throng/path.h"
 #include "throng/prism.h"
 #include "throng/result.h"
@@ -82,6 +83,9 @@ struct CrowdConfig {
   /// Who has a goal, has not arrived, and has not come 0.3 m further between two looks, so many
   /// seconds apart, is told by stuck(). 0: nobody looks. Never changes what happens. [s, >= 0]
   double stuck_after = 0;
+  /// Of the same world. Classes that climb or let themselves down over edges, and do not fly, go
+  /// over them; without nodes they walk on level tiles as others do.
+  Nodes nodes = {};
 };
 
 /// Someone to add.
@@ -90,6 +94,8 @@ struct AvatarSpawn {
   int32_t avatar_class = 0;
   double radius = 0;  ///< Of the body, 0 for the class's. Walls are kept away by the class's. [m]
   double speed = 0;   ///< Wished, and the most, 0 for the class's. [m/s]
+  /// For who goes over nodes, instead of `place`; nowhere: the nodes' place nearest to `place`.
+  NodePlace on_nodes = {};
 };
 
 /// From where a crowd is looked at: whoever is within is simulated in full.
@@ -111,6 +117,7 @@ struct CrowdReport {
   uint64_t step = 0;       ///< Number of the step just made, from 1.
   uint64_t avatars = 0;    ///< All there are.
   uint64_t flying = 0;     ///< Of these, in the air, or on the way up or down.
+  uint64_t climbing = 0;   ///< Of these, over nodes.
   uint64_t stood = 0;      ///< Did not move.
   uint64_t far = 0;        ///< Beyond all views.
   uint64_t held = 0;       ///< Of these, stood because it was not their turn; not in `stood`.
@@ -178,6 +185,8 @@ class THRONG_API Crowd {
   /// when it has arrived, and makes way. Nowhere: it stands, or hovers. Who flies takes off and
   /// lands as his way asks for; his goal may be an air_place. Ids of nobody are left out.
   void set_goals(std::span<const AvatarId> ids, std::span<const Place> goals);
+  /// The same for avatars who go over nodes; ids of others are left out, too.
+  void set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> goals);
   /// Makes a region, the union of prisms, that many can be bound for: one search outwards from it
   /// serves all ([FlowField]). Whoever's middle is inside has arrived. Fails with kBadInput (a
   /// prism that is none), kBadConfig (CrowdWays::kStraight), kLimit (65535 targets) or kCancelled.
@@ -198,7 +207,8 @@ class THRONG_API Crowd {
 
   /// Velocities wished by the caller instead of goals, until a goal is set; longer ones than an
   /// avatar's speed are cut. Avoidance and the rule of no overlaps stay. Who flies takes off when Y
-  /// is above 0, and lands when it is below and there is ground. [m/s; Y: only of who flies]
+  /// is above 0, and lands when it is below and there is ground. Who goes over nodes goes to where
+  /// that leads him. [m/s; Y: only of who flies or goes over nodes]
   void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
 
   /// From where the crowd is looked at from now on; nowhere, as at the beginning: all are simulated

@@ -27,7 +27,7 @@ struct Body {
     kDriven = 4,   // from outside: `wish` is given
     kHasGoal = 8,
     kLost = 16,    // asks for another way
-    kFlying = 32,  // FlyerEngine's: to those who walk it stands where it is
+    kFlying = 32,  // Another engine's: to those who walk it stands where it is.
     kKeeps = 64,   // to what it decided: it did that in the last step, and goes on if it can
     kFar = 128,    // from all who look: of the coarse level of detail
   };
@@ -52,13 +52,16 @@ struct Body {
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: it is bound for a region
-  State state : 7 = kFree;
+  State state : 6 = kFree;
+  bool climbs : 1 = false;     // kFlying, too: it goes over nodes, ClimberEngine's
   bool near_wall : 1 = false;  // and in need of another way, in the last step
   uint8_t steps = 1;           // that it takes at once in this step; 0: not its turn
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }
   [[nodiscard]] Stand stand() const { return {x, z, y, level}; }
   [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }
+  /// FlyerEngine's?
+  [[nodiscard]] bool flies() const { return has(kFlying) && !climbs; }
   void clear(Flag flag) { flags = static_cast<uint8_t>(flags & ~flag); }
 };
 static_assert(sizeof(Body) == 64 && std::is_trivially_copyable_v<Body>);

@@ -14,6 +14,7 @@
 #include "crowd/crowd_check.h"
 #include "crowd/crowd_state.h"
 #include "crowd/standing_map.h"
+#include "world/node_data.h"
 #include "world/place.h"
 
 namespace throng {
@@ -26,6 +27,14 @@ constexpr int32_t kMostSubSteps = 1000;
 constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
+
+// As far as one can tell from outside: worlds that were never written have no hash.
+bool is_same_world(const Nodes& nodes, const World& world) {
+  const WorldSummary &a = nodes.data()->world.data()->summary, &b = world.data()->summary;
+  return a.hash == b.hash && a.cell == b.cell && a.origin == b.origin &&
+         a.classes.size() == b.classes.size() &&
+         nodes.data()->world.data()->level_count == world.data()->level_count;
+}
 
 }  // namespace
 
@@ -51,6 +60,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   }
   if (!(config.stuck_after >= 0)) return bad_config("stuck_after must be 0 s or more");
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
+  if (config.nodes.data() != nullptr && !is_same_world(config.nodes, world)) {
+    return bad_config("the nodes are of another world");
+  }
   const WorldData& data = *world.data();
   const double unit = data.summary.cell / kUnitsPerCell;
   const bool is_sampled = config.model == SteeringModel::kSampled;
@@ -78,7 +90,16 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .steering = {},
                       .patience = {}},
                      data.summary.classes.size());
-  auto state = std::make_unique<State>(world, config, std::move(engine), std::move(flyers));
+  ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                          .sight = static_cast<float>(config.sight),
+                          .rounds = config.rounds,
+                          .patient = config.patient,
+                          .seed = config.seed,
+                          .workers = config.workers,
+                          .steering = {}},
+                         data.summary.classes.size());
+  auto state = std::make_unique<State>(world, config, std::move(engine), std::move(flyers),
+                                       std::move(climbers));
   state->unit = unit;
   state->classes.resize(data.summary.classes.size());
   return Crowd(std::move(state));
@@ -110,7 +131,8 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   auto ground = CrowdGround::make(*world.data(), number, step_height);
   if (!ground) return ground.error();
   made->ground = std::move(*ground);
-  if (config.ways == CrowdWays::kPaths) {
+  const bool over_nodes = goes_over_nodes(number);
+  if (config.ways == CrowdWays::kPaths && !over_nodes) {
     auto finder = PathFinder::make(world,
                                    {.avatar_class = number,
                                     .workers = config.workers,
@@ -123,7 +145,14 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     made->detours.resize(made->finders.size());
   }
   if (auto ok = open_air(number, *made, context); !ok) return ok;
+  if (over_nodes) {
+    if (auto ok = open_nodes(number, *made, context); !ok) return ok;
+  }
   parts = std::move(made);
+  if (parts->nodes) {
+    climbers.set_ground(static_cast<size_t>(number), &*parts->nodes);
+    climbs.resize(generation.size());
+  }
   if (parts->air) {
     flyers.set_air(static_cast<size_t>(number), &*parts->air, body_class(number).radius);
     flights.resize(generation.size());
@@ -141,9 +170,13 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   return {};
 }
 
+double Crowd::State::radius_of(const AvatarSpawn& spawn) const {
+  return spawn.radius > 0 ? spawn.radius : body_class(spawn.avatar_class).radius;
+}
+
 Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   const AvatarClass& avatar = body_class(spawn.avatar_class);
-  const double radius = spawn.radius > 0 ? spawn.radius : avatar.radius;
+  const double radius = radius_of(spawn);
   const double speed = spawn.speed > 0 ? spawn.speed : avatar.speed;
   if (!(spawn.radius >= 0 && radius <= std::min(kMostRadius, 4000 * 2048 * unit / 2))) {
     return bad_config("radius must be 0 (the class's) to 100 m, and at most 4000 cells");
@@ -167,19 +200,26 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
 
 // Nobody moves further than the smallest radius at a time, so nobody passes through another.
 void Crowd::State::make_room(const Body& body) {
-  if (body.radius <= widest && body.speed <= fastest && body.radius >= narrowest &&
-      body.height <= tallest) {
-    return;
+  int32_t wide = body.radius, narrow = body.radius, tall = body.height;
+  if (body.climbs) {  // It leans, so what holds it changes.
+    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    const double radius = climbs[body.slot].radius;
+    wide = ground.widest(radius);
+    tall = ground.tallest(radius);
+    narrow = static_cast<int32_t>(std::ceil(radius / unit - 1e-9));
+    engine.expect_height(tall);
   }
-  tallest = std::max<int32_t>(tallest, body.height);
-  widest = std::max(widest, body.radius);
-  narrowest = std::min(narrowest, body.radius);
+  if (wide <= widest && body.speed <= fastest && narrow >= narrowest && tall <= tallest) return;
+  tallest = std::max(tallest, tall);
+  widest = std::max(widest, wide);
+  narrowest = std::min(narrowest, narrow);
   fastest = std::max(fastest, body.speed);
   const double way = fastest * config.dt / unit;
   const double most = std::min(narrowest, CrowdEngine::kLongestStep - 16);  // and what is rounded
   sub_steps = std::clamp(static_cast<int32_t>(std::ceil(way / most - 1e-9)), 1, 1 << 20);
   engine.fit(widest, fastest, static_cast<float>(config.dt / sub_steps));
   flyers.fit(widest, fastest, tallest, static_cast<float>(config.dt / sub_steps));
+  climbers.fit(widest, fastest, tallest, static_cast<float>(config.dt / sub_steps));
 }
 
 void Crowd::State::reserve(size_t more) {
@@ -191,7 +231,7 @@ void Crowd::State::reserve(size_t more) {
   engine.reserve(engine.bodies().size() + more);
 }
 
-AvatarId Crowd::State::add(Body body) {
+AvatarId Crowd::State::add(Body body, const Climb& climb) {
   find_bodies();
   if (free_slots.empty()) {
     body.slot = static_cast<uint32_t>(generation.size());
@@ -205,6 +245,10 @@ AvatarId Crowd::State::add(Body body) {
   if (!flights.empty() || air_of(body) != nullptr) {
     flights.resize(generation.size());
     flights[body.slot] = {};
+  }
+  if (!climbs.empty() || body.climbs) {
+    climbs.resize(generation.size());
+    climbs[body.slot] = climb;
   }
   where[body.slot] = static_cast<uint32_t>(engine.bodies().size());
   if (body.slot < inside.size()) inside[body.slot] = 0;
@@ -223,7 +267,8 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
     auto body = s.body_of(spawn);
     if (!body) return body.error();
     bodies.push_back(*body);
-    widest = std::max(widest, body->radius);
+    const auto& nodes = s.classes[static_cast<size_t>(spawn.avatar_class)]->nodes;
+    widest = std::max(widest, nodes ? nodes->widest(s.radius_of(spawn)) : body->radius);
   }
   StandingMap map(s.engine.bodies(), widest, spawns.size());
   s.reserve(spawns.size());
@@ -233,6 +278,15 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
     if (spawns[i].place.level1 == kAirLevel1) {
       if (!s.put_in_air(body, spawns[i].place.position)) continue;
       if (map.add_if_clear(body)) ids[i] = s.add(body);
+      continue;
+    }
+    if (s.classes[static_cast<size_t>(spawns[i].avatar_class)]->nodes) {
+      const NodePlace place = spawns[i].on_nodes
+                                  ? spawns[i].on_nodes
+                                  : s.place_on_nodes(spawns[i].avatar_class, spawns[i].place);
+      Climb climb;
+      if (!s.put_on_nodes(body, climb, place, s.radius_of(spawns[i]))) continue;
+      if (map.add_if_clear(body)) ids[i] = s.add(body, climb);
       continue;
     }
     const auto point = ground_point(*s.world.data(), spawns[i].place);
@@ -261,9 +315,12 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
                       " does not fly here: say `flies = true` in the classes' file, and bake the "
                       "world with it");
   }
+  const double radius = s.radius_of(like);
+  const int32_t widest = parts.nodes ? parts.nodes->widest(radius) : body->radius;
   if (!parts.standing) parts.standing.emplace(parts.ground, s.config.seed);
-  StandingMap map(s.engine.bodies(), std::max(s.widest, body->radius), count);
+  StandingMap map(s.engine.bodies(), std::max(s.widest, widest), count);
   std::vector<Body> placed;
+  std::vector<Climb> climbs(parts.nodes ? 1 : 0);  // of those placed, and one to try
   placed.reserve(count);
   // Until nine draws of ten fail over a while.
   uint64_t failed = 0, drawn = 0;
@@ -273,6 +330,10 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
           parts.flight_finders[0].random_point(s.config.seed ^ kAirDraws, s.scattered++);
       return point && s.put_in_air(here, *point);
     }
+    if (parts.nodes) {
+      const NodePlace place = s.draw_on_nodes(like.avatar_class, s.scattered++);
+      return place && s.put_on_nodes(here, climbs.back(), place, radius);
+    }
     const StandingDraw::Stand stand = parts.standing->draw(s.scattered++);
     here.x = static_cast<int32_t>(stand.point.x);
     here.z = static_cast<int32_t>(stand.point.z);
@@ -280,10 +341,11 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
     here.y = parts.ground.feet(stand.level, stand.point);
     return true;
   };
-  while (placed.size() < count && (in_air || !parts.standing->is_empty())) {
+  while (placed.size() < count && (in_air || parts.nodes || !parts.standing->is_empty())) {
     Body here = *body;
     if (draw(here) && map.add_if_clear(here)) {
       placed.push_back(here);
+      if (parts.nodes) climbs.emplace_back();
     } else {
       ++failed;
     }
@@ -300,7 +362,9 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
   s.reserve(count);
   std::vector<AvatarId> ids;
   ids.reserve(count);
-  for (const Body& b : placed) ids.push_back(s.add(b));
+  for (size_t i = 0; i < placed.size(); ++i) {
+    ids.push_back(parts.nodes ? s.add(placed[i], climbs[i]) : s.add(placed[i]));
+  }
   return ids;
 }
 
@@ -331,6 +395,14 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
       s.set_goal_of_flyer(*body, goals[i]);
       continue;
     }
+    if (body->climbs) {
+      if (!goals[i]) {
+        s.stop_climber(*body);
+      } else {
+        s.set_goal_of_climber(*body, s.place_on_nodes(body->avatar_class, goals[i]));
+      }
+      continue;
+    }
     body->flags = 0;
     const auto point = ground_point(*s.world.data(), goals[i]);
     if (!point) continue;
@@ -345,6 +417,22 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
   }
 }
 
+void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> goals) {
+  THRONG_ASSERT(ids.size() == goals.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    Body* body = s.body(ids[i]);
+    if (body == nullptr || !body->climbs) continue;
+    body->target = 0;
+    body->turn = 0;
+    if (!goals[i]) {
+      s.stop_climber(*body);
+    } else {
+      s.set_goal_of_climber(*body, goals[i]);
+    }
+  }
+}
+
 void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities) {
   THRONG_ASSERT(ids.size() == velocities.size());
   for (size_t i = 0; i < ids.size(); ++i) {
@@ -352,7 +440,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
     if (body == nullptr) continue;
     const Vec3d& v = velocities[i];
     const bool may_fly = state_->air_of(*body) != nullptr;
-    const double up = may_fly ? v.y : 0;
+    const double up = may_fly || body->climbs ? v.y : 0;
     double size = std::sqrt(v.x * v.x + up * up + v.z * v.z);
     if (!std::isfinite(size)) size = INFINITY;
     const double part = size > body->speed ? body->speed / size : 1;
@@ -364,6 +452,11 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
                      : steer::Plane{};
     if (may_fly) {
       state_->flights[body->slot].wish_up = part > 0 ? static_cast<float>(up * part) : 0;
+    }
+    if (body->climbs) {
+      Climb& climb = state_->climbs[body->slot];
+      climb.driven = {body->wish.x, part > 0 ? static_cast<float>(up * part) : 0, body->wish.z};
+      climb.detour = 0;
     }
   }
 }
@@ -433,10 +526,14 @@ CrowdReport Crowd::step() {
       if (s.flights.empty() || s.flights[slot].to_port == 0) s.arrived.push_back(s.id_of(slot));
     }
     if (!s.flights.empty()) s.fly(counts, times, planned);
+    if (!s.climbs.empty()) s.move_climbers(counts, times, planned);
   }
   s.where_is_old = true;
-  if (!s.flights.empty()) {
-    for (const Body& body : s.engine.bodies()) report.flying += body.has(Body::kFlying) ? 1 : 0;
+  if (!s.flights.empty() || !s.climbs.empty()) {
+    for (const Body& body : s.engine.bodies()) {
+      report.flying += body.flies() ? 1 : 0;
+      report.climbing += body.climbs ? 1 : 0;
+    }
   }
   s.arrive_in_targets();
   s.find_events();
@@ -466,10 +563,13 @@ CrowdCheck Crowd::check() const {
   std::vector<CheckedBody> bodies;
   bodies.reserve(s.engine.bodies().size());
   for (const Body& b : s.engine.bodies()) {
-    bodies.push_back({b.x, b.z, b.y, b.level, b.avatar_class, b.radius * s.unit,
-                      s.body_class(b.avatar_class).height, b.has(Body::kFlying)});
+    const double height = b.climbs ? b.height * 1e-3 : s.body_class(b.avatar_class).height;
+    bodies.push_back(
+        {b.x, b.z, b.y, b.level, b.avatar_class, b.radius * s.unit, height, b.flies(), b.climbs});
   }
-  return check_bodies(s.world, bodies, obstacles(), s.config.workers);
+  CrowdCheck found = check_bodies(s.world, bodies, obstacles(), s.config.workers);
+  if (!s.climbs.empty()) found.wall_entries += s.count_off_nodes();
+  return found;
 }
 
 uint64_t Crowd::state_hash() const {
@@ -483,23 +583,41 @@ uint64_t Crowd::state_hash() const {
     body.steps = 0;
     by_slot.push_back(body);
   }
-  const uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
-  if (s.flights.empty()) return hash;
-  std::vector<Flight> flights;
-  for (const Body& body : by_slot) flights.push_back(s.flights[body.slot]);
-  return hash_bytes(flights.data(), flights.size() * sizeof(Flight), hash);
+  uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
+  if (!s.flights.empty()) {
+    std::vector<Flight> flights;
+    for (const Body& body : by_slot) flights.push_back(s.flights[body.slot]);
+    hash = hash_bytes(flights.data(), flights.size() * sizeof(Flight), hash);
+  }
+  if (!s.climbs.empty()) {
+    std::vector<Climb> climbs;
+    for (const Body& body : by_slot) climbs.push_back(s.climbs[body.slot]);
+    hash = hash_bytes(climbs.data(), climbs.size() * sizeof(Climb), hash);
+  }
+  return hash;
 }
 
 AvatarState Crowd::State::state_of(const Body& b) const {
   const Vec3d origin = world.data()->summary.origin;
   const double size = std::hypot(b.velocity.x, b.velocity.z);
+  if (b.climbs) {
+    const Climb& climb = climbs[b.slot];
+    return {.id = b.slot,
+            .avatar_class = b.avatar_class,
+            .position = climb.feet,
+            .radius = climb.radius,
+            .heading_x = size > 0 ? b.velocity.x / size : 0,
+            .heading_z = size > 0 ? b.velocity.z / size : 1,
+            .climbs = true,
+            .up = climb.axis};
+  }
   return {.id = b.slot,
           .avatar_class = b.avatar_class,
           .position = {origin.x + (b.x + 0.5) * unit, b.y * 1e-3, origin.z + (b.z + 0.5) * unit},
           .radius = b.radius * unit,
           .heading_x = size > 0 ? b.velocity.x / size : 0,
           .heading_z = size > 0 ? b.velocity.z / size : 1,
-          .flies = b.has(Body::kFlying)};
+          .flies = b.flies()};
 }
 
 void Crowd::read(std::vector<AvatarState>& out) const {
@@ -530,11 +648,12 @@ uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->engine.bodie
 CrowdMemory Crowd::memory() const {
   const State& s = *state_;
   CrowdMemory memory;
-  memory.avatars = s.engine.bytes() + s.flyers.bytes() +
+  memory.avatars = s.engine.bytes() + s.flyers.bytes() + s.climbers.bytes() +
                    (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
                    s.inside.capacity() * sizeof(uint64_t) +
                    s.looked_at.capacity() * sizeof(s.looked_at[0]);
-  memory.ways = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight);
+  memory.ways = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight) +
+                s.climbs.capacity() * sizeof(Climb);
   for (const auto& parts : s.classes) memory.ground += parts ? parts->ground.bytes() : 0;
   memory.ground += s.obstacles.bytes();
   return memory;

@@ -52,9 +52,9 @@ uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies
   for (const CheckedBody& body : bodies) {
     const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(body.avatar_class)];
     const double lean = avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180);
-    const double bottom = body.flies ? 0 : std::max(avatar.step, lean);
+    const double bottom = body.flies || body.climbs ? 0 : std::max(avatar.step, lean);
     entries.push_back({origin.x + (body.x + 0.5) * unit, origin.z + (body.z + 0.5) * unit,
-                       body.y * 1e-3, avatar.radius, bottom, avatar.height});
+                       body.y * 1e-3, avatar.radius, bottom, body.height});
     widest = std::max(widest, avatar.radius);
   }
   std::sort(entries.begin(), entries.end(),
@@ -141,6 +141,7 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
     uint64_t found = 0;
     for (size_t i = begin; i < end; ++i) {
       const CheckedBody& a = bodies[i];
+      if (a.climbs) continue;
       if (a.flies) {
         found += air[static_cast<size_t>(a.avatar_class)].allows(a) ? 0 : 1;
         continue;

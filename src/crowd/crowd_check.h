@@ -19,6 +19,7 @@ struct CheckedBody {
   int32_t avatar_class = 0;
   double radius = 0, height = 0;  // [m]
   bool flies = false;             // it is in the air, or between the ground and the air
+  bool climbs = false;            // over nodes: others ask whether it may be there
 };
 
 /// `obstacles`: what nobody may be in, a body with the radius of its class, from its step up.

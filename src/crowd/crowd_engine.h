@@ -76,6 +76,8 @@ class CrowdEngine {
   void set_ground(size_t avatar_class, const StrideGround& ground);
   /// No body may be wider than so many units, nor faster. Before the first body that is.
   void fit(int32_t widest, float fastest, float dt);
+  /// Some body may become that high. [mm]
+  void expect_height(int32_t tallest) { highest_ = highest_ < tallest ? tallest : highest_; }
   /// From the next step on; the views must stay until it is over.
   void set_detail(const EngineDetail& detail);
   /// Makes room for so many. Bodies stay.

@@ -47,8 +47,9 @@ void Crowd::State::find_entries() {
   parallel_ranges(engine.bodies().size(), kGrain, config.workers, [&](size_t begin, size_t end) {
     for (const Body& body : engine.bodies().subspan(begin, end - begin)) {
       uint64_t now = 0;
+      const Body there = at_feet(body);
       for (size_t area = 0; area < watched.size(); ++area) {
-        if (watched[area].contains(body)) now |= uint64_t{1} << area;
+        if (watched[area].contains(there)) now |= uint64_t{1} << area;
       }
       const uint64_t came = now & ~inside[body.slot];
       inside[body.slot] = now;

@@ -386,7 +386,7 @@ void Crowd::State::add_flyers_in_the_way(std::span<const uint32_t> slots,
     for (uint32_t i = 0; i < bodies.size(); ++i) {
       const Body& body = bodies[i];
       if (!body.has(Body::kFlying)) continue;
-      const double radius = body_class(body.avatar_class).radius;
+      const double radius = body.climbs ? body.radius * unit : body_class(body.avatar_class).radius;
       if (passed.holds(here(body), radius, body.height)) found.emplace_back(slot, i);
     }
   }
@@ -399,6 +399,7 @@ void Crowd::State::tell_flyers_of_obstacles() {
   for (const CrowdObstacle& obstacle : obstacles.all()) {
     if (obstacle.exists && obstacle.is_up) all.emplace_back(obstacle.place, origin, unit);
   }
+  climbers.set_obstacles(all);
   flyers.set_obstacles(std::move(all));
 }
 

@@ -85,7 +85,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
   if (in_their_way != nullptr) in_their_way->clear();
   if (slots.empty()) return 0;
   auto found = obstacles.in_the_way(slots, engine.bodies(), config.workers);
-  if (!flights.empty()) add_flyers_in_the_way(slots, found);
+  if (!flights.empty() || !climbs.empty()) add_flyers_in_the_way(slots, found);
   size_t waiting = 0;
   std::vector<uint32_t> settled;
   for (const uint32_t slot : slots) {

@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x36305744574f5243;  // "CROWDW06"
+constexpr uint64_t kMagic = 0x37305744574f5243;  // "CROWDW07"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -28,12 +28,13 @@ struct Head {
   uint64_t obstacles = 0, corners = 0, free_obstacles = 0;
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
+  uint64_t climbs = 0;         // by slot, or none
   int32_t rounds = 0, ways = 0, patient = 0, flows_are_old = 0;
   int32_t model = 0, far_steps = 0;
   uint64_t views = 0;
   double far_reaction = 0;
 };
-static_assert(sizeof(Head) == 22 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 23 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
@@ -104,7 +105,8 @@ uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
-         head.flights * sizeof(Flight) + head.views * sizeof(EngineDetail::View) + 8;
+         head.flights * sizeof(Flight) + head.climbs * sizeof(Climb) +
+         head.views * sizeof(EngineDetail::View) + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -161,7 +163,9 @@ bool is_sound(const Body& b, const WorldData& data) {
   if (!finite || !(b.speed > 0) || b.radius <= 0 || b.avatar_class >= data.summary.classes.size()) {
     return false;
   }
-  if (b.x < 0 || b.z < 0 || !in_grid(data, b.point()) || b.level >= data.level_count) return false;
+  if (b.x < 0 || b.z < 0 || !in_grid(data, b.point())) return false;
+  if (b.climbs) return b.has(Body::kFlying) && b.level == 0;  // is_sound_climb tells the rest
+  if (b.level >= data.level_count) return false;
   if (b.has(Body::kFlying)) return true;  // it has no level; is_sound of its flight
   const auto tile = data.tile_levels(b.x >> (kUnitBits + 6), b.z >> (kUnitBits + 6));
   return b.level >= tile.first && b.level < tile.last;
@@ -171,8 +175,8 @@ bool is_sound(const Flight& flight, const Body& body, uint32_t levels) {
   const bool finite = std::isfinite(flight.rise + flight.wish_up + flight.waited);
   const bool counts = flight.count <= Flight::kPoints && flight.next <= flight.count &&
                       (flight.count == 0 || flight.next < flight.count);
-  const bool has_way = !body.has(Body::kFlying) || !body.has(Body::kHasGoal) ||
-                       body.has(Body::kLost) || flight.count > 0;
+  const bool has_way =
+      !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kLost) || flight.count > 0;
   const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
   return finite && counts && has_way && goal && flight.port_low <= flight.port_high &&
          (flight.in_port == 0 || flight.port_level < levels);
@@ -235,6 +239,7 @@ std::vector<uint8_t> Crowd::save() const {
   const std::vector<double> targets = values_of(s.targets);
   head.target_values = targets.size();
   head.flights = s.flights.size();
+  head.climbs = s.climbs.size();
   head.views = s.views.size();
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
@@ -248,6 +253,7 @@ std::vector<uint8_t> Crowd::save() const {
   put(out, s.obstacles.free_slots().data(), head.free_obstacles);
   put(out, targets.data(), targets.size());
   put(out, s.flights.data(), s.flights.size());
+  put(out, s.climbs.data(), s.climbs.size());
   put(out, s.views.data(), s.views.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put(out, &sum, 1);
@@ -279,7 +285,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   if (head.bodies >= kMost || head.slots >= kMost || head.free_slots >= kMost ||
       head.obstacles >= kMost || head.corners >= kMost || head.free_obstacles >= kMost ||
       head.target_values >= kMost || head.views >= kMost ||
-      (head.flights != 0 && head.flights != head.slots) || saved.size() != size_of(head)) {
+      (head.flights != 0 && head.flights != head.slots) ||
+      (head.climbs != 0 && head.climbs != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
   }
   uint64_t sum = 0;
@@ -311,6 +318,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   take(targets.data(), targets.size());
   std::vector<Flight> flights(head.flights);
   take(flights.data(), flights.size());
+  std::vector<Climb> climbs(head.climbs);
+  take(climbs.data(), climbs.size());
   s.views.resize(head.views);
   take(s.views.data(), s.views.size());
 
@@ -325,8 +334,10 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   for (const uint32_t slot : s.free_slots) sound = sound && take_slot(slot);
   for (const Body& body : bodies) {
     sound = sound && is_sound(body, data) && take_slot(body.slot) &&
-            (!body.has(Body::kHasGoal) || is_sound(s.routes[body.slot], data.level_count));
-    const bool flies = body.has(Body::kFlying);
+            (!body.has(Body::kHasGoal) || body.climbs ||
+             is_sound(s.routes[body.slot], data.level_count));
+    sound = sound && (!body.climbs || !climbs.empty());
+    const bool flies = body.flies();
     sound =
         sound && (flights.empty() ? !flies : is_sound(flights[body.slot], body, data.level_count));
   }
@@ -339,13 +350,20 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.engine.reserve(bodies.size());
   for (const Body& body : bodies) {
     if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();
+    if (body.climbs != s.goes_over_nodes(body.avatar_class)) {
+      return bad("has other settings; give the nodes that it was made with");
+    }
+  }
+  if (!climbs.empty()) s.climbs = std::move(climbs);
+  for (const Body& body : bodies) {
+    if (body.climbs && !s.is_sound_climb(body)) return bad("is not sound; save the crowd again");
     s.make_room(body);
     s.engine.add(body);
   }
   if (!flights.empty()) s.flights = std::move(flights);
   for (const Body& body : bodies) {
     const FlyerAir* air = s.air_of(body);
-    const bool flies = body.has(Body::kFlying);
+    const bool flies = body.flies();
     if (flies && (air == nullptr || (!air->is_legal({body.x, body.z, body.y}) &&
                                      s.flights[body.slot].in_port == 0))) {
       return bad("is not sound; save the crowd again");

@@ -11,6 +11,9 @@
 #include <span>
 #include <vector>
 
+#include "crowd/climb.h"
+#include "crowd/climber_engine.h"
+#include "crowd/climber_ground.h"
 #include "crowd/crowd_engine.h"
 #include "crowd/crowd_ground.h"
 #include "crowd/detours.h"
@@ -25,6 +28,7 @@
 #include "throng/crowd.h"
 #include "throng/flight.h"
 #include "throng/live_ground.h"
+#include "throng/node_path.h"
 
 /// What a crowd holds.
 namespace throng {
@@ -45,7 +49,12 @@ struct ClassParts {
   std::optional<FlyerAir> air;
   std::vector<FlightFinder> flight_finders;  // one a worker
   std::vector<FlightPath> flights;
-  std::vector<std::vector<Place>> landings;  // by target: where to land
+  // Of a class that goes over nodes.
+  std::optional<ClimberGround> nodes;
+  std::vector<NodePathFinder> node_finders;  // one a worker
+  std::vector<NodePath> node_paths;
+  // Of both, by target: where to land, or to climb to.
+  std::vector<std::vector<Place>> landings;
 };
 
 struct Crowd::State {
@@ -53,6 +62,7 @@ struct Crowd::State {
   CrowdConfig config;
   CrowdEngine engine;
   FlyerEngine flyers;
+  ClimberEngine climbers;
   std::vector<std::unique_ptr<ClassParts>> classes;
   double unit = 0;  // [m]
   int32_t widest = 0, narrowest = INT32_MAX, tallest = 0;
@@ -67,6 +77,7 @@ struct Crowd::State {
   std::vector<uint32_t> generation;
   std::vector<Route> routes;
   std::vector<Flight> flights;  // empty, if no class that is in use flies
+  std::vector<Climb> climbs;    // empty, if none goes over nodes
   std::vector<uint32_t> free_slots;
   mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
   mutable bool where_is_old = false;
@@ -83,11 +94,12 @@ struct Crowd::State {
   std::mutex stranding;
 
   State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine,
-        FlyerEngine&& a_flyer_engine)
+        FlyerEngine&& a_flyer_engine, ClimberEngine&& a_climber_engine)
       : world(a_world),
         config(a_config),
         engine(std::move(an_engine)),
         flyers(std::move(a_flyer_engine)),
+        climbers(std::move(a_climber_engine)),
         obstacles(a_world, a_world.data()->summary.classes.size()) {}
 
   [[nodiscard]] const AvatarClass& body_class(int32_t number) const {
@@ -98,10 +110,12 @@ struct Crowd::State {
   void find_bodies() const;
   Result<void> open_class(int32_t number, Context& context);
   Result<Body> body_of(const AvatarSpawn& spawn) const;
+  /// The class's, or its own. [m]
+  [[nodiscard]] double radius_of(const AvatarSpawn& spawn) const;
   void make_room(const Body& body);
   /// Makes room for so many more.
   void reserve(size_t more);
-  AvatarId add(Body body);
+  AvatarId add(Body body, const Climb& climb = {});
   /// Those obstacles that wait and in whose way nobody stands come up or move on. Returns how many
   /// still wait.
   size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_way);
@@ -151,6 +165,29 @@ struct Crowd::State {
   /// Who flies where some obstacles would come or pass, beside those who stand there, in order.
   void add_flyers_in_the_way(std::span<const uint32_t> slots,
                              std::vector<std::pair<uint32_t, uint32_t>>& found) const;
+
+  // crowd_climbs.cpp
+  [[nodiscard]] bool goes_over_nodes(int32_t number) const;
+  /// What a class needs that goes over nodes.
+  Result<void> open_nodes(int32_t number, ClassParts& parts, Context& context) const;
+  /// Puts a body there, or not: it may not be there. [m]
+  [[nodiscard]] bool put_on_nodes(Body& body, Climb& climb, const NodePlace& place,
+                                  double radius) const;
+  /// What a place means to a class that goes over nodes; nowhere if there is nothing near.
+  [[nodiscard]] NodePlace place_on_nodes(int32_t number, const Place& place) const;
+  [[nodiscard]] NodePlace draw_on_nodes(int32_t number, uint64_t n) const;
+  void set_goal_of_climber(Body& body, const NodePlace& goal);
+  void stop_climber(Body& body);
+  void aim_at_target(const Body& body, Climb& climb) const;
+  void turn_off(Body& body, Climb& climb, int32_t worker);
+  void drive_climber(const Body& body, Climb& climb, int32_t worker);
+  void plan_climb(Body& body, Climb& climb, int32_t worker, std::atomic<uint64_t>& planned);
+  void move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
+                     std::atomic<uint64_t>& planned);
+  [[nodiscard]] Body at_feet(const Body& body) const;
+  /// Would a step with what was saved of it read what is not there?
+  [[nodiscard]] bool is_sound_climb(const Body& body) const;
+  [[nodiscard]] uint64_t count_off_nodes() const;
 };
 
 }  // namespace throng

@@ -61,7 +61,7 @@ Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
     auto flow = FlowPoints::make(parts.lives[0], goals, FlowPoints::kNever, context);
     if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
     parts.flows.push_back(std::move(*flow));
-    if (parts.air) parts.landings.push_back(goals);
+    if (parts.air || parts.nodes) parts.landings.push_back(goals);
   }
   return {};
 }
@@ -78,6 +78,7 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
     body->aim_x = body->x;
     body->aim_z = body->z;
     if (s.air_of(*body) != nullptr) s.set_goal_of_flyer(*body, {});
+    if (body->climbs) s.set_goal_of_climber(*body, {});
     body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kLost;
   }
 }
@@ -159,7 +160,7 @@ void Crowd::State::arrive_in_targets() {
   parallel_ranges(engine.bodies().size(), kGrain, config.workers, [&](size_t begin, size_t end) {
     for (Body& body : engine.bodies().subspan(begin, end - begin)) {
       if (body.target == 0 || !body.has(Body::kHasGoal) || body.has(Body::kArrived) ||
-          !targets[body.target - 1u].contains(body)) {
+          !targets[body.target - 1u].contains(at_feet(body))) {
         continue;
       }
       body.flags |= Body::kArrived;

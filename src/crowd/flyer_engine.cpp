@@ -128,7 +128,7 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
   flyers_.clear();
   flyer_of_.resize(bodies.size());
   for (size_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].has(Body::kFlying)) continue;
+    if (!bodies[i].flies()) continue;
     flyer_of_[i] = static_cast<uint32_t>(flyers_.size());
     flyers_.push_back(static_cast<uint32_t>(i));
   }
@@ -152,7 +152,7 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
     wish(body, flight, step);
   });
   lap(times.plan);
-  grid_.build(bodies_, flyers_);
+  grid_.build(bodies_, flyers_, [](const Body& body) { return body.flies(); });
   lap(times.sort);
   for_flyers([&](uint32_t f, int32_t worker) { decide(f, workers_[static_cast<size_t>(worker)]); });
   lap(times.steer);
@@ -270,7 +270,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     if ((square > most && !may_matter) || entry.body == i) return;
     const Body& other = bodies_[entry.body];
     if (may_matter) {
-      const bool flies = other.has(Body::kFlying);
+      const bool flies = other.flies();
       const int64_t radii = int64_t{body.radius} + other.radius;
       const int64_t touched = radii + stride + (flies ? units.stride(other.speed) : 0);
       if (apart <= rise + (flies ? rise_of(other.speed) : 0) &&
@@ -305,7 +305,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   situation.size = seen;
   for (size_t n = 0; n < seen; ++n) {
     const Body& other = bodies_[nearest[n].body];
-    const bool flies = other.has(Body::kFlying);
+    const bool flies = other.flies();
     const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
     const Flight* of_other = flies ? &flights_[other.slot] : nullptr;
     Space velocity{other.velocity.x, flies ? of_other->rise : 0, other.velocity.z};
@@ -497,7 +497,7 @@ bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
     const uint32_t j = owner.others[n];
     const Body& other = bodies_[j];
     AirSpot there = spot_of(other);
-    if (other.has(Body::kFlying)) {
+    if (other.flies()) {
       const Move& move = moves_[flyer_of_[j]];
       if (move.state == Move::kDecided) there = move.place;
     }
@@ -527,7 +527,7 @@ bool FlyerEngine::holds(const Contest& contest, const Worker& owner, uint8_t rou
   const auto mine = order(body);
   for (uint32_t n = contest.first; n < contest.last; ++n) {
     const Body& other = bodies_[owner.others[n]];
-    if (!other.has(Body::kFlying)) continue;
+    if (!other.flies()) continue;
     const Move& move = moves_[flyer_of_[owner.others[n]]];
     if (move.round == round && clash(body, moves_[contest.flyer].place, other, move.place) &&
         order(other) > mine) {

@@ -21,7 +21,8 @@ FlyerGrid::Cube FlyerGrid::cube(int32_t x, int32_t z, int32_t y) const {
   return {floor_div(x, width_), floor_div(z, width_), floor_div(y, height_)};
 }
 
-void FlyerGrid::build(std::span<const Body> bodies, std::span<const uint32_t> flyers) {
+void FlyerGrid::build(std::span<const Body> bodies, std::span<const uint32_t> flyers,
+                      bool (*is_flyer)(const Body& body)) {
   bits_xz_ = 3;
   while ((size_t{1} << (2 * bits_xz_ + bits_y_)) < flyers.size() && bits_xz_ < 10) ++bits_xz_;
   const size_t cubes = size_t{1} << (2 * bits_xz_ + bits_y_);
@@ -39,7 +40,7 @@ void FlyerGrid::build(std::span<const Body> bodies, std::span<const uint32_t> fl
       });
     }
     for (size_t i = 0; i < bodies.size(); ++i) {
-      if (bodies[i].has(Body::kFlying)) continue;
+      if (is_flyer(bodies[i])) continue;
       const uint32_t n = number_of(bodies[i]);
       if (wanted_[n] == 0) continue;
       walkers_.push_back(static_cast<uint32_t>(i));

@@ -8,7 +8,7 @@
 
 #include "crowd/body.h"
 
-/// Who is near a flyer.
+/// Who is near those whom an engine of its own moves: who flies, or who climbs.
 namespace throng {
 
 /// Cubes half as wide as one sees, in a table rolled up along all three axes: so it is as large as
@@ -24,7 +24,9 @@ class FlyerGrid {
 
   /// Cubes so many units wide and millimetres high.
   void fit(int32_t width, int32_t height);
-  void build(std::span<const Body> bodies, std::span<const uint32_t> flyers);
+  /// `flyers`: all of whom `is_flyer` is true. They may be climbers.
+  void build(std::span<const Body> bodies, std::span<const uint32_t> flyers,
+             bool (*is_flyer)(const Body& body));
 
   /// Calls visit(entry) for all in the 27 cubes around a place: everybody within a cube's width.
   template <class Visit>

@@ -51,6 +51,16 @@ bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::A
 Result<Nodes> Nodes::open(const std::string& world_path) {
   auto world = World::open(world_path);
   if (!world) return world.error();
+  return open(*world);
+}
+
+Result<Nodes> Nodes::open(const World& world) {
+  THRONG_ASSERT(world.data());
+  const std::string& world_path = world.data()->path;
+  if (world_path.empty()) {
+    return Error{Errc::kBadFile,
+                 "this world was not opened from a folder, so it has no nodes there"};
+  }
   const std::string folder = world_path + "/" + kNodeFolder, name = folder + "/" + kNodeIndexName;
   const auto map = FileMap::open(name);
   if (!map) {
@@ -64,7 +74,7 @@ Result<Nodes> Nodes::open(const std::string& world_path) {
   if (hash_bytes(manifest->bytes().data(), manifest->bytes().size()) != (*nodes)->world_hash) {
     return Error{Errc::kBadFile, name + ": belongs to another world; bake it again with --nodes"};
   }
-  (*nodes)->world = *world;
+  (*nodes)->world = world;
   (*nodes)->path = folder;
   return Nodes(std::move(*nodes));
 }

@@ -1,0 +1,455 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/climber_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "core/stopwatch.h"
+#include "steer/surface.h"
+
+// docs/design/013-climbers.md. Those who walk and those who fly have made their steps clear of the
+// cylinders that hold those who climb; now these go, clear of where everybody is.
+namespace throng {
+namespace {
+
+using steer::Space;
+
+constexpr size_t kGrain = 32;              // climbers that are worth handing to another thread
+constexpr float kThere = 0.3f;             // [m] from its goal a body has arrived
+constexpr float kGetsOn = 0.1f;            // of its speed
+constexpr float kPatience = 2;             // [s] at least, before one turns off
+constexpr float kTurnsBack = 1;            // [s] before one in the air goes back
+constexpr float kAsks = 0.5f;              // [s] before those who rest are asked to make room
+constexpr float kBeside = 0.3f;            // [m] from who cannot step aside one makes room
+constexpr uint64_t kTempers = 0x74656d70;  // stream of chance
+
+bool clash(const ClimbHold& a, const ClimbHold& b) {
+  return nearer_than(a.low.x - b.low.x, a.low.z - b.low.z, int64_t{a.radius} + b.radius) &&
+         a.low.y < b.low.y + b.height && b.low.y < a.low.y + a.height;
+}
+
+ClimbHold hold_of(const Body& body) { return {{body.x, body.z, body.y}, body.radius, body.height}; }
+
+Space space_of(Vec3d v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+bool is_climber(const Body& body) { return body.climbs; }
+
+}  // namespace
+
+ClimberEngine::ClimberEngine(const ClimberConfig& config, size_t classes)
+    : config_(config), grounds_(classes, nullptr) {
+  workers_.resize(static_cast<size_t>(worker_count(config.workers)));
+}
+
+void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) {
+  config_.units.dt = dt;
+  const float unit = config_.units.unit, stride = fastest * dt;
+  sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
+  // As far as two cylinders' middles are apart whose bodies could touch after a step, all ways.
+  const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
+  const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
+  near_metres_ = std::max({sight_metres_ / 2, touched, high}) + 0.01f;
+  sight_metres_ = std::min(sight_metres_, 2 * near_metres_);
+  fastest_ = fastest;
+  widest_ = widest;
+  tallest_ = tallest;
+  grid_.fit(static_cast<int32_t>(near_metres_ / unit) + 4,
+            static_cast<int32_t>(near_metres_ * 1000) + 4);
+}
+
+bool ClimberEngine::is_blocked(const ClimbHold& hold) const {
+  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
+    return obstacle.holds(hold.low, hold.radius * double{config_.units.unit}, hold.height);
+  });
+}
+
+void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
+                         std::span<const Flight> flights, const Before& before,
+                         EngineCounts& counts, CrowdEngine::Times& times) {
+  auto start = Clock::now();
+  const auto lap = [&](double& seconds) {
+    seconds += seconds_since(start);
+    start = Clock::now();
+  };
+  arrived_.clear();
+  bodies_ = bodies;
+  climbs_ = climbs;
+  flights_ = flights;
+  climbers_.clear();
+  climber_of_.resize(bodies.size());
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies[i].climbs) continue;
+    climber_of_[i] = static_cast<uint32_t>(climbers_.size());
+    climbers_.push_back(static_cast<uint32_t>(i));
+  }
+  moves_.resize(climbers_.size());
+  for (Worker& worker : workers_) {
+    worker.others.clear();
+    worker.contests.clear();
+    worker.counts = {};
+  }
+  const size_t pieces = (climbers_.size() + kGrain - 1) / kGrain;
+  const auto for_climbers = [&](const auto& act) {
+    parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
+      const size_t end = std::min(climbers_.size(), (piece + 1) * kGrain);
+      for (size_t c = piece * kGrain; c < end; ++c) act(static_cast<uint32_t>(c), worker);
+    });
+  };
+  for_climbers([&](uint32_t c, int32_t worker) {
+    Body& body = bodies_[climbers_[c]];
+    Climb& climb = climbs_[body.slot];
+    before(body, climb, worker);
+    wish(body, climb);
+  });
+  lap(times.plan);
+  grid_.build(bodies_, climbers_, is_climber);
+  lap(times.sort);
+  for_climbers(
+      [&](uint32_t c, int32_t worker) { decide(c, workers_[static_cast<size_t>(worker)]); });
+  lap(times.steer);
+  // By induction nobody ever touches anybody, as in FlyerEngine::step.
+  for (int32_t r = 1; r <= config_.rounds; ++r) {
+    const auto round = static_cast<uint8_t>(r);
+    for_contests([&](const Contest& c, const Worker& owner) {
+      Move& move = moves_[c.climber];
+      if (move.state == Move::kUndecided && name(c, owner)) move.round = round;
+    });
+    for_contests([&](const Contest& c, const Worker& owner) {
+      Move& move = moves_[c.climber];
+      if (move.state == Move::kUndecided && move.round == round && holds(c, owner, round, step)) {
+        move.state = Move::kDecided;
+      }
+    });
+  }
+  lap(times.commit);
+  std::mutex adding;
+  parallel_ranges(climbers_.size(), kGrain, config_.workers, [&](size_t begin, size_t end) {
+    EngineCounts here;
+    for (size_t c = begin; c < end; ++c) settle(static_cast<uint32_t>(c), step, here);
+    const std::lock_guard lock(adding);
+    counts.add(here);
+  });
+  for (const Worker& worker : workers_) counts.add(worker.counts);
+  for (size_t n = 0; n < climbers_.size(); ++n) {
+    if (moves_[n].arrives) arrived_.push_back(bodies_[climbers_[n]].slot);
+  }
+  lap(times.settle);
+}
+
+// What it wishes for, as if nobody were there.
+void ClimberEngine::wish(Body& body, Climb& climb) const {
+  Space wished;
+  if ((body.has(Body::kHasGoal) || body.has(Body::kDriven)) && climb.count > 0) {
+    float speed = body.speed;
+    if (body.has(Body::kDriven)) {
+      speed = std::min(speed, steer::size_of({climb.driven[0], climb.driven[1], climb.driven[2]}));
+    }
+    const Space way = space_of(grounds_[body.avatar_class]->way_ahead(climb));
+    if (speed > 0) {
+      wished = steer::wish_towards(way, speed, config_.units.dt, 0, 0, climb.is_last_leg());
+    }
+  }
+  body.wish = {wished.x, wished.z};
+  climb.wish_up = wished.y;
+}
+
+// Is the other held up where he cannot step aside, on his way over an edge or a gap, or by one who
+// is bound for nowhere any more?
+bool ClimberEngine::lets_off(const Body& body, const Climb& climb, const Body& other) const {
+  if (!other.climbs || climb.at.in_air != 0) return false;
+  const Climb& of_other = climbs_[other.slot];
+  const bool rests = body.has(Body::kArrived) || !body.has(Body::kHasGoal);
+  if (rests && of_other.waited > kAsks && !other.has(Body::kArrived)) return true;
+  return of_other.at.in_air != 0 && of_other.at.part > 0 && of_other.waited > 0 &&
+         (of_other.waited >= climb.waited || other.slot < body.slot);
+}
+
+// Appends whom the climber could touch to `others`, and takes in the nearest, by which it steers.
+void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situation,
+                          bool& yields) const {
+  const uint32_t i = climbers_[c];
+  const Body& body = bodies_[i];
+  const Climb& climb = climbs_[body.slot];
+  const StepUnits& units = config_.units;
+  struct Seen {
+    float square;
+    uint32_t slot, body;
+    bool operator<(const Seen& other) const {
+      return square != other.square ? square < other.square : slot < other.slot;
+    }
+  };
+  std::array<Seen, steer::kMostNearInAir> nearest;
+  size_t seen = 0;
+  float most = sight_metres_ * sight_metres_;
+  // Where the middles of both may be after a step, and how far their cylinders may reach then.
+  const auto rise = static_cast<int64_t>(fastest_ * units.dt * 1000) + 2;
+  const int64_t stride = units.stride(fastest_) + 1;
+  const auto look_at = [&](const FlyerGrid::Entry& entry, bool is_near) {
+    if (entry.body == i) return;
+    const Body& other = bodies_[entry.body];
+    if (is_near) {
+      const int64_t reach = widest_ + stride + (other.climbs ? widest_ + stride : entry.radius);
+      const int64_t high = tallest_ + 2 * rise + (other.climbs ? tallest_ : entry.height);
+      const int64_t up = int64_t{2} * (entry.y - body.y) + entry.height - body.height;  // twice
+      if (std::abs(up) <= 2 * high && nearer_than(entry.x - body.x, entry.z - body.z, reach)) {
+        worker.others.push_back(entry.body);
+      }
+    }
+    const float dx = static_cast<float>(entry.x - body.x) * units.unit;
+    const float dz = static_cast<float>(entry.z - body.z) * units.unit;
+    const int32_t up = entry.y - body.y;
+    const int32_t apart = std::max({up - body.height, -up - entry.height, 0});
+    const float high = static_cast<float>(apart) * 1e-3f;
+    const Seen one{dx * dx + dz * dz + high * high, other.slot, entry.body};
+    if (one.square > most || (seen == nearest.size() && !(one < nearest.back()))) return;
+    size_t at = seen < nearest.size() ? seen++ : seen - 1;
+    for (; at > 0 && one < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
+    nearest[at] = one;
+    if (seen == nearest.size()) most = nearest.back().square;
+  };
+  grid_.for_near(body.x, body.z, body.y,
+                 [&](const FlyerGrid::Entry& entry) { look_at(entry, true); });
+  if (seen < nearest.size() || nearest.back().square > near_metres_ * near_metres_) {
+    const float per_metre = 1 / (units.unit * units.unit) * 1.0001f;
+    grid_.for_far(
+        body.x, body.z, body.y, [&] { return most * per_metre; },
+        [&](const FlyerGrid::Entry& entry) { look_at(entry, false); });
+  }
+  situation.velocity = {body.velocity.x, climb.rise, body.velocity.z};
+  situation.wish = {body.wish.x, climb.wish_up, body.wish.z};
+  situation.fastest = body.speed;
+  situation.height = static_cast<float>(body.height) * 1e-3f;
+  situation.has_walls = false;
+  situation.size = seen;
+  yields = false;
+  for (size_t n = 0; n < seen; ++n) {
+    const Body& other = bodies_[nearest[n].body];
+    const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
+    float up = 0, wish_up = 0;
+    if (other.climbs) {
+      up = climbs_[other.slot].rise;
+      wish_up = climbs_[other.slot].wish_up;
+    } else if (other.flies()) {
+      up = flights_[other.slot].rise;
+    }
+    // Who has arrived makes way for those who would pass, were he not there.
+    const bool makes_way = body.has(Body::kArrived) && other.climbs && !other.has(Body::kArrived);
+    const Space velocity = makes_way ? Space{other.wish.x, wish_up, other.wish.z}
+                                     : Space{other.velocity.x, up, other.velocity.z};
+    situation.near[n] = {{apart.x, static_cast<float>(other.y - body.y) * 1e-3f, apart.z},
+                         velocity,
+                         static_cast<float>(body.radius + other.radius) * units.unit,
+                         static_cast<float>(other.height) * 1e-3f};
+    if (yields || !lets_off(body, climb, other)) continue;
+    const Climb& of_other = climbs_[other.slot];
+    const Space off = space_of(of_other.feet - climb.feet);
+    const float far = steer::size_of(off);
+    const float room = static_cast<float>(body.height + other.height) * 1e-3f + kBeside;
+    if (far > 0 && far < room) {
+      situation.wish = (-0.5f * body.speed / far) * off;
+      yields = true;
+    }
+  }
+}
+
+// The best first.
+void ClimberEngine::find_ways(const Body& body, const Climb& climb,
+                              const steer::AirSituation& situation, bool yields,
+                              Contest& contest) const {
+  const ClimberGround& ground = *grounds_[body.avatar_class];
+  const float dt = config_.units.dt;
+  const double most = double{body.speed} * dt;
+  contest.ways = 0;
+  const auto add = [&](const std::optional<ClimberGround::Step>& step, bool on_way) {
+    if (!step || contest.ways == kWays) return;
+    const auto hold = ground.hold_of(step->pose, climb.radius);
+    if (!hold || (!obstacles_.empty() && is_blocked(*hold))) return;
+    contest.way[contest.ways++] = {*step, *hold, on_way};
+  };
+  const bool goes = climb.count > 0 && steer::size_of(situation.wish) > 0;
+  // Where it stops the wish is slower; else what is left of a step goes on along the way.
+  const double wished = climb.is_last_leg() || body.has(Body::kDriven)
+                            ? double{steer::size_of(situation.wish)} * dt
+                            : most;
+  if (climb.at.in_air != 0) {
+    const bool turning = climb.count > 0 && climb.at.next < climb.count;
+    const double along = body.has(Body::kDriven) ? std::max(wished, most / 4) : most;
+    for (const double part : {1.0, 0.5, 0.25}) {
+      if (turning) add(ground.advance(climb, part * along), true);
+    }
+    if (climb.waited > kTurnsBack) add(ground.retreat(climb, most), false);
+    return;
+  }
+  if (!yields && steer::wish_is_open(config_.steering, situation)) {
+    if (!goes) return;
+    for (const double part : {1.0, 0.5, 0.25}) add(ground.advance(climb, part * wished), true);
+    return;
+  }
+  const Space up = space_of(ground.normal_at(climb));
+  for (const Space& v : steer::best_along(config_.steering, situation, up)) {
+    const float speed = steer::size_of(v), wish = steer::size_of(situation.wish);
+    if (!(speed > 1e-3f)) return;  // nothing is better than to stand
+    const bool ahead = !yields && goes && steer::dot(v, situation.wish) > 0.999f * speed * wish;
+    if (ahead) {
+      add(ground.advance(climb, wished * (speed / wish)), true);
+    } else {
+      add(ground.shift(climb, Vec3d{v.x, v.y, v.z} * dt, most), false);
+    }
+  }
+}
+
+// Sense, steer, and take a place if nobody can object.
+void ClimberEngine::decide(uint32_t c, Worker& worker) {
+  const Body& body = bodies_[climbers_[c]];
+  const Climb& climb = climbs_[body.slot];
+  Move& move = moves_[c];
+  move = {};
+  Contest& contest = worker.contests.emplace_back();
+  contest.climber = c;
+  contest.first = static_cast<uint32_t>(worker.others.size());
+  steer::AirSituation situation;
+  bool yields = false;
+  sense(c, worker, situation, yields);
+  contest.last = static_cast<uint32_t>(worker.others.size());
+  find_ways(body, climb, situation, yields, contest);
+  move.yields = yields;
+  if (contest.first != contest.last && contest.ways > 0) {
+    ++worker.counts.contested;
+    move.state = Move::kUndecided;
+    return;
+  }
+  if (contest.ways > 0) {
+    move.way = contest.way[0];
+    move.state = Move::kDecided;
+  }
+  worker.others.resize(contest.first);
+  worker.contests.pop_back();
+}
+
+template <class Do>
+void ClimberEngine::for_contests(Do act) {
+  constexpr size_t kPiece = 64;
+  for (Worker& owner : workers_) {
+    parallel_ranges(owner.contests.size(), kPiece, config_.workers, [&](size_t begin, size_t end) {
+      for (size_t c = begin; c < end; ++c) act(owner.contests[c], owner);
+    });
+  }
+}
+
+// Is a cylinder clear of where everybody is now?
+bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
+                             const ClimbHold& hold) const {
+  for (uint32_t n = contest.first; n < contest.last; ++n) {
+    const uint32_t j = owner.others[n];
+    const Body& other = bodies_[j];
+    ClimbHold there = hold_of(other);
+    if (other.climbs) {
+      const Move& move = moves_[climber_of_[j]];
+      if (move.state == Move::kDecided) there = move.way.hold;
+    }
+    if (clash(hold, there)) return false;
+  }
+  return true;
+}
+
+// The first of his ways that is clear.
+bool ClimberEngine::name(const Contest& contest, const Worker& owner) {
+  for (size_t w = 0; w < contest.ways; ++w) {
+    if (!is_clear(contest, owner, contest.way[w].hold)) continue;
+    moves_[contest.climber].way = contest.way[w];
+    return true;
+  }
+  return false;
+}
+
+bool ClimberEngine::holds(const Contest& contest, const Worker& owner, uint8_t round,
+                          uint64_t step) const {
+  const Body& body = bodies_[climbers_[contest.climber]];
+  const auto order = [&](const Body& b) {
+    return std::pair(random_u64(config_.seed, b.slot, step), b.slot);
+  };
+  const auto mine = order(body);
+  for (uint32_t n = contest.first; n < contest.last; ++n) {
+    const uint32_t j = owner.others[n];
+    if (!bodies_[j].climbs) continue;
+    const Move& move = moves_[climber_of_[j]];
+    if (move.round == round && clash(moves_[contest.climber].way.hold, move.way.hold) &&
+        order(bodies_[j]) > mine) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
+  const StepUnits& units = config_.units;
+  Body& body = bodies_[climbers_[c]];
+  Climb& climb = climbs_[body.slot];
+  Move& move = moves_[c];
+  const ClimberGround& ground = *grounds_[body.avatar_class];
+  const Space wished{body.wish.x, climb.wish_up, body.wish.z};
+  const bool moves = move.state == Move::kDecided;
+  float gained = 0;  // of its speed
+  if (moves) {
+    const auto& [at, pose] = move.way.step;
+    const Space way = space_of(pose.feet - climb.feet);
+    const double far = ground.travel({climb.feet, climb.axis}, pose);
+    const float per_step = body.speed * units.dt, wish = steer::size_of(wished);
+    gained = move.way.on_way ? static_cast<float>(far) / per_step
+             : wish > 0      ? steer::dot(way, wished) / (wish * per_step)
+                             : 0;
+    body.velocity = {way.x / units.dt, way.z / units.dt};
+    climb.rise = way.y / units.dt;
+    climb.at = at;
+    climb.feet = pose.feet;
+    climb.axis = pose.axis;
+    body.x = move.way.hold.low.x;
+    body.z = move.way.hold.low.z;
+    body.y = move.way.hold.low.y;
+    body.radius = move.way.hold.radius;
+    body.height = static_cast<uint16_t>(move.way.hold.height);
+    if (!(far > 0)) ++counts.stood;
+  } else {
+    body.velocity = {};
+    climb.rise = 0;
+    ++counts.stood;
+  }
+  if (!body.has(Body::kHasGoal) || body.has(Body::kDriven)) return;
+  counts.progress += std::lrint(gained * 1e6f);
+  const bool at_end = climb.is_last_leg() && climb.at.in_air == 0;
+  const float left = at_end ? steer::size_of(space_of(ground.way_ahead(climb))) : 1;
+  if (at_end && left < kThere && climb.detour <= 0 && !body.has(Body::kArrived)) {
+    body.flags |= Body::kArrived;
+    move.arrives = true;
+  }
+  const bool is_there = body.has(Body::kArrived) && left < kThere && !move.yields;
+  if (gained > kGetsOn || is_there) {
+    climb.waited = std::max(0.0f, climb.waited - 0.5f * units.dt);
+    return;
+  }
+  climb.waited += units.dt;
+  const auto temper = static_cast<float>(random_below(config_.seed ^ kTempers, body.slot, step, 3));
+  const float most = kPatience + temper;
+  if (config_.patient && climb.waited > most && climb.is_on_ground()) {
+    climb.waited = 0;
+    climb.turns_off = 1;
+  }
+}
+
+uint64_t ClimberEngine::bytes() const {
+  uint64_t bytes = grid_.bytes() + (climbers_.capacity() + climber_of_.capacity()) * 4 +
+                   moves_.capacity() * sizeof(Move);
+  for (const Worker& worker : workers_) {
+    bytes += worker.others.capacity() * 4 + worker.contests.capacity() * sizeof(Contest);
+  }
+  return bytes;
+}
+
+}  // namespace throng

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "crowd/body.h"
+#include "crowd/climb.h"
+#include "crowd/climber_ground.h"
+#include "crowd/crowd_engine.h"
+#include "crowd/flight.h"
+#include "crowd/flyer_engine.h"
+#include "crowd/flyer_grid.h"
+#include "crowd/step_units.h"
+#include "steer/air.h"
+
+/// The step of those who go over nodes, after those of who walks and who flies: sense, steer,
+/// commit in rounds, settle. docs/design/013-climbers.md.
+namespace throng {
+
+struct ClimberConfig {
+  StepUnits units;
+  float sight = 5;  // [m]
+  int32_t rounds = 3;
+  bool patient = true;
+  uint64_t seed = 1;
+  int32_t workers = 0;
+  steer::AirSettings steering;
+};
+
+class ClimberEngine {
+ public:
+  /// `classes`: of the world.
+  ClimberEngine(const ClimberConfig& config, size_t classes);
+
+  /// Of a class that somebody is of who goes over nodes.
+  void set_ground(size_t avatar_class, const ClimberGround* ground) {
+    grounds_[avatar_class] = ground;
+  }
+  /// As FlyerEngine::fit, of the cylinders that hold bodies.
+  void fit(int32_t widest, float fastest, int32_t tallest, float dt);
+  void set_obstacles(std::vector<AirObstacle> obstacles) { obstacles_ = std::move(obstacles); }
+  [[nodiscard]] bool is_blocked(const ClimbHold& hold) const;
+
+  /// Called for each of them first, on any worker: he finds and follows his way.
+  using Before = std::function<void(Body&, Climb&, int32_t worker)>;
+  /// One step of all who go over nodes; `climbs` by slot, `flights` too or none. The others stay
+  /// where they are.
+  void step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
+            std::span<const Flight> flights, const Before& before, EngineCounts& counts,
+            CrowdEngine::Times& times);
+  /// Slots of those who arrived in the last step.
+  [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
+  [[nodiscard]] uint64_t bytes() const;
+
+ private:
+  static constexpr size_t kWays = 6;
+  struct Way {
+    ClimberGround::Step step;
+    ClimbHold hold;
+    bool on_way = false;  // not aside
+  };
+  struct Contest {
+    uint32_t climber = 0;          // of climbers_
+    uint32_t first = 0, last = 0;  // of the worker's `others`: whom he could touch
+    size_t ways = 0;
+    std::array<Way, kWays> way;
+  };
+  // What a climber would do, and whether it is settled.
+  struct Move {
+    Way way;
+    uint8_t round = 0;
+    enum State : uint8_t { kUndecided, kDecided, kStays } state = kStays;
+    bool arrives = false, yields = false;
+  };
+  struct Worker {
+    std::vector<uint32_t> others;  // bodies
+    std::vector<Contest> contests;
+    EngineCounts counts;
+  };
+
+  void wish(Body& body, Climb& climb) const;
+  void decide(uint32_t climber, Worker& worker);
+  void sense(uint32_t climber, Worker& worker, steer::AirSituation& situation, bool& yields) const;
+  [[nodiscard]] bool lets_off(const Body& body, const Climb& climb, const Body& other) const;
+  void find_ways(const Body& body, const Climb& climb, const steer::AirSituation& situation,
+                 bool yields, Contest& contest) const;
+  [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
+                              const ClimbHold& hold) const;
+  bool name(const Contest& contest, const Worker& owner);
+  [[nodiscard]] bool holds(const Contest& contest, const Worker& owner, uint8_t round,
+                           uint64_t step) const;
+  void settle(uint32_t climber, uint64_t step, EngineCounts& counts);
+  template <class Do>
+  void for_contests(Do act);
+
+  ClimberConfig config_;
+  std::vector<const ClimberGround*> grounds_;  // by class
+  std::vector<AirObstacle> obstacles_;
+  float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;
+  int32_t widest_ = 0, tallest_ = 0;
+  std::span<Body> bodies_;
+  std::span<Climb> climbs_;
+  std::span<const Flight> flights_;
+  std::vector<uint32_t> climbers_;    // bodies
+  std::vector<uint32_t> climber_of_;  // by body, in a step
+  std::vector<Move> moves_;           // by climber
+  FlyerGrid grid_;
+  std::vector<Worker> workers_;
+  std::vector<uint32_t> arrived_;
+};
+
+}  // namespace throng

@@ -1,0 +1,341 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/climber_ground.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/place.h"
+#include "world/zone_data.h"
+
+// Whatever is told here is on the way that the finder proved, or in a square all of which the class
+// may stand on: docs/design/013-climbers.md. Additions, products and square roots only, so that it
+// is the same everywhere.
+namespace throng {
+namespace {
+
+constexpr double kLittle = 1e-9;    // [m]
+constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
+constexpr int kShorter = 8;         // tries to make a move short enough
+
+}  // namespace
+
+ClimberGround::ClimberGround(const World& world, const Nodes& nodes, int32_t avatar_class)
+    : nodes_(&nodes), avatar_class_(avatar_class) {
+  const WorldData& data = *world.data();
+  const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(avatar_class)];
+  origin_ = data.summary.origin;
+  unit_ = data.summary.cell / kUnitsPerCell;
+  const auto units = [](int32_t cells) {
+    return static_cast<int32_t>(std::min<int64_t>(int64_t{cells} << kUnitBits, INT32_MAX));
+  };
+  width_ = units(data.width);
+  depth_ = units(data.depth);
+  tile_ = 64 * data.summary.cell;
+  height_ = avatar.height;
+  reach_ = std::sqrt(avatar.height * avatar.height + avatar.radius * avatar.radius);
+}
+
+std::optional<ClimbPose> ClimberGround::pose(uint32_t node1, double s, double t) const {
+  if (node1 == 0 || node1 > nodes_->node_count()) return std::nullopt;
+  const NodePlace place = nodes_->place(avatar_class_, node1 - 1, s, t);
+  if (!place) return std::nullopt;
+  return ClimbPose{place.feet, place.axis};
+}
+
+std::optional<ClimbPose> ClimberGround::pose_of_point(const Climb& climb, size_t point) const {
+  const ClimbPoint& p = climb.points[point];
+  if (p.node1 != 0) return pose(p.node1, p.s, p.t);
+  const auto landing = pose_of_point(climb, point + 1);  // a way never ends in the air
+  if (!landing) return std::nullopt;
+  return ClimbPose{{landing->feet.x, p.s, landing->feet.z}, {0, 1, 0}};
+}
+
+std::optional<ClimbPose> ClimberGround::pose_of(const Climb& climb, const ClimbStance& at) const {
+  if (at.in_air == 0) return pose(at.node1, at.s, at.t);
+  const auto from = pose_of_point(climb, at.next - 1u), to = pose_of_point(climb, at.next);
+  if (!from || !to) return std::nullopt;
+  const Vec3d axis = from->axis * (1 - at.part) + to->axis * at.part;
+  const double size = length(axis);
+  if (!(size > 1e-6)) return std::nullopt;
+  return ClimbPose{from->feet * (1 - at.part) + to->feet * at.part, axis * (1 / size)};
+}
+
+// Circles around the middle: the farthest point of the leaning cylinder is on one of its rims, at
+// the lowest or highest point of that, or between.
+std::optional<ClimbHold> ClimberGround::hold_of(const ClimbPose& pose, double radius) const {
+  const Vec3d& axis = pose.axis;
+  const double sine = std::sqrt(axis.x * axis.x + axis.z * axis.z), cosine = std::fabs(axis.y);
+  const double half = height_ / 2;
+  const double wide = half * cosine >= radius * sine ? half * sine + radius * cosine
+                                                     : std::sqrt(half * half + radius * radius);
+  const double high = half * cosine + radius * sine;
+  const Vec3d middle = pose.feet + axis * half;
+  const double x = (middle.x - origin_.x) / unit_, z = (middle.z - origin_.z) / unit_;
+  if (!(std::fabs(x) < 2e9 && std::fabs(z) < 2e9 && std::fabs(middle.y) + high < 2e6)) {
+    return std::nullopt;
+  }
+  // Those who lean out over the rim of the grid are held from inside.
+  const double in_x = std::clamp(std::floor(x), 0.0, width_ - 1.0);
+  const double in_z = std::clamp(std::floor(z), 0.0, depth_ - 1.0);
+  const double off_x = x - (in_x + 0.5), off_z = z - (in_z + 0.5);
+  const bool inside = in_x == std::floor(x) && in_z == std::floor(z);
+  const double off = inside ? 1 : std::sqrt(off_x * off_x + off_z * off_z) + 1;
+  ClimbHold hold;
+  hold.radius = static_cast<int32_t>(std::ceil(wide / unit_ + off));
+  if (hold.radius > widest(radius)) return std::nullopt;
+  hold.low.x = static_cast<int32_t>(in_x);
+  hold.low.z = static_cast<int32_t>(in_z);
+  hold.low.y = static_cast<int32_t>(std::floor((middle.y - high) * 1000));
+  hold.height = static_cast<int32_t>(std::ceil((middle.y + high) * 1000)) - hold.low.y;
+  return hold;
+}
+
+int32_t ClimberGround::widest(double radius) const {
+  return static_cast<int32_t>(
+      std::ceil(std::sqrt(height_ * height_ / 4 + radius * radius) / unit_ + 2));
+}
+
+int32_t ClimberGround::tallest(double radius) const {
+  return static_cast<int32_t>(
+      std::ceil(std::sqrt(height_ * height_ + 4 * radius * radius) * 1000 + 2));
+}
+
+double ClimberGround::travel(const ClimbPose& from, const ClimbPose& to) const {
+  return length(to.feet - from.feet) + reach_ * length(to.axis - from.axis);
+}
+
+ClimberGround::Square ClimberGround::square_of(uint32_t node1) const {
+  const NodeInfo info = nodes_->node(node1 - 1);
+  const double side = 1.0 / (1 << info.level);
+  return {info.s * side,       info.t * side, (info.s + 1) * side,
+          (info.t + 1) * side, info.kind,     info.source};
+}
+
+double ClimberGround::Square::part_inside(double s, double t, double ds, double dt) const {
+  double part = 1;
+  const auto cut = [&](double at, double way, double low, double high) {
+    if (way > 0) part = std::min(part, (high - at) / way);
+    if (way < 0) part = std::min(part, (low - at) / way);
+  };
+  cut(s, ds, s0, s1);
+  cut(t, dt, t0, t1);
+  return std::max(part, 0.0);
+}
+
+ClimberGround::Slope ClimberGround::slope_at(const Square& square, const ClimbStance& at) const {
+  if (square.kind == PatchKind::kLevelTile) return {{tile_, 0, 0}, {0, 0, tile_}};
+  const auto point = [&](double ds, double dt) {
+    return nodes_->point(at.node1 - 1, at.s + ds, at.t + dt);
+  };
+  return {(point(kEdgeStep, 0) - point(-kEdgeStep, 0)) * (0.5 / kEdgeStep),
+          (point(0, kEdgeStep) - point(0, -kEdgeStep)) * (0.5 / kEdgeStep)};
+}
+
+// May one who leaves a square along (ds, dt) go on in the next one of the way? On one curved patch,
+// if he leaves it where the two touch: each is proved whole. On level tiles the step between them
+// need not be one that he can take, so there he goes through the point that the way names.
+bool ClimberGround::enters_next(const Climb& climb, const Square& here, double ds,
+                                double dt) const {
+  const ClimbStance& at = climb.at;
+  if (here.kind != PatchKind::kBezier || at.next + 1u >= climb.count) return false;
+  const ClimbPoint &next = climb.points[at.next], &then = climb.points[at.next + 1u];
+  if (next.on_surface == 0 || then.on_surface == 0 || next.node1 == 0) return false;
+  const Square there = square_of(next.node1);
+  if (there.kind != here.kind || there.source != here.source) return false;
+  const double out = here.part_inside(at.s, at.t, ds, dt);
+  return there.holds(at.s + out * ds, at.t + out * dt);
+}
+
+Vec3d ClimberGround::way_ahead(const Climb& climb) const {
+  const ClimbStance& at = climb.at;
+  if (climb.count == 0) return {};
+  if (at.in_air != 0) {
+    const auto to = pose_of_point(climb, at.next);
+    const Vec3d way = to ? to->feet - climb.feet : Vec3d{};
+    if (!to || length(way) > 0.05) return way;
+    // Nearly only turning: as its middle moves.
+    return way + (to->axis - climb.axis) * (height_ / 2);
+  }
+  const Square here = square_of(at.node1);
+  size_t aim = std::min<size_t>(at.next, climb.count - 1u);
+  const auto off = [&](size_t point) {
+    return std::pair{climb.points[point].s - at.s, climb.points[point].t - at.t};
+  };
+  if (aim + 1 < climb.count) {
+    const auto [ds, dt] = off(aim + 1);
+    if (enters_next(climb, here, ds, dt) ||
+        (off(aim) == std::pair{0.0, 0.0} && climb.points[aim + 1].on_surface != 0)) {
+      ++aim;
+    }
+  }
+  const auto [ds, dt] = off(aim);
+  const auto to = pose_of_point(climb, aim);
+  if (!to) return {};
+  const double far = length(to->feet - climb.feet);
+  const Slope slope = slope_at(here, at);
+  Vec3d way = slope.along_s * ds + slope.along_t * dt;
+  if (here.kind == PatchKind::kLevelTile) way.y = 0;
+  const double size = length(way);
+  return size > kLittle ? way * (far / size) : to->feet - climb.feet;
+}
+
+Vec3d ClimberGround::normal_at(const Climb& climb) const {
+  if (climb.at.in_air != 0) return climb.axis;
+  return nodes_->place(avatar_class_, climb.at.node1 - 1, climb.at.s, climb.at.t).normal;
+}
+
+// Towards the next point, within the square that holds both. True: it is there.
+bool ClimberGround::go_on_surface(const Climb& climb, Step& step, double& most) const {
+  ClimbStance& at = step.at;
+  const ClimbPoint& aim = climb.points[at.next];
+  const auto there = pose(at.node1, aim.s, aim.t);
+  if (!there) return false;
+  const double whole = travel(step.pose, *there);
+  if (whole <= most) {
+    most -= whole;
+    step.pose = *there;
+    at.s = aim.s;
+    at.t = aim.t;
+    return true;
+  }
+  const double ds = aim.s - at.s, dt = aim.t - at.t;
+  double part = most / whole;
+  for (int n = 0; n < kShorter; ++n) {
+    const auto pose_there = pose(at.node1, at.s + part * ds, at.t + part * dt);
+    if (!pose_there) return false;
+    const double far = travel(step.pose, *pose_there);
+    if (far <= most) {
+      at.s += part * ds;
+      at.t += part * dt;
+      step.pose = *pose_there;
+      break;
+    }
+    part *= 0.95 * most / far;
+  }
+  most = 0;
+  return false;
+}
+
+bool ClimberGround::go_through_air(const Climb& climb, Step& step, double& most) const {
+  ClimbStance& at = step.at;
+  const auto from = pose_of_point(climb, at.next - 1u), to = pose_of_point(climb, at.next);
+  if (!from || !to) {
+    most = 0;
+    return false;
+  }
+  const double left = travel(step.pose, *to);
+  if (left <= most) {
+    most -= left;
+    step.pose = *to;
+    return true;
+  }
+  double part = (1 - at.part) * most / left;
+  for (int n = 0; n < kShorter; ++n) {
+    ClimbStance there = at;
+    there.part = at.part + part;
+    const auto pose_there = pose_of(climb, there);
+    if (!pose_there) break;
+    const double far = travel(step.pose, *pose_there);
+    if (far <= most) {
+      at = there;
+      step.pose = *pose_there;
+      break;
+    }
+    part *= 0.95 * most / far;
+  }
+  most = 0;
+  return false;
+}
+
+std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb, double most) const {
+  Step step{climb.at, {climb.feet, climb.axis}};
+  ClimbStance& at = step.at;
+  if (climb.count == 0) return step;
+  if (at.in_air == 0 && at.next == climb.count) {  // back to where it was, if it made way
+    at.next = climb.count - 1;
+    go_on_surface(climb, step, most);
+    at.next = climb.count;
+    return step;
+  }
+  // At most all that is left of the way.
+  while (most > kLittle && at.next < climb.count) {
+    const ClimbPoint& aim = climb.points[at.next];
+    const bool there =
+        at.in_air != 0 ? go_through_air(climb, step, most) : go_on_surface(climb, step, most);
+    if (!there) break;
+    ++at.next;
+    at.part = 0;
+    at.in_air = at.next < climb.count && climb.points[at.next].on_surface == 0 ? 1 : 0;
+    if (aim.node1 != 0) {
+      at.node1 = aim.node1;
+      at.s = aim.s;
+      at.t = aim.t;
+    }
+  }
+  return step;
+}
+
+std::optional<ClimberGround::Step> ClimberGround::retreat(const Climb& climb, double most) const {
+  Step step{climb.at, {climb.feet, climb.axis}};
+  ClimbStance& at = step.at;
+  if (at.in_air == 0 || at.part == 0 || climb.points[at.next].drops != 0) return std::nullopt;
+  const auto from = pose_of_point(climb, at.next - 1u);
+  if (!from || climb.points[at.next - 1u].node1 == 0) return std::nullopt;
+  double part = at.part;
+  for (int n = 0; n < kShorter; ++n) {
+    ClimbStance there = climb.at;
+    there.part = at.part - part;
+    const auto pose_there = there.part == 0 ? from : pose_of(climb, there);
+    if (!pose_there) return std::nullopt;
+    const double far = travel(step.pose, *pose_there);
+    if (far <= most) return Step{there, *pose_there};
+    part *= 0.95 * most / far;
+  }
+  return std::nullopt;
+}
+
+std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3d way,
+                                                        double most) const {
+  const ClimbStance& at = climb.at;
+  if (at.in_air != 0) return std::nullopt;
+  const Square here = square_of(at.node1);
+  const Slope slope = slope_at(here, at);
+  const double a = dot(slope.along_s, slope.along_s), b = dot(slope.along_s, slope.along_t);
+  const double c = dot(slope.along_t, slope.along_t), det = a * c - b * b;
+  if (!(det > 1e-6 * a * c)) return std::nullopt;
+  const double u = dot(way, slope.along_s), v = dot(way, slope.along_t);
+  const double ds = (c * u - b * v) / det, dt = (a * v - b * u) / det;
+  const bool goes_on = enters_next(climb, here, ds, dt);
+  const double out = here.part_inside(at.s, at.t, ds, dt);
+  Square next;
+  double part = out;
+  if (goes_on && out < 1) {
+    next = square_of(climb.points[at.next].node1);
+    const double s = at.s + out * ds, t = at.t + out * dt;
+    part = out + next.part_inside(s, t, (1 - out) * ds, (1 - out) * dt) * (1 - out);
+  }
+  constexpr double kWorthIt = 0.1;
+  for (int n = 0; n < kShorter && part > kWorthIt; ++n) {
+    Step step{at, {}};
+    const bool is_next = part > out;
+    const Square& square = is_next ? next : here;
+    step.at.s = std::clamp(at.s + part * ds, square.s0, square.s1);
+    step.at.t = std::clamp(at.t + part * dt, square.t0, square.t1);
+    if (is_next) {
+      step.at.node1 = climb.points[at.next].node1;
+      step.at.next = static_cast<uint8_t>(at.next + 1);
+    }
+    const auto pose_there = pose(step.at.node1, step.at.s, step.at.t);
+    if (!pose_there) return std::nullopt;
+    const double far = travel({climb.feet, climb.axis}, *pose_there);
+    if (far <= most) {
+      step.pose = *pose_there;
+      return step;
+    }
+    part *= 0.95 * most / far;
+  }
+  return std::nullopt;
+}
+
+}  // namespace throng

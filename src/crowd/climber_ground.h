@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "crowd/climb.h"
+#include "crowd/flight.h"
+#include "throng/nodes.h"
+#include "throng/world.h"
+
+/// The nodes of a class as a crowd's step moves over them.
+namespace throng {
+
+/// A body stands at `feet` along `axis`. [m]
+struct ClimbPose {
+  Vec3d feet, axis;
+};
+
+/// An upright cylinder that holds a body, however it leans.
+struct ClimbHold {
+  AirSpot low;         // middle of its bottom
+  int32_t radius = 0;  // [units]
+  int32_t height = 0;  // [mm]
+};
+
+class ClimberGround {
+ public:
+  ClimberGround(const World& world, const Nodes& nodes, int32_t avatar_class);
+
+  /// Where the class stands on a node; none where it may not.
+  [[nodiscard]] std::optional<ClimbPose> pose(uint32_t node1, double s, double t) const;
+  [[nodiscard]] std::optional<ClimbPose> pose_of(const Climb& climb, const ClimbStance& at) const;
+  /// None if it would lie off the world's grid.
+  [[nodiscard]] std::optional<ClimbHold> hold_of(const ClimbPose& pose, double radius) const;
+  /// No body of such a radius needs a cylinder that is wider, or higher. [m to units, m to mm]
+  [[nodiscard]] int32_t widest(double radius) const;
+  [[nodiscard]] int32_t tallest(double radius) const;
+  /// No point of a body moves farther from one pose to the other. [m]
+  [[nodiscard]] double travel(const ClimbPose& from, const ClimbPose& to) const;
+
+  struct Step {
+    ClimbStance at;
+    ClimbPose pose;
+  };
+  /// As far along the way as no point of the body moves farther than `most`; back, on a leg through
+  /// the air. [m]
+  [[nodiscard]] std::optional<Step> advance(const Climb& climb, double most) const;
+  [[nodiscard]] std::optional<Step> retreat(const Climb& climb, double most) const;
+  /// Off the way, on the surface: `way` from here, or as far as is proved.
+  [[nodiscard]] std::optional<Step> shift(const Climb& climb, Vec3d way, double most) const;
+  /// What is left to the point that it is bound for: straight by the patch's parameters, so this
+  /// begins along the surface, and is as long as the straight line. [m]
+  [[nodiscard]] Vec3d way_ahead(const Climb& climb) const;
+  /// Up from the surface; along the body where it is in the air.
+  [[nodiscard]] Vec3d normal_at(const Climb& climb) const;
+
+ private:
+  struct Square {
+    double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
+    PatchKind kind = PatchKind::kLevelTile;
+    uint32_t source = 0;
+
+    /// (But for what rounding takes.)
+    [[nodiscard]] bool holds(double s, double t) const {
+      constexpr double kRounded = 1e-12;
+      return s >= s0 - kRounded && s <= s1 + kRounded && t >= t0 - kRounded && t <= t1 + kRounded;
+    }
+    /// How much of the way from a point inside along (ds, dt) lies in it, at most all of it.
+    [[nodiscard]] double part_inside(double s, double t, double ds, double dt) const;
+  };
+  struct Slope {
+    Vec3d along_s, along_t;
+  };
+  [[nodiscard]] Square square_of(uint32_t node1) const;
+  [[nodiscard]] Slope slope_at(const Square& square, const ClimbStance& at) const;
+  [[nodiscard]] std::optional<ClimbPose> pose_of_point(const Climb& climb, size_t point) const;
+  [[nodiscard]] bool enters_next(const Climb& climb, const Square& here, double ds,
+                                 double dt) const;
+  bool go_on_surface(const Climb& climb, Step& step, double& most) const;
+  bool go_through_air(const Climb& climb, Step& step, double& most) const;
+
+  const Nodes* nodes_;
+  int32_t avatar_class_;
+  Vec3d origin_;
+  double unit_ = 0;                // [m]
+  int32_t width_ = 0, depth_ = 0;  // [units]
+  double tile_ = 0;                // [m]
+  double height_ = 0, reach_ = 0;  // of the class; of its farthest point from its feet [m]
+};
+
+}  // namespace throng

@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "crowd/crowd_state.h"
+#include "throng/crowd.h"
+
+// What a crowd does about those who go over nodes: where they begin, and how they find and follow
+// their ways. docs/design/013-climbers.md.
+namespace throng {
+namespace {
+
+constexpr double kReach = 0.5;             // [m] from a place to the nodes' place that it means
+constexpr double kNoSpacing = 1e9;         // [m] points of a way only where it bends
+constexpr float kLeast = 1;                // [s] of a way that is not to the goal
+constexpr float kDriven = 0.5f;            // [s] for which one who is driven looks ahead
+constexpr uint64_t kDetours = 0x6465746f;  // stream of chance
+constexpr uint64_t kPlaces = 0x706c6163;   // stream of chance
+constexpr double kRoomy = 2;               // [m] of a node in which one can go out of the way
+constexpr uint64_t kFew = 8000;            // crossings that a search for a detour looks at
+
+ClimbPoint point_of(const NodePathPoint& point, bool drops) {
+  ClimbPoint made;
+  made.node1 = point.place.node1;
+  made.s = made.node1 != 0 ? point.place.s : point.place.feet.y;
+  made.t = made.node1 != 0 ? point.place.t : 0;
+  made.on_surface = point.on_surface && made.node1 != 0 ? 1 : 0;
+  made.drops = drops ? 1 : 0;
+  return made;
+}
+
+// As much of a way as there is room for: it ends on the ground.
+void set_way(Climb& climb, const NodePath& path) {
+  const size_t all = path.points.size();
+  size_t count = std::min(all, Climb::kPoints);
+  while (count > 0 && !path.points[count - 1].place) --count;
+  for (size_t i = 0; i < count; ++i) {
+    const bool falls = !path.points[i].place || (i > 0 && !path.points[i - 1].place);
+    climb.points[i] = point_of(path.points[i], falls);
+  }
+  climb.count = static_cast<uint8_t>(count);
+  climb.whole = count == all ? 1 : 0;
+  climb.to_station = 0;
+  climb.at.s = climb.points[0].s;
+  climb.at.t = climb.points[0].t;
+  climb.at.node1 = climb.points[0].node1;
+  climb.at.part = 0;
+  climb.at.next = 1;
+  climb.at.in_air = count > 1 && climb.points[1].on_surface == 0 ? 1 : 0;
+}
+
+// Where the rest of a way leads through that there is no room for.
+void set_stations(Climb& climb, const NodePath& path) {
+  climb.station = climb.station_count = 0;
+  const size_t first = climb.count, all = path.points.size();
+  if (first >= all) return;
+  for (size_t k = 0; k < Climb::kStations; ++k) {
+    size_t i = first + (all - 1 - first) * k / Climb::kStations;
+    while (i < all && !path.points[i].place) ++i;
+    climb.stations[climb.station_count++] = point_of(path.points[i], false);
+  }
+}
+
+// It stays where it is.
+void clear_way(Climb& climb) {
+  const ClimbStance at = climb.at;
+  climb.count = 0;
+  climb.whole = 0;
+  climb.to_station = 0;
+  climb.at = {};
+  climb.at.s = at.s;
+  climb.at.t = at.t;
+  climb.at.node1 = at.node1;
+}
+
+}  // namespace
+
+bool Crowd::State::goes_over_nodes(int32_t number) const {
+  const AvatarClass& avatar = body_class(number);
+  return config.nodes.data() != nullptr && !avatar.flies &&
+         (avatar.climb_slope > 0 || avatar.max_drop > 0);
+}
+
+Result<void> Crowd::State::open_nodes(int32_t number, ClassParts& parts, Context& context) const {
+  auto finder = NodePathFinder::make(config.nodes,
+                                     {.avatar_class = number, .workers = config.workers}, context);
+  if (!finder) return finder.error();
+  parts.node_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
+  parts.node_paths.resize(parts.node_finders.size());
+  parts.nodes.emplace(world, config.nodes, number);
+  return {};
+}
+
+bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place,
+                                double radius) const {
+  const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+  const auto pose = ground.pose(place.node1, place.s, place.t);
+  const auto hold = pose ? ground.hold_of(*pose, radius) : std::nullopt;
+  if (!hold || climbers.is_blocked(*hold)) return false;
+  climb = {};
+  climb.at.node1 = place.node1;
+  climb.at.s = place.s;
+  climb.at.t = place.t;
+  climb.feet = pose->feet;
+  climb.axis = pose->axis;
+  climb.radius = radius;
+  body.x = hold->low.x;
+  body.z = hold->low.z;
+  body.y = hold->low.y;
+  body.radius = hold->radius;
+  body.height = static_cast<uint16_t>(hold->height);
+  body.level = 0;
+  body.flags = Body::kFlying;
+  body.climbs = true;
+  return true;
+}
+
+NodePlace Crowd::State::place_on_nodes(int32_t number, const Place& place) const {
+  if (!place || place.level1 == kAirLevel1) return {};
+  return classes[static_cast<size_t>(number)]->node_finders[0].find_place(place.position, kReach);
+}
+
+NodePlace Crowd::State::draw_on_nodes(int32_t number, uint64_t n) const {
+  return config.nodes.random_place(number, config.seed ^ kPlaces, n);
+}
+
+void Crowd::State::set_goal_of_climber(Body& body, const NodePlace& goal) {
+  Climb& climb = climbs[body.slot];
+  const bool exists =
+      classes[body.avatar_class]->nodes->pose(goal.node1, goal.s, goal.t).has_value();
+  climb.goal_node1 = exists ? goal.node1 : 0;
+  climb.goal_s = goal.s;
+  climb.goal_t = goal.t;
+  climb.detour = 0;
+  climb.waited = 0;
+  climb.turns_off = 0;
+  climb.station = climb.station_count = 0;
+  body.flags = Body::kFlying | Body::kHasGoal | Body::kLost;
+}
+
+void Crowd::State::stop_climber(Body& body) {
+  body.flags &= Body::kFlying;
+  Climb& climb = climbs[body.slot];
+  if (climb.is_on_ground()) clear_way(climb);
+}
+
+// The nearest place of its region, in a straight line.
+void Crowd::State::aim_at_target(const Body& body, Climb& climb) const {
+  const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
+  double least = HUGE_VAL;
+  const Place* nearest = nullptr;
+  for (const Place& place : places) {
+    const double far = length(place.position - climb.feet);
+    if (far >= least) continue;
+    least = far;
+    nearest = &place;
+  }
+  const NodePlace goal =
+      nearest == nullptr ? NodePlace{} : place_on_nodes(body.avatar_class, *nearest);
+  climb.goal_node1 = goal.node1;
+  climb.goal_s = goal.s;
+  climb.goal_t = goal.t;
+}
+
+// Somewhere else for a while: often the others have found another way, too, and met again.
+void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
+  ClassParts& parts = *classes[body.avatar_class];
+  const auto w = static_cast<size_t>(worker);
+  const uint64_t stream = uint64_t{body.slot} << 2, seed = config.seed ^ kDetours;
+  climb.turns_off = 0;
+  climb.detour = kLeast + static_cast<float>(random_below(seed, stream, sub_step, 40)) * 0.1f;
+  body.clear(Body::kLost);
+  const NodePlace from =
+      config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
+  NodePath& path = parts.node_paths[w];
+  path.points.clear();
+  // Now to anywhere, now to a place of the same node.
+  const NodeInfo info = config.nodes.node(climb.at.node1 - 1);
+  const bool is_roomy = info.area > kRoomy * kRoomy;
+  if (!is_roomy || random_below(seed, stream | 1, sub_step, 2) == 0) {
+    const NodePlace to =
+        config.nodes.random_place(body.avatar_class, seed, random_u64(seed, stream | 2, sub_step));
+    parts.node_finders[w].find(from, to, path, kNoSpacing, kFew);
+  }
+  if (path.points.size() < 2) {
+    const double side = 1.0 / (1 << info.level);
+    const NodePlace to =
+        config.nodes.place(body.avatar_class, climb.at.node1 - 1,
+                           (info.s + random_unit(seed, stream | 2, 2 * sub_step)) * side,
+                           (info.t + random_unit(seed, stream | 2, 2 * sub_step + 1)) * side);
+    path.points.clear();
+    path.points.push_back({.place = from, .on_surface = true});
+    if (to) path.points.push_back({.place = to, .on_surface = true});
+  }
+  set_way(climb, path);
+  climb.whole = 0;
+}
+
+// Who is driven goes to where he would be soon, by a way as any other.
+void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker) {
+  climb.detour -= static_cast<float>(config.dt / sub_steps);
+  if (!climb.is_on_ground() || (climb.detour > 0 && climb.at.next < climb.count)) return;
+  ClassParts& parts = *classes[body.avatar_class];
+  const auto w = static_cast<size_t>(worker);
+  const Vec3d way{climb.driven[0], climb.driven[1], climb.driven[2]};
+  climb.detour = kDriven;
+  const double far = length(way) * 2 * kDriven;
+  if (!(far > 0)) return clear_way(climb);
+  const NodePlace to = parts.node_finders[w].find_place(climb.feet + way * (2 * kDriven), far);
+  const NodePlace from =
+      config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
+  if (!to || !from) return clear_way(climb);
+  NodePath& path = parts.node_paths[w];
+  parts.node_finders[w].find(from, to, path, kNoSpacing, kFew);
+  // A long way around is none to where it is driven.
+  if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_way(climb);
+  set_way(climb, path);
+  climb.whole = 0;
+}
+
+void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
+                              std::atomic<uint64_t>& planned) {
+  if (body.has(Body::kDriven)) return drive_climber(body, climb, worker);
+  if (!body.has(Body::kHasGoal)) return;
+  if (climb.detour > 0) {
+    climb.detour -= static_cast<float>(config.dt / sub_steps);
+    if (climb.detour <= 0) body.flags |= Body::kLost;
+  }
+  const bool used_up = climb.at.next >= climb.count && climb.whole == 0;
+  if (used_up) {
+    body.flags |= Body::kLost;
+    climb.station += climb.to_station;
+    climb.to_station = 0;
+  }
+  if (!climb.is_on_ground()) return;
+  if (climb.turns_off != 0) return turn_off(body, climb, worker);
+  if (!body.has(Body::kLost)) return;
+  planned.fetch_add(1, std::memory_order_relaxed);
+  climb.detour = 0;
+  if (body.target != 0) aim_at_target(body, climb);
+  ClassParts& parts = *classes[body.avatar_class];
+  const auto w = static_cast<size_t>(worker);
+  NodePath& path = parts.node_paths[w];
+  path.end = PathEnd::kNoPlace;
+  const Nodes& nodes = config.nodes;
+  const NodePlace from = nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
+  const auto is_found = [&] { return path.end == PathEnd::kReached && path.points.size() >= 2; };
+  if (climb.station < climb.station_count) {
+    const ClimbPoint& station = climb.stations[climb.station];
+    const NodePlace to = nodes.place(body.avatar_class, station.node1 - 1, station.s, station.t);
+    parts.node_finders[w].find(from, to, path, kNoSpacing);
+    if (is_found()) {
+      set_way(climb, path);
+      climb.to_station = std::exchange(climb.whole, uint8_t{0});
+      return body.clear(Body::kLost);
+    }
+  }
+  if (climb.goal_node1 != 0) {
+    const NodePlace to =
+        nodes.place(body.avatar_class, climb.goal_node1 - 1, climb.goal_s, climb.goal_t);
+    parts.node_finders[w].find(from, to, path, kNoSpacing);
+  }
+  if (!is_found()) {
+    clear_way(climb);
+    return strand(body);
+  }
+  set_way(climb, path);
+  set_stations(climb, path);
+  body.clear(Body::kLost);
+}
+
+// The step of those who go over nodes; the others have made theirs.
+void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
+                                 std::atomic<uint64_t>& planned) {
+  const ClimberEngine::Before before = [&](Body& body, Climb& climb, int32_t worker) {
+    plan_climb(body, climb, worker, planned);
+  };
+  climbers.step(sub_step, engine.bodies(), climbs, flights, before, counts, times);
+  for (const uint32_t slot : climbers.arrived()) arrived.push_back(id_of(slot));
+}
+
+// A body where its feet are, for who asks whether it is in a region.
+Body Crowd::State::at_feet(const Body& body) const {
+  if (!body.climbs) return body;
+  Body there = body;
+  const Vec3d& origin = world.data()->summary.origin;
+  const Vec3d& feet = climbs[body.slot].feet;
+  there.x = static_cast<int32_t>(std::floor((feet.x - origin.x) / unit));
+  there.z = static_cast<int32_t>(std::floor((feet.z - origin.z) / unit));
+  there.y = static_cast<int32_t>(std::lrint(feet.y * 1000));
+  return there;
+}
+
+bool Crowd::State::is_sound_climb(const Body& body) const {
+  const auto& parts = classes[body.avatar_class];
+  if (!parts || !parts->nodes || body.slot >= climbs.size()) return false;
+  const Climb& climb = climbs[body.slot];
+  const ClimbStance& at = climb.at;
+  const bool finite = std::isfinite(climb.rise + climb.wish_up + climb.waited + climb.detour) &&
+                      std::isfinite(climb.driven[0] + climb.driven[1] + climb.driven[2]) &&
+                      climb.radius > 0;
+  if (!finite || climb.count > Climb::kPoints || at.next > climb.count || at.in_air > 1)
+    return false;
+  if (at.in_air != 0 && (at.next == 0 || at.next == climb.count)) return false;
+  if (climb.count > 0 && (climb.points[climb.count - 1u].node1 == 0 || at.next == 0)) return false;
+  for (size_t i = 0; i < climb.count; ++i) {
+    const ClimbPoint& p = climb.points[i];
+    if (p.node1 != 0 && !parts->nodes->pose(p.node1, p.s, p.t)) return false;
+    if (p.node1 == 0 && !std::isfinite(p.s)) return false;
+    // Who goes to it on the surface stays within the node of the one before.
+    const bool joined = i == 0 || p.on_surface == 0 ||
+                        parts->nodes->pose(climb.points[i - 1].node1, p.s, p.t).has_value();
+    if (!joined) return false;
+  }
+  if (climb.station_count > Climb::kStations || climb.to_station > 1) return false;
+  for (size_t i = 0; i < climb.station_count; ++i) {
+    const ClimbPoint& p = climb.stations[i];
+    if (!parts->nodes->pose(p.node1, p.s, p.t)) return false;
+  }
+  const bool has_goal =
+      climb.goal_node1 == 0 || parts->nodes->pose(climb.goal_node1, climb.goal_s, climb.goal_t);
+  if (!has_goal) return false;
+  const bool surfaced =
+      at.in_air != 0 || at.next >= climb.count ||
+      (climb.points[at.next].on_surface != 0 &&
+       parts->nodes->pose(at.node1, climb.points[at.next].s, climb.points[at.next].t));
+  const auto pose = parts->nodes->pose_of(climb, at);
+  if (!surfaced || !pose || !(pose->feet == climb.feet) || !(pose->axis == climb.axis))
+    return false;
+  const auto hold = parts->nodes->hold_of(*pose, climb.radius);
+  return hold && hold->low == AirSpot{body.x, body.z, body.y} && hold->radius == body.radius &&
+         hold->height == body.height && at.node1 != 0 &&
+         parts->nodes->pose(at.node1, at.s, at.t).has_value();
+}
+
+// Whose class may not be where he is, or whom the cylinder that is kept for him does not hold.
+uint64_t Crowd::State::count_off_nodes() const {
+  constexpr double kTouch = 1e-9;  // [m]
+  uint64_t found = 0;
+  for (const Body& body : engine.bodies()) {
+    if (!body.climbs) continue;
+    const Climb& climb = climbs[body.slot];
+    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    const auto pose = ground.pose_of(climb, climb.at);
+    bool sound =
+        pose && length(pose->feet - climb.feet) < 1e-6 && length(pose->axis - climb.axis) < 1e-6;
+    // All around its rims.
+    const double height = body_class(body.avatar_class).height;
+    const Vec3d other = std::fabs(climb.axis.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+    Vec3d side = cross(other, climb.axis);
+    side = side * (1 / length(side));
+    const Vec3d front = cross(side, climb.axis);
+    const Vec3d& origin = world.data()->summary.origin;
+    for (int turn = 0; turn < 16; ++turn) {
+      const double angle = turn * (2 * 3.14159265358979 / 16);
+      const Vec3d rim =
+          side * (climb.radius * std::cos(angle)) + front * (climb.radius * std::sin(angle));
+      for (const double up : {0.0, height}) {
+        const Vec3d p = climb.feet + climb.axis * up + rim;
+        const double dx = p.x - origin.x - (body.x + 0.5) * unit;
+        const double dz = p.z - origin.z - (body.z + 0.5) * unit;
+        const double reach = body.radius * unit + kTouch;
+        sound = sound && dx * dx + dz * dz <= reach * reach && p.y >= body.y * 1e-3 - kTouch &&
+                p.y <= (body.y + body.height) * 1e-3 + kTouch;
+      }
+    }
+    found += sound ? 0 : 1;
+  }
+  return found;
+}
+
+}  // namespace throng

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "steer/air.h"
+
+/// Steering on a surface, level or not, by trying velocities along it: the model of steer/air.h
+/// with the directions that one who climbs has. docs/design/013-climbers.md.
+namespace throng::steer {
+
+inline constexpr size_t kSurfaceChoices = 8;
+
+/// The velocities that cost least, the best first. `up`: from the surface. [unit length]
+using SurfaceChoices = std::array<Space, kSurfaceChoices>;
+SurfaceChoices best_along(const AirSettings& settings, const AirSituation& situation, Space up);
+
+}  // namespace throng::steer

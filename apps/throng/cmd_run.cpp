@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <memory>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct RunOptions {
   uint64_t steps = 100;
   uint64_t check_every = 0;
   WanderConfig config;
-  CrowdRun crowd;  // its goals are empty: wanderers
+  CrowdRun crowd;                 // its goals are empty: wanderers
+  std::vector<std::string> also;  // CLASS:N
 };
 
 // Sums over all steps.
@@ -126,6 +128,18 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
   run.config.seed = options.config.seed;
   run.config.workers = options.config.workers;
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
+  for (const std::string& group : options.also) {
+    const size_t colon = group.rfind(':');
+    uint32_t count = 0;
+    const char* end = group.data() + group.size();
+    const bool is_right = colon != std::string::npos && colon > 0 &&
+                          std::from_chars(group.data() + colon + 1, end, count).ptr == end &&
+                          count > 0;
+    if (!is_right) {
+      return fail({Errc::kBadConfig, "--also " + group + ": write CLASS:N, as in climber:50"});
+    }
+    run.also.emplace_back(group.substr(0, colon), count);
+  }
   Sinks sinks(options.sinks);
   if (auto ok = sinks.open(world, options.world, run.config.dt, kCrowdModel, crowd_settings(run));
       !ok)
@@ -137,6 +151,7 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
 }
 
 int run_wanderers(Session& session, const World& world, const RunOptions& options) {
+  if (!options.also.empty()) return fail({Errc::kBadConfig, "--also goes with --goals"});
   if (options.crowd.config.model != SteeringModel::kSampled) {
     return fail({Errc::kBadConfig, "--model goes with --goals, or with a scenario file"});
   }
@@ -164,7 +179,7 @@ int run_wanderers(Session& session, const World& world, const RunOptions& option
 
 int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
   // What the file says is not said again; a world's options are none of a scenario's.
-  for (const char* name : {"--avatars", "--dt", "--class", "--speed", "--goals", "--near",
+  for (const char* name : {"--avatars", "--dt", "--class", "--speed", "--goals", "--near", "--also",
                            "--radius", "--labels", "--zones"}) {
     if (command.count(name) == 0) continue;
     return fail({Errc::kBadConfig,
@@ -218,13 +233,17 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--class", options->class_name, "Avatar class (the world's first)");
   command->add_option("--speed", config.speed, "Walking speed, 0 for the class's own [m/s]");
   command
-      ->add_option("--goals", options->crowd.goals,
-                   "Go to goals and avoid each other: 'random', or a file of lines x,y,z. Who "
-                   "flies begins in the air, and half of his random goals are there")
+      ->add_option(
+          "--goals", options->crowd.goals,
+          "Go to goals and avoid each other: 'random', or a file of lines x,y,z. Who "
+          "flies begins in the air, and half of his random goals are there; who climbs goes "
+          "over nodes, if the world has any")
       ->type_name("random|FILE");
   command
       ->add_option("--near", options->crowd.near, "Random goals within so many metres, 0: anywhere")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--also", options->also, "So many of another class, too; more than once")
+      ->type_name("CLASS:N");
   command->add_option("--radius", options->crowd.radius,
                       "Of bodies with goals, 0 for the class's own [m]");
   command->add_flag("--labels", options->crowd.config.labels,

@@ -69,6 +69,16 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.goals_text = settings.at("goals_text");
   run.near = settings.at("near");
   run.avatars = settings.at("avatars");
+  for (const Json& group : settings.value("also", Json::array())) {
+    const bool is_right = group.is_array() && group.size() == 2 && group[0].is_string() &&
+                          group[1].is_number_unsigned();
+    if (!is_right) {
+      return Error{Errc::kBadFile,
+                   "the recording's settings have no usable 'also'; record the run "
+                   "again with this program"};
+    }
+    run.also.emplace_back(group[0], group[1]);
+  }
   run.speed = settings.at("speed");
   run.radius = settings.at("radius");
   run.config.dt = settings.at("dt");
@@ -135,7 +145,10 @@ Json wanderers_settings(const WanderConfig& config, const std::string& class_nam
 }
 
 Json crowd_settings(const CrowdRun& run) {
+  Json also = Json::array();
+  for (const auto& [name, count] : run.also) also.push_back(Json::array({name, count}));
   return {{"avatars", run.avatars},
+          {"also", also},
           {"class", run.class_name},
           {"goals", run.goals},
           {"goals_text", run.goals_text},

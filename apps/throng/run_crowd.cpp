@@ -20,6 +20,7 @@ namespace {
 constexpr double kNearGround = 2;    // [m] from the ground a goal of a file may be
 constexpr double kStorey = 4;        // [m] up or down a random goal may be
 constexpr uint64_t kTries = 32;      // to find one
+constexpr uint64_t kPlaces = 1024;   // the same, of places of nodes
 constexpr uint64_t kAir = 0x616972;  // stream of chance
 
 // Uniform in [0, 1), of a stream.
@@ -64,6 +65,7 @@ struct Totals {
     sum.planned += r.planned;
     sum.no_way += r.no_way;
     sum.flying = r.flying;  // at the end
+    sum.climbing = r.climbing;
     sum.seconds_plan += r.seconds_plan;
     sum.seconds_sort += r.seconds_sort;
     sum.seconds_steer += r.seconds_steer;
@@ -103,6 +105,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
        {"planned", t.sum.planned},
        {"no_way", t.sum.no_way},
        {"flying", t.sum.flying},
+       {"climbing", t.sum.climbing},
        {"blocked", t.sum.stood},
        {"contested", t.sum.contested},
        {"checks", t.checks},
@@ -140,29 +143,56 @@ Result<void> read_goals(CrowdRun& run) {
   return {};
 }
 
-GoalCrowd::GoalCrowd(const World& world, const CrowdRun& run, int32_t avatar_class, Crowd&& crowd)
-    : world_(world), run_(run), avatar_class_(avatar_class), crowd_(std::move(crowd)) {}
+GoalCrowd::GoalCrowd(const World& world, const CrowdRun& run, Crowd&& crowd)
+    : world_(world), run_(run), crowd_(std::move(crowd)) {}
 
 Result<GoalCrowd> GoalCrowd::make(const World& world, const CrowdRun& run, Context& context) {
-  const Result<int32_t> avatar_class = class_named(world, run.class_name);
-  if (!avatar_class) return avatar_class.error();
-  auto crowd = Crowd::create(world, run.config);
+  CrowdRun with_nodes = run;
+  const std::vector<AvatarClass> classes = world.summary().classes;
+  std::vector<std::pair<std::string, uint32_t>> groups = run.also;
+  groups.insert(groups.begin(), {run.class_name, run.avatars});
+  for (const auto& [name, count] : groups) {
+    const Result<int32_t> avatar_class = class_named(world, name);
+    if (!avatar_class) return avatar_class.error();
+    const AvatarClass& avatar = classes[static_cast<size_t>(*avatar_class)];
+    if (avatar.climb_slope <= 0 && avatar.max_drop <= 0) continue;
+    // A world that was baked for such a class has nodes; without them it walks.
+    if (auto nodes = Nodes::open(world)) with_nodes.config.nodes = std::move(*nodes);
+  }
+  auto crowd = Crowd::create(world, with_nodes.config);
   if (!crowd) return crowd.error();
-  GoalCrowd made(world, run, *avatar_class, std::move(*crowd));
+  GoalCrowd made(world, with_nodes, std::move(*crowd));
+  for (const auto& [name, count] : groups) {
+    if (auto ok = made.scatter(name, count, context); !ok) return ok.error();
+  }
+  if (auto ok = made.read_places(); !ok) return ok.error();
+  made.given_.resize(made.class_of_.size());
+  made.give(made.all_);
+  return made;
+}
+
+Result<void> GoalCrowd::scatter(const std::string& class_name, uint32_t count, Context& context) {
+  const Result<int32_t> avatar_class = class_named(world_, class_name);
+  if (!avatar_class) return avatar_class.error();
   AvatarSpawn like{
-      .place = {}, .avatar_class = *avatar_class, .radius = run.radius, .speed = run.speed};
-  const bool flies = world.summary().classes[static_cast<size_t>(*avatar_class)].flies;
+      .place = {}, .avatar_class = *avatar_class, .radius = run_.radius, .speed = run_.speed};
+  const bool flies = world_.summary().classes[static_cast<size_t>(*avatar_class)].flies;
   if (flies) like.place = air_place({});
-  auto ids = made.crowd_.scatter(run.avatars, like, context);
+  auto ids = crowd_.scatter(count, like, context);
   if (!ids && flies && ids.error().code == Errc::kBadConfig) {
     like.place = {};  // Without air who could fly walks.
-    ids = made.crowd_.scatter(run.avatars, like, context);
+    ids = crowd_.scatter(count, like, context);
   }
   if (!ids) return ids.error();
-  if (auto ok = made.read_places(); !ok) return ok.error();
-  made.given_.resize(ids->size());
-  made.give(*ids);
-  return made;
+  class_of_.resize(class_of_.size() + ids->size(), *avatar_class);
+  all_.insert(all_.end(), ids->begin(), ids->end());
+  return {};
+}
+
+bool GoalCrowd::goes_over_nodes(int32_t avatar_class) const {
+  const AvatarClass avatar = world_.summary().classes[static_cast<size_t>(avatar_class)];
+  return run_.config.nodes.data() != nullptr && !avatar.flies &&
+         (avatar.climb_slope > 0 || avatar.max_drop > 0);
 }
 
 Result<void> GoalCrowd::read_places() {
@@ -170,7 +200,10 @@ Result<void> GoalCrowd::read_places() {
   const auto bad = [&](size_t line, const std::string& what) {
     return Error{Errc::kBadFile, run_.goals + ":" + std::to_string(line) + ": " + what};
   };
-  auto query = GroundQuery::make(world_, avatar_class_);
+  // All classes share the file; what a place is worth to each is found out on the way.
+  const int32_t avatar_class = class_of_.empty() ? 0 : class_of_[0];
+  const bool over_nodes = goes_over_nodes(avatar_class);
+  auto query = GroundQuery::make(world_, avatar_class);
   if (!query) return query.error();
   std::istringstream lines(run_.goals_text);
   std::string line;
@@ -178,8 +211,9 @@ Result<void> GoalCrowd::read_places() {
     if (line.empty() || line[0] == '#' || line == "\r") continue;
     const auto at = numbers_of(line);
     if (!at) return bad(n, "is no goal; write x,y,z in metres");
-    const Place place = query->nearest_place(*at, kNearGround);
-    const FlightFinder* flight = crowd_.flight_finder(avatar_class_);
+    // (The crowd takes a climber's place by its position alone.)
+    const Place place = over_nodes ? Place{*at, 1} : query->nearest_place(*at, kNearGround);
+    const FlightFinder* flight = crowd_.flight_finder(avatar_class);
     const bool in_air = !place && flight != nullptr && flight->is_legal(*at);
     if (!place && !in_air) {
       return bad(n, "no avatar of this class can stand within 2 m of it; move it");
@@ -192,7 +226,7 @@ Result<void> GoalCrowd::read_places() {
 
 // In the air; nowhere if none was found.
 Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const {
-  const FlightFinder& flight = *crowd_.flight_finder(avatar_class_);
+  const FlightFinder& flight = *crowd_.flight_finder(class_of_[slot]);
   const uint64_t seed = run_.config.seed ^ kAir;
   if (run_.near <= 0) {
     const auto point = flight.random_point(seed, uint64_t{slot} << 32 | nth);
@@ -211,34 +245,61 @@ Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) con
 // The n-th goal of an avatar.
 Place GoalCrowd::goal(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   if (!places_.empty()) return places_[(slot + nth) % places_.size()];
-  if ((slot + nth) % 2 == 0 && crowd_.flight_finder(avatar_class_) != nullptr) {
+  const int32_t avatar_class = class_of_[slot];
+  if ((slot + nth) % 2 == 0 && crowd_.flight_finder(avatar_class) != nullptr) {
     const Place place = goal_in_air(slot, nth, from);
     if (place) return place;
   }
   const uint64_t seed = run_.config.seed, draw = nth * kTries;
-  if (run_.near <= 0) return world_.random_place(avatar_class_, seed, uint64_t{slot} << 32 | nth);
+  if (run_.near <= 0) return world_.random_place(avatar_class, seed, uint64_t{slot} << 32 | nth);
   for (uint64_t n = draw; n < draw + kTries; ++n) {
     const auto offset = [&](uint64_t stream) {
       return run_.near * (2 * random_number(seed, stream, n) - 1);
     };
     const Vec3d at{from.x + offset(2 * uint64_t{slot}), from.y,
                    from.z + offset(2 * uint64_t{slot} + 1)};
-    const Place place = world_.find_place(avatar_class_, at, kStorey);
+    const Place place = world_.find_place(avatar_class, at, kStorey);
     if (place) return place;
   }
-  return world_.find_place(avatar_class_, from, kNearGround);
+  return world_.find_place(avatar_class, from, kNearGround);
+}
+
+// The n-th goal of one who goes over nodes: the first of some that is near enough, or the nearest.
+NodePlace GoalCrowd::goal_on_nodes(uint32_t slot, uint64_t nth, const Vec3d& from) const {
+  const Nodes& nodes = run_.config.nodes;
+  const int32_t avatar_class = class_of_[slot];
+  const uint64_t seed = run_.config.seed, stream = uint64_t{slot} << 32;
+  if (run_.near <= 0) return nodes.random_place(avatar_class, seed, stream | nth);
+  NodePlace best;
+  for (uint64_t n = nth * kPlaces; n < (nth + 1) * kPlaces; ++n) {
+    const NodePlace place = nodes.random_place(avatar_class, seed, stream | n);
+    if (!place) continue;
+    if (!best || length(place.feet - from) < length(best.feet - from)) best = place;
+    if (length(best.feet - from) <= run_.near) break;
+  }
+  return best;
 }
 
 void GoalCrowd::give(std::span<const AvatarId> ids) {
   if (ids.empty()) return;
+  on_ground_.clear();
+  on_nodes_.clear();
   goals_.clear();
+  goals_on_nodes_.clear();
   if (run_.near > 0) crowd_.read(states_);
   for (const AvatarId id : ids) {
     const uint32_t slot = id.slot1 - 1;  // Nobody is ever removed, so slots are numbers of states.
     const Vec3d from = run_.near > 0 ? states_[slot].position : Vec3d{};
-    goals_.push_back(goal(slot, given_[slot]++, from));
+    if (places_.empty() && goes_over_nodes(class_of_[slot])) {
+      goals_on_nodes_.push_back(goal_on_nodes(slot, given_[slot]++, from));
+      on_nodes_.push_back(id);
+    } else {
+      goals_.push_back(goal(slot, given_[slot]++, from));
+      on_ground_.push_back(id);
+    }
   }
-  crowd_.set_goals(ids, goals_);
+  crowd_.set_goals(on_ground_, goals_);
+  crowd_.set_goals(on_nodes_, goals_on_nodes_);
 }
 
 CrowdReport GoalCrowd::step() {

@@ -6,10 +6,12 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
 #include "throng/crowd.h"
+#include "throng/nodes.h"
 #include "throng/world.h"
 
 /// throng run with goals.
@@ -22,6 +24,7 @@ struct CrowdRun {
   std::string goals_text;  // what the file holds
   double near = 0;         // random goals are within so many metres; 0: anywhere
   uint32_t avatars = 1000;
+  std::vector<std::pair<std::string, uint32_t>> also;  // classes and how many of each, besides
   uint64_t steps = 100;
   uint64_t check_every = 1;
   double speed = 0, radius = 0;
@@ -32,7 +35,8 @@ struct CrowdRun {
 Result<void> read_goals(CrowdRun& run);
 
 /// A crowd whose avatars get goals, one after the other. The same run, the same steps. Those of a
-/// class that flies begin in the air, and every other goal of theirs is there.
+/// class that flies begin in the air, and every other goal of theirs is there; those who climb
+/// begin on nodes, and their goals are there.
 class GoalCrowd {
  public:
   static Result<GoalCrowd> make(const World& world, const CrowdRun& run, Context& context);
@@ -40,20 +44,25 @@ class GoalCrowd {
   [[nodiscard]] const Crowd& crowd() const { return crowd_; }
 
  private:
-  GoalCrowd(const World& world, const CrowdRun& run, int32_t avatar_class, Crowd&& crowd);
+  GoalCrowd(const World& world, const CrowdRun& run, Crowd&& crowd);
+  Result<void> scatter(const std::string& class_name, uint32_t count, Context& context);
   Result<void> read_places();
+  [[nodiscard]] bool goes_over_nodes(int32_t avatar_class) const;
   [[nodiscard]] Place goal(uint32_t slot, uint64_t nth, const Vec3d& from) const;
+  [[nodiscard]] NodePlace goal_on_nodes(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] Place goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   void give(std::span<const AvatarId> ids);
 
   World world_;
   CrowdRun run_;
-  int32_t avatar_class_;
   Crowd crowd_;
-  std::vector<Place> places_;    // goals of a file
-  std::vector<uint64_t> given_;  // goals, by slot
+  std::vector<int32_t> class_of_;  // by slot
+  std::vector<Place> places_;      // goals of a file
+  std::vector<uint64_t> given_;    // goals, by slot
   std::vector<AvatarState> states_;
   std::vector<Place> goals_;
+  std::vector<AvatarId> all_, on_ground_, on_nodes_;
+  std::vector<NodePlace> goals_on_nodes_;
 };
 
 /// Walks the crowd and prints what came of it. `shown` is called at the start and after each step,

@@ -318,6 +318,28 @@ class Program(unittest.TestCase):
         done = self.run_throng("run", "air.throng", "--class", "flyer", "--avatars", 3, "--steps", 40, "--goals", "goals.csv", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_those_who_climb_go_over_nodes_among_others_and_come_out_the_same(self):
+        (self.path / "classes.toml").write_text(
+            '[[class]]\nname = "adult"\n[[class]]\nname = "climber"\nclimb_slope = 180\n')
+        done = self.run_throng("bake", "builtin:landscape,size=64", "-o", "hills.throng", "--cell", 0.5,
+                               "--node-size", 1.5, "--classes", "classes.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        run = ("run", "hills.throng", "--class", "climber", "--avatars", 30, "--also", "adult:20", "--steps", 150,
+               "--goals", "random", "--near", 15, "--json")
+        done = self.run_throng(*run, "--record", "hills.replay", "--trajectories", "hills.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said["wall_entries"], said["overlaps"], said["climbing"], said["avatars"]), (0, 0, 30, 50))
+        self.assertGreater(said["arrived"], 5)
+        again = self.run_throng(*run, "--threads", 1)
+        self.assertEqual(json.loads(again.stdout)["state_hash"], said["state_hash"])
+        check = self.run_throng("replay", "hills.replay", "--check")
+        self.assertEqual(check.returncode, 0, check.stderr)
+        self.assertIn("all the same", check.stdout)
+        for group in ("adult", "adult:0", "adult:x", ":3"):
+            self.assert_refused(self.run_throng(*run, "--also", group), "CLASS:N")
+        self.assert_refused(self.run_throng(*run, "--also", "nobody:3"), "nobody")
+
     def test_goals_of_a_file_are_walked_to_and_bad_ones_named(self):
         self.run_throng("run", self.world, "--avatars", 1, "--steps", 1, "--trajectories", "at.csv")
         at = (self.path / "at.csv").read_text().splitlines()[-1].split(",")[3:6]

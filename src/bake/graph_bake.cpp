@@ -9,7 +9,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kResident = uint64_t{256} << 20;  // of zones looked at [bytes]
+constexpr uint64_t kResident = uint64_t{8} << 20;  // of zones looked at [bytes]
 
 class FilesInFolder : public GraphFiles {
  public:

@@ -221,6 +221,7 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
            entry.region_hash(),
            links->bytes().size(),
            hash_bytes(links->bytes().data(), links->bytes().size())};
+  own->zone->give_back();  // Those before it in the order have had their links with it.
   return {};
 }
 
@@ -237,6 +238,7 @@ void Passes::number_components(DisjointSets& sets) {
       for (uint32_t i = first; i < last; ++i) {
         visit(s, graph.slots[s]->entry.first_component() + i, zone.components()[i], zone);
       }
+      zone.give_back();
     }
   };
   for (uint32_t c = 0; c < world_.summary.classes.size(); ++c) {

@@ -339,7 +339,10 @@ void GraphData::show(const WorldData& of_world) {
 }
 
 std::vector<uint8_t> write_graph_index(const GraphData& graph, uint64_t world_hash) {
-  flatbuffers::FlatBufferBuilder builder;
+  // Room for all of it: as it grew it would be there three times.
+  flatbuffers::FlatBufferBuilder builder(graph.slots.size() * sizeof(format::GraphZone) +
+                                         graph.components.size() * sizeof(format::GraphComponent) +
+                                         graph.component_of.size() * sizeof(uint32_t) + 1024);
   std::vector<format::GraphZone> zones;
   for (const auto& slot : graph.slots) zones.push_back(slot->entry);
   builder.Finish(

@@ -80,6 +80,14 @@ int64_t progress_of(const Body& body, Plane way) {
   return std::lrint(speed_towards(body, way) / body.speed * 1e6f);
 }
 
+// Is somebody ahead, and goes one's own way? Within 45 degrees.
+bool leads(Plane apart, Plane wish, Plane others) {
+  const float same = wish.x * others.x + wish.z * others.z;
+  const float both =
+      (wish.x * wish.x + wish.z * wish.z) * (others.x * others.x + others.z * others.z);
+  return apart.x * wish.x + apart.z * wish.z > 0 && same > 0 && 2 * same * same > both;
+}
+
 Bound bound(const Body& body) {
   return {body.x, body.z, body.aim_x, body.aim_z, body.radius, body.slot};
 }
@@ -184,7 +192,7 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
   // To the right, if nothing but others is in the way. Before a wall or a corner that would press a
   // crowd against it: there, to either side by chance.
   const auto turn = [&](const Body& b) {
-    if (!is_held_up(b)) return b.turn;
+    if (b.meets || !is_held_up(b)) return b.turn;
     if (size_of(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z)) < kClose) return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
     return left ? -b.turn : b.turn;
@@ -344,10 +352,12 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
-  worker.waits = false;
+  worker.waits = worker.meets = false;
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
+    // Those ahead tell those behind, who would else fill the whole width.
+    worker.meets = worker.meets || (other.meets && leads(apart, body.wish, other.wish));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
       worker.waits = true;
@@ -399,6 +409,43 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
   if (steer::wish_is_open_fast(at_once, situation)) return true;
   situation.wish = turned;
   return false;
+}
+
+// How far it is to walls on both sides of a way, up to where a place is narrow. [m]
+CrowdEngine::Sides CrowdEngine::sides_of(const Body& body, Plane ahead) const {
+  const StrideGround& ground = grounds_[body.avatar_class];
+  const float unit = config_.units.unit, look = config_.lanes.narrow / unit;
+  const Plane right{-ahead.z, ahead.x}, left{ahead.z, -ahead.x};
+  return {ground.free_way(body.level, body.point(), left, look) * unit,
+          ground.free_way(body.level, body.point(), right, look) * unit};
+}
+
+bool CrowdEngine::is_narrow(const Sides& sides) const {
+  return sides.left < config_.lanes.narrow && sides.right < config_.lanes.narrow;
+}
+
+// Does somebody come towards it in a narrow place?
+bool CrowdEngine::meets_stream(const Body& body, const steer::Situation& situation) const {
+  steer::LaneSettings anybody = config_.lanes;
+  anybody.opposers = 1;
+  anybody.opposed = config_.lanes.narrow_opposed;
+  const float speed = size_of(situation.wish);
+  if (speed <= 1e-3f || !steer::is_opposed_fast(anybody, situation)) return false;
+  const Plane ahead{situation.wish.x / speed, situation.wish.z / speed};
+  return is_narrow(sides_of(body, ahead));
+}
+
+// Who meets a stream in a narrow place leaves it the left half.
+void CrowdEngine::keep_right(const Body& body, steer::Situation& situation) const {
+  const float speed = size_of(situation.wish);
+  if (speed <= 1e-3f) return;
+  const Plane ahead{situation.wish.x / speed, situation.wish.z / speed};
+  const Sides sides = sides_of(body, ahead);
+  if (!is_narrow(sides) || sides.right <= sides.left) return;
+  const float off = (sides.right - sides.left) / 2;  // from the middle [m]
+  const float aside = config_.lanes.to_right * std::min(off, 1.0f);
+  const float scale = speed / std::sqrt(1 + aside * aside);
+  situation.wish = {(ahead.x - ahead.z * aside) * scale, (ahead.z + ahead.x * aside) * scale};
 }
 
 // True if the wish is another one now.
@@ -522,6 +569,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
   Claim& claim = claims()[i];
   claim = {};
   claim.flags = Body::kKeeps;
+  claim.meets = body.meets;
   const Way way = way_of(body, body.velocity);
   if (!try_way(body, way, claim.place)) return std::nullopt;
   const float touch = touch_of(body);
@@ -570,7 +618,10 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   sense(i, worker, around, true);
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
+  worker.meets = worker.meets || meets_stream(body, worker.situation);
+  if (worker.meets && !worker.waits) keep_right(body, worker.situation);
   const bool open = find_open_wish(i, worker, around);
+  claim.meets = worker.meets;
   // The best of his ways is enough as long as nobody objects to it.
   if (!open) look_around(body, worker.situation);
   const Plane best =
@@ -755,6 +806,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         ++here.stood;
       }
       b.clear(Body::kKeeps);
+      b.meets = claim.meets;
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | claim.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kDriven)) continue;
       const float left = size_of(way);

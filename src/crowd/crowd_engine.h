@@ -121,6 +121,7 @@ class CrowdEngine {
     uint8_t flags;  // Body::kKeeps
     uint8_t ways;
     bool has_all : 1;
+    bool meets : 1;                      // Body::meets, from the next step on
     bool forgets : 1;                    // There is no room for its ways: they are found again.
     bool is_far : 1;                     // The last words say where in whose list the others lie.
     uint32_t others;                     // how many
@@ -139,6 +140,7 @@ class CrowdEngine {
     std::vector<uint32_t> others;
     steer::Situation situation;
     bool waits = false;  // for another, instead of doing as he wishes
+    bool meets = false;  // a stream that comes towards him
     EngineCounts counts;
   };
   using Ways = std::array<Way, steer::kChoices>;
@@ -176,6 +178,13 @@ class CrowdEngine {
   void prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const;
   bool find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   bool go_straight(const Body& body, steer::Situation& situation) const;
+  struct Sides {
+    float left, right;  // [m]
+  };
+  [[nodiscard]] Sides sides_of(const Body& body, steer::Plane ahead) const;
+  [[nodiscard]] bool meets_stream(const Body& body, const steer::Situation& situation) const;
+  [[nodiscard]] bool is_narrow(const Sides& sides) const;
+  void keep_right(const Body& body, steer::Situation& situation) const;
   bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   [[nodiscard]] steer::Plane if_blocked(steer::Plane way, const steer::Situation& situation) const;
   [[nodiscard]] float metres(float way, float look) const;

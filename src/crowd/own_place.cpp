@@ -53,8 +53,10 @@ Spot own_place(const Body& body, const Route& route, const StrideGround& ground,
   const float look = kLookAside * metre;
   const float outer = ground.free_way(body.level, body.point(), side, look);
   const float inner = ground.free_way(body.level, body.point(), {-side.x, -side.z}, look);
-  float off =
-      ground.free_way(corner.level, at, away, widest) * inner / std::max(inner + outer, 1.0f);
+  float part = inner / std::max(inner + outer, 1.0f);
+  // People come the other way: theirs is the left half.
+  if (body.on_right) part = (part + (away.z * out.x - away.x * out.z > 0 ? 1.0f : 0.0f)) / 2;
+  float off = ground.free_way(corner.level, at, away, widest) * part;
   for (int32_t i = 0; i < kTries; ++i, off *= 0.5f) {
     const Spot own{corner.x + static_cast<int32_t>(std::lrint(away.x * off)),
                    corner.z + static_cast<int32_t>(std::lrint(away.z * off)), corner.level};

@@ -18,6 +18,7 @@ constexpr float kLook = 3;     // [m] of a leg, to see whether it is open
 constexpr float kSoon = 0.3f;  // [m] before his own place one turns to the next
 
 void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
+  body.on_right = body.meets;
   const Spot place = own_place(body, route, ground, metre);
   body.aim_x = place.x;
   body.aim_z = place.z;
@@ -60,6 +61,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
       return;
     }
   }
+  if (body.meets && !body.on_right) turn_to(body, route, ground, metre);
   // Who was pushed back behind a corner sees it no more, and is held up until he looks.
   const bool held = body.turn != 0 && body.near_wall;
   if (nth % (held ? kHeldLooksEvery : kLookEvery) != 0) return;

@@ -15,16 +15,19 @@
 namespace throng::steer {
 
 struct LaneSettings {
-  float far = 5;         ///< Farther ahead nobody counts; nearer the more. [m]
-  float apart = 0.4f;    ///< From lane to lane. [m]
-  float wide = 0.5f;     ///< Farther aside of a lane nobody counts. [m]
-  float ahead = 1.5f;    ///< A lane is joined this far ahead. [m]
-  float opposed = 0.8f;  ///< Comes towards one: cosine between the ways, downwards.
-  float same = 0.5f;     ///< Goes one's own way: the same, upwards;
-  float follows = 0.5f;  ///< so much he is worth, against one who comes.
-  float crosses = 0.3f;  ///< What who does neither costs, against one who comes.
-  float aside = 0.15f;   ///< Cost of a lane that is a metre off,
-  float right = 0.2f;    ///< less on the right.
+  float far = 5;                ///< Farther ahead nobody counts; nearer the more. [m]
+  float apart = 0.4f;           ///< From lane to lane. [m]
+  float wide = 0.5f;            ///< Farther aside of a lane nobody counts. [m]
+  float ahead = 1.5f;           ///< A lane is joined this far ahead. [m]
+  float opposed = 0.8f;         ///< Comes towards one: cosine between the ways, downwards.
+  float same = 0.5f;            ///< Goes one's own way: the same, upwards;
+  float follows = 0.5f;         ///< so much he is worth, against one who comes.
+  float crosses = 0.3f;         ///< What who does neither costs, against one who comes.
+  float aside = 0.15f;          ///< Cost of a lane that is a metre off,
+  float right = 0.2f;           ///< less on the right.
+  float narrow = 3;             ///< With a wall as near on either side, and one who comes, [m]
+  float narrow_opposed = 0.9f;  ///< with this cosine, one keeps to the right half,
+  float to_right = 2;           ///< turned by so much for each metre that one is left of it. [1/m]
   int32_t opposers = 3;  ///< Among the nearest: with fewer there is nothing to make lanes for.
 };
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "baked.h"
+#include "crowds.h"
+#include "throng/crowd.h"
 #include "throng/scene.h"
 #include "world/place.h"
 
@@ -102,6 +104,49 @@ TEST(OwnPlace, IsTheCornerWhereFewFitOrNothingBends) {
   EXPECT_EQ(bend.off(bend.own(5, 1.6)), 0);
   bend.next = ahead;
   EXPECT_GT(bend.off(bend.own(5, 1.0)), 0);
+}
+
+TEST(OwnPlace, WhoMeetsAStreamKeepsToTheRightHalf) {
+  Bend bend(2);  // to the right
+  for (const double z : {1.7, 1.4, 1.0, 0.6, 0.25}) {
+    bend.body.on_right = false;
+    const double anywhere = bend.off(bend.own(5, z));
+    bend.body.on_right = true;
+    EXPECT_NEAR(bend.off(bend.own(5, z)), anywhere / 2, 0.01) << z;
+  }
+}
+
+// Two rooms and a corridor of 2 m between them: with everybody at the place that the walls leave
+// him, sixty who met sixty there stood for ever.
+TEST(OwnPlace, GroupsThatMeetInACorridorPass) {
+  PlaneConfig plane;
+  plane.ground = {{{0, 0}, {30, 0}, {30, 10}, {0, 10}}, {}};
+  plane.obstacles = {{{{10, 0}, {20, 0}, {20, 4}, {10, 4}}, {}},
+                     {{{10, 6}, {20, 6}, {20, 10}, {10, 10}}, {}}};
+  const auto scene = make_plane_scene(plane);
+  ASSERT_TRUE(scene) << scene.error().message;
+  AvatarClass walker;
+  walker.radius = 0.19;
+  const World world = test::bake(*scene, 0.05, {walker});
+  Crowd crowd = made(world, {.dt = 0.1});
+  std::vector<AvatarId> ids;
+  std::vector<Place> goals;
+  for (int n = 0; n < 120; ++n) {
+    const bool west = n % 2 == 0;
+    const double x = 1 + 0.8 * (n / 2 % 10), z = 2 + 1.0 * (n / 20);
+    ids.push_back(added(crowd, world.find_place(0, {west ? x : 30 - x, 0, z}, 0.3)));
+    goals.push_back(world.find_place(0, {west ? 30 - x : x, 0, z}, 0.3));
+  }
+  crowd.set_goals(ids, goals);
+  uint64_t arrived = 0;
+  for (int step = 0; step < 2000 && arrived < ids.size(); ++step) {
+    arrived += crowd.step().arrived;
+    if (step % 100 == 0) {
+      const CrowdCheck found = crowd.check();
+      EXPECT_EQ(found.overlaps + found.wall_entries, 0u) << step;
+    }
+  }
+  EXPECT_EQ(arrived, ids.size());
 }
 
 }  // namespace

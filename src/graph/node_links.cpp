@@ -156,9 +156,16 @@ void merge_cell_pairs(std::vector<CellPair>& pairs) {
 }
 
 void merge_node_links(std::vector<NodeLink>& links) {
-  std::sort(links.begin(), links.end(), [](const NodeLink& p, const NodeLink& q) {
+  const auto before = [](const NodeLink& p, const NodeLink& q) {
     return std::tie(p.a, p.b, p.kind, p.leap1) < std::tie(q.a, q.b, q.kind, q.leap1);
-  });
+  };
+  // Of all patches these are two sorted lists, one behind the other.
+  const auto second = std::is_sorted_until(links.begin(), links.end(), before);
+  if (std::is_sorted(second, links.end(), before)) {
+    std::inplace_merge(links.begin(), second, links.end(), before);
+  } else {
+    std::sort(links.begin(), links.end(), before);
+  }
   size_t kept = 0, group = 0;  // `group`: where the kept links of this pair and kind begin
   for (const NodeLink& link : links) {
     const NodeLink* last = kept > group ? &links[kept - 1] : nullptr;

@@ -79,7 +79,19 @@ void append_scene(Scene& scene, const Scene& other) {
   scene.area.insert(scene.area.end(), other.area.begin(), other.area.end());
   for (ScenePart part : other.parts) {
     part.first_triangle += first_triangle;
+    if (part.material1 != 0) part.material1 += static_cast<uint32_t>(scene.materials.size());
     scene.parts.push_back(std::move(part));
+  }
+  for (Material material : other.materials) {
+    if (material.texture1 != 0) material.texture1 += static_cast<uint32_t>(scene.textures.size());
+    scene.materials.push_back(std::move(material));
+  }
+  scene.textures.insert(scene.textures.end(), other.textures.begin(), other.textures.end());
+  if (!scene.texture_corners.empty() || !other.texture_corners.empty()) {
+    scene.texture_corners.resize(first_triangle);
+    scene.texture_corners.insert(scene.texture_corners.end(), other.texture_corners.begin(),
+                                 other.texture_corners.end());
+    scene.texture_corners.resize(scene.triangles.size());
   }
   if (!scene.patches.empty() || !other.patches.empty()) {
     const auto first_patch = static_cast<uint32_t>(scene.patches.size());
@@ -101,13 +113,14 @@ void append_scene(Scene& scene, const Scene& other) {
                                other.report.warnings.end());
 }
 
-Result<Scene> read_sources(const SourceOptions& options, Context& context) {
+Result<Scene> read_sources(const SourceOptions& options, Context& context, SceneLooks looks) {
   SceneConfig config;
   if (!options.scene.empty()) {
     Result<SceneConfig> loaded = load_scene_config(options.scene);
     if (!loaded) return loaded.error();
     config = *std::move(loaded);
   }
+  config.looks = looks;
   std::vector<BuiltinWorldConfig> builtins;
   for (const std::string& file : options.files) {
     if (file.starts_with(kBuiltin)) {

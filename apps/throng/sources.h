@@ -35,7 +35,8 @@ void append_scene(Scene& scene, const Scene& other);
 
 /// Reads everything that the options name: the scene file's sources, then the files, then the
 /// built-in worlds. Prints the report's warnings as notes.
-Result<Scene> read_sources(const SourceOptions& options, Context& context);
+Result<Scene> read_sources(const SourceOptions& options, Context& context,
+                           SceneLooks looks = SceneLooks::kLeaveOut);
 
 /// What an import met, as JSON: only the counts that are not zero, and the warnings.
 Json report_json(const SceneReport& report);

@@ -105,8 +105,9 @@ std::vector<double> heights_of(const std::vector<AvatarClass>& classes) {
 // Sets the scene: what the options name, or where one can walk.
 Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World& world,
                        Context& context) {
-  Result<Scene> scene = has_sources(target.sources) ? read_sources(target.sources, context)
-                                                    : walkable_surface(world, 0, context);
+  Result<Scene> scene = has_sources(target.sources)
+                            ? read_sources(target.sources, context, SceneLooks::kRead)
+                            : walkable_surface(world, 0, context);
   if (!scene) return scene.error();
   return parts.set_scene(*scene);
 }
@@ -135,7 +136,7 @@ Result<void> load_world(StageParts& parts, const ViewTarget& target, Context& co
 
 Result<void> load_model(StageParts& parts, ViewTarget target, Context& context) {
   target.sources.files.insert(target.sources.files.begin(), target.path);
-  const Result<Scene> scene = read_sources(target.sources, context);
+  const Result<Scene> scene = read_sources(target.sources, context, SceneLooks::kRead);
   if (!scene) return scene.error();
   if (auto ok = parts.set_scene(*scene); !ok) return ok;
   BakeConfig config;
@@ -181,7 +182,7 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
   if (target.seed) scenario->seed = *target.seed;
   Result<World> world = Error{Errc::kNotFound, ""};
   if (scenario->world.empty()) {
-    const Result<Scene> scene = load_scene(*scenario, context);
+    const Result<Scene> scene = load_scene(*scenario, context, SceneLooks::kRead);
     if (!scene) return scene.error();
     auto ok = has_sources(target.sources) ? set_scene(parts, target, {}, context)
                                           : parts.set_scene(*scene);

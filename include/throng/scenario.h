@@ -179,7 +179,8 @@ struct Scenario {
 [[nodiscard]] THRONG_API Result<World> open_world(const Scenario& scenario, Context& context);
 /// What a scenario's world is baked of. Fails as load_scene does, and with kBadConfig for one that
 /// opens a baked world: it keeps no triangles.
-[[nodiscard]] THRONG_API Result<Scene> load_scene(const Scenario& scenario, Context& context);
+[[nodiscard]] THRONG_API Result<Scene> load_scene(const Scenario& scenario, Context& context,
+                                                  SceneLooks looks = SceneLooks::kLeaveOut);
 /// Bakes a scenario's world of what load_scene has read.
 [[nodiscard]] THRONG_API Result<World> bake_world(const Scenario& scenario, const Scene& scene,
                                                   Context& context);

@@ -12,6 +12,7 @@
 
 #include "throng/base.h"
 #include "throng/context.h"
+#include "throng/material.h"
 #include "throng/math.h"
 #include "throng/patch.h"
 #include "throng/prism.h"
@@ -35,6 +36,7 @@ struct ScenePart {
   std::string material;
   uint32_t first_triangle = 0;
   uint32_t triangle_count = 0;
+  uint32_t material1 = 0;  ///< Index into Scene::materials plus one; 0: nothing is known of it.
 };
 
 /// What an import met and did. All zero for a clean model.
@@ -58,6 +60,10 @@ struct THRONG_API Scene {
   PatchSet patches;              ///< Curved ground; its triangles are among the above.
   /// One per triangle, kNoPatch for those of no patch; empty where there are no patches.
   std::vector<uint32_t> patch_of_triangle;
+  std::vector<Material> materials;  ///< Of the parts; empty where nobody asked for them.
+  std::vector<Texture> textures;
+  /// One per triangle; empty where nothing has a texture.
+  std::vector<TextureCorners> texture_corners;
   SceneReport report;
 
   void add_triangle(Vec3d a, Vec3d b, Vec3d c, AreaKind kind = kAreaWalkable);
@@ -90,6 +96,16 @@ struct AreaVolume {
   AreaKind kind = kAreaWalkable;
 };
 
+/// Whether to read what surfaces look like. The triangles are the same either way.
+enum class SceneLooks : uint8_t {
+  kLeaveOut,
+  /// Colours and textures (PNG, JPEG, TGA, BMP), in the file or beside it. Those that cannot be
+  /// used are told in one warning a file, and their surfaces get plain colours; large ones are made
+  /// smaller, so that those of a file take 256 MiB at most. What has no material gets one by its
+  /// name, if that says what it is (roof, grass ...).
+  kRead,
+};
+
 /// What to read and how: the content of a scene file.
 struct SceneConfig {
   std::vector<SceneSource> sources;
@@ -98,6 +114,7 @@ struct SceneConfig {
   double plan_height = 3.0;  ///< How high obstacles of 2D plans rise. [m, > 0]
   double curve_tolerance =
       0.02;  ///< Largest gap between a curved patch and its triangles. [m, > 0]
+  SceneLooks looks = SceneLooks::kLeaveOut;
 };
 
 /// Reads all sources into one Scene. Bad triangles are dropped and counted; a file that cannot be
@@ -135,7 +152,7 @@ struct PlaneConfig {
 /// Builds the triangles of a plane world. Fails with kBadInput and the polygon's index.
 [[nodiscard]] THRONG_API Result<Scene> make_plane_scene(const PlaneConfig& config);
 
-/// Writes a binary glTF, one mesh per part. Nothing is left behind when it fails.
+/// Writes a binary glTF with looks, one mesh per part. Nothing is left behind when it fails.
 [[nodiscard]] THRONG_API Result<void> write_glb(const Scene& scene, const std::string& path);
 
 /// Writes a Wavefront OBJ: corners to a tenth of a millimetre at 100 km, a name and a material name

@@ -20,6 +20,7 @@
 #include "draw/scene_chunks.h"
 #include "draw/scene_mesh.h"
 #include "draw/shaders.h"
+#include "draw/texture_layers.h"
 #include "throng_draw/draw.h"
 
 // A picture in six passes: the sun's depth of scene and avatars, the sky, the scene, the avatars,
@@ -28,6 +29,8 @@
 namespace throng {
 namespace {
 
+constexpr size_t kTextureBudget = size_t{128} << 20;  // Bytes, without smaller levels.
+constexpr int kPictureUnit = 8;
 constexpr double kNearer = 0.002;  // Of the way to the eye that marks are nearer than they are.
 
 // Colour and depth that are no window's.
@@ -66,6 +69,7 @@ Image reduce(const std::vector<uint8_t>& rgba, int32_t width, int32_t height, in
 
 struct PreparedScene::State {
   SceneCorners corners;
+  TextureLayers textures;
 };
 
 PreparedScene::PreparedScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -74,11 +78,12 @@ PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
 PreparedScene::~PreparedScene() = default;
 
 Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
-  Result<SceneCorners> corners = scene_corners(scene, origin);
+  TextureLayers textures = make_texture_layers(scene, kTextureBudget);
+  Result<SceneCorners> corners = scene_corners(scene, origin, textures.of_texture);
   if (!corners) return corners.error();
   sort_into_chunks(*corners);
   add_plain(*corners);
-  return PreparedScene(std::make_unique<State>(State{*std::move(corners)}));
+  return PreparedScene(std::make_unique<State>(State{*std::move(corners), std::move(textures)}));
 }
 
 const Box3d& PreparedScene::bounds() const { return state_->corners.bounds; }
@@ -86,9 +91,10 @@ Vec3d PreparedScene::origin() const { return state_->corners.origin; }
 
 struct Drawing::State {
   std::unique_ptr<Headless> context;  // None: a window's, which its owner keeps current.
-  GlProgram sky, scene, depth, mark, panel_program;
+  GlProgram sky, scene, surfaced, depth, surfaced_depth, mark, panel_program;
   GlVertexArray nothing;  // Vertices by number alone.
   SceneMesh mesh, props;
+  SurfaceTextures textures;
   std::array<MarkMesh, kMarkSlots> marks;
   PanelMesh panel;
   CrowdPass crowd;
@@ -107,6 +113,9 @@ struct Drawing::State {
   Result<void> make_programs();
   Result<void> fit_sun(GLsizei pixels);
   Result<void> fit_target(GLsizei width, GLsizei height);
+  [[nodiscard]] const GlProgram& scene_program() const {
+    return mesh.has_surfaces() ? surfaced : scene;
+  }
   void draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up, float cut) const;
   size_t draw_scene(const Matrix& clip_from_world, Vec3d eye,
                     const std::function<void()>& read_depths);
@@ -119,10 +128,15 @@ struct Drawing::State {
 Result<void> Drawing::State::make_programs() {
   sky = GlProgram(shaders::sky_vertex(), shaders::sky_fragment());
   scene = GlProgram(shaders::scene_vertex(), shaders::scene_fragment());
+  surfaced = GlProgram(shaders::surface_vertex(), shaders::surface_fragment());
   depth = GlProgram(shaders::depth_vertex(), shaders::depth_fragment());
+  surfaced_depth = GlProgram(shaders::surface_depth_vertex(), shaders::surface_depth_fragment());
   mark = GlProgram(shaders::mark_vertex(), shaders::mark_fragment());
   panel_program = GlProgram(shaders::panel_vertex(), shaders::panel_fragment());
-  if (auto ok = check_linked({&sky, &scene, &depth, &mark, &panel_program}); !ok) return ok;
+  if (auto ok =
+          check_linked({&sky, &scene, &surfaced, &depth, &surfaced_depth, &mark, &panel_program});
+      !ok)
+    return ok;
   nothing = make_vertex_array();
   const std::string renderer = renderer_name();
   for (const char* one : {"llvmpipe", "SwiftShader", "softpipe", "Software"}) {
@@ -189,13 +203,18 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_righ
   glBindFramebuffer(GL_FRAMEBUFFER, sun_frame.get());
   glViewport(0, 0, sun_pixels, sun_pixels);
   glClear(GL_DEPTH_BUFFER_BIT);
-  depth.use();
-  depth.set_matrix("clip_from_world", sun_from_world.data());
-  depth.set("cut", cut);
+  const auto begin = [&](const GlProgram& program) {
+    program.use();
+    program.set_matrix("clip_from_world", sun_from_world.data());
+    program.set("cut", cut);
+  };
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5F, 2.0F);
+  begin(mesh.has_holes() ? surfaced_depth : depth);
+  if (mesh.has_holes()) surfaced_depth.set("pictures", kPictureUnit);
   mesh.draw(chunks_in_view(mesh.chunks(), sun_from_world, {}));
   mesh.draw_plain();
+  if (mesh.has_holes()) begin(depth);
   props.draw();
   glDisable(GL_POLYGON_OFFSET_FILL);
   crowd.draw_shadows(sun_from_world, sun_right, sun_up);
@@ -227,7 +246,7 @@ size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
     if (read_depths) {
       read_depths();
       drop_hidden_chunks(chunks, clip_from_world, depths, rest);
-      scene.use();
+      scene_program().use();
     }
     mesh.draw(rest);
     drawn += triangles(rest);
@@ -327,6 +346,7 @@ Result<void> Drawing::set_scene(const Scene& scene, Vec3d origin) {
 
 Result<void> Drawing::set_scene(const PreparedScene& scene) {
   state_->make_current();
+  if (auto ok = state_->textures.set(scene.state_->textures, !state_->is_software); !ok) return ok;
   return state_->mesh.set(scene.state_->corners);
 }
 
@@ -408,6 +428,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   glDisable(GL_BLEND);
   const double cut_given = std::min(config.cut_height, 1e9);
   const auto cut = static_cast<float>(cut_given);
+  textures.bind(kPictureUnit);
   draw_sun_depth(sun_from_world, sun_right, sun_up, cut);
 
   glBindFramebuffer(GL_FRAMEBUFFER, target.frame.get());
@@ -449,16 +470,22 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
     seconds_cull += seconds_since(cull_start);
   };
 
-  begin(scene);
-  scene.set("bias", static_cast<float>(2.5 * reach / sun_pixels));
-  scene.set("soft", config.soft_shadows ? 1.0F : 0.0F);
-  scene.set("cut", cut);
-  scene.set("edges", static_cast<float>(config.edges));
-  scene.set("edge_wide", 0.5F * static_cast<float>(config.samples));
-  scene.set("prop", 0.0F);
+  const auto begin_scene = [&](const GlProgram& program, float prop) {
+    begin(program);
+    program.set("bias", static_cast<float>(2.5 * reach / sun_pixels));
+    program.set("soft", config.soft_shadows ? 1.0F : 0.0F);
+    program.set("cut", cut);
+    program.set("edges", static_cast<float>(config.edges));
+    program.set("edge_wide", 0.5F * static_cast<float>(config.samples));
+    program.set("prop", prop);
+  };
+  begin_scene(scene_program(), 0);
+  if (mesh.has_surfaces()) surfaced.set("pictures", kPictureUnit);
   const size_t triangles = draw_scene(clip_from_world, camera.eye, culls ? read_depths : nullptr);
-  scene.set("prop", 1.0F);
-  props.draw();
+  if (!props.bounds().empty()) {
+    begin_scene(scene, 1);
+    props.draw();
+  }
 
   if (culls && crowd.drawn() > 0) {
     read_depths();

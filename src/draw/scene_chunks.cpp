@@ -99,6 +99,8 @@ void sort_into_chunks(SceneCorners& scene) {
   std::sort(order.begin(), order.end());
   std::vector<SceneCorner> sorted;
   sorted.reserve(scene.corners.size() + 3);
+  std::vector<SurfaceCorner> surfaces;
+  if (!scene.surfaces.empty()) surfaces.reserve(scene.surfaces.size() + 3);
   for (size_t i = 0; i < triangles; ++i) {
     const SceneChunk* last = scene.chunks.empty() ? nullptr : &scene.chunks.back();
     if (last == nullptr || order[i].first != order[i - 1].first) {
@@ -111,8 +113,12 @@ void sort_into_chunks(SceneCorners& scene) {
       sorted.push_back(corner);
       chunk.box.add({corner.position[0], corner.position[1], corner.position[2]});
     }
+    if (scene.surfaces.empty()) continue;
+    const auto from = scene.surfaces.begin() + std::ptrdiff_t{3} * order[i].second;
+    surfaces.insert(surfaces.end(), from, from + 3);
   }
   scene.corners = std::move(sorted);
+  scene.surfaces = std::move(surfaces);
 }
 
 std::vector<uint32_t> chunks_in_view(std::span<const SceneChunk> chunks,

@@ -74,20 +74,66 @@ void mark_edges(std::vector<Side>& sides, const std::vector<Vec3d>& normals,
   }
 }
 
+uint8_t root_byte(float linear) {
+  const double root = std::sqrt(std::clamp(static_cast<double>(linear), 0.0, 1.0));
+  return static_cast<uint8_t>(root * 255 + 0.5);
+}
+
+// What all corners of a part share.
+SurfaceCorner surface_of(const Scene& scene, const ScenePart& part,
+                         std::span<const LayerOf> textures) {
+  SurfaceCorner out;
+  if (part.material1 == 0 || part.material1 > scene.materials.size()) return out;
+  const Material& material = scene.materials[part.material1 - 1];
+  for (size_t c = 0; c < 3; ++c) out.paint[c] = root_byte(material.colour[c]);
+  out.paint[3] = static_cast<uint8_t>(
+      std::clamp(static_cast<double>(material.colour[3]), 0.0, 1.0) * 255 + 0.5);
+  out.look = 1;
+  if (material.texture1 != 0 && material.texture1 <= textures.size()) {
+    const LayerOf& texture = textures[material.texture1 - 1];
+    if (texture.layer1 != 0) out.look = static_cast<uint16_t>(texture.layer1 + 1);
+    for (size_t c = 0; c < 4; ++c) {
+      out.paint[c] = static_cast<uint8_t>((out.paint[c] * texture.mean[c] + 127) / 255);
+    }
+  }
+  if (material.opacity == Opacity::kBlended) out.threshold = 255;
+  if (material.opacity == Opacity::kHoles) {
+    out.threshold = static_cast<uint8_t>(
+        std::clamp(static_cast<double>(material.threshold) * 255 + 0.5, 1.0, 254.0));
+  }
+  return out;
+}
+
+// Large numbers have no digits left for texels: whole textures more or less look the same.
+void set_places(const TextureCorners& places, SurfaceCorner* corners) {
+  for (size_t axis = 0; axis < 2; ++axis) {
+    const float low = std::floor(std::min({places[0][axis], places[1][axis], places[2][axis]}));
+    for (size_t k = 0; k < 3; ++k) {
+      const float place = places[k][axis] - low;
+      corners[k].place[axis] = std::isfinite(place) ? place : 0.0F;
+    }
+  }
+}
+
 }  // namespace
 
-Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
+Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin,
+                                   std::span<const LayerOf> textures) {
   if (scene.triangles.size() > kMostTriangles) {
     return Error{Errc::kLimit, "drawing: " + std::to_string(scene.triangles.size()) +
                                    " triangles, more than " + std::to_string(kMostTriangles) +
                                    "; draw a part of the model"};
   }
-  SceneCorners out{.corners = {}, .chunks = {}, .bounds = {}, .origin = origin};
+  SceneCorners out;
+  out.origin = origin;
   out.corners.reserve(3 * scene.triangles.size() + 3);
   const std::vector<uint32_t> welded = weld(scene.positions);
   std::vector<Vec3d> normals;
   std::vector<Side> sides;
   size_t part = 0;
+  const bool has_surfaces = !scene.materials.empty();
+  const bool has_places = scene.texture_corners.size() == scene.triangles.size();
+  if (has_surfaces) out.surfaces.reserve(3 * scene.triangles.size() + 3);
   for (size_t t = 0; t < scene.triangles.size(); ++t) {
     while (part + 1 < scene.parts.size() && t >= scene.parts[part + 1].first_triangle) ++part;
     const auto& corner = scene.triangles[t];
@@ -109,6 +155,16 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin) {
       const uint32_t a = welded[corner[(k + 1U) % 3]], b = welded[corner[(k + 2U) % 3]];
       sides.push_back({std::min(a, b), std::max(a, b), triangle, k});
     }
+    if (!has_surfaces) continue;
+    const ScenePart* of = scene.parts.empty() ? nullptr : &scene.parts[part];
+    const bool named =
+        of != nullptr && t >= of->first_triangle && t - of->first_triangle < of->triangle_count;
+    const SurfaceCorner surface = named ? surface_of(scene, *of, textures) : SurfaceCorner();
+    out.has_holes |= surface.threshold != 0;
+    out.surfaces.insert(out.surfaces.end(), 3, surface);
+    if (has_places && surface.look > 1) {
+      set_places(scene.texture_corners[t], &out.surfaces[out.surfaces.size() - 3]);
+    }
   }
   mark_edges(sides, normals, out.corners);
   return out;
@@ -127,6 +183,7 @@ void add_plain(SceneCorners& scene) {
                              0});
   };
   corner(-1, -1), corner(-1, 3), corner(3, -1);
+  if (!scene.surfaces.empty()) scene.surfaces.resize(scene.corners.size());
 }
 
 }  // namespace throng

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "draw/texture_layers.h"
 #include "throng/math.h"
 #include "throng/result.h"
 #include "throng/scene.h"
@@ -23,6 +25,16 @@ struct SceneCorner {
 };
 static_assert(sizeof(SceneCorner) == 16);
 
+/// What a corner has besides where a scene has materials.
+struct SurfaceCorner {
+  std::array<float, 2> place{};    ///< In the texture.
+  std::array<uint8_t, 4> paint{};  ///< Roots of red, green, blue in linear light; how opaque.
+  uint16_t look = 0;  ///< 0: nothing is known of the surface, 1: paint alone, else layer plus two.
+  uint8_t threshold = 0;  ///< 0: opaque, 255: blended, else of holes.
+  uint8_t spare = 0;
+};
+static_assert(sizeof(SurfaceCorner) == 16);
+
 /// A run of corners, and a box around what they span.
 struct SceneChunk {
   Box3d box;
@@ -31,13 +43,16 @@ struct SceneChunk {
 
 struct SceneCorners {
   std::vector<SceneCorner> corners;
-  std::vector<SceneChunk> chunks;  ///< See sort_into_chunks. Without the plain.
-  Box3d bounds;                    ///< Of the scene without the plain, relative to the origin.
+  std::vector<SurfaceCorner> surfaces;  ///< One a corner; empty where there are no materials.
+  bool has_holes = false;               ///< Some surface lets light through.
+  std::vector<SceneChunk> chunks;       ///< See sort_into_chunks. Without the plain.
+  Box3d bounds;                         ///< Of the scene without the plain, relative to the origin.
   Vec3d origin;
 };
 
-/// Fails with kLimit.
-[[nodiscard]] Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin);
+/// Fails with kLimit. `textures`: what became of the scene's.
+[[nodiscard]] Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin,
+                                                 std::span<const LayerOf> textures = {});
 /// A plain just under the lowest point, out to the haze, for the scene to stand on.
 void add_plain(SceneCorners& scene);
 

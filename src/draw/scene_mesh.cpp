@@ -25,6 +25,24 @@ Result<void> SceneMesh::set(const SceneCorners& scene) {
   glEnableVertexAttribArray(2);
   glVertexAttribIPointer(2, 1, GL_UNSIGNED_BYTE, sizeof(SceneCorner),
                          at(offsetof(SceneCorner, edges_tint)));
+  has_surfaces_ = !scene.surfaces.empty();
+  has_holes_ = scene.has_holes;
+  surfaces_ = {};
+  if (has_surfaces_) {
+    surfaces_ = make_buffer();
+    glBindBuffer(GL_ARRAY_BUFFER, surfaces_.get());
+    glBufferData(GL_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(scene.surfaces.size() * sizeof(SurfaceCorner)),
+                 scene.surfaces.data(), GL_STATIC_DRAW);
+    glEnableVertexAttribArray(3);
+    glVertexAttribPointer(3, 2, GL_FLOAT, GL_FALSE, sizeof(SurfaceCorner), nullptr);
+    glEnableVertexAttribArray(4);
+    glVertexAttribPointer(4, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceCorner),
+                          at(offsetof(SurfaceCorner, paint)));
+    glEnableVertexAttribArray(5);
+    glVertexAttribIPointer(5, 2, GL_UNSIGNED_SHORT, sizeof(SurfaceCorner),
+                           at(offsetof(SurfaceCorner, look)));
+  }
   corners_ = static_cast<GLsizei>(scene.corners.size());
   if (glGetError() == GL_NO_ERROR) return {};
   corners_ = 0;

@@ -22,6 +22,9 @@ class SceneMesh {
   /// `chunks` as indices in any order; the pieces are drawn in the order of the mesh.
   void draw(std::vector<uint32_t> chunks) const;
   void draw_plain() const;  ///< What is in no chunk.
+  /// Attributes 3 to 5 are there.
+  [[nodiscard]] bool has_surfaces() const { return has_surfaces_; }
+  [[nodiscard]] bool has_holes() const { return has_holes_; }
   [[nodiscard]] std::span<const SceneChunk> chunks() const { return chunks_; }
   [[nodiscard]] const Box3d& bounds() const {
     return bounds_;
@@ -29,7 +32,8 @@ class SceneMesh {
 
  private:
   GlVertexArray array_;
-  GlBuffer buffer_;
+  GlBuffer buffer_, surfaces_;
+  bool has_surfaces_ = false, has_holes_ = false;
   void draw_corners(uint32_t first, uint32_t count) const;
 
   GLsizei corners_ = 0;

@@ -202,6 +202,100 @@ void show(vec3 texel, vec3 right_of_texels) {
 }
 )";
 
+// What a scene is drawn of, in pieces that its two kinds share: with materials and without.
+constexpr const char* kSceneInputs = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 face;
+layout(location = 2) in uint edges_tint;
+out vec3 world;
+out vec3 corner;
+flat out vec3 normal;
+flat out uint kind;
+)";
+constexpr const char* kSceneVertex = R"(
+  world = position;
+  normal = face;
+  kind = edges_tint;
+  int k = gl_VertexID % 3;
+  corner = vec3(k == 0, k == 1, k == 2);
+  gl_Position = clip_from_world * vec4(position, 1.0);
+)";
+constexpr const char* kSceneOutputs = R"(
+in vec3 world;
+in vec3 corner;
+flat in vec3 normal;
+flat in uint kind;
+uniform float bias;
+uniform float soft;      // 1: nine looks at the sun's picture, 0: one.
+uniform float cut;
+uniform float edges;     // How dark.
+uniform float edge_wide; // [px of this target]
+uniform float prop;      // 1: something that stands here for a time.
+out vec4 colour;
+)";
+constexpr const char* kEdges = R"(
+// How much of the pixel an edge covers. Far away, where triangles are small, edges fade.
+float edge_cover() {
+  vec3 a_pixel = fwidth(corner);
+  vec3 cover = clamp(edge_wide + 0.5 - corner / max(a_pixel, 1e-6), 0.0, 1.0);
+  cover *= 1.0 - smoothstep(0.05, 0.3, a_pixel);
+  vec3 is_edge = vec3(kind & 1u, kind >> 1u & 1u, kind >> 2u & 1u);
+  cover *= is_edge;
+  return max(cover.x, max(cover.y, cover.z));
+}
+)";
+constexpr const char* kFlatColours = R"(
+  float edge = edge_cover();
+  if (world.y > cut) discard;
+  float tint = float(kind >> 3u);
+  vec3 from_eye = world - eye;
+  vec3 n = normalize(normal);
+  if (dot(n, from_eye) > 0.0) n = -n;
+  vec3 wall = mix(vec3(0.62, 0.52, 0.42), vec3(0.56, 0.57, 0.58), (tint - 1.0) / 30.0);
+  vec3 floor_colour = vec3(0.42, 0.41, 0.39);
+  if (tint < 0.5) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
+  vec3 albedo = mix(wall, floor_colour, smoothstep(0.5, 0.8, abs(n.y)));
+  albedo = mix(albedo, vec3(0.72, 0.42, 0.12), prop);
+)";
+constexpr const char* kSceneFragment = R"(
+  float in_sun = 0.0;
+  if (dot(n, to_sun) > 0.0) {
+    vec3 before = world + n * bias;
+    in_sun = soft > 0.5 ? sunlit(before) : sunlit_once(before);
+  }
+  colour = shown(lit(albedo, n, in_sun) * (1.0 - edges * edge), from_eye);
+)";
+
+// What materials add: see SurfaceCorner.
+constexpr const char* kSurfaceInputs = R"(
+layout(location = 3) in vec2 place_of;
+layout(location = 4) in vec4 paint_of;
+layout(location = 5) in uvec2 look_of;
+out vec2 place;
+flat out vec4 paint;
+flat out uvec2 surface;  // Look, threshold.
+)";
+constexpr const char* kSurfaceVertex = R"(
+  place = place_of;
+  paint = paint_of;
+  surface = uvec2(look_of.x, look_of.y & 255u);
+)";
+constexpr const char* kSurfaceOutputs = R"(
+in vec2 place;
+flat in vec4 paint;
+flat in uvec2 surface;
+uniform sampler2DArray pictures;
+// Roots of the light, and how opaque.
+vec4 painted() {
+  if (surface.x < 2u) return paint;
+  return paint * texture(pictures, vec3(place, float(surface.x - 2u)));
+}
+bool see_through(float opaque, float rank) {
+  if (surface.y == 0u) return false;
+  return opaque < (surface.y == 255u ? rank : float(surface.y) / 255.0);
+}
+)";
+
 }  // namespace
 
 // A grid of 8 x 64 rectangles: colours are computed at their corners, as a sky changes slowly and a
@@ -229,68 +323,30 @@ void main() { colour = vec4(root, 1.0); }
 }
 
 std::string scene_vertex() {
-  return std::string(kHead) + R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 face;
-layout(location = 2) in uint edges_tint;
-out vec3 world;
-out vec3 corner;
-flat out vec3 normal;
-flat out uint kind;
-void main() {
-  world = position;
-  normal = face;
-  kind = edges_tint;
-  int k = gl_VertexID % 3;
-  corner = vec3(k == 0, k == 1, k == 2);
-  gl_Position = clip_from_world * vec4(position, 1.0);
-}
-)";
+  return std::string(kHead) + kSceneInputs + "void main() {" + kSceneVertex + "}\n";
 }
 
 // Flat colours: what one may stand on is light, walls vary a little from part to part.
 std::string scene_fragment() {
-  return std::string(kHead) + kLight + kSunlit + R"(
-in vec3 world;
-in vec3 corner;
-flat in vec3 normal;
-flat in uint kind;
-uniform float bias;
-uniform float soft;      // 1: nine looks at the sun's picture, 0: one.
-uniform float cut;
-uniform float edges;     // How dark.
-uniform float edge_wide; // [px of this target]
-uniform float prop;      // 1: something that stands here for a time.
-out vec4 colour;
-// How much of the pixel an edge covers. Far away, where triangles are small, edges fade.
-float edge_cover() {
-  vec3 a_pixel = fwidth(corner);
-  vec3 cover = clamp(edge_wide + 0.5 - corner / max(a_pixel, 1e-6), 0.0, 1.0);
-  cover *= 1.0 - smoothstep(0.05, 0.3, a_pixel);
-  vec3 is_edge = vec3(kind & 1u, kind >> 1u & 1u, kind >> 2u & 1u);
-  cover *= is_edge;
-  return max(cover.x, max(cover.y, cover.z));
+  return std::string(kHead) + kLight + kSunlit + kSceneOutputs + kEdges + "void main() {" +
+         kFlatColours + kSceneFragment + "}\n";
 }
-void main() {
-  float edge = edge_cover();
-  if (world.y > cut) discard;
-  float tint = float(kind >> 3u);
-  vec3 from_eye = world - eye;
-  vec3 n = normalize(normal);
-  if (dot(n, from_eye) > 0.0) n = -n;
-  vec3 wall = mix(vec3(0.62, 0.52, 0.42), vec3(0.56, 0.57, 0.58), (tint - 1.0) / 30.0);
-  vec3 floor_colour = vec3(0.42, 0.41, 0.39);
-  if (tint < 0.5) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
-  vec3 albedo = mix(wall, floor_colour, smoothstep(0.5, 0.8, abs(n.y)));
-  albedo = mix(albedo, vec3(0.72, 0.42, 0.12), prop);
-  float in_sun = 0.0;
-  if (dot(n, to_sun) > 0.0) {
-    vec3 before = world + n * bias;
-    in_sun = soft > 0.5 ? sunlit(before) : sunlit_once(before);
-  }
-  colour = shown(lit(albedo, n, in_sun) * (1.0 - edges * edge), from_eye);
+
+std::string surface_vertex() {
+  return std::string(kHead) + kSceneInputs + kSurfaceInputs + "void main() {" + kSceneVertex +
+         kSurfaceVertex + "}\n";
 }
-)";
+
+// Edges tell apart what has one colour; what has a texture needs them less.
+std::string surface_fragment() {
+  return std::string(kHead) + kLight + kSunlit + kPattern + kSceneOutputs + kSurfaceOutputs +
+         kEdges + "void main() {" + kFlatColours + R"(
+  vec4 own = painted();
+  if (see_through(own.a, threshold())) discard;
+  if (surface.x > 0u) albedo = own.rgb * own.rgb;
+  if (surface.x > 1u) edge *= 0.4;
+)" + kSceneFragment +
+         "}\n";
 }
 
 std::string depth_vertex() {
@@ -310,6 +366,27 @@ in float height;
 uniform float cut;
 void main() {
   if (height > cut) discard;
+}
+)";
+}
+
+std::string surface_depth_vertex() {
+  return std::string(kHead) + R"(
+layout(location = 0) in vec3 position;
+out float height;
+)" + kSurfaceInputs +
+         "void main() {\n  height = position.y;" + kSurfaceVertex +
+         "  gl_Position = clip_from_world * vec4(position, 1.0);\n}\n";
+}
+
+// What is more than half see-through casts no shadow.
+std::string surface_depth_fragment() {
+  return std::string(kHead) + kSurfaceOutputs + R"(
+in float height;
+uniform float cut;
+void main() {
+  vec4 own = painted();
+  if (height > cut || see_through(own.a, 0.5)) discard;
 }
 )";
 }

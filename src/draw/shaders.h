@@ -11,8 +11,12 @@ std::string sky_vertex();
 std::string sky_fragment();
 std::string scene_vertex();
 std::string scene_fragment();
+std::string surface_vertex();  ///< Of a scene that has materials.
+std::string surface_fragment();
 std::string depth_vertex();  ///< Of the scene, as the sun sees it.
 std::string depth_fragment();
+std::string surface_depth_vertex();  ///< The same where light comes through surfaces.
+std::string surface_depth_fragment();
 std::string furthest_vertex();  ///< The furthest depth of each block of 8 x 8.
 std::string furthest_fragment();
 std::string impostor_vertex();

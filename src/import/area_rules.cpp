@@ -95,6 +95,9 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
       if (!scene.patch_of_triangle.empty()) {
         scene.patch_of_triangle[kept] = scene.patch_of_triangle[from];
       }
+      if (!scene.texture_corners.empty()) {
+        scene.texture_corners[kept] = scene.texture_corners[from];
+      }
     }
     part.first_triangle = first;
     kept_parts.push_back(std::move(part));
@@ -103,6 +106,7 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
   scene.triangles.resize(kept);
   scene.area.resize(kept);
   if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
+  if (!scene.texture_corners.empty()) scene.texture_corners.resize(kept);
 }
 
 }  // namespace throng

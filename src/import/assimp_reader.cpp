@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "import/assimp_reader.h"
 
+#include <assimp/GltfMaterial.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -24,7 +25,7 @@
 namespace throng {
 namespace {
 
-enum class Tag : uint32_t { kConvention = 1, kPart, kThin, kRefused, kDone };
+enum class Tag : uint32_t { kConvention = 1, kMaterial, kTexture, kPart, kThin, kRefused, kDone };
 
 struct Message {
   Tag tag = Tag::kDone;
@@ -34,8 +35,20 @@ struct Message {
   uint64_t vertices = 0;       // Of kPart; the count of kThin.
   uint64_t triangles = 0;
   double metres_per_unit = 1;
+  uint32_t material1 = 0;   // Of kPart; the texture of kMaterial.
+  uint32_t has_places = 0;  // Of kPart: where in its texture each vertex is.
 };
 
+// What follows a kMaterial, before its name. A kTexture is followed by its name and `vertices`
+// bytes; `triangles` holds width and height where they are texels.
+struct MaterialMessage {
+  std::array<float, 4> colour{};
+  float threshold = 0.5F;
+  uint32_t opacity = 0;
+};
+
+constexpr uint64_t kMostTextures = 1 << 16;
+constexpr uint64_t kMostTextureBytes = uint64_t{1} << 30;  // Of all that a file holds.
 constexpr uint32_t kLongestText = 1 << 16;
 constexpr int32_t kNoArea = -1;
 
@@ -81,8 +94,11 @@ int32_t area_of(const aiNode& node, int32_t above) {
 
 class Sender {
  public:
-  Sender(aiScene& scene, const std::string& path, const PipeWriter& pipe)
-      : scene_(scene), pipe_(pipe), extension_(std::filesystem::path(path).extension().string()) {
+  Sender(aiScene& scene, const std::string& path, SceneLooks looks, const PipeWriter& pipe)
+      : scene_(scene),
+        pipe_(pipe),
+        looks_(looks == SceneLooks::kRead),
+        extension_(std::filesystem::path(path).extension().string()) {
     for (char& c : extension_) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     has_areas_ = extension_ == ".glb" || extension_ == ".gltf";
     uses_.assign(scene.mNumMeshes, 0);
@@ -103,6 +119,7 @@ class Sender {
       if (scene_.mMetaData->Get("UpAxis", up) && up == 2) convention.material_size = 'z';
     }
     pipe_.write(&convention, sizeof convention);
+    if (looks_) send_materials();
     if (scene_.mRootNode != nullptr) {
       send_node(*scene_.mRootNode, {}, kNoArea, aiMatrix4x4t<double>());
     }
@@ -116,6 +133,114 @@ class Sender {
   void count_uses(const aiNode& node) {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) ++uses_.at(node.mMeshes[i]);
     for (unsigned i = 0; i < node.mNumChildren; ++i) count_uses(*node.mChildren[i]);
+  }
+
+  void send_materials() {
+    texture_sets_.assign(scene_.mNumMaterials, -1);
+    for (unsigned i = 0; i < scene_.mNumMaterials; ++i) send_material(i);
+    for (const auto& [name, index] : textures_) send_texture(name, index);
+  }
+
+  void send_material(unsigned index) {
+    const aiMaterial& material = *scene_.mMaterials[index];
+    const bool is_gltf = has_areas_;
+    MaterialMessage out{.colour = {1, 1, 1, 1}};
+    aiColor4D colour(1, 1, 1, 1);
+    if (!is_gltf || material.Get(AI_MATKEY_BASE_COLOR, colour) != aiReturn_SUCCESS) {
+      material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
+    }
+    const float parts[3] = {colour.r, colour.g, colour.b};
+    // Other formats mean colours as a screen shows them: their squares are nearly the light.
+    for (size_t c = 0; c < 3; ++c) {
+      const float part = parts[c] > 0 ? std::min(parts[c], 1.0F) : 0.0F;
+      out.colour[c] = is_gltf ? part : part * part;
+    }
+    uint32_t texture1 = 0;
+    aiString path;
+    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+      if (texture1 != 0 || material.GetTexture(type, 0, &path) != aiReturn_SUCCESS) continue;
+      texture1 = texture_number1(path.C_Str());
+      int set = 0;
+      material.Get(AI_MATKEY_UVWSRC(type, 0), set);
+      texture_sets_[index] = texture1 != 0 ? std::max(set, 0) : -1;
+    }
+    const bool is_black = std::max({out.colour[0], out.colour[1], out.colour[2]}) < 0.02F;
+    if (texture1 != 0 && is_black && !is_gltf) out.colour = {1, 1, 1, 1};
+    float opaque = is_gltf ? colour.a : 1;
+    if (!is_gltf) material.Get(AI_MATKEY_OPACITY, opaque);
+    // Files that mix up how opaque and how transparent would show nothing at all.
+    if (!(opaque > 0.01F && opaque < 1)) opaque = 1;
+    if (opaque < 1) out.opacity = static_cast<uint32_t>(Opacity::kBlended);
+    if (is_gltf) {
+      aiString mode;
+      material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode);
+      material.Get(AI_MATKEY_GLTF_ALPHACUTOFF, out.threshold);
+      const std::string_view word = mode.C_Str();
+      out.opacity = static_cast<uint32_t>(word == "MASK"    ? Opacity::kHoles
+                                          : word == "BLEND" ? Opacity::kBlended
+                                                            : Opacity::kOpaque);
+    } else if (texture1 != 0 && material.GetTextureCount(aiTextureType_OPACITY) > 0) {
+      out.opacity = static_cast<uint32_t>(Opacity::kHoles);
+    }
+    out.colour[3] = opaque;
+    std::string name = material.GetName().C_Str();
+    name.resize(std::min<size_t>(name.size(), kLongestText));
+    Message message{.tag = Tag::kMaterial, .material1 = texture1};
+    message.node_size = static_cast<uint32_t>(name.size());
+    pipe_.write(&message, sizeof message);
+    pipe_.write(&out, sizeof out);
+    pipe_.write(name.data(), name.size());
+  }
+
+  // The same name is the same texture. One that the file holds is called by its number, or by the
+  // name that it had.
+  uint32_t texture_number1(const std::string& name) {
+    for (size_t i = 0; i < textures_.size(); ++i) {
+      if (textures_[i].first == name) return static_cast<uint32_t>(i + 1);
+    }
+    if (name.empty() || textures_.size() >= kMostTextures) return 0;
+    const aiTexture* held = scene_.GetEmbeddedTexture(name.c_str());
+    textures_.emplace_back(name, held);
+    return static_cast<uint32_t>(textures_.size());
+  }
+
+  void send_texture(std::string name, const aiTexture* held) {
+    name.resize(std::min<size_t>(name.size(), kLongestText));
+    Message message{.tag = Tag::kTexture, .node_size = static_cast<uint32_t>(name.size())};
+    const bool is_texels = held != nullptr && held->mHeight > 0;
+    if (held != nullptr && held->pcData != nullptr) {
+      message.vertices = is_texels ? uint64_t{held->mWidth} * held->mHeight * 4 : held->mWidth;
+      if (is_texels) message.triangles = uint64_t{held->mHeight} << 32 | held->mWidth;
+    }
+    texture_bytes_ += message.vertices;
+    if (texture_bytes_ > kMostTextureBytes) message.vertices = message.triangles = 0;
+    pipe_.write(&message, sizeof message);
+    pipe_.write(name.data(), name.size());
+    if (message.vertices == 0) return;
+    if (!is_texels) {
+      pipe_.write(held->pcData, message.vertices);
+      return;
+    }
+    std::vector<uint8_t> row(size_t{held->mWidth} * 4);
+    for (unsigned y = 0; y < held->mHeight; ++y) {
+      for (unsigned x = 0; x < held->mWidth; ++x) {
+        const aiTexel& t = held->pcData[size_t{y} * held->mWidth + x];
+        const uint8_t rgba[4] = {t.r, t.g, t.b, t.a};
+        std::copy_n(rgba, 4, row.begin() + std::ptrdiff_t{x} * 4);
+      }
+      pipe_.write(row.data(), row.size());
+    }
+  }
+
+  // Of a mesh, if its material has a texture.
+  [[nodiscard]] const aiVector3D* places_of(const aiMesh& mesh) const {
+    if (!looks_ || mesh.mMaterialIndex >= texture_sets_.size()) return nullptr;
+    if (texture_sets_[mesh.mMaterialIndex] < 0) return nullptr;
+    const auto set = static_cast<size_t>(texture_sets_[mesh.mMaterialIndex]);
+    if (set < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh.mTextureCoords[set] != nullptr) {
+      return mesh.mTextureCoords[set];
+    }
+    return mesh.mTextureCoords[0];
   }
 
   void send_node(const aiNode& node, const std::string& path, int32_t area_above,
@@ -161,6 +286,11 @@ class Sender {
       thin_ += corners < 3 ? 1 : 0;
     }
     if (part.triangles == 0) return;
+    const aiVector3D* places = part.vertices > 0 ? places_of(mesh) : nullptr;
+    part.has_places = places != nullptr ? 1 : 0;
+    if (looks_ && mesh.mMaterialIndex < scene_.mNumMaterials) {
+      part.material1 = mesh.mMaterialIndex + 1;
+    }
     pipe_.write(&part, sizeof part);
     pipe_.write(node.data(), node.size());
     pipe_.write(material.data(), material.size());
@@ -169,6 +299,7 @@ class Sender {
     pipe_.write(rows, sizeof rows);
     static_assert(sizeof(aiVector3D) == 3 * sizeof(float), "assimp built with double precision");
     pipe_.write(mesh.mVertices, part.vertices * sizeof(aiVector3D));
+    if (places != nullptr) pipe_.write(places, part.vertices * sizeof(aiVector3D));
     std::vector<std::array<uint32_t, 3>> piece;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
@@ -192,9 +323,13 @@ class Sender {
 
   aiScene& scene_;
   const PipeWriter& pipe_;
+  bool looks_;
   std::string extension_;
   bool has_areas_ = false;  // In other formats "area" is somebody else's measure.
   std::vector<uint32_t> uses_;
+  std::vector<int> texture_sets_;  // By material, -1: it has no texture.
+  std::vector<std::pair<std::string, const aiTexture*>> textures_;
+  uint64_t texture_bytes_ = 0;
   uint64_t thin_ = 0;
 };
 
@@ -206,14 +341,16 @@ void refuse(const PipeWriter& pipe, std::string why) {
   pipe.write(why.data(), why.size());
 }
 
-void read_and_send(const std::string& path, const PipeWriter& pipe) {
+void read_and_send(const std::string& path, SceneLooks looks, const PipeWriter& pipe) {
   try {
     auto* importer = new Assimp::Importer;  // Never destroyed: the child ends by _exit.
-    importer->SetPropertyInteger(
-        AI_CONFIG_PP_RVC_FLAGS,
-        aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-            aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-            aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
+    const int of_looks =
+        looks == SceneLooks::kRead ? 0 : aiComponent_TEXCOORDS | aiComponent_TEXTURES;
+    importer->SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                                 aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                     aiComponent_COLORS | aiComponent_BONEWEIGHTS |
+                                     aiComponent_ANIMATIONS | aiComponent_LIGHTS |
+                                     aiComponent_CAMERAS | of_looks);
     const aiScene* read =
         importer->ReadFile(path, aiProcess_Triangulate | aiProcess_RemoveComponent);
     if (read == nullptr) {
@@ -221,7 +358,7 @@ void read_and_send(const std::string& path, const PipeWriter& pipe) {
       return;
     }
     aiScene* scene = importer->GetOrphanedScene();
-    Sender(*scene, path, pipe).send();
+    Sender(*scene, path, looks, pipe).send();
   } catch (const std::bad_alloc&) {
     refuse(pipe, "not enough memory");
   } catch (const std::exception& error) {
@@ -248,6 +385,12 @@ class Receiver {
             raw_.metres_per_unit = message.metres_per_unit;
           }
           break;
+        case Tag::kMaterial:
+          if (!receive_material(pipe, message)) return false;
+          break;
+        case Tag::kTexture:
+          if (!receive_texture(pipe, message)) return false;
+          break;
         case Tag::kPart:
           if (!receive_part(pipe, message)) return false;
           break;
@@ -273,6 +416,7 @@ class Receiver {
     auto scene = writer_.finish();
     if (!scene) return scene.error();
     raw_.scene = *std::move(scene);
+    raw_.scene.materials = std::move(materials_);
     return std::move(raw_);
   }
 
@@ -286,13 +430,56 @@ class Receiver {
     return pipe.read(text.data(), size);
   }
 
+  bool receive_material(PipeReader& pipe, const Message& message) {
+    MaterialMessage body;
+    Material material;
+    if (!pipe.read(&body, sizeof body) || !receive_text(pipe, message.node_size, material.name) ||
+        body.opacity > static_cast<uint32_t>(Opacity::kBlended)) {
+      return false;
+    }
+    material.colour = body.colour;
+    material.threshold = body.threshold;
+    material.opacity = static_cast<Opacity>(body.opacity);
+    material.texture1 = message.material1;
+    materials_.push_back(std::move(material));
+    return true;
+  }
+
+  bool receive_texture(PipeReader& pipe, const Message& message) {
+    TextureSource source;
+    if (!receive_text(pipe, message.node_size, source.name)) return false;
+    texture_bytes_ += message.vertices;
+    if (raw_.textures.size() >= kMostTextures || message.vertices > kMostTextureBytes ||
+        texture_bytes_ > kMostTextureBytes) {
+      return false;
+    }
+    source.bytes.resize(static_cast<size_t>(message.vertices));
+    if (!pipe.read(source.bytes.data(), source.bytes.size())) return false;
+    source.width = static_cast<int32_t>(message.triangles & 0x7fffffff);
+    source.height = static_cast<int32_t>(message.triangles >> 32 & 0x7fffffff);
+    raw_.textures.push_back(std::move(source));
+    return true;
+  }
+
+  // assimp counts up from the lower edge.
+  bool receive_places(PipeReader& pipe, uint64_t vertices) {
+    places_.clear();
+    for (uint64_t left = vertices; left > 0;) {
+      const size_t count = std::min<uint64_t>(left, floats_.size());
+      if (!pipe.read(floats_.data(), count * sizeof floats_[0])) return false;
+      for (size_t i = 0; i < count; ++i) places_.push_back({floats_[i][0], 1 - floats_[i][1]});
+      left -= count;
+    }
+    return true;
+  }
+
   bool receive_part(PipeReader& pipe, const Message& part) {
     std::string node, material;
     Transform place;
     if (!receive_text(pipe, part.node_size, node)) return false;
     if (!receive_text(pipe, part.material_size, material)) return false;
     if (!pipe.read(place.m.data(), sizeof place.m)) return false;
-    writer_.begin_part(node, material);
+    writer_.begin_part(node, material, part.material1 <= materials_.size() ? part.material1 : 0);
     auto& positions = writer_.scene().positions;
     if (positions.size() + part.vertices >= kNoVertex ||
         writer_.scene().triangles.size() + part.triangles >= kNoVertex) {
@@ -308,6 +495,7 @@ class Receiver {
       }
       left -= count;
     }
+    if (part.has_places != 0 && !receive_places(pipe, part.vertices)) return false;
     for (uint64_t left = part.triangles; left > 0;) {
       const size_t count = std::min<uint64_t>(left, corners_.size());
       if (!pipe.read(corners_.data(), count * sizeof corners_[0])) return false;
@@ -316,6 +504,11 @@ class Receiver {
           return corners_[i][k] < part.vertices ? base + corners_[i][k] : kNoVertex;
         };
         writer_.add_triangle(corner(0), corner(1), corner(2));
+        if (part.has_places == 0) continue;
+        const auto spot = [&](int k) {
+          return corners_[i][k] < part.vertices ? places_[corners_[i][k]] : std::array<float, 2>{};
+        };
+        writer_.set_texture_corners({spot(0), spot(1), spot(2)});
       }
       left -= count;
     }
@@ -335,6 +528,9 @@ class Receiver {
   SceneWriter writer_;
   RawScene raw_;
   uint64_t unknown_kinds_ = 0;
+  uint64_t texture_bytes_ = 0;
+  std::vector<Material> materials_;
+  std::vector<std::array<float, 2>> places_;
   std::vector<std::array<float, 3>> floats_{1 << 14};
   std::vector<std::array<uint32_t, 3>> corners_{1 << 14};
 };
@@ -350,7 +546,7 @@ Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions& op
   const ChildLimits limits{.bytes = (uint64_t{2} << 30) + 100 * size, .seconds = 5 + size / 20'000};
   Receiver receiver(options);
   const auto done = run_in_child(
-      limits, context, [&](const PipeWriter& pipe) { read_and_send(path, pipe); },
+      limits, context, [&](const PipeWriter& pipe) { read_and_send(path, options.looks, pipe); },
       [&](PipeReader& pipe) { return receiver.receive(pipe); });
   if (receiver.too_large) {
     return Error{Errc::kLimit, path + ": more than 4.29 thousand million corners; split the file"};

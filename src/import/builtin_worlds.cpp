@@ -7,6 +7,7 @@
 #include <array>
 
 #include "import/builtin_table.h"
+#include "import/name_colour.h"
 #include "import/patch_scene.h"
 
 namespace throng {
@@ -178,11 +179,14 @@ Result<Scene> make_builtin_world(const BuiltinWorldConfig& config) {
     if (const auto cut = cut_patches(scene, how, context); !cut) {
       return refuse(cut.error().message);
     }
+    add_named_materials(scene);
     return scene;
   }
   WorldBuilder builder;
   entry->build(builder, full);
-  return builder.finish();
+  Scene scene = builder.finish();
+  add_named_materials(scene);
+  return scene;
 }
 
 }  // namespace throng

@@ -41,6 +41,9 @@ void filter_triangles(Scene& scene, Keep keep) {
       if (!scene.patch_of_triangle.empty()) {
         scene.patch_of_triangle[kept] = scene.patch_of_triangle[done];
       }
+      if (!scene.texture_corners.empty()) {
+        scene.texture_corners[kept] = scene.texture_corners[done];
+      }
       ++kept;
     }
   };
@@ -58,6 +61,7 @@ void filter_triangles(Scene& scene, Keep keep) {
   scene.triangles.resize(kept);
   scene.area.resize(kept);
   if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
+  if (!scene.texture_corners.empty()) scene.texture_corners.resize(kept);
 }
 
 void drop_broken(Scene& scene) {

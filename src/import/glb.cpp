@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 // Khronos Group. glTF 2.0 Specification. 2021. Every number of the file is checked before it is
@@ -115,10 +117,12 @@ struct Elements {
 
 class GlbReader {
  public:
-  explicit GlbReader(const ReadOptions& options) : name_(options.name), writer_(options) {}
+  explicit GlbReader(const ReadOptions& options)
+      : name_(options.name), looks_(options.looks == SceneLooks::kRead), writer_(options) {}
 
   Result<RawScene> read(std::string_view bytes, Context& context) {
     if (auto ok = read_chunks(bytes); !ok) return ok.error();
+    if (looks_) read_materials();
     const Json* scene = element(file_, "scenes", whole(file_, "scene").value_or(0));
     const auto roots = scene == nullptr ? Json() : scene->value("nodes", Json());
     if (!roots.is_array()) return bad("names no scene with nodes");
@@ -128,7 +132,10 @@ class GlbReader {
     }
     auto made = writer_.finish();
     if (!made) return made.error();
-    return RawScene{.scene = *std::move(made), .up = 'y', .metres_per_unit = 1};
+    RawScene raw{.scene = *std::move(made), .up = 'y', .metres_per_unit = 1};
+    raw.scene.materials = std::move(materials_);
+    raw.textures = std::move(textures_);
+    return raw;
   }
 
  private:
@@ -175,6 +182,65 @@ class GlbReader {
                  ", which is not read here");
     }
     return {};
+  }
+
+  // What cannot be read of them is left out: a model is more than its looks.
+  void read_materials() {
+    const auto materials = file_.find("materials");
+    if (materials == file_.end() || !materials->is_array()) return;
+    std::vector<uint32_t> numbers1;  // Of images.
+    for (const Json& one : *materials) {
+      Material& out = materials_.emplace_back();
+      if (!one.is_object()) continue;
+      out.name = words(one, "name");
+      const std::string mode = words(one, "alphaMode");
+      if (mode == "MASK") out.opacity = Opacity::kHoles;
+      if (mode == "BLEND") out.opacity = Opacity::kBlended;
+      const auto limit = one.find("alphaCutoff");
+      if (limit != one.end() && limit->is_number()) {
+        out.threshold = static_cast<float>(std::clamp(limit->get<double>(), 0.0, 1.0));
+      }
+      const auto pbr = one.find("pbrMetallicRoughness");
+      if (pbr == one.end() || !pbr->is_object()) continue;
+      if (const auto colour = numbers<4>(*pbr, "baseColorFactor")) {
+        for (size_t c = 0; c < 4; ++c) {
+          out.colour[c] = static_cast<float>(std::clamp((*colour)[c], 0.0, 1.0));
+        }
+      }
+      const auto texture = pbr->find("baseColorTexture");
+      if (texture == pbr->end() || !texture->is_object()) continue;
+      const Json* found = element(file_, "textures", whole(*texture, "index").value_or(~0ULL));
+      if (found == nullptr) continue;
+      out.texture1 = image1(whole(*found, "source").value_or(~0ULL), numbers1);
+      texture_set_.resize(materials_.size(), 0);
+      texture_set_.back() = whole(*texture, "texCoord").value_or(0);
+    }
+    texture_set_.resize(materials_.size(), 0);
+  }
+
+  // Number of an image of the file among textures_, 0 if there is no such image.
+  uint32_t image1(uint64_t index, std::vector<uint32_t>& numbers1) {
+    const Json* image = element(file_, "images", index);
+    if (image == nullptr) return 0;
+    if (numbers1.size() <= index) numbers1.resize(static_cast<size_t>(index) + 1, 0);
+    uint32_t& number1 = numbers1[static_cast<size_t>(index)];
+    if (number1 != 0) return number1;
+    TextureSource source{.name = words(*image, "name"), .bytes = {}};
+    const Json* view = element(file_, "bufferViews", whole(*image, "bufferView").value_or(~0ULL));
+    if (view != nullptr && whole(*view, "buffer").value_or(0) == 0) {
+      const uint64_t from = whole(*view, "byteOffset").value_or(0);
+      const uint64_t length = whole(*view, "byteLength").value_or(0);
+      if (from <= binary_.size() && length <= binary_.size() - from) {
+        source.bytes = binary_.substr(static_cast<size_t>(from), static_cast<size_t>(length));
+      }
+      if (source.name.empty()) source.name = "image " + std::to_string(index);
+      if (source.bytes.empty()) source.bytes = "none";  // Not a file of that name.
+    } else {
+      source.name = words(*image, "uri");
+      if (source.name.starts_with("data:")) return 0;
+    }
+    textures_.push_back(std::move(source));
+    return number1 = static_cast<uint32_t>(textures_.size());
   }
 
   Result<void> read_node(uint64_t index, const Above& above, size_t deep, Context& context) {
@@ -226,18 +292,43 @@ class GlbReader {
         if (!order || order->component == kFloat) return bad("has indices that it does not hold");
       }
       std::string material;
+      uint32_t material1 = 0;
+      std::optional<Elements> places;
       if (const auto number = whole(part, "material")) {
         const Json* found = element(file_, "materials", *number);
         if (found != nullptr) material = words(*found, "name");
+        if (*number < materials_.size()) {
+          material1 = static_cast<uint32_t>(*number) + 1;
+          places = texture_places(*attributes, material1);
+        }
       }
-      writer_.begin_part(here.path.empty() ? words(*mesh, "name") : here.path, material);
-      add_part(*corners, order, whole(part, "mode").value_or(4), here);
+      writer_.begin_part(here.path.empty() ? words(*mesh, "name") : here.path, material, material1);
+      add_part(*corners, order, places, whole(part, "mode").value_or(4), here);
     }
     return {};
   }
 
-  void add_part(const Elements& corners, const std::optional<Elements>& order, uint64_t mode,
-                const Above& here) {
+  std::optional<Elements> texture_places(const Json& attributes, uint32_t material1) const {
+    if (materials_[material1 - 1].texture1 == 0) return std::nullopt;
+    const std::string name = "TEXCOORD_" + std::to_string(texture_set_[material1 - 1]);
+    const auto number = whole(attributes, name.c_str());
+    return number ? elements(*number, "VEC2", 0, 2) : std::nullopt;
+  }
+
+  // Of a corner; whole numbers stand for shares.
+  static std::array<float, 2> place_at(const Elements& places, uint64_t i) {
+    if (i >= places.count) return {};
+    if (places.component == kFloat) return {places.at<float>(i, 0), places.at<float>(i, 1)};
+    if (places.component == kByte) {
+      return {static_cast<float>(places.at<uint8_t>(i, 0)) / 255.0F,
+              static_cast<float>(places.at<uint8_t>(i, 1)) / 255.0F};
+    }
+    return {static_cast<float>(places.at<uint16_t>(i, 0)) / 65535.0F,
+            static_cast<float>(places.at<uint16_t>(i, 1)) / 65535.0F};
+  }
+
+  void add_part(const Elements& corners, const std::optional<Elements>& order,
+                const std::optional<Elements>& places, uint64_t mode, const Above& here) {
     const uint64_t count = order ? order->count : corners.count;
     if (mode < 4) {
       writer_.count_points_and_lines(count);
@@ -256,16 +347,18 @@ class GlbReader {
     const uint64_t step = mode == 4 ? 3 : 1;
     for (uint64_t i = 0; i + 3 <= count && !writer_.full(); i += step) {
       const bool odd = mode == 5 && i % 2 == 1;
-      writer_.add_triangle(corner(mode == 6 ? 0
-                                  : odd     ? i + 1
-                                            : i),
-                           corner(odd ? i : i + 1), corner(i + 2));
+      const uint64_t a = mode == 6 ? 0 : odd ? i + 1 : i, b = odd ? i : i + 1;
+      writer_.add_triangle(corner(a), corner(b), corner(i + 2));
+      if (!places) continue;
+      const auto place = [&](uint64_t k) { return place_at(*places, order ? order->index(k) : k); };
+      writer_.set_texture_corners({place(a), place(b), place(i + 2)});
     }
     writer_.scene().area.resize(writer_.scene().triangles.size(), here.area);
   }
 
   // Nothing if the file does not hold them.
-  std::optional<Elements> elements(uint64_t number, const char* type, uint64_t least_stride) const {
+  std::optional<Elements> elements(uint64_t number, const char* type, uint64_t least_stride,
+                                   uint64_t parts = 1) const {
     const Json* accessor = element(file_, "accessors", number);
     if (accessor == nullptr || words(*accessor, "type") != type || accessor->contains("sparse")) {
       return std::nullopt;
@@ -280,7 +373,7 @@ class GlbReader {
                           : out.component == kInt || out.component == kFloat ? 4
                                                                              : 0;
     if (size == 0) return std::nullopt;
-    const uint64_t whole_size = std::max(size, least_stride);
+    const uint64_t whole_size = std::max(size * parts, least_stride);
     out.count = whole(*accessor, "count").value_or(0);
     out.stride = whole(*view, "byteStride").value_or(whole_size);
     const uint64_t from = whole(*view, "byteOffset").value_or(0);
@@ -298,7 +391,11 @@ class GlbReader {
   }
 
   std::string name_;
+  bool looks_;
   SceneWriter writer_;
+  std::vector<Material> materials_;
+  std::vector<uint64_t> texture_set_;  // By material.
+  std::vector<TextureSource> textures_;
   Json file_;
   std::string_view binary_;
   std::vector<bool> been_;  // By node.

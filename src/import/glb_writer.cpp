@@ -10,12 +10,24 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "import/name_colour.h"
 #include "import/scene_output.h"
 #include "throng/scene.h"
 
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
 // Writes binary glTF 2.0 (Khronos, 2017). Three walks over each run of triangles: one measures, so
 // that the header can be written first; one writes corners; one writes indices. Only a renumbering
-// of the corners is ever held, so the memory is four bytes a corner whatever the file's size.
+// of the corners is ever held, so the memory is four bytes a corner whatever the file's size. Runs
+// with a texture share no corners: neighbours may lie elsewhere in it.
 namespace throng {
 namespace {
 
@@ -23,42 +35,12 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 
 constexpr uint32_t kUnset = UINT32_MAX;
 
-struct Colour {
-  std::string_view material;
-  double r, g, b, a;
-};
-
-// Linear base colours, so that other viewers show something nice. Unknown names get one by hash.
-constexpr std::array<Colour, 26> kColours = {{
-    {"floor", 0.50, 0.49, 0.46, 1},     {"slab", 0.38, 0.38, 0.38, 1},
-    {"wall", 0.72, 0.66, 0.56, 1},      {"roof", 0.42, 0.14, 0.09, 1},
-    {"ramp", 0.62, 0.47, 0.22, 1},      {"stairs", 0.68, 0.52, 0.32, 1},
-    {"pillar", 0.60, 0.60, 0.62, 1},    {"kerb", 0.66, 0.64, 0.58, 1},
-    {"pavement", 0.44, 0.42, 0.39, 1},  {"road", 0.10, 0.10, 0.11, 1},
-    {"grass", 0.16, 0.32, 0.09, 1},     {"stone", 0.60, 0.54, 0.43, 1},
-    {"wood", 0.30, 0.16, 0.07, 1},      {"grating", 0.40, 0.43, 0.46, 1},
-    {"steel", 0.14, 0.24, 0.36, 1},     {"railing", 0.80, 0.58, 0.06, 1},
-    {"pipe", 0.55, 0.58, 0.60, 1},      {"tank", 0.72, 0.74, 0.76, 1},
-    {"car", 0.55, 0.03, 0.03, 1},       {"car dark", 0.03, 0.06, 0.16, 1},
-    {"car light", 0.70, 0.71, 0.73, 1}, {"tyre", 0.02, 0.02, 0.02, 1},
-    {"glass", 0.06, 0.12, 0.16, 1},     {"trunk", 0.16, 0.09, 0.04, 1},
-    {"crown", 0.10, 0.26, 0.06, 1},     {"water", 0.05, 0.18, 0.26, 1},
-}};
-
-Colour colour_of(std::string_view material) {
-  for (const Colour& colour : kColours) {
-    if (colour.material == material) return colour;
-  }
-  uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char c : material) hash = (hash ^ static_cast<uint8_t>(c)) * 16777619u;
-  const auto part = [&](uint32_t shift) { return 0.15 + 0.6 * ((hash >> shift) & 255) / 255.0; };
-  return {material, part(0), part(8), part(16), 1};
-}
-
 // Triangles of one part and one area kind: one mesh of the file.
 struct Run {
   std::string_view node;
   std::string_view material;
+  uint32_t material1 = 0;
+  bool textured = false;
   AreaKind kind = kAreaWalkable;
   uint32_t first = 0;
   uint32_t count = 0;
@@ -74,13 +56,19 @@ std::vector<Run> split_into_runs(const Scene& scene) {
   const auto kind_of = [&](uint32_t t) {
     return t < scene.area.size() ? scene.area[t] : kAreaWalkable;
   };
-  const auto add = [&](std::string_view node, std::string_view material, uint32_t from,
-                       uint32_t to) {
+  const auto add = [&](std::string_view node, std::string_view material, uint32_t material1,
+                       uint32_t from, uint32_t to) {
+    if (material1 > scene.materials.size()) material1 = 0;
+    const bool textured = material1 > 0 && scene.materials[material1 - 1].texture1 > 0 &&
+                          scene.materials[material1 - 1].texture1 <= scene.textures.size() &&
+                          scene.texture_corners.size() == total;
     while (from < to) {
       uint32_t end = from + 1;
       while (end < to && kind_of(end) == kind_of(from)) ++end;
       runs.push_back({.node = node,
                       .material = material,
+                      .material1 = material1,
+                      .textured = textured,
                       .kind = kind_of(from),
                       .first = from,
                       .count = end - from});
@@ -92,11 +80,11 @@ std::vector<Run> split_into_runs(const Scene& scene) {
     const uint32_t from = std::clamp(part.first_triangle, at, total);
     const auto to = static_cast<uint32_t>(std::clamp<uint64_t>(
         static_cast<uint64_t>(part.first_triangle) + part.triangle_count, from, total));
-    add("scene", "surface", at, from);  // Triangles that no part names.
-    add(part.node, part.material, from, to);
+    add("scene", "surface", 0, at, from);  // Triangles that no part names.
+    add(part.node, part.material, part.material1, from, to);
     at = to;
   }
-  add("scene", "surface", at, total);
+  add("scene", "surface", 0, at, total);
   return runs;
 }
 
@@ -132,7 +120,7 @@ std::array<float, 3> local_corner(const Scene& scene, const Run& run, uint32_t c
 
 void measure(const Scene& scene, Renumbering& order, Run& run) {
   order.start(run);
-  run.corners = static_cast<uint32_t>(order.used().size());
+  run.corners = run.textured ? 3 * run.count : static_cast<uint32_t>(order.used().size());
   Box3d box;
   for (const uint32_t corner : order.used()) box.add(scene.positions[corner]);
   // Near the origin floats are fine enough. Whole metres are exact as floats, too.
@@ -156,19 +144,83 @@ std::string quoted(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
-std::string make_header(const std::vector<Run>& runs, uint64_t corners, uint64_t triangles) {
-  std::vector<std::string_view> materials;
+// Images of the file, as PNG.
+struct Images {
+  std::vector<std::string> bytes;  // Each a multiple of four long.
+  [[nodiscard]] uint64_t size() const {
+    uint64_t sum = 0;
+    for (const std::string& one : bytes) sum += one.size();
+    return sum;
+  }
+};
+
+void append_bytes(void* to, void* data, int size) {
+  static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<size_t>(size));
+}
+
+Images make_images(const Scene& scene, const std::vector<Run>& runs) {
+  Images out;
+  const bool any = std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.textured; });
+  for (size_t i = 0; any && i < scene.textures.size(); ++i) {
+    const Texture& t = scene.textures[i];
+    std::string& bytes = out.bytes.emplace_back();
+    stbi_write_png_to_func(append_bytes, &bytes, t.width, t.height, 4, t.rgba.data(), t.width * 4);
+    bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
+  }
+  return out;
+}
+
+// What the binary chunk holds, in this order.
+struct Sizes {
+  uint64_t corners = 0, places = 0, triangles = 0;  // Places in textures.
+  uint64_t images = 0;
+  [[nodiscard]] uint64_t bytes() const {
+    return 12 * corners + 8 * places + 12 * triangles + images;
+  }
+};
+
+std::string material_json(const Scene& scene, std::string_view name, uint32_t material1,
+                          bool textured) {
+  const std::array<float, 4> c =
+      material1 > 0 ? scene.materials[material1 - 1].colour : any_colour(name);
+  const std::string texture = textured ? fmt::format(",\"baseColorTexture\":{{\"index\":{}}}",
+                                                     scene.materials[material1 - 1].texture1 - 1)
+                                       : std::string();
+  const Opacity opacity = material1 > 0 ? scene.materials[material1 - 1].opacity : Opacity::kOpaque;
+  std::string mode;
+  if (opacity == Opacity::kBlended) mode = ",\"alphaMode\":\"BLEND\"";
+  if (opacity == Opacity::kHoles) {
+    mode = fmt::format(",\"alphaMode\":\"MASK\",\"alphaCutoff\":{}",
+                       scene.materials[material1 - 1].threshold);
+  }
+  return fmt::format(
+      "{{\"name\":{},\"doubleSided\":true,\"pbrMetallicRoughness\":{{\"baseColorFactor\":"
+      "[{},{},{},{}],\"metallicFactor\":0,\"roughnessFactor\":0.9{}}}{}}}",
+      quoted(name), c[0], c[1], c[2], c[3], texture, mode);
+}
+
+std::string make_header(const Scene& scene, const std::vector<Run>& runs, const Sizes& sizes,
+                        const Images& images) {
+  struct Look {
+    std::string_view material;
+    uint32_t material1 = 0;
+    bool textured = false;
+    bool operator==(const Look&) const = default;
+  };
+  std::vector<Look> materials;
   std::string nodes;
   std::string meshes;
   std::string accessors;
   std::string roots;
   uint64_t corner = 0;
   uint64_t triangle = 0;
-  for (size_t i = 0; i < runs.size(); ++i) {
+  uint64_t place = 0;
+  for (size_t i = 0, accessor = 0; i < runs.size(); ++i) {
     const Run& run = runs[i];
     const std::string_view comma = i == 0 ? "" : ",";
-    auto found = std::find(materials.begin(), materials.end(), run.material);
-    if (found == materials.end()) found = materials.insert(materials.end(), run.material);
+    const Look look{run.material, run.material1, run.textured};
+    auto found = std::find(materials.begin(), materials.end(), look);
+    if (found == materials.end()) found = materials.insert(materials.end(), look);
     const std::string name = quoted(run.node);
     roots += fmt::format("{}{}", comma, i);
     nodes += fmt::format("{}{{\"name\":{},\"mesh\":{}", comma, name, i);
@@ -176,10 +228,12 @@ std::string make_header(const std::vector<Run>& runs, uint64_t corners, uint64_t
       nodes += fmt::format(",\"translation\":[{},{},{}]", run.origin.x, run.origin.y, run.origin.z);
     }
     nodes += fmt::format(",\"extras\":{{\"area\":{}}}}}", run.kind);
+    const std::string places =
+        run.textured ? fmt::format(",\"TEXCOORD_0\":{}", accessor + 2) : std::string();
     meshes += fmt::format(
-        "{}{{\"name\":{},\"primitives\":[{{\"attributes\":{{\"POSITION\":{}}},\"indices\":{},"
+        "{}{{\"name\":{},\"primitives\":[{{\"attributes\":{{\"POSITION\":{}{}}},\"indices\":{},"
         "\"material\":{}}}]}}",
-        comma, name, 2 * i, 2 * i + 1, found - materials.begin());
+        comma, name, accessor, places, accessor + 1, found - materials.begin());
     accessors += fmt::format(
         "{}{{\"bufferView\":0,\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":"
         "\"VEC3\","
@@ -188,27 +242,52 @@ std::string make_header(const std::vector<Run>& runs, uint64_t corners, uint64_t
         "\"SCALAR\"}}",
         comma, corner * 12, run.corners, run.min[0], run.min[1], run.min[2], run.max[0], run.max[1],
         run.max[2], triangle * 12, 3 * static_cast<uint64_t>(run.count));
+    accessor += 2;
+    if (run.textured) {
+      accessors += fmt::format(
+          ",{{\"bufferView\":2,\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":"
+          "\"VEC2\"}}",
+          place * 8, run.corners);
+      place += run.corners;
+      ++accessor;
+    }
     corner += run.corners;
     triangle += run.count;
   }
   std::string looks;
-  for (const std::string_view material : materials) {
-    const Colour c = colour_of(material);
-    looks += fmt::format(
-        "{}{{\"name\":{},\"doubleSided\":true,\"pbrMetallicRoughness\":{{\"baseColorFactor\":"
-        "[{},{},{},{}],\"metallicFactor\":0,\"roughnessFactor\":0.9}}}}",
-        looks.empty() ? "" : ",", quoted(material), c.r, c.g, c.b, c.a);
+  for (const Look& look : materials) {
+    looks += looks.empty() ? "" : ",";
+    looks += material_json(scene, look.material, look.material1, look.textured);
+  }
+  std::string views = fmt::format(
+      "{{\"buffer\":0,\"byteLength\":{},\"target\":34962}},"
+      "{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
+      sizes.corners * 12, sizes.corners * 12, sizes.triangles * 12);
+  std::string textures;
+  if (!images.bytes.empty()) {
+    uint64_t at = (sizes.corners + sizes.triangles) * 12;
+    views += fmt::format(",{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34962}}",
+                         at, sizes.places * 8);
+    at += sizes.places * 8;
+    std::string list, uses;
+    for (size_t i = 0; i < images.bytes.size(); ++i) {
+      views += fmt::format(",{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}}}", at,
+                           images.bytes[i].size());
+      at += images.bytes[i].size();
+      list +=
+          fmt::format("{}{{\"name\":{},\"mimeType\":\"image/png\",\"bufferView\":{}}}",
+                      i == 0 ? "" : ",", quoted(std::string_view(scene.textures[i].name)), 3 + i);
+      uses += fmt::format("{}{{\"source\":{}}}", i == 0 ? "" : ",", i);
+    }
+    textures = fmt::format("\"images\":[{}],\"textures\":[{}],", list, uses);
   }
   std::string json = fmt::format(
       "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"throng\"}},\"scene\":0,\"scenes\":[{{"
       "\"nodes\":"
-      "[{}]}}],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],"
-      "\"bufferViews\":"
-      "[{{\"buffer\":0,\"byteLength\":{},\"target\":34962}},"
-      "{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}],"
+      "[{}]}}],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],{}\"accessors\":[{}],"
+      "\"bufferViews\":[{}],"
       "\"buffers\":[{{\"byteLength\":{}}}]}}",
-      roots, nodes, meshes, looks, accessors, corners * 12, corners * 12, triangles * 12,
-      corners * 12 + triangles * 12);
+      roots, nodes, meshes, looks, textures, accessors, views, sizes.bytes());
   json.resize((json.size() + 3) / 4 * 4, ' ');
   return json;
 }
@@ -219,27 +298,34 @@ Result<void> write_glb(const Scene& scene, const std::string& path) {
   if (const auto fine = check_scene(scene, path); !fine) return fine;
   std::vector<Run> runs = split_into_runs(scene);
   Renumbering order(scene);
-  uint64_t corners = 0;
+  Sizes sizes{.triangles = scene.triangles.size()};
   for (Run& run : runs) {
     measure(scene, order, run);
-    corners += run.corners;
+    sizes.corners += run.corners;
+    sizes.places += run.textured ? run.corners : 0;
   }
-  const uint64_t triangles = scene.triangles.size();
-  const std::string header = make_header(runs, corners, triangles);
-  const uint64_t body = 12 * (corners + triangles);
+  const Images images = make_images(scene, runs);
+  sizes.images = images.size();
+  const std::string header = make_header(scene, runs, sizes, images);
+  const uint64_t body = sizes.bytes();
   const uint64_t size = 12 + 8 + header.size() + 8 + body;
   if (size > UINT32_MAX) {
     return Error{
         Errc::kLimit,
         fmt::format("{}: {} triangles need {} bytes, and a GLB file ends at 4 GiB; write the "
                     "scene in pieces",
-                    path, triangles, size)};
+                    path, sizes.triangles, size)};
   }
 
   SceneOutput out(path);
   const auto put_chunk = [&](const char* type, uint64_t length) {
     out.put(static_cast<uint32_t>(length));
     out.put_bytes(type, 4);
+  };
+  const auto each_corner = [](const Run& run, auto put) {
+    for (uint32_t t = run.first; t < run.first + run.count; ++t) {
+      for (size_t k = 0; k < 3; ++k) put(t, k);
+    }
   };
   out.put_bytes("glTF", 4);
   out.put(uint32_t{2});
@@ -249,15 +335,26 @@ Result<void> write_glb(const Scene& scene, const std::string& path) {
   put_chunk("BIN\0", body);
   for (const Run& run : runs) {
     order.start(run);
-    for (const uint32_t corner : order.used()) out.put(local_corner(scene, run, corner));
+    if (run.textured) {
+      each_corner(run, [&](uint32_t t, size_t k) {
+        out.put(local_corner(scene, run, scene.triangles[t][k]));
+      });
+    } else {
+      for (const uint32_t corner : order.used()) out.put(local_corner(scene, run, corner));
+    }
   }
   for (const Run& run : runs) {
     order.start(run);
-    for (uint32_t t = run.first; t < run.first + run.count; ++t) {
-      const auto& corner = scene.triangles[t];
-      out.put(std::array<uint32_t, 3>{order[corner[0]], order[corner[1]], order[corner[2]]});
-    }
+    uint32_t next = 0;
+    each_corner(run, [&](uint32_t t, size_t k) {
+      out.put(run.textured ? next++ : order[scene.triangles[t][k]]);
+    });
   }
+  for (const Run& run : runs) {
+    if (!run.textured) continue;
+    each_corner(run, [&](uint32_t t, size_t k) { out.put(scene.texture_corners[t][k]); });
+  }
+  for (const std::string& image : images.bytes) out.put_bytes(image.data(), image.size());
   return out.close();
 }
 

@@ -14,12 +14,14 @@
 #include "import/bsp.h"
 #include "import/city.h"
 #include "import/clean.h"
+#include "import/name_colour.h"
 #include "import/obj.h"
 #include "import/patch_json.h"
 #include "import/patch_scene.h"
 #include "import/plan.h"
 #include "import/ply.h"
 #include "import/raw_scene.h"
+#include "import/texture_reader.h"
 #include "import/zonel.h"
 
 // Every way in ends here: read each file as it is, place it in metres with Y up, name its areas,
@@ -118,9 +120,23 @@ void append(Scene& all, Scene&& one) {
     for (uint32_t& corner : moved) corner = corner == kNoVertex ? kNoVertex : corner + first_vertex;
   }
   all.area.insert(all.area.end(), one.area.begin(), one.area.end());
+  const auto first_material = static_cast<uint32_t>(all.materials.size());
   for (ScenePart& part : one.parts) {
     part.first_triangle += first_triangle;
+    if (part.material1 != 0) part.material1 += first_material;
     all.parts.push_back(std::move(part));
+  }
+  const auto first_texture = static_cast<uint32_t>(all.textures.size());
+  for (Material& material : one.materials) {
+    if (material.texture1 != 0) material.texture1 += first_texture;
+    all.materials.push_back(std::move(material));
+  }
+  std::move(one.textures.begin(), one.textures.end(), std::back_inserter(all.textures));
+  if (!all.texture_corners.empty() || !one.texture_corners.empty()) {
+    all.texture_corners.resize(first_triangle);
+    all.texture_corners.insert(all.texture_corners.end(), one.texture_corners.begin(),
+                               one.texture_corners.end());
+    all.texture_corners.resize(all.triangles.size());
   }
   all.patches.append(one.patches);
   all.report.triangles_read += one.report.triangles_read;
@@ -199,8 +215,10 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
     options.curve_tolerance = config.curve_tolerance;
     options.plan_height = config.plan_height;
     options.metres_per_unit = source.scale;
+    options.looks = config.looks;
     auto raw = read_source(source, options, context);
     if (!raw) return raw.error();
+    if (auto ok = read_textures(*raw, source.path, context); !ok) return ok.error();
     const Transform place = placement(source, *raw);
     for (Vec3d& p : raw->scene.positions) p = place(p);
     for (BezierPatch& patch : raw->scene.patches.patches) {
@@ -232,6 +250,7 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   const std::string name = sources->size() == 1 ? sources->front().path
                                                 : fmt::format("scene of {} files", sources->size());
   if (auto cleaned = clean_scene(all, name, context); !cleaned) return cleaned.error();
+  if (config.looks == SceneLooks::kRead) add_named_materials(all);
   if (context.on_progress) {
     context.on_progress({"read", sources->size(), sources->size()});
   }

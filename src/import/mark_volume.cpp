@@ -71,6 +71,7 @@ class Cutter {
     scene_.triangles = std::move(triangles_);
     scene_.area = std::move(area_);
     if (!scene_.patch_of_triangle.empty()) scene_.patch_of_triangle = std::move(patch_);
+    if (!scene_.texture_corners.empty()) scene_.texture_corners = std::move(texture_);
   }
 
  private:
@@ -80,6 +81,31 @@ class Cutter {
     triangles_.push_back({a, b, c});
     area_.push_back(kind);
     if (!scene_.patch_of_triangle.empty()) patch_.push_back(scene_.patch_of_triangle[from]);
+    if (scene_.texture_corners.empty()) return;
+    TextureCorners& corners = texture_.emplace_back();
+    const std::array<uint32_t, 3> piece{a, b, c};
+    for (size_t k = 0; k < 3; ++k) corners[k] = place_in_texture(from, piece[k]);
+  }
+  // Of a corner of a piece of triangle t.
+  [[nodiscard]] std::array<float, 2> place_in_texture(uint32_t t, uint32_t corner) const {
+    const auto& whole = scene_.triangles[t];
+    const TextureCorners& places = scene_.texture_corners[t];
+    for (size_t k = 0; k < 3; ++k) {
+      if (whole[k] == corner) return places[k];
+    }
+    if (corner >= scene_.positions.size()) return places[0];
+    const Vec3d a = scene_.positions[whole[0]];
+    const Vec3d u = scene_.positions[whole[1]] - a, v = scene_.positions[whole[2]] - a;
+    const Vec3d normal = cross(u, v), p = scene_.positions[corner] - a;
+    const double area = dot(normal, normal);
+    if (!(area > 0)) return places[0];
+    const double s = dot(cross(p, v), normal) / area, r = dot(cross(u, p), normal) / area;
+    std::array<float, 2> place{};
+    for (size_t k = 0; k < 2; ++k) {
+      place[k] = static_cast<float>(places[0][k] + s * (places[1][k] - places[0][k]) +
+                                    r * (places[2][k] - places[0][k]));
+    }
+    return place;
   }
   void keep(const Polygon& polygon, uint32_t from, AreaKind kind) {
     for (size_t i = 2; i < polygon.size(); ++i)
@@ -173,6 +199,7 @@ class Cutter {
   std::vector<std::array<uint32_t, 3>> triangles_;
   std::vector<AreaKind> area_;
   std::vector<uint32_t> patch_;
+  std::vector<TextureCorners> texture_;
 };
 
 }  // namespace

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "import/obj.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "import/mtl.h"
 #include "import/text_cursor.h"
 
 namespace throng {
@@ -15,7 +19,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class ObjReader {
  public:
-  explicit ObjReader(const ReadOptions& options) : writer_(options) {}
+  explicit ObjReader(const ReadOptions& options)
+      : writer_(options), looks_(options.looks == SceneLooks::kRead), library_(options.name) {}
 
   Result<RawScene> read(std::string_view bytes, Context& context) {
     size_t lines = 0;
@@ -25,7 +30,9 @@ class ObjReader {
     }
     auto scene = writer_.finish();
     if (!scene) return scene.error();
-    return RawScene{.scene = *std::move(scene), .up = 'y', .metres_per_unit = 1};
+    RawScene raw{.scene = *std::move(scene), .up = 'y', .metres_per_unit = 1};
+    library_.hand_over(raw);
+    return raw;
   }
 
  private:
@@ -64,6 +71,13 @@ class ObjReader {
     } else if (word == "usemtl") {
       material_ = name(cursor);
       changed_ = true;
+    } else if (looks_ && word == "vt") {
+      std::array<double, 2> place{};
+      if (!(cursor.take(place[0]) && cursor.take(place[1]))) place = {};
+      // Files count up from the lower edge.
+      places_.push_back({static_cast<float>(place[0]), static_cast<float>(1 - place[1])});
+    } else if (looks_ && word == "mtllib") {
+      library_.read(name(cursor));
     } else if (word == "l" || word == "p" || word == "curv") {
       writer_.count_points_and_lines(1);
     }
@@ -76,6 +90,7 @@ class ObjReader {
 
   void read_face(TextCursor& cursor) {
     corners_.clear();
+    face_places_.clear();
     bool good = !writer_.full();
     while (good) {
       long long index = 0;
@@ -87,6 +102,7 @@ class ObjReader {
       if (index < 0) index += count + 1;  // Negative ones count back from the last vertex.
       good = good && index >= 1 && index <= count;
       if (good) corners_.push_back(static_cast<uint32_t>(index - 1));
+      if (good && looks_) read_place(corner);
     }
     if (!good || corners_.size() < 3) {
       writer_.count_bad(corners_.size() > 3 ? corners_.size() - 2 : 1);
@@ -95,10 +111,22 @@ class ObjReader {
     if (changed_) {
       std::string node = object_;
       if (!node.empty() && !group_.empty()) node += '/';
-      writer_.begin_part(node + group_, material_);
+      writer_.begin_part(node + group_, material_, library_.material1(material_));
       changed_ = false;
     }
-    writer_.add_face(corners_);
+    writer_.add_face(corners_, face_places_);
+  }
+
+  // What follows a corner's vertex: "/7" or "/7/3". A corner without leaves the face without.
+  void read_place(TextCursor& corner) {
+    long long index = 0;
+    if (corner.at_end()) return;
+    TextCursor place(corner.rest().substr(1));
+    if (!place.take(index)) return;
+    const auto count = static_cast<long long>(places_.size());
+    if (index < 0) index += count + 1;
+    if (index >= 1 && index <= count)
+      face_places_.push_back(places_[static_cast<size_t>(index - 1)]);
   }
 
   SceneWriter writer_;
@@ -106,6 +134,9 @@ class ObjReader {
   std::string object_, group_, material_;
   bool changed_ = true;
   std::vector<uint32_t> corners_;
+  bool looks_;
+  MaterialLibrary library_;
+  std::vector<std::array<float, 2>> places_, face_places_;
 };
 
 }  // namespace

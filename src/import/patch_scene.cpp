@@ -57,6 +57,7 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
   scene.patch_of_triangle.resize(first_triangle, kNoPatch);
   scene.patch_of_triangle.insert(scene.patch_of_triangle.end(), cut.patch_of_triangle.begin(),
                                  cut.patch_of_triangle.end());
+  if (!scene.texture_corners.empty()) scene.texture_corners.resize(scene.triangles.size());
   for (ScenePart& part : cut.parts) {
     part.first_triangle += first_triangle;
     scene.parts.push_back(std::move(part));

@@ -8,11 +8,11 @@
 
 namespace throng {
 
-void SceneWriter::begin_part(std::string_view node, std::string_view material) {
+void SceneWriter::begin_part(std::string_view node, std::string_view material, uint32_t material1) {
   const auto first = static_cast<uint32_t>(scene_.triangles.size());
   if (!scene_.parts.empty()) {
     ScenePart& last = scene_.parts.back();
-    if (last.node == node && last.material == material) return;
+    if (last.node == node && last.material == material && last.material1 == material1) return;
     last.triangle_count = first - last.first_triangle;
     if (last.triangle_count == 0) scene_.parts.pop_back();
   }
@@ -20,7 +20,8 @@ void SceneWriter::begin_part(std::string_view node, std::string_view material) {
                           .node = std::string(node),
                           .material = std::string(material),
                           .first_triangle = first,
-                          .triangle_count = 0});
+                          .triangle_count = 0,
+                          .material1 = material1});
 }
 
 uint32_t SceneWriter::add_vertex(Vec3d p) {
@@ -46,7 +47,15 @@ void SceneWriter::add_polygon(std::span<const Vec3d> points, std::span<const uin
   for (const auto& [a, b, c] : cut_) add_triangle(base + a, base + b, base + c);
 }
 
-void SceneWriter::add_face(std::span<const uint32_t> corners) {
+void SceneWriter::set_texture_corners(const TextureCorners& corners) {
+  scene_.texture_corners.resize(scene_.triangles.size());
+  scene_.texture_corners.back() = corners;
+}
+
+void SceneWriter::add_face(std::span<const uint32_t> corners) { add_face(corners, {}); }
+
+void SceneWriter::add_face(std::span<const uint32_t> corners,
+                           std::span<const std::array<float, 2>> places) {
   const bool bad = std::find(corners.begin(), corners.end(), kNoVertex) != corners.end();
   if (corners.size() < 3 || bad) {
     count_bad(corners.size() > 3 ? corners.size() - 2 : 1);
@@ -54,6 +63,7 @@ void SceneWriter::add_face(std::span<const uint32_t> corners) {
   }
   if (corners.size() == 3) {
     add_triangle(corners[0], corners[1], corners[2]);
+    if (places.size() == 3) set_texture_corners({places[0], places[1], places[2]});
     return;
   }
   points_.clear();
@@ -61,7 +71,10 @@ void SceneWriter::add_face(std::span<const uint32_t> corners) {
   const uint32_t rings[2] = {0, static_cast<uint32_t>(corners.size())};
   cut_.clear();
   if (!cutter_.cut(points_, rings, cut_)) ++inexact_;
-  for (const auto& [a, b, c] : cut_) add_triangle(corners[a], corners[b], corners[c]);
+  for (const auto& [a, b, c] : cut_) {
+    add_triangle(corners[a], corners[b], corners[c]);
+    if (places.size() == corners.size()) set_texture_corners({places[a], places[b], places[c]});
+  }
 }
 
 bool SceneWriter::full() const { return scene_.positions.size() >= kNoVertex - 65536; }
@@ -77,6 +90,7 @@ Result<Scene> SceneWriter::finish() {
     if (last.triangle_count == 0) scene_.parts.pop_back();
   }
   scene_.area.resize(scene_.triangles.size(), kAreaWalkable);
+  if (!scene_.texture_corners.empty()) scene_.texture_corners.resize(scene_.triangles.size());
   scene_.report.bad_index += bad_;
   scene_.report.triangles_read = scene_.triangles.size() + bad_;
   if (thin_ > 0) {

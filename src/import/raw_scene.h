@@ -47,11 +47,21 @@ struct PatchZone {
 /// A corner of a triangle that names no vertex; clean_scene drops and counts the triangle.
 inline constexpr uint32_t kNoVertex = UINT32_MAX;
 
+/// A picture that a file names, or holds.
+struct TextureSource {
+  std::string name;   ///< As the file has it: a path, if it holds no bytes.
+  std::string bytes;  ///< Of a PNG, JPEG ...; or, where it has a size, RGBA texels.
+  int32_t width = 0, height = 0;
+};
+
 struct RawScene {
-  Scene scene;    ///< In the file's units and axes; patches without their triangles.
+  /// In the file's units and axes; patches without their triangles. The textures of its materials
+  /// are still in `textures`.
+  Scene scene;
   char up = 'y';  ///< Which axis of these numbers points up.
   double metres_per_unit = 1;
   std::optional<PatchZone> zone = std::nullopt;  ///< Where the file is one zone of many.
+  std::vector<TextureSource> textures = {};
 };
 
 struct ReadOptions {
@@ -59,6 +69,7 @@ struct ReadOptions {
   double curve_tolerance = 0.02;          ///< [m]
   double plan_height = 3;                 ///< [m]
   std::optional<double> metres_per_unit;  ///< The user's own, where given.
+  SceneLooks looks = SceneLooks::kLeaveOut;
 };
 
 /// Adds meshes and polygons to a scene, and counts what cannot be matter.
@@ -66,8 +77,8 @@ class SceneWriter {
  public:
   explicit SceneWriter(const ReadOptions& options) : file_(options.name) {}
 
-  /// What follows belongs to this node and material.
-  void begin_part(std::string_view node, std::string_view material);
+  /// What follows belongs to this node and material. `material1` as of a ScenePart.
+  void begin_part(std::string_view node, std::string_view material, uint32_t material1 = 0);
   uint32_t add_vertex(Vec3d p);
   void add_triangle(uint32_t a, uint32_t b, uint32_t c);
   /// A polygon by its corners; rings as in PolygonCutter::cut. Too short rings are counted.
@@ -77,6 +88,10 @@ class SceneWriter {
   /// polygon. Fewer than three corners, or kNoVertex among them, are counted as bad. Linear, but
   /// for polygons as PolygonCutter::cut.
   void add_face(std::span<const uint32_t> corners);
+  /// The same with a place in the texture for each corner; none: there is no texture.
+  void add_face(std::span<const uint32_t> corners, std::span<const std::array<float, 2>> places);
+  /// Of the triangle that was added last.
+  void set_texture_corners(const TextureCorners& corners);
 
   void count_bad(uint64_t triangles) { bad_ += triangles; }
   void count_points_and_lines(uint64_t count) { thin_ += count; }

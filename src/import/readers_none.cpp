@@ -8,6 +8,7 @@
 #include "import/glb.h"
 #include "import/patch_json.h"
 #include "import/plan.h"
+#include "import/texture_reader.h"
 #include "throng/character.h"
 
 // A build without assimp, pugixml and simdjson, and without child processes: a browser's.
@@ -45,6 +46,17 @@ Result<RawScene> read_geojson(std::string_view, const ReadOptions& options, Cont
 
 Result<RawScene> read_patch_json(std::string_view, const ReadOptions& options, Context&) {
   return not_here(options.name);
+}
+
+Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<TextureSource>& sources,
+                                                       const std::string& model, int32_t most,
+                                                       Context& context) {
+  std::vector<Result<Texture>> all;
+  for (const TextureSource& source : sources) {
+    if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
+    all.push_back(read_texture(source, model, most));
+  }
+  return all;
 }
 
 Result<Character> load_character(const std::string& path, Context&) { return not_here(path); }

@@ -5,12 +5,13 @@
 
 namespace throng {
 
-Result<Scene> load_scene(const Scenario& scenario, Context& context) {
+Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneLooks looks) {
   if (!scenario.world.empty()) {
     return Error{Errc::kBadConfig, scenario.world + ": a baked world keeps no triangles"};
   }
   if (!scenario.models.empty()) {
     SceneConfig config;
+    config.looks = looks;
     for (const std::string& model : scenario.models) {
       config.sources.push_back({.path = model, .up = {}, .scale = {}, .transform = {}});
     }

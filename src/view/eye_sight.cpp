@@ -67,7 +67,23 @@ struct EyeSight::Line {
 std::shared_ptr<const Occluders> occluders_of(const Scene& scene, Vec3d origin) {
   auto out = std::make_shared<Occluders>();
   out->origin = origin;
-  out->triangles = scene.triangles;
+  out->triangles.reserve(scene.triangles.size());
+  size_t part = 0;
+  for (size_t t = 0; t < scene.triangles.size(); ++t) {
+    while (part < scene.parts.size() &&
+           t >= size_t{scene.parts[part].first_triangle} + scene.parts[part].triangle_count) {
+      ++part;
+    }
+    // What one can see through hides nothing.
+    const uint32_t material1 = part < scene.parts.size() && t >= scene.parts[part].first_triangle
+                                   ? scene.parts[part].material1
+                                   : 0;
+    if (material1 != 0 && material1 <= scene.materials.size() &&
+        scene.materials[material1 - 1].opacity != Opacity::kOpaque) {
+      continue;
+    }
+    out->triangles.push_back(scene.triangles[t]);
+  }
   out->corners.reserve(scene.positions.size());
   for (const Vec3d& p : scene.positions) {
     const Vec3d q = p - origin;

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "import/raw_scene.h"
+#include "throng/context.h"
+#include "throng/material.h"
+#include "throng/result.h"
+
+/// Pictures of surfaces, wherever a model keeps them.
+namespace throng {
+
+/// PNG, JPEG, TGA, BMP. Halved until no side is longer than `most`; at most 2^26 texels before.
+/// Fails with kBadFile and a clause that says what is wrong.
+[[nodiscard]] Result<Texture> decode_texture(std::string_view bytes, int32_t most);
+
+/// One texture of a model: bytes that it holds, or a file beside it. As decode_texture.
+[[nodiscard]] Result<Texture> read_texture(const TextureSource& source, const std::string& model,
+                                           int32_t most);
+
+/// Turns `raw.textures` into those of its scene; materials whose texture cannot be used get a plain
+/// colour. In a child process where there are any, so a file that crashes the decoder is only one
+/// that cannot be used. Fails with kCancelled.
+[[nodiscard]] Result<void> read_textures(RawScene& raw, const std::string& model, Context& context);
+
+/// What came of each of `sources`: for builds with child processes and without.
+[[nodiscard]] Result<std::vector<Result<Texture>>> read_all_textures(
+    const std::vector<TextureSource>& sources, const std::string& model, int32_t most,
+    Context& context);
+
+}  // namespace throng

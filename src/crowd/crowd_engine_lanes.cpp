@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "crowd/crowd_engine.h"
+#include "crowd/sense_kernel.h"
+#include "steer/sampled_kernel.h"
+
+// Streams that meet: lanes, and the right half of narrow places. docs/design/008-engine.md.
+namespace throng {
+
+using steer::Plane;
+
+// How far it is to walls on both sides of a way, up to where a place is narrow. [m]
+CrowdEngine::Sides CrowdEngine::sides_of(const Body& body, Plane ahead) const {
+  const StrideGround& ground = grounds_[body.avatar_class];
+  const float unit = config_.units.unit, look = config_.lanes.narrow / unit;
+  const Plane right{-ahead.z, ahead.x}, left{ahead.z, -ahead.x};
+  return {ground.free_way(body.level, body.point(), left, look) * unit,
+          ground.free_way(body.level, body.point(), right, look) * unit};
+}
+
+bool CrowdEngine::is_narrow(const Sides& sides) const {
+  return sides.left < config_.lanes.narrow && sides.right < config_.lanes.narrow;
+}
+
+// Does somebody come towards it in a narrow place?
+bool CrowdEngine::meets_stream(const Body& body, const steer::Situation& situation) const {
+  steer::LaneSettings anybody = config_.lanes;
+  anybody.opposers = 1;
+  anybody.opposed = config_.lanes.narrow_opposed;
+  const float speed = size_of(situation.wish);
+  if (speed <= 1e-3f || !steer::is_opposed_fast(anybody, situation)) return false;
+  const Plane ahead{situation.wish.x / speed, situation.wish.z / speed};
+  return is_narrow(sides_of(body, ahead));
+}
+
+// Who meets a stream in a narrow place leaves it the left half.
+void CrowdEngine::keep_right(const Body& body, steer::Situation& situation) const {
+  const float speed = size_of(situation.wish);
+  if (speed <= 1e-3f) return;
+  const Plane ahead{situation.wish.x / speed, situation.wish.z / speed};
+  const Sides sides = sides_of(body, ahead);
+  if (!is_narrow(sides) || sides.right <= sides.left) return;
+  const float off = (sides.right - sides.left) / 2;  // from the middle [m]
+  const float aside = config_.lanes.to_right * std::min(off, 1.0f);
+  const float scale = speed / std::sqrt(1 + aside * aside);
+  situation.wish = {(ahead.x - ahead.z * aside) * scale, (ahead.z + ahead.x * aside) * scale};
+}
+
+// True if the wish is another one now.
+bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+  const Body& body = bodies_[i];
+  steer::Situation& situation = worker.situation;
+  if (!steer::is_opposed_fast(config_.lanes, situation)) return false;
+  const Eye eye{.x = body.x,
+                .z = body.z,
+                .y = body.y,
+                .self = i,
+                .most = static_cast<float>(sight_) * static_cast<float>(sight_),
+                .tall = body.height,
+                .touch = 0,
+                .touch_tall = 0};
+  SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
+  find_seen({grid_->x(), grid_->z(), grid_->y()}, around, eye, lists);
+  steer::Lanes lanes(config_.lanes, body.wish);
+  for (size_t n = 0; n < lists.seen; ++n) {
+    const Body& other = bodies_[lists.entries[n]];
+    const bool is_led = other.has(Body::kDriven) || !other.has(Body::kHasGoal);
+    lanes.add(
+        config_.units.metres(other.x - body.x, other.z - body.z),
+        is_led ? other.wish : config_.units.metres(other.aim_x - other.x, other.aim_z - other.z));
+  }
+  situation.wish = lanes.wish();
+  situation.wish = steer::following_fast(config_.steering, situation);
+  return true;
+}
+
+}  // namespace throng

@@ -52,12 +52,14 @@ struct Body {
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: it is bound for a region
-  State state : 4 = kFree;
+  State state : 5 = kFree;
   bool climbs : 1 = false;     // kFlying, too: it goes over nodes, ClimberEngine's
-  bool meets : 1 = false;      // a stream that comes towards it, when it last looked
   bool on_right : 1 = false;   // of the opening lies its own place, because of such a stream
   bool near_wall : 1 = false;  // and in need of another way, in the last step
-  uint8_t steps = 1;           // that it takes at once in this step; 0: not its turn
+  uint8_t steps : 7 = 1;       // that it takes at once in this step; 0: not its turn
+  // A stream that comes towards it, when it last looked: others look at this while they decide,
+  // when what shares a byte with it must not change.
+  bool meets : 1 = false;
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }
   [[nodiscard]] Stand stand() const { return {x, z, y, level}; }

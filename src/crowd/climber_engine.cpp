@@ -298,7 +298,7 @@ void ClimberEngine::find_ways(const Body& body, const Climb& climb,
     if (!(speed > 1e-3f)) return;  // nothing is better than to stand
     const bool ahead = !yields && goes && steer::dot(v, situation.wish) > 0.999f * speed * wish;
     if (ahead) {
-      add(ground.advance(climb, wished * (speed / wish)), true);
+      add(ground.advance(climb, std::min(most, wished * (speed / wish))), true);
     } else {
       add(ground.shift(climb, Vec3d{v.x, v.y, v.z} * dt, most), false);
     }

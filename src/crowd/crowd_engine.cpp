@@ -88,6 +88,15 @@ bool leads(Plane apart, Plane wish, Plane others) {
   return apart.x * wish.x + apart.z * wish.z > 0 && same > 0 && 2 * same * same > both;
 }
 
+// Does somebody ahead come towards one?
+bool comes(const steer::LaneSettings& settings, Plane apart, Plane way, Plane his) {
+  const float towards = -(way.x * his.x + way.z * his.z);
+  const float both = (way.x * way.x + way.z * way.z) * (his.x * his.x + his.z * his.z);
+  const float cosine = settings.narrow_opposed;
+  return apart.x * way.x + apart.z * way.z > 0 && towards > 0 &&
+         towards * towards > cosine * cosine * both;
+}
+
 Bound bound(const Body& body) {
   return {body.x, body.z, body.aim_x, body.aim_z, body.radius, body.slot};
 }
@@ -301,6 +310,7 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
 // Takes in what it steers by, and if wanted lists whom it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
+  worker.waits = worker.meets = worker.opposed = false;
   const Body& body = bodies_[i];
   const size_t around_us = fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
@@ -333,7 +343,6 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   if (goes_blind(body)) {  // It looks no farther.
     worker.situation.wish = body.wish;
     worker.situation.has_walls = false;
-    worker.waits = false;
     return;
   }
   size_t nearest = keep_nearest(lists, wanted);
@@ -352,12 +361,16 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
-  worker.waits = worker.meets = false;
+  const Plane bound_for = way_ahead(body);
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     // Those ahead tell those behind, who would else fill the whole width.
     worker.meets = worker.meets || (other.meets && leads(apart, body.wish, other.wish));
+    if (body.wish.x * other.wish.x + body.wish.z * other.wish.z < 0) {
+      // Where he is bound for counts: a jam turns wishes any way.
+      worker.opposed = worker.opposed || comes(config_.lanes, apart, bound_for, way_ahead(other));
+    }
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
       worker.waits = true;
@@ -553,7 +566,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   sense(i, worker, around, true);
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  worker.meets = worker.meets || meets_stream(body, worker.situation);
+  worker.meets = worker.meets || (worker.opposed && is_narrow(sides_of(body)));
   if (worker.meets && !worker.waits) keep_right(body, worker.situation);
   const bool open = find_open_wish(i, worker, around);
   claim.meets = worker.meets;

@@ -139,8 +139,9 @@ class CrowdEngine {
     std::vector<uint32_t> entries, touched;
     std::vector<uint32_t> others;
     steer::Situation situation;
-    bool waits = false;  // for another, instead of doing as he wishes
-    bool meets = false;  // a stream that comes towards him
+    bool waits = false;    // for another, instead of doing as he wishes
+    bool meets = false;    // a stream that comes towards him,
+    bool opposed = false;  // or somebody, anywhere
     EngineCounts counts;
   };
   using Ways = std::array<Way, steer::kChoices>;
@@ -181,8 +182,12 @@ class CrowdEngine {
   struct Sides {
     float left, right;  // [m]
   };
-  [[nodiscard]] Sides sides_of(const Body& body, steer::Plane ahead) const;
-  [[nodiscard]] bool meets_stream(const Body& body, const steer::Situation& situation) const;
+  // Where it is bound for, from where it is; of who is led, where that leads.
+  [[nodiscard]] steer::Plane way_ahead(const Body& body) const {
+    const bool is_led = body.has(Body::kDriven) || !body.has(Body::kHasGoal);
+    return is_led ? body.wish : config_.units.metres(body.aim_x - body.x, body.aim_z - body.z);
+  }
+  [[nodiscard]] Sides sides_of(const Body& body) const;
   [[nodiscard]] bool is_narrow(const Sides& sides) const;
   void keep_right(const Body& body, steer::Situation& situation) const;
   bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);

@@ -47,7 +47,7 @@ void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
   }
   body.flags |= Body::kFar;
   const uint64_t steps = steps_of_far(body);
-  body.steps = (step + body.slot) % steps == 0 ? static_cast<uint8_t>(steps) : 0;
+  body.steps = ((step + body.slot) % steps == 0 ? steps : 0) & 127;
 }
 
 }  // namespace throng

@@ -12,8 +12,12 @@ namespace throng {
 
 using steer::Plane;
 
-// How far it is to walls on both sides of a way, up to where a place is narrow. [m]
-CrowdEngine::Sides CrowdEngine::sides_of(const Body& body, Plane ahead) const {
+// How far it is to walls on both sides of its way, up to where a place is narrow. [m]
+CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
+  Plane ahead = way_ahead(body);
+  const float far = size_of(ahead);
+  if (far <= 1e-3f) return {config_.lanes.narrow, config_.lanes.narrow};
+  ahead = {ahead.x / far, ahead.z / far};
   const StrideGround& ground = grounds_[body.avatar_class];
   const float unit = config_.units.unit, look = config_.lanes.narrow / unit;
   const Plane right{-ahead.z, ahead.x}, left{ahead.z, -ahead.x};
@@ -25,23 +29,12 @@ bool CrowdEngine::is_narrow(const Sides& sides) const {
   return sides.left < config_.lanes.narrow && sides.right < config_.lanes.narrow;
 }
 
-// Does somebody come towards it in a narrow place?
-bool CrowdEngine::meets_stream(const Body& body, const steer::Situation& situation) const {
-  steer::LaneSettings anybody = config_.lanes;
-  anybody.opposers = 1;
-  anybody.opposed = config_.lanes.narrow_opposed;
-  const float speed = size_of(situation.wish);
-  if (speed <= 1e-3f || !steer::is_opposed_fast(anybody, situation)) return false;
-  const Plane ahead{situation.wish.x / speed, situation.wish.z / speed};
-  return is_narrow(sides_of(body, ahead));
-}
-
 // Who meets a stream in a narrow place leaves it the left half.
 void CrowdEngine::keep_right(const Body& body, steer::Situation& situation) const {
   const float speed = size_of(situation.wish);
   if (speed <= 1e-3f) return;
   const Plane ahead{situation.wish.x / speed, situation.wish.z / speed};
-  const Sides sides = sides_of(body, ahead);
+  const Sides sides = sides_of(body);
   if (!is_narrow(sides) || sides.right <= sides.left) return;
   const float off = (sides.right - sides.left) / 2;  // from the middle [m]
   const float aside = config_.lanes.to_right * std::min(off, 1.0f);
@@ -67,10 +60,7 @@ bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Aro
   steer::Lanes lanes(config_.lanes, body.wish);
   for (size_t n = 0; n < lists.seen; ++n) {
     const Body& other = bodies_[lists.entries[n]];
-    const bool is_led = other.has(Body::kDriven) || !other.has(Body::kHasGoal);
-    lanes.add(
-        config_.units.metres(other.x - body.x, other.z - body.z),
-        is_led ? other.wish : config_.units.metres(other.aim_x - other.x, other.aim_z - other.z));
+    lanes.add(config_.units.metres(other.x - body.x, other.z - body.z), way_ahead(other));
   }
   situation.wish = lanes.wish();
   situation.wish = steer::following_fast(config_.steering, situation);

@@ -211,7 +211,7 @@ TEST(Climbers, ManyWhoCrossANetAllArrive) {
   Stage stage(net());
   Crowd crowd = on_net(stage, 80);
   EXPECT_GE(crowd.size(), 60u);
-  const Climbed climbed = climb(crowd, stage, crowd.size(), 4500, 10);
+  const Climbed climbed = climb(crowd, stage, crowd.size(), 9000, 10);
   expect_all(climbed, crowd.size());
   EXPECT_GT(climbed.faults.leaning, 0u);
   EXPECT_GT(climbed.faults.pairs, 0u);

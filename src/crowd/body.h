@@ -56,6 +56,7 @@ struct Body {
   bool climbs : 1 = false;     // kFlying, too: it goes over nodes, ClimberEngine's
   bool on_right : 1 = false;   // of the opening lies its own place, because of such a stream
   bool near_wall : 1 = false;  // and in need of another way, in the last step
+  uint8_t : 0;                 // What follows is another place in memory.
   uint8_t steps : 7 = 1;       // that it takes at once in this step; 0: not its turn
   // A stream that comes towards it, when it last looked: others look at this while they decide,
   // when what shares a byte with it must not change.

@@ -55,9 +55,6 @@ Way shorter(Way way, float part) {
           static_cast<int16_t>(std::lrint(static_cast<float>(way.z) * part))};
 }
 
-// A square of so many cells to each side holds all that is looked at.
-int32_t cells_of(float look) { return static_cast<int32_t>(look) / kUnitsPerCell + 1; }
-
 // Bound for a corner, not for its goal yet?
 bool turns_corner(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven | Body::kFlying;
@@ -86,15 +83,6 @@ bool leads(Plane apart, Plane wish, Plane others) {
   const float both =
       (wish.x * wish.x + wish.z * wish.z) * (others.x * others.x + others.z * others.z);
   return apart.x * wish.x + apart.z * wish.z > 0 && same > 0 && 2 * same * same > both;
-}
-
-// Does somebody ahead come towards one?
-bool comes(const steer::LaneSettings& settings, Plane apart, Plane way, Plane his) {
-  const float towards = -(way.x * his.x + way.z * his.z);
-  const float both = (way.x * way.x + way.z * way.z) * (his.x * his.x + his.z * his.z);
-  const float cosine = settings.narrow_opposed;
-  return apart.x * way.x + apart.z * way.z > 0 && towards > 0 &&
-         towards * towards > cosine * cosine * both;
 }
 
 Bound bound(const Body& body) {
@@ -310,7 +298,7 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
 // Takes in what it steers by, and if wanted lists whom it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
-  worker.waits = worker.meets = worker.opposed = false;
+  worker.waits = worker.meets = false;
   const Body& body = bodies_[i];
   const size_t around_us = fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
@@ -361,16 +349,11 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
-  const Plane bound_for = way_ahead(body);
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     // Those ahead tell those behind, who would else fill the whole width.
     worker.meets = worker.meets || (other.meets && leads(apart, body.wish, other.wish));
-    if (body.wish.x * other.wish.x + body.wish.z * other.wish.z < 0) {
-      // Where he is bound for counts: a jam turns wishes any way.
-      worker.opposed = worker.opposed || comes(config_.lanes, apart, bound_for, way_ahead(other));
-    }
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
       worker.waits = true;
@@ -566,7 +549,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   sense(i, worker, around, true);
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  worker.meets = worker.meets || (worker.opposed && is_narrow(sides_of(body)));
+  worker.meets = worker.meets || meets_stream(body, worker);
   if (worker.meets && !worker.waits) keep_right(body, worker.situation);
   const bool open = find_open_wish(i, worker, around);
   claim.meets = worker.meets;

@@ -30,6 +30,9 @@ inline size_t grown(size_t capacity, size_t needed) {
   return needed <= capacity ? capacity : std::max(needed, capacity + capacity / 4);
 }
 
+/// A square of so many cells to each side holds all that is looked at.
+inline int32_t cells_of(float look) { return static_cast<int32_t>(look) / kUnitsPerCell + 1; }
+
 /// Who is far, and what that means. docs/design/008-engine.md, "Levels of detail".
 struct EngineDetail {
   struct View {
@@ -139,9 +142,8 @@ class CrowdEngine {
     std::vector<uint32_t> entries, touched;
     std::vector<uint32_t> others;
     steer::Situation situation;
-    bool waits = false;    // for another, instead of doing as he wishes
-    bool meets = false;    // a stream that comes towards him,
-    bool opposed = false;  // or somebody, anywhere
+    bool waits = false;  // for another, instead of doing as he wishes
+    bool meets = false;  // a stream that comes towards him
     EngineCounts counts;
   };
   using Ways = std::array<Way, steer::kChoices>;
@@ -188,6 +190,7 @@ class CrowdEngine {
     return is_led ? body.wish : config_.units.metres(body.aim_x - body.x, body.aim_z - body.z);
   }
   [[nodiscard]] Sides sides_of(const Body& body) const;
+  [[nodiscard]] bool meets_stream(const Body& body, const Worker& worker) const;
   [[nodiscard]] bool is_narrow(const Sides& sides) const;
   void keep_right(const Body& body, steer::Situation& situation) const;
   bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);

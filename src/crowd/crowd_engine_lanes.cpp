@@ -12,6 +12,19 @@ namespace throng {
 
 using steer::Plane;
 
+namespace {
+
+// Does somebody ahead come towards one?
+bool comes(const steer::LaneSettings& settings, Plane apart, Plane way, Plane his) {
+  const float towards = -(way.x * his.x + way.z * his.z);
+  const float both = (way.x * way.x + way.z * way.z) * (his.x * his.x + his.z * his.z);
+  const float cosine = settings.narrow_opposed;
+  return apart.x * way.x + apart.z * way.z > 0 && towards > 0 &&
+         towards * towards > cosine * cosine * both;
+}
+
+}  // namespace
+
 // How far it is to walls on both sides of its way, up to where a place is narrow. [m]
 CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
   Plane ahead = way_ahead(body);
@@ -27,6 +40,25 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
 
 bool CrowdEngine::is_narrow(const Sides& sides) const {
   return sides.left < config_.lanes.narrow && sides.right < config_.lanes.narrow;
+}
+
+// Does one of those whom it has sensed come towards it in a narrow place? Where no wall is near at
+// all, which is quickly told, nobody asks.
+bool CrowdEngine::meets_stream(const Body& body, const Worker& worker) const {
+  const size_t near = worker.situation.near.size;
+  const int32_t reach = cells_of(config_.lanes.narrow / config_.units.unit);
+  const StrideGround& ground = grounds_[body.avatar_class];
+  if (!is_sampled(body) || near == 0) return false;
+  if (ground.is_open_around(body.level, body.point(), reach)) return false;
+  const Plane way = way_ahead(body);
+  for (size_t n = 0; n < near; ++n) {
+    const Body& other = bodies_[worker.entries[n]];
+    if (body.wish.x * other.wish.x + body.wish.z * other.wish.z >= 0) continue;
+    const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
+    // Where he is bound for counts: a jam turns wishes any way.
+    if (comes(config_.lanes, apart, way, way_ahead(other))) return is_narrow(sides_of(body));
+  }
+  return false;
 }
 
 // Who meets a stream in a narrow place leaves it the left half.

@@ -549,8 +549,9 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   sense(i, worker, around, true);
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  worker.meets = worker.meets || meets_stream(body, worker);
-  if (worker.meets && !worker.waits) keep_right(body, worker.situation);
+  // Not when ways are found again: who gave way to others then goes where he is bound for, or lanes
+  // jam more often.
+  if (is_sampled(body)) keep_right(body, worker);
   const bool open = find_open_wish(i, worker, around);
   claim.meets = worker.meets;
   // The best of his ways is enough as long as nobody objects to it.

@@ -190,9 +190,8 @@ class CrowdEngine {
     return is_led ? body.wish : config_.units.metres(body.aim_x - body.x, body.aim_z - body.z);
   }
   [[nodiscard]] Sides sides_of(const Body& body) const;
-  [[nodiscard]] bool meets_stream(const Body& body, const Worker& worker) const;
-  [[nodiscard]] bool is_narrow(const Sides& sides) const;
-  void keep_right(const Body& body, steer::Situation& situation) const;
+  [[nodiscard]] bool is_met(const Body& body, const Worker& worker) const;
+  void keep_right(const Body& body, Worker& worker) const;
   bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   [[nodiscard]] steer::Plane if_blocked(steer::Plane way, const steer::Situation& situation) const;
   [[nodiscard]] float metres(float way, float look) const;

@@ -12,19 +12,6 @@ namespace throng {
 
 using steer::Plane;
 
-namespace {
-
-// Does somebody ahead come towards one?
-bool comes(const steer::LaneSettings& settings, Plane apart, Plane way, Plane his) {
-  const float towards = -(way.x * his.x + way.z * his.z);
-  const float both = (way.x * way.x + way.z * way.z) * (his.x * his.x + his.z * his.z);
-  const float cosine = settings.narrow_opposed;
-  return apart.x * way.x + apart.z * way.z > 0 && towards > 0 &&
-         towards * towards > cosine * cosine * both;
-}
-
-}  // namespace
-
 // How far it is to walls on both sides of its way, up to where a place is narrow. [m]
 CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
   Plane ahead = way_ahead(body);
@@ -38,40 +25,41 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
           ground.free_way(body.level, body.point(), right, look) * unit};
 }
 
-bool CrowdEngine::is_narrow(const Sides& sides) const {
-  return sides.left < config_.lanes.narrow && sides.right < config_.lanes.narrow;
-}
-
-// Does one of those whom it has sensed come towards it in a narrow place? Where no wall is near at
-// all, which is quickly told, nobody asks.
-bool CrowdEngine::meets_stream(const Body& body, const Worker& worker) const {
-  const size_t near = worker.situation.near.size;
-  const int32_t reach = cells_of(config_.lanes.narrow / config_.units.unit);
-  const StrideGround& ground = grounds_[body.avatar_class];
-  if (!is_sampled(body) || near == 0) return false;
-  if (ground.is_open_around(body.level, body.point(), reach)) return false;
+// Does one of those whom it has sensed come towards it? Where he is bound for counts: a jam turns
+// wishes any way.
+bool CrowdEngine::is_met(const Body& body, const Worker& worker) const {
   const Plane way = way_ahead(body);
-  for (size_t n = 0; n < near; ++n) {
+  for (size_t n = 0; n < worker.situation.near.size; ++n) {
     const Body& other = bodies_[worker.entries[n]];
     if (body.wish.x * other.wish.x + body.wish.z * other.wish.z >= 0) continue;
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
-    // Where he is bound for counts: a jam turns wishes any way.
-    if (comes(config_.lanes, apart, way, way_ahead(other))) return is_narrow(sides_of(body));
+    if (steer::comes_towards(apart, way, way_ahead(other), config_.lanes.narrow_opposed)) {
+      return true;
+    }
   }
   return false;
 }
 
-// Who meets a stream in a narrow place leaves it the left half.
-void CrowdEngine::keep_right(const Body& body, steer::Situation& situation) const {
-  const float speed = size_of(situation.wish);
-  if (speed <= 1e-3f) return;
-  const Plane ahead{situation.wish.x / speed, situation.wish.z / speed};
+// Who meets a stream between walls leaves it the left half. Where no wall is near at all, which is
+// quickly told, nobody asks.
+void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
+  if (worker.situation.near.size == 0) return;
+  const float narrow = config_.lanes.narrow;
+  const StrideGround& ground = grounds_[body.avatar_class];
+  if (ground.is_open_around(body.level, body.point(), cells_of(narrow / config_.units.unit))) {
+    return;
+  }
+  if (!worker.meets && !is_met(body, worker)) return;
   const Sides sides = sides_of(body);
-  if (!is_narrow(sides) || sides.right <= sides.left) return;
+  if (sides.left >= narrow || sides.right >= narrow) return;
+  worker.meets = true;
+  Plane& wish = worker.situation.wish;
+  const float speed = size_of(wish);
+  if (worker.waits || speed <= 1e-3f || sides.right <= sides.left) return;
   const float off = (sides.right - sides.left) / 2;  // from the middle [m]
   const float aside = config_.lanes.to_right * std::min(off, 1.0f);
-  const float scale = speed / std::sqrt(1 + aside * aside);
-  situation.wish = {(ahead.x - ahead.z * aside) * scale, (ahead.z + ahead.x * aside) * scale};
+  const float scale = 1 / std::sqrt(1 + aside * aside);
+  wish = {(wish.x - wish.z * aside) * scale, (wish.z + wish.x * aside) * scale};
 }
 
 // True if the wish is another one now.

@@ -19,15 +19,18 @@ float cosine(Plane direction, Plane way) {
 
 }  // namespace
 
+bool comes_towards(Plane at, Plane way, Plane his, float cosine) {
+  const float towards = -(his.x * way.x + his.z * way.z);
+  if (towards <= 0 || at.x * way.x + at.z * way.z <= 0) return false;
+  const float both = (his.x * his.x + his.z * his.z) * (way.x * way.x + way.z * way.z);
+  return towards * towards > cosine * cosine * both;
+}
+
 bool is_opposed(const LaneSettings& settings, const Situation& s) {
   int32_t opposers = 0;
   for (size_t n = 0; n < s.near.size; ++n) {
-    const float wx = s.near.wx[n], wz = s.near.wz[n];
-    const float towards = -(wx * s.wish.x + wz * s.wish.z);
-    if (towards <= 0 || s.near.x[n] * s.wish.x + s.near.z[n] * s.wish.z <= 0) continue;
-    const float both = (wx * wx + wz * wz) * (s.wish.x * s.wish.x + s.wish.z * s.wish.z);
-    const bool comes = towards * towards > settings.opposed * settings.opposed * both;
-    opposers += comes ? 1 : 0;
+    const Plane at{s.near.x[n], s.near.z[n]}, his{s.near.wx[n], s.near.wz[n]};
+    opposers += comes_towards(at, s.wish, his, settings.opposed) ? 1 : 0;
   }
   return opposers >= settings.opposers;
 }

@@ -31,6 +31,10 @@ struct LaneSettings {
   int32_t opposers = 3;  ///< Among the nearest: with fewer there is nothing to make lanes for.
 };
 
+/// Does somebody who is ahead, `at` from one's own middle, come towards one? `way`, `his`: where
+/// the two go; `cosine`: of how near that is to straight at each other.
+bool comes_towards(Plane at, Plane way, Plane his, float cosine);
+
 /// Do enough of the nearest come towards one?
 bool is_opposed(const LaneSettings& settings, const Situation& situation);
 

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "core/stopwatch.h"
 #include "steer/surface.h"
 
 // docs/design/013-climbers.md. Those who walk and those who fly have made their steps clear of the
@@ -39,13 +37,11 @@ Space space_of(Vec3d v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-bool is_climber(const Body& body) { return body.climbs; }
-
 }  // namespace
 
 ClimberEngine::ClimberEngine(const ClimberConfig& config, size_t classes)
     : config_(config), grounds_(classes, nullptr) {
-  workers_.resize(static_cast<size_t>(worker_count(config.workers)));
+  rounds_.workers.resize(static_cast<size_t>(worker_count(config.workers)));
 }
 
 void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) {
@@ -73,74 +69,32 @@ bool ClimberEngine::is_blocked(const ClimbHold& hold) const {
 void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
                          std::span<const Flight> flights, const Before& before,
                          EngineCounts& counts, CrowdEngine::Times& times) {
-  auto start = Clock::now();
-  const auto lap = [&](double& seconds) {
-    seconds += seconds_since(start);
-    start = Clock::now();
-  };
   arrived_.clear();
   bodies_ = bodies;
   climbs_ = climbs;
   flights_ = flights;
-  climbers_.clear();
-  climber_of_.resize(bodies.size());
-  for (size_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].climbs) continue;
-    climber_of_[i] = static_cast<uint32_t>(climbers_.size());
-    climbers_.push_back(static_cast<uint32_t>(i));
+  const Rounds::Parts parts{
+      .is_mover = [](const Body& body) { return bool{body.climbs}; },
+      .plan =
+          [&](uint32_t c, int32_t worker) {
+            Body& body = bodies_[rounds_.movers[c]];
+            Climb& climb = climbs_[body.slot];
+            before(body, climb, worker);
+            wish(body, climb);
+          },
+      .decide = [&](uint32_t c, Worker& worker) { decide(c, worker); },
+      .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
+      .clash =
+          [&](const Contest& contest, uint32_t other) {
+            return clash(rounds_.moves[contest.mover].way.hold,
+                         rounds_.moves[rounds_.mover_of[other]].way.hold);
+          },
+      .settle = [&](uint32_t c, EngineCounts& here) { settle(c, step, here); }};
+  rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
+               counts, times);
+  for (size_t n = 0; n < rounds_.movers.size(); ++n) {
+    if (rounds_.moves[n].arrives) arrived_.push_back(bodies_[rounds_.movers[n]].slot);
   }
-  moves_.resize(climbers_.size());
-  for (Worker& worker : workers_) {
-    worker.others.clear();
-    worker.contests.clear();
-    worker.counts = {};
-  }
-  const size_t pieces = (climbers_.size() + kGrain - 1) / kGrain;
-  const auto for_climbers = [&](const auto& act) {
-    parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
-      const size_t end = std::min(climbers_.size(), (piece + 1) * kGrain);
-      for (size_t c = piece * kGrain; c < end; ++c) act(static_cast<uint32_t>(c), worker);
-    });
-  };
-  for_climbers([&](uint32_t c, int32_t worker) {
-    Body& body = bodies_[climbers_[c]];
-    Climb& climb = climbs_[body.slot];
-    before(body, climb, worker);
-    wish(body, climb);
-  });
-  lap(times.plan);
-  grid_.build(bodies_, climbers_, is_climber);
-  lap(times.sort);
-  for_climbers(
-      [&](uint32_t c, int32_t worker) { decide(c, workers_[static_cast<size_t>(worker)]); });
-  lap(times.steer);
-  // By induction nobody ever touches anybody, as in FlyerEngine::step.
-  for (int32_t r = 1; r <= config_.rounds; ++r) {
-    const auto round = static_cast<uint8_t>(r);
-    for_contests([&](const Contest& c, const Worker& owner) {
-      Move& move = moves_[c.climber];
-      if (move.state == Move::kUndecided && name(c, owner)) move.round = round;
-    });
-    for_contests([&](const Contest& c, const Worker& owner) {
-      Move& move = moves_[c.climber];
-      if (move.state == Move::kUndecided && move.round == round && holds(c, owner, round, step)) {
-        move.state = Move::kDecided;
-      }
-    });
-  }
-  lap(times.commit);
-  std::mutex adding;
-  parallel_ranges(climbers_.size(), kGrain, config_.workers, [&](size_t begin, size_t end) {
-    EngineCounts here;
-    for (size_t c = begin; c < end; ++c) settle(static_cast<uint32_t>(c), step, here);
-    const std::lock_guard lock(adding);
-    counts.add(here);
-  });
-  for (const Worker& worker : workers_) counts.add(worker.counts);
-  for (size_t n = 0; n < climbers_.size(); ++n) {
-    if (moves_[n].arrives) arrived_.push_back(bodies_[climbers_[n]].slot);
-  }
-  lap(times.settle);
 }
 
 // What it wishes for, as if nobody were there.
@@ -174,20 +128,11 @@ bool ClimberEngine::lets_off(const Body& body, const Climb& climb, const Body& o
 // Appends whom the climber could touch to `others`, and takes in the nearest, by which it steers.
 void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situation,
                           bool& yields) const {
-  const uint32_t i = climbers_[c];
+  const uint32_t i = rounds_.movers[c];
   const Body& body = bodies_[i];
   const Climb& climb = climbs_[body.slot];
   const StepUnits& units = config_.units;
-  struct Seen {
-    float square;
-    uint32_t slot, body;
-    bool operator<(const Seen& other) const {
-      return square != other.square ? square < other.square : slot < other.slot;
-    }
-  };
-  std::array<Seen, steer::kMostNearInAir> nearest;
-  size_t seen = 0;
-  float most = sight_metres_ * sight_metres_;
+  NearestInAir nearest(sight_metres_);
   // Where the middles of both may be after a step, and how far their cylinders may reach then.
   const auto rise = static_cast<int64_t>(fastest_ * units.dt * 1000) + 2;
   const int64_t stride = units.stride(fastest_) + 1;
@@ -207,30 +152,18 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
     const int32_t up = entry.y - body.y;
     const int32_t apart = std::max({up - body.height, -up - entry.height, 0});
     const float high = static_cast<float>(apart) * 1e-3f;
-    const Seen one{dx * dx + dz * dz + high * high, other.slot, entry.body};
-    if (one.square > most || (seen == nearest.size() && !(one < nearest.back()))) return;
-    size_t at = seen < nearest.size() ? seen++ : seen - 1;
-    for (; at > 0 && one < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
-    nearest[at] = one;
-    if (seen == nearest.size()) most = nearest.back().square;
+    nearest.add(dx * dx + dz * dz + high * high, other.slot, entry.body);
   };
-  grid_.for_near(body.x, body.z, body.y,
-                 [&](const FlyerGrid::Entry& entry) { look_at(entry, true); });
-  if (seen < nearest.size() || nearest.back().square > near_metres_ * near_metres_) {
-    const float per_metre = 1 / (units.unit * units.unit) * 1.0001f;
-    grid_.for_far(
-        body.x, body.z, body.y, [&] { return most * per_metre; },
-        [&](const FlyerGrid::Entry& entry) { look_at(entry, false); });
-  }
+  nearest.look_around(grid_, body, near_metres_, units.unit, look_at);
   situation.velocity = {body.velocity.x, climb.rise, body.velocity.z};
   situation.wish = {body.wish.x, climb.wish_up, body.wish.z};
   situation.fastest = body.speed;
   situation.height = static_cast<float>(body.height) * 1e-3f;
   situation.has_walls = false;
-  situation.size = seen;
+  situation.size = nearest.size();
   yields = false;
-  for (size_t n = 0; n < seen; ++n) {
-    const Body& other = bodies_[nearest[n].body];
+  for (size_t n = 0; n < nearest.size(); ++n) {
+    const Body& other = bodies_[nearest.body(n)];
     const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
     float up = 0, wish_up = 0;
     if (other.climbs) {
@@ -307,12 +240,12 @@ void ClimberEngine::find_ways(const Body& body, const Climb& climb,
 
 // Sense, steer, and take a place if nobody can object.
 void ClimberEngine::decide(uint32_t c, Worker& worker) {
-  const Body& body = bodies_[climbers_[c]];
+  const Body& body = bodies_[rounds_.movers[c]];
   const Climb& climb = climbs_[body.slot];
-  Move& move = moves_[c];
+  Move& move = rounds_.moves[c];
   move = {};
   Contest& contest = worker.contests.emplace_back();
-  contest.climber = c;
+  contest.mover = c;
   contest.first = static_cast<uint32_t>(worker.others.size());
   steer::AirSituation situation;
   bool yields = false;
@@ -333,25 +266,14 @@ void ClimberEngine::decide(uint32_t c, Worker& worker) {
   worker.contests.pop_back();
 }
 
-template <class Do>
-void ClimberEngine::for_contests(Do act) {
-  constexpr size_t kPiece = 64;
-  for (Worker& owner : workers_) {
-    parallel_ranges(owner.contests.size(), kPiece, config_.workers, [&](size_t begin, size_t end) {
-      for (size_t c = begin; c < end; ++c) act(owner.contests[c], owner);
-    });
-  }
-}
-
 // Is a cylinder clear of where everybody is now?
 bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
                              const ClimbHold& hold) const {
-  for (uint32_t n = contest.first; n < contest.last; ++n) {
-    const uint32_t j = owner.others[n];
+  for (const uint32_t j : owner.others_of(contest)) {
     const Body& other = bodies_[j];
     ClimbHold there = hold_of(other);
     if (other.climbs) {
-      const Move& move = moves_[climber_of_[j]];
+      const Move& move = rounds_.moves[rounds_.mover_of[j]];
       if (move.state == Move::kDecided) there = move.way.hold;
     }
     if (clash(hold, there)) return false;
@@ -363,36 +285,17 @@ bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
 bool ClimberEngine::name(const Contest& contest, const Worker& owner) {
   for (size_t w = 0; w < contest.ways; ++w) {
     if (!is_clear(contest, owner, contest.way[w].hold)) continue;
-    moves_[contest.climber].way = contest.way[w];
+    rounds_.moves[contest.mover].way = contest.way[w];
     return true;
   }
   return false;
 }
 
-bool ClimberEngine::holds(const Contest& contest, const Worker& owner, uint8_t round,
-                          uint64_t step) const {
-  const Body& body = bodies_[climbers_[contest.climber]];
-  const auto order = [&](const Body& b) {
-    return std::pair(random_u64(config_.seed, b.slot, step), b.slot);
-  };
-  const auto mine = order(body);
-  for (uint32_t n = contest.first; n < contest.last; ++n) {
-    const uint32_t j = owner.others[n];
-    if (!bodies_[j].climbs) continue;
-    const Move& move = moves_[climber_of_[j]];
-    if (move.round == round && clash(moves_[contest.climber].way.hold, move.way.hold) &&
-        order(bodies_[j]) > mine) {
-      return false;
-    }
-  }
-  return true;
-}
-
 void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
   const StepUnits& units = config_.units;
-  Body& body = bodies_[climbers_[c]];
+  Body& body = bodies_[rounds_.movers[c]];
   Climb& climb = climbs_[body.slot];
-  Move& move = moves_[c];
+  Move& move = rounds_.moves[c];
   const ClimberGround& ground = *grounds_[body.avatar_class];
   const Space wished{body.wish.x, climb.wish_up, body.wish.z};
   const bool moves = move.state == Move::kDecided;
@@ -443,13 +346,6 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
   }
 }
 
-uint64_t ClimberEngine::bytes() const {
-  uint64_t bytes = grid_.bytes() + (climbers_.capacity() + climber_of_.capacity()) * 4 +
-                   moves_.capacity() * sizeof(Move);
-  for (const Worker& worker : workers_) {
-    bytes += worker.others.capacity() * 4 + worker.contests.capacity() * sizeof(Contest);
-  }
-  return bytes;
-}
+uint64_t ClimberEngine::bytes() const { return grid_.bytes() + rounds_.bytes(); }
 
 }  // namespace throng

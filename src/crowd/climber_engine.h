@@ -15,6 +15,7 @@
 #include "crowd/flight.h"
 #include "crowd/flyer_engine.h"
 #include "crowd/flyer_grid.h"
+#include "crowd/mover_rounds.h"
 #include "crowd/step_units.h"
 #include "steer/air.h"
 
@@ -64,24 +65,16 @@ class ClimberEngine {
     ClimbHold hold;
     bool on_way = false;  // not aside
   };
-  struct Contest {
-    uint32_t climber = 0;          // of climbers_
-    uint32_t first = 0, last = 0;  // of the worker's `others`: whom he could touch
+  struct Contest : MoverContest {
     size_t ways = 0;
     std::array<Way, kWays> way;
   };
-  // What a climber would do, and whether it is settled.
-  struct Move {
+  struct Move : MoverState {
     Way way;
-    uint8_t round = 0;
-    enum State : uint8_t { kUndecided, kDecided, kStays } state = kStays;
-    bool arrives = false, yields = false;
+    bool yields = false;
   };
-  struct Worker {
-    std::vector<uint32_t> others;  // bodies
-    std::vector<Contest> contests;
-    EngineCounts counts;
-  };
+  using Rounds = MoverRounds<Contest, Move>;
+  using Worker = Rounds::Worker;
 
   void wish(Body& body, Climb& climb) const;
   void decide(uint32_t climber, Worker& worker);
@@ -92,11 +85,7 @@ class ClimberEngine {
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const ClimbHold& hold) const;
   bool name(const Contest& contest, const Worker& owner);
-  [[nodiscard]] bool holds(const Contest& contest, const Worker& owner, uint8_t round,
-                           uint64_t step) const;
   void settle(uint32_t climber, uint64_t step, EngineCounts& counts);
-  template <class Do>
-  void for_contests(Do act);
 
   ClimberConfig config_;
   std::vector<const ClimberGround*> grounds_;  // by class
@@ -106,11 +95,8 @@ class ClimberEngine {
   std::span<Body> bodies_;
   std::span<Climb> climbs_;
   std::span<const Flight> flights_;
-  std::vector<uint32_t> climbers_;    // bodies
-  std::vector<uint32_t> climber_of_;  // by body, in a step
-  std::vector<Move> moves_;           // by climber
+  Rounds rounds_;
   FlyerGrid grid_;
-  std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_;
 };
 

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <utility>
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "core/stopwatch.h"
 
 // docs/design/012-flyers.md. Those who walk have made their step clear of where all flyers are;
 // now these go, clear of where everybody is.
@@ -86,7 +84,7 @@ bool AirObstacle::holds(const AirSpot& feet, double radius, int32_t height) cons
 
 FlyerEngine::FlyerEngine(const FlyerConfig& config, size_t classes)
     : config_(config), classes_(classes) {
-  workers_.resize(static_cast<size_t>(worker_count(config.workers)));
+  rounds_.workers.resize(static_cast<size_t>(worker_count(config.workers)));
 }
 
 void FlyerEngine::set_air(size_t avatar_class, const FlyerAir* air, double radius) {
@@ -116,81 +114,38 @@ bool FlyerEngine::is_blocked(const Body& body, const AirSpot& spot) const {
 
 void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights,
                        const Before& before, EngineCounts& counts, CrowdEngine::Times& times) {
-  auto start = Clock::now();
-  const auto lap = [&](double& seconds) {
-    seconds += seconds_since(start);
-    start = Clock::now();
-  };
   arrived_.clear();
   landed_.clear();
   bodies_ = bodies;
   flights_ = flights;
-  flyers_.clear();
-  flyer_of_.resize(bodies.size());
-  for (size_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].flies()) continue;
-    flyer_of_[i] = static_cast<uint32_t>(flyers_.size());
-    flyers_.push_back(static_cast<uint32_t>(i));
-  }
-  moves_.resize(flyers_.size());
-  for (Worker& worker : workers_) {
-    worker.others.clear();
-    worker.contests.clear();
-    worker.counts = {};
-  }
-  const size_t pieces = (flyers_.size() + kGrain - 1) / kGrain;
-  const auto for_flyers = [&](const auto& act) {
-    parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
-      const size_t end = std::min(flyers_.size(), (piece + 1) * kGrain);
-      for (size_t f = piece * kGrain; f < end; ++f) act(static_cast<uint32_t>(f), worker);
-    });
-  };
-  for_flyers([&](uint32_t f, int32_t worker) {
-    Body& body = bodies_[flyers_[f]];
-    Flight& flight = flights_[body.slot];
-    before(body, flight, worker);
-    wish(body, flight, step);
-  });
-  lap(times.plan);
-  grid_.build(bodies_, flyers_, [](const Body& body) { return body.flies(); });
-  lap(times.sort);
-  for_flyers([&](uint32_t f, int32_t worker) { decide(f, workers_[static_cast<size_t>(worker)]); });
-  lap(times.steer);
-  // By induction nobody ever touches anybody: a place that is named is clear of where all are who
-  // could touch it, and it is taken only if it is clear of what those before him named, whether or
-  // not they take it. Who walks does not move any more.
-  for (int32_t r = 1; r <= config_.rounds; ++r) {
-    const auto round = static_cast<uint8_t>(r);
-    for_contests([&](const Contest& c, const Worker& owner) {
-      Move& move = moves_[c.flyer];
-      if (move.state == Move::kUndecided && name(c, owner)) move.round = round;
-    });
-    for_contests([&](const Contest& c, const Worker& owner) {
-      Move& move = moves_[c.flyer];
-      if (move.state == Move::kUndecided && move.round == round && holds(c, owner, round, step)) {
-        move.state = Move::kDecided;
-      }
-    });
-  }
-  lap(times.commit);
-  std::mutex adding;
-  parallel_ranges(flyers_.size(), kGrain, config_.workers, [&](size_t begin, size_t end) {
-    EngineCounts here;
-    for (size_t f = begin; f < end; ++f) settle(static_cast<uint32_t>(f), here);
-    const std::lock_guard lock(adding);
-    counts.add(here);
-  });
-  for (const Worker& worker : workers_) counts.add(worker.counts);
-  for (size_t n = 0; n < flyers_.size(); ++n) {
-    const uint32_t i = flyers_[n];
+  const Rounds::Parts parts{
+      .is_mover = [](const Body& body) { return body.flies(); },
+      .plan =
+          [&](uint32_t f, int32_t worker) {
+            Body& body = bodies_[rounds_.movers[f]];
+            Flight& flight = flights_[body.slot];
+            before(body, flight, worker);
+            wish(body, flight, step);
+          },
+      .decide = [&](uint32_t f, Worker& worker) { decide(f, worker); },
+      .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
+      .clash =
+          [&](const Contest& contest, uint32_t other) {
+            return clash(bodies_[rounds_.movers[contest.mover]], rounds_.moves[contest.mover].place,
+                         bodies_[other], rounds_.moves[rounds_.mover_of[other]].place);
+          },
+      .settle = [&](uint32_t f, EngineCounts& here) { settle(f, here); }};
+  rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
+               counts, times);
+  for (size_t n = 0; n < rounds_.movers.size(); ++n) {
+    const uint32_t i = rounds_.movers[n];
     const Body& body = bodies_[i];
     const Flight& flight = flights_[body.slot];
-    if (moves_[n].arrives) arrived_.push_back(body.slot);
+    if (rounds_.moves[n].arrives) arrived_.push_back(body.slot);
     if (flight.in_port != 0 && flight.descends != 0 && body.y == flight.port_low) {
       landed_.push_back(i);
     }
   }
-  lap(times.settle);
 }
 
 // What it wishes for, as if nobody were there.
@@ -237,7 +192,7 @@ bool FlyerEngine::wants_down(const Body& body, const Flight& flight) const {
 // `column_is_clear`: nobody is in what it would pass down to the ground.
 void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situation,
                         bool& column_is_clear, const FlyerAir::Port* port) const {
-  const uint32_t i = flyers_[f];
+  const uint32_t i = rounds_.movers[f];
   const Body& body = bodies_[i];
   const StepUnits& units = config_.units;
   const int32_t stride = units.stride(body.speed);
@@ -245,19 +200,10 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     return static_cast<int32_t>(speed * units.dt * 1000) + 2;
   };
   const int32_t rise = rise_of(body.speed);
-  struct Seen {
-    float square;
-    uint32_t slot, body;
-    bool operator<(const Seen& other) const {
-      return square != other.square ? square < other.square : slot < other.slot;
-    }
-  };
-  std::array<Seen, steer::kMostNearInAir> nearest;
-  size_t seen = 0;
+  NearestInAir nearest(sight_metres_);
   // Nobody farther away than that and his radius can be touched; the exact test follows.
   const float own_reach =
       static_cast<float>(body.radius + 2 * units.stride(fastest_) + 1) * units.unit * 1.0001f;
-  float most = sight_metres_ * sight_metres_;
   const auto look_at = [&](const FlyerGrid::Entry& entry, bool is_near) {
     const float dx = static_cast<float>(entry.x - body.x) * units.unit;
     const float dz = static_cast<float>(entry.z - body.z) * units.unit;
@@ -267,7 +213,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     const float level = dx * dx + dz * dz, square = level + high * high;
     const float reach = own_reach + static_cast<float>(entry.radius) * units.unit;
     const bool may_matter = is_near && level < reach * reach;
-    if ((square > most && !may_matter) || entry.body == i) return;
+    if ((square > nearest.most() && !may_matter) || entry.body == i) return;
     const Body& other = bodies_[entry.body];
     if (may_matter) {
       const bool flies = other.flies();
@@ -282,29 +228,17 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
         column_is_clear = false;
       }
     }
-    const Seen one{square, other.slot, entry.body};
-    if (square > most || (seen == nearest.size() && !(one < nearest.back()))) return;
-    size_t at = seen < nearest.size() ? seen++ : seen - 1;
-    for (; at > 0 && one < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
-    nearest[at] = one;
-    if (seen == nearest.size()) most = nearest.back().square;
+    nearest.add(square, other.slot, entry.body);
   };
-  grid_.for_near(body.x, body.z, body.y,
-                 [&](const FlyerGrid::Entry& entry) { look_at(entry, true); });
-  if (seen < nearest.size() || nearest.back().square > near_metres_ * near_metres_) {
-    const float per_metre = 1 / (units.unit * units.unit) * 1.0001f;
-    grid_.for_far(
-        body.x, body.z, body.y, [&] { return most * per_metre; },
-        [&](const FlyerGrid::Entry& entry) { look_at(entry, false); });
-  }
+  nearest.look_around(grid_, body, near_metres_, units.unit, look_at);
   const Flight& flight = flights_[body.slot];
   situation.velocity = {body.velocity.x, flight.rise, body.velocity.z};
   situation.wish = {body.wish.x, flight.wish_up, body.wish.z};
   situation.fastest = body.speed;
   situation.height = static_cast<float>(body.height) * 1e-3f;
-  situation.size = seen;
-  for (size_t n = 0; n < seen; ++n) {
-    const Body& other = bodies_[nearest[n].body];
+  situation.size = nearest.size();
+  for (size_t n = 0; n < nearest.size(); ++n) {
+    const Body& other = bodies_[nearest.body(n)];
     const bool flies = other.flies();
     const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
     const Flight* of_other = flies ? &flights_[other.slot] : nullptr;
@@ -405,12 +339,13 @@ void FlyerEngine::find_ways(const steer::AirSituation& situation, bool open,
 
 // Sense, steer, and take a place if nobody can object.
 void FlyerEngine::decide(uint32_t f, Worker& worker) {
-  Body& body = bodies_[flyers_[f]];
+  Body& body = bodies_[rounds_.movers[f]];
   Flight& flight = flights_[body.slot];
-  Move& move = moves_[f];
-  move = {spot_of(body), 0, Move::kStays, false};
+  Move& move = rounds_.moves[f];
+  move = {};
+  move.place = spot_of(body);
   Contest contest;
-  contest.flyer = f;
+  contest.mover = f;
   contest.first = static_cast<uint32_t>(worker.others.size());
   std::optional<FlyerAir::Port> port;
   if (wants_down(body, flight)) port = classes_[body.avatar_class].air->port_below(spot_of(body));
@@ -478,27 +413,15 @@ bool FlyerEngine::try_place(const Body& body, const AirSpot& way, AirSpot& place
   return true;
 }
 
-template <class Do>
-void FlyerEngine::for_contests(Do act) {
-  constexpr size_t kPiece = 64;
-  for (Worker& owner : workers_) {
-    const size_t count = owner.contests.size();
-    parallel_ranges(count, kPiece, config_.workers, [&](size_t begin, size_t end) {
-      for (size_t c = begin; c < end; ++c) act(owner.contests[c], owner);
-    });
-  }
-}
-
 // Is a place clear of where everybody is now?
 bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
                            const AirSpot& place) const {
-  const Body& body = bodies_[flyers_[contest.flyer]];
-  for (uint32_t n = contest.first; n < contest.last; ++n) {
-    const uint32_t j = owner.others[n];
+  const Body& body = bodies_[rounds_.movers[contest.mover]];
+  for (const uint32_t j : owner.others_of(contest)) {
     const Body& other = bodies_[j];
     AirSpot there = spot_of(other);
     if (other.flies()) {
-      const Move& move = moves_[flyer_of_[j]];
+      const Move& move = rounds_.moves[rounds_.mover_of[j]];
       if (move.state == Move::kDecided) there = move.place;
     }
     if (clash(body, place, other, there)) return false;
@@ -508,40 +431,21 @@ bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
 
 // The first of his ways that is open and clear.
 bool FlyerEngine::name(const Contest& contest, const Worker& owner) {
-  const Body& body = bodies_[flyers_[contest.flyer]];
+  const Body& body = bodies_[rounds_.movers[contest.mover]];
   AirSpot place;
   for (size_t w = 0; w < contest.ways; ++w) {
     if (!try_place(body, contest.way[w], place) || !is_clear(contest, owner, place)) continue;
-    moves_[contest.flyer].place = place;
+    rounds_.moves[contest.mover].place = place;
     return true;
   }
   return false;
 }
 
-bool FlyerEngine::holds(const Contest& contest, const Worker& owner, uint8_t round,
-                        uint64_t step) const {
-  const Body& body = bodies_[flyers_[contest.flyer]];
-  const auto order = [&](const Body& b) {
-    return std::pair(random_u64(config_.seed, b.slot, step), b.slot);
-  };
-  const auto mine = order(body);
-  for (uint32_t n = contest.first; n < contest.last; ++n) {
-    const Body& other = bodies_[owner.others[n]];
-    if (!other.flies()) continue;
-    const Move& move = moves_[flyer_of_[owner.others[n]]];
-    if (move.round == round && clash(body, moves_[contest.flyer].place, other, move.place) &&
-        order(other) > mine) {
-      return false;
-    }
-  }
-  return true;
-}
-
 void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   const StepUnits& units = config_.units;
-  Body& body = bodies_[flyers_[f]];
+  Body& body = bodies_[rounds_.movers[f]];
   Flight& flight = flights_[body.slot];
-  Move& move = moves_[f];
+  Move& move = rounds_.moves[f];
   const steer::Plane level = units.metres(body.aim_x - body.x, body.aim_z - body.z);
   const Space way{level.x, static_cast<float>(flight.aim_y - body.y) * 1e-3f, level.z};
   const bool moves = move.state == Move::kDecided && move.place != spot_of(body);
@@ -592,13 +496,6 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   }
 }
 
-uint64_t FlyerEngine::bytes() const {
-  uint64_t bytes = grid_.bytes() + (flyers_.capacity() + flyer_of_.capacity()) * 4 +
-                   moves_.capacity() * sizeof(Move);
-  for (const Worker& worker : workers_) {
-    bytes += worker.others.capacity() * 4 + worker.contests.capacity() * sizeof(Contest);
-  }
-  return bytes;
-}
+uint64_t FlyerEngine::bytes() const { return grid_.bytes() + rounds_.bytes(); }
 
 }  // namespace throng

@@ -13,6 +13,7 @@
 #include "crowd/flight.h"
 #include "crowd/flyer_air.h"
 #include "crowd/flyer_grid.h"
+#include "crowd/mover_rounds.h"
 #include "crowd/step_units.h"
 #include "steer/air.h"
 #include "steer/sampled.h"
@@ -76,24 +77,15 @@ class FlyerEngine {
 
  private:
   static constexpr size_t kShorter = 3;
-  struct Contest {
-    uint32_t flyer;        // of flyers_
-    uint32_t first, last;  // of the worker's `others`: whom he could touch
-    uint8_t ways;
+  struct Contest : MoverContest {
+    uint8_t ways = 0;
     std::array<AirSpot, steer::kAirChoices + kShorter + 1> way;  // of a step
   };
-  // What a flyer would do, and whether it is settled.
-  struct Move {
+  struct Move : MoverState {
     AirSpot place;
-    uint8_t round;
-    enum State : uint8_t { kUndecided, kDecided, kStays } state;
-    bool arrives;
   };
-  struct Worker {
-    std::vector<uint32_t> others;  // bodies
-    std::vector<Contest> contests;
-    EngineCounts counts;
-  };
+  using Rounds = MoverRounds<Contest, Move>;
+  using Worker = Rounds::Worker;
 
   void wish(Body& body, Flight& flight, uint64_t step) const;
   void decide(uint32_t flyer, Worker& worker);
@@ -108,11 +100,7 @@ class FlyerEngine {
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const AirSpot& place) const;
   bool name(const Contest& contest, const Worker& owner);
-  [[nodiscard]] bool holds(const Contest& contest, const Worker& owner, uint8_t round,
-                           uint64_t step) const;
   void settle(uint32_t flyer, EngineCounts& counts);
-  template <class Do>
-  void for_contests(Do act);
 
   FlyerConfig config_;
   struct OfClass {
@@ -124,11 +112,8 @@ class FlyerEngine {
   float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;
   std::span<Body> bodies_;
   std::span<Flight> flights_;
-  std::vector<uint32_t> flyers_;    // bodies
-  std::vector<uint32_t> flyer_of_;  // by body, in a step
-  std::vector<Move> moves_;         // by flyer
+  Rounds rounds_;
   FlyerGrid grid_;
-  std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_, landed_;
 };
 

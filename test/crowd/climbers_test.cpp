@@ -15,6 +15,7 @@
 #include "throng/flight.h"
 #include "throng/node_path.h"
 #include "throng/nodes.h"
+#include "trips.h"
 #include "verify/triangle_tree.h"
 #include "verify/turned_body.h"
 #include "worlds.h"
@@ -164,35 +165,6 @@ AvatarId added_on(Crowd& crowd, const NodePlace& place, int32_t avatar_class = k
   return added(crowd, {}, {.avatar_class = avatar_class, .on_nodes = place});
 }
 
-struct Climbed {
-  size_t arrived = 0;
-  int steps = 0;
-  Stage::Faults faults;
-};
-
-// Until so many have arrived, or for so many steps; each `every`-th step is looked at.
-Climbed climb(Crowd& crowd, Stage& stage, size_t all, int most, int every = 1) {
-  Climbed climbed;
-  std::set<uint32_t> there;
-  for (; climbed.steps < most && there.size() < all; ++climbed.steps) {
-    crowd.step();
-    for (const AvatarId id : crowd.arrived()) there.insert(id.slot1);
-    if (climbed.steps % every == 0) stage.look(crowd, climbed.faults);
-  }
-  climbed.arrived = there.size();
-  testing::Test::RecordProperty("steps", climbed.steps);
-  testing::Test::RecordProperty("bodies", std::to_string(climbed.faults.bodies));
-  testing::Test::RecordProperty("pairs", std::to_string(climbed.faults.pairs));
-  return climbed;
-}
-
-void expect_all(const Climbed& climbed, size_t all) {
-  EXPECT_EQ(climbed.arrived, all);
-  EXPECT_EQ(climbed.faults.overlaps, 0u);
-  EXPECT_EQ(climbed.faults.entered, 0u);
-  EXPECT_GT(climbed.faults.bodies, 0u);
-}
-
 Scene net() { return test::net_scene({.side = 3, .cell = 8, .relief = 6}); }
 
 // Climbers and geckos, each bound for a place of his own.
@@ -211,7 +183,7 @@ TEST(Climbers, ManyWhoCrossANetAllArrive) {
   Stage stage(net());
   Crowd crowd = on_net(stage, 80);
   EXPECT_GE(crowd.size(), 60u);
-  const Climbed climbed = climb(crowd, stage, crowd.size(), 9000, 10);
+  const Trip<Stage> climbed = go(crowd, stage, crowd.size(), 9000, 10);
   expect_all(climbed, crowd.size());
   EXPECT_GT(climbed.faults.leaning, 0u);
   EXPECT_GT(climbed.faults.pairs, 0u);
@@ -246,7 +218,7 @@ TEST(Climbers, PassThoseWhoComeTowardsThemAndThoseWhoStand) {
   EXPECT_GE(bound, 8u);
   for (uint64_t n = 0; n < 30; ++n) added_on(crowd, stage.place(kGecko, 12, n), kGecko);
   EXPECT_GT(crowd.size(), bound + 20);
-  expect_all(climb(crowd, stage, bound, 1500, 5), bound);
+  expect_all(go(crowd, stage, bound, 1500, 5), bound);
 }
 
 // Walkers, climbers and flyers over one ground. Random goals; who arrives gets another.
@@ -384,7 +356,7 @@ TEST(Climbers, LetThemselvesDownOverEdges) {
     ASSERT_TRUE(goals.back());
   }
   crowd.set_goals(ids, goals);
-  expect_all(climb(crowd, stage, ids.size(), 900), ids.size());
+  expect_all(go(crowd, stage, ids.size(), 900), ids.size());
   // Nobody climbs back.
   const Place top = stage.world().find_place(0, {8, 2, 8}, 0.5);
   crowd.set_goals(std::span(ids).first(1), std::span(&top, 1));
@@ -407,7 +379,7 @@ TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_EQ(crowd.step().waiting, 1u);
   const NodePlace away = stage.place(kClimber, 5, 2);
   crowd.set_goals(std::span(&id, 1), std::span(&away, 1));
-  expect_all(climb(crowd, stage, 1, 400), 1);
+  expect_all(go(crowd, stage, 1, 400), 1);
   EXPECT_FALSE(crowd.obstacle(*at_it)->waits);
   EXPECT_FALSE(added_on(crowd, here));
 }

@@ -12,6 +12,7 @@
 #include "simd_targets.h"
 #include "throng/crowd.h"
 #include "throng/flight.h"
+#include "trips.h"
 #include "verify/cylinder.h"
 #include "verify/triangle_tree.h"
 #include "worlds.h"
@@ -102,35 +103,6 @@ class Stage {
   std::vector<AvatarState> states_;
 };
 
-struct Flown {
-  size_t arrived = 0;
-  int steps = 0;
-  Stage::Faults faults;
-};
-
-// Until so many have arrived, or for so many steps; each `every`-th step is looked at.
-Flown fly(Crowd& crowd, Stage& stage, size_t all, int most, int every = 1) {
-  Flown flown;
-  std::set<uint32_t> there;
-  for (; flown.steps < most && there.size() < all; ++flown.steps) {
-    crowd.step();
-    for (const AvatarId id : crowd.arrived()) there.insert(id.slot1);
-    if (flown.steps % every == 0) stage.look(crowd, flown.faults);
-  }
-  flown.arrived = there.size();
-  testing::Test::RecordProperty("steps", flown.steps);
-  testing::Test::RecordProperty("bodies", std::to_string(flown.faults.bodies));
-  testing::Test::RecordProperty("pairs", std::to_string(flown.faults.pairs));
-  return flown;
-}
-
-void expect_all(const Flown& flown, size_t all) {
-  EXPECT_EQ(flown.arrived, all);
-  EXPECT_EQ(flown.faults.overlaps, 0u);
-  EXPECT_EQ(flown.faults.entered, 0u);
-  EXPECT_GT(flown.faults.bodies, 0u);
-}
-
 std::vector<AvatarId> added(Crowd& crowd, const std::vector<AvatarSpawn>& spawns) {
   Context context;
   const auto ids = crowd.add(spawns, context);
@@ -186,7 +158,7 @@ TEST(Flyers, FiveHundredWhoCrossASphereAllArrive) {
     goals.push_back(air_place(middle - way));
   }
   crowd.set_goals(added(crowd, spawns), goals);
-  expect_all(fly(crowd, stage, kCount, 600, 3), kCount);
+  expect_all(go(crowd, stage, kCount, 600, 3), kCount);
 }
 
 TEST(Flyers, TwoGroupsThatMeetInATunnelPassEachOther) {
@@ -203,7 +175,7 @@ TEST(Flyers, TwoGroupsThatMeetInATunnelPassEachOther) {
     goals.push_back(air_place(near));
   }
   crowd.set_goals(added(crowd, spawns), goals);
-  expect_all(fly(crowd, stage, spawns.size(), 900, 2), spawns.size());
+  expect_all(go(crowd, stage, spawns.size(), 900, 2), spawns.size());
 }
 
 TEST(Flyers, ThirtyWhoWantThroughAWindowGetThrough) {
@@ -217,7 +189,7 @@ TEST(Flyers, ThirtyWhoWantThroughAWindowGetThrough) {
     goals.push_back(air_place({24.4 - here.x, here.y, here.z}));
   }
   crowd.set_goals(added(crowd, spawns), goals);
-  expect_all(fly(crowd, stage, spawns.size(), 1500, 3), spawns.size());
+  expect_all(go(crowd, stage, spawns.size(), 1500, 3), spawns.size());
 }
 
 TEST(Flyers, ThirtyWhoseGoalIsOnePlaceOfTheGroundAllLandAroundIt) {
@@ -261,7 +233,7 @@ TEST(Flyers, ThoseOnTheGroundTakeOffAndLandWhereNoWayOnFootLeads) {
   }
   const auto ids = added(crowd, spawns);
   crowd.set_goals(ids, goals);
-  const Flown flown = fly(crowd, stage, spawns.size(), 600);
+  const Trip<Stage> flown = go(crowd, stage, spawns.size(), 600);
   expect_all(flown, spawns.size());
   EXPECT_EQ(crowd.step().flying, 0u);
 }
@@ -438,7 +410,7 @@ TEST(Flyers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_FALSE(crowd.obstacle(*beside)->waits);
   const Place goal = air_place({34, 5, 20});
   crowd.set_goals(std::span(&hovers, 1), std::span(&goal, 1));
-  expect_all(fly(crowd, stage, 1, 600), 1);
+  expect_all(go(crowd, stage, 1, 600), 1);
   EXPECT_FALSE(crowd.obstacle(*at_it)->waits);
   EXPECT_FALSE(crowd.remove_obstacle({}));
 }
@@ -452,7 +424,7 @@ TEST(Flyers, GoStraightWhereWaysAreNotAskedFor) {
   const std::vector<Place> goals = {air_place({20, 8, 20}), air_place({20, 4, 8}),
                                     stage.ground({12, 0, 20})};
   crowd.set_goals(added(crowd, spawns), goals);
-  expect_all(fly(crowd, stage, 3, 200), 3);
+  expect_all(go(crowd, stage, 3, 200), 3);
 }
 
 TEST(Flyers, NobodyIsAddedWhereHeCannotFly) {

@@ -10,18 +10,10 @@
 #include <optional>
 #include <string>
 
+#include "golden_image.h"
 #include "throng/bake.h"
 #include "throng_view/viewer.h"
 #include "view/density_brush.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
 
 namespace throng {
 namespace {
@@ -103,28 +95,6 @@ size_t pixels_that_differ(const Image& a, const Image& b) {
   return count;
 }
 
-// As the golden picture of a stage: other processors' vectors may round a pixel otherwise.
-void expect_golden(const Image& image, const std::string& name) {
-  const std::string golden = THRONG_TEST_DATA "/overlay_" + name + ".png";
-  if (std::getenv("THRONG_WRITE_GOLDEN") != nullptr) {
-    ASSERT_TRUE(write_png(image, golden));
-  }
-  int width = 0, height = 0, channels = 0;
-  stbi_uc* expected = stbi_load(golden.c_str(), &width, &height, &channels, 3);
-  ASSERT_NE(expected, nullptr) << golden;
-  ASSERT_EQ(width, image.width);
-  ASSERT_EQ(height, image.height);
-  int64_t off = 0, far_off = 0;
-  for (size_t i = 0; i < image.rgb.size(); ++i) {
-    const int32_t difference = std::abs(image.rgb[i] - expected[i]);
-    off += difference;
-    far_off += difference > 32 ? 1 : 0;
-  }
-  stbi_image_free(expected);
-  EXPECT_LT(static_cast<double>(off), 0.2 * static_cast<double>(image.rgb.size())) << name;
-  EXPECT_LT(static_cast<double>(far_off), 0.002 * static_cast<double>(image.rgb.size())) << name;
-}
-
 class Overlays : public testing::TestWithParam<std::string> {};
 
 TEST_P(Overlays, LooksAsItDid) {
@@ -136,7 +106,7 @@ TEST_P(Overlays, LooksAsItDid) {
   EXPECT_EQ(viewer.status().error, "");
   const Image with = picture(viewer);
   EXPECT_GT(pixels_that_differ(with, without), 40U) << GetParam();
-  expect_golden(with, GetParam());
+  test::expect_golden(with, THRONG_TEST_DATA "/overlay_" + GetParam() + ".png");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Overlays, testing::ValuesIn(Viewer::overlay_names()),

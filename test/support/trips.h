@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "throng/crowd.h"
+
+/// Crowds that go until they are there, looked at meanwhile.
+namespace throng {
+
+/// `Stage`: has Faults (overlaps, entered, bodies, pairs) and look(crowd, faults).
+template <class Stage>
+struct Trip {
+  size_t arrived = 0;
+  int steps = 0;
+  typename Stage::Faults faults;
+};
+
+/// Until so many have arrived, or for so many steps; each `every`-th step is looked at.
+template <class Stage>
+Trip<Stage> go(Crowd& crowd, Stage& stage, size_t all, int most, int every = 1) {
+  Trip<Stage> trip;
+  std::set<uint32_t> there;
+  for (; trip.steps < most && there.size() < all; ++trip.steps) {
+    crowd.step();
+    for (const AvatarId id : crowd.arrived()) there.insert(id.slot1);
+    if (trip.steps % every == 0) stage.look(crowd, trip.faults);
+  }
+  trip.arrived = there.size();
+  testing::Test::RecordProperty("steps", trip.steps);
+  testing::Test::RecordProperty("bodies", std::to_string(trip.faults.bodies));
+  testing::Test::RecordProperty("pairs", std::to_string(trip.faults.pairs));
+  return trip;
+}
+
+template <class Stage>
+void expect_all(const Trip<Stage>& trip, size_t all) {
+  EXPECT_EQ(trip.arrived, all);
+  EXPECT_EQ(trip.faults.overlaps, 0u);
+  EXPECT_EQ(trip.faults.entered, 0u);
+  EXPECT_GT(trip.faults.bodies, 0u);
+}
+
+}  // namespace throng

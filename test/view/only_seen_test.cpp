@@ -180,7 +180,7 @@ Viewer made_viewer(const std::string& settings) {
   return *std::move(viewer);
 }
 
-TEST(OnlySeen, TheViewerTellsTheCrowdWhereItLooksFrom) {
+TEST(OnlySeenViewer, TellsTheCrowdWhereItLooksFrom) {
   const auto film = [](double from, double turn) {
     Viewer viewer = made_viewer("");
     viewer.look_at({35, 1.7, from}, {35, 1.7, 95});
@@ -205,7 +205,7 @@ TEST(OnlySeen, TheViewerTellsTheCrowdWhereItLooksFrom) {
   EXPECT_NE(film(65, 0), once);
 }
 
-TEST(OnlySeen, IsASettingThatIsKept) {
+TEST(OnlySeenViewer, KeepsItAsASetting) {
   ViewSettings settings;
   settings.only_seen = settings.coarse_far = true;
   Viewer viewer = made_viewer(settings_text(settings));

@@ -64,11 +64,6 @@ const char* word_for(Obstacle obstacle);
 /// "walk", "climb", ...
 const char* word_for(LinkKind kind);
 
-/// Do only nodes know all the ways of a class?
-inline bool goes_over_nodes(const AvatarClass& avatar) {
-  return avatar.climb_slope > 0 || avatar.max_drop > 0;
-}
-
 /// A position as JSON and for people, in millimetres.
 Json numbers(const Vec3d& p);
 std::string where(const Vec3d& p);

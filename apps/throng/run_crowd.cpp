@@ -151,13 +151,18 @@ Result<GoalCrowd> GoalCrowd::make(const World& world, const CrowdRun& run, Conte
   const std::vector<AvatarClass> classes = world.summary().classes;
   std::vector<std::pair<std::string, uint32_t>> groups = run.also;
   groups.insert(groups.begin(), {run.class_name, run.avatars});
+  bool wants_nodes = false;
   for (const auto& [name, count] : groups) {
     const Result<int32_t> avatar_class = class_named(world, name);
     if (!avatar_class) return avatar_class.error();
     const AvatarClass& avatar = classes[static_cast<size_t>(*avatar_class)];
-    if (avatar.climb_slope <= 0 && avatar.max_drop <= 0) continue;
     // A world that was baked for such a class has nodes; without them it walks.
-    if (auto nodes = Nodes::open(world)) with_nodes.config.nodes = std::move(*nodes);
+    wants_nodes = wants_nodes || throng::goes_over_nodes(avatar);
+  }
+  if (wants_nodes && Nodes::exist(world)) {
+    auto nodes = Nodes::open(world);
+    if (!nodes) return nodes.error();
+    with_nodes.config.nodes = *std::move(nodes);
   }
   auto crowd = Crowd::create(world, with_nodes.config);
   if (!crowd) return crowd.error();
@@ -191,8 +196,7 @@ Result<void> GoalCrowd::scatter(const std::string& class_name, uint32_t count, C
 
 bool GoalCrowd::goes_over_nodes(int32_t avatar_class) const {
   const AvatarClass avatar = world_.summary().classes[static_cast<size_t>(avatar_class)];
-  return run_.config.nodes.data() != nullptr && !avatar.flies &&
-         (avatar.climb_slope > 0 || avatar.max_drop > 0);
+  return run_.config.nodes.data() != nullptr && !avatar.flies && throng::goes_over_nodes(avatar);
 }
 
 Result<void> GoalCrowd::read_places() {

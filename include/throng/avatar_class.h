@@ -32,6 +32,11 @@ struct AvatarClass {
 
 inline constexpr int32_t kMaxAvatarClasses = 16;
 
+/// Do only nodes ([Nodes]) know all the ways of a class that are not through the air?
+[[nodiscard]] inline bool goes_over_nodes(const AvatarClass& avatar) {
+  return avatar.climb_slope > 0 || avatar.max_drop > 0;
+}
+
 /// How high above the feet matter may reach before it stops a body: max(step, radius * tan(slope)).
 [[nodiscard]] THRONG_API double body_bottom(const AvatarClass& avatar);
 

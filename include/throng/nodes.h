@@ -149,6 +149,8 @@ class THRONG_API Nodes {
                                           const NodeConfig& config, Context& context);
   /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.
   [[nodiscard]] static Result<Nodes> open(const std::string& world_path);
+  /// Were nodes ever written into the folder that a world was opened from?
+  [[nodiscard]] static bool exist(const World& world);
   /// The same for a world that was opened from its folder.
   [[nodiscard]] static Result<Nodes> open(const World& world);
   /// Puts them into the folder of the world that they were made for, in place of any that are

@@ -81,8 +81,7 @@ void clear_way(Climb& climb) {
 
 bool Crowd::State::goes_over_nodes(int32_t number) const {
   const AvatarClass& avatar = body_class(number);
-  return config.nodes.data() != nullptr && !avatar.flies &&
-         (avatar.climb_slope > 0 || avatar.max_drop > 0);
+  return config.nodes.data() != nullptr && !avatar.flies && throng::goes_over_nodes(avatar);
 }
 
 Result<void> Crowd::State::open_nodes(int32_t number, ClassParts& parts, Context& context) const {

@@ -102,19 +102,8 @@ void upload_views(const Atlas& atlas) {
 
 bool takes_blocks() {
   // The desktop's name, and the browser's with either prefix.
-  constexpr std::array<std::string_view, 3> kNames{"GL_EXT_texture_compression_s3tc",
-                                                   "GL_WEBGL_compressed_texture_s3tc",
-                                                   "WEBGL_compressed_texture_s3tc"};
-  GLint count = 0;
-  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
-  for (GLint i = 0; i < count; ++i) {
-    const auto* name =
-        reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-    if (name != nullptr && std::find(kNames.begin(), kNames.end(), name) != kNames.end()) {
-      return true;
-    }
-  }
-  return false;
+  return has_extension({"GL_EXT_texture_compression_s3tc", "GL_WEBGL_compressed_texture_s3tc",
+                        "WEBGL_compressed_texture_s3tc"});
 }
 
 Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {

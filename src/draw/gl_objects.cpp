@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "draw/gl_objects.h"
 
+#include <algorithm>
+
 #ifdef __EMSCRIPTEN__
 #include <emscripten/html5.h>
 #endif
@@ -70,6 +72,17 @@ void GlProgram::set_matrix(const char* uniform, const float* sixteen) const {
 
 void GlProgram::set_colours(const char* uniform, const float* triples, int count) const {
   glUniform3fv(place(uniform), count, triples);
+}
+
+bool has_extension(std::initializer_list<std::string_view> names) {
+  GLint count = 0;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    const auto* name =
+        reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+    if (name != nullptr && std::find(names.begin(), names.end(), name) != names.end()) return true;
+  }
+  return false;
 }
 
 std::string renderer_name() {

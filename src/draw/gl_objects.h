@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "draw/gl.h"
@@ -65,6 +67,9 @@ class GlProgram {
   GlName<delete_program> name_;
   std::string fault_;
 };
+
+/// Does the current context have an extension by one of its names? Browsers have others.
+bool has_extension(std::initializer_list<std::string_view> names);
 
 /// What draws, as the driver calls itself; "unknown" if it does not tell.
 std::string renderer_name();

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <string_view>
 
+#include "core/texel_mean.h"
 #include "draw/gl.h"
 
-// Texels are kept as they are shown; their squares are (nearly) the light, as with all colours
-// here. Means are of the light, and each texel counts as much as it covers.
 namespace throng {
 namespace {
 
@@ -20,27 +18,6 @@ constexpr int32_t kSmallestSide = 16;
 #ifndef GL_TEXTURE_MAX_ANISOTROPY_EXT
 #define GL_TEXTURE_MAX_ANISOTROPY_EXT 0x84FE
 #endif
-
-struct Mean {
-  double light[3] = {}, plain[3] = {}, cover = 0, weight = 0;
-  void add(const uint8_t* texel, double share) {
-    const double alpha = texel[3] * share;
-    for (size_t c = 0; c < 3; ++c) {
-      const double light_of = static_cast<double>(texel[c]) * texel[c];
-      light[c] += light_of * alpha;
-      plain[c] += light_of * share;
-    }
-    cover += alpha;
-    weight += share;
-  }
-  void write(uint8_t* texel) const {
-    for (size_t c = 0; c < 3; ++c) {
-      const double mean = cover > 0 ? light[c] / cover : plain[c] / weight;
-      texel[c] = static_cast<uint8_t>(std::min(std::sqrt(mean) + 0.5, 255.0));
-    }
-    texel[3] = static_cast<uint8_t>(std::min(cover / weight + 0.5, 255.0));
-  }
-};
 
 // The texels that lie under one of `to` out of `from`, and how much of each.
 struct Span {
@@ -63,7 +40,7 @@ void fit(const Texture& from, int32_t side, uint8_t* to) {
     const Span down(y, from.height, side);
     for (int32_t x = 0; x < side; ++x) {
       const Span across(x, from.width, side);
-      Mean mean;
+      TexelMean mean;
       for (int32_t sy = down.first; sy < down.last; ++sy) {
         const uint8_t* row =
             &from.rgba[static_cast<size_t>(sy) * static_cast<size_t>(from.width) * 4];
@@ -84,7 +61,7 @@ std::vector<uint8_t> next_level(const std::vector<uint8_t>& from, int32_t side, 
   for (size_t layer = 0; layer < static_cast<size_t>(layers); ++layer) {
     for (size_t y = 0; y < half; ++y) {
       for (size_t x = 0; x < half; ++x) {
-        Mean mean;
+        TexelMean mean;
         for (size_t k = 0; k < 4; ++k) {
           const size_t at = layer * whole * whole + (2 * y + k / 2) * whole + 2 * x + k % 2;
           mean.add(&from[at * 4], 1);
@@ -109,17 +86,6 @@ std::vector<bool> used_textures(const Scene& scene) {
 bool is_whole(const Texture& t) {
   return t.width > 0 && t.height > 0 &&
          t.rgba.size() == static_cast<size_t>(t.width) * static_cast<size_t>(t.height) * 4;
-}
-
-bool has_extension(std::string_view wanted) {
-  GLint count = 0;
-  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
-  for (GLint i = 0; i < count; ++i) {
-    const auto* name =
-        reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-    if (name != nullptr && wanted == name) return true;
-  }
-  return false;
 }
 
 }  // namespace
@@ -179,7 +145,8 @@ Result<void> SurfaceTextures::set(const TextureLayers& layers, bool smooth) {
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
-  if (smooth && has_extension("GL_EXT_texture_filter_anisotropic")) {
+  if (smooth &&
+      has_extension({"GL_EXT_texture_filter_anisotropic", "EXT_texture_filter_anisotropic"})) {
     glTexParameterf(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8.0F);
   }
   any_ = glGetError() == GL_NO_ERROR;

@@ -3,6 +3,7 @@
 #include "throng/nodes.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 
 #include "core/disjoint_sets.h"
@@ -46,12 +47,22 @@ bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::A
   });
 }
 
+std::string index_of(const std::string& world_path) {
+  return world_path + "/" + kNodeFolder + "/" + kNodeIndexName;
+}
+
 }  // namespace
 
 Result<Nodes> Nodes::open(const std::string& world_path) {
   auto world = World::open(world_path);
   if (!world) return world.error();
   return open(*world);
+}
+
+bool Nodes::exist(const World& world) {
+  std::error_code failure;
+  return !world.data()->path.empty() &&
+         std::filesystem::exists(index_of(world.data()->path), failure);
 }
 
 Result<Nodes> Nodes::open(const World& world) {
@@ -61,7 +72,7 @@ Result<Nodes> Nodes::open(const World& world) {
     return Error{Errc::kBadFile,
                  "this world was not opened from a folder, so it has no nodes there"};
   }
-  const std::string folder = world_path + "/" + kNodeFolder, name = folder + "/" + kNodeIndexName;
+  const std::string name = index_of(world_path);
   const auto map = FileMap::open(name);
   if (!map) {
     return Error{Errc::kBadFile,
@@ -75,7 +86,7 @@ Result<Nodes> Nodes::open(const World& world) {
     return Error{Errc::kBadFile, name + ": belongs to another world; bake it again with --nodes"};
   }
   (*nodes)->world = world;
-  (*nodes)->path = folder;
+  (*nodes)->path = world_path + "/" + kNodeFolder;
   return Nodes(std::move(*nodes));
 }
 

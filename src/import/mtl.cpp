@@ -43,11 +43,7 @@ void MaterialLibrary::read(const std::string& named) {
 uint32_t MaterialLibrary::texture1(std::string_view arguments) {
   // Options with their numbers stand before the name, which may hold blanks.
   TextCursor cursor(arguments);
-  std::string_view rest;
-  while (true) {
-    cursor.skip_space();
-    rest = cursor.rest();
-    if (rest.empty() || rest.front() != '-') break;
+  while (cursor.skip_space(), cursor.peek() == '-') {
     cursor.take_word();
     for (double number = 0;;) {
       cursor.skip_space();
@@ -61,9 +57,8 @@ uint32_t MaterialLibrary::texture1(std::string_view arguments) {
       cursor.take_word();
     }
   }
-  while (!rest.empty() && TextCursor::is_space(rest.back())) rest.remove_suffix(1);
-  if (rest.empty()) return 0;
-  const std::string name(rest);
+  const std::string name(cursor.take_rest());
+  if (name.empty()) return 0;
   const auto [found, is_new] =
       texture_numbers1_.try_emplace(name, static_cast<uint32_t>(textures_.size()) + 1);
   if (is_new) textures_.push_back({.name = name, .bytes = {}});
@@ -79,9 +74,8 @@ void MaterialLibrary::parse(std::string_view bytes) {
     const std::string_view word = cursor.take_word();
     cursor.skip_space();
     if (word == "newmtl") {
-      std::string_view name = cursor.rest();
-      while (!name.empty() && TextCursor::is_space(name.back())) name.remove_suffix(1);
-      materials_.push_back({.name = std::string(name), .colour = {0.6F, 0.6F, 0.6F, 1}});
+      materials_.push_back(
+          {.name = std::string(cursor.take_rest()), .colour = {0.6F, 0.6F, 0.6F, 1}});
       numbers1_[materials_.back().name] = static_cast<uint32_t>(materials_.size());
       current = &materials_.back();
       continue;

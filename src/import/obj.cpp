@@ -83,10 +83,7 @@ class ObjReader {
     }
   }
 
-  static std::string name(TextCursor& cursor) {
-    cursor.skip_space();
-    return std::string(cursor.rest());
-  }
+  static std::string name(TextCursor& cursor) { return std::string(cursor.take_rest()); }
 
   void read_face(TextCursor& cursor) {
     corners_.clear();

@@ -46,6 +46,14 @@ class TextCursor {
     while (at_ != end_ && !is_space(*at_)) ++at_;
     return {from, static_cast<size_t>(at_ - from)};
   }
+  /// Takes all that is left, without the space around it.
+  std::string_view take_rest() {
+    skip_space();
+    std::string_view left = rest();
+    while (!left.empty() && is_space(left.back())) left.remove_suffix(1);
+    at_ = end_;
+    return left;
+  }
   static bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
   }

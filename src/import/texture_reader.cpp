@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/read_file.h"
+#include "core/texel_mean.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -39,37 +40,26 @@ constexpr int32_t kLargestSide = 2048;
 
 Error unusable(std::string why) { return {Errc::kBadFile, std::move(why)}; }
 
-// Half as large, an odd last row or column counting for itself. What is transparent has no colour.
+// Half as large, an odd last row or column counting for itself.
 Texture halved(const Texture& from) {
   Texture to{.name = from.name,
              .width = (from.width + 1) / 2,
              .height = (from.height + 1) / 2,
              .rgba = {}};
   to.rgba.resize(static_cast<size_t>(to.width) * static_cast<size_t>(to.height) * 4);
+  const auto at = [](const Texture& texture, int32_t x, int32_t y) {
+    return (static_cast<size_t>(y) * static_cast<size_t>(texture.width) + static_cast<size_t>(x)) *
+           4;
+  };
   for (int32_t y = 0; y < to.height; ++y) {
     for (int32_t x = 0; x < to.width; ++x) {
-      uint32_t sum[4] = {}, plain[3] = {};
+      TexelMean mean;
       for (int32_t k = 0; k < 4; ++k) {
         const int32_t sx = std::min(2 * x + (k & 1), from.width - 1);
         const int32_t sy = std::min(2 * y + (k >> 1), from.height - 1);
-        const uint8_t* texel =
-            &from.rgba[(static_cast<size_t>(sy) * static_cast<size_t>(from.width) +
-                        static_cast<size_t>(sx)) *
-                       4];
-        for (size_t c = 0; c < 3; ++c) {
-          sum[c] += uint32_t{texel[c]} * texel[3];
-          plain[c] += texel[c];
-        }
-        sum[3] += texel[3];
+        mean.add(&from.rgba[at(from, sx, sy)], 1);
       }
-      uint8_t* out = &to.rgba[(static_cast<size_t>(y) * static_cast<size_t>(to.width) +
-                               static_cast<size_t>(x)) *
-                              4];
-      for (size_t c = 0; c < 3; ++c) {
-        out[c] =
-            static_cast<uint8_t>(sum[3] > 0 ? (sum[c] + sum[3] / 2) / sum[3] : (plain[c] + 2) / 4);
-      }
-      out[3] = static_cast<uint8_t>((sum[3] + 2) / 4);
+      mean.write(&to.rgba[at(to, x, y)]);
     }
   }
   return to;

@@ -339,6 +339,12 @@ class Program(unittest.TestCase):
         for group in ("adult", "adult:0", "adult:x", ":3"):
             self.assert_refused(self.run_throng(*run, "--also", group), "CLASS:N")
         self.assert_refused(self.run_throng(*run, "--also", "nobody:3"), "nobody")
+        index = self.path / "hills.throng" / "nodes" / "index.thn"
+        whole = index.read_bytes()
+        index.write_bytes(whole[: len(whole) // 2])
+        self.assert_refused(self.run_throng(*run), "index.thn")
+        walkers = self.run_throng("run", "hills.throng", "--class", "adult", "--avatars", 20, "--steps", 5)
+        self.assertEqual(walkers.returncode, 0, walkers.stderr)  # who walks reads no nodes
 
     def test_goals_of_a_file_are_walked_to_and_bad_ones_named(self):
         self.run_throng("run", self.world, "--avatars", 1, "--steps", 1, "--trajectories", "at.csv")

@@ -151,7 +151,7 @@ TEST(GlSurfaces, CullingChangesNoByteOfAPictureWithHoles) {
   EXPECT_EQ(picture_of(scene, config).rgb, whole.rgb);
 }
 
-TEST(GlSurfaces, TexturesBecomeLayersOfOneSizeWithinTheBudget) {
+TEST(TextureLayers, AreOfOneSizeWithinTheBudget) {
   Scene scene = sign(Opacity::kOpaque);
   TextureLayers layers = make_texture_layers(scene, 1 << 20);
   EXPECT_EQ(layers.side, 16);
@@ -183,7 +183,7 @@ TEST(GlSurfaces, TexturesBecomeLayersOfOneSizeWithinTheBudget) {
   EXPECT_EQ(layers.of_texture[1].layer1, 0U);
 }
 
-TEST(GlSurfaces, MoreTexturesThanLayersGiveTheirMeans) {
+TEST(TextureLayers, MoreTexturesThanLayersGiveTheirMeans) {
   Scene scene = sign(Opacity::kOpaque);
   for (size_t i = 0; i < kMostLayers; ++i) {
     scene.textures.push_back(quarters());

@@ -50,7 +50,16 @@ Stop stop_of(const PathMesh& mesh, const WayPoint& p) {
   return {};
 }
 
+// Does a line along (dx, dz) that begins or ends there keep out of the cell missing there, if any?
+bool keeps_out(const PathMesh& mesh, const WayPoint& p, double dx, double dz) {
+  return p.corner == kNoCorner || is_taut(mesh.corners[p.corner], dx, dz);
+}
+
+// Rays go from and to points beside corners. Where the line between the corners themselves runs
+// into a cell that is missing at one of them the ray may still pass by, and tells nothing.
 bool see_each_other(const PathMesh& mesh, const WayPoint& a, const WayPoint& b) {
+  const double dx = b.at.x - a.at.x, dz = b.at.z - a.at.z;
+  if (!keeps_out(mesh, a, dx, dz) || !keeps_out(mesh, b, dx, dz)) return false;
   const Stop from = stop_of(mesh, a), to = stop_of(mesh, b);
   return from.rect != kNoRect && to.rect != kNoRect &&
          mesh_ray(mesh, from.rect, from.at, to.at) == to.rect;

@@ -308,6 +308,7 @@ int verify(Session& session, VerifyOptions& options) {
   if (!picked) return fail(picked.error());
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
+  note_if_elsewhere(*scene, world->summary().bounds);
   if (options.paths) return verify_node_ways(session, options, *picked, *scene);
   if (options.nodes) return verify_all_nodes(session, options, *picked, *scene);
 

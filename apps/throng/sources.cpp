@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <utility>
@@ -31,6 +32,18 @@ bool set_field(BuiltinWorldConfig& config, std::string_view key, std::string_vie
   if (key == "levels") return parse_number(value, config.levels);
   if (key == "triangles") return parse_number(value, config.triangles);
   return key == "seed" && parse_number(value, config.seed);
+}
+
+// Half of the longer of two ranges is in the other, or both are short.
+bool share_half(double low, double high, double other_low, double other_high) {
+  constexpr double kShort = 2;  // [m]
+  const double longer = std::max(high - low, other_high - other_low);
+  return longer <= kShort || std::min(high, other_high) - std::max(low, other_low) >= longer / 2;
+}
+
+std::string box_text(const Box3d& box) {
+  return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}, z {:.1f} to {:.1f} m", box.min.x,
+                     box.max.x, box.min.y, box.max.y, box.min.z, box.max.z);
 }
 
 }  // namespace
@@ -155,6 +168,19 @@ Result<Scene> read_sources(const SourceOptions& options, Context& context, Scene
   }
   for (const std::string& warning : scene.report.warnings) note(warning);
   return scene;
+}
+
+void note_if_elsewhere(const Scene& scene, const Box3d& world) {
+  const Box3d box = scene.bounds();
+  if (box.empty() || world.empty()) return;
+  if (share_half(box.min.x, box.max.x, world.min.x, world.max.x) &&
+      share_half(box.min.y, box.max.y, world.min.y, world.max.y) &&
+      share_half(box.min.z, box.max.z, world.min.z, world.max.z)) {
+    return;
+  }
+  note(fmt::format("the model given by --source ({}) does not lie where the world does ({}); give "
+                   "it the --scale and --up of the bake, or the files that it was baked from",
+                   box_text(box), box_text(world)));
 }
 
 Json report_json(const SceneReport& report) {

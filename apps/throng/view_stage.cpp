@@ -105,10 +105,11 @@ std::vector<double> heights_of(const std::vector<AvatarClass>& classes) {
 // Sets the scene: what the options name, or where one can walk.
 Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World& world,
                        Context& context) {
-  Result<Scene> scene = has_sources(target.sources)
-                            ? read_sources(target.sources, context, SceneLooks::kRead)
-                            : walkable_surface(world, 0, context);
+  const bool given = has_sources(target.sources);
+  Result<Scene> scene = given ? read_sources(target.sources, context, SceneLooks::kRead)
+                              : walkable_surface(world, 0, context);
   if (!scene) return scene.error();
+  if (given) note_if_elsewhere(*scene, world.summary().bounds);
   return parts.set_scene(*scene);
 }
 
@@ -184,14 +185,16 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
   if (scenario->world.empty()) {
     const Result<Scene> scene = load_scene(*scenario, context, SceneLooks::kRead);
     if (!scene) return scene.error();
-    auto ok = has_sources(target.sources) ? set_scene(parts, target, {}, context)
-                                          : parts.set_scene(*scene);
-    if (!ok) return ok;
+    if (!has_sources(target.sources)) {
+      if (auto ok = parts.set_scene(*scene); !ok) return ok;
+    }
     world = bake_world(*scenario, *scene, context);
     if (!world) return world.error();
   } else {
     world = World::open(scenario->world);
     if (!world) return world.error();
+  }
+  if (has_sources(target.sources) || !scenario->world.empty()) {
     if (auto ok = set_scene(parts, target, *world, context); !ok) return ok;
   }
   ViewTarget without = target;

@@ -530,6 +530,14 @@ class Program(unittest.TestCase):
                 self.assert_refused(self.run_throng(*at), zone.name, "bake the world again")
             shutil.rmtree(copy)
 
+    def test_a_source_of_another_size_or_axis_than_the_world_is_noted(self):
+        done = self.run_throng("world", "garage", "--levels", 2, "-o", "garage.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for options, is_elsewhere in (((), False), (("--scale", 0.1), True), (("--up", "z"), True)):
+            done = self.run_throng("verify", self.world, "--source", "garage.glb", "--samples", 10, "--class", "adult", *options)
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            self.assertEqual("does not lie where the world does" in done.stderr, is_elsewhere, done.stderr)
+
     def test_regions_are_told_from_the_bakes_files_or_made_where_there_are_none(self):
         def region(world):
             done = self.run_throng("region", world, "--at", "14,0,8", "--json")

@@ -225,8 +225,8 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
     uint32_t square = UINT32_MAX;
     const size_t end = std::min(size_, (piece + 1) * kGrain);
     for (size_t i = piece * kGrain; i < end; ++i) {
-      uint64_t& contests = contests_[i / kBits];
-      if (i % kBits == 0) contests = 0;
+      Contests& contests = contests_[i / kBits];
+      if (i % kBits == 0) contests = {};
       prefetch_ground(i);
       if (bodies_[i].steps == 0) {
         claims()[i] = {};
@@ -243,8 +243,11 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
         }
         contested = decide(static_cast<uint32_t>(i), w, around);
       }
-      contests |= uint64_t{*contested} << (i % kBits);
-      workers_[w].counts.contested += *contested ? 1 : 0;
+      if (!*contested) continue;
+      const uint64_t bit = uint64_t{1} << (i % kBits);
+      contests.open |= bit;
+      if (claims()[i].round == 0) contests.unnamed |= bit;
+      ++workers_[w].counts.contested;
     }
   });
   for (const Worker& worker : workers_) counts.add(worker.counts);
@@ -264,17 +267,12 @@ void CrowdEngine::prefetch_ground(size_t i) const {
   }
 }
 
-// Makes the lists as long as those around may need. Returns how many these are.
-size_t CrowdEngine::fit_lists(const NeighbourGrid::Around& around, Worker& worker) const {
-  size_t around_us = 0;
-  for (const auto& p : around) around_us += p.last - p.first;
-  if (worker.squares.size() < around_us + kSeenSpare) {
-    for (auto* entries : {&worker.entries, &worker.touched}) {
-      entries->resize(2 * (around_us + kSeenSpare));
-    }
-    worker.squares.resize(worker.entries.size());
-  }
-  return around_us;
+// Makes the lists as long as those around may need.
+void CrowdEngine::fit_lists(const NeighbourGrid::Around& around, Worker& worker) {
+  const size_t wanted = around.bodies() + kSeenSpare;
+  if (worker.squares.size() >= wanted) return;
+  for (auto* entries : {&worker.entries, &worker.touched}) entries->resize(2 * wanted);
+  worker.squares.resize(worker.entries.size());
 }
 
 // Nobody farther away than this can be touched; the exact test follows. [units]
@@ -300,14 +298,14 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
                         bool lists_others) {
   worker.waits = worker.meets = false;
   const Body& body = bodies_[i];
-  const size_t around_us = fit_lists(around, worker);
+  fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
   const float touch = touch_of(body);
   // In a dense crowd the nearest are near: if enough are within less, nobody farther matters.
   const float sight = static_cast<float>(sight_) * static_cast<float>(sight_);
   const float across = grid_->width() * NeighbourGrid::kAround;
   const float enough =
-      across * across * kEnough / (3 * static_cast<float>(around_us));  // 3 of the circle's pi
+      across * across * kEnough / (3 * static_cast<float>(around.bodies()));  // 3 of the circle's pi
   const auto wanted = static_cast<size_t>(config_.steering.neighbours);
   Eye eye{.x = body.x,
           .z = body.z,
@@ -320,7 +318,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   SeenLists lists;
   const auto look = [&] {
     lists = {worker.squares.data(), worker.entries.data(), worker.touched.data()};
-    find_seen(places, around, eye, lists);
+    find_seen(places, around.pieces(), eye, lists);
   };
   look();
   if (lists.seen < wanted && eye.most < sight && !goes_blind(body)) {
@@ -515,7 +513,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
                 .touch = touch * touch,
                 .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMostRise};
   SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
-  find_seen({grid_->x(), grid_->z(), grid_->y()}, around, eye, lists);
+  find_seen({grid_->x(), grid_->z(), grid_->y()}, around.pieces(), eye, lists);
   const size_t first = worker.others.size();
   list_touched(body, lists, worker);
   if (worker.others.size() == first) {
@@ -611,8 +609,9 @@ bool CrowdEngine::try_ways(const Body& body, const Ways& ways, std::span<const u
                      [&](float part) { return is_free(shorter(ways[0], part)); });
 }
 
+// Those of whom `act` says so are left out from then on.
 template <class Do>
-void CrowdEngine::for_contests(Do act) {
+void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
   static_assert(kGrain % kBits == 0);
   const size_t words = (size_ + kBits - 1) / kBits;
   constexpr size_t kPiece = kGrain / kBits;
@@ -620,9 +619,11 @@ void CrowdEngine::for_contests(Do act) {
       (words + kPiece - 1) / kPiece, config_.workers, [&](size_t piece, int32_t worker) {
         const size_t last = std::min(words, (piece + 1) * kPiece);
         for (size_t word = piece * kPiece; word < last; ++word) {
-          for (uint64_t left = contests_[word]; left != 0; left &= left - 1) {
+          uint64_t& bits = contests_[word].*which;
+          for (uint64_t left = bits; left != 0; left &= left - 1) {
             const auto bit = static_cast<size_t>(std::countr_zero(left));
-            act(static_cast<uint32_t>(word * kBits + bit), workers_[static_cast<size_t>(worker)]);
+            const auto i = static_cast<uint32_t>(word * kBits + bit);
+            if (act(i, workers_[static_cast<size_t>(worker)])) bits ^= uint64_t{1} << bit;
           }
         }
       });
@@ -634,12 +635,15 @@ void CrowdEngine::for_contests(Do act) {
 void CrowdEngine::commit(uint64_t step) {
   for (int32_t r = 1; r <= config_.rounds; ++r) {
     const auto round = static_cast<uint8_t>(r);
-    for_contests([&](uint32_t i, Worker& scratch) {
-      const bool has_named = claims()[i].round == round;  // when it decided: nobody has moved yet
-      if (bodies_[i].state == Body::kUndecided && !has_named) name(i, scratch, round);
+    // Most named a place for the first round when they decided: nobody had moved yet.
+    for_contests(r == 1 ? &Contests::unnamed : &Contests::open, [&](uint32_t i, Worker& scratch) {
+      name(i, scratch, round);
+      return false;
     });
-    for_contests([&](uint32_t i, Worker&) {
-      if (claims()[i].round == round && holds(i, step)) bodies_[i].state = Body::kDecided;
+    for_contests(&Contests::open, [&](uint32_t i, Worker&) {
+      const bool decided = claims()[i].round == round && holds(i, step);
+      if (decided) bodies_[i].state = Body::kDecided;
+      return decided;
     });
   }
 }
@@ -765,7 +769,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
 }
 
 uint64_t CrowdEngine::bytes() const {
-  uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + contests_.size() * sizeof(uint64_t) +
+  uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + contests_.size() * sizeof(Contests) +
                    (grid_ ? grid_->bytes() : 0);
   for (const Worker& worker : workers_) {
     bytes += 4 * (worker.squares.capacity() + worker.entries.capacity() +

@@ -137,6 +137,11 @@ class CrowdEngine {
     }
   };
   static_assert(sizeof(Claim) == sizeof(Body) && std::is_trivially_copyable_v<Claim>);
+  // A bit for each body.
+  struct Contests {
+    uint64_t open = 0;     // it could touch others, and is undecided
+    uint64_t unnamed = 0;  // of these: it has not named a place for the first round
+  };
   struct Worker {
     std::vector<float> squares;
     std::vector<uint32_t> entries, touched;
@@ -175,7 +180,7 @@ class CrowdEngine {
   void prefetch_ground(size_t i) const;
   std::optional<bool> keep_on(uint32_t i, uint16_t w, uint32_t square);
   void list_touched(const Body& body, const SeenLists& lists, Worker& worker) const;
-  size_t fit_lists(const NeighbourGrid::Around& around, Worker& worker) const;
+  static void fit_lists(const NeighbourGrid::Around& around, Worker& worker);
   [[nodiscard]] float touch_of(const Body& body) const;
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
   void prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const;
@@ -215,7 +220,7 @@ class CrowdEngine {
                               std::span<const uint32_t> others, bool somebody_moved) const;
   [[nodiscard]] bool holds(uint32_t i, uint64_t step) const;
   template <class Do>
-  void for_contests(Do act);
+  void for_contests(uint64_t Contests::*which, Do act);
   bool try_way(const Body& body, Way way, Stand& place) const;
   bool try_ways(const Body& body, const Ways& ways, std::span<const uint32_t> others,
                 Stand& place) const;
@@ -235,7 +240,7 @@ class CrowdEngine {
   size_t size_ = 0;
   HugeArray<Body> bodies_;
   HugeArray<Body> spare_;           // while sorting: where from; then: claims
-  std::vector<uint64_t> contests_;  // a bit for each body: could it touch others?
+  std::vector<Contests> contests_;  // of bodies in order
   std::optional<NeighbourGrid> grid_;
   std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_;

@@ -76,7 +76,7 @@ bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Aro
                 .touch = 0,
                 .touch_tall = 0};
   SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
-  find_seen({grid_->x(), grid_->z(), grid_->y()}, around, eye, lists);
+  find_seen({grid_->x(), grid_->z(), grid_->y()}, around.pieces(), eye, lists);
   steer::Lanes lanes(config_.lanes, body.wish);
   for (size_t n = 0; n < lists.seen; ++n) {
     const Body& other = bodies_[lists.entries[n]];

@@ -74,10 +74,10 @@ NeighbourGrid::Around NeighbourGrid::around(uint32_t square, uint32_t reach) con
   for (uint32_t row = 0; row < 2 * reach + 1; ++row) {
     const uint32_t base = ((z + row - reach) & mask_z_) << bits_x_;
     if (left <= right) {
-      pieces[2 * row] = {first_[base + left], first_[base + right + 1]};
+      pieces.add({first_[base + left], first_[base + right + 1]});
     } else {
-      pieces[2 * row] = {first_[base + left], first_[base + mask_x_ + 1]};
-      pieces[2 * row + 1] = {first_[base], first_[base + right + 1]};
+      pieces.add({first_[base + left], first_[base + mask_x_ + 1]});
+      pieces.add({first_[base], first_[base + right + 1]});
     }
   }
   return pieces;

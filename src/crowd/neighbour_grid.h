@@ -30,10 +30,23 @@ class NeighbourGrid {
   /// Sorts by square; on one square the order stays. `sorted` must be as large as `bodies`.
   void sort(std::span<const Body> bodies, std::span<Body> sorted, int32_t workers);
 
-  /// Bodies of the rows of squares around a body, a row in up to two pieces.
-  using Around = std::array<Entries, 2 * kAround>;
+  /// Bodies of the rows of squares around a body, a row in up to two pieces, none of them empty.
+  class Around {
+   public:
+    [[nodiscard]] std::span<const Entries> pieces() const { return {pieces_.data(), size_}; }
+    [[nodiscard]] uint32_t bodies() const { return bodies_; }
+    void add(Entries piece) {
+      pieces_[size_] = piece;
+      size_ += piece.first < piece.last ? 1 : 0;
+      bodies_ += piece.last - piece.first;
+    }
+
+   private:
+    std::array<Entries, 2 * kAround + 1> pieces_{};
+    uint32_t size_ = 0, bodies_ = 0;
+  };
   /// Those within so many squares of the square, at most kReach, which are all that may be within
-  /// sight; pieces that are not needed are empty.
+  /// sight.
   [[nodiscard]] Around around(uint32_t square, uint32_t reach = kReach) const;
   /// Of a square. [units]
   [[nodiscard]] float width() const { return static_cast<float>(squares_.units()); }

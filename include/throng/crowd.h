@@ -192,8 +192,8 @@ class THRONG_API Crowd {
   /// prism that is none), kBadConfig (CrowdWays::kStraight), kLimit (65535 targets) or kCancelled.
   /// Time: the ground of all classes that are in use. Targets stay.
   [[nodiscard]] Result<TargetId> add_target(std::span<const Prism> areas, Context& context);
-  /// Whom are bound for a target, each for where he is nearest, instead of a goal. Ids of nobody
-  /// are left out. [target: of this crowd]
+  /// Whom are bound for a target, each for where he is nearest, instead of a goal; who can fly does
+  /// where no way on foot leads there. Ids of nobody are left out. [target: of this crowd]
   void set_targets(std::span<const AvatarId> ids, TargetId target);
   /// How far it is on foot from where an avatar is to a target: in the mean 1 to 2 % above the
   /// least. Infinite where no way leads there, it is in the air, or there is no such avatar. [m]

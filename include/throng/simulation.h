@@ -47,8 +47,10 @@ struct Visit {
 /// machine with any number of workers.
 class THRONG_API Simulation {
  public:
-  /// Fails with kBadInput (an area in which nobody of a class can stand, ...), kNotFound (a class
-  /// that the world does not have), and as Crowd::create, add and add_target do.
+  /// Where a class climbs or lets itself down over edges, nodes are opened beside the world or, if
+  /// it is baked of models, made from these. Fails with kBadInput (an area in which nobody of a
+  /// class can stand, ...), kNotFound (a class that the world does not have), and as load_scene,
+  /// Nodes::make, Nodes::open, Crowd::create, add and add_target do.
   [[nodiscard]] static Result<Simulation> make(const World& world, const Scenario& scenario,
                                                int32_t workers, Context& context);
   Simulation(Simulation&&) noexcept;

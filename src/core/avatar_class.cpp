@@ -112,6 +112,21 @@ Result<void> check_classes(std::span<const AvatarClass> classes) {
   return {};
 }
 
+void read_class(ConfigReader& reader, AvatarClass& avatar) {
+  reader.only({"name", "height", "radius", "step", "max_slope", "speed", "climb_slope", "max_drop",
+               "flies"});
+  reader.flag("flies", avatar.flies);
+  for (const Limit& limit : kLimits) {
+    reader.number(limit.key, avatar.*limit.member, limit.low, limit.high);
+  }
+  if (!reader.ok()) return;
+  if (const std::string broken = broken_limit(avatar); !broken.empty()) {
+    const bool drops = broken.starts_with("max_drop");
+    const ConfigNode* step = reader.find(drops ? "max_drop" : "step");
+    reader.fail(step != nullptr ? *step : reader.table(), broken);
+  }
+}
+
 Result<std::vector<AvatarClass>> read_classes(const ConfigNode& root, const std::string& name) {
   ConfigReader top(name, root, "avatar classes");
   top.only({"class"});
@@ -122,19 +137,8 @@ Result<std::vector<AvatarClass>> read_classes(const ConfigNode& root, const std:
     ConfigReader reader(name, *table, fmt::format("avatar class {}", classes.size() + 1));
     reader.require("name");
     reader.text("name", avatar.name);
-    reader.only({"name", "height", "radius", "step", "max_slope", "speed", "climb_slope",
-                 "max_drop", "flies"});
-    reader.flag("flies", avatar.flies);
-    for (const Limit& limit : kLimits) {
-      reader.number(limit.key, avatar.*limit.member, limit.low, limit.high);
-    }
+    read_class(reader, avatar);
     if (!reader.ok()) return reader.error();
-    if (const std::string broken = broken_limit(avatar); !broken.empty()) {
-      const bool drops = broken.starts_with("max_drop");
-      const ConfigNode* step = reader.find(drops ? "max_drop" : "step");
-      reader.fail(step != nullptr ? *step : *table, broken);
-      return reader.error();
-    }
     classes.push_back(avatar);
   }
   if (!top.ok()) return top.error();

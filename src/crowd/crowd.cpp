@@ -483,7 +483,10 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;
-    if (!plan_way(body, route, ground, worker)) strand(body);
+    if (plan_way(body, route, ground, worker)) continue;
+    // A region that cannot be walked to may be flown to.
+    const bool takes_off = parts.air && body.target != 0 && take_off(body, flights[body.slot]);
+    if (!takes_off) strand(body);
   }
   if (asked > 0) planned.fetch_add(asked, std::memory_order_relaxed);
 }

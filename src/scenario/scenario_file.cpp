@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 
+#include "core/classes_file.h"
 #include "core/config_file.h"
 #include "core/read_file.h"
 #include "scenario/density_image.h"
@@ -322,13 +323,9 @@ void File::read_top() {
   }
   each("class", [&](Reader& c) {
     AvatarClass avatar;
-    c.only({"name", "height", "radius", "step", "max_slope", "speed"});
     name_of(c, out_.classes, avatar.name);
-    c.number("height", avatar.height, 0.1, 30);
-    c.number("radius", avatar.radius, 0.01, 5);
-    c.number("step", avatar.step, 0, 15);
-    c.number("max_slope", avatar.max_slope, 0, 89);
-    c.number("speed", avatar.speed, 0.01, 100);
+    read_class(c, avatar);
+    c.number("speed", avatar.speed, 0.01, 100);  // what a crowd takes
     out_.classes.push_back(avatar);
   });
   if (!out_.classes.empty() && !out_.world.empty()) {

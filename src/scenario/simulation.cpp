@@ -9,6 +9,7 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "scenario/simulation_state.h"
+#include "throng/nodes.h"
 
 namespace throng {
 namespace {
@@ -28,14 +29,32 @@ double Simulation::State::unit(Person& p) const {
   return random_unit(scenario.seed ^ 0x706572736f6eULL, p.number, p.draws++);
 }
 
+// Of those who go over nodes: opened where the world lies, or made of what it was baked from. None
+// if nobody does, or the folder has none: then they walk.
+Result<Nodes> Simulation::State::nodes_for(const World& world, const Scenario& scenario,
+                                           int32_t workers, Context& context) {
+  const std::vector<AvatarClass> classes = world.summary().classes;
+  const bool wanted = std::any_of(classes.begin(), classes.end(), [](const AvatarClass& c) {
+    return !c.flies && goes_over_nodes(c);
+  });
+  if (!wanted) return Nodes();
+  if (!scenario.world.empty()) return Nodes::exist(world) ? Nodes::open(world) : Nodes();
+  const Result<Scene> scene = load_scene(scenario, context);
+  if (!scene) return scene.error();
+  return Nodes::make(world, *scene, {.workers = workers}, context);
+}
+
 Result<Simulation> Simulation::make(const World& world, const Scenario& scenario, int32_t workers,
                                     Context& context) {
+  auto nodes = State::nodes_for(world, scenario, workers, context);
+  if (!nodes) return nodes.error();
   auto crowd = Crowd::create(world, {.dt = scenario.dt,
                                      .seed = scenario.seed,
                                      .workers = workers,
                                      .model = scenario.steering,
                                      .labels = scenario.labels,
-                                     .zones = scenario.zones});
+                                     .zones = scenario.zones,
+                                     .nodes = *std::move(nodes)});
   if (!crowd) return crowd.error();
   auto state = std::make_unique<State>(world, scenario, std::move(*crowd));
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {

@@ -128,6 +128,9 @@ struct Simulation::State {
   /// The person's next random number, [0, 1).
   double unit(Person& p) const;
 
+  static Result<Nodes> nodes_for(const World& world, const Scenario& scenario, int32_t workers,
+                                 Context& context);
+
   // simulation.cpp: what the scenario's names mean.
   Result<void> prepare(Context& context);
   Result<TargetId> target_of(std::span<const int32_t> areas, Context& context);

@@ -34,12 +34,14 @@ CrowdPlayer::CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Cro
   for (double& up_to : mix_up_to_) up_to /= sum;
 }
 
-Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, const CrowdStart& start,
-                                                       int32_t workers, Vec3d origin,
+Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, Nodes nodes,
+                                                       const CrowdStart& start, int32_t workers,
+                                                       Vec3d origin,
                                                        std::shared_ptr<const Occluders> occluders,
                                                        Context& context) {
   const CrowdConfig config{
-      .dt = start.dt, .seed = start.seed, .workers = workers, .zones = start.zones};
+      .dt = start.dt, .seed = start.seed, .workers = workers, .zones = start.zones,
+      .nodes = std::move(nodes)};
   Result<Crowd> crowd = Crowd::create(world, config);
   if (!crowd) return crowd.error();
   std::unique_ptr<CrowdPlayer> player(

@@ -47,9 +47,9 @@ class CrowdPlayer final : public MomentSource {
  public:
   /// Fails as Crowd::create and Crowd::scatter do, save that a world too small for all is filled
   /// with as many as fit in a few tries. With CrowdStart::only_seen nobody is there, and no moment
-  /// comes, before it is told from where one looks.
+  /// comes, before it is told from where one looks. [nodes: CrowdConfig::nodes]
   [[nodiscard]] static Result<std::unique_ptr<CrowdPlayer>> make(
-      World world, const CrowdStart& start, int32_t workers, Vec3d origin,
+      World world, Nodes nodes, const CrowdStart& start, int32_t workers, Vec3d origin,
       std::shared_ptr<const Occluders> occluders, Context& context);
   /// From where one looks from the next step on.
   void look_from(const EyePlace& place) { place_ = place; }

@@ -54,7 +54,7 @@ Result<void> StageJob::start_walking() {
     if (!player) return player.error();
     source = *std::move(player);
   } else {
-    auto player = CrowdPlayer::make(before_.world, *crowd_, workers_, before_.origin,
+    auto player = CrowdPlayer::make(before_.world, before_.nodes, *crowd_, workers_, before_.origin,
                                     before_.occluders, context_);
     if (!player) return player.error();
     source = *std::move(player);
@@ -99,6 +99,7 @@ Result<void> StageParts::set_scene(const Scene& scene) {
 void StageParts::set_world(World world, std::optional<Nodes> nodes) {
   StageJob& job = job_;
   job.before_.world = world;
+  job.before_.nodes = nodes ? *nodes : Nodes();
   {
     const std::lock_guard lock(job.mutex_);
     job.mail_.world = world;

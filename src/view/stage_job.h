@@ -38,6 +38,7 @@ struct StageMail {
 struct StageBefore {
   Vec3d origin = {};
   World world = {};
+  Nodes nodes = {};  // Of the world, if it has any.
   std::shared_ptr<const Occluders> occluders = {};
   bool only_seen = false, coarse_far = false;  // Besides those of CrowdStart.
 };

@@ -82,6 +82,7 @@ void Viewer::State::take_parts() {
   if (mail.world) {
     world = *mail.world;
     panel.has_world = true;
+    nodes = mail.nodes;
     overlay_maker = std::make_unique<OverlayMaker>(world, mail.nodes, origin);
     for (const AvatarClass& c : world.summary().classes) {
       panel.class_names.push_back(c.name);
@@ -189,6 +190,7 @@ void Viewer::State::tell_place() {
 StageBefore Viewer::State::stage_before() const {
   return {.origin = origin,
           .world = world,
+          .nodes = nodes.value_or(Nodes()),
           .occluders = occluders,
           .only_seen = panel.settings.only_seen,
           .coarse_far = panel.settings.coarse_far};

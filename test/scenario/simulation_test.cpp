@@ -346,6 +346,123 @@ count = 30
   for (const Visit& visit : simulation.visits()) EXPECT_GT(visit.left, 10 + 8 / 1.5);
 }
 
+// Over a wall right across, in a crowd with those who cannot.
+TEST(Simulation, who_flies_goes_over_walls) {
+  auto scenario = parse_scenario(R"(seconds = 40
+[plane]
+floor = [[0, 0], [20, 0], [20, 10], [0, 10]]
+obstacles = [[[10, 0], [10.4, 0], [10.4, 10], [10, 10]]]
+[[class]]
+name = "adult"
+[[class]]
+name = "bird"
+radius = 0.4
+speed = 5
+flies = true
+[[area]]
+name = "west"
+box = [1, 1, 8, 9]
+[[area]]
+name = "east"
+box = [12, 1, 19, 9]
+[[profile]]
+name = "walker"
+class = "adult"
+[[profile]]
+name = "bird"
+class = "bird"
+[[journey]]
+name = "across"
+stages = [{ leave = "east" }]
+[[source]]
+name = "birds"
+area = "west"
+count = 6
+profile = "bird"
+journey = "across"
+[[source]]
+name = "walkers"
+area = "west"
+count = 6
+profile = "walker"
+journey = "across"
+)",
+                                 "wall.toml");
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  Context context;
+  const auto world = open_world(*scenario, context);
+  ASSERT_TRUE(world) << world.error().message;
+  auto simulation = Simulation::make(*world, *scenario, 2, context);
+  ASSERT_TRUE(simulation) << simulation.error().message;
+  run_out(*simulation, scenario->seconds);
+  for (const Visit& visit : simulation->visits()) EXPECT_EQ(visit.exit >= 0, visit.profile == 1);
+  EXPECT_EQ(simulation->visits().size(), 12U);
+}
+
+// Over curved hills on foot and along the normal, in one crowd.
+TEST(Simulation, who_climbs_goes_over_nodes) {
+  auto scenario = parse_scenario(R"(seconds = 120
+cell = 0.5
+[builtin]
+name = "landscape"
+size = 64
+[[class]]
+name = "adult"
+[[class]]
+name = "climber"
+climb_slope = 180
+[[area]]
+name = "west"
+box = [2, 2, 18, 62]
+[[area]]
+name = "east"
+box = [46, 2, 62, 62]
+[[profile]]
+name = "walker"
+class = "adult"
+[[profile]]
+name = "climber"
+class = "climber"
+[[journey]]
+name = "across"
+stages = [{ leave = "east" }]
+[[source]]
+name = "all"
+area = "west"
+count = 36
+profile = { walker = 1, climber = 1 }
+journey = "across"
+)",
+                                 "hills.toml");
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  Context context;
+  const auto world = open_world(*scenario, context);
+  ASSERT_TRUE(world) << world.error().message;
+  auto simulation = Simulation::make(*world, *scenario, 2, context);
+  ASSERT_TRUE(simulation) << simulation.error().message;
+  std::vector<AvatarState> states;
+  size_t climbing = 0, leaning = 0;
+  while (!simulation->is_over()) {
+    const auto report = simulation->step();
+    ASSERT_TRUE(report) << report.error().message;
+    const CrowdCheck found = simulation->crowd().check();
+    ASSERT_EQ(found.overlaps + found.wall_entries, 0U) << "at " << report->time;
+    simulation->read(states);
+    for (const AvatarState& s : states) {
+      EXPECT_EQ(s.climbs, s.avatar_class == 1);
+      climbing += s.climbs ? 1 : 0;
+      leaning += s.climbs && s.up.y < 0.9 ? 1 : 0;
+    }
+    if (report->time >= scenario->seconds) break;
+  }
+  EXPECT_GT(climbing, 0U);
+  EXPECT_GT(leaning, 0U);
+  size_t left = 0;
+  for (const Visit& visit : simulation->visits()) left += visit.exit >= 0 ? 1 : 0;
+  EXPECT_EQ(simulation->visits().size(), 36U);
+  EXPECT_GE(left, 30U);
+}
+
 TEST(Simulation, says_what_cannot_be) {
   const auto why = [](const std::string& text) {
     const Hall run = read(text);

@@ -81,7 +81,7 @@ void watch(At at, int32_t steps) {
   Context context;
   const Vec3d origin{80, 0, 80};
   constexpr uint32_t kAll = 600;
-  auto made = CrowdPlayer::make(town().world, start_with(kAll), 1, origin,
+  auto made = CrowdPlayer::make(town().world, {}, start_with(kAll), 1, origin,
                                 occluders_of(town().scene, origin), context);
   ASSERT_TRUE(made) << made.error().message;
   CrowdPlayer& player = **made;
@@ -229,7 +229,7 @@ TEST(OnlySeen, FarOnesAreCoarserIfThatIsAsked) {
     CrowdStart start;
     start.avatars = 100;
     start.coarse_far = coarse;
-    auto made = CrowdPlayer::make(town().world, start, 1, {}, nullptr, context);
+    auto made = CrowdPlayer::make(town().world, {}, start, 1, {}, nullptr, context);
     ASSERT_TRUE(made);
     (*made)->look_from({.eye = {80, 900, 80}});
     (void)(*made)->next();

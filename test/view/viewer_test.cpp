@@ -342,7 +342,7 @@ TEST(CrowdPlayer, PeopleGoWhereItIsPainted) {
   Context context;
   CrowdStart start;
   start.avatars = 24;
-  auto player = CrowdPlayer::make(two_floors().world, start, 1, {}, nullptr, context);
+  auto player = CrowdPlayer::make(two_floors().world, {}, start, 1, {}, nullptr, context);
   ASSERT_TRUE(player) << player.error().message;
   std::vector<DensityMap> maps;
   const auto near = [](const Moment& moment, double x, double z, double within) {

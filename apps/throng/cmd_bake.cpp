@@ -140,9 +140,10 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
                         report.walkable_area[i]);
   }
   if (report.air_zones == 0 && stands_nowhere(report)) {
-    text +=
+    text += fmt::format(
         "  nobody of these can stand anywhere: check the unit (--scale), the up axis (--up) and "
-        "the classes (--classes)\n";
+        "the classes (--classes){}\n",
+        options.config.one_sided ? ", and whether all is wound the wrong way (--one-sided)" : "");
   }
   if (report.air_zones > 0) {
     text += fmt::format("  air over {} zones, {}, in {:.2f} s of the above\n", report.air_zones,
@@ -211,6 +212,8 @@ void add_bake(CLI::App& parser, Session& session) {
                       "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--coarse", options->coarse,
                     "Know matter by whole cells: faster, and loses up to a cell beside walls");
+  command->add_flag("--one-sided", config.one_sided,
+                    "Trust windings: only what faces up is floor, no upper sides of thin ceilings");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->add_flag("--nodes", options->nodes,
                     "Also make nodes and links; always done where a class climbs or drops");

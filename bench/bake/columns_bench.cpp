@@ -19,7 +19,7 @@ struct Tiles {
 
   explicit Tiles(const Scene& scene) : grid(make_grid(scene.bounds(), 0.1, kGridPhase)) {
     const std::vector<AvatarClass> classes = default_classes();
-    const SurfaceCoder coder(scene, classes, 1);
+    const SurfaceCoder coder(scene, classes, false, 1);
     for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
       triangles.push_back(to_cell_triangle(scene, t, grid, coder.code(t)));
     }

@@ -31,6 +31,7 @@ struct Options {
   std::string tiling = "none";
   bool far_triangle = false;
   bool bytes = false;
+  bool one_sided = false;
 };
 
 double milliseconds(const std::function<void()>& work) {
@@ -62,6 +63,7 @@ World bake_ours(const Scene& scene, const Options& options, int32_t workers,
   Result<World> world = bake_world(scene,
                                    {.cell = options.cell,
                                     .resolution = options.cell_height,
+                                    .one_sided = options.one_sided,
                                     .classes = std::move(classes),
                                     .workers = workers},
                                    context, report);
@@ -258,6 +260,8 @@ int main(int argc, char** argv) {
   parser.add_option("--tiling", options.tiling, "Recast's tiles: none, best, or a side in cells")
       ->capture_default_str();
   parser.add_flag("--bytes", options.bytes, "Compare bytes for the four default classes");
+  parser.add_flag("--one-sided", options.one_sided,
+                  "Ours takes for floor only what faces up, as Recast does");
   parser.add_flag("--far-triangle", options.far_triangle, "Add a triangle 2 km below and compare");
   parser.add_flag("--json", json, "One JSON object");
   CLI11_PARSE(parser, argc, argv);

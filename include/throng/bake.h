@@ -30,6 +30,10 @@ struct BakeConfig {
   /// which takes 1.1 to 1.9 times as long. Classes of less than 1.5 cells in radius know whole
   /// cells only.
   bool fine = true;
+  /// Only what faces up as it is wound (counter-clockwise, seen from above) is floor, as for other
+  /// makers of navigation meshes; the rest is still in the way. False: windings say nothing, so the
+  /// upper side of a ceiling without thickness is floor, too. Nodes on patches do not ask for it.
+  bool one_sided = false;
   double zone = 160;  ///< Side of a zone, rounded to whole tiles of 64 cells. [m, > 0]
   std::vector<AvatarClass> classes = default_classes();
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]

@@ -31,16 +31,20 @@ double snap_mm(double metres) {
   return std::fabs(mm - whole) < 1e-3 ? whole : mm;
 }
 
-SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes,
+SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes, bool one_sided,
                            int32_t workers) {
   const std::vector<double> cosines = slope_limits(classes);
   std::vector<double> bins = cosines;
   std::sort(bins.begin(), bins.end());
   bins.erase(std::unique(bins.begin(), bins.end()), bins.end());
 
-  // A key orders surfaces by how much they restrict: steeper, then area; blocked comes last.
+  // A key orders surfaces by how much they restrict: steeper, then area; blocked comes last. What
+  // faces down is nobody's floor, but takes none from one at its height that is as steep (the same
+  // floor, modelled from both sides): it comes right before these, as kAreaBlocked of their bin.
+  static_assert(kAreaBlocked == 0);
+  constexpr size_t kKinds = size_t{kAreaLast} + 1;
   const size_t bin_count = bins.size();
-  const size_t blocked_key = bin_count * 64;
+  const size_t blocked_key = bin_count * kKinds;
   std::vector<uint16_t> key(scene.triangles.size());
   std::vector<uint8_t> used(blocked_key + 1, 0);
   const auto make_key = [&](size_t t) {
@@ -53,8 +57,8 @@ SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> clas
         std::count_if(bins.begin(), bins.end(), [&](double limit) { return cosine < limit; }));
     const AreaKind area = scene.area.empty() ? kAreaWalkable : scene.area[t];
     const bool blocked = area == kAreaBlocked || exceeded == bin_count;
-    key[t] =
-        static_cast<uint16_t>(blocked ? blocked_key : exceeded * 64 + std::min(area, kAreaLast));
+    const AreaKind kind = one_sided && normal.y < 0 ? kAreaBlocked : std::min(area, kAreaLast);
+    key[t] = static_cast<uint16_t>(blocked ? blocked_key : exceeded * kKinds + kind);
   };
   constexpr size_t kGrain = 4096;  // triangles
   parallel_ranges(key.size(), kGrain, workers, [&](size_t begin, size_t end) {
@@ -67,16 +71,16 @@ SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> clas
   for (size_t k = 0; k < used.size(); ++k) {
     // More than 255 kinds of surface: the rest count as blocked, which loses area but is safe.
     if (used[k] == 0 || (codes_.codes.size() == 255 && k != blocked_key)) continue;
-    const bool blocked = k == blocked_key;
+    const size_t bin = k / kKinds;
+    const auto kind = static_cast<AreaKind>(k % kKinds);
     code_of_key[k] = static_cast<uint8_t>(codes_.codes.size());
-    codes_.codes.push_back(
-        {static_cast<uint8_t>(k / 64), blocked ? kAreaBlocked : static_cast<AreaKind>(k % 64)});
+    codes_.codes.push_back({static_cast<uint8_t>(bin), kind});
     uint32_t allowed = 0;
-    for (size_t c = 0; c < cosines.size() && !blocked; ++c) {
+    for (size_t c = 0; c < cosines.size() && kind != kAreaBlocked; ++c) {
       // Limits ascend with the cosine: a surface that exceeds n limits exceeds the n largest.
       const auto rank = static_cast<size_t>(std::lower_bound(bins.begin(), bins.end(), cosines[c]) -
                                             bins.begin());
-      if (bin_count - rank > k / 64) allowed |= 1u << c;
+      if (bin_count - rank > bin) allowed |= 1u << c;
     }
     codes_.allowed.push_back(allowed);
   }

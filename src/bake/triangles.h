@@ -30,8 +30,8 @@ struct CellTriangle {
 /// What a surface is to the classes: how steep and of which area kind, as one byte. Larger codes
 /// are more restrictive, so that of two surfaces at one height the worse one counts.
 struct SurfaceCode {
-  uint8_t slope_bin = 0;  // number of distinct slope limits that it exceeds
-  AreaKind area = kAreaWalkable;
+  uint8_t slope_bin = 0;          // number of distinct slope limits that it exceeds
+  AreaKind area = kAreaWalkable;  // kAreaBlocked also of what faces down, if that is no floor
 };
 
 struct SurfaceCodes {
@@ -42,7 +42,9 @@ struct SurfaceCodes {
 /// Steepness limits of the classes, and the codes in use by a scene.
 class SurfaceCoder {
  public:
-  SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes, int32_t workers);
+  /// [one_sided: BakeConfig]
+  SurfaceCoder(const Scene& scene, std::span<const AvatarClass> classes, bool one_sided,
+               int32_t workers);
   [[nodiscard]] uint8_t code(uint32_t triangle) const { return triangle_code_[triangle]; }
   [[nodiscard]] const SurfaceCodes& codes() const { return codes_; }
 

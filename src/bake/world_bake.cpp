@@ -188,7 +188,8 @@ ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const WorldData* old
 
 struct WorldBake::Plan {
   Plan(const Scene& scene, const BakeConfig& config)
-      : bounds(triangle_bounds(scene)), coder(scene, config.classes, config.workers) {}
+      : bounds(triangle_bounds(scene)),
+        coder(scene, config.classes, config.one_sided, config.workers) {}
 
   Box3d bounds;
   SurfaceCoder coder;

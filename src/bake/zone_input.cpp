@@ -27,7 +27,8 @@ TriangleWords words_of(const CellTriangle& triangle, const SurfaceCodes& codes) 
     words[6 + i] = std::bit_cast<uint64_t>(triangle.z[i]);
   }
   const SurfaceCode& code = codes.codes[triangle.code];
-  words[9] = code.area == kAreaBlocked ? UINT64_MAX : uint64_t{code.slope_bin} << 8 | code.area;
+  const bool blocks_all = triangle.code + size_t{1} == codes.codes.size();
+  words[9] = blocks_all ? UINT64_MAX : uint64_t{code.slope_bin} << 8 | code.area;
   return words;
 }
 
@@ -71,6 +72,7 @@ uint64_t zone_input(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
     }
   }
   if (plan.config->fine) words.push_back(1);
+  if (plan.config->one_sided) words.push_back(2);
   words.insert(words.end(), hashes.begin(), hashes.end());
   return hash_span(std::span<const uint64_t>(words));
 }

@@ -264,6 +264,77 @@ TEST(Bake, AStepOfExactlyTheClasssHeightIsClimbedAndAMillimetreMoreIsNot) {
   EXPECT_EQ(top_of(0.401), 0);
 }
 
+void add_square(Scene& scene, double side, double y, bool faces_up) {
+  const Vec3d a{0, y, 0}, b{side, y, 0}, c{side, y, side}, d{0, y, side};
+  for (const auto& [p, q, r] : {std::array{a, c, b}, std::array{a, d, c}}) {
+    faces_up ? scene.add_triangle(p, q, r) : scene.add_triangle(p, r, q);
+  }
+}
+
+TEST(Bake, OneSidedOnlyWhatFacesUpIsFloor) {
+  const auto area = [](const Scene& scene, bool one_sided) {
+    BakeConfig config{.one_sided = one_sided, .classes = {AvatarClass{}}};
+    const World world = bake(scene, config);
+    return world.summary().walkable_area.front();
+  };
+  Scene floor;
+  add_square(floor, 10, 0, true);
+  const double one = area(floor, false);
+  ASSERT_GT(one, 80);
+  EXPECT_EQ(area(floor, true), one);
+  Scene room = floor;  // with a ceiling without thickness
+  add_square(room, 10, 3, false);
+  EXPECT_EQ(area(room, false), 2 * one);
+  EXPECT_EQ(area(room, true), one);
+  Scene low = floor;  // What faces down is in the way, too.
+  add_square(low, 10, 1, false);
+  EXPECT_EQ(area(low, true), 0);
+  Scene both = room;  // One floor from both sides, cut in other triangles.
+  const Vec3d a{0, 3, 0}, b{10, 3, 0}, c{10, 3, 10}, d{0, 3, 10};
+  both.add_triangle(a, d, b);
+  both.add_triangle(b, d, c);
+  EXPECT_EQ(area(both, true), 2 * one);
+  Scene inverted;
+  add_square(inverted, 10, 0, false);
+  EXPECT_EQ(area(inverted, true), 0);
+}
+
+// Wound by chance: nobody stands anywhere where he would not if windings said nothing.
+TEST(Bake, OneSidedAllowsNothingMore) {
+  uint64_t legal = 0, fewer = 0;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    const Scene scene = worlds::random_soup(seed, 400, 20);
+    BakeConfig config;
+    const World all = bake(scene, config);
+    config.one_sided = true;
+    const World some = bake(scene, config);
+    for (uint32_t l = 0; l < some.level_tile_count(); ++l) {
+      const LevelTileContent level = some.level_tile(l);
+      for (size_t c = 0; c < level.clearance.size(); ++c) {
+        for (int32_t cell = 0; cell < kTileCells * kTileCells; ++cell) {
+          const auto at = static_cast<size_t>(cell);
+          if (level.clearance[c][at] == 0) continue;
+          const WorldSummary summary = some.summary();
+          const Vec3d feet{
+              summary.origin.x +
+                  (level.tile_x * kTileCells + cell % kTileCells + 0.5) * summary.cell,
+              summary.origin.y + level.floor[at] * 0.001,
+              summary.origin.z +
+                  (level.tile_z * kTileCells + cell / kTileCells + 0.5) * summary.cell};
+          ++legal;
+          EXPECT_TRUE(all.find_place(static_cast<int32_t>(c), feet, 0.002)) << seed << ' ' << c;
+        }
+      }
+    }
+    for (size_t c = 0; c < config.classes.size(); ++c) {
+      EXPECT_LE(some.summary().walkable_area[c], all.summary().walkable_area[c]);
+      fewer += some.summary().walkable_area[c] < all.summary().walkable_area[c] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(legal, 1000U);
+  EXPECT_GT(fewer, 8U);
+}
+
 TEST(Bake, WalkableAreaIsTheSumOfTheLegalCells) {
   const World world = bake(builtin("stairs"), {.cell = 0.2, .zone = 25.6});
   std::vector<double> area(world.summary().classes.size());

@@ -178,9 +178,10 @@ void note_if_elsewhere(const Scene& scene, const Box3d& world) {
       share_half(box.min.z, box.max.z, world.min.z, world.max.z)) {
     return;
   }
-  note(fmt::format("the model given by --source ({}) does not lie where the world does ({}); give "
-                   "it the --scale and --up of the bake, or the files that it was baked from",
-                   box_text(box), box_text(world)));
+  note(
+      fmt::format("the model given by --source ({}) does not lie where the world does ({}); give "
+                  "it the --scale and --up of the bake, or the files that it was baked from",
+                  box_text(box), box_text(world)));
 }
 
 Json report_json(const SceneReport& report) {

@@ -304,8 +304,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   // In a dense crowd the nearest are near: if enough are within less, nobody farther matters.
   const float sight = static_cast<float>(sight_) * static_cast<float>(sight_);
   const float across = grid_->width() * NeighbourGrid::kAround;
-  const float enough =
-      across * across * kEnough / (3 * static_cast<float>(around.bodies()));  // 3 of the circle's pi
+  const float enough = across * across * kEnough /
+                       (3 * static_cast<float>(around.bodies()));  // 3 of the circle's pi
   const auto wanted = static_cast<size_t>(config_.steering.neighbours);
   Eye eye{.x = body.x,
           .z = body.z,
@@ -615,18 +615,19 @@ void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
   static_assert(kGrain % kBits == 0);
   const size_t words = (size_ + kBits - 1) / kBits;
   constexpr size_t kPiece = kGrain / kBits;
-  parallel_for_worker(
-      (words + kPiece - 1) / kPiece, config_.workers, [&](size_t piece, int32_t worker) {
-        const size_t last = std::min(words, (piece + 1) * kPiece);
-        for (size_t word = piece * kPiece; word < last; ++word) {
-          uint64_t& bits = contests_[word].*which;
-          for (uint64_t left = bits; left != 0; left &= left - 1) {
-            const auto bit = static_cast<size_t>(std::countr_zero(left));
-            const auto i = static_cast<uint32_t>(word * kBits + bit);
-            if (act(i, workers_[static_cast<size_t>(worker)])) bits ^= uint64_t{1} << bit;
-          }
-        }
-      });
+  parallel_for_worker((words + kPiece - 1) / kPiece, config_.workers,
+                      [&](size_t piece, int32_t worker) {
+                        const size_t last = std::min(words, (piece + 1) * kPiece);
+                        for (size_t word = piece * kPiece; word < last; ++word) {
+                          uint64_t& bits = contests_[word].*which;
+                          for (uint64_t left = bits; left != 0; left &= left - 1) {
+                            const auto bit = static_cast<size_t>(std::countr_zero(left));
+                            const auto i = static_cast<uint32_t>(word * kBits + bit);
+                            if (act(i, workers_[static_cast<size_t>(worker)]))
+                              bits ^= uint64_t{1} << bit;
+                          }
+                        }
+                      });
 }
 
 // By induction nobody ever touches anybody: a place that is named is clear of where all stand who

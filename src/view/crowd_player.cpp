@@ -39,9 +39,11 @@ Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, Nodes nodes,
                                                        Vec3d origin,
                                                        std::shared_ptr<const Occluders> occluders,
                                                        Context& context) {
-  const CrowdConfig config{
-      .dt = start.dt, .seed = start.seed, .workers = workers, .zones = start.zones,
-      .nodes = std::move(nodes)};
+  const CrowdConfig config{.dt = start.dt,
+                           .seed = start.seed,
+                           .workers = workers,
+                           .zones = start.zones,
+                           .nodes = std::move(nodes)};
   Result<Crowd> crowd = Crowd::create(world, config);
   if (!crowd) return crowd.error();
   std::unique_ptr<CrowdPlayer> player(

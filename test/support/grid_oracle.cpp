@@ -73,7 +73,10 @@ bool GridOracle::sees(HalfPoint a, HalfPoint b) const {
 std::vector<HalfPoint> GridOracle::corners_within(HalfPoint from, HalfPoint to,
                                                   double limit) const {
   std::vector<HalfPoint> corners;
-  const auto spare = static_cast<int64_t>(limit - length(from, to)) + 2;  // cells beyond the ends
+  // Half of the ellipse's width: it is wider than it is longer than the way straight on. [cells]
+  const double straight = length(from, to);
+  const double width = std::sqrt(std::max(0.0, limit * limit - straight * straight)) / 2;
+  const auto spare = static_cast<int64_t>(width) + 2;
   const int64_t x0 = std::min(from.x, to.x) / 2, x1 = std::max(from.x, to.x) / 2;
   const int64_t z0 = std::min(from.z, to.z) / 2, z1 = std::max(from.z, to.z) / 2;
   for (int64_t z = std::max<int64_t>(0, z0 - spare);

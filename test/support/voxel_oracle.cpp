@@ -212,7 +212,10 @@ VoxelOracle::Answer VoxelOracle::shortest(const HalfPoint3& from, const HalfPoin
   };
   if (sees(spot_of(from), spot_of(to))) return {.given_up = false, .length = length(from, to)};
   std::vector<Spot> points;
-  const auto spare = static_cast<int64_t>((limit - length(from, to)) / 2) + 2;
+  // Half of the width of the ellipsoid: it is wider than it is longer than the way straight on.
+  const double straight = length(from, to);
+  const double width = std::sqrt(std::max(0.0, limit * limit - straight * straight)) / 2;
+  const auto spare = static_cast<int64_t>(width) + 2;
   int64_t low[3], high[3];
   for (size_t i = 0; i < 3; ++i) {
     low[i] = std::max<int64_t>(0, std::min(from[i], to[i]) / 2 - spare);

@@ -191,8 +191,9 @@ void Simulation::State::line_up(Person& p, int32_t area, double way) {
   if (p.area >= 0) doors[static_cast<size_t>(p.area)].remove(p.comes);
   p.area = area;
   if (area < 0) return;
-  p.comes = DoorQueue::tick(time() + way / p.speed);
-  doors[static_cast<size_t>(area)].add(p.comes);
+  DoorQueue& door = doors[static_cast<size_t>(area)];
+  door.forget_before(DoorQueue::tick(time()));
+  p.comes = door.add(DoorQueue::tick(time() + way / p.speed));
 }
 
 // As far as it is by now.

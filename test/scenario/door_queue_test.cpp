@@ -63,13 +63,45 @@ TEST(DoorQueue, tells_the_times_of_a_simulation_event_by_event) {
   }
 }
 
+// As time goes on, what was is forgotten, but for those who are late and still here.
+TEST(DoorQueue, days_take_no_more_memory_and_tell_the_same) {
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    const double flow = 0.5 + 2 * random_unit(seed, 1, 0);
+    DoorQueue door(flow);
+    std::vector<uint32_t> ticks;
+    uint64_t draws = 0;
+    const auto below = [&](uint64_t end) { return random_below(seed, 2, draws++, end); };
+    uint32_t now = 0;
+    size_t most = 0;
+    for (int change = 0; change < 20000; ++change) {
+      // Nights are long: nobody comes for hours.
+      now += static_cast<uint32_t>(change % 4000 == 3999 ? 8 * 3600 * 20 : below(100));
+      door.forget_before(now);
+      if (ticks.size() > 40 || (!ticks.empty() && below(2) == 0)) {
+        const size_t k = below(ticks.size());
+        door.remove(ticks[k]);
+        ticks.erase(ticks.begin() + static_cast<int64_t>(k));
+      } else {
+        ticks.push_back(door.add(now + static_cast<uint32_t>(below(3000))));
+      }
+      if (change % 7 != 0) continue;
+      const auto asked = now + static_cast<uint32_t>(below(3000));
+      const double passes = passes_by_events(ticks, flow, asked, now);
+      ASSERT_NEAR(door.passes(asked, now), passes, 1e-9 * passes) << change;
+      most = std::max(most, door.kept());
+    }
+    EXPECT_LE(most, 8192U);
+  }
+}
+
 TEST(DoorQueue, times_beyond_reason_are_held) {
   DoorQueue door(1);
   EXPECT_EQ(DoorQueue::tick(-3), 0U);
   const uint32_t last = DoorQueue::tick(INFINITY);
   EXPECT_EQ(last, DoorQueue::tick(1e12));
-  door.add(last);
-  door.remove(last);
+  const uint32_t kept = door.add(last);
+  EXPECT_EQ(kept, DoorQueue::tick(6 * 3600));
+  door.remove(kept);
   EXPECT_DOUBLE_EQ(door.passes(0, 0), 1);
 }
 

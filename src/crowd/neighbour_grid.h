@@ -42,7 +42,7 @@ class NeighbourGrid {
     }
 
    private:
-    std::array<Entries, 2 * kAround + 1> pieces_{};
+    std::array<Entries, 2 * kAround + 1> pieces_{};  // The last is for an empty one beyond all.
     uint32_t size_ = 0, bodies_ = 0;
   };
   /// Those within so many squares of the square, at most kReach, which are all that may be within

@@ -29,15 +29,21 @@ double Simulation::State::unit(Person& p) const {
   return random_unit(scenario.seed ^ 0x706572736f6eULL, p.number, p.draws++);
 }
 
-// Of those who go over nodes: opened where the world lies, or made of what it was baked from. None
-// if nobody does, or the folder has none: then they walk.
+// Of those profiles who go over nodes: opened where the world lies, or made of what it was baked
+// from. None if nobody does, or the folder has none: then they walk.
 Result<Nodes> Simulation::State::nodes_for(const World& world, const Scenario& scenario,
                                            int32_t workers, Context& context) {
   const std::vector<AvatarClass> classes = world.summary().classes;
-  const bool wanted = std::any_of(classes.begin(), classes.end(), [](const AvatarClass& c) {
-    return !c.flies && goes_over_nodes(c);
-  });
-  if (!wanted) return Nodes();
+  const auto wants = [](const AvatarClass& c) { return !c.flies && goes_over_nodes(c); };
+  const auto is_wanted = [&](const Profile& profile) {
+    const int32_t named = world.find_class(profile.avatar_class).value_or(0);
+    return wants(classes[static_cast<size_t>(named)]);
+  };
+  // Who has no profile is of the first class.
+  const auto& profiles = scenario.profiles;
+  if (!wants(classes[0]) && std::none_of(profiles.begin(), profiles.end(), is_wanted)) {
+    return Nodes();
+  }
   if (!scenario.world.empty()) return Nodes::exist(world) ? Nodes::open(world) : Nodes();
   const Result<Scene> scene = load_scene(scenario, context);
   if (!scene) return scene.error();

@@ -95,6 +95,15 @@ bool PipeReader::read(void* data, size_t size) {
   return true;
 }
 
+void allow_this_child(uint64_t seconds) {
+  rusage used{};
+  rlimit limit{};
+  if (getrusage(RUSAGE_SELF, &used) != 0 || getrlimit(RLIMIT_CPU, &limit) != 0) return;
+  const auto so_far = static_cast<uint64_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
+  limit.rlim_cur = std::min<rlim_t>(so_far + 1 + seconds, limit.rlim_max);
+  setrlimit(RLIMIT_CPU, &limit);
+}
+
 Result<void> run_in_child(const ChildLimits& limits, Context& context,
                           const std::function<void(const PipeWriter&)>& child,
                           const std::function<bool(PipeReader&)>& parent) {
@@ -116,7 +125,11 @@ Result<void> run_in_child(const ChildLimits& limits, Context& context,
   if (id == 0) {
     close(ends[0]);
     prepare_child(limits, own_bytes);
-    child(PipeWriter(ends[1]));
+    try {
+      child(PipeWriter(ends[1]));
+    } catch (...) {  // bad_alloc: it must not go on as a second parent.
+      _exit(1);
+    }
     _exit(0);  // No destructors, no exit handlers: they are the parent's.
   }
   close(ends[1]);

@@ -40,9 +40,12 @@ class PipeReader {
   Context& context_;
 };
 
+/// In a child: that it may use the processor so much longer from now on, within its limits.
+void allow_this_child(uint64_t seconds);
+
 /// Forks; the child calls `child` and ends, the parent calls `parent` meanwhile, which returns true
-/// once it got all it wanted. Fails with kBadFile and a clause that says how the child ended, with
-/// kCancelled, or with kIo. Needs a POSIX system.
+/// once it got all it wanted. What `child` throws ends the child. Fails with kBadFile and a clause
+/// that says how the child ended, with kCancelled, or with kIo. Needs a POSIX system.
 [[nodiscard]] Result<void> run_in_child(const ChildLimits& limits, Context& context,
                                         const std::function<void(const PipeWriter&)>& child,
                                         const std::function<bool(PipeReader&)>& parent);

@@ -50,11 +50,12 @@ Result<RawScene> read_patch_json(std::string_view, const ReadOptions& options, C
 
 Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<TextureSource>& sources,
                                                        const std::string& model, int32_t most,
-                                                       Context& context) {
+                                                       Context& context,
+                                                       const TextureDecoding& decoding) {
   std::vector<Result<Texture>> all;
   for (const TextureSource& source : sources) {
     if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
-    all.push_back(read_texture(source, model, most));
+    all.push_back(decoding.read(source, model, most));
   }
   return all;
 }

@@ -4,7 +4,8 @@
 #include "import/texture_reader.h"
 
 // Decoders of pictures are code that strangers' files have crashed before. So they run in a child
-// process; where one ends early, the next goes on behind the texture that it ended at.
+// process; where one ends early, the next goes on behind the texture that it ended at. A file full
+// of textures that end it is no model any more: then the rest is left.
 namespace throng {
 namespace {
 
@@ -14,7 +15,7 @@ struct Told {
 };
 
 constexpr uint64_t kLongestClause = 1000;
-constexpr uint64_t kMemory = uint64_t{2} << 30;
+constexpr size_t kMostEnds = 8;  // Of children, before the rest of a model is left.
 
 bool take(PipeReader& pipe, const TextureSource& source, int32_t most,
           std::vector<Result<Texture>>& all) {
@@ -56,16 +57,18 @@ void tell(const PipeWriter& pipe, const Result<Texture>& texture) {
 
 Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<TextureSource>& sources,
                                                        const std::string& model, int32_t most,
-                                                       Context& context) {
+                                                       Context& context,
+                                                       const TextureDecoding& decoding) {
   std::vector<Result<Texture>> all;
   all.reserve(sources.size());
-  while (all.size() < sources.size()) {
+  for (size_t ends = 0; all.size() < sources.size();) {
     const size_t first = all.size();
     const auto done = run_in_child(
-        {.bytes = kMemory, .seconds = 10 + 2 * sources.size()}, context,
+        {.bytes = decoding.bytes, .seconds = decoding.seconds * (sources.size() + 1)}, context,
         [&](const PipeWriter& pipe) {
           for (size_t i = first; i < sources.size(); ++i) {
-            tell(pipe, read_texture(sources[i], model, most));
+            allow_this_child(decoding.seconds);
+            tell(pipe, decoding.read(sources[i], model, most));
           }
         },
         [&](PipeReader& pipe) {
@@ -75,8 +78,15 @@ Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<Texture
           return true;
         });
     if (!done && done.error().code == Errc::kCancelled) return done.error();
-    if (all.size() < sources.size()) {
-      all.emplace_back(Error{Errc::kBadFile, "crashes the decoder"});
+    if (all.size() == sources.size()) break;
+    if (!done && done.error().code == Errc::kIo) {  // There is no child: the next would not be.
+      all.resize(sources.size(), Error{Errc::kIo, "is not decoded: " + done.error().message});
+      break;
+    }
+    all.emplace_back(
+        Error{Errc::kBadFile, "crashes its decoder, or takes it too long or too much memory"});
+    if (++ends == kMostEnds) {
+      all.resize(sources.size(), Error{Errc::kBadFile, "is not tried after so many others"});
     }
   }
   return all;

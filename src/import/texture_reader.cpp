@@ -169,10 +169,12 @@ Result<Texture> read_texture(const TextureSource& source, const std::string& mod
   return texture;
 }
 
-Result<void> read_textures(RawScene& raw, const std::string& model, Context& context) {
+Result<void> read_textures(RawScene& raw, const std::string& model, Context& context,
+                           const TextureDecoding& decoding) {
   Scene& scene = raw.scene;
   if (raw.textures.empty()) return {};
-  auto all = read_all_textures(raw.textures, model, side_for(raw.textures.size()), context);
+  auto all =
+      read_all_textures(raw.textures, model, side_for(raw.textures.size()), context, decoding);
   if (!all) return all.error();
   std::vector<uint32_t> number1(all->size(), 0);
   size_t bad = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,14 +23,22 @@ namespace throng {
 [[nodiscard]] Result<Texture> read_texture(const TextureSource& source, const std::string& model,
                                            int32_t most);
 
+/// How each texture is read: tests put decoders here that crash, hang or eat memory.
+struct TextureDecoding {
+  Result<Texture> (*read)(const TextureSource&, const std::string&, int32_t) = &read_texture;
+  uint64_t bytes = uint64_t{2} << 30;  ///< Memory of the child that decodes. [> 0]
+  uint64_t seconds = 10;               ///< Of a processor, for one texture. [> 0]
+};
+
 /// Turns `raw.textures` into those of its scene; materials whose texture cannot be used get a plain
 /// colour. In a child process where there are any, so a file that crashes the decoder is only one
 /// that cannot be used. Fails with kCancelled.
-[[nodiscard]] Result<void> read_textures(RawScene& raw, const std::string& model, Context& context);
+[[nodiscard]] Result<void> read_textures(RawScene& raw, const std::string& model, Context& context,
+                                         const TextureDecoding& decoding = {});
 
 /// What came of each of `sources`: for builds with child processes and without.
 [[nodiscard]] Result<std::vector<Result<Texture>>> read_all_textures(
     const std::vector<TextureSource>& sources, const std::string& model, int32_t most,
-    Context& context);
+    Context& context, const TextureDecoding& decoding);
 
 }  // namespace throng

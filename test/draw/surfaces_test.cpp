@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string>
@@ -9,6 +10,9 @@
 
 #include "draw/texture_layers.h"
 #include "golden_image.h"
+#include "scratch_folder.h"
+#include "textured_models.h"
+#include "throng/scene.h"
 #include "throng_draw/draw.h"
 
 namespace throng {
@@ -100,6 +104,35 @@ TEST(GlSurfaces, ATexturedQuadLooksAsItDid) {
   EXPECT_LT(std::abs(white[0] - white[2]), 60);
   EXPECT_GT(white[2], 100);
   expect_golden(image, "textured.png");
+}
+
+TEST(GlSurfaces, TexturedModelsOfEveryFormatLookTheSame) {
+  std::vector<uint8_t> first;
+  for (const test::TexturedModel& model : test::textured_models()) {
+    SCOPED_TRACE(model.name);
+    const test::ScratchFolder folder;
+    SceneConfig load;
+    load.sources.push_back({.path = model.write(folder), .up = {}, .scale = {}, .transform = {}});
+    load.looks = SceneLooks::kRead;
+    Context context;
+    const auto scene = load_scene(load, context);
+    ASSERT_TRUE(scene) << scene.error().message;
+    const Image image = picture_of(*scene, before_sign());
+    const auto red = pixel(image, kLeft, kHigh), green = pixel(image, kRight, kHigh);
+    const auto blue = pixel(image, kLeft, kLow), white = pixel(image, kRight, kLow);
+    EXPECT_GT(red[0], 2 * std::max(red[1], red[2]));
+    EXPECT_GT(green[1], 2 * std::max(green[0], green[2]));
+    EXPECT_GT(blue[2], 2 * std::max(blue[0], blue[1]));
+    EXPECT_GT(std::min({white[0], white[1], white[2]}), 150);
+    // The same square, but for how each format splits it and how its numbers are rounded.
+    if (first.empty()) first = image.rgb;
+    int64_t differences = 0;
+    for (size_t i = 0; i < first.size(); ++i) differences += std::abs(first[i] - image.rgb[i]);
+    EXPECT_LT(static_cast<double>(differences) / static_cast<double>(first.size()), 0.2);
+    const char* pictures = std::getenv("THRONG_TEST_PICTURES");
+    if (pictures == nullptr) continue;
+    EXPECT_TRUE(write_png(image, std::string(pictures) + "/" + model.name + ".png"));
+  }
 }
 
 TEST(GlSurfaces, HolesShowWhatIsBehindThemAndLetTheSunThrough) {

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -265,6 +268,85 @@ TEST(Materials, TexturesThatAreDamagedOrTooLargeAreRefusedInAClause) {
   const auto one = decode_texture(tga(1, 1, {9, 8, 7, 255}), 2048);
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_EQ(one->rgba, (std::vector<uint8_t>{9, 8, 7, 255}));
+}
+
+// Decoders of the kind that the child process is for, told by the names of what they read.
+Result<Texture> fragile_decoder(const TextureSource& source, const std::string& model,
+                                int32_t most) {
+  if (source.name == "crash") std::raise(SIGSEGV);
+  if (source.name == "abort") std::abort();
+  if (source.name == "leave") _exit(0);
+  if (source.name == "hang") {
+    for (volatile bool for_ever = true; for_ever;) continue;
+  }
+  if (source.name == "greedy") {
+    for (std::vector<std::vector<char>> all;;) all.emplace_back(size_t{16} << 20, 'x');
+  }
+  return read_texture(source, model, most);
+}
+
+RawScene scene_with_textures(const std::vector<std::string>& names) {
+  RawScene raw;
+  for (size_t i = 0; i < names.size(); ++i) {
+    raw.textures.push_back({.name = names[i], .bytes = tga(four_texels())});
+    raw.scene.add_triangle({0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+    raw.scene.materials.push_back({.name = names[i],
+                                   .colour = {1, 1, 1, 0.5F},
+                                   .texture1 = static_cast<uint32_t>(i + 1),
+                                   .opacity = Opacity::kBlended});
+    raw.scene.parts.push_back({.file = {},
+                               .node = names[i],
+                               .material = names[i],
+                               .first_triangle = static_cast<uint32_t>(i),
+                               .triangle_count = 1,
+                               .material1 = static_cast<uint32_t>(i + 1)});
+  }
+  raw.scene.texture_corners.resize(names.size());
+  return raw;
+}
+
+constexpr TextureDecoding kFragile{
+    .read = &fragile_decoder, .bytes = uint64_t{256} << 20, .seconds = 1};
+
+TEST(Materials, ADecoderThatCrashesHangsOrEatsMemoryCostsOnlyThatTexture) {
+  for (const char* bad : {"crash", "abort", "leave", "hang", "greedy"}) {
+    SCOPED_TRACE(bad);
+    RawScene raw = scene_with_textures({"first", bad, "third"});
+    raw.scene.materials[1].colour = {0.2F, 0.6F, 0.1F, 1};  // One that can stand alone.
+    Context context;
+    ASSERT_TRUE(read_textures(raw, "sign.dae", context, kFragile));
+    const Scene& scene = raw.scene;
+    ASSERT_EQ(scene.textures.size(), 2U);
+    EXPECT_EQ(scene.textures[0].name, "first");
+    EXPECT_EQ(scene.textures[1].name, "third");
+    for (const Texture& texture : scene.textures) EXPECT_EQ(texture.rgba, four_texels().rgba);
+    EXPECT_EQ(scene.materials[0].texture1, 1U);
+    EXPECT_EQ(scene.materials[1].texture1, 0U);
+    EXPECT_EQ(scene.materials[1].opacity, Opacity::kOpaque);
+    EXPECT_EQ(scene.materials[2].texture1, 2U);
+    EXPECT_EQ(scene.parts[1].material1, 2U);
+    EXPECT_EQ(scene.texture_corners.size(), 3U);
+    ASSERT_EQ(scene.report.warnings.size(), 1U);
+    EXPECT_EQ(scene.report.warnings[0],
+              "sign.dae: 1 of 3 textures cannot be used, for one " + std::string(bad) +
+                  " crashes its decoder, or takes it too long or too much memory; plain colours "
+                  "stand in");
+  }
+}
+
+TEST(Materials, TexturesThatAllCrashTheirDecoderAreNotTriedForEver) {
+  std::vector<std::string> names(40, "crash");
+  names[2] = "good";
+  names[39] = "behind";
+  RawScene raw = scene_with_textures(names);
+  Context context;
+  ASSERT_TRUE(read_textures(raw, "sign.dae", context, kFragile));
+  ASSERT_EQ(raw.scene.textures.size(), 1U);
+  EXPECT_EQ(raw.scene.textures[0].name, "good");
+  EXPECT_EQ(raw.scene.parts[2].material1, 3U);
+  EXPECT_EQ(raw.scene.parts[39].material1, 0U);  // White without its texture says nothing.
+  ASSERT_EQ(raw.scene.report.warnings.size(), 1U);
+  EXPECT_TRUE(raw.scene.report.warnings[0].starts_with("sign.dae: 39 of 40 textures"));
 }
 
 TEST(Materials, LargeTexturesAreHalvedUntilTheyFit) {

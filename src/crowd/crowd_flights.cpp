@@ -81,7 +81,7 @@ bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
   flight.descends = 0;
   flight.to_port = 0;
   flight.lands = 0;
-  flight.count = 0;
+  flight.count = flight.next = 0;
   const FlyerAir& air = *air_of(body);
   if (goal.level1 == kAirLevel1) {
     if (!air.in_grid(goal.position)) return false;
@@ -123,7 +123,7 @@ bool Crowd::State::take_off(Body& body, Flight& flight) const {
   flight.rise = 0;
   flight.to_port = 0;
   flight.lands = 0;
-  flight.count = 0;
+  flight.count = flight.next = 0;
   body.turn = 0;
   const bool has_goal = body.has(Body::kHasGoal);
   body.flags &= Body::kDriven | Body::kHasGoal;

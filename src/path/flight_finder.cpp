@@ -3,23 +3,26 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "core/check_class.h"
 #include "core/random.h"
 #include "path/flight_ends.h"
+#include "path/flight_ports.h"
 #include "path/flight_pull.h"
 #include "path/flight_search.h"
+#include "path/mesh.h"
 #include "path/reset_path.h"
 #include "throng/flight.h"
+#include "world/place.h"
 
 namespace throng {
 namespace {
 
 constexpr int32_t kLargestBox = 32;            // air cells: larger ones hide good ways
 constexpr uint64_t kMostFloodCells = 1 << 18;  // on foot to where one can take off
-// The same where the nearest take-off leads into a pocket: most that hold people are rooms, and
-// over open ground, where nothing else will be found either, the search must end.
+// The same where the nearest take-off leads into a pocket and there are several others.
 constexpr uint64_t kMostPocketCells = 1 << 15;
 
 double distance(Vec3d a, Vec3d b) {
@@ -35,9 +38,18 @@ struct FlightFinder::Shared {
   FlightSpace space;
   std::vector<uint64_t> cells_before;  // per box, and of all
   std::optional<PathFinder> walker;    // none where the class has no ground
+  FlightPorts ports;
   FlightSummary summary;
 
   [[nodiscard]] FlightEnds ends() const { return {*world.data(), space, avatar_class}; }
+  // The component of the ground at a place.
+  [[nodiscard]] uint32_t ground_of(const Place& place) const {
+    const auto at = ground_point(*world.data(), place);
+    if (!walker || !at) return kNoRect;
+    const PathMesh& mesh = walker->mesh();
+    const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
+    return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
+  }
 };
 
 struct FlightFinder::Scratch {
@@ -49,7 +61,7 @@ struct FlightFinder::Scratch {
   std::optional<PathFinder> walker;
   std::vector<AirPoint> way;
   Path walk_there, walk_on, walk_all;
-  std::vector<uint32_t> over_from, over_to;  // components of the air
+  std::vector<uint32_t> over_from, over_to, common;  // components of the air
 };
 
 FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
@@ -101,9 +113,11 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
         world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
     if (!walker) return walker.error();
     shared->walker = std::move(*walker);
+    shared->ports = FlightPorts(data, shared->walker->mesh(), shared->space, config.workers);
   }
   shared->summary.boxes = shared->space.boxes.size();
   shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
+                          shared->ports.bytes() +
                           (shared->walker ? shared->walker->summary().bytes : 0);
   shared->summary.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -170,14 +184,47 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     if (!end.ground) return end.air.has_value();
     end.port = end.ground;
     end.air = ends.take_off(end.port);
-    if (!end.air || (component != kNoBox && component_of(*end.air) != component)) {
-      const auto nearest = ends.nearest_take_off(
-          end.ground, end.air ? kMostPocketCells : kMostFloodCells, component, scratch.flood);
-      gave_up = gave_up || nearest.gave_up;
-      end.port = nearest.place;
-      end.air = ends.take_off(end.port);
-    }
+    if (end.air && (component == kNoBox || component_of(*end.air) == component)) return true;
+    end.air.reset();
+    const uint32_t ground = shared_->ground_of(end.ground);
+    const bool leads = component == kNoBox ? !shared_->ports.air_over(ground).empty()
+                                           : shared_->ports.joins(ground, component);
+    if (!leads) return false;
+    const auto nearest =
+        ends.nearest_take_off(end.ground, kMostFloodCells, component, scratch.flood);
+    gave_up = gave_up || nearest.gave_up;
+    end.port = nearest.place;
+    end.air = ends.take_off(end.port);
     return end.air.has_value();
+  };
+  // Air over the ground at both ends: the one that is nearest to both, as far as a look around
+  // tells, where there is more than one.
+  const auto common_air = [&](const End& a, const End& b) {
+    const auto over_a = shared_->ports.air_over(shared_->ground_of(a.ground));
+    const auto over_b = shared_->ports.air_over(shared_->ground_of(b.ground));
+    scratch.common.clear();
+    std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
+                          std::back_inserter(scratch.common));
+    if (scratch.common.size() < 2) return scratch.common.empty() ? kNoBox : scratch.common[0];
+    for (const auto& [end, over] :
+         {std::pair{&a, &scratch.over_from}, std::pair{&b, &scratch.over_to}}) {
+      if (query.cancel != nullptr && *query.cancel) {
+        gave_up = true;
+        return kNoBox;
+      }
+      ends.components_over(end->ground, kMostPocketCells, scratch.flood, *over);
+    }
+    size_t least = SIZE_MAX;
+    uint32_t best = scratch.common[0];
+    for (size_t i = 0; i < scratch.over_from.size(); ++i) {
+      const auto found =
+          std::find(scratch.over_to.begin(), scratch.over_to.end(), scratch.over_from[i]);
+      const size_t rank = i + static_cast<size_t>(found - scratch.over_to.begin());
+      if (found == scratch.over_to.end() || rank >= least) continue;
+      least = rank;
+      best = scratch.over_from[i];
+    }
+    return best;
   };
   // The nearest ways into the air may lead into pockets of it, a room or a yard under a net: then
   // from one further off into air that leads to the other end.
@@ -185,25 +232,9 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     if (!a.ground && !b.ground) return true;
     if (!a.ground) return to_port(b, component_of(*a.air));
     if (!b.ground) return to_port(a, component_of(*b.air));
-    if (to_port(a, kNoBox) && to_port(b, kNoBox) && space.hold_together(*a.air, *b.air)) {
-      return true;
-    }
-    if (!a.air || !b.air) return false;
-    for (const auto& [end, over] :
-         {std::pair{&a, &scratch.over_from}, std::pair{&b, &scratch.over_to}}) {
-      if (query.cancel != nullptr && *query.cancel) return false;
-      gave_up |= ends.components_over(end->ground, kMostPocketCells, scratch.flood, *over);
-    }
-    size_t least = SIZE_MAX;
-    uint32_t common = kNoBox;
-    for (size_t i = 0; i < scratch.over_from.size(); ++i) {
-      const auto found =
-          std::find(scratch.over_to.begin(), scratch.over_to.end(), scratch.over_from[i]);
-      const size_t rank = i + static_cast<size_t>(found - scratch.over_to.begin());
-      if (found == scratch.over_to.end() || rank >= least) continue;
-      least = rank;
-      common = scratch.over_from[i];
-    }
+    if (!to_port(a, kNoBox) || !to_port(b, kNoBox)) return false;
+    if (space.hold_together(*a.air, *b.air)) return true;
+    const uint32_t common = common_air(a, b);
     return common != kNoBox && to_port(a, common) && to_port(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {

@@ -9,6 +9,9 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "path/circle_flood.h"
+#include "path/flight_ends.h"
+#include "path/flight_space.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
 #include "throng/verify.h"
@@ -108,6 +111,42 @@ TEST(Flight, LeavesAClosedPocketOfAirOnFoot) {
     EXPECT_EQ(in.back(), LegKind::kWalk);
     EXPECT_NE(std::find(out.begin(), out.end(), LegKind::kTakeOff), out.end());
   }
+}
+
+// Who has a way from the ground to the air: flooded cell by cell, without an end.
+TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
+  uint64_t reached = 0, parted = 0;
+  Scene yards = two_floors();  // and two rooms without a window
+  yards.add_box({10, 0, 0}, {20, 4, 8});
+  yards.add_box({40, 0, 0}, {50, 4, 8});
+  yards.add_quad({38, 0, -2}, {52, 0, -2}, {52, 0, 10}, {38, 0, 10});
+  const Scene church = *make_builtin_world({.name = "church"});
+  for (const bool yard : {true, false}) {
+    const World world = bake(yard ? yards : church, 0.2);
+    FlightFinder flight = finder(world);
+    const FlightEnds ends(*world.data(), flight.space(), 0);
+    CircleFlood flood;
+    FlightPath path;
+    std::vector<uint32_t> over;
+    for (uint64_t n = 0; n < 60; ++n) {
+      const Place place = world.random_place(0, 5, n);
+      const auto point = flight.random_point(5, n);
+      ASSERT_TRUE(place && point);
+      const auto air = ends.in_air(*point);
+      ASSERT_TRUE(air);
+      EXPECT_FALSE(ends.components_over(place, UINT64_MAX, flood, over));
+      const uint32_t of_air = flight.space().component[flight.space().box_at(*air)];
+      const bool together = std::find(over.begin(), over.end(), of_air) != over.end();
+      (together ? reached : parted) += 1;
+      const PathEnd expected = together ? PathEnd::kReached : PathEnd::kUnreachable;
+      flight.find({.from = place.position, .to = *point, .reach = 0.05}, path);
+      EXPECT_EQ(path.end, expected) << "pair " << n;
+      flight.find({.from = *point, .to = place.position, .reach = 0.05}, path);
+      EXPECT_EQ(path.end, expected) << "pair " << n << ", back";
+    }
+  }
+  EXPECT_GT(reached, 20u);
+  EXPECT_GT(parted, 10u);
 }
 
 TEST(Flight, LandsOnTheMostOpenGroundBelow) {

@@ -296,7 +296,7 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
 // Takes in what it steers by, and if wanted lists whom it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
-  worker.waits = worker.meets = false;
+  worker.waits = worker.meets = worker.follows = false;
   const Body& body = bodies_[i];
   fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
@@ -370,7 +370,11 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     situation.near.add(config_.steering,
                        {apart, makes_way ? other.wish : other.velocity, room, other.wish});
   }
+  const Plane wish = situation.wish;
   situation.wish = steer::following_fast(config_.steering, situation);
+  // Before a corner one who crawls is turned as one who stands: doors need that.
+  worker.follows =
+      !turns && steer::can_but_crawl(config_.patience, wish, situation.wish, body.speed);
 }
 
 // Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
@@ -552,6 +556,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   if (is_sampled(body)) keep_right(body, worker);
   const bool open = find_open_wish(i, worker, around);
   claim.meets = worker.meets;
+  body.follows = worker.follows;
   // The best of his ways is enough as long as nobody objects to it.
   if (!open) look_around(body, worker.situation);
   const Plane best =
@@ -751,8 +756,11 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       here.progress += progress_of(b, way);
       const bool near_goal = left <= 1 && b.has(Body::kLast);
       // Nobody is in the way of who is alone, so there is nobody to be turned away from.
-      const float content = near_goal || is_alone ? 1 : towards / b.speed;
       if (config_.patient) {
+        const float content =
+            near_goal || is_alone
+                ? 1
+                : steer::progress_felt(config_.patience, towards / b.speed, b.follows);
         const float along =
             (b.velocity.x * b.wish.x + b.velocity.z * b.wish.z) / (b.speed * b.speed);
         b.turn = steer::next_turn(config_.patience, b.turn, content, along, units.dt);

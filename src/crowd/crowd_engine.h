@@ -147,8 +147,9 @@ class CrowdEngine {
     std::vector<uint32_t> entries, touched;
     std::vector<uint32_t> others;
     steer::Situation situation;
-    bool waits = false;  // for another, instead of doing as he wishes
-    bool meets = false;  // a stream that comes towards him
+    bool waits = false;    // for another, instead of doing as he wishes
+    bool meets = false;    // a stream that comes towards him
+    bool follows = false;  // Body::follows
     EngineCounts counts;
   };
   using Ways = std::array<Way, steer::kChoices>;

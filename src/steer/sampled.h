@@ -148,7 +148,19 @@ struct Patience {
   float back = 0.25f;     ///< a second
   float content = 0.3f;   ///< Share of the wished speed towards the goal that is getting on.
   float walks = 0.5f;  ///< Share of the wished speed along the turned wish that is, beyond `most`.
+  float crawls = 0.05f;  ///< The same as `content`, of who follows others so closely that he could
+                         ///< not be content.
 };
+
+/// Do those ahead leave less room than contents him? `followed`: what `following` made of `wish`.
+inline bool can_but_crawl(const Patience& patience, Plane wish, Plane followed, float fastest) {
+  const float size = size_of(followed);
+  return size < patience.content * fastest && size < size_of(wish);
+}
+/// Progress as next_turn takes it: who can but crawl, and does, gets on as well as he can.
+inline float progress_felt(const Patience& patience, float progress, bool follows) {
+  return follows && progress >= patience.crawls ? 1 : progress;
+}
 
 /// The next turn of an avatar. `progress`: its speed towards the goal by the wished one; `along`:
 /// the same along its turned wish.

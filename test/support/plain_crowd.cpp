@@ -137,6 +137,7 @@ void PlainCrowd::prefer(uint32_t i) {
 }
 
 void PlainCrowd::steer_all() {
+  follows_.assign(bodies_.size(), 0);
   for (uint32_t i = 0; i < bodies_.size(); ++i) {
     if (config_.model != SteeringModel::kSampled) {
       prefer(i);
@@ -169,7 +170,9 @@ void PlainCrowd::steer_all() {
           {config_.units.metres(n.at.x, n.at.z), makes_way ? wish_of(other) : other.velocity,
            static_cast<float>(body.radius + other.radius) * config_.units.unit, wish_of(other)});
     }
+    const Plane wish = situation.wish;
     situation.wish = steer::following(config_.steering, situation);
+    follows_[i] = steer::can_but_crawl(config_.patience, wish, situation.wish, body.speed) ? 1 : 0;
     bool open = steer::wish_is_open(config_.steering, situation);
     if (!open && !waits && steer::is_opposed(config_.lanes, situation)) {
       steer::Lanes lanes(config_.lanes, wish_of(body));
@@ -240,6 +243,7 @@ void PlainCrowd::commit() {
         keeping[i] = 0;
         if (round > 0) first[i] = 0;
       }
+      if (round == 0) bodies_[i].follows = follows_[i] != 0;
       if (first[i] != 0) first[i] = consider(choices_[i][0]);
       keeps[i] = first[i];
       bool found = std::any_of(choices_[i].begin(), choices_[i].end(), consider);
@@ -286,7 +290,10 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
       const bool alone = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
         return can_touch(static_cast<uint32_t>(i), n);
       });
-      const float content = left > 1 && !alone ? towards / body.speed : 1;
+      const float content =
+          left > 1 && !alone
+              ? steer::progress_felt(config_.patience, towards / body.speed, body.follows)
+              : 1;
       const float along =
           (body.velocity.x * wish.x + body.velocity.z * wish.z) / (body.speed * body.speed);
       body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);

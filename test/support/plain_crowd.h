@@ -27,6 +27,7 @@ struct PlainBody {
   float speed = 1.3f;     // wished, and the most [m/s]
   float turn = 0;         // of steer::Patience
   bool keeps = false;     // to what it decided: it does what it wanted most
+  bool follows = false;   // so closely that it could but crawl, when it last decided
   double arrived = -1;    // when it first was within 0.3 m of the goal [s]; not yet: -1
 };
 
@@ -83,6 +84,7 @@ class PlainCrowd {
   int32_t widest_ = 0, longest_ = 0;     // of radii and strides [units]
   std::vector<std::vector<Near>> near_;  // nearest first
   std::vector<steer::Choices> choices_;
+  std::vector<uint8_t> follows_;  // Would be PlainBody::follows, should it decide.
 };
 
 /// Bodies at random places of a square that repeats itself, `area` m2 for each, with goals within

@@ -250,53 +250,118 @@ bool passes(const NodePathReport& report) {
   return report.entered + report.unsupported + report.torn + report.disagree == 0;
 }
 
-// Ways over the nodes of a world, gone from end to end.
-int verify_node_ways(Session& session, VerifyOptions& options, const std::vector<int32_t>& picked,
-                     const Scene& scene) {
-  const Result<Nodes> nodes = Nodes::open(options.world);
-  if (!nodes) return fail(nodes.error());
-  const std::vector<AvatarClass> classes = nodes->summary().classes;
+bool passes(const PathReport& report) {
+  return report.illegal + report.entered + report.unsupported + report.torn + report.disagree == 0;
+}
+
+// One class's ways, gone from end to end.
+struct WaysReport {
+  Json json;
+  std::string text;
+  bool passed = false;
+};
+
+WaysReport told(const std::string& name, const NodePathReport& report) {
+  Json kinds = Json::object();
+  for (uint8_t k = 0; k < kLinkKinds; ++k) {
+    if (report.links_of_kind[k] != 0) {
+      kinds[word_for(static_cast<LinkKind>(k))] = report.links_of_kind[k];
+    }
+  }
+  return {{{"class", name},
+           {"over", "nodes"},
+           {"pairs", report.pairs},
+           {"reached", report.reached},
+           {"parted", report.parted},
+           {"legs", report.legs},
+           {"links", kinds},
+           {"leaps", report.leaps},
+           {"poses", report.poses},
+           {"entered", report.entered},
+           {"unsupported", report.unsupported},
+           {"torn", report.torn},
+           {"disagree", report.disagree},
+           {"length", report.length},
+           {"straight", report.straight},
+           {"search_seconds", report.search_seconds},
+           {"make_seconds", report.make_seconds},
+           {"finder_bytes", report.finder_bytes},
+           {"seconds", report.seconds}},
+          fmt::format(
+              "{}, over nodes: {} pairs, {} reached, {} in different parts; {} legs, {} leaps, {} "
+              "bodies on them in {:.1f} s\n"
+              "  entered {}, unsupported {}, torn {}, against the parts {}\n",
+              name, report.pairs, report.reached, report.parted, report.legs, report.leaps,
+              report.poses, report.seconds, report.entered, report.unsupported, report.torn,
+              report.disagree) +
+              told_faults(report.faults),
+          passes(report)};
+}
+
+WaysReport told(const std::string& name, const PathReport& report) {
+  return {
+      {{"class", name},
+       {"over", "level tiles"},
+       {"pairs", report.pairs},
+       {"reached", report.reached},
+       {"parted", report.parted},
+       {"legs", report.legs},
+       {"bodies", report.bodies},
+       {"illegal", report.illegal},
+       {"entered", report.entered},
+       {"unsupported", report.unsupported},
+       {"torn", report.torn},
+       {"disagree", report.disagree},
+       {"length", report.length},
+       {"straight", report.straight},
+       {"search_seconds", report.search_seconds},
+       {"make_seconds", report.make_seconds},
+       {"finder_bytes", report.finder_bytes},
+       {"seconds", report.seconds}},
+      fmt::format(
+          "{}: {} pairs, {} reached, {} in different parts; {} legs, {} bodies on them in {:.1f} "
+          "s\n"
+          "  illegal {}, entered {}, unsupported {}, torn {}, against the parts {}\n",
+          name, report.pairs, report.reached, report.parted, report.legs, report.bodies,
+          report.seconds, report.illegal, report.entered, report.unsupported, report.torn,
+          report.disagree) +
+          told_faults(report.faults),
+      passes(report)};
+}
+
+// Ways between random places: over nodes for who climbs or drops, and for all if that is asked;
+// as `throng path` goes.
+int verify_ways(Session& session, VerifyOptions& options, const World& world,
+                const std::vector<int32_t>& picked, const Scene& scene) {
+  std::optional<Nodes> nodes;
   Json list = Json::array();
   std::string text;
   bool passed = true;
+  const std::vector<AvatarClass> classes = world.summary().classes;
   for (const int32_t index : picked) {
+    const AvatarClass& avatar = classes[static_cast<size_t>(index)];
     options.config.avatar_class = index;
-    const auto found = verify_node_paths(*nodes, scene, options.config, session.context);
-    if (!found) return fail(found.error());
-    const NodePathReport& report = *found;
-    const std::string& name = classes[static_cast<size_t>(index)].name;
-    passed = passed && passes(report);
-    Json kinds = Json::object();
-    for (uint8_t k = 0; k < kLinkKinds; ++k) {
-      if (report.links_of_kind[k] != 0) {
-        kinds[word_for(static_cast<LinkKind>(k))] = report.links_of_kind[k];
+    const auto over_nodes = [&]() -> Result<WaysReport> {
+      if (!nodes) {
+        auto opened = Nodes::open(options.world);
+        if (!opened) return opened.error();
+        nodes = *std::move(opened);
       }
-    }
-    list.push_back({{"class", name},
-                    {"pairs", report.pairs},
-                    {"reached", report.reached},
-                    {"parted", report.parted},
-                    {"legs", report.legs},
-                    {"links", kinds},
-                    {"leaps", report.leaps},
-                    {"poses", report.poses},
-                    {"entered", report.entered},
-                    {"unsupported", report.unsupported},
-                    {"torn", report.torn},
-                    {"disagree", report.disagree},
-                    {"length", report.length},
-                    {"straight", report.straight},
-                    {"search_seconds", report.search_seconds},
-                    {"make_seconds", report.make_seconds},
-                    {"finder_bytes", report.finder_bytes},
-                    {"seconds", report.seconds}});
-    text += fmt::format(
-        "{}: {} pairs, {} reached, {} in different parts; {} legs, {} leaps, {} bodies on them in "
-        "{:.1f} s\n"
-        "  entered {}, unsupported {}, torn {}, against the parts {}\n",
-        name, report.pairs, report.reached, report.parted, report.legs, report.leaps, report.poses,
-        report.seconds, report.entered, report.unsupported, report.torn, report.disagree);
-    text += told_faults(report.faults);
+      const auto report = verify_node_paths(*nodes, scene, options.config, session.context);
+      if (!report) return report.error();
+      return told(avatar.name, *report);
+    };
+    const auto over_tiles = [&]() -> Result<WaysReport> {
+      const auto report = verify_paths(world, scene, options.config, session.context);
+      if (!report) return report.error();
+      return told(avatar.name, *report);
+    };
+    const bool on_nodes = options.nodes || avatar.climb_slope > 0 || avatar.max_drop > 0;
+    auto report = on_nodes ? over_nodes() : over_tiles();
+    if (!report) return fail(report.error());
+    list.push_back(std::move(report->json));
+    text += report->text;
+    passed = passed && report->passed;
   }
   return tell(session, options, list, passed, std::move(text));
 }
@@ -309,7 +374,7 @@ int verify(Session& session, VerifyOptions& options) {
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
   note_if_elsewhere(*scene, world->summary().bounds);
-  if (options.paths) return verify_node_ways(session, options, *picked, *scene);
+  if (options.paths) return verify_ways(session, options, *world, *picked, *scene);
   if (options.nodes) return verify_all_nodes(session, options, *picked, *scene);
 
   const std::vector<AvatarClass> classes = world->summary().classes;
@@ -342,7 +407,8 @@ void add_verify(CLI::App& parser, Session& session) {
   CLI::App* command =
       add_command(parser, session, "verify", "Test a baked world against its source triangles",
                   "throng bake builtin:garage -o garage.throng\n"
-                  "throng verify garage.throng --source builtin:garage --samples 20000");
+                  "throng verify garage.throng --source builtin:garage --samples 20000\n"
+                  "throng verify garage.throng --source builtin:garage --paths --samples 1000");
   const auto options = std::make_shared<VerifyOptions>();
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
   add_source_options(command, options->sources, "--source");
@@ -354,8 +420,10 @@ void add_verify(CLI::App& parser, Session& session) {
   command->add_option("--class", options->class_name, "Avatar class by name, or all")
       ->capture_default_str();
   command->add_flag("--nodes", options->nodes, "Test the world's nodes, not its level tiles");
-  command->add_flag("--paths", options->paths,
-                    "Go the ways over the world's nodes between as many pairs of places");
+  command->add_flag(
+      "--paths", options->paths,
+      "Go the ways between as many pairs of places, over nodes for who climbs or drops "
+      "or with --nodes");
   command->add_option("--threads", options->config.workers, "Threads, 0 for all cores");
   command->callback([&session, options] { session.exit_code = verify(session, *options); });
 }

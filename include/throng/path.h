@@ -15,6 +15,8 @@
 /// Shortest ways for a class over the ground of a baked world.
 namespace throng {
 
+struct PathMesh;  // Internal: rectangles and portals.
+
 struct PathConfig {
   int32_t avatar_class = 0;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
@@ -79,6 +81,8 @@ class THRONG_API PathFinder {
   void find(const Place& from, const Place& to, Path& path, uint64_t max_nodes = UINT64_MAX);
 
   [[nodiscard]] PathSummary summary() const;
+  /// What it searches on, for the library itself; as old as the finder and its copies.
+  [[nodiscard]] const PathMesh& mesh() const;
 
  private:
   struct Shared;

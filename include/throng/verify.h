@@ -27,7 +27,7 @@ struct VerifyConfig {
 
 /// A place where a claim failed, to look at.
 struct VerifyFault {
-  std::string what;       ///< "entered", "unsupported", "torn", "lost"
+  std::string what;       ///< "entered", "unsupported", "torn", "lost" ...
   Vec3d position;         ///< Feet. [m]
   uint32_t triangle = 0;  ///< Of the scene: the intruder, or the surface that was lost.
 };
@@ -110,6 +110,33 @@ struct NodePathReport {
 [[nodiscard]] THRONG_API Result<VerifyReport> verify_world(const World& world, const Scene& source,
                                                            const VerifyConfig& config,
                                                            Context& context);
+
+/// What the oracle found of ways over level tiles.
+struct PathReport {
+  uint64_t pairs = 0;        ///< Random pairs of places; every second that hold together, if found.
+  uint64_t reached = 0;      ///< Of these, with a way.
+  uint64_t parted = 0;       ///< Of these, without one, and in different components of the graph.
+  uint64_t legs = 0;         ///< Of the ways, point to point.
+  uint64_t bodies = 0;       ///< On them, at most half a cell and a quarter of a radius apart.
+  uint64_t illegal = 0;      ///< Ways with a leg that is no legal move, or of another length. 0.
+  uint64_t entered = 0;      ///< Ways on which the body meets a triangle. Must be 0.
+  uint64_t unsupported = 0;  ///< Ways on which it has no surface in reach. Must be 0.
+  uint64_t torn = 0;         ///< Ways over a point with no legal place. Must be 0.
+  uint64_t disagree = 0;     ///< Pairs with a way between different components, or the reverse. 0.
+  double length = 0;         ///< Of all ways, in the plane. [m]
+  double straight = 0;       ///< Of the straight lines between their ends. [m]
+  double search_seconds = 0;  ///< Of all queries, one thread each.
+  double make_seconds = 0;    ///< Of the finder.
+  uint64_t finder_bytes = 0;
+  std::vector<VerifyFault> faults;  ///< The first few of each kind.
+  double seconds = 0;
+};
+
+/// Goes the ways of PathFinder between `config.samples` random pairs of places of a class, by legal
+/// moves and with its body against all triangles. Fails like verify_world.
+[[nodiscard]] THRONG_API Result<PathReport> verify_paths(const World& world, const Scene& source,
+                                                         const VerifyConfig& config,
+                                                         Context& context);
 
 /// What the oracle found of a class that flies.
 struct FlightReport {

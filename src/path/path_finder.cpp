@@ -88,6 +88,7 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
 }
 
 PathSummary PathFinder::summary() const { return shared_->summary; }
+const PathMesh& PathFinder::mesh() const { return shared_->mesh; }
 
 void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t max_nodes) {
   const WorldData& world = *shared_->world.data();

@@ -127,12 +127,12 @@ class Judge {
         [&](const MoveRecord& r) {
           if (!r.legal) return;
           ++report_.moves;
-          report_.entered += r.entered;
-          report_.unsupported += r.unsupported;
-          report_.torn += r.torn;
-          if (r.entered) fault("entered", r.entered_at, r.intruder);
-          if (r.unsupported) fault("unsupported", r.unsupported_at, 0);
-          if (r.torn) fault("torn", r.torn_at, 0);
+          report_.entered += r.leg.entered;
+          report_.unsupported += r.leg.unsupported;
+          report_.torn += r.leg.torn;
+          if (r.leg.entered) fault("entered", r.leg.entered_at, r.leg.intruder);
+          if (r.leg.unsupported) fault("unsupported", r.leg.unsupported_at, 0);
+          if (r.leg.torn) fault("torn", r.leg.torn_at, 0);
         });
   }
 

@@ -59,34 +59,6 @@ std::optional<Place> random_move(const Claims& claims, const Place& start, uint6
   return best;
 }
 
-// The claimed place at a point of a move, feet within `reach` of the point. Worlds round positions;
-// where the line passes a corner of the legal area, a 512th of a cell to a side is close enough.
-Place place_on_way(const Claims& claims, Vec3d point, double reach) {
-  const double nudge = claims.cell / 512;
-  constexpr std::array<std::array<double, 2>, 5> kTries = {
-      {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-  for (const auto& [dx, dz] : kTries) {
-    const Place place =
-        claims.find_place({point.x + dx * nudge, point.y, point.z + dz * nudge}, reach);
-    if (place) return place;
-  }
-  return {};
-}
-
-void look(const BodyCheck& body, Vec3d feet, MoveRecord& record) {
-  if (!record.entered) {
-    if (const auto intruder = body.intruder(feet)) {
-      record.entered = true;
-      record.entered_at = feet;
-      record.intruder = *intruder;
-    }
-  }
-  if (!record.unsupported && !body.is_supported(feet)) {
-    record.unsupported = true;
-    record.unsupported_at = feet;
-  }
-}
-
 BodyShape shape_of(const Claims& claims, double growth, double headroom) {
   return {.radius = claims.avatar.radius + growth,
           .bottom = body_bottom(claims.avatar),
@@ -121,32 +93,7 @@ MoveRecord check_move(const Claims& claims, const BodyCheck& body, uint64_t seed
   if (!end) return record;
   record.legal = true;
 
-  const Vec3d a = start.position;
-  const Vec3d b = end->position;
-  const double dx = b.x - a.x;
-  const double dz = b.z - a.z;
-  const double length = std::sqrt(dx * dx + dz * dz);
-  const int parts = std::max(1, static_cast<int>(std::ceil(length / (claims.cell / 4))));
-  // More than the floor may change over a quarter of a cell by a step, or on the steepest slope.
-  const double reach = claims.avatar.step + claims.cell;
-  double y = a.y;
-  for (int k = 1; k < parts; ++k) {
-    const double t = static_cast<double>(k) / parts;
-    const Vec3d point{a.x + t * dx, y, a.z + t * dz};
-    const Place place = place_on_way(claims, point, reach);
-    if (!place) {
-      record.torn = true;
-      record.torn_at = point;
-      return record;
-    }
-    look(body, place.position, record);
-    y = place.position.y;
-  }
-  look(body, {b.x, claims.feet(*end), b.z}, record);
-  if (std::fabs(b.y - y) > reach) {
-    record.torn = true;
-    record.torn_at = b;
-  }
+  check_leg(claims, body, start, *end, claims.cell / 4, record.leg);
   return record;
 }
 

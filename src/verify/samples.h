@@ -8,6 +8,7 @@
 #include "throng/math.h"
 #include "verify/body_check.h"
 #include "verify/claims.h"
+#include "verify/leg_check.h"
 #include "verify/stance.h"
 #include "verify/surface_sampler.h"
 
@@ -30,11 +31,7 @@ struct StateRecord {
 
 struct MoveRecord {
   bool legal = false;  ///< The world let the move arrive.
-  bool entered = false;
-  bool unsupported = false;
-  bool torn = false;  ///< A point on the way has no legal place.
-  Vec3d entered_at, unsupported_at, torn_at;
-  uint32_t intruder = 0;
+  LegRecord leg;
 };
 
 /// Moves from the world's n-th random place, 0.02 to 3 m in a random direction, and looks at the

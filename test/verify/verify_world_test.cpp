@@ -122,6 +122,76 @@ TEST(VerifyWorld, BlockedSurfacesAreNotWalkedOn) {
   EXPECT_LT(report.standable_area_exact, 60);
 }
 
+PathReport go_ways(const World& world, const Scene& source, int32_t avatar_class, uint64_t pairs) {
+  Context context;
+  const auto report =
+      verify_paths(world, source, {.samples = pairs, .avatar_class = avatar_class}, context);
+  EXPECT_TRUE(report) << report.error().message;
+  return report ? *report : PathReport{};
+}
+
+TEST(VerifyPaths, EveryWayIsGoneByLegalMovesAndItsBody) {
+  for (const char* name : {"stairs", "church", "garage", "maze"}) {
+    const auto scene = make_builtin_world({.name = name});
+    ASSERT_TRUE(scene) << scene.error().message;
+    Context context;
+    const auto world = bake_world(*scene, {}, context);
+    ASSERT_TRUE(world) << world.error().message;
+    for (int32_t c = 0; c < 4; ++c) {
+      const PathReport report = go_ways(*world, *scene, c, 60);
+      EXPECT_EQ(report.pairs, 60u) << name << c;
+      EXPECT_GE(report.reached, 20u) << name << c;
+      EXPECT_EQ(report.reached + report.parted, report.pairs) << name << c;
+      EXPECT_EQ(report.illegal, 0u) << name << c;
+      EXPECT_EQ(report.entered, 0u) << name << c;
+      EXPECT_EQ(report.unsupported, 0u) << name << c;
+      EXPECT_EQ(report.torn, 0u) << name << c;
+      EXPECT_EQ(report.disagree, 0u) << name << c;
+      EXPECT_GE(report.length, report.straight) << name << c;
+    }
+  }
+}
+
+TEST(VerifyPaths, WaysThroughAnotherModelAreFoundOut) {
+  Scene more = hall();
+  more.add_box({0, 0, 3.8}, {20, 2, 4});
+  const PathReport entered = go_ways(hall_world(), more, 0, 100);
+  EXPECT_GT(entered.entered, 20u);
+  EXPECT_EQ(entered.illegal + entered.unsupported + entered.torn + entered.disagree, 0u);
+  ASSERT_FALSE(entered.faults.empty());
+  EXPECT_EQ(entered.faults[0].what, "entered");
+
+  Scene no_floor = hall();
+  no_floor.area[0] = no_floor.area[1] = kAreaBlocked;
+  EXPECT_GT(go_ways(hall_world(), no_floor, 0, 100).unsupported, 50u);
+}
+
+TEST(VerifyPaths, SameForAnyWorkers) {
+  Context context;
+  const auto one = verify_paths(hall_world(), hall(), {.samples = 300, .workers = 1}, context);
+  const auto three = verify_paths(hall_world(), hall(), {.samples = 300, .workers = 3}, context);
+  ASSERT_TRUE(one && three);
+  EXPECT_EQ(one->length, three->length);
+  EXPECT_EQ(one->bodies, three->bodies);
+  EXPECT_EQ(one->reached, three->reached);
+}
+
+TEST(VerifyPaths, BadSettingsAreRefusedAndACancelEndsIt) {
+  Context context;
+  for (const int32_t bad : {-1, 4}) {
+    const auto report = verify_paths(hall_world(), hall(), {.avatar_class = bad}, context);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, Errc::kBadConfig);
+  }
+  const auto empty = verify_paths(hall_world(), Scene{}, {}, context);
+  ASSERT_FALSE(empty);
+  EXPECT_EQ(empty.error().code, Errc::kBadInput);
+  context.cancel = true;
+  const auto cancelled = verify_paths(hall_world(), hall(), {}, context);
+  ASSERT_FALSE(cancelled);
+  EXPECT_EQ(cancelled.error().code, Errc::kCancelled);
+}
+
 TEST(VerifyWorld, UnknownClassIsRefused) {
   Context context;
   for (const int32_t bad : {-1, 4}) {

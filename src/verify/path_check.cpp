@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/parallel.h"
+#include "throng/graph.h"
+#include "throng/path.h"
+#include "throng/verify.h"
+#include "verify/body_check.h"
+#include "verify/claims.h"
+#include "verify/leg_check.h"
+#include "verify/triangle_tree.h"
+#include "verify/world_claims.h"
+
+// Every way that the finder of level tiles tells is gone: each leg by the world's own moves, and
+// with the exact body against all triangles. The finder searches over rectangles; what it is held
+// against are cells (moves), triangles, and the graph's components, which nothing of it has made.
+namespace throng {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t kFaultsOfAKind = 8;
+constexpr size_t kBatch = 256;     // pairs between two looks at `cancel`
+constexpr uint64_t kDraws = 16;    // of a goal that holds together with its start
+constexpr double kSame = 1e-6;     // [m]
+constexpr double kSlack = 1.0001;  // of a way's length, for what its points are rounded to
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double plan_distance(Vec3d a, Vec3d b) { return std::hypot(b.x - a.x, b.z - a.z); }
+
+struct Gone {
+  bool exists = false, reached = false, together = false, illegal = false;
+  uint64_t legs = 0;
+  double length = 0, straight = 0, seconds = 0;
+  Vec3d at, illegal_at;
+  verify::LegRecord body;
+};
+
+class Walker {
+ public:
+  Walker(const verify::Claims& claims, const Graph& graph, const Scene& scene,
+         const VerifyConfig& config)
+      : claims_(claims),
+        graph_(graph),
+        config_(config),
+        tree_(scene, config.workers),
+        body_(tree_, claims.avatar, claims.cell),
+        spacing_(std::min(claims.cell / 2, claims.avatar.radius / 4)) {}
+
+  Gone go(PathFinder& finder, Path& path, uint64_t n) const {
+    Gone gone;
+    const Place from = claims_.random_place(config_.seed, n * (kDraws + 1));
+    if (!from) return gone;
+    const int32_t part = part_of(from);
+    const Place to = goal_of(n, part);
+    gone.exists = true;
+    gone.at = from.position;
+    gone.together = part >= 0 && part == part_of(to);
+    const auto start = Clock::now();
+    finder.find(from, to, path);
+    gone.seconds = seconds_since(start);
+    gone.reached = path.end == PathEnd::kReached;
+    if (!gone.reached) return gone;
+    gone.length = path.length;
+    gone.straight = plan_distance(from.position, to.position);
+    if (path.points.empty() || !same(path.points.front(), from) || !same(path.points.back(), to)) {
+      refuse(gone, from.position);
+      return gone;
+    }
+    double along = 0;
+    for (size_t i = 1; i < path.points.size(); ++i) {
+      const Place &a = path.points[i - 1], &b = path.points[i];
+      ++gone.legs;
+      along += plan_distance(a.position, b.position);
+      const MoveResult move =
+          claims_.move(a, b.position.x - a.position.x, b.position.z - a.position.z);
+      if (move.end != MoveEnd::kArrived || !same(move.place, b)) refuse(gone, a.position);
+      verify::check_leg(claims_, body_, a, b, spacing_, gone.body);
+    }
+    // The length is that of the way, which is no shorter than a straight line.
+    if (std::fabs(along - gone.length) > (kSlack - 1) * along + claims_.cell / 100 ||
+        gone.length * kSlack + claims_.cell / 100 < gone.straight) {
+      refuse(gone, from.position);
+    }
+    return gone;
+  }
+
+ private:
+  [[nodiscard]] int32_t part_of(const Place& place) const {
+    return graph_.component_at(config_.avatar_class, place);
+  }
+
+  // Of every second pair one that can be reached, if a few draws find one: in many worlds most of
+  // the ground is in small pieces.
+  [[nodiscard]] Place goal_of(uint64_t n, int32_t part) const {
+    const uint64_t first = n * (kDraws + 1) + 1;
+    for (uint64_t k = 0; n % 2 == 1 && k < kDraws; ++k) {
+      const Place to = claims_.random_place(config_.seed, first + k);
+      if (part_of(to) == part) return to;
+    }
+    return claims_.random_place(config_.seed, first);
+  }
+
+  static bool same(const Place& a, const Place& b) {
+    return a.level1 == b.level1 && plan_distance(a.position, b.position) <= kSame;
+  }
+
+  static void refuse(Gone& gone, Vec3d at) {
+    if (!gone.illegal) gone.illegal_at = at;
+    gone.illegal = true;
+  }
+
+  const verify::Claims& claims_;
+  const Graph& graph_;
+  const VerifyConfig& config_;
+  const verify::TriangleTree tree_;
+  const verify::BodyCheck body_;
+  double spacing_;  // [m]
+};
+
+void add(const Gone& gone, PathReport& report) {
+  if (!gone.exists) return;
+  const auto count = [&](bool bad, uint64_t& counter, const char* what, Vec3d at) {
+    if (!bad) return;
+    if (counter++ < kFaultsOfAKind) report.faults.push_back({what, at, gone.body.intruder});
+  };
+  ++report.pairs;
+  report.reached += gone.reached ? 1 : 0;
+  report.parted += !gone.reached && !gone.together ? 1 : 0;
+  count(gone.reached != gone.together, report.disagree, "disagree", gone.at);
+  count(gone.illegal, report.illegal, "illegal", gone.illegal_at);
+  count(gone.body.entered, report.entered, "entered", gone.body.entered_at);
+  count(gone.body.unsupported, report.unsupported, "unsupported", gone.body.unsupported_at);
+  count(gone.body.torn, report.torn, "torn", gone.body.torn_at);
+  report.legs += gone.legs;
+  report.bodies += gone.body.bodies;
+  report.length += gone.length;
+  report.straight += gone.straight;
+  report.search_seconds += gone.seconds;
+}
+
+}  // namespace
+
+Result<PathReport> verify_paths(const World& world, const Scene& source, const VerifyConfig& config,
+                                Context& context) {
+  const auto start = Clock::now();
+  const auto claims = verify::claims_of(world, config.avatar_class);
+  if (!claims) return claims.error();
+  if (auto sound = verify::check_source(source, config); !sound) return sound.error();
+  const auto graph = Graph::make(world, {.workers = config.workers}, context);
+  if (!graph) return graph.error();
+  const auto finder = PathFinder::make(
+      world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
+  if (!finder) return finder.error();
+  const Walker walker(*claims, *graph, source, config);
+  PathReport report;
+  report.make_seconds = finder->summary().seconds;
+  report.finder_bytes = finder->summary().bytes;
+  std::vector<PathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
+  std::vector<Path> paths(finders.size());
+  std::vector<Gone> gone;
+  for (uint64_t begin = 0; begin < config.samples; begin += kBatch) {
+    if (context.on_progress) context.on_progress({"verify", begin, config.samples});
+    gone.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
+    parallel_for_worker(gone.size(), config.workers, [&](size_t i, int32_t worker) {
+      if (context.cancel) return;
+      const auto w = static_cast<size_t>(worker);
+      gone[i] = walker.go(finders[w], paths[w], begin + i);
+    });
+    if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
+    for (const Gone& g : gone) add(g, report);
+  }
+  report.seconds = seconds_since(start);
+  return report;
+}
+
+}  // namespace throng

@@ -12,10 +12,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "throng/lean.h"
+#include "throng/replay_export.h"
+
 namespace throng::app {
 namespace {
 
-constexpr std::string_view kColumns = "step,id,class,x,y,z,radius";
+constexpr size_t kFields = 7, kFieldsWithUp = 10;
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> fields;
@@ -37,14 +40,16 @@ struct CsvRow {
   uint64_t step = 0;
   uint64_t id = 0;
   PictureAvatar avatar;
+  Vec3d up{0, 1, 0};
 };
 
 // One line of the file, or what is wrong with it.
-Result<CsvRow> parse_row(const std::string& where, std::string_view line) {
+Result<CsvRow> parse_row(const std::string& where, std::string_view line, size_t wanted) {
   const std::vector<std::string_view> fields = split(line);
-  if (fields.size() != 7) {
+  if (fields.size() != wanted) {
     return Error{Errc::kBadFile,
-                 fmt::format("{}: {} fields; write 7: {}", where, fields.size(), kColumns)};
+                 fmt::format("{}: {} fields; write {}: {}{}", where, fields.size(), wanted,
+                             kCsvColumns, wanted == kFields ? "" : kCsvUpColumns)};
   }
   CsvRow row;
   if (!parse(fields[0], row.step)) {
@@ -57,8 +62,9 @@ Result<CsvRow> parse_row(const std::string& where, std::string_view line) {
   }
   Vec3d& p = row.avatar.position;
   const std::pair<const char*, double*> numbers[] = {
-      {"x", &p.x}, {"y", &p.y}, {"z", &p.z}, {"radius", &row.avatar.radius}};
-  for (size_t i = 0; i < 4; ++i) {
+      {"x", &p.x},         {"y", &p.y},         {"z", &p.z},        {"radius", &row.avatar.radius},
+      {"up_x", &row.up.x}, {"up_y", &row.up.y}, {"up_z", &row.up.z}};
+  for (size_t i = 0; i + 3 < wanted; ++i) {
     if (parse(fields[3 + i], *numbers[i].second) && std::isfinite(*numbers[i].second)) continue;
     return Error{Errc::kBadFile, fmt::format("{}: {} is '{}'; write a number in metres", where,
                                              numbers[i].first, fields[3 + i])};
@@ -67,6 +73,12 @@ Result<CsvRow> parse_row(const std::string& where, std::string_view line) {
     return Error{Errc::kBadFile,
                  fmt::format("{}: radius is {}; write more than 0", where, fields[6])};
   }
+  const double size = length(row.up);
+  if (!(size > 1e-3 && size < 1e3)) {
+    return Error{Errc::kBadFile, fmt::format("{}: up is {},{},{}; write a direction", where,
+                                             fields[7], fields[8], fields[9])};
+  }
+  row.up = row.up * (1 / size);
   return row;
 }
 
@@ -79,21 +91,25 @@ Result<void> read_rows(const std::string& path, Take take) {
                  fmt::format("{}: cannot read; write one with throng run --trajectories", path)};
   }
   uint64_t number = 0;
+  size_t fields = kFields;
+  const std::string leaning = std::string(kCsvColumns) + kCsvUpColumns;
   for (std::string line; std::getline(file, line);) {
     ++number;
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (number == 1) {
-      if (line == kColumns) continue;
+      fields = line == leaning ? kFieldsWithUp : kFields;
+      if (line == kCsvColumns || line == leaning) continue;
       return Error{Errc::kBadFile, fmt::format("{}:1: the columns are '{}'; write {}", path,
-                                               line.substr(0, 60), kColumns)};
+                                               line.substr(0, 60), kCsvColumns)};
     }
     if (line.empty()) continue;
-    const Result<CsvRow> row = parse_row(fmt::format("{}:{}", path, number), line);
+    const Result<CsvRow> row = parse_row(fmt::format("{}:{}", path, number), line, fields);
     if (!row) return row.error();
     take(*row);
   }
   if (number == 0) {
-    return Error{Errc::kBadFile, fmt::format("{}:1: the file is empty; write {}", path, kColumns)};
+    return Error{Errc::kBadFile,
+                 fmt::format("{}:1: the file is empty; write {}", path, kCsvColumns)};
   }
   return {};
 }
@@ -126,7 +142,8 @@ Result<std::vector<CsvWalker>> read_walkers(const std::string& path) {
     const Vec3d before = is_new ? row.avatar.position : walker.position;
     walker.id = row.id;
     walker.position = row.avatar.position;
-    const Vec3d moved = row.avatar.position - before;
+    walker.up = row.up;
+    const Vec3d moved = unleaned(row.avatar.position - before, row.up);
     walker.last_move = std::hypot(moved.x, moved.z);
     walker.walked += walker.last_move;
     // Where it stands still it looks where it went.

@@ -90,6 +90,7 @@ Json info_json(const ReplayOptions& options, Replay& replay, const FilmRate& fil
       {"model", info.model},
       {"settings", settings.is_discarded() ? Json(info.settings) : settings},
       {"dt", info.dt},
+      {"leans", info.leans},
       {"classes", classes},
       {"frames", frames},
       {"frames_per_second", film.rate},
@@ -124,6 +125,7 @@ Json frame_json(const RecordingInfo& info, const RecordedFrame& frame) {
                        {"position", numbers(frame.positions[i])},
                        {"radius", frame.radii[i]},
                        {"heading", {frame.headings[i].x, frame.headings[i].z}}});
+    if (!frame.ups.empty()) avatars.back()["up"] = numbers(frame.ups[i]);
   }
   return {{"time", frame.time},
           {"step", frame.step},

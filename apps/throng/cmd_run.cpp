@@ -140,12 +140,16 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
     }
     run.also.emplace_back(group.substr(0, colon), count);
   }
-  Sinks sinks(options.sinks);
-  if (auto ok = sinks.open(world, options.world, run.config.dt, kCrowdModel, crowd_settings(run));
-      !ok)
-    return fail(ok.error());
   auto crowd = GoalCrowd::make(world, run, session.context);
   if (!crowd) return fail(crowd.error());
+  Sinks sinks(options.sinks);
+  if (auto ok = sinks.open(world, {.world = options.world,
+                                   .dt = run.config.dt,
+                                   .model = kCrowdModel,
+                                   .settings = crowd_settings(run).dump(),
+                                   .leans = crowd->crowd().may_lean()});
+      !ok)
+    return fail(ok.error());
   const auto shown = [&](uint64_t step) { return sinks.add(step, crowd->crowd()); };
   return run_crowd(session, run, *crowd, shown, [&] { return sinks.finish(); });
 }
@@ -158,8 +162,11 @@ int run_wanderers(Session& session, const World& world, const RunOptions& option
   Result<Wanderers> crowd = Wanderers::create(world, options.config);
   if (!crowd) return fail(crowd.error());
   Sinks sinks(options.sinks);
-  auto ok = sinks.open(world, options.world, options.config.dt, kWanderersModel,
-                       wanderers_settings(options.config, options.class_name));
+  auto ok = sinks.open(world,
+                       {.world = options.world,
+                        .dt = options.config.dt,
+                        .model = kWanderersModel,
+                        .settings = wanderers_settings(options.config, options.class_name).dump()});
   if (ok) ok = sinks.add(0, *crowd);
   if (!ok) return fail(ok.error());
   RunTotals totals;

@@ -6,23 +6,17 @@
 
 namespace throng::app {
 
-Result<void> RunRecorder::open(const std::string& path, const std::string& world_name,
-                               const World& world, double dt, const std::string& model,
-                               const Json& settings) {
+Result<void> RunRecorder::open(const std::string& path, RecordingInfo info, const World& world) {
   const WorldSummary summary = world.summary();
-  RecordingInfo info{.world = world_name,
-                     .world_hash = summary.hash,
-                     .dt = dt,
-                     .classes = {},
-                     .model = model,
-                     .settings = settings.dump()};
+  info.world_hash = summary.hash;
   for (const AvatarClass& avatar : summary.classes) {
     info.classes.push_back({avatar.name, avatar.height, avatar.radius});
   }
   auto recorder = Recorder::create(path, info);
   if (!recorder) return recorder.error();
   recorder_.emplace(std::move(*recorder));
-  dt_ = dt;
+  dt_ = info.dt;
+  leans_ = info.leans;
   return {};
 }
 
@@ -32,6 +26,7 @@ Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,
   frame_.step = step;
   frame_.state_hash = state_hash;
   frame_.resize(avatars.size());
+  frame_.ups.resize(leans_ ? avatars.size() : 0);
   for (size_t i = 0; i < avatars.size(); ++i) {
     const AvatarState& state = avatars[i];
     frame_.ids[i] = state.id;
@@ -39,6 +34,7 @@ Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,
     frame_.positions[i] = state.position;
     frame_.radii[i] = static_cast<float>(state.radius);
     frame_.headings[i] = {static_cast<float>(state.heading_x), static_cast<float>(state.heading_z)};
+    if (leans_) frame_.ups[i] = state.up;
   }
   return recorder_->append(frame_.view());
 }

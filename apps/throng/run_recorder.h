@@ -17,9 +17,8 @@ namespace throng::app {
 
 class RunRecorder {
  public:
-  /// `settings` is all that rerun.h needs to run it again.
-  Result<void> open(const std::string& path, const std::string& world_name, const World& world,
-                    double dt, const std::string& model, const Json& settings);
+  /// Begins the file; its classes are those of the world.
+  Result<void> open(const std::string& path, RecordingInfo info, const World& world);
   [[nodiscard]] bool is_open() const { return recorder_.has_value(); }
   /// One frame.
   Result<void> add(uint64_t step, uint64_t state_hash, std::span<const AvatarState> avatars);
@@ -33,6 +32,7 @@ class RunRecorder {
  private:
   std::optional<Recorder> recorder_;
   double dt_ = 0.1;
+  bool leans_ = false;
   RecordedFrame frame_;
 };
 

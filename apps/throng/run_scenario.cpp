@@ -175,8 +175,11 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
                          {"file", run.file},
                          {"seed", scenario->seed},
                          {"model", name_of(scenario->steering)}};
-  auto ok = sinks.open(*world, scenario->world.empty() ? run.file : scenario->world, scenario->dt,
-                       kScenarioModel, settings);
+  auto ok = sinks.open(*world, {.world = scenario->world.empty() ? run.file : scenario->world,
+                                .dt = scenario->dt,
+                                .model = kScenarioModel,
+                                .settings = settings.dump(),
+                                .leans = simulation->crowd().may_lean()});
   if (!ok) return ok.error();
   const auto totals = walk(session, run, *scenario, *simulation, sinks);
   if (!totals) return totals.error();

@@ -26,9 +26,9 @@ class Sinks {
  public:
   explicit Sinks(const SinkOptions& options) : options_(options) {}
 
-  /// `settings` is all that rerun.h needs to run it again.
-  Result<void> open(const World& world, const std::string& world_name, double dt,
-                    const std::string& model, const Json& settings);
+  /// `run`: what of it the world does not tell; its settings are all that rerun.h needs to run it
+  /// again.
+  Result<void> open(const World& world, const RecordingInfo& run);
   /// Of the steps between frames the recorder gets the hash alone.
   template <class Avatars>
   Result<void> add(uint64_t step, const Avatars& avatars) {
@@ -42,10 +42,11 @@ class Sinks {
   Result<void> finish();
 
  private:
-  // One line an avatar: step,id,class,x,y,z,radius.
+  // One line an avatar: kCsvColumns.
   void write_trajectories(uint64_t step);
 
   SinkOptions options_;
+  bool leans_ = false;
   OutputFile trajectories_;
   RunRecorder recorder_;
   std::vector<std::string> class_names_;

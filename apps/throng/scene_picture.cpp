@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "avatars_csv.h"
@@ -98,9 +99,11 @@ Result<std::vector<Atlas> > atlases_of(Session& session, const ScenePictureOptio
 struct Group {
   std::vector<float> x, y, z;
   std::vector<uint16_t> heading, phase, look;
+  std::vector<Vec3d> ups;
 };
 
-using Groups = std::map<std::pair<size_t, size_t>, Group>;
+// Those who lean apart from the others.
+using Groups = std::map<std::tuple<size_t, size_t, bool>, Group>;
 
 // Who moves, walks; who stands, stands in the last clip of his atlas that stands.
 size_t clip_for(const Atlas& atlas, bool moves) {
@@ -121,7 +124,9 @@ Groups group_walkers(const std::vector<CsvWalker>& walkers, const std::vector<At
     const uint64_t own = scramble(walker.id);
     const size_t atlas = (own >> 48) % atlases.size();
     const size_t clip = clip_for(atlases[atlas], walker.last_move > 1e-3);
-    Group& group = groups[{atlas, clip}];
+    const bool leans = !(walker.up == Vec3d{0, 1, 0});
+    Group& group = groups[{atlas, clip, leans}];
+    if (leans) group.ups.push_back(walker.up);
     const Vec3d p = walker.position - origin;
     group.x.push_back(static_cast<float>(p.x));
     group.y.push_back(static_cast<float>(p.y));
@@ -174,9 +179,10 @@ int draw_scene_picture(Session& session, const World& world, const ScenePictureO
   const Groups groups = group_walkers(*walkers, *atlases, origin);
   std::vector<DrawnCrowd> crowds;
   for (const auto& [key, g] : groups) {
-    crowds.push_back({.atlas = key.first,
-                      .clip = key.second,
-                      .avatars = {g.x, g.y, g.z, g.heading, g.phase, g.look}});
+    crowds.push_back({.atlas = std::get<0>(key),
+                      .clip = std::get<1>(key),
+                      .avatars = {g.x, g.y, g.z, g.heading, g.phase, g.look},
+                      .ups = g.ups});
   }
   DrawingReport report;
   const Result<Image> image = drawing->draw(crowds, config, &report);

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "throng/lean.h"
+
 namespace throng::app {
 namespace {
 
@@ -118,8 +120,10 @@ Result<void> export_sqlite(Replay& replay, const std::string& wkt, const std::st
       sqlite3_bind_int64(row, 2, static_cast<int64_t>(frame.ids[i]));
       sqlite3_bind_double(row, 3, p.x);
       sqlite3_bind_double(row, 4, p.z);
-      sqlite3_bind_double(row, 5, frame.headings[i].x);
-      sqlite3_bind_double(row, 6, frame.headings[i].z);
+      Vec3d ahead{frame.headings[i].x, 0, frame.headings[i].z};
+      if (!frame.ups.empty()) ahead = leaned(ahead, frame.ups[i]);
+      sqlite3_bind_double(row, 5, ahead.x);
+      sqlite3_bind_double(row, 6, ahead.z);
       db.step(row);
     }
     sqlite3_bind_int64(joined, 1, number);

@@ -20,9 +20,10 @@ struct CrowdCheck {
 struct AvatarState {
   uint32_t id = 0;
   int32_t avatar_class = 0;
-  Vec3d position;        ///< Y at the feet. [m]
-  double radius = 0;     ///< Of the body. [m]
-  double heading_x = 0;  ///< Unit vector of the walk.
+  Vec3d position;     ///< Y at the feet. [m]
+  double radius = 0;  ///< Of the body. [m]
+  /// Unit vector of the walk; of who leans, before he leans: lean.h turns it to where he goes.
+  double heading_x = 0;
   double heading_z = 0;
   bool flies = false;   ///< It is in the air, or on its way up or down.
   bool climbs = false;  ///< It goes over nodes.

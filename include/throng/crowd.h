@@ -239,6 +239,8 @@ class THRONG_API Crowd {
   /// Who was stuck when somebody last looked, if that was in the last step, in order of slot.
   [[nodiscard]] std::span<const AvatarId> stuck() const;
   [[nodiscard]] bool is_alive(AvatarId id) const;
+  /// Has it nodes, so that some may lean (AvatarState::up)?
+  [[nodiscard]] bool may_lean() const;
   /// By which a class finds its ways through the air, to ask or to copy; null if nobody has been of
   /// the class yet, it does not fly, or the world has no air.
   [[nodiscard]] const FlightFinder* flight_finder(int32_t avatar_class) const;

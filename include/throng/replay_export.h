@@ -31,8 +31,13 @@ struct FilmRate {
 /// Fails with kBadFile like Replay::read.
 [[nodiscard]] THRONG_API Result<FilmRate> film_rate(Replay& replay);
 
-/// A line an avatar: step,id,class,x,y,z,radius, as `throng run --trajectories` writes them. Fails
-/// with kBadFile, kIo or kCancelled.
+/// The first line of a table of avatars; and what it goes on with where some may lean: along the
+/// body from its feet, a unit vector.
+inline constexpr const char* kCsvColumns = "step,id,class,x,y,z,radius";
+inline constexpr const char* kCsvUpColumns = ",up_x,up_y,up_z";
+
+/// A line an avatar, as `throng run --trajectories` writes them. Fails with kBadFile, kIo or
+/// kCancelled.
 [[nodiscard]] THRONG_API Result<void> export_csv(Replay& replay, const std::string& path,
                                                  const ExportConfig& config, Context& context);
 

@@ -86,6 +86,9 @@ struct DrawnCrowd {
   size_t atlas = 0;  ///< As Drawing::add_atlas numbers them.
   size_t clip = 0;
   ImpostorArrays avatars;
+  /// Along each body from its feet, unit vectors; nothing: all are upright. Headings are those that
+  /// they had before they lean (lean.h).
+  std::span<const Vec3d> ups = {};
 };
 
 /// As what avatars are drawn.

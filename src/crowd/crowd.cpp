@@ -14,6 +14,7 @@
 #include "crowd/crowd_check.h"
 #include "crowd/crowd_state.h"
 #include "crowd/standing_map.h"
+#include "throng/lean.h"
 #include "world/node_data.h"
 #include "world/place.h"
 
@@ -602,18 +603,20 @@ uint64_t Crowd::state_hash() const {
 
 AvatarState Crowd::State::state_of(const Body& b) const {
   const Vec3d origin = world.data()->summary.origin;
-  const double size = std::hypot(b.velocity.x, b.velocity.z);
   if (b.climbs) {
     const Climb& climb = climbs[b.slot];
+    const Vec3d way = unleaned({b.velocity.x, climb.rise, b.velocity.z}, climb.axis);
+    const double size = std::hypot(way.x, way.z);
     return {.id = b.slot,
             .avatar_class = b.avatar_class,
             .position = climb.feet,
             .radius = climb.radius,
-            .heading_x = size > 0 ? b.velocity.x / size : 0,
-            .heading_z = size > 0 ? b.velocity.z / size : 1,
+            .heading_x = size > 0 ? way.x / size : 0,
+            .heading_z = size > 0 ? way.z / size : 1,
             .climbs = true,
             .up = climb.axis};
   }
+  const double size = std::hypot(b.velocity.x, b.velocity.z);
   return {.id = b.slot,
           .avatar_class = b.avatar_class,
           .position = {origin.x + (b.x + 0.5) * unit, b.y * 1e-3, origin.z + (b.z + 0.5) * unit},
@@ -636,6 +639,8 @@ std::optional<AvatarState> Crowd::read(AvatarId id) const {
   const Body* body = state_->body(id);
   return body == nullptr ? std::nullopt : std::optional(state_->state_of(*body));
 }
+
+bool Crowd::may_lean() const { return state_->config.nodes.data() != nullptr; }
 
 std::span<const AvatarId> Crowd::arrived() const { return state_->arrived; }
 std::span<const AvatarId> Crowd::stranded() const { return state_->stranded; }

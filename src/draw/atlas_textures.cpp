@@ -121,9 +121,12 @@ Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
   out.shape.clips = atlas.clips;
   out.shape.width = atlas.width;
   out.shape.height = atlas.height;
-  for (size_t i = 0; i < out.part_colour.size(); ++i) {
-    const float stored = static_cast<float>(atlas.part_colour[i / 3][i % 3]) / 255;
-    out.part_colour[i] = std::max(0.02F, stored * stored);
+  for (size_t part = 0; part < out.part_bright.size(); ++part) {
+    const std::array<float, 3> shares{0.30F, 0.59F, 0.11F};  // As the shaders have them.
+    for (size_t c = 0; c < 3; ++c) {
+      const float stored = static_cast<float>(atlas.part_colour[part][c]) / 255;
+      out.part_bright[part] += shares[c] * std::max(0.02F, stored * stored);
+    }
   }
   out.colour = make_texture();
   glBindTexture(GL_TEXTURE_2D_ARRAY, out.colour.get());
@@ -168,7 +171,7 @@ void AtlasTextures::bind(const GlProgram& program) const {
   program.set("side", static_cast<float>(shape.shape.side));
   program.set("centre", static_cast<float>(shape.shape.centre));
   program.set("pixels", static_cast<float>(shape.shape.pixels));
-  program.set_colours("part_colour", part_colour.data(), kBodyParts);
+  program.set_numbers("part_bright", part_bright.data(), kBodyParts);
   program.set_size("page", static_cast<float>(shape.width), static_cast<float>(shape.height));
 }
 

@@ -20,9 +20,9 @@ struct AtlasTextures {
   /// Binds colours, details and views to units 0, 1 and 2 and sets the program's numbers.
   void bind(const GlProgram& program) const;
 
-  Atlas shape;                                      ///< Without texels.
-  std::vector<FigureReach> reaches;                 ///< Of each view.
-  std::array<float, 3 * kBodyParts> part_colour{};  ///< Linear.
+  Atlas shape;                                  ///< Without texels.
+  std::vector<FigureReach> reaches;             ///< Of each view.
+  std::array<float, kBodyParts> part_bright{};  ///< On the mean, of linear light.
   size_t colour_bytes = 0;  ///< Of the largest level: blocks stay blocks where the card reads them.
   GlTexture colour, detail, views;
 };

@@ -16,18 +16,26 @@ namespace {
 
 constexpr GLsizei kInstancesWide = 2048;  // [texels]
 constexpr GLsizei kLooks = 2048;
+constexpr int kLooksUnit = 5;
 
-// The colours of everybody who is too small for a view: head, chest and legs of each look, chosen
-// as the shaders choose them.
+constexpr size_t kCardsADraw = 16384;  // Their corners have numbers of 16 bits.
+
+// What each look wears: the colours of everybody who is too small for a view (head, chest, legs),
+// and which of its twelve colours each part has, in four bits each.
 GlTexture make_looks() {
   const auto all = wardrobe();
   std::vector<uint32_t> words(size_t{4} * kLooks);
   for (uint32_t look = 0; look < kLooks; ++look) {
+    const auto choice = [&](uint32_t part) {
+      return (look * (5 + 2 * part) + (look >> 4) * 7 + part * 3) % kColoursAPart;
+    };
     const auto cloth = [&](BodyPart part, size_t channel) {
       const auto p = static_cast<uint32_t>(part);
-      const uint32_t k = (look * (5 + 2 * p) + (look >> 4) * 7 + p * 3) % kColoursAPart;
-      return all[(p * kColoursAPart + k) * 3 + channel];
+      return all[(p * kColoursAPart + choice(p)) * 3 + channel];
     };
+    for (uint32_t part = 0; part < kBodyParts; ++part) {
+      words[look * size_t{4} + 3] |= choice(part) << 4 * part;
+    }
     for (size_t channel = 0; channel < 3; ++channel) {
       const float parts[] = {
           0.5F * (cloth(BodyPart::kSkin, channel) + cloth(BodyPart::kHair, channel)),
@@ -48,6 +56,20 @@ GlTexture make_looks() {
   return texture;
 }
 
+// Corners 0 1 2, 2 1 3 of each card: four corners to compute instead of six.
+GlBuffer make_card_corners() {
+  std::vector<uint16_t> corners;
+  for (size_t card = 0; card < kCardsADraw; ++card) {
+    for (const size_t k : {0, 1, 2, 2, 1, 3})
+      corners.push_back(static_cast<uint16_t>(card * 4 + k));
+  }
+  GlBuffer buffer = make_buffer();
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * 2), corners.data(),
+               GL_STATIC_DRAW);
+  return buffer;
+}
+
 }  // namespace
 
 Result<void> check_linked(std::initializer_list<const GlProgram*> programs) {
@@ -66,9 +88,20 @@ Result<void> CrowdPass::make_programs() {
   model_ = GlProgram(shaders::model_vertex(), shaders::model_fragment());
   point_ = GlProgram(shaders::point_vertex(), shaders::point_fragment());
   shadow_ = GlProgram(shaders::shadow_vertex(), shaders::shadow_fragment());
+  leaning_impostor_ =
+      GlProgram(shaders::impostor_vertex(shaders::Leaning::kYes), shaders::impostor_fragment());
+  leaning_model_ =
+      GlProgram(shaders::model_vertex(shaders::Leaning::kYes), shaders::model_fragment());
+  leaning_shadow_ =
+      GlProgram(shaders::shadow_vertex(shaders::Leaning::kYes), shaders::shadow_fragment());
   nothing_ = make_vertex_array();
+  cards_ = make_vertex_array();
+  glBindVertexArray(cards_.get());
+  card_corners_ = make_card_corners();
+  glBindVertexArray(0);
   looks_ = make_looks();
-  return check_linked({&impostor_, &blended_, &model_, &point_, &shadow_});
+  return check_linked({&impostor_, &blended_, &model_, &point_, &shadow_, &leaning_impostor_,
+                       &leaning_model_, &leaning_shadow_});
 }
 
 Result<size_t> CrowdPass::add_atlas(const Atlas& atlas) {
@@ -122,8 +155,14 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
   const bool plain = config.avatars == AvatarStyle::kPlainQuads;
   size_t most = 0;
   for (const DrawnCrowd& crowd : crowds) most += crowd.avatars.x.size();
-  for_each_level([&](auto& level) { level.begin(most); });
+  for_each_level([&](auto& level) { level.begin(0); });
+  for (auto* level : {&meshes_, &views_, &points_, &thrown_}) level->begin(most);
+  blends_.begin(most);
   for (const DrawnCrowd& crowd : crowds) {
+    if (!crowd.ups.empty() && !plain) {
+      pack_leaning_crowd(crowd, config, to_sun);
+      continue;
+    }
     const Atlas& shape = atlases_[crowd.atlas].shape;
     const PackConfig pack_config{.camera = config.camera,
                                  .clip = crowd.clip,
@@ -145,10 +184,12 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
     points_.add({crowd.atlas, crowd.clip, 0, counts.points, levels});
     blends_.add({crowd.atlas, crowd.clip, 0, counts.blends, levels});
   }
-  drawn_ = meshes_.used + views_.used + points_.used + blends_.used;
+  drawn_ = meshes_.used + views_.used + points_.used + blends_.used + leaning_meshes_.used +
+           leaning_views_.used;
   hidden_ = 0;
   if (!config.avatar_shadows) return;
   for (const DrawnCrowd& crowd : crowds) {
+    if (!crowd.ups.empty() && !plain) continue;
     const PackConfig pack_config{.camera = config.camera,
                                  .clip = crowd.clip,
                                  .from_direction = to_sun,
@@ -160,6 +201,30 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
          pack_impostors(atlases_[crowd.atlas].shape, crowd.avatars, pack_config, thrown_.rest()),
          {}});
   }
+}
+
+void CrowdPass::pack_leaning_crowd(const DrawnCrowd& crowd, const DrawingConfig& config,
+                                   Vec3d to_sun) {
+  const size_t count = crowd.avatars.x.size();
+  const Atlas& shape = atlases_[crowd.atlas].shape;
+  PackConfig pack_config{
+      .camera = config.camera, .clip = crowd.clip, .from_direction = {}, .workers = config.workers};
+  const LevelDistances levels =
+      level_distances(shape.shape, config.camera, config.height * config.samples,
+                      models_[crowd.atlas] ? config.mesh_texel : 0, 0);
+  for (auto* level : {&leaning_meshes_, &leaning_views_, &leaning_thrown_}) {
+    if (level->instances.size() < level->used + count) level->instances.resize(level->used + count);
+  }
+  const LevelCounts counts =
+      pack_leaning(shape, crowd, pack_config, levels,
+                   {.meshes = leaning_meshes_.rest(), .views = leaning_views_.rest()});
+  leaning_meshes_.add({crowd.atlas, crowd.clip, 0, counts.meshes, levels});
+  leaning_views_.add({crowd.atlas, crowd.clip, 0, counts.views, levels});
+  if (!config.avatar_shadows) return;
+  pack_config.from_direction = to_sun;
+  const LevelCounts thrown =
+      pack_leaning(shape, crowd, pack_config, {}, {.meshes = {}, .views = leaning_thrown_.rest()});
+  leaning_thrown_.add({crowd.atlas, crowd.clip, 0, thrown.views, {}});
 }
 
 template <class Instance>
@@ -217,6 +282,18 @@ void CrowdPass::drop_hidden(const DrawingConfig& config, const DepthPyramid& dep
   hidden_ += points_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
     return test.hides_point(middle(run, i), std::max(0.2, atlases_[run.atlas].shape.shape.centre));
   });
+  const auto leaning_middle = [&](const Run& run, const LeaningInstance& i) {
+    const Vec3d up{i.up_x, i.up_y, i.up_z};
+    return Vec3d{i.body.x, i.body.y, i.body.z} + up * atlases_[run.atlas].shape.shape.centre;
+  };
+  hidden_ += leaning_views_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
+    return test.hides(leaning_middle(run, i), reach(run, i.body.view));
+  });
+  hidden_ += leaning_meshes_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
+    const auto all = static_cast<float>(
+        models_[run.atlas]->reach(atlases_[run.atlas].shape.shape.centre) + 0.01);
+    return test.hides(leaning_middle(run, i), {all, all});
+  });
   drawn_ -= hidden_;
 }
 
@@ -237,40 +314,56 @@ void CrowdPass::upload_shadows() {
   }
   glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
   thrown_.upload();
+  leaning_thrown_.upload();
 }
 
 void CrowdPass::upload_seen() {
   glActiveTexture(GL_TEXTURE3);
   glBindTexture(GL_TEXTURE_2D, instance_texture_.get());
   meshes_.upload(), views_.upload(), points_.upload(), blends_.upload();
+  leaning_meshes_.upload(), leaning_views_.upload();
 }
 
-void CrowdPass::draw_runs(const GlProgram& program, const Runs& level, GLenum kind,
-                          size_t vertices) const {
-  glBindVertexArray(nothing_.get());
+void CrowdPass::draw_cards(const GlProgram& program, const Runs& level) const {
+  glBindVertexArray(cards_.get());
   for (const Run& run : level.runs) {
     use_run(program, level, run);
-    glDrawArrays(kind, 0, static_cast<GLsizei>(vertices * run.count));
+    for (size_t done = 0; done < run.count; done += kCardsADraw) {
+      if (done > 0) program.set("first", first_texel(level, run.first + done));
+      const size_t cards = std::min(kCardsADraw, run.count - done);
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * cards), GL_UNSIGNED_SHORT, nullptr);
+    }
   }
+}
+
+int CrowdPass::first_texel(const Runs& level, size_t instance) {
+  return level.first_row * kInstancesWide + static_cast<int>(level.texels * instance);
 }
 
 void CrowdPass::use_run(const GlProgram& program, const Runs& level, const Run& run) const {
   atlases_[run.atlas].bind(program);
-  program.set("first",
-              level.first_row * kInstancesWide + static_cast<int>(level.texels * run.first));
+  program.set("first", first_texel(level, run.first));
   const auto number = [](double metres) { return static_cast<float>(std::min(metres, 1e9)); };
   program.set_size("mesh_range", number(run.levels.mesh_near), number(run.levels.mesh_far));
   program.set_size("point_range", number(run.levels.point_near), number(run.levels.point_far));
 }
 
-void CrowdPass::draw_shadows(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up) const {
-  if (thrown_.runs.empty()) return;
-  shadow_.use();
-  shadow_.set_matrix("clip_from_world", sun_from_world.data());
-  shadow_.set("sun_right", sun_right);
-  shadow_.set("sun_up", sun_up);
-  shadow_.set("instances", 3);
-  draw_runs(shadow_, thrown_, GL_TRIANGLES, 6);
+void CrowdPass::draw_shadows(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
+                             Vec3d sun_up) const {
+  if (!thrown_.runs.empty()) {
+    shadow_.use();
+    shadow_.set_matrix("clip_from_world", sun_from_world.data());
+    shadow_.set("sun_right", sun_right);
+    shadow_.set("sun_up", sun_up);
+    shadow_.set("instances", 3);
+    draw_cards(shadow_, thrown_);
+  }
+  if (leaning_thrown_.runs.empty()) return;
+  leaning_shadow_.use();
+  leaning_shadow_.set_matrix("clip_from_world", sun_from_world.data());
+  leaning_shadow_.set("to_sun", to_sun);
+  leaning_shadow_.set("instances", 3);
+  draw_cards(leaning_shadow_, leaning_thrown_);
 }
 
 void CrowdPass::draw(const DrawingConfig& config,
@@ -280,36 +373,49 @@ void CrowdPass::draw(const DrawingConfig& config,
       plain_ = GlProgram(shaders::plain_vertex(), shaders::plain_fragment());
     }
     begin(plain_);
-    draw_runs(plain_, views_, GL_TRIANGLES, 6);
+    draw_cards(plain_, views_);
     return;
   }
   static const auto kWardrobe = wardrobe();
+  const auto begin_dressed = [&](const GlProgram& program) {
+    begin(program);
+    program.set("looks", kLooksUnit);
+    program.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
+  };
+  glActiveTexture(GL_TEXTURE0 + kLooksUnit);
+  glBindTexture(GL_TEXTURE_2D, looks_.get());
   if (!views_.runs.empty()) {
-    begin(impostor_);
-    impostor_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
-    draw_runs(impostor_, views_, GL_TRIANGLES, 6);
+    begin_dressed(impostor_);
+    draw_cards(impostor_, views_);
+  }
+  if (!leaning_views_.runs.empty()) {
+    begin_dressed(leaning_impostor_);
+    draw_cards(leaning_impostor_, leaning_views_);
   }
   if (!blends_.runs.empty()) {
-    begin(blended_);
-    blended_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
-    draw_runs(blended_, blends_, GL_TRIANGLES, 6);
+    begin_dressed(blended_);
+    draw_cards(blended_, blends_);
   }
-  if (!meshes_.runs.empty()) {
-    begin(model_);
-    model_.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
-    for (const Run& run : meshes_.runs) {
-      use_run(model_, meshes_, run);
-      models_[run.atlas]->draw(model_, run.clip, run.count);
+  const auto draw_meshes = [&](const GlProgram& program, const Runs& level) {
+    if (level.runs.empty()) return;
+    begin_dressed(program);
+    for (const Run& run : level.runs) {
+      use_run(program, level, run);
+      models_[run.atlas]->draw(program, run.clip, run.count);
     }
-  }
+  };
+  draw_meshes(model_, meshes_);
+  draw_meshes(leaning_model_, leaning_meshes_);
   if (points_.runs.empty()) return;
   begin(point_);
-  glActiveTexture(GL_TEXTURE5);
-  glBindTexture(GL_TEXTURE_2D, looks_.get());
-  point_.set("looks", 5);
+  point_.set("looks", kLooksUnit);
   const double up = std::tan(0.5 * config.camera.field_of_view);
   point_.set("pixels_at_one", static_cast<float>(0.5 * config.height * config.samples / up));
-  draw_runs(point_, points_, GL_POINTS, 1);
+  glBindVertexArray(nothing_.get());
+  for (const Run& run : points_.runs) {
+    use_run(point_, points_, run);
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(run.count));
+  }
 }
 
 }  // namespace throng

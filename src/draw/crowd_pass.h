@@ -12,6 +12,7 @@
 #include "draw/atlas_textures.h"
 #include "draw/depth_pyramid.h"
 #include "draw/gl_objects.h"
+#include "draw/leaning_avatars.h"
 #include "draw/matrix.h"
 #include "draw/model_mesh.h"
 #include "throng/result.h"
@@ -42,7 +43,8 @@ class CrowdPass {
   void upload_shadows();
   void upload_seen();
   /// Into the sun's depth picture.
-  void draw_shadows(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up) const;
+  void draw_shadows(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
+                    Vec3d sun_up) const;
   /// `begin` puts a program in use and sets what all share.
   void draw(const DrawingConfig& config, const std::function<void(const GlProgram&)>& begin);
   [[nodiscard]] size_t drawn() const { return drawn_; }    ///< Not culled.
@@ -74,18 +76,25 @@ class CrowdPass {
     /// Takes out those of which `is_hidden(run, instance)`, and returns how many.
     size_t drop(int32_t workers, const auto& is_hidden);
   };
-  void draw_runs(const GlProgram& program, const Runs& level, GLenum kind, size_t vertices) const;
+  void draw_cards(const GlProgram& program, const Runs& level) const;
+  static int first_texel(const Runs& level, size_t instance);
   void use_run(const GlProgram& program, const Runs& level, const Run& run) const;
   void for_each_level(const auto& act) {
     act(meshes_), act(views_), act(points_), act(thrown_), act(blends_);
+    act(leaning_meshes_), act(leaning_views_), act(leaning_thrown_);
   }
+  void pack_leaning_crowd(const DrawnCrowd& crowd, const DrawingConfig& config, Vec3d to_sun);
 
   GlProgram impostor_, blended_, model_, point_, plain_, shadow_;
+  GlProgram leaning_impostor_, leaning_model_, leaning_shadow_;
   GlVertexArray nothing_;  // Vertices by number alone.
+  GlVertexArray cards_;    // Four corners a card, by number.
+  GlBuffer card_corners_;
   std::vector<AtlasTextures> atlases_;
   std::vector<std::optional<ModelMesh>> models_;  // By atlas.
   Level<ImpostorInstance> meshes_, views_, points_, thrown_;
   Level<BlendedInstance> blends_;
+  Level<LeaningInstance> leaning_meshes_, leaning_views_, leaning_thrown_;
   size_t drawn_ = 0, hidden_ = 0;
   GlTexture instance_texture_, looks_;
   GLsizei instance_rows_ = 0;

@@ -23,7 +23,7 @@
 #include "draw/texture_layers.h"
 #include "throng_draw/draw.h"
 
-// A picture in six passes: the sun's depth of scene and avatars, the sky, the scene, the avatars,
+// A picture in six passes: the sun's depth of scene and avatars, the scene, the avatars, the sky,
 // the marks, the panel. All instances of a picture go up in one upload: those that the eye sees,
 // then the same as the sun sees them.
 namespace throng {
@@ -116,13 +116,18 @@ struct Drawing::State {
   [[nodiscard]] const GlProgram& scene_program() const {
     return mesh.has_surfaces() ? surfaced : scene;
   }
-  void draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up, float cut) const;
+  void draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right, Vec3d sun_up,
+                      float cut) const;
   size_t draw_scene(const Matrix& clip_from_world, Vec3d eye,
                     const std::function<void()>& read_depths);
   void draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const;
-  // Everything but the panel, into the target.
+  // Does the window keep depths, so that a picture can be painted there at once?
+  [[nodiscard]] bool window_has_depth() const;
+  [[nodiscard]] bool culls(const DrawingConfig& config) const;
+  void draw_sky(const DrawingConfig& config, const CameraAxes& axes) const;
+  // Everything but the panel, into the target, or into the window.
   Result<void> paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
-                     DrawingReport& report);
+                     bool into_window, DrawingReport& report);
 };
 
 Result<void> Drawing::State::make_programs() {
@@ -198,8 +203,8 @@ Result<void> Drawing::State::fit_target(GLsizei width, GLsizei height) {
                "smaller"};
 }
 
-void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_right, Vec3d sun_up,
-                                    float cut) const {
+void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
+                                    Vec3d sun_up, float cut) const {
   glBindFramebuffer(GL_FRAMEBUFFER, sun_frame.get());
   glViewport(0, 0, sun_pixels, sun_pixels);
   glClear(GL_DEPTH_BUFFER_BIT);
@@ -217,7 +222,7 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d sun_righ
   if (mesh.has_holes()) begin(depth);
   props.draw();
   glDisable(GL_POLYGON_OFFSET_FILL);
-  crowd.draw_shadows(sun_from_world, sun_right, sun_up);
+  crowd.draw_shadows(sun_from_world, to_sun, sun_right, sun_up);
 }
 
 // What is near first: it hides much of the rest, which is asked before it is drawn. The order is
@@ -391,10 +396,43 @@ void Drawing::clear_atlases() {
   state_->crowd.clear_atlases();
 }
 
+bool Drawing::State::window_has_depth() const {
+  if (context) return false;  // There is no window.
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  GLint kind = GL_NONE, bits = 0;
+  glGetFramebufferAttachmentParameteriv(GL_FRAMEBUFFER, GL_DEPTH,
+                                        GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
+  if (kind == GL_NONE) return false;
+  glGetFramebufferAttachmentParameteriv(GL_FRAMEBUFFER, GL_DEPTH,
+                                        GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &bits);
+  return bits >= 24;
+}
+
+bool Drawing::State::culls(const DrawingConfig& config) const {
+  const bool asked = config.culling == HiddenCulling::kAlways ||
+                     (config.culling == HiddenCulling::kWhereItPays && is_software);
+  return asked && !(mesh.bounds().empty() && props.bounds().empty());
+}
+
+// `sky` is in use.
+void Drawing::State::draw_sky(const DrawingConfig& config, const CameraAxes& axes) const {
+  const double up = std::tan(0.5 * config.camera.field_of_view);
+  sky.set("right", axes.right * (up * config.camera.aspect));
+  sky.set("up", axes.up * up);
+  sky.set("forward", axes.forward);
+  glDepthMask(GL_FALSE);
+  glBindVertexArray(nothing.get());
+  glDrawArrays(GL_TRIANGLES, 0, 6 * 8 * 64);
+  glDepthMask(GL_TRUE);
+}
+
 Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
-                                   DrawingReport& report) {
+                                   bool into_window, DrawingReport& report) {
   const GLsizei wide = config.width * config.samples, high = config.height * config.samples;
-  if (auto fits = fit_target(wide, high); !fits) return fits.error();
+  if (!into_window) {
+    if (auto fits = fit_target(wide, high); !fits) return fits.error();
+  }
+  const GLuint canvas = into_window ? 0 : target.frame.get();
   if (auto fits = fit_sun(config.sun_pixels); !fits) return fits.error();
 
   const Vec3d to_sun = config.to_sun * (1 / length(config.to_sun));
@@ -429,9 +467,9 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   const double cut_given = std::min(config.cut_height, 1e9);
   const auto cut = static_cast<float>(cut_given);
   textures.bind(kPictureUnit);
-  draw_sun_depth(sun_from_world, sun_right, sun_up, cut);
+  draw_sun_depth(sun_from_world, to_sun, sun_right, sun_up, cut);
 
-  glBindFramebuffer(GL_FRAMEBUFFER, target.frame.get());
+  glBindFramebuffer(GL_FRAMEBUFFER, canvas);
   glViewport(0, 0, wide, high);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE4);
@@ -447,24 +485,12 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
     program.set("sun_depth", 4);
     program.set("sun_texel", 1.0F / static_cast<float>(sun_pixels));
   };
-  begin(sky);
-  const double up = std::tan(0.5 * camera.field_of_view);
-  sky.set("right", axes.right * (up * camera.aspect));
-  sky.set("up", axes.up * up);
-  sky.set("forward", axes.forward);
-  glDepthMask(GL_FALSE);
-  glBindVertexArray(nothing.get());
-  glDrawArrays(GL_TRIANGLES, 0, 6 * 8 * 64);
-  glDepthMask(GL_TRUE);
-
-  const bool asked = config.culling == HiddenCulling::kAlways ||
-                     (config.culling == HiddenCulling::kWhereItPays && is_software);
-  const bool culls = asked && !(mesh.bounds().empty() && props.bounds().empty());
   double seconds_cull = 0;
+  const bool hides = culls(config);
   const std::function<void()> read_depths = [&] {
     const auto cull_start = Clock::now();
     depth_reader.read(target.depth, wide, high, depths);
-    glBindFramebuffer(GL_FRAMEBUFFER, target.frame.get());
+    glBindFramebuffer(GL_FRAMEBUFFER, canvas);
     glViewport(0, 0, wide, high);
     glEnable(GL_DEPTH_TEST);
     seconds_cull += seconds_since(cull_start);
@@ -481,13 +507,13 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   };
   begin_scene(scene_program(), 0);
   if (mesh.has_surfaces()) surfaced.set("pictures", kPictureUnit);
-  const size_t triangles = draw_scene(clip_from_world, camera.eye, culls ? read_depths : nullptr);
+  const size_t triangles = draw_scene(clip_from_world, camera.eye, hides ? read_depths : nullptr);
   if (!props.bounds().empty()) {
     begin_scene(scene, 1);
     props.draw();
   }
 
-  if (culls && crowd.drawn() > 0) {
+  if (hides && crowd.drawn() > 0) {
     read_depths();
     const auto cull_start = Clock::now();
     crowd.drop_hidden(config, depths);
@@ -496,6 +522,8 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   crowd.upload_seen();
   crowd.draw(config, begin);
 
+  begin(sky);  // Where nothing else is: most of a picture costs none.
+  draw_sky(config, axes);
   draw_marks(clip_from_world, config);
 
   report.seconds_pack = seconds_pack;
@@ -534,7 +562,7 @@ Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingCon
   State& state = *state_;
   state.make_current();
   DrawingReport done;
-  if (auto ok = state.paint(crowds, config, done); !ok) return ok.error();
+  if (auto ok = state.paint(crowds, config, false, done); !ok) return ok.error();
   state.panel.draw(state.panel_program, panel, config.width, config.height, config.samples);
   const auto start = Clock::now();
   const GLsizei wide = state.target.width, high = state.target.height;
@@ -554,13 +582,17 @@ Result<void> Drawing::show(std::span<const DrawnCrowd> crowds, const DrawingConf
   State& state = *state_;
   state.make_current();
   DrawingReport done;
-  if (auto ok = state.paint(crowds, config, done); !ok) return ok.error();
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, state.target.frame.get());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, state.target.width, state.target.height, 0, 0, config.width,
-                    config.height, GL_COLOR_BUFFER_BIT,
-                    config.samples == 1 ? GL_NEAREST : GL_LINEAR);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  // A copy of a picture costs a processor that draws as much as its sky.
+  const bool at_once = config.samples == 1 && !state.culls(config) && state.window_has_depth();
+  if (auto ok = state.paint(crowds, config, at_once, done); !ok) return ok.error();
+  if (!at_once) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, state.target.frame.get());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBlitFramebuffer(0, 0, state.target.width, state.target.height, 0, 0, config.width,
+                      config.height, GL_COLOR_BUFFER_BIT,
+                      config.samples == 1 ? GL_NEAREST : GL_LINEAR);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  }
   glViewport(0, 0, config.width, config.height);
   state.panel.draw(state.panel_program, panel, config.width, config.height, 1);
   if (report != nullptr) *report = done;

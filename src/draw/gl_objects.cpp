@@ -74,6 +74,10 @@ void GlProgram::set_colours(const char* uniform, const float* triples, int count
   glUniform3fv(place(uniform), count, triples);
 }
 
+void GlProgram::set_numbers(const char* uniform, const float* numbers, int count) const {
+  glUniform1fv(place(uniform), count, numbers);
+}
+
 bool has_extension(std::initializer_list<std::string_view> names) {
   GLint count = 0;
   glGetIntegerv(GL_NUM_EXTENSIONS, &count);

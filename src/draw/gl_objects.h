@@ -61,6 +61,7 @@ class GlProgram {
   void set_size(const char* uniform, float width, float height) const;
   void set_matrix(const char* uniform, const float* sixteen) const;
   void set_colours(const char* uniform, const float* triples, int count) const;
+  void set_numbers(const char* uniform, const float* numbers, int count) const;
 
  private:
   [[nodiscard]] GLint place(const char* uniform) const;

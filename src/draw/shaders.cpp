@@ -64,6 +64,26 @@ float sunlit_once(vec3 p) {
 }
 )";
 
+// Bodies are upright, or each has an axis of its own.
+constexpr const char* kUpright = "\n";
+constexpr const char* kLeans = R"(
+#define LEANS
+vec3 axis;
+// As lean.h: the least turn that takes straight up to the axis.
+vec3 leaned(vec3 v) {
+  if (axis.y < -0.999999) return vec3(v.x, -v.y, -v.z);
+  vec3 by = vec3(axis.z, 0.0, -axis.x), turned = cross(by, v);
+  return v + turned + cross(by, turned) / (1.0 + axis.y);
+}
+// To the right, as an eye in that direction sees a body.
+vec3 right_of(vec3 towards) {
+  vec3 side = cross(axis, towards);
+  float size = length(side);
+  return size > 1e-4 ? side / size : leaned(vec3(1.0, 0.0, 0.0));
+}
+)";
+const char* lean_of(Leaning leaning) { return leaning == Leaning::kYes ? kLeans : kUpright; }
+
 // Where two levels of detail overlap, each shows the pixels that the other leaves out: more and
 // more of a pattern of 4 x 4.
 constexpr const char* kFade = R"(
@@ -82,19 +102,22 @@ float threshold() {
 }
 )";
 
-// Whose clothes an avatar wears: one of twelve colours for each part.
+// Whose clothes an avatar wears: one of twelve colours for each part, by four bits of its outfit.
+constexpr const char* kOutfit = R"(
+uniform usampler2D looks;  // By look: head, chest and legs of a point, and the outfit.
+uint outfit_of(uint look) { return texelFetch(looks, ivec2(int(look), 0), 0).w; }
+)";
 constexpr const char* kClothes = R"(
 uniform vec3 wardrobe[72];
-vec3 cloth(uint part, uint look) {
-  uint k = (look * (5u + 2u * part) + (look >> 4u) * 7u + part * 3u) % 12u;
-  return wardrobe[part * 12u + k];
+vec3 cloth(uint part, uint outfit) {
+  return wardrobe[part * 12u + (outfit >> (4u * part) & 15u)];
 }
-// The part's own light and dark stay, its hue does not. `mean`: of the part.
-vec3 dressed(vec3 own, uint part, uint look, vec3 mean) {
+uniform float part_bright[6];  // What the atlas has, on the mean of each part.
+// The part's own light and dark stay, its hue does not.
+vec3 dressed(vec3 own, uint part, uint outfit) {
   if (part == 0u) return own;
-  const vec3 kBright = vec3(0.30, 0.59, 0.11);
-  float relief = clamp(dot(own, kBright) / dot(mean, kBright), 0.4, 1.7);
-  return min(cloth(part, look) * relief, 0.95);
+  float relief = clamp(dot(own, vec3(0.30, 0.59, 0.11)) / part_bright[part], 0.4, 1.7);
+  return min(cloth(part, outfit) * relief, 0.95);
 }
 )";
 
@@ -115,13 +138,16 @@ struct Corner {
   uint look;
 };
 Corner pull() {
-  int number = gl_VertexID / 6 + first, corner = gl_VertexID % 6;
+#ifdef LEANS
+  int number = (gl_VertexID >> 2) * 2 + first, k = gl_VertexID & 3;
+  axis = uintBitsToFloat(texelFetch(instances, ivec2((number & 2047) + 1, number >> 11), 0).xyz);
+#else
+  int number = (gl_VertexID >> 2) + first, k = gl_VertexID & 3;
+#endif
   uvec4 data = texelFetch(instances, ivec2(number & 2047, number >> 11), 0);
   int view = int(data.w & 0xfffffu) * 2;
   uvec4 place = texelFetch(views, ivec2(view & 1023, view >> 10), 0);
   uvec4 part = texelFetch(views, ivec2((view & 1023) + 1, view >> 10), 0);
-  // Two triangles: corners 0 1 2, 2 1 3.
-  int k = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
   vec2 at = vec2(float(k & 1), float(k >> 1)) * vec2(place.zw);
   Corner c;
   c.feet = uintBitsToFloat(data.xyz);
@@ -137,7 +163,7 @@ Corner pull() {
 constexpr const char* kCard = R"(
 uniform float centre;  // Over the feet [m].
 flat out vec3 right, up, towards;
-flat out uint look;
+flat out uint outfit;
 flat out float in_sun;
 flat out float shown_from, shown_to;  // The thresholds between which it is shown.
 uniform float haze;
@@ -145,15 +171,21 @@ flat out float haze_share;
 out vec2 depth;             // z and w of where the card is,
 flat out vec2 depth_ahead;  // and of a metre towards the eye.
 out float height;
-void stand(vec3 feet, vec2 offset, uint clothes) {
+void stand(vec3 feet, vec2 offset, uint look) {
+#ifdef LEANS
+  vec3 middle = feet + axis * centre;
+  towards = normalize(eye - middle);
+  right = right_of(towards);
+#else
   vec3 middle = feet + vec3(0.0, centre, 0.0);
   towards = normalize(eye - middle);
   float flat_length = length(towards.xz);
   right = flat_length > 1e-4 ? vec3(towards.z, 0.0, -towards.x) / flat_length : vec3(1.0, 0.0, 0.0);
+#endif
   up = cross(towards, right);
   vec3 world = middle + right * offset.x + up * offset.y;
   height = offset.y + centre;
-  look = clothes;
+  outfit = outfit_of(look);
   in_sun = sunlit_once(middle + to_sun * 0.9);  // In front of its own shadow.
   float far = length(eye - middle);
   shown_from = 1.0 - (mesh_range.y > 0.0 ? share_beyond(mesh_range, far) : 1.0);
@@ -168,7 +200,7 @@ void stand(vec3 feet, vec2 offset, uint clothes) {
 // What a texel of a figure shows, and where.
 constexpr const char* kFigure = R"(
 flat in vec3 right, up, towards;
-flat in uint look;
+flat in uint outfit;
 flat in float in_sun;
 flat in float shown_from, shown_to;
 flat in float haze_share;
@@ -177,7 +209,6 @@ flat in vec2 depth_ahead;
 in float height;
 uniform sampler2DArray albedo;
 uniform sampler2DArray detail;
-uniform vec3 part_colour[6]; // What the atlas has.
 uniform float side;          // Of a view [m].
 out vec4 colour;
 void show(vec3 texel, vec3 right_of_texels) {
@@ -196,7 +227,7 @@ void show(vec3 texel, vec3 right_of_texels) {
                      towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
   uint part = mask >> 5;
   vec3 own = stored.rgb * stored.rgb;
-  own = dressed(own, part, look, part_colour[part]);
+  own = dressed(own, part, outfit);
   float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));  // Less light near the ground.
   colour = shown_in(lit(own, n, in_sun) * shade, haze_share);
 }
@@ -415,8 +446,8 @@ void main() {
 )";
 }
 
-std::string impostor_vertex() {
-  return std::string(kHead) + kSunlit + kPull + kFade + kCard + R"(
+std::string impostor_vertex(Leaning leaning) {
+  return std::string(kHead) + lean_of(leaning) + kSunlit + kPull + kFade + kOutfit + kCard + R"(
 out vec3 texel;
 void main() {
   Corner c = pull();
@@ -442,7 +473,7 @@ void main() {
 // Four views at once: a card that holds all their rectangles, each pixel of which shows one of
 // them, by its place in the pattern.
 std::string blended_vertex() {
-  return std::string(kHead) + kSunlit + kFade + kCard + R"(
+  return std::string(kHead) + kSunlit + kFade + kOutfit + kCard + R"(
 uniform usampler2D instances;
 uniform usampler2D views;
 uniform int first;
@@ -467,7 +498,7 @@ void add(uint word, out vec4 map, out vec4 box) {
   high = max(high, corner + place.zw);
 }
 void main() {
-  int at = gl_VertexID / 6 * 2 + first, corner = gl_VertexID % 6;
+  int at = (gl_VertexID >> 2) * 2 + first, k = gl_VertexID & 3;
   uvec4 data = texelFetch(instances, ivec2(at & 2047, at >> 11), 0);
   uvec4 more = texelFetch(instances, ivec2((at & 2047) + 1, at >> 11), 0);
   low = vec2(pixels);
@@ -480,7 +511,6 @@ void main() {
   limits.x = (1.0 - next.x) * (1.0 - next.y);
   limits.y = 1.0 - next.y;
   limits.z = limits.y + (1.0 - next.x) * next.y;
-  int k = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
   spot = mix(low, high, vec2(float(k & 1), float(k >> 1)));
   stand(uintBitsToFloat(data.xyz), (spot - 0.5 * pixels) * vec2(1.0, -1.0) * (side / pixels),
         data.w >> 21);
@@ -513,8 +543,8 @@ void main() {
 }
 
 // A mesh between two of its poses, turned and put where its avatar is.
-std::string model_vertex() {
-  return std::string(kHead) + kSunlit + kFade + R"(
+std::string model_vertex(Leaning leaning) {
+  return std::string(kHead) + lean_of(leaning) + kSunlit + kFade + kOutfit + R"(
 layout(location = 0) in uvec4 paint;  // Albedo and part.
 uniform usampler2D instances;
 uniform usampler2D poses;
@@ -526,7 +556,7 @@ out vec3 normal;
 out float height;
 flat out vec3 albedo_root;
 flat out uint part;
-flat out uint look;
+flat out uint outfit;
 flat out float in_sun;
 flat out float shown_to;
 uvec4 posed(int frame) {
@@ -541,7 +571,12 @@ vec3 unfolded(uint bytes) {
   return vec3(side.x, up, side.y);
 }
 void main() {
+#ifdef LEANS
+  int number = first + gl_InstanceID * 2;
+  axis = uintBitsToFloat(texelFetch(instances, ivec2((number & 2047) + 1, number >> 11), 0).xyz);
+#else
   int number = first + gl_InstanceID;
+#endif
   uvec4 data = texelFetch(instances, ivec2(number & 2047, number >> 11), 0);
   float cycle = float(data.w >> 11u & 1023u) / 1024.0 * float(frames);
   int frame = int(cycle) % frames;
@@ -553,12 +588,18 @@ void main() {
   float s = sin(heading), c = cos(heading);
   vec3 feet = uintBitsToFloat(data.xyz);
   height = p.y;
+#ifdef LEANS
+  world = feet + leaned(vec3(p.x * c + p.z * s, p.y, p.z * c - p.x * s));
+  normal = leaned(vec3(n.x * c + n.z * s, n.y, n.z * c - n.x * s));
+  vec3 middle = feet + axis * centre;
+#else
   world = feet + vec3(p.x * c + p.z * s, p.y, p.z * c - p.x * s);
   normal = vec3(n.x * c + n.z * s, n.y, n.z * c - n.x * s);
+  vec3 middle = feet + vec3(0.0, centre, 0.0);
+#endif
   albedo_root = vec3(paint.rgb) / 255.0;
   part = paint.a;
-  look = data.w >> 21;
-  vec3 middle = feet + vec3(0.0, centre, 0.0);
+  outfit = outfit_of(data.w >> 21);
   in_sun = sunlit_once(middle + to_sun * 0.9);
   shown_to = 1.0 - share_beyond(mesh_range, length(eye - middle));
   gl_Position = clip_from_world * vec4(world, 1.0);
@@ -573,17 +614,16 @@ in vec3 normal;
 in float height;
 flat in vec3 albedo_root;
 flat in uint part;
-flat in uint look;
+flat in uint outfit;
 flat in float in_sun;
 flat in float shown_to;
-uniform vec3 part_colour[6];
 out vec4 colour;
 void main() {
   if (threshold() > shown_to) discard;
   vec3 n = normalize(normal);
   if (dot(n, eye - world) < 0.0) n = -n;  // Thin clothes have an inside.
   float shade = mix(0.72, 1.0, smoothstep(0.0, 0.7, height));
-  vec3 own = dressed(albedo_root * albedo_root, part, look, part_colour[part]);
+  vec3 own = dressed(albedo_root * albedo_root, part, outfit);
   colour = shown(lit(own, n, in_sun) * shade, world - eye);
 }
 )";
@@ -657,9 +697,8 @@ uniform int first;
 uniform float centre;
 flat out vec3 tint;
 void main() {
-  int number = gl_VertexID / 6 + first, corner = gl_VertexID % 6;
+  int number = (gl_VertexID >> 2) + first, k = gl_VertexID & 3;
   uvec4 data = texelFetch(instances, ivec2(number & 2047, number >> 11), 0);
-  int k = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
   vec3 middle = uintBitsToFloat(data.xyz) + vec3(0.0, centre, 0.0);
   vec3 towards = normalize(eye - middle);
   float flat_length = length(towards.xz);
@@ -682,17 +721,22 @@ void main() { colour = vec4(tint, 1.0); }
 }
 
 // The card that the sun sees, in the sun's depth picture.
-std::string shadow_vertex() {
-  return std::string(kHead) + kPull + R"(
+std::string shadow_vertex(Leaning leaning) {
+  return std::string(kHead) + lean_of(leaning) + kPull + R"(
 uniform vec3 sun_right, sun_up;
 uniform float centre;  // Over the feet [m].
 out vec3 texel;
 void main() {
   Corner c = pull();
-  vec3 middle = c.feet + vec3(0.0, centre, 0.0);
+#ifdef LEANS
+  vec3 middle = c.feet + axis * centre, card_right = right_of(to_sun);
+  vec3 card_up = cross(to_sun, card_right);
+#else
+  vec3 middle = c.feet + vec3(0.0, centre, 0.0), card_right = sun_right, card_up = sun_up;
+#endif
   texel = c.texel;
   gl_Position = clip_from_world *
-                vec4(middle + sun_right * c.offset.x + sun_up * c.offset.y, 1.0);
+                vec4(middle + card_right * c.offset.x + card_up * c.offset.y, 1.0);
 }
 )";
 }
@@ -704,81 +748,6 @@ uniform sampler2DArray albedo;
 void main() {
   if (texture(albedo, texel).a < 0.5) discard;
 }
-)";
-}
-
-// A line's corners move apart across it, in pixels. All comes a little nearer than the surface that
-// it lies on.
-std::string mark_vertex() {
-  return std::string(kHead) + R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 other;
-layout(location = 2) in vec4 paint;
-layout(location = 3) in float side;
-uniform vec2 half_picture; // [px of this target]
-uniform float half_width;  // [px of this target]
-uniform float nearer;      // In clip space: a share of the way to the eye, however far.
-out vec4 tint;
-out float height;
-void main() {
-  tint = paint;
-  height = position.y;
-  gl_Position = clip_from_world * vec4(position, 1.0);
-  if (side != 0.0) {
-    vec4 end = clip_from_world * vec4(other, 1.0);
-    // What lies behind the eye has no place in the picture: go along the line to just before it.
-    const float kNear = 0.05;
-    if (gl_Position.w < kNear && end.w > kNear)
-      gl_Position = mix(gl_Position, end, (kNear - gl_Position.w) / (end.w - gl_Position.w));
-    if (end.w < kNear && gl_Position.w > kNear)
-      end = mix(end, gl_Position, (kNear - end.w) / (gl_Position.w - end.w));
-    vec2 along = (end.xy / end.w - gl_Position.xy / gl_Position.w) * half_picture;
-    float size = length(along);
-    vec2 across = size > 1e-4 ? vec2(-along.y, along.x) / size : vec2(0.0, 1.0);
-    gl_Position.xy += across * side * half_width / half_picture * gl_Position.w;
-  }
-  gl_Position.z += nearer;
-}
-)";
-}
-
-std::string mark_fragment() {
-  return std::string(kHead) + R"(
-in vec4 tint;
-in float height;
-uniform float opacity;
-uniform float cut;
-out vec4 colour;
-void main() {
-  if (height > cut) discard;
-  colour = vec4(tint.rgb, tint.a * opacity);
-}
-)";
-}
-
-std::string panel_vertex() {
-  return std::string(kHead) + R"(
-layout(location = 0) in vec2 position;
-layout(location = 1) in vec2 texel;
-layout(location = 2) in vec4 paint;
-uniform vec2 picture; // [px]
-out vec2 at;
-out vec4 tint;
-void main() {
-  at = texel;
-  tint = paint;
-  gl_Position = vec4(position / picture * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
-}
-)";
-}
-
-std::string panel_fragment() {
-  return std::string(kHead) + R"(
-in vec2 at;
-in vec4 tint;
-uniform sampler2D letters;
-out vec4 colour;
-void main() { colour = vec4(tint.rgb, tint.a * texture(letters, at).r); }
 )";
 }
 

@@ -14,12 +14,14 @@
 // whose parameter follows the size of the same avatar's last differences, so that those who stand
 // cost a bit a number, whatever the others do. One large difference is likely to be the only one,
 // so the parameter is slow to believe in it. Who turns is expected to go on as fast. [Ric79]
+// Where some may lean, those whose axes differ from the frame before follow; who comes is upright.
 namespace throng {
 namespace {
 
 constexpr double kFarthest = 2e6;    // [m]: millimetres fit 32 bits
 constexpr double kWidest = 65.0;     // [m]: millimetres fit 16 bits
 constexpr uint32_t kLeastBits = 13;  // of one who has come
+constexpr size_t kUpMean = 4;        // Where in Track::mean those of its axis are.
 
 // Differences wrap, so that no bytes can overflow anything.
 int32_t minus(int32_t a, int32_t b) {
@@ -93,6 +95,30 @@ Heading heading_of(uint8_t code) {
   }
 }
 
+UpCode up_code(Vec3d up) {
+  const double size = std::fabs(up.x) + std::fabs(up.y) + std::fabs(up.z);
+  double x = up.x / size, z = up.z / size;
+  if (up.y < 0) {  // The lower faces are folded out.
+    const double folded = 1 - std::fabs(z);
+    z = std::copysign(1 - std::fabs(x), z);
+    x = std::copysign(folded, x);
+  }
+  const auto code = [](double v) { return static_cast<int16_t>(std::floor(v * kUpSteps + 0.5)); };
+  return {code(x), code(z)};
+}
+
+Vec3d up_of(UpCode code) {
+  double x = static_cast<double>(code[0]) / kUpSteps, z = static_cast<double>(code[1]) / kUpSteps;
+  const double y = 1 - std::fabs(x) - std::fabs(z);
+  if (y < 0) {
+    const double folded = 1 - std::fabs(z);
+    z = std::copysign(1 - std::fabs(x), z);
+    x = std::copysign(folded, x);
+  }
+  const double size = std::sqrt(x * x + y * y + z * z);
+  return {x / size, y / size, z / size};
+}
+
 // The frame as tracks in order of id, into wanted_.
 Result<void> FrameEncoder::quantise(const FrameView& frame) {
   const size_t count = frame.ids.size();
@@ -101,6 +127,9 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
     return Error{Errc::kBadInput,
                  "recording: a frame needs as many classes, positions, radii and headings as ids, "
                  "fewer than 2^28"};
+  }
+  if (!frame.ups.empty() && frame.ups.size() != count) {
+    return Error{Errc::kBadInput, "recording: a frame needs as many axes as ids, or none"};
   }
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0u);
@@ -130,6 +159,16 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
     track.radius = static_cast<uint16_t>(radius * 1000 + 0.5);
     track.avatar_class = frame.classes[i];
     track.heading = heading_code(frame.headings[i]);
+    track.up = {};
+    if (!frame.ups.empty()) {
+      const Vec3d& up = frame.ups[i];
+      const double size = length(up);
+      if (!(size > 1e-100 && size < 1e100)) return bad_avatar(track.id, "has no axis");
+      track.up = up_code(up);
+      if (!leans_ && track.up != UpCode{}) {
+        return bad_avatar(track.id, "leans; set RecordingInfo::leans");
+      }
+    }
     track.by = {};
     track.mean = {};
   }
@@ -187,6 +226,7 @@ Result<void> FrameEncoder::encode(const FrameView& frame, std::vector<uint8_t>& 
     if (come < added_.size() && added_[come] == b) {
       ++come;
       next_[b] = wanted_[b];
+      next_[b].up = {};
       continue;
     }
     while (gone < removed_.size() && removed_[gone] == a) {
@@ -206,6 +246,23 @@ Result<void> FrameEncoder::encode(const FrameView& frame, std::vector<uint8_t>& 
     for (size_t axis = 0; axis < 3; ++axis) {
       put(axis, minus(wanted_[b].at[axis], expected(track, axis)));
       move_to(track, axis, wanted_[b].at[axis]);
+    }
+  }
+  if (leans_) {
+    uint64_t turned = 0;
+    for (size_t b = 0; b < next_.size(); ++b) turned += next_[b].up != wanted_[b].up ? 1 : 0;
+    out.put_gamma(turned);
+    for (size_t b = 0, after = 0; b < next_.size(); ++b) {
+      Track& track = next_[b];
+      if (track.up == wanted_[b].up) continue;
+      out.put_gamma(b - after);
+      after = b + 1;
+      for (size_t k = 0; k < track.up.size(); ++k) {
+        const uint32_t value = zigzag(wanted_[b].up[k] - track.up[k]);
+        out.put_rice(value, rice_parameter(track.mean[kUpMean + k]));
+        follow(track.mean[kUpMean + k], value);
+      }
+      track.up = wanted_[b].up;
     }
   }
   out.align();
@@ -277,6 +334,23 @@ bool FrameDecoder::decode(std::span<const uint8_t> bytes, uint32_t avatars) {
       move_to(track, axis, plus(expected(track, axis), get(axis)));
     }
     tracks_.push_back(track);
+  }
+  if (!leans_) return in.ok();
+  const uint64_t turned = in.get_gamma();
+  if (!in.ok() || turned > tracks_.size()) return false;
+  uint64_t after = 0;
+  for (uint64_t n = 0; n < turned; ++n) {
+    const uint64_t gap = in.get_gamma();
+    if (!in.ok() || gap >= tracks_.size() - after) return false;
+    Track& track = tracks_[after + gap];
+    after += gap + 1;
+    for (size_t k = 0; k < track.up.size(); ++k) {
+      const uint32_t value = in.get_rice(rice_parameter(track.mean[kUpMean + k]));
+      follow(track.mean[kUpMean + k], value);
+      const int32_t code = plus(track.up[k], unzigzag(value));
+      if (code < -kUpSteps || code > kUpSteps) return false;
+      track.up[k] = static_cast<int16_t>(code);
+    }
   }
   return in.ok();
 }

@@ -12,23 +12,34 @@
 /// One frame after the other as bits: what differs from what was to be expected.
 namespace throng {
 
+/// A direction: where it meets an octahedron that stands on its tip, laid flat; upright is 0, 0. Up
+/// to kUpSteps either way.
+using UpCode = std::array<int16_t, 2>;
+inline constexpr int32_t kUpSteps = 2047;
+
 /// An avatar as the last frame left it. Writer and reader hold the same, in order of id.
 struct Track {
   uint64_t id = 0;
   std::array<int32_t, 3> at{};     // [mm]
   std::array<int32_t, 3> by{};     // how far it moved since the frame before [mm]
-  std::array<uint16_t, 4> mean{};  // of its last differences, x y z and heading, in 1/16
+  std::array<uint16_t, 6> mean{};  // of its last differences, x y z, heading and up, in 1/16
   uint16_t radius = 0;             // [mm]
   uint8_t avatar_class = 0;
   uint8_t heading = 0;  // 256 to a turn
+  UpCode up{};
 };
 
 /// The nearest of 256 directions, and back. Exact arithmetic: 0.9 degrees off at most.
 [[nodiscard]] uint8_t heading_code(Heading heading);
 [[nodiscard]] Heading heading_of(uint8_t code);
+/// The same of any direction but none at all: 0.06 degrees off at most.
+[[nodiscard]] UpCode up_code(Vec3d up);
+[[nodiscard]] Vec3d up_of(UpCode code);
 
 class FrameEncoder {
  public:
+  /// `leans`: frames tell who leans, and how.
+  explicit FrameEncoder(bool leans = false) : leans_(leans) {}
   /// The next frame is written without any frame before it.
   void forget() { tracks_.clear(); }
   /// Appends a frame, whole bytes, to `bytes`. Fails with kBadInput and the avatar; then nothing
@@ -38,18 +49,21 @@ class FrameEncoder {
  private:
   [[nodiscard]] Result<void> quantise(const FrameView& frame);
 
+  bool leans_ = false;
   std::vector<Track> tracks_, wanted_, kept_, next_;
   std::vector<uint32_t> order_, removed_, added_;
 };
 
 class FrameDecoder {
  public:
+  explicit FrameDecoder(bool leans = false) : leans_(leans) {}
   void forget() { tracks_.clear(); }
   /// Takes one frame in; false if the bytes make no sense, then it must forget.
   [[nodiscard]] bool decode(std::span<const uint8_t> bytes, uint32_t avatars);
   [[nodiscard]] std::span<const Track> tracks() const { return tracks_; }
 
  private:
+  bool leans_ = false;
   std::vector<Track> tracks_, kept_, added_;
 };
 

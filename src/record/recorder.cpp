@@ -25,7 +25,8 @@ flatbuffers::DetachedBuffer info_bytes(const RecordingInfo& info) {
     classes.push_back(
         format::CreateRecordedClass(builder, builder.CreateString(c.name), c.height, c.radius));
   }
-  builder.Finish(format::CreateRecording(builder, kReplayVersion, builder.CreateString(info.world),
+  const uint32_t version = info.leans ? kReplayVersionThatLeans : kReplayVersion;
+  builder.Finish(format::CreateRecording(builder, version, builder.CreateString(info.world),
                                          info.world_hash, info.dt, builder.CreateVector(classes),
                                          builder.CreateString(info.model),
                                          builder.CreateString(info.settings)),
@@ -132,6 +133,7 @@ Result<Recorder> Recorder::create(const std::string& path, const RecordingInfo& 
   state->path = path;
   state->config = config;
   state->classes = info.classes.size();
+  state->encoder = FrameEncoder(info.leans);
   state->file = std::fopen(path.c_str(), "wb");
   if (state->file == nullptr) {
     state->reason = errno;

@@ -124,9 +124,9 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
     return bad(kBadSettings);
   }
   const format::Recording& root = *format::GetRecording(data);
-  if (root.version() != kReplayVersion) {
+  if (root.version() != kReplayVersion && root.version() != kReplayVersionThatLeans) {
     return bad("recording version " + std::to_string(root.version()) + ", this program reads " +
-               std::to_string(kReplayVersion));
+               std::to_string(kReplayVersion) + " and " + std::to_string(kReplayVersionThatLeans));
   }
   if (!root.classes() || root.classes()->size() == 0 || root.classes()->size() > 256 ||
       !(root.dt() > 0 && root.dt() < 1e6)) {
@@ -137,7 +137,9 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
           .dt = root.dt(),
           .classes = {},
           .model = text_of(root.model()),
-          .settings = text_of(root.settings())};
+          .settings = text_of(root.settings()),
+          .leans = root.version() == kReplayVersionThatLeans};
+  decoder = FrameDecoder(info.leans);
   for (const format::RecordedClass* c : *root.classes()) {
     info.classes.push_back({text_of(c->name()), c->height(), c->radius()});
     if (!std::isfinite(c->height()) || !std::isfinite(c->radius())) {
@@ -318,6 +320,7 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
   }
   const std::span<const Track> tracks = s.decoder.tracks();
   frame.resize(tracks.size());
+  frame.ups.resize(s.info.leans ? tracks.size() : 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const Track& t = tracks[i];
     frame.ids[i] = t.id;
@@ -325,6 +328,7 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
     frame.positions[i] = {t.at[0] / 1000.0, t.at[1] / 1000.0, t.at[2] / 1000.0};
     frame.radii[i] = static_cast<float>(t.radius) / 1000.0F;
     frame.headings[i] = heading_of(t.heading);
+    if (s.info.leans) frame.ups[i] = up_of(t.up);
     if (t.avatar_class >= s.info.classes.size()) return s.bad_chunk(chunk);
   }
   return {};
@@ -351,7 +355,7 @@ void RecordedFrame::resize(size_t avatars) {
 }
 
 FrameView RecordedFrame::view() const {
-  return {time, step, state_hash, ids, classes, positions, radii, headings};
+  return {time, step, state_hash, ids, classes, positions, radii, headings, ups};
 }
 
 }  // namespace throng

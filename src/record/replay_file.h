@@ -12,7 +12,7 @@
 /// The shape of a recording: chunks, each a head of 64 bytes and what it announces.
 namespace throng {
 
-inline constexpr uint32_t kReplayVersion = 1;
+inline constexpr uint32_t kReplayVersion = 1, kReplayVersionThatLeans = 2;
 inline constexpr std::array<char, 4> kChunkMark{'T', 'H', 'R', 'C'};
 
 enum class ChunkKind : uint32_t {

@@ -51,13 +51,20 @@ Result<FilmRate> film_rate(Replay& replay) {
 Result<void> export_csv(Replay& replay, const std::string& path, const ExportConfig& config,
                         Context& context) {
   const auto& classes = replay.info().classes;
-  return write_text(replay, path, config, context, "step,id,class,x,y,z,radius\n",
+  const std::string head =
+      fmt::format("{}{}\n", kCsvColumns, replay.info().leans ? kCsvUpColumns : "");
+  return write_text(replay, path, config, context, head,
                     [&](fmt::memory_buffer& text, const RecordedFrame& frame, size_t i) {
                       const Vec3d& p = frame.positions[i];
-                      fmt::format_to(std::back_inserter(text),
-                                     "{},{},{},{:.4f},{:.4f},{:.4f},{:.4f}\n", frame.step,
+                      const auto out = std::back_inserter(text);
+                      fmt::format_to(out, "{},{},{},{:.4f},{:.4f},{:.4f},{:.4f}", frame.step,
                                      frame.ids[i], classes[frame.classes[i]].name, p.x, p.y, p.z,
                                      frame.radii[i]);
+                      if (!frame.ups.empty()) {
+                        const Vec3d& up = frame.ups[i];
+                        fmt::format_to(out, ",{:.4f},{:.4f},{:.4f}", up.x, up.y, up.z);
+                      }
+                      text.push_back('\n');
                     });
 }
 

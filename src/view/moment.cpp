@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "throng/lean.h"
 
 namespace throng {
 namespace {
@@ -19,6 +20,23 @@ constexpr double kPaceMemory = 0.4;  // [s]
 double turn_between(double from, double to) { return std::remainder(to - from, 1.0); }
 
 float in_turn(double turns) { return static_cast<float>(turns - std::floor(turns)); }
+
+constexpr Vec3d kUpright{0, 1, 0};
+
+// A heading of a body that turns from one axis to another by the least turn: where he looks stays,
+// but for that. In turns.
+float carried(float heading, Vec3d from, Vec3d to) {
+  if (from == to) return heading;
+  const double angle = 2 * std::numbers::pi * heading;
+  const Vec3d ahead = leaned({std::sin(angle), 0, std::cos(angle)}, from);
+  // The least turn: by the mirror images at the plane across one axis, then at that half way.
+  const Vec3d half = from + to;
+  const double size = dot(half, half);
+  if (!(size > 1e-9)) return heading;
+  const Vec3d across = ahead - from * (2 * dot(ahead, from));
+  const Vec3d own = unleaned(across - half * (2 * dot(across, half) / size), to);
+  return in_turn(std::atan2(own.x, own.z) / (2 * std::numbers::pi));
+}
 
 uint16_t steps_of(double turns) {
   return static_cast<uint16_t>(static_cast<int64_t>(std::floor(turns * 65536)) & 0xffff);
@@ -59,6 +77,9 @@ size_t Moment::find(uint64_t id) const {
 
 void put_states(const std::vector<AvatarState>& states, Vec3d origin, Moment& moment) {
   moment.resize(states.size());
+  const bool lean = std::any_of(states.begin(), states.end(),
+                                [](const AvatarState& s) { return !(s.up == kUpright); });
+  moment.ups.resize(lean ? states.size() : 0);
   for (size_t i = 0; i < states.size(); ++i) {
     const AvatarState& s = states[i];
     const Vec3d p = s.position - origin;
@@ -69,6 +90,7 @@ void put_states(const std::vector<AvatarState>& states, Vec3d origin, Moment& mo
     moment.z[i] = static_cast<float>(p.z);
     const double turns = std::atan2(s.heading_x, s.heading_z) / (2 * std::numbers::pi);
     moment.heading[i] = in_turn(turns);
+    if (lean) moment.ups[i] = s.up;
   }
 }
 
@@ -81,15 +103,18 @@ void follow(const Moment& before, Moment& now) {
       if (now.heading[i] == 0) now.heading[i] = in_turn(random_unit(3, 1, now.ids[i]));
       return;
     }
-    const double gone = std::hypot(now.x[i] - before.x[j], now.z[i] - before.z[j]);
+    const bool leans = !(now.up(i) == kUpright) || !(before.up(j) == kUpright);
+    const double flat = std::hypot(now.x[i] - before.x[j], now.z[i] - before.z[j]);
+    const double gone = leans ? std::hypot(flat, now.y[i] - before.y[j]) : flat;
+    const float was = carried(before.heading[j], before.up(j), now.up(i));
     now.walked[i] = static_cast<float>(before.walked[j] + (seconds < 0 ? -gone : gone));
     const double keep = std::exp(-apart / kPaceMemory);
     now.pace[i] = static_cast<float>(before.pace[j] * keep + gone / apart * (1 - keep));
     // Who stands has no heading of his own: sources give straight along +Z then.
     const bool stands = gone < 1e-3 * apart && now.heading[i] == 0;
-    const double turn = stands ? 0 : turn_between(before.heading[j], now.heading[i]);
+    const double turn = stands ? 0 : turn_between(was, now.heading[i]);
     const double most = kTurnSpeed * apart;
-    now.heading[i] = in_turn(before.heading[j] + std::clamp(turn, -most, most));
+    now.heading[i] = in_turn(was + std::clamp(turn, -most, most));
   });
 }
 
@@ -98,8 +123,10 @@ void BlendedCrowd::blend(const Moment& a, const Moment& b, double share, const F
   for (auto& [key, group] : groups_) {
     for (auto* array : {&group.x, &group.y, &group.z}) array->clear();
     for (auto* array : {&group.heading, &group.phase, &group.look}) array->clear();
+    group.ups.clear();
   }
   now_.resize(b.size());
+  now_.ups.assign(a.ups.empty() && b.ups.empty() ? 0 : b.size(), kUpright);
   now_.time = a.time + (b.time - a.time) * share;
   now_.report = b.report;
   now_.flow = b.flow;
@@ -116,17 +143,24 @@ void BlendedCrowd::blend(const Moment& a, const Moment& b, double share, const F
     now_.y[i] = between(a.y, b.y);
     now_.z[i] = between(a.z, b.z);
     now_.walked[i] = between(a.walked, b.walked);
-    const double turn = both ? turn_between(a.heading[j], b.heading[i]) : 0;
-    now_.heading[i] = both ? in_turn(a.heading[j] + turn * share) : b.heading[i];
+    if (!now_.ups.empty()) {
+      const Vec3d up = both ? a.up(j) * (1 - share) + b.up(i) * share : b.up(i);
+      const double size = length(up);
+      now_.ups[i] = size > 1e-3 ? up * (1 / size) : b.up(i);
+    }
+    const float from = both ? carried(a.heading[j], a.up(j), now_.up(i)) : 0;
+    const float to = carried(b.heading[i], b.up(i), now_.up(i));
+    now_.heading[i] = both ? in_turn(from + turn_between(from, to) * share) : to;
     if (now_.y[i] > cut || static_cast<int64_t>(now_.ids[i]) == hidden_) return;
     if (!figures.of_class.empty()) put(i, figures);
   });
   crowds_.clear();
   for (const auto& [key, g] : groups_) {
     if (g.x.empty()) continue;
-    crowds_.push_back({.atlas = key.first,
-                       .clip = key.second,
-                       .avatars = {g.x, g.y, g.z, g.heading, g.phase, g.look}});
+    crowds_.push_back({.atlas = std::get<0>(key),
+                       .clip = std::get<1>(key),
+                       .avatars = {g.x, g.y, g.z, g.heading, g.phase, g.look},
+                       .ups = g.ups});
   }
 }
 
@@ -137,7 +171,10 @@ void BlendedCrowd::put(size_t i, const Figures& figures) {
   const auto pick = static_cast<size_t>(random_unit(5, 0, id) * static_cast<double>(choice.size()));
   const size_t atlas = choice[std::min(pick, choice.size() - 1)];
   const size_t clip = clip_for(figures.shapes[atlas], now_.pace[i] > kStands);
-  Group& group = groups_[{atlas, clip}];
+  const Vec3d up = now_.up(i);
+  const bool leans = !(up == kUpright);
+  Group& group = groups_[{atlas, clip, leans}];
+  if (leans) group.ups.push_back(up);
   group.x.push_back(now_.x[i]);
   group.y.push_back(now_.y[i]);
   group.z.push_back(now_.z[i]);

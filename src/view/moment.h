@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "throng/crowd.h"
@@ -34,13 +35,17 @@ struct Moment {
   std::vector<float> heading;  ///< From +Z towards +X. [turns, 0 to 1]
   std::vector<float> walked;   ///< Since first seen. [m]
   std::vector<float> pace;     ///< Mean speed of late. [m/s]
-  CrowdReport report = {};     ///< Of the step that led here; empty for recordings.
+  /// Along each body from its feet; nothing: all are upright. Of who leans, `heading` is the one
+  /// before he leans (lean.h). [unit length]
+  std::vector<Vec3d> ups = {};
+  CrowdReport report = {};  ///< Of the step that led here; empty for recordings.
   std::shared_ptr<const std::vector<Prism>> obstacles = {};  ///< That are up now, or none.
   SceneFlow flow = {};                                       ///< Of scenarios.
   std::string fault = {};                                    ///< Why no more can come, or empty.
 
   [[nodiscard]] size_t size() const { return ids.size(); }
   void resize(size_t avatars);
+  [[nodiscard]] Vec3d up(size_t i) const { return ups.empty() ? Vec3d{0, 1, 0} : ups[i]; }
   /// Index of an id, or size().
   [[nodiscard]] size_t find(uint64_t id) const;
 };
@@ -75,11 +80,13 @@ class BlendedCrowd {
   struct Group {
     std::vector<float> x, y, z;
     std::vector<uint16_t> heading, phase, look;
+    std::vector<Vec3d> ups;
   };
   void put(size_t i, const Figures& figures);
 
   Moment now_;
-  std::map<std::pair<size_t, size_t>, Group> groups_;  // By atlas and clip.
+  // By atlas and clip, those who lean apart from the others.
+  std::map<std::tuple<size_t, size_t, bool>, Group> groups_;
   std::vector<DrawnCrowd> crowds_;
   int64_t hidden_ = -1;
 };

@@ -333,6 +333,19 @@ class Program(unittest.TestCase):
         self.assertGreater(said["arrived"], 5)
         again = self.run_throng(*run, "--threads", 1)
         self.assertEqual(json.loads(again.stdout)["state_hash"], said["state_hash"])
+        # Who leans, leans in the table, too; and nowhere where nobody can.
+        rows = (self.path / "hills.csv").read_text().splitlines()
+        self.assertEqual(rows[0], "step,id,class,x,y,z,radius,up_x,up_y,up_z")
+        ups = [(float(row[7]), float(row[8]), float(row[9]), row[2]) for row in (line.split(",") for line in rows[1:])]
+        self.assertTrue(all(abs(x * x + y * y + z * z - 1) < 1e-3 for x, y, z, _ in ups))
+        self.assertTrue(all(name == "climber" for _, y, _, name in ups if y < 1))
+        self.assertLess(min(y for _, y, _, _ in ups), 0.9)
+        self.run_throng("replay", "hills.replay", "--csv", "again.csv")
+        again = (self.path / "again.csv").read_text().splitlines()
+        self.assertEqual(len(again), len(rows))
+        for line, (x, y, z, _) in zip(again[1:], ups):
+            for a, b in zip(map(float, line.split(",")[7:]), (x, y, z)):
+                self.assertAlmostEqual(a, b, delta=0.0012)
         check = self.run_throng("replay", "hills.replay", "--check")
         self.assertEqual(check.returncode, 0, check.stderr)
         self.assertIn("all the same", check.stdout)
@@ -537,6 +550,23 @@ class Program(unittest.TestCase):
             done = self.run_throng("verify", self.world, "--source", "garage.glb", "--samples", 10, "--class", "adult", *options)
             self.assertIn(done.returncode, (0, 1), done.stderr)
             self.assertEqual("does not lie where the world does" in done.stderr, is_elsewhere, done.stderr)
+
+    def test_ways_are_gone_and_those_through_another_model_found_out(self):
+        done = self.run_throng("world", "garage", "--levels", 2, "-o", "ways.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ways = ("verify", self.world, "--paths", "--samples", 40, "--json", "--source")
+        done = self.run_throng(*ways, "ways.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        report = json.loads(done.stdout)
+        self.assertTrue(report["passed"])
+        for entry in report["classes"]:
+            self.assertEqual(entry["over"], "level tiles")
+            self.assertEqual(entry["pairs"], 40)
+            self.assertGreater(entry["reached"], 10)
+            self.assertEqual(sum(entry[fault] for fault in ("illegal", "entered", "unsupported", "torn", "disagree")), 0)
+        done = self.run_throng(*ways, "builtin:maze")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertFalse(json.loads(done.stdout)["passed"])
 
     def test_regions_are_told_from_the_bakes_files_or_made_where_there_are_none(self):
         def region(world):

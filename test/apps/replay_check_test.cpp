@@ -27,8 +27,12 @@ class ReplayCheck : public testing::Test {
     auto crowd = Wanderers::create(world_, {.avatars = 20, .dt = 0.25, .seed = 5});
     EXPECT_TRUE(crowd);
     RunRecorder recorder;
-    EXPECT_TRUE(
-        recorder.open(path, folder_.path() + "/w.throng", world_, 0.25, kWanderersModel, settings));
+    EXPECT_TRUE(recorder.open(path,
+                              {.world = folder_.path() + "/w.throng",
+                               .dt = 0.25,
+                               .model = kWanderersModel,
+                               .settings = settings.dump()},
+                              world_));
     std::vector<AvatarState> states;
     for (uint64_t step = 0; step <= 20; ++step) {
       if (step > 0) crowd->step();

@@ -13,6 +13,7 @@
 #include "simd_targets.h"
 #include "throng/crowd.h"
 #include "throng/flight.h"
+#include "throng/lean.h"
 #include "throng/node_path.h"
 #include "throng/nodes.h"
 #include "trips.h"
@@ -253,12 +254,22 @@ Mixed mix(Stage& stage, uint32_t of_each, int steps, int every) {
   send(all);
   Mixed mixed;
   std::vector<AvatarState> before, now;
+  double ahead = 0;
+  uint64_t looked = 0;
   crowd.read(before);
   for (int step = 0; step < steps; ++step) {
     const CrowdReport report = crowd.step();
     crowd.read(now);
     for (size_t i = 0; i < now.size(); ++i) {  // of 5 m/s at most
-      EXPECT_LE(length(now[i].position - before[i].position), 0.8) << step << " " << i;
+      const Vec3d gone = now[i].position - before[i].position;
+      EXPECT_LE(length(gone), 0.8) << step << " " << i;
+      // Who climbs looks where he goes, as he leans: where he went last, if he took two strides.
+      if (!now[i].climbs || length(gone) < 0.05) continue;
+      const Vec3d looks = leaned({now[i].heading_x, 0, now[i].heading_z}, now[i].up);
+      EXPECT_NEAR(length(looks), 1, 1e-6);
+      EXPECT_NEAR(dot(looks, now[i].up), 0, 1e-6);
+      ahead += dot(looks, gone) / length(gone);
+      ++looked;
     }
     std::swap(before, now);
     EXPECT_EQ(report.climbing, 2 * of_each);
@@ -268,6 +279,8 @@ Mixed mix(Stage& stage, uint32_t of_each, int steps, int every) {
     send(there);
     if (step % every == 0) stage.look(crowd, mixed.faults);
   }
+  EXPECT_GT(ahead, 0.9 * static_cast<double>(looked));
+  EXPECT_GT(looked, 100u);
   EXPECT_EQ(mixed.faults.overlaps, 0u);
   EXPECT_EQ(mixed.faults.entered, 0u);
   EXPECT_GT(mixed.faults.pairs, 0u);

@@ -151,6 +151,104 @@ TEST(Recording, GivesBackWhatWasWrittenInAnyOrderOfReading) {
   }
 }
 
+// Some of a random run lean, more and more of whom turn from frame to frame; others stand upright.
+std::vector<RecordedFrame> leaning_run(uint64_t seed, size_t frames, size_t most) {
+  auto run = random_run(seed, frames, most);
+  for (RecordedFrame& frame : run) {
+    for (const uint64_t id : frame.ids) {
+      const auto axis = [&](uint64_t n) { return 2 * random_unit(seed, id, 3 * n) - 1; };
+      const uint64_t turns = id % 4 == 1 ? frame.step / 12 : frame.step;
+      const Vec3d up{axis(turns), axis(turns + 1000000), axis(turns + 2000000)};
+      frame.ups.push_back(id % 4 == 0 ? Vec3d{0, 2, 0} : up);
+    }
+  }
+  return run;
+}
+
+void expect_same_axes(const RecordedFrame& wrote, const RecordedFrame& read) {
+  ASSERT_EQ(read.ups.size(), wrote.size());
+  for (size_t i = 0; i < wrote.size(); ++i) {
+    const auto at = std::lower_bound(read.ids.begin(), read.ids.end(), wrote.ids[i]);
+    const Vec3d a = wrote.ups[i] * (1 / length(wrote.ups[i])), b = read.ups[at - read.ids.begin()];
+    EXPECT_NEAR(length(b), 1, 1e-12);
+    EXPECT_LT(length(a - b), 0.06 * 3.14159265 / 180) << a.x << ' ' << a.y << ' ' << a.z;
+    EXPECT_EQ(up_of(up_code(wrote.ups[i])), b);  // What was written, to the bit.
+    if (wrote.ids[i] % 4 == 0) {
+      EXPECT_EQ(b, (Vec3d{0, 1, 0}));
+    }
+  }
+}
+
+TEST(Recording, KeepsTheAxesOfThoseWhoLean) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  RecordingInfo info = two_classes();
+  info.leans = true;
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto run = leaning_run(seed, 60, seed % 4 == 0 ? 3 : 40);
+    auto recorder = Recorder::create(path, info,
+                                     {.chunk_frames = static_cast<uint32_t>(1 + seed % 9),
+                                      .key_frames = static_cast<uint32_t>(1 + seed * 7 % 40)});
+    ASSERT_TRUE(recorder);
+    for (const RecordedFrame& frame : run) {
+      const auto ok = recorder->append(frame.view());
+      ASSERT_TRUE(ok) << ok.error().message;
+    }
+    ASSERT_TRUE(recorder->finish());
+    auto replay = Replay::open(path);
+    ASSERT_TRUE(replay) << replay.error().message;
+    EXPECT_TRUE(replay->info().leans);
+    RecordedFrame frame;
+    for (uint64_t k = 0; k < 2 * run.size(); ++k) {
+      const uint64_t f = k < run.size() ? k : random_below(seed, 9, k, run.size());
+      const auto ok = replay->read(f, frame);
+      ASSERT_TRUE(ok) << ok.error().message;
+      expect_same(run[f], frame);
+      expect_same_axes(run[f], frame);
+    }
+  }
+}
+
+// All who stand upright are written as they were before anybody leaned, byte by byte; who does not
+// say that some may lean is refused if one does.
+TEST(Recording, WithoutAnybodyWhoLeansStaysAsItWas) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay", other = folder.path() + "/other.replay";
+  auto run = random_run(4, 40, 20);
+  record(path, run);
+  for (RecordedFrame& frame : run) frame.ups.assign(frame.size(), Vec3d{0, 1, 0});
+  record(other, run);
+  EXPECT_EQ(bytes_of(path), bytes_of(other));
+  EXPECT_EQ(bytes_of(path).size(), 5096u);
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay);
+  EXPECT_FALSE(replay->info().leans);
+  RecordedFrame frame;
+  ASSERT_TRUE(replay->read(30, frame));
+  EXPECT_TRUE(frame.ups.empty());
+
+  RecordingInfo info = two_classes();
+  auto upright = Recorder::create(path, info);
+  info.leans = true;
+  auto leans = Recorder::create(other, info);
+  ASSERT_TRUE(upright && leans);
+  run[5].ups[0] = {1, 0, 0};
+  const auto refused = [](Recorder& recorder, const RecordedFrame& bad, const char* word) {
+    const auto ok = recorder.append(bad.view());
+    ASSERT_FALSE(ok) << word;
+    EXPECT_EQ(ok.error().code, Errc::kBadInput);
+    EXPECT_NE(ok.error().message.find(word), std::string::npos) << ok.error().message;
+  };
+  refused(*upright, run[5], "leans; set RecordingInfo::leans");
+  for (const Vec3d& none : {Vec3d{}, Vec3d{NAN, 1, 0}, Vec3d{0, INFINITY, 0}}) {
+    run[5].ups[0] = none;
+    refused(*leans, run[5], "has no axis");
+  }
+  run[5].ups.pop_back();
+  refused(*leans, run[5], "as many axes as ids");
+  EXPECT_TRUE(leans->append(run[6].view()));
+}
+
 TEST(Recording, FindsTheFrameOfATime) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay";

@@ -117,6 +117,38 @@ TEST(ReplayExport, TextsHoldEachPositionToTheMillimetre) {
   EXPECT_FALSE(txt_file >> line);
 }
 
+TEST(ReplayExport, TablesHaveColumnsForAxesOnlyWhereSomeMayLean) {
+  const test::ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay", csv = folder.path() + "/a.csv";
+  RecordedFrame frame;
+  frame.resize(2);
+  frame.ids = {3, 4};
+  frame.radii = {0.25F, 0.25F};
+  frame.ups = {{0, 1, 0}, {0.6, 0, -0.8}};
+  auto recorder = Recorder::create(path, {.classes = {{.name = "climber"}}, .leans = true});
+  ASSERT_TRUE(recorder);
+  ASSERT_TRUE(recorder->append(frame.view()));
+  ASSERT_TRUE(recorder->finish());
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay);
+  Context context;
+  ASSERT_TRUE(export_csv(*replay, csv, {}, context));
+  std::ifstream file(csv);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "step,id,class,x,y,z,radius,up_x,up_y,up_z");
+  std::getline(file, line);
+  EXPECT_EQ(line, "0,3,climber,0.0000,0.0000,0.0000,0.2500,0.0000,1.0000,0.0000");
+  std::getline(file, line);
+  double x = 0, y = 0, z = 0;
+  ASSERT_EQ(
+      std::sscanf(line.c_str(), "0,4,climber,0.0000,0.0000,0.0000,0.2500,%lf,%lf,%lf", &x, &y, &z),
+      3);
+  EXPECT_NEAR(x, 0.6, 0.0011);
+  EXPECT_NEAR(y, 0, 0.0011);
+  EXPECT_NEAR(z, -0.8, 0.0011);
+}
+
 TEST(ReplayExport, LeavesNothingBehindWhenItFails) {
   const test::ScratchFolder folder;
   Replay replay = recorded(folder, uneven_run());

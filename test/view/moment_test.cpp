@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+
+#include "throng/lean.h"
 
 namespace throng {
 namespace {
@@ -67,6 +70,64 @@ TEST(Moment, WhoStandsKeepsHisHeading) {
   Moment b = moment_of(0.1, {{1, 0, 0, 0}});
   follow(a, b);
   EXPECT_NEAR(b.heading[0], 0.4, 1e-6);
+}
+
+AvatarState climber(Vec3d at, Vec3d up, Vec3d goes) {
+  const Vec3d ahead = unleaned(goes, up);
+  return {.id = 1, .position = at, .heading_x = ahead.x, .heading_z = ahead.z, .up = up};
+}
+
+Vec3d looks(const Moment& m, size_t i) {
+  const double angle = 2 * std::numbers::pi * m.heading[i];
+  return leaned({std::sin(angle), 0, std::cos(angle)}, m.up(i));
+}
+
+TEST(Moment, WhoClimbsLeansAndLooksWhereHeGoes) {
+  const double r = std::sqrt(0.5);
+  Moment a, b;
+  a.time = 1;
+  b.time = 1.5;
+  put_states({climber({0, 0, 0}, {0, 1, 0}, {-1, 0, 0})}, {}, a);
+  EXPECT_TRUE(a.ups.empty());
+  EXPECT_NEAR(length(looks(a, 0) - Vec3d{-1, 0, 0}), 0, 1e-6);
+  follow({}, a);
+  // Against a wall that faces +X, and up.
+  put_states({climber({-0.3, 0.4, 0}, {1, 0, 0}, {0, 1, 0}), AvatarState{.id = 5, .position = {}}},
+             {}, b);
+  ASSERT_EQ(b.ups.size(), 2U);
+  follow(a, b);
+  EXPECT_NEAR(length(looks(b, 0) - Vec3d{0, 1, 0}), 0, 1e-5) << "no turn but that over the edge";
+  EXPECT_NEAR(b.walked[0] - a.walked[0], 0.5, 1e-5);
+  BlendedCrowd crowd;
+  crowd.blend(a, b, 0.5, one_figure(), 1e9);
+  EXPECT_NEAR(length(crowd.now().ups[0] - Vec3d{r, r, 0}), 0, 1e-6);
+  EXPECT_NEAR(length(looks(crowd.now(), 0) - Vec3d{-r, r, 0}), 0, 1e-5);
+  ASSERT_EQ(crowd.crowds().size(), 2U);  // Who leans, and who does not.
+  size_t leaning = 0;
+  for (const DrawnCrowd& drawn : crowd.crowds()) {
+    EXPECT_TRUE(drawn.ups.empty() || drawn.ups.size() == drawn.avatars.x.size());
+    leaning += drawn.ups.size();
+  }
+  EXPECT_EQ(leaning, 1U);
+  crowd.blend(a, a, 1, one_figure(), 1e9);
+  EXPECT_TRUE(crowd.now().ups.empty());
+}
+
+// Over a ceiling, where axes are straight down but for a little, to all sides.
+TEST(Moment, WhoHangsFromAnUnevenCeilingDoesNotSpin) {
+  Moment before;
+  for (int step = 0; step < 40; ++step) {
+    const double turn = 2.1 * step, lean = 0.05;
+    const Vec3d up{lean * std::cos(turn), -std::sqrt(1 - lean * lean), lean * std::sin(turn)};
+    Vec3d goes = Vec3d{0, 0, 1} - up * up.z;
+    goes = goes * (1 / length(goes));
+    Moment now;
+    now.time = 0.1 * step;
+    put_states({climber({0, 0, 0.1 * step}, up, goes)}, {}, now);
+    follow(before, now);
+    EXPECT_TRUE(step < 7 || dot(looks(now, 0), goes) > 0.99) << step;  // (once he has turned)
+    before = now;
+  }
 }
 
 TEST(Moment, BlendsBetweenTwoAndShowsWhoCame) {

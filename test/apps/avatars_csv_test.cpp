@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <fstream>
 #include <string>
+
+#include "scratch_folder.h"
 
 namespace throng::app {
 namespace {
@@ -16,7 +16,7 @@ const std::string kHead = "step,id,class,x,y,z,radius\n";
 class AvatarsCsv : public testing::Test {
  protected:
   Result<std::vector<PictureAvatar>> read(const std::string& text) {
-    std::ofstream(path_, std::ios::binary) << text;
+    folder_.write("avatars.csv", text);
     return read_avatars(path_);
   }
   // The message after the file's name.
@@ -24,9 +24,9 @@ class AvatarsCsv : public testing::Test {
     const auto result = read(text);
     return result ? "accepted" : result.error().message.substr(path_.size());
   }
-  void TearDown() override { std::remove(path_.c_str()); }
 
-  std::string path_ = testing::TempDir() + "throng_avatars.csv";
+  test::ScratchFolder folder_;
+  std::string path_ = folder_.path() + "/avatars.csv";
 };
 
 TEST_F(AvatarsCsv, WalkersKnowWhereTheyCameFrom) {
@@ -50,6 +50,25 @@ TEST_F(AvatarsCsv, TheLastStepCounts) {
   ASSERT_EQ(avatars->size(), 1u);
   EXPECT_EQ((*avatars)[0].position, (Vec3d{-1.25, 0, 8}));
   EXPECT_EQ((*avatars)[0].radius, 0.3);
+}
+
+TEST_F(AvatarsCsv, SomeMayLean) {
+  const std::string head = "step,id,class,x,y,z,radius,up_x,up_y,up_z\n";
+  ASSERT_TRUE(read(head + "0,1,adult,1,2,3,0.25,2,0,0\n0,2,adult,0,0,0,0.25,0,1,0\n" +
+                   "4,1,adult,1,5,3,0.25,2,0,0\n4,2,adult,1,9,0,0.25,0,1,0\n"));
+  const auto walkers = read_walkers(path_);
+  ASSERT_TRUE(walkers) << walkers.error().message;
+  // Up a wall that faces +X: along -X before he leans, and all of it is walked.
+  EXPECT_EQ((*walkers)[0].up, (Vec3d{1, 0, 0}));
+  EXPECT_NEAR(length((*walkers)[0].heading - Vec3d{-3, 0, 0}), 0, 1e-12);
+  EXPECT_DOUBLE_EQ((*walkers)[0].walked, 3);
+  EXPECT_EQ((*walkers)[1].heading, (Vec3d{1, 0, 0}));
+  EXPECT_DOUBLE_EQ((*walkers)[1].walked, 1);
+  EXPECT_EQ(refusal(head + "0,1,adult,1,2,3,0.2\n"),
+            ":2: 7 fields; write 10: step,id,class,x,y,z,radius,up_x,up_y,up_z");
+  EXPECT_EQ(refusal(head + "0,1,adult,1,2,3,0.2,0,0,0\n"), ":2: up is 0,0,0; write a direction");
+  EXPECT_EQ(refusal(head + "0,1,adult,1,2,3,0.2,0,up,0\n"),
+            ":2: up_y is 'up'; write a number in metres");
 }
 
 TEST_F(AvatarsCsv, AHeadAloneIsAnEmptyWorld) {

@@ -6,28 +6,18 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
+#include <string>
+
+#include "scratch_folder.h"
 
 namespace throng {
 namespace {
 
 // Writes `text` to a file of that name in a fresh folder, removed with the object.
-class ClassFile {
- public:
-  ClassFile(const std::string& name, const std::string& text) {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(testing::TempDir()) / (std::string("throng_classes_") + test->name());
-    std::filesystem::create_directories(folder_);
-    path = (folder_ / name).string();
-    std::ofstream(path) << text;
-  }
-  ~ClassFile() { std::filesystem::remove_all(folder_); }
+struct ClassFile {
+  ClassFile(const std::string& name, const std::string& text) : path(folder.write(name, text)) {}
+  test::ScratchFolder folder;
   std::string path;
-
- private:
-  std::filesystem::path folder_;
 };
 
 std::string refusal(const std::string& name, const std::string& text) {

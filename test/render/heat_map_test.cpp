@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <set>
+
+#include "scratch_folder.h"
 
 namespace throng {
 namespace {
@@ -75,13 +78,13 @@ TEST(Picture, PngBytesAreThoseOfTheFile) {
   const auto bytes = png_bytes(*image);
   ASSERT_GT(bytes.size(), 8u);
   EXPECT_EQ(bytes[1], 'P');
-  const std::string path = testing::TempDir() + "throng_png_bytes.png";
+  const test::ScratchFolder folder;
+  const std::string path = folder.path() + "/map.png";
   ASSERT_TRUE(write_png(*image, path));
   std::vector<uint8_t> file(bytes.size() + 10);
   std::FILE* in = std::fopen(path.c_str(), "rb");
   file.resize(std::fread(file.data(), 1, file.size(), in));
   std::fclose(in);
-  std::remove(path.c_str());
   EXPECT_EQ(file, bytes);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scratch_folder.h"
 #include "throng/picture.h"
 
 namespace throng {
@@ -80,8 +81,8 @@ TEST(SlicePicture, AnEmptySliceAndASingleCellCanBeDrawn) {
 }
 
 TEST(Png, IsWrittenCompleteOrNotAtAll) {
-  const std::string folder = testing::TempDir() + "throng_png";
-  std::filesystem::create_directories(folder);
+  const test::ScratchFolder scratch;
+  const std::string folder = scratch.path();
   const Image image{.width = 3, .height = 2, .rgb = std::vector<uint8_t>(18, 200)};
   const std::string path = folder + "/a.png";
   ASSERT_TRUE(write_png(image, path));
@@ -101,7 +102,6 @@ TEST(Png, IsWrittenCompleteOrNotAtAll) {
   std::filesystem::create_directories(folder + "/taken.png");
   EXPECT_FALSE(write_png(image, folder + "/taken.png")) << "a folder is in the way";
   EXPECT_FALSE(std::filesystem::exists(folder + "/taken.png.part"));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

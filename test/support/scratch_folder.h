@@ -10,16 +10,17 @@
 #include <string>
 #include <string_view>
 
-/// A folder of its own for each test, removed at its end. Tests of two builds run side by side.
+/// A folder of its own for each object, removed with it. Tests of two builds run side by side.
 namespace throng::test {
 
 class ScratchFolder {
  public:
   ScratchFolder() {
+    static int made = 0;
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::path(testing::TempDir()) /
             (std::string("throng_") + test->test_suite_name() + "_" + test->name() + "_" +
-             std::to_string(getpid()));
+             std::to_string(getpid()) + "_" + std::to_string(made++));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/random.h"
+#include "scratch_folder.h"
 #include "throng/validation.h"
 #include "validate/tracks.h"
 
@@ -18,20 +19,14 @@ namespace fs = std::filesystem;
 
 class Recorded : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("throng_recorded_") +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string write(const std::string& name, const std::string& text) {
     const fs::path path = folder_ / name;
     fs::create_directories(path.parent_path());
     std::ofstream(path) << text;
     return path.string();
   }
-  fs::path folder_;
+  test::ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path();
 };
 
 double value_of(const ValidationResult& result, const std::string& name) {

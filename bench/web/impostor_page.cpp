@@ -38,7 +38,7 @@ EMSCRIPTEN_KEEPALIVE bool bench_start(const char* canvas, int32_t width, int32_t
   EmscriptenWebGLContextAttributes attributes;
   emscripten_webgl_init_context_attributes(&attributes);
   attributes.majorVersion = 2;
-  attributes.alpha = attributes.depth = attributes.antialias = false;
+  attributes.alpha = attributes.antialias = false;
   const auto context = emscripten_webgl_create_context(canvas, &attributes);
   if (context <= 0 || emscripten_webgl_make_context_current(context) != EMSCRIPTEN_RESULT_SUCCESS) {
     return false;

@@ -63,6 +63,14 @@ void add_holes(const Plan& p, int32_t i, int32_t j, std::vector<Rect>& holes) {
   }
 }
 
+// The slab of a module. It ends within the outer walls: faces in one plane would flicker.
+Rect plate(const Plan& p, int32_t i, int32_t j) {
+  const double in = kWall / 2;
+  return {std::max(i * p.module_x, in), std::max(j * kModule, in),
+          std::min((i + 1) * p.module_x, p.width() - in),
+          std::min((j + 1) * kModule, p.depth() - in)};
+}
+
 void add_ramp(WorldBuilder& b, const Plan& p, int32_t i, int32_t j, int32_t level) {
   const double x0 = p.ramp_x(i);
   const double x1 = x0 + kRampRun;
@@ -237,9 +245,7 @@ void build_garage(WorldBuilder& b, const BuiltinWorldConfig& config) {
           std::vector<Rect> holes;
           add_holes(p, i, j, holes);
           const double y = level * kStorey;
-          slab(b, Mat::kFloor, Mat::kSlab,
-               {i * p.module_x, j * kModule, (i + 1) * p.module_x, (j + 1) * kModule}, holes,
-               y - kSlab, y);
+          slab(b, Mat::kFloor, Mat::kSlab, plate(p, i, j), holes, y - kSlab, y);
         }
       }
     }

@@ -180,12 +180,15 @@ void add_atlas(CLI::App& parser, Session& session) {
   command->add_option("--pixels", config.pixels, "Side of a view [texels]")->capture_default_str();
   command->add_option("--height", config.height, "Height of the figure, 0: the file's own [m]")
       ->capture_default_str();
-  command->add_option("--format", options->format, "rgba8, rgb5a1, bc1 or bc3")
+  command
+      ->add_option("--format", options->format, "rgba8, rgb5a1, bc1, bc3, etc2a1 or etc2 (phones)")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, AtlasFormat>{{"rgba8", AtlasFormat::kRgba8},
                                              {"rgb5a1", AtlasFormat::kRgb5a1},
                                              {"bc1", AtlasFormat::kBc1},
-                                             {"bc3", AtlasFormat::kBc3}},
+                                             {"bc3", AtlasFormat::kBc3},
+                                             {"etc2a1", AtlasFormat::kEtc2a1},
+                                             {"etc2", AtlasFormat::kEtc2}},
           CLI::ignore_case))
       ->default_str("bc3");
   command->add_option("--images", options->images, "Folder for a picture of each frame")

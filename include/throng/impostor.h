@@ -25,9 +25,11 @@ enum class AtlasFormat : uint8_t {
   kRgb5a1,  ///< 16 bits, one of them alpha, as in [TC00]; normals 16 bits.
   kBc1,     ///< 4 bits (S3TC DXT1), alpha is 0 or 1; normals BC5, 8 bits.
   kBc3,     ///< 8 bits (S3TC DXT5); normals BC5, 8 bits.
+  kEtc2a1,  ///< 4 bits (ETC2, punch-through alpha), alpha is 0 or 1; normals EAC RG11, 8 bits.
+  kEtc2,    ///< 8 bits (ETC2 with EAC alpha); normals EAC RG11, 8 bits.
 };
-inline constexpr int32_t kAtlasFormats = 4;
-/// "rgba8", "rgb5a1", "bc1", "bc3".
+inline constexpr int32_t kAtlasFormats = 6;
+/// "rgba8", "rgb5a1", "bc1", "bc3", "etc2a1", "etc2".
 [[nodiscard]] THRONG_API const char* word_for(AtlasFormat format);
 
 struct AtlasConfig {

@@ -170,13 +170,13 @@ class THRONG_API Drawing {
   /// How opaque each texel of the panel's texture is, rows from the top.
   [[nodiscard]] Result<void> set_panel_texture(int32_t width, int32_t height,
                                                std::span<const uint8_t> alpha);
-  /// Keeps a copy of an atlas; colours in blocks stay so where the card reads them (S3TC), others
-  /// are unpacked. Fails with kLimit: pages larger than the card's textures.
+  /// Keeps a copy of an atlas; colours in blocks stay so where the card reads them (S3TC, ETC2),
+  /// others are unpacked. Fails with kLimit: pages larger than the card's textures.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
   /// What an atlas's colours take in the card's memory, without smaller levels.
   [[nodiscard]] size_t colour_bytes(size_t atlas) const;
-  /// Can the card read BC1 and BC3?
-  [[nodiscard]] bool takes_blocks() const;
+  /// Can the card read colours of this format as they are? Never what is not in blocks.
+  [[nodiscard]] bool takes_blocks(AtlasFormat format) const;
   /// Draws avatars of an atlas as meshes where they are near. Fails with kBadInput (other clips
   /// than the atlas has), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);

@@ -31,8 +31,38 @@ void upload_pages(const Atlas& atlas, const std::vector<uint8_t>& four_bytes) {
 #define GL_COMPRESSED_RGBA_S3TC_DXT5_EXT 0x83F3
 #endif
 
-bool in_blocks(const Atlas& atlas) {
-  return atlas.format == AtlasFormat::kBc1 || atlas.format == AtlasFormat::kBc3;
+// How the card calls blocks; 0 for what is none.
+GLenum kind_of(AtlasFormat format) {
+  switch (format) {
+    case AtlasFormat::kBc1:
+      return GL_COMPRESSED_RGBA_S3TC_DXT1_EXT;
+    case AtlasFormat::kBc3:
+      return GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+    case AtlasFormat::kEtc2a1:
+      return GL_COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2;
+    case AtlasFormat::kEtc2:
+      return GL_COMPRESSED_RGBA8_ETC2_EAC;
+    default:
+      return 0;
+  }
+}
+
+bool takes_s3tc() {
+  // The desktop's name, and the browser's with either prefix.
+  return has_extension({"GL_EXT_texture_compression_s3tc", "GL_WEBGL_compressed_texture_s3tc",
+                        "WEBGL_compressed_texture_s3tc"});
+}
+
+// OpenGL ES 3.0 has it, but a browser only where the card itself does, and not where a driver would
+// unpack it.
+bool takes_etc2() {
+#ifdef __EMSCRIPTEN__
+  return has_extension({"GL_WEBGL_compressed_texture_etc", "WEBGL_compressed_texture_etc"});
+#else
+  const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+  if (version != nullptr && std::string_view(version).starts_with("OpenGL ES")) return true;
+  return has_extension({"GL_ARB_ES3_compatibility"});
+#endif
 }
 
 // Half as many texels either way, as a card makes its next level, but that a colour counts as much
@@ -73,8 +103,7 @@ Atlas half_of(const Atlas& atlas) {
 
 // As blocks, which the card reads as they are: no card makes their levels, so we do.
 void upload_blocks(const Atlas& packed, const Atlas& unpacked) {
-  const GLenum kind = packed.format == AtlasFormat::kBc1 ? GL_COMPRESSED_RGBA_S3TC_DXT1_EXT
-                                                         : GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+  const GLenum kind = kind_of(packed.format);
   const auto upload = [&](GLint level, const std::vector<uint8_t>& blocks) {
     glCompressedTexImage3D(GL_TEXTURE_2D_ARRAY, level, kind, packed.width >> level,
                            packed.height >> level, packed.pages, 0,
@@ -100,10 +129,10 @@ void upload_views(const Atlas& atlas) {
 
 }  // namespace
 
-bool takes_blocks() {
-  // The desktop's name, and the browser's with either prefix.
-  return has_extension({"GL_EXT_texture_compression_s3tc", "GL_WEBGL_compressed_texture_s3tc",
-                        "WEBGL_compressed_texture_s3tc"});
+bool takes_blocks(AtlasFormat format) {
+  if (kind_of(format) == 0) return false;
+  const bool etc2 = format == AtlasFormat::kEtc2a1 || format == AtlasFormat::kEtc2;
+  return etc2 ? takes_etc2() : takes_s3tc();
 }
 
 Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
@@ -132,7 +161,7 @@ Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
   glBindTexture(GL_TEXTURE_2D_ARRAY, out.colour.get());
   // Views keep to blocks of four texels, so two levels do not mix them.
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, 2);
-  out.colour_bytes = in_blocks(packed) && takes_blocks() ? packed.colour.size() : 0;
+  out.colour_bytes = takes_blocks(packed.format) ? packed.colour.size() : 0;
   if (out.colour_bytes > 0) {
     upload_blocks(packed, atlas);
   } else {

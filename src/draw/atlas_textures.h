@@ -10,8 +10,8 @@
 
 namespace throng {
 
-/// Can the card read colours as blocks of 4 x 4 texels (S3TC)?
-[[nodiscard]] bool takes_blocks();
+/// Can the card read colours of this format as they are, in blocks of 4 x 4 texels (S3TC, ETC2)?
+[[nodiscard]] bool takes_blocks(AtlasFormat format);
 
 /// An atlas in the card's memory, and what the processor needs of it.
 struct AtlasTextures {

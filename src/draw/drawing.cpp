@@ -381,9 +381,9 @@ Result<size_t> Drawing::add_atlas(const Atlas& atlas) {
 
 size_t Drawing::colour_bytes(size_t atlas) const { return state_->crowd.colour_bytes(atlas); }
 
-bool Drawing::takes_blocks() const {
+bool Drawing::takes_blocks(AtlasFormat format) const {
   state_->make_current();
-  return throng::takes_blocks();
+  return throng::takes_blocks(format);
 }
 
 Result<void> Drawing::set_model(size_t atlas, const FigureModel& model) {

@@ -21,7 +21,10 @@ namespace throng {
 namespace {
 
 constexpr const char* kIdentifier = "THIA";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
+
+// Programs of version 1 know no ETC2, and say so if a file tells them its version.
+uint32_t version_of(AtlasFormat format) { return format >= AtlasFormat::kEtc2a1 ? kVersion : 1; }
 
 // Of all that an atlas says.
 uint64_t sum_of(const Atlas& atlas) {
@@ -118,9 +121,9 @@ Result<void> save_atlas(const Atlas& atlas, const std::string& path) {
   const auto colour_at = builder.CreateVector(atlas.colour);
   const auto normal_at = builder.CreateVector(atlas.normal);
   const auto mask_at = builder.CreateVector(atlas.mask);
-  builder.Finish(format::CreateAtlasFile(builder, kVersion, sum_of(atlas), s.pixels, s.directions,
-                                         s.elevations, s.frames, s.side, s.centre, s.height,
-                                         static_cast<uint8_t>(atlas.format), atlas.width,
+  builder.Finish(format::CreateAtlasFile(builder, version_of(atlas.format), sum_of(atlas), s.pixels,
+                                         s.directions, s.elevations, s.frames, s.side, s.centre,
+                                         s.height, static_cast<uint8_t>(atlas.format), atlas.width,
                                          atlas.height, atlas.pages, clips_at, views_at, parts_at,
                                          colour_at, normal_at, mask_at),
                  kIdentifier);
@@ -140,11 +143,13 @@ Result<Atlas> read_atlas(std::span<const uint8_t> bytes, const std::string& path
     return bad(path, "not an atlas, or truncated");
   }
   const format::AtlasFile& file = *flatbuffers::GetRoot<format::AtlasFile>(bytes.data());
-  if (file.version() != kVersion) {
-    return bad(path, "atlas version " + std::to_string(file.version()) + ", this program reads " +
-                         std::to_string(kVersion));
+  if (file.version() < 1 || file.version() > kVersion) {
+    return bad(path, "atlas version " + std::to_string(file.version()) +
+                         ", this program reads 1 to " + std::to_string(kVersion));
   }
-  if (file.format() >= kAtlasFormats || file.part_colour()->size() != 3 * kBodyParts) {
+  if (file.format() >= kAtlasFormats ||
+      file.version() != version_of(static_cast<AtlasFormat>(file.format())) ||
+      file.part_colour()->size() != 3 * kBodyParts) {
     return bad(path, "its numbers make no sense");
   }
   Atlas atlas;

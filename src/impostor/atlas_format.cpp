@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "impostor/atlas_size.h"
 #include "impostor/block_codec.h"
+#include "impostor/etc2_codec.h"
 #include "throng/impostor.h"
 
 // Formats are converted by way of bytes: whatever comes in is unpacked to 8 bits a channel, and
@@ -51,8 +52,48 @@ void put(const Bytes8& bytes, std::vector<uint8_t>& to, size_t offset) {
 
 uint8_t widen5(int32_t five) { return static_cast<uint8_t>(five << 3 | five >> 2); }
 
-bool in_blocks(AtlasFormat format) {
-  return format == AtlasFormat::kBc1 || format == AtlasFormat::kBc3;
+bool is_etc2(AtlasFormat format) {
+  return format == AtlasFormat::kEtc2a1 || format == AtlasFormat::kEtc2;
+}
+
+// Blocks of 8 bytes, whose texels are there or not; others have 8 bytes of alpha in front.
+bool has_holes(AtlasFormat format) {
+  return format == AtlasFormat::kBc1 || format == AtlasFormat::kEtc2a1;
+}
+
+void decode_colour(AtlasFormat format, const std::vector<uint8_t>& from, size_t block,
+                   ColourBlock& texel) {
+  const bool holes = has_holes(format);
+  const Bytes8 colour = bytes_at(from, holes ? block * 8 : block * 16 + 8);
+  is_etc2(format) ? decode_etc2(colour, holes, texel) : decode_bc1(colour, holes, texel);
+  if (holes) return;
+  ChannelBlock alpha;
+  const Bytes8 bytes = bytes_at(from, block * 16);
+  is_etc2(format) ? decode_eac(bytes, alpha) : decode_bc4(bytes, alpha);
+  for (size_t i = 0; i < 16; ++i) texel[i][3] = alpha[i];
+}
+
+void encode_colour(AtlasFormat format, const ColourBlock& texel, std::vector<uint8_t>& to,
+                   size_t block) {
+  ChannelBlock alpha;
+  TexelWeights weights, all;
+  all.fill(1);
+  for (size_t i = 0; i < 16; ++i) weights[i] = alpha[i] = texel[i][3];  // As much as it shows.
+  const bool holes = has_holes(format);
+  put(is_etc2(format) ? encode_etc2(texel, weights, holes) : encode_bc1(texel, weights, holes), to,
+      holes ? block * 8 : block * 16 + 8);
+  if (!holes)
+    put(is_etc2(format) ? encode_eac(alpha, all) : encode_bc4(alpha, all), to, block * 16);
+}
+
+// One of a normal's two channels.
+void decode_channel(AtlasFormat format, const Bytes8& bytes, ChannelBlock& values) {
+  if (!is_etc2(format)) return decode_bc4(bytes, values);
+  WideChannelBlock wide;
+  decode_eac11(bytes, wide);
+  for (size_t i = 0; i < 16; ++i) {
+    values[i] = static_cast<uint8_t>((wide[i] * 255 + 1023) / 2047);
+  }
 }
 
 std::vector<uint8_t> unpack_colour(const Atlas& atlas, int32_t workers) {
@@ -69,16 +110,9 @@ std::vector<uint8_t> unpack_colour(const Atlas& atlas, int32_t workers) {
     }
     return out;
   }
-  const bool bc1 = atlas.format == AtlasFormat::kBc1;
   for_each_block(atlas, workers, [&](size_t block, size_t first, size_t width) {
     ColourBlock texel;
-    const size_t offset = block * (bc1 ? 8 : 16);
-    decode_bc1(bytes_at(atlas.colour, bc1 ? offset : offset + 8), bc1, texel);
-    if (!bc1) {
-      ChannelBlock alpha;
-      decode_bc4(bytes_at(atlas.colour, offset), alpha);
-      for (size_t i = 0; i < 16; ++i) texel[i][3] = alpha[i];
-    }
+    decode_colour(atlas.format, atlas.colour, block, texel);
     for (size_t i = 0; i < 16; ++i) {
       std::copy_n(texel[i].begin(), 4,
                   out.begin() + static_cast<ptrdiff_t>(4 * texel_of(first, width, i)));
@@ -93,7 +127,7 @@ std::vector<uint8_t> unpack_normal(const Atlas& atlas, int32_t workers) {
   for_each_block(atlas, workers, [&](size_t block, size_t first, size_t width) {
     for (size_t channel = 0; channel < 2; ++channel) {
       ChannelBlock values;
-      decode_bc4(bytes_at(atlas.normal, block * 16 + channel * 8), values);
+      decode_channel(atlas.format, bytes_at(atlas.normal, block * 16 + channel * 8), values);
       for (size_t i = 0; i < 16; ++i) out[2 * texel_of(first, width, i) + channel] = values[i];
     }
   });
@@ -115,21 +149,13 @@ std::vector<uint8_t> pack_colour(const Atlas& atlas, const std::vector<uint8_t>&
     }
     return out;
   }
-  const bool bc1 = format == AtlasFormat::kBc1;
   for_each_block(atlas, workers, [&](size_t block, size_t first, size_t width) {
     ColourBlock texel;
-    ChannelBlock alpha;
-    TexelWeights weights, all;
-    all.fill(1);
     for (size_t i = 0; i < 16; ++i) {
       std::copy_n(colour.begin() + static_cast<ptrdiff_t>(4 * texel_of(first, width, i)), 4,
                   texel[i].begin());
-      alpha[i] = texel[i][3];
-      weights[i] = alpha[i];  // As much as it shows.
     }
-    const size_t offset = block * (bc1 ? 8 : 16);
-    put(encode_bc1(texel, weights, bc1), out, bc1 ? offset : offset + 8);
-    if (!bc1) put(encode_bc4(alpha, all), out, offset);
+    encode_colour(format, texel, out, block);
   });
   return out;
 }
@@ -147,7 +173,8 @@ std::vector<uint8_t> pack_normal(const Atlas& atlas, const std::vector<uint8_t>&
     for (size_t channel = 0; channel < 2; ++channel) {
       ChannelBlock values;
       for (size_t i = 0; i < 16; ++i) values[i] = normal[2 * texel_of(first, width, i) + channel];
-      put(encode_bc4(values, weights), out, block * 16 + channel * 8);
+      put(is_etc2(format) ? encode_eac11(values, weights) : encode_bc4(values, weights), out,
+          block * 16 + channel * 8);
     }
   });
   return out;
@@ -156,7 +183,7 @@ std::vector<uint8_t> pack_normal(const Atlas& atlas, const std::vector<uint8_t>&
 }  // namespace
 
 const char* word_for(AtlasFormat format) {
-  static constexpr const char* kWords[] = {"rgba8", "rgb5a1", "bc1", "bc3"};
+  static constexpr const char* kWords[] = {"rgba8", "rgb5a1", "bc1", "bc3", "etc2a1", "etc2"};
   return kWords[static_cast<size_t>(format)];
 }
 

@@ -9,6 +9,8 @@
 /// How many bytes the arrays of an atlas have.
 namespace throng {
 
+inline bool in_blocks(AtlasFormat format) { return format >= AtlasFormat::kBc1; }
+
 /// On all pages.
 inline size_t texel_count(const Atlas& atlas) {
   return static_cast<size_t>(atlas.width) * static_cast<size_t>(atlas.height) *
@@ -22,15 +24,17 @@ inline size_t colour_bytes(AtlasFormat format, size_t texels) {
     case AtlasFormat::kRgb5a1:
       return texels * 2;
     case AtlasFormat::kBc1:
+    case AtlasFormat::kEtc2a1:
       return texels / 2;
     case AtlasFormat::kBc3:
+    case AtlasFormat::kEtc2:
       return texels;
   }
   return 0;
 }
 
 inline size_t normal_bytes(AtlasFormat format, size_t texels) {
-  return format == AtlasFormat::kRgba8 || format == AtlasFormat::kRgb5a1 ? texels * 2 : texels;
+  return in_blocks(format) ? texels : texels * 2;
 }
 
 }  // namespace throng

@@ -654,7 +654,7 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         told = json.loads(done.stdout)
         self.assertEqual((told["directions"], told["views"], told["frames"]), (8, 32, 4))
-        self.assertEqual([row["format"] for row in told["formats"]], ["rgba8", "rgb5a1", "bc1", "bc3"])
+        self.assertEqual([row["format"] for row in told["formats"]], ["rgba8", "rgb5a1", "bc1", "bc3", "etc2a1", "etc2"])
         self.assertEqual(told["formats"][1]["sheet_bytes"], 32 * 16 * 16 * 2)
         self.assertGreater(told["clips"][0]["stride"], 1)
         self.assertEqual(self.run_throng("atlas", "-o", "two.atlas", *small, "--threads", "2").returncode, 0)

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cstdlib>
 
 #include "impostor/etc2_codec.h"
 #include "impostor/etc2_tables.h"
@@ -32,41 +33,42 @@ int32_t value_of(const Kind& kind, int32_t base, int32_t factor, size_t table, s
 struct Fit {
   int32_t base = 0, factor = 1;
   size_t table = 13;
-  std::array<uint8_t, 16> index{};
   int64_t error = INT64_MAX;
 };
 
-// The texels that count.
+// Which texels count. Loops over all sixteen, in 16 bits, are what compilers turn into vector
+// instructions.
 struct Seen {
-  std::array<int32_t, 16> value{};
-  std::array<uint8_t, 16> place{};
-  size_t count = 0;
+  std::array<int16_t, 16> value{};
+  std::array<int16_t, 16> counts{};  // 1 or 0.
   int32_t low = INT32_MAX, high = 0;
 };
 
-// Fits indices; gives up where the error is no less than `most`.
-Fit fit_indices(const Kind& kind, const Seen& seen, int32_t base, int32_t factor, size_t table,
-                int64_t most) {
-  Fit fit{.base = base, .factor = factor, .table = table, .index = {}, .error = 0};
-  std::array<int32_t, 8> values{};
-  for (size_t p = 0; p < 8; ++p) values[p] = value_of(kind, base, factor, table, p);
-  for (size_t i = 0; i < seen.count && fit.error < most; ++i) {
-    int32_t best = INT32_MAX;
-    for (uint8_t p = 0; p < 8; ++p) {
-      const int32_t off = seen.value[i] - values[p];
-      if (off * off >= best) continue;
-      best = off * off;
-      fit.index[i] = p;
-    }
-    fit.error += best;
+std::array<int16_t, 8> values_of(const Kind& kind, const Fit& fit) {
+  std::array<int16_t, 8> values;
+  for (size_t p = 0; p < 8; ++p) {
+    values[p] = static_cast<int16_t>(value_of(kind, fit.base, fit.factor, fit.table, p));
   }
-  return fit;
+  return values;
 }
 
 void try_fit(const Kind& kind, const Seen& seen, int32_t base, int32_t factor, size_t table,
              Fit& best) {
   if (base < 0 || base > 255 || factor < kind.factor || factor > 15) return;
-  const Fit fit = fit_indices(kind, seen, base, factor, table, best.error);
+  Fit fit{.base = base, .factor = factor, .table = table, .error = 0};
+  const auto values = values_of(kind, fit);
+  std::array<int16_t, 16> nearest;
+  for (size_t i = 0; i < 16; ++i) {
+    int16_t least = INT16_MAX;
+    for (size_t p = 0; p < 8; ++p) {
+      const auto off = static_cast<int16_t>(seen.value[i] - values[p]);
+      least = std::min(least, std::max(off, static_cast<int16_t>(-off)));
+    }
+    nearest[i] = least;
+  }
+  int32_t error = 0;
+  for (size_t i = 0; i < 16; ++i) error += nearest[i] * nearest[i] * seen.counts[i];
+  fit.error = error;
   if (fit.error < best.error) best = fit;
 }
 
@@ -80,12 +82,12 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
     for (int32_t f = factor; f <= factor + 2; ++f) {
       // Steps reach one further down than up, so the middle lies half a factor under the base.
       const int32_t base = (middle - kind.offset + f * kind.scale / 2) / kind.scale;
-      for (int32_t b = base - 2; b <= base + 2; ++b) try_fit(kind, seen, b, f, t, best);
+      for (int32_t b = base - 1; b <= base + 1; ++b) try_fit(kind, seen, b, f, t, best);
     }
     // The limits may cut what lies over an end: bases for which the far end still fits.
     if (seen.low > 0 && seen.high < kind.most) continue;
     const int32_t reach = kChannelSteps[t][3];
-    for (int32_t f = std::max(1, factor / 2); f <= std::min(15, factor * 2 + 1); ++f) {
+    for (int32_t f = std::max(1, factor); f <= std::min(15, factor + 4); ++f) {
       try_fit(kind, seen, (seen.low - kind.offset) / kind.scale - reach * f, f, t, best);
       try_fit(kind, seen, (seen.high - kind.offset) / kind.scale + (reach + 1) * f, f, t, best);
     }
@@ -104,20 +106,27 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
 
 Bytes8 encode(const Kind& kind, const ChannelBlock& block, const TexelWeights& weights) {
   Seen seen;
-  for (uint8_t i = 0; i < 16; ++i) {
-    if (weights[i] == 0) continue;
+  for (size_t i = 0; i < 16; ++i) {
     const int32_t value = (2 * block[i] * kind.most + 255) / 510;
-    seen.value[seen.count] = value;
-    seen.place[seen.count++] = i;
+    seen.value[i] = static_cast<int16_t>(value);
+    if (weights[i] == 0) continue;
+    seen.counts[i] = 1;
     seen.low = std::min(seen.low, value);
     seen.high = std::max(seen.high, value);
   }
-  Fit fit;
-  if (seen.count > 0) fit = fit_channel(kind, seen);
-  std::array<uint8_t, 16> index{};
-  for (size_t i = 0; i < seen.count; ++i) index[turned(seen.place[i])] = fit.index[i];
+  Fit fit{.base = 0, .factor = 1, .table = 13, .error = INT64_MAX};
+  if (seen.high >= seen.low) fit = fit_channel(kind, seen);
+  const auto values = values_of(kind, fit);
   auto word = static_cast<uint64_t>(fit.base << 8 | fit.factor << 4) | fit.table;
-  for (const uint8_t i : index) word = word << 3 | i;
+  for (size_t i = 0; i < 16; ++i) {
+    const size_t texel = turned(i);
+    uint64_t index = 0;
+    for (size_t p = 1; p < 8 && seen.counts[texel] != 0; ++p) {
+      const int32_t value = seen.value[texel];
+      if (std::abs(value - values[p]) < std::abs(value - values[index])) index = p;
+    }
+    word = word << 3 | index;
+  }
   return bytes_of(word);
 }
 

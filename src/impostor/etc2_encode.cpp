@@ -17,17 +17,24 @@ namespace {
 
 using namespace etc2;
 
-// The texels that count.
+// The texels that count, component by component. The rest have no weight: loops over all of them,
+// in whole numbers that a float keeps exactly, are what compilers turn into vector instructions.
 struct Seen {
-  std::array<Colour, 16> colour{};
+  std::array<std::array<float, 16>, 3> part{};
   std::array<int32_t, 16> weight{};
   std::array<uint8_t, 16> place{};  // By column.
   size_t count = 0;
+  void add(const Colour& colour, int32_t heavy, uint8_t by_column) {
+    for (size_t k = 0; k < 3; ++k) part[k][count] = static_cast<float>(colour[k]);
+    weight[count] = heavy;
+    place[count++] = by_column;
+  }
+  [[nodiscard]] int32_t value(size_t i, size_t k) const { return static_cast<int32_t>(part[k][i]); }
 };
 
 // Which of four colours each texel takes.
 struct Choice {
-  std::array<uint8_t, 16> index{};
+  std::array<int32_t, 16> index{};
   int64_t error = INT64_MAX;
 };
 
@@ -39,10 +46,6 @@ struct Block {
 
 using Exact = std::array<double, 3>;
 
-Exact exact(const Colour& c) {
-  return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
-}
-
 int32_t quantise(double value, int32_t largest) {
   return static_cast<int32_t>(std::clamp(value, 0.0, 255.0) * largest / 255 + 0.5);
 }
@@ -51,23 +54,31 @@ Colour quantise(const Exact& value, int32_t largest) {
   return {quantise(value[0], largest), quantise(value[1], largest), quantise(value[2], largest)};
 }
 
-// Gives up where the error is no less than `most`. With `hole`, index 2 is not to be had.
-Choice choose(const Seen& seen, const std::array<Colour, 4>& colours, bool hole, int64_t most) {
-  Choice choice;
-  choice.error = 0;
-  for (size_t i = 0; i < seen.count && choice.error < most; ++i) {
-    int32_t best = INT32_MAX;
-    for (uint8_t p = 0; p < 4; ++p) {
-      const int32_t r = seen.colour[i][0] - colours[p][0];
-      const int32_t g = seen.colour[i][1] - colours[p][1];
-      const int32_t b = seen.colour[i][2] - colours[p][2];
-      const int32_t error = r * r + g * g + b * b;
-      if (error >= best || (hole && p == 2)) continue;
-      best = error;
-      choice.index[i] = p;
-    }
-    choice.error += int64_t{best} * seen.weight[i];
+// With `hole`, index 2 is not to be had.
+Choice choose(const Seen& seen, std::array<Colour, 4> colours, bool hole) {
+  if (hole) colours[2] = colours[0];  // Of two that are the same, the first is taken.
+  std::array<std::array<float, 4>, 3> part{};
+  for (size_t p = 0; p < 4; ++p) {
+    for (size_t k = 0; k < 3; ++k) part[k][p] = static_cast<float>(colours[p][k]);
   }
+  Choice choice;
+  std::array<int32_t, 16> error{};
+  const size_t texels = seen.count <= 8 ? 8 : 16;
+  for (size_t i = 0; i < texels; ++i) {
+    float best = 1e9F;
+    int32_t index = 0;
+    for (size_t p = 0; p < 4; ++p) {
+      const float r = seen.part[0][i] - part[0][p], g = seen.part[1][i] - part[1][p];
+      const float b = seen.part[2][i] - part[2][p];
+      const float off = r * r + g * g + b * b;
+      index = off < best ? static_cast<int32_t>(p) : index;
+      best = off < best ? off : best;
+    }
+    choice.index[i] = index;
+    error[i] = static_cast<int32_t>(best) * seen.weight[i];
+  }
+  choice.error = 0;
+  for (size_t i = 0; i < seen.count; ++i) choice.error += error[i];
   return choice;
 }
 
@@ -78,9 +89,10 @@ std::optional<Exact> mean_less_steps(const Seen& seen, const Choice& choice,
   Colour sum{};
   int32_t weight = 0;
   for (size_t i = 0; i < seen.count; ++i) {
-    const uint8_t index = choice.index[i];
+    const int32_t index = choice.index[i];
     if (!mine(index)) continue;
-    for (size_t k = 0; k < 3; ++k) sum[k] += seen.weight[i] * (seen.colour[i][k] - steps[index]);
+    const int32_t step = steps[static_cast<size_t>(index)];
+    for (size_t k = 0; k < 3; ++k) sum[k] += seen.weight[i] * (seen.value(i, k) - step);
     weight += seen.weight[i];
   }
   if (weight == 0) return std::nullopt;
@@ -141,8 +153,7 @@ Bases near(const Colour& base, int32_t below, int32_t above) {
 
 void try_half(const Seen& seen, const Bases& bases, const Colour& base, size_t table, bool hole,
               Half& best) {
-  const Choice choice =
-      choose(seen, half_colours(bases.wide(base), table, hole), hole, best.choice.error);
+  const Choice choice = choose(seen, half_colours(bases.wide(base), table, hole), hole);
   if (choice.error < best.choice.error) best = {base, table, choice};
 }
 
@@ -153,14 +164,13 @@ Half fit_half(const Seen& seen, const Bases& bases, bool hole) {
     best.choice.error = 0;
     return best;
   }
-  const auto any = [](uint8_t) { return true; };
+  const auto any = [](int32_t) { return true; };
   const Exact middle = *mean_less_steps(seen, best.choice, {}, any);
   for (size_t table = 0; table < 8 && best.choice.error > 0; ++table) {
     const int32_t close = hole ? 0 : kSteps[table][0], far = kSteps[table][1];
     Half own{.base = bases.nearest(middle), .table = table, .choice = {}};
     for (int32_t round = 0; round < 3; ++round) {
-      const Choice choice =
-          choose(seen, half_colours(bases.wide(own.base), table, hole), hole, own.choice.error);
+      const Choice choice = choose(seen, half_colours(bases.wide(own.base), table, hole), hole);
       if (choice.error >= own.choice.error) break;
       own.choice = choice;
       if (choice.error < best.choice.error) best = own;
@@ -192,9 +202,7 @@ Block fit_halves(const Seen& seen, bool holes, bool hole, bool rows) {
   Seen first, second;
   for (size_t i = 0; i < seen.count; ++i) {
     Seen& to = (rows ? seen.place[i] % 4 >= 2 : seen.place[i] >= 8) ? second : first;
-    to.colour[to.count] = seen.colour[i];
-    to.weight[to.count] = seen.weight[i];
-    to.place[to.count++] = seen.place[i];
+    to.add({seen.value(i, 0), seen.value(i, 1), seen.value(i, 2)}, seen.weight[i], seen.place[i]);
   }
   Half a = fit_half(first, kAnyOf5, hole), b = fit_half(second, kAnyOf5, hole);
   // The second base tells how far it is from the first: -4 to 3.
@@ -258,18 +266,17 @@ void try_pair(const Seen& seen, bool hole, Pair pair, Pair& best) {
   const Colour a{widen4(pair.a[0]), widen4(pair.a[1]), widen4(pair.a[2])};
   const Colour b{widen4(pair.b[0]), widen4(pair.b[1]), widen4(pair.b[2])};
   const int32_t d = kDistances[pair.distance];
-  pair.choice =
-      choose(seen, pair.h ? h_colours(a, b, d) : t_colours(a, b, d), hole, best.choice.error);
+  pair.choice = choose(seen, pair.h ? h_colours(a, b, d) : t_colours(a, b, d), hole);
   if (pair.choice.error < best.choice.error) best = pair;
 }
 
 void improve_pair(const Seen& seen, bool hole, Pair& best) {
   for (int32_t round = 0; round < 3 && best.choice.error > 0; ++round) {
     const int64_t before = best.choice.error;
-    const auto of_a = [&](uint8_t index) { return best.h ? index < 2 : index == 0; };
+    const auto of_a = [&](int32_t index) { return best.h ? index < 2 : index == 0; };
     const auto a = mean_less_steps(seen, best.choice, steps_of(best), of_a);
     const auto b = mean_less_steps(seen, best.choice, steps_of(best),
-                                   [&](uint8_t index) { return !of_a(index); });
+                                   [&](int32_t index) { return !of_a(index); });
     Pair next = best;
     if (a) next.a = quantise(*a, 15);
     if (b) next.b = quantise(*b, 15);
@@ -293,7 +300,7 @@ void improve_pair(const Seen& seen, bool hole, Pair& best) {
 std::array<Exact, 2> two_groups(const Seen& seen, bool by_hue) {
   std::array<Exact, 16> at{};
   for (size_t i = 0; i < seen.count; ++i) {
-    at[i] = exact(seen.colour[i]);
+    for (size_t k = 0; k < 3; ++k) at[i][k] = seen.part[k][i];
     const double grey = by_hue ? (at[i][0] + at[i][1] + at[i][2]) / 3 : 0;
     for (double& part : at[i]) part -= grey;
   }
@@ -317,7 +324,7 @@ std::array<Exact, 2> two_groups(const Seen& seen, bool by_hue) {
     for (size_t i = 0; i < seen.count; ++i) {
       const size_t group = apart(at[i], middle[1]) < apart(at[i], middle[0]) ? 1 : 0;
       for (size_t k = 0; k < 3; ++k) {
-        sum[group][k] += seen.weight[i] * seen.colour[i][k];
+        sum[group][k] += seen.weight[i] * static_cast<double>(seen.part[k][i]);
         place[group][k] += seen.weight[i] * at[i][k];
       }
       weight[group] += seen.weight[i];
@@ -387,7 +394,7 @@ Block fit_pair(const Seen& seen, bool hole, bool h) {
   if (best.choice.error == INT64_MAX) return {};
   if (h && (best.a >= best.b) != (best.distance % 2 == 1)) {
     std::swap(best.a, best.b);
-    for (uint8_t& index : best.choice.index) index ^= 2;
+    for (int32_t& index : best.choice.index) index ^= 2;
   }
   return {
       (h ? h_bits(best) : t_bits(best)) | field(hole ? 0 : 1, 33) | index_bits(seen, best.choice),
@@ -410,7 +417,7 @@ int64_t slope_error(const Seen& seen, size_t k, const std::array<int32_t, 3>& en
     const int32_t x = seen.place[i] / 4, y = seen.place[i] % 4;
     const int32_t value =
         byte_of((x * (across - corner) + y * (down - corner) + 4 * corner + 2) >> 2);
-    const int32_t off = seen.colour[i][k] - value;
+    const int32_t off = seen.value(i, k) - value;
     error += int64_t{off * off} * seen.weight[i];
   }
   return error;
@@ -424,13 +431,13 @@ Slope fit_slope(const Seen& seen, size_t k) {
     weight += w;
     mx += w * (seen.place[i] / 4);
     my += w * (seen.place[i] % 4);
-    mc += w * seen.colour[i][k];
+    mc += w * static_cast<double>(seen.part[k][i]);
   }
   mx /= weight, my /= weight, mc /= weight;
   double xx = weight * 1e-3, xy = 0, yy = weight * 1e-3, xc = 0, yc = 0;
   for (size_t i = 0; i < seen.count; ++i) {
     const double w = seen.weight[i], x = seen.place[i] / 4 - mx, y = seen.place[i] % 4 - my;
-    const double c = seen.colour[i][k] - mc;
+    const double c = static_cast<double>(seen.part[k][i]) - mc;
     xx += w * x * x, xy += w * x * y, yy += w * y * y, xc += w * x * c, yc += w * y * c;
   }
   const double determinant = xx * yy - xy * xy;
@@ -477,9 +484,7 @@ Bytes8 encode_etc2(const ColourBlock& block, const TexelWeights& weights, bool h
     const size_t place = turned(i);
     if (is_hole) hole_bits |= uint64_t{1} << (16 + place);  // Index 2.
     if (weights[i] == 0 || is_hole) continue;
-    seen.weight[seen.count] = weights[i];
-    seen.colour[seen.count] = {block[i][0], block[i][1], block[i][2]};
-    seen.place[seen.count++] = static_cast<uint8_t>(place);
+    seen.add({block[i][0], block[i][1], block[i][2]}, weights[i], static_cast<uint8_t>(place));
   }
   const bool hole = hole_bits != 0;
   if (seen.count == 0) return bytes_of(hole_bits | field(holes && !hole ? 1 : 0, 33));

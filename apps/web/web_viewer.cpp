@@ -220,14 +220,16 @@ EMSCRIPTEN_KEEPALIVE const char* throng_settings() {
   return page().text.c_str();
 }
 
-/// Writes the built-in figure's atlas: for scripts/web, so that no visitor has to wait for it.
-EMSCRIPTEN_KEEPALIVE bool throng_make_figure(const char* path) {
+/// Writes the built-in figure's atlas in BC1 or, for phones, in ETC2: for scripts/web, so that no
+/// visitor has to wait for it.
+EMSCRIPTEN_KEEPALIVE bool throng_make_figure(const char* path, bool etc2) {
   AtlasConfig config;
   config.clips = {"Walk", "Idle"};
   Context context;
   const Result<Atlas> atlas = build_atlas(built_in_character(), config, context);
   if (!atlas) return fail_with(atlas.error().message);
-  const Result<void> saved = save_atlas(convert_atlas(*atlas, AtlasFormat::kBc1), path);
+  const AtlasFormat format = etc2 ? AtlasFormat::kEtc2a1 : AtlasFormat::kBc1;
+  const Result<void> saved = save_atlas(convert_atlas(*atlas, format), path);
   return saved ? true : fail_with(saved.error().message);
 }
 

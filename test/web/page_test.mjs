@@ -204,6 +204,28 @@ const tests = {
     return existsSync(world) ? 'both' : 'the scenario alone: no garage.throng';
   },
 
+  async 'a card of a phone, with ETC2 and without S3TC, gets its own figure'(page) {
+    await page.addInitScript(() => {
+      const is_s3tc = (name) => name.startsWith('WEBGL_compressed_texture_s3tc');
+      const { getExtension, getSupportedExtensions } = WebGL2RenderingContext.prototype;
+      WebGL2RenderingContext.prototype.getExtension = function (name) { return is_s3tc(name) ? null : getExtension.call(this, name); };
+      WebGL2RenderingContext.prototype.getSupportedExtensions = function () { return getSupportedExtensions.call(this).filter((name) => !is_s3tc(name)); };
+      window.kinds = new Set();
+      const { compressedTexImage3D } = WebGL2RenderingContext.prototype;
+      WebGL2RenderingContext.prototype.compressedTexImage3D = function (...given) { window.kinds.add(given[2]); return compressedTexImage3D.apply(this, given); };
+    });
+    const fetched = [];
+    page.on('request', (request) => fetched.push(path.basename(new URL(request.url()).pathname)));
+    await page.goto(`${server.url}?open=builtin:garage&avatars=200&${kNear}`);
+    if (!await page.evaluate(() => document.createElement('canvas').getContext('webgl2').getExtension('WEBGL_compressed_texture_etc'))) return 'skipped: no ETC2 here';
+    await walking(page, 150);
+    assert.deepEqual(fetched.filter((name) => name.endsWith('.atlas')), ['people_etc2.atlas']);
+    assert.deepEqual(await page.evaluate(() => [...window.kinds]), [0x9279]);  // COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2
+    assert.deepEqual(page.complaints, []);
+    if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'etc2.png') });
+    return undefined;
+  },
+
   async 'opens a recording and its world by address'(page) {
     if (!existsSync(path.join(folder, 'walk.replay'))) return 'skipped: no walk.replay';
     await page.goto(`${server.url}?open=walk.replay&world=garage.throng.tar&source=builtin:garage`);

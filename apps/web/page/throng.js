@@ -70,6 +70,13 @@ function start_sentence() {
   return viewer.ccall('throng_error', 'string', [], []);
 }
 
+// Who walks, in blocks that this card reads: S3TC on desktops, ETC2 on phones. The viewer unpacks what the card does not read.
+function figure_file() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  const s3tc = gl?.getExtension('WEBGL_compressed_texture_s3tc'), etc2 = gl?.getExtension('WEBGL_compressed_texture_etc');
+  return etc2 && !s3tc ? 'people_etc2.atlas' : 'people.atlas';
+}
+
 async function begin() {
   const missing = what_is_missing();
   if (missing) {
@@ -79,7 +86,7 @@ async function begin() {
   tell('Loading the viewer', 0);
   const shared = (from, to, what) => (done, total) => tell(what, total > 0 ? from + (to - from) * done / total : undefined);
   const wasmBinary = await fetch_bytes('throng_web.wasm', shared(0, 0.6, 'Loading the viewer'));
-  const figure = await fetch_bytes('people.atlas', shared(0.6, 0.9, 'Loading the people'));
+  const figure = await fetch_bytes(figure_file(), shared(0.6, 0.9, 'Loading the people'));
   const font = await fetch_bytes('panel.ttf', () => {}).catch(() => null);  // Without it there are smaller letters.
   tell('Starting', 0.95);
   viewer = await window.make_throng({

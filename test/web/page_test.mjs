@@ -220,7 +220,7 @@ const tests = {
     if (!await page.evaluate(() => document.createElement('canvas').getContext('webgl2').getExtension('WEBGL_compressed_texture_etc'))) return 'skipped: no ETC2 here';
     await walking(page, 150);
     assert.deepEqual(fetched.filter((name) => name.endsWith('.atlas')), ['people_etc2.atlas']);
-    assert.deepEqual(await page.evaluate(() => [...window.kinds]), [0x9279]);  // COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2
+    assert.deepEqual(await page.evaluate(() => [...window.kinds]), [0x9276]);  // COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2
     assert.deepEqual(page.complaints, []);
     if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'etc2.png') });
     return undefined;

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "command.h"
 #include "throng/impostor.h"
@@ -21,7 +21,7 @@ struct AtlasOptions {
   std::string character;
   std::string output;
   std::string images;
-  AtlasFormat format = AtlasFormat::kBc3;
+  std::string format = "bc3";
   AtlasConfig config;
 };
 
@@ -115,6 +115,13 @@ std::string text_of(const Atlas& atlas, const std::vector<FormatRow>& rows) {
   return text;
 }
 
+// One of word_for()'s words: others do not get past the options.
+AtlasFormat format_called(const std::string& word) {
+  int32_t format = 0;
+  while (word != word_for(static_cast<AtlasFormat>(format))) ++format;
+  return static_cast<AtlasFormat>(format);
+}
+
 int atlas(Session& session, const AtlasOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Character character;
@@ -130,7 +137,7 @@ int atlas(Session& session, const AtlasOptions& options) {
     const std::string whose = options.character.empty() ? "" : options.character + ": ";
     return fail({exact.error().code, whose + exact.error().message});
   }
-  const Atlas kept = convert_atlas(*exact, options.format, options.config.workers);
+  const Atlas kept = convert_atlas(*exact, format_called(options.format), options.config.workers);
   if (!options.output.empty()) {
     if (auto done = save_atlas(kept, options.output); !done) return fail(done.error());
   }
@@ -143,7 +150,7 @@ int atlas(Session& session, const AtlasOptions& options) {
   Json json = json_of(kept, rows);
   json["triangles"] = character.triangles.size();
   json["bones"] = character.bones.size();
-  json["format"] = word_for(options.format);
+  json["format"] = options.format;
   json["seconds"] = seconds;
   print_result(session, json, text_of(kept, rows));
   return kDone;
@@ -180,17 +187,15 @@ void add_atlas(CLI::App& parser, Session& session) {
   command->add_option("--pixels", config.pixels, "Side of a view [texels]")->capture_default_str();
   command->add_option("--height", config.height, "Height of the figure, 0: the file's own [m]")
       ->capture_default_str();
+  std::vector<std::string> words;
+  for (int32_t f = 0; f < kAtlasFormats; ++f) {
+    words.emplace_back(word_for(static_cast<AtlasFormat>(f)));
+  }
   command
-      ->add_option("--format", options->format, "rgba8, rgb5a1, bc1, bc3, etc2a1 or etc2 (phones)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, AtlasFormat>{{"rgba8", AtlasFormat::kRgba8},
-                                             {"rgb5a1", AtlasFormat::kRgb5a1},
-                                             {"bc1", AtlasFormat::kBc1},
-                                             {"bc3", AtlasFormat::kBc3},
-                                             {"etc2a1", AtlasFormat::kEtc2a1},
-                                             {"etc2", AtlasFormat::kEtc2}},
-          CLI::ignore_case))
-      ->default_str("bc3");
+      ->add_option("--format", options->format,
+                   "How colours are kept; bc1 and bc3 for desktops, etc2a1 and etc2 for phones")
+      ->transform(CLI::IsMember(words, CLI::ignore_case))
+      ->capture_default_str();
   command->add_option("--images", options->images, "Folder for a picture of each frame")
       ->type_name("DIR");
   command->add_option("--threads", config.workers, "Threads, 0 for all cores");

@@ -261,6 +261,22 @@ struct WaysReport {
   bool passed = false;
 };
 
+// What is told of ways over nodes and over level tiles alike.
+template <class Report>
+Json with_sums(Json json, const Report& report) {
+  json.update({{"entered", report.entered},
+               {"unsupported", report.unsupported},
+               {"torn", report.torn},
+               {"disagree", report.disagree},
+               {"length", report.length},
+               {"straight", report.straight},
+               {"search_seconds", report.search_seconds},
+               {"make_seconds", report.make_seconds},
+               {"finder_bytes", report.finder_bytes},
+               {"seconds", report.seconds}});
+  return json;
+}
+
 WaysReport told(const std::string& name, const NodePathReport& report) {
   Json kinds = Json::object();
   for (uint8_t k = 0; k < kLinkKinds; ++k) {
@@ -268,25 +284,16 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
       kinds[word_for(static_cast<LinkKind>(k))] = report.links_of_kind[k];
     }
   }
-  return {{{"class", name},
-           {"over", "nodes"},
-           {"pairs", report.pairs},
-           {"reached", report.reached},
-           {"parted", report.parted},
-           {"legs", report.legs},
-           {"links", kinds},
-           {"leaps", report.leaps},
-           {"poses", report.poses},
-           {"entered", report.entered},
-           {"unsupported", report.unsupported},
-           {"torn", report.torn},
-           {"disagree", report.disagree},
-           {"length", report.length},
-           {"straight", report.straight},
-           {"search_seconds", report.search_seconds},
-           {"make_seconds", report.make_seconds},
-           {"finder_bytes", report.finder_bytes},
-           {"seconds", report.seconds}},
+  return {with_sums({{"class", name},
+                     {"over", "nodes"},
+                     {"pairs", report.pairs},
+                     {"reached", report.reached},
+                     {"parted", report.parted},
+                     {"legs", report.legs},
+                     {"links", kinds},
+                     {"leaps", report.leaps},
+                     {"poses", report.poses}},
+                    report),
           fmt::format(
               "{}, over nodes: {} pairs, {} reached, {} in different parts; {} legs, {} leaps, {} "
               "bodies on them in {:.1f} s\n"
@@ -300,24 +307,15 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
 
 WaysReport told(const std::string& name, const PathReport& report) {
   return {
-      {{"class", name},
-       {"over", "level tiles"},
-       {"pairs", report.pairs},
-       {"reached", report.reached},
-       {"parted", report.parted},
-       {"legs", report.legs},
-       {"bodies", report.bodies},
-       {"illegal", report.illegal},
-       {"entered", report.entered},
-       {"unsupported", report.unsupported},
-       {"torn", report.torn},
-       {"disagree", report.disagree},
-       {"length", report.length},
-       {"straight", report.straight},
-       {"search_seconds", report.search_seconds},
-       {"make_seconds", report.make_seconds},
-       {"finder_bytes", report.finder_bytes},
-       {"seconds", report.seconds}},
+      with_sums({{"class", name},
+                 {"over", "level tiles"},
+                 {"pairs", report.pairs},
+                 {"reached", report.reached},
+                 {"parted", report.parted},
+                 {"legs", report.legs},
+                 {"bodies", report.bodies},
+                 {"illegal", report.illegal}},
+                report),
       fmt::format(
           "{}: {} pairs, {} reached, {} in different parts; {} legs, {} bodies on them in {:.1f} "
           "s\n"

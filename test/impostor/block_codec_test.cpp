@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "texel_blocks.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -18,31 +19,6 @@ namespace throng {
 namespace {
 
 constexpr uint64_t kSeed = 11;
-
-TexelWeights all_of_them() {
-  TexelWeights weights;
-  weights.fill(1);
-  return weights;
-}
-
-uint8_t random_byte(uint64_t block, uint64_t i) {
-  return static_cast<uint8_t>(random_below(kSeed, block, i, 256));
-}
-
-// `kinds` colours, dealt to texels at random, with some noise.
-ColourBlock random_block(uint64_t number, uint64_t kinds, uint64_t noise) {
-  ColourBlock block;
-  for (uint64_t i = 0; i < 16; ++i) {
-    const uint64_t kind = random_below(kSeed, number, 100 + i, kinds);
-    for (uint64_t c = 0; c < 3; ++c) {
-      const int base = random_byte(number, kind * 3 + c);
-      const int off = static_cast<int>(random_below(kSeed, number, 200 + i * 3 + c, noise + 1));
-      block[i][c] = static_cast<uint8_t>(std::min(255, base + off));
-    }
-    block[i][3] = 255;
-  }
-  return block;
-}
 
 int64_t square_error(const ColourBlock& a, const ColourBlock& b) {
   int64_t sum = 0;
@@ -82,9 +58,9 @@ TEST(BlockCodec, KeepsColoursBetterThanAWellKnownEncoder) {
   for (const uint64_t kinds : {1, 2, 3, 4, 16}) {
     int64_t ours = 0, theirs = 0;
     for (uint64_t number = 0; number < 400; ++number) {
-      const ColourBlock block = random_block(number * 7 + kinds, kinds, 20);
+      const ColourBlock block = test::random_block(kSeed, number * 7 + kinds, kinds, 20);
       ColourBlock back = block;
-      decode_bc1(encode_bc1(block, all_of_them(), false), false, back);
+      decode_bc1(encode_bc1(block, test::all_texels(), false), false, back);
       ours += square_error(block, back);
       Bytes8 other;
       stb_compress_dxt_block(other.data(), block[0].data(), 0, STB_DXT_HIGHQUAL);
@@ -97,8 +73,8 @@ TEST(BlockCodec, KeepsColoursBetterThanAWellKnownEncoder) {
 
 TEST(BlockCodec, TexelsWithoutWeightCostNothing) {
   for (uint64_t number = 0; number < 100; ++number) {
-    ColourBlock block = random_block(number, 1, 0);
-    TexelWeights weights = all_of_them();
+    ColourBlock block = test::random_block(kSeed, number, 1, 0);
+    TexelWeights weights = test::all_texels();
     for (size_t i = 8; i < 16; ++i) {
       weights[i] = 0;
       block[i] = {255, 0, 255, 0};
@@ -113,13 +89,13 @@ TEST(BlockCodec, TexelsWithoutWeightCostNothing) {
 
 TEST(BlockCodec, HolesStayHolesAndNothingElseBecomesOne) {
   for (uint64_t number = 0; number < 500; ++number) {
-    ColourBlock block = random_block(number, 1 + number % 16, 40);
-    for (uint64_t i = 0; i < 16; ++i) block[i][3] = random_byte(number, 300 + i);
+    ColourBlock block = test::random_block(kSeed, number, 1 + number % 16, 40);
+    for (uint64_t i = 0; i < 16; ++i) block[i][3] = test::random_byte(kSeed, number, 300 + i);
     if (number % 5 == 0) {
       for (auto& texel : block) texel[3] = number % 2 == 0 ? 255 : 0;
     }
     ColourBlock back;
-    decode_bc1(encode_bc1(block, all_of_them(), true), true, back);
+    decode_bc1(encode_bc1(block, test::all_texels(), true), true, back);
     for (size_t i = 0; i < 16; ++i) EXPECT_EQ(back[i][3], block[i][3] < 128 ? 0 : 255) << number;
   }
 }
@@ -127,11 +103,11 @@ TEST(BlockCodec, HolesStayHolesAndNothingElseBecomesOne) {
 TEST(BlockCodec, AChannelOfFewValuesIsKeptExactly) {
   for (uint64_t number = 0; number < 500; ++number) {
     ChannelBlock block;
-    const uint8_t one = random_byte(number, 0);
+    const uint8_t one = test::random_byte(kSeed, number, 0);
     const uint8_t few[] = {0, 255, one};
     for (uint64_t i = 0; i < 16; ++i) block[i] = few[random_below(kSeed, number, i + 1, 3)];
     ChannelBlock back;
-    decode_bc4(encode_bc4(block, all_of_them()), back);
+    decode_bc4(encode_bc4(block, test::all_texels()), back);
     EXPECT_EQ(back, block) << number;
   }
 }
@@ -146,7 +122,7 @@ TEST(BlockCodec, AChannelIsNeverFurtherOffThanHalfAStepOfItsRange) {
       low = std::min<int>(low, block[i]), high = std::max<int>(high, block[i]);
     }
     ChannelBlock back;
-    decode_bc4(encode_bc4(block, all_of_them()), back);
+    decode_bc4(encode_bc4(block, test::all_texels()), back);
     int64_t error = 0;
     for (size_t i = 0; i < 16; ++i) error += (back[i] - block[i]) * (back[i] - block[i]);
     const double half_step = (high - low) / 14.0 + 1;

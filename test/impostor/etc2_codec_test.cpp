@@ -12,46 +12,22 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "plain_etc2.h"
+#include "texel_blocks.h"
 
 namespace throng {
 namespace {
 
 constexpr uint64_t kSeed = 23;
 
-TexelWeights all_of_them() {
-  TexelWeights weights;
-  weights.fill(1);
-  return weights;
-}
-
-uint8_t random_byte(uint64_t block, uint64_t i) {
-  return static_cast<uint8_t>(random_below(kSeed, block, i, 256));
-}
-
 // Any bits at all, or bytes of which many are extreme.
 Bytes8 random_bytes(uint64_t number) {
   constexpr uint8_t kExtreme[] = {0x00, 0xff, 0x80, 0x7f, 0xf8, 0x07, 0x04, 0xfb};
   Bytes8 bytes;
   for (uint64_t i = 0; i < 8; ++i) {
-    bytes[i] = random_byte(number, i);
+    bytes[i] = test::random_byte(kSeed, number, i);
     if (number % 4 == 0 && bytes[i] % 2 == 0) bytes[i] = kExtreme[bytes[i] / 32];
   }
   return bytes;
-}
-
-// `kinds` colours, dealt to texels at random, with some noise.
-ColourBlock random_block(uint64_t number, uint64_t kinds, uint64_t noise) {
-  ColourBlock block;
-  for (uint64_t i = 0; i < 16; ++i) {
-    const uint64_t kind = random_below(kSeed, number, 100 + i, kinds);
-    for (uint64_t c = 0; c < 3; ++c) {
-      const int base = random_byte(number, kind * 3 + c);
-      const int off = static_cast<int>(random_below(kSeed, number, 200 + i * 3 + c, noise + 1));
-      block[i][c] = static_cast<uint8_t>(std::min(255, base + off));
-    }
-    block[i][3] = 255;
-  }
-  return block;
 }
 
 double mean_square(const ColourBlock& a, const ColourBlock& b) {
@@ -64,7 +40,7 @@ double mean_square(const ColourBlock& a, const ColourBlock& b) {
 
 ColourBlock there_and_back(const ColourBlock& block) {
   ColourBlock back = block;
-  decode_etc2(encode_etc2(block, all_of_them(), false), false, back);
+  decode_etc2(encode_etc2(block, test::all_texels(), false), false, back);
   return back;
 }
 
@@ -111,21 +87,22 @@ TEST(Etc2Codec, WritesAllModesAndEachWhereItFits) {
   std::map<std::string, int> modes;
   for (uint64_t number = 0; number < 3000; ++number) {
     const bool holes = number % 3 == 0;
-    ColourBlock block = random_block(number, 1 + number % 5, number % 30);
+    ColourBlock block = test::random_block(kSeed, number, 1 + number % 5, number % 30);
     for (uint64_t i = 0; i < 16 && number % 5 < 2; ++i) {
       const auto x = static_cast<int>(i % 4), y = static_cast<int>(i / 4);
-      const int shade = random_byte(number, 50 + i) / 8;
+      const int shade = test::random_byte(kSeed, number, 50 + i) / 8;
       for (uint64_t c = 0; c < 3; ++c) {
-        const int first = random_byte(number, c), second = random_byte(number, 3 + c);
+        const int first = test::random_byte(kSeed, number, c),
+                  second = test::random_byte(kSeed, number, 3 + c);
         const int half = shade + (x < 2 ? first : second) * 3 / 4;
         block[i][c] =
             static_cast<uint8_t>(number % 5 == 0 ? 40 + (x * first + y * second) / 8 : half);
       }
     }
     if (number % 2 == 0) {
-      for (uint64_t i = 0; i < 16; ++i) block[i][3] = random_byte(number, 300 + i / 3);
+      for (uint64_t i = 0; i < 16; ++i) block[i][3] = test::random_byte(kSeed, number, 300 + i / 3);
     }
-    ++modes[test::plain_etc2_mode(encode_etc2(block, all_of_them(), holes), holes)];
+    ++modes[test::plain_etc2_mode(encode_etc2(block, test::all_texels(), holes), holes)];
   }
   EXPECT_EQ(modes.size(), 5U);
   for (const auto& [mode, count] : modes) EXPECT_GT(count, 50) << mode;
@@ -136,7 +113,8 @@ TEST(Etc2Codec, ASlopeIsKeptToThreeSteps) {
     ColourBlock block;
     for (uint64_t i = 0; i < 16; ++i) {
       for (uint64_t c = 0; c < 3; ++c) {
-        const int across = random_byte(number, c), down = random_byte(number, 3 + c);
+        const int across = test::random_byte(kSeed, number, c),
+                  down = test::random_byte(kSeed, number, 3 + c);
         const auto x = static_cast<int>(i % 4), y = static_cast<int>(i / 4);
         block[i][c] = static_cast<uint8_t>(100 + (across * x - down * y) / 16);
       }
@@ -156,7 +134,7 @@ TEST(Etc2Codec, KeepsColoursAsWellAsAsked) {
   for (const auto& [kinds, limit] : most) {
     double sum = 0;
     for (uint64_t number = 0; number < 400; ++number) {
-      const ColourBlock block = random_block(number * 7 + kinds, kinds, 6);
+      const ColourBlock block = test::random_block(kSeed, number * 7 + kinds, kinds, 6);
       sum += mean_square(block, there_and_back(block)) / 400;
     }
     EXPECT_LE(sum, limit) << kinds << " kinds of colour";
@@ -166,8 +144,8 @@ TEST(Etc2Codec, KeepsColoursAsWellAsAsked) {
 
 TEST(Etc2Codec, TexelsWithoutWeightCostNothing) {
   for (uint64_t number = 0; number < 100; ++number) {
-    ColourBlock block = random_block(number, 1, 0);
-    TexelWeights weights = all_of_them();
+    ColourBlock block = test::random_block(kSeed, number, 1, 0);
+    TexelWeights weights = test::all_texels();
     for (size_t i = 0; i < 16; ++i) {
       if ((number + i * 7) % 16 < 8) continue;
       weights[i] = 0;
@@ -185,8 +163,8 @@ TEST(Etc2Codec, TexelsWithoutWeightCostNothing) {
 TEST(Etc2Codec, HeavyTexelsAreKeptBetterThanLightOnes) {
   double with = 0, without = 0;
   for (uint64_t number = 0; number < 300; ++number) {
-    const ColourBlock block = random_block(number, 4, 10);
-    TexelWeights weights = all_of_them();
+    const ColourBlock block = test::random_block(kSeed, number, 4, 10);
+    TexelWeights weights = test::all_texels();
     for (size_t i = 0; i < 16; ++i) weights[i] = i * 7 % 16 < 8 ? 255 : 1;
     const auto heavy_error = [&](const TexelWeights& given) {
       ColourBlock back = block;
@@ -197,7 +175,7 @@ TEST(Etc2Codec, HeavyTexelsAreKeptBetterThanLightOnes) {
       return mean_square(block, back);
     };
     with += heavy_error(weights);
-    without += heavy_error(all_of_them());
+    without += heavy_error(test::all_texels());
   }
   EXPECT_LT(with, 0.9 * without);
   RecordProperty("share", std::to_string(with / without));
@@ -205,12 +183,12 @@ TEST(Etc2Codec, HeavyTexelsAreKeptBetterThanLightOnes) {
 
 TEST(Etc2Codec, HolesStayHolesAndNothingElseBecomesOne) {
   for (uint64_t number = 0; number < 1000; ++number) {
-    ColourBlock block = random_block(number, 1 + number % 16, 40);
-    for (uint64_t i = 0; i < 16; ++i) block[i][3] = random_byte(number, 300 + i);
+    ColourBlock block = test::random_block(kSeed, number, 1 + number % 16, 40);
+    for (uint64_t i = 0; i < 16; ++i) block[i][3] = test::random_byte(kSeed, number, 300 + i);
     if (number % 5 == 0) {
       for (auto& texel : block) texel[3] = number % 2 == 0 ? 255 : 0;
     }
-    TexelWeights weights = all_of_them();
+    TexelWeights weights = test::all_texels();
     if (number % 7 == 0) weights.fill(0);
     ColourBlock back;
     decode_etc2(encode_etc2(block, weights, true), true, back);
@@ -224,11 +202,11 @@ TEST(Etc2Codec, HolesStayHolesAndNothingElseBecomesOne) {
 TEST(Etc2Codec, AlphaOfFewValuesIsKeptNearlyExactly) {
   for (uint64_t number = 0; number < 500; ++number) {
     ChannelBlock block;
-    const uint8_t one = random_byte(number, 0);
+    const uint8_t one = test::random_byte(kSeed, number, 0);
     const uint8_t few[] = {0, 255, one};
     const uint64_t kinds = 1 + number % 3;
     for (uint64_t i = 0; i < 16; ++i) block[i] = few[2 - random_below(kSeed, number, i + 1, kinds)];
-    const Bytes8 bytes = encode_eac(block, all_of_them());
+    const Bytes8 bytes = encode_eac(block, test::all_texels());
     EXPECT_NE(bytes[1] >> 4, 0) << "encoders must not write a factor of zero";
     ChannelBlock back;
     decode_eac(bytes, back);
@@ -249,8 +227,8 @@ TEST(Etc2Codec, AChannelIsNeverFurtherOffThanHalfAStepOfItsRange) {
     }
     ChannelBlock eight;
     WideChannelBlock eleven;
-    decode_eac(encode_eac(block, all_of_them()), eight);
-    decode_eac11(encode_eac11(block, all_of_them()), eleven);
+    decode_eac(encode_eac(block, test::all_texels()), eight);
+    decode_eac11(encode_eac11(block, test::all_texels()), eleven);
     double of_eight = 0, of_eleven = 0;
     for (size_t i = 0; i < 16; ++i) {
       of_eight += std::pow(eight[i] - block[i], 2);
@@ -265,15 +243,15 @@ TEST(Etc2Codec, AChannelIsNeverFurtherOffThanHalfAStepOfItsRange) {
 TEST(Etc2Codec, TheSameBytesEverywhere) {
   uint64_t sum = 0;
   for (uint64_t number = 0; number < 2000; ++number) {
-    ColourBlock block = random_block(number, 1 + number % 6, number % 50);
+    ColourBlock block = test::random_block(kSeed, number, 1 + number % 6, number % 50);
     TexelWeights weights;
     ChannelBlock channel;
     for (uint64_t i = 0; i < 16; ++i) {
-      weights[i] = channel[i] = block[i][3] = random_byte(number, 300 + i);
+      weights[i] = channel[i] = block[i][3] = test::random_byte(kSeed, number, 300 + i);
     }
     for (const Bytes8& bytes :
          {encode_etc2(block, weights, false), encode_etc2(block, weights, true),
-          encode_eac(channel, all_of_them()), encode_eac11(channel, weights)}) {
+          encode_eac(channel, test::all_texels()), encode_eac11(channel, weights)}) {
       sum = hash_bytes(bytes.data(), bytes.size(), sum);
     }
   }

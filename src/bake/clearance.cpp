@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "bake/clearance.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 
@@ -62,32 +63,32 @@ void add_rows(const std::array<const TileLegality*, 3>& tiles, const SheetLegali
 
 void link_sheet(const Sheet& sheet, const std::array<const TileSheets*, 4>& sides, int32_t max_step,
                 SheetLegality& out) {
+  constexpr std::array<size_t, 4> kAcross{1, 0, 3, 2};
+  constexpr int32_t kFar = 1 << 28;
   for (size_t side = 0; side < 4; ++side) {
     out.link[side].fill(-1);
     out.rise[side].fill(0);
     const TileSheets* tile = sides[side];
-    if (tile == nullptr || tile->empty()) continue;
-    // Cells of this sheet's border, and across it of the other's: first, and from one to the next.
-    constexpr size_t kEnd = kTileSide - 1;
-    constexpr std::array<size_t, 4> kOwn{0, kEnd, 0, kEnd * kTileSide};
-    constexpr std::array<size_t, 4> kAcross{kEnd, 0, kEnd * kTileSide, 0};
-    const size_t stride = side < 2 ? kTileSide : 1;
-    std::array<int32_t, kTileSide> feet, best;
+    if (tile == nullptr || !sheet.has_border[side]) continue;
+    std::array<int32_t, kTileSide> best, link;
     best.fill(max_step + 1);
-    for (size_t i = 0; i < kTileSide; ++i) feet[i] = sheet.feet[kOwn[side] + i * stride];
+    link.fill(-1);
+    const auto& own = sheet.border[side];
     for (size_t s = 0; s < tile->size(); ++s) {
       const Sheet& other = *(*tile)[s];
+      if (!other.has_border[kAcross[side]]) continue;
+      const auto& across = other.border[kAcross[side]];
       const int32_t shift = other.base - sheet.base;
       for (size_t i = 0; i < kTileSide; ++i) {
-        const int32_t other_feet = other.feet[kAcross[side] + i * stride];
-        const int32_t rise = std::abs(other_feet + shift - feet[i]);
-        const bool nearer = feet[i] != kNone16 && other_feet != kNone16 && rise < best[i];
-        best[i] = nearer ? rise : best[i];
-        out.link[side][i] = nearer ? static_cast<int16_t>(s) : out.link[side][i];
+        const int32_t apart = std::abs(across[i] + shift - own[i]);
+        const int32_t rise = own[i] == kNone16 || across[i] == kNone16 ? kFar : apart;
+        link[i] = rise < best[i] ? static_cast<int32_t>(s) : link[i];
+        best[i] = std::min(rise, best[i]);
       }
     }
     for (size_t i = 0; i < kTileSide; ++i) {
-      if (out.link[side][i] >= 0) out.rise[side][i] = static_cast<uint16_t>(best[i]);
+      out.link[side][i] = static_cast<int16_t>(link[i]);
+      out.rise[side][i] = static_cast<uint16_t>(link[i] >= 0 ? best[i] : 0);
     }
   }
 }

@@ -269,6 +269,21 @@ void BareColumns(const TileGaps& gaps, std::array<uint64_t, kTileSide>& bare) {
   }
 }
 
+void LendSupports(TileGaps& gaps) {
+  const DI di;
+  for (size_t c = 0; c < kTileArea; c += hn::Lanes(di)) {
+    const VI count = hn::Load(di, &gaps.count[c]);
+    VI below = hn::Set(di, kNoSupport);
+    for (int32_t k = 0; k < gaps.max_count; ++k) {
+      const MI has = hn::Gt(count, hn::Set(di, k));
+      if (hn::AllFalse(di, has)) break;
+      GapLayer& layer = *gaps.layers[static_cast<size_t>(k)];
+      below = hn::Max(hn::Load(di, &layer.support[c]), below);
+      hn::BlendedStore(below, has, di, &layer.support[c]);
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace throng
 HWY_AFTER_NAMESPACE();
@@ -277,11 +292,14 @@ HWY_AFTER_NAMESPACE();
 namespace throng {
 
 HWY_EXPORT(FindGaps);
+HWY_EXPORT(LendSupports);
 HWY_EXPORT(BareColumns);
 
 void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
   HWY_DYNAMIC_DISPATCH(FindGaps)(columns, min_gap, gaps);
 }
+
+void lend_supports(TileGaps& gaps) { HWY_DYNAMIC_DISPATCH(LendSupports)(gaps); }
 
 std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps) {
   std::array<uint64_t, kTileSide> bare;

@@ -36,4 +36,8 @@ std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps);
 /// Joins spans that are less than `min_gap` apart and lists what is free above each run.
 void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps);
 
+/// Where matter under a gap supports nobody, gives the gap the support of the nearest gap below
+/// that has one.
+void lend_supports(TileGaps& gaps);
+
 }  // namespace throng

@@ -65,9 +65,8 @@ struct Extremes {
   VU high_top, low_top, low_ceiling;
 };
 
-// Cells whose surface the class may stand on, feet or not. False if there are none.
-bool ground_of(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
-               BitPlane& ground) {
+bool GroundOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+              BitPlane& ground) {
   const hn::CappedTag<uint8_t, 64> dc;
   ground.fill(0);
   if (sheet.one_code) {
@@ -88,11 +87,9 @@ bool ground_of(const Sheet& sheet, const BodyWindow& body, const BodyLimits& lim
   return any != 0;
 }
 
-void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BitPlane& ground,
                   LegalityScratch& scratch, LegalCells& out) {
-  BitPlane ground;  // what the class may stand on
   out = {};
-  if (!ground_of(sheet, body, limits, ground)) return;
   const DU du;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
   const int32_t reach = body.reach;
@@ -137,13 +134,13 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
   const VU hope = hn::Set(du, static_cast<uint16_t>(body.hope));
   const VU gentle = hn::Set(du, static_cast<uint16_t>(body.gentle));
   for (int32_t z = 0; z < kTileSide; ++z) {
-    uint64_t legal = 0, stand = 0, slanted = 0, hemmed = 0;
+    uint64_t legal = 0, slanted = 0, hemmed = 0;
     const uint64_t allowed = ground[static_cast<size_t>(z)];
     if (allowed == 0) continue;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const VU feet = hn::Load(du, &sheet.feet[cell]);
-      const MU stands = hn::Ne(feet, none);
+      const MU stands = mask_of(du, allowed >> x);
       if (hn::AllFalse(du, stands)) continue;
       const VU tilt = hn::Load(du, &scratch.tilt[cell]);
       const VU feet_low = hn::SaturatedSub(feet, tilt);
@@ -182,22 +179,17 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& 
       const Extremes all = look(reach, width_index);
       const MU open = is_open(all), even = is_even(all);
       const MU free = hn::And(open, even);
-      stand |= bits_of(du, stands) << x;
       legal |= bits_of(du, free) << x;
       const MU near = hn::And(at_most(all.high_top, hn::SaturatedAdd(feet, hope)),
                               at_most(feet, hn::SaturatedAdd(all.low_top, hope)));
       slanted |= bits_of(du, hn::AndNot(even, hn::And(open, near))) << x;
       const MU denied = hn::AndNot(free, hn::And(stands, at_most(tilt, gentle)));
-      if (!body.fine || (bits_of(du, denied) & allowed >> x) == 0) continue;
+      if (!body.fine || hn::AllFalse(du, denied)) continue;
       const Extremes core = look(core_reach, core_index);
       hemmed |= bits_of(du, hn::And(denied, hn::And(is_open(core), is_even(core)))) << x;
     }
-    legal &= allowed;
-    stand &= allowed;
-    slanted &= allowed;
-    hemmed &= allowed;
     out.legal[static_cast<size_t>(z)] = legal;
-    out.stands[static_cast<size_t>(z)] = stand;
+    out.stands[static_cast<size_t>(z)] = allowed;
     out.slanted[static_cast<size_t>(z)] = slanted;
     out.hemmed[static_cast<size_t>(z)] = hemmed;
   }
@@ -237,12 +229,26 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace throng {
 
+HWY_EXPORT(GroundOf);
 HWY_EXPORT(LegalCellsOf);
 HWY_EXPORT(StepSafe);
 
-void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+bool may_stand(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+               BitPlane& cells) {
+  // Of the surface, whether there are feet or not.
+  if (!HWY_DYNAMIC_DISPATCH(GroundOf)(sheet, body, limits, cells)) return false;
+  BitPlane useful = sheet.useful;
+  if (body.bottom != limits.max_bottom || body.height != limits.min_height) {
+    useful_cells(sheet, {body.bottom, body.height, limits.blocked_code}, useful);
+  }
+  uint64_t any = 0;
+  for (size_t z = 0; z < kTileSide; ++z) any |= cells[z] &= useful[z];
+  return any != 0;
+}
+
+void legal_cells(const Sheet& sheet, const BodyWindow& body, const BitPlane& cells,
                  LegalityScratch& scratch, LegalCells& out) {
-  HWY_DYNAMIC_DISPATCH(LegalCellsOf)(sheet, body, limits, scratch, out);
+  HWY_DYNAMIC_DISPATCH(LegalCellsOf)(sheet, body, cells, scratch, out);
 }
 
 bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step) {

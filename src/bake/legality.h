@@ -40,16 +40,31 @@ struct BodyWindow {
 BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell,
                        bool fine = false);
 
+/// Sheets of a tile that some classes see gaps of, by their lowest tops.
+struct SheetList {
+  std::vector<const Sheet*> sheets;
+  bool seams = false;  // some of them continue each other inside the tile
+
+  void add(const Sheet* sheet) {
+    sheets.push_back(sheet);
+    seams |= sheet->seams;
+  }
+  [[nodiscard]] size_t size() const { return sheets.size(); }
+  [[nodiscard]] bool empty() const { return sheets.empty(); }
+  [[nodiscard]] const Sheet* operator[](size_t i) const { return sheets[i]; }
+  [[nodiscard]] auto begin() const { return sheets.begin(); }
+  [[nodiscard]] auto end() const { return sheets.end(); }
+};
+
 /// Sheets of a tile and its eight neighbours, row by row from (-1, -1); null: no tile there.
-using Neighbourhood = std::array<const TileSheets*, 9>;
+using Neighbourhood = std::array<const SheetList*, 9>;
 
 /// Matter and room around one sheet, with the neighbours' cells filled in. [mm from the sheet's
 /// base]
 class SheetWindow {
  public:
   /// `reach` is the largest of all classes. [cells, <= 64]
-  void assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach, int32_t max_step,
-                int32_t min_gap);
+  void assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach, const BodyLimits& limits);
 
   [[nodiscard]] int32_t reach() const { return reach_; }
   [[nodiscard]] int32_t pad() const { return pad_; }
@@ -64,9 +79,9 @@ class SheetWindow {
  private:
   void copy_own(const Sheet& own);
   void fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach);
-  void fill_side(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
-  void fill_corner(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
-  void fill_holes(const TileSheets& tile, size_t sheet, int32_t max_step, int32_t min_gap);
+  void fill_side(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
+  void fill_corner(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
+  void fill_holes(const SheetList& tile, size_t sheet, const BodyLimits& limits);
 
   int32_t reach_ = 0;
   int32_t pad_ = 0;
@@ -85,7 +100,7 @@ struct LegalityScratch {
 /// What legal_cells found for one class.
 struct LegalCells {
   BitPlane legal{};
-  BitPlane stands{};   // feet, and a surface that the class may stand on
+  BitPlane stands{};   // may_stand
   BitPlane slanted{};  // of those, failed only for how high or low the matter around is
   BitPlane hemmed{};  // of those, on gentle ground, failed only for cells that a fine body may just
                       // miss matter in
@@ -96,9 +111,14 @@ struct LegalCells {
 bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
                const BodyLimits& limits);
 
-/// The test of docs/design/000-house.md, "legality is tested by value", for one class. `scratch`
-/// holds the window (assembled) and the tilt (from make_tilt).
-void legal_cells(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+/// Cells where the class has a surface that it may stand on and room over it, whatever is around:
+/// the only ones that can be legal. False if there are none.
+bool may_stand(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+               BitPlane& cells);
+
+/// The test of docs/design/000-house.md, "legality is tested by value", for one class. `cells` are
+/// those of may_stand; `scratch` holds the window (assembled) and the tilt (from make_tilt).
+void legal_cells(const Sheet& sheet, const BodyWindow& body, const BitPlane& cells,
                  LegalityScratch& scratch, LegalCells& out);
 
 /// The same test, relative to the plane of the feet, for cells that failed it only for the matter's
@@ -113,13 +133,13 @@ struct ColumnNeed {
 };
 
 /// True if one of the gaps of a tile's column holds the body.
-bool column_is_free(const TileSheets& tile, size_t cell, const ColumnNeed& need);
+bool column_is_free(const SheetList& tile, size_t cell, const ColumnNeed& need);
 
 /// The same test for cells that failed it near a seam, where the window may have followed the wrong
 /// sheet: each column around may show any of its gaps. Slow, exact, for few cells. Those
 /// that fail outside of the core become hemmed.
 void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
-                   const LegalityScratch& scratch, LegalCells& cells);
+                   const BodyLimits& limits, const LegalityScratch& scratch, LegalCells& cells);
 
 /// True if any two legal neighbours on the sheet differ by at most the step.
 bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step);

@@ -27,7 +27,7 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
       const int32_t cx = x + nth(k), cz = z + dz;
       const int32_t side =
           (cz < 0 ? 0 : (cz > kLast ? 6 : 3)) + (cx < 0 ? 0 : (cx > kLast ? 2 : 1));
-      const TileSheets* tile = tiles[static_cast<size_t>(side)];
+      const SheetList* tile = tiles[static_cast<size_t>(side)];
       const size_t cell = static_cast<size_t>((cz & kLast) * kTileSide + (cx & kLast));
       if (tile != nullptr && column_is_free(*tile, cell, need)) continue;
       const auto d = static_cast<size_t>(std::abs(dz));
@@ -38,20 +38,20 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
 }
 
 // Cells of a sheet whose neighbour is continued by another sheet of the tile.
-BitPlane seam_cells(const TileSheets& tile, const Sheet& own, int32_t max_step) {
+BitPlane seam_cells(const SheetList& tile, const Sheet& own, int32_t max_step) {
   TopLinks links;
   link_tops(own, max_step, links);
   BitPlane others{}, seams{};
-  for (const auto& other : tile) {
-    if (other.get() != &own) add_gap_bits(*other, others);
+  for (const Sheet* other : tile) {
+    if (other != &own) add_gap_bits(*other, others);
   }
   const auto look = [&](uint64_t cells, int32_t z, int32_t dx, int32_t dz) {
     for (; cells != 0; cells &= cells - 1) {
       const int32_t x = std::countr_zero(cells);
       const int32_t top = own.base + own.top[static_cast<size_t>(z * kTileSide + x)];
       const auto next = static_cast<size_t>((z + dz) * kTileSide + x + dx);
-      for (const auto& other : tile) {
-        if (other.get() == &own || other->top[next] == kNone16) continue;
+      for (const Sheet* other : tile) {
+        if (other == &own || other->top[next] == kNone16) continue;
         if (std::abs(other->base + other->top[next] - top) > max_step) continue;
         seams[static_cast<size_t>(z)] |= 1ULL << x;
         break;
@@ -86,8 +86,8 @@ BitPlane widened(const BitPlane& plane, int32_t reach) {
 
 }  // namespace
 
-bool column_is_free(const TileSheets& tile, size_t cell, const ColumnNeed& need) {
-  for (const auto& sheet : tile) {
+bool column_is_free(const SheetList& tile, size_t cell, const ColumnNeed& need) {
+  for (const Sheet* sheet : tile) {
     if (sheet->top[cell] == kNone16) continue;
     const int32_t top = sheet->base + sheet->top[cell];
     const bool room =
@@ -98,11 +98,13 @@ bool column_is_free(const TileSheets& tile, size_t cell, const ColumnNeed& need)
 }
 
 void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
-                   const LegalityScratch& scratch, LegalCells& cells) {
-  const TileSheets& tile = *tiles[4];
+                   const BodyLimits& limits, const LegalityScratch& scratch, LegalCells& cells) {
+  const SheetList& tile = *tiles[4];
   const Sheet& own = *tile[sheet];
   BitPlane doubtful{};
-  if (own.seams) doubtful = widened(seam_cells(tile, own, body.bottom), body.reach);
+  if (tile.size() > 1 && (tile.seams || body.bottom > limits.link_step)) {
+    doubtful = widened(seam_cells(tile, own, body.bottom), body.reach);
+  }
   // Along the border of a tile of several sheets the window may have followed the wrong one too.
   const auto several = [&](size_t side) {
     return tiles[side] != nullptr && tiles[side]->size() > 1;

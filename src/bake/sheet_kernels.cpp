@@ -22,17 +22,6 @@ using DB = hn::Rebind<uint8_t, DI>;
 using DU = hn::CappedTag<uint16_t, 32>;
 using DC = hn::Rebind<uint8_t, DU>;
 
-template <class D>
-HWY_INLINE hn::Mask<D> mask_of(D d, uint64_t bits) {
-  if constexpr (HWY_TARGET == HWY_SCALAR) {
-    return hn::MaskFromVec(hn::Set(d, static_cast<hn::TFromD<D>>((bits & 1) != 0 ? -1 : 0)));
-  } else {
-    alignas(8) uint8_t bytes[8];
-    __builtin_memcpy(bytes, &bits, 8);
-    return hn::LoadMaskBits(d, bytes);
-  }
-}
-
 // Gaps a and b continue each other: a small step, and room over both.
 HWY_INLINE hn::Mask<DI> linked(hn::Vec<DI> top_a, hn::Vec<DI> ceiling_a, hn::Vec<DI> top_b,
                                hn::Vec<DI> ceiling_b, hn::Vec<DI> max_step, hn::Vec<DI> min_gap) {
@@ -41,11 +30,12 @@ HWY_INLINE hn::Mask<DI> linked(hn::Vec<DI> top_a, hn::Vec<DI> ceiling_a, hn::Vec
   return hn::Not(hn::Or(hn::Gt(hn::Sub(high, low), max_step), hn::Lt(room, min_gap)));
 }
 
-void LinkLayer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap,
+void LinkLayer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const CellRows* only,
                LayerLinks& links) {
   const DI di;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
   const GapLayer& g = *gaps.layers[static_cast<size_t>(layer)];
+  const int32_t max_step = rule.step, min_gap = rule.gap;
   const auto step = hn::Set(di, max_step), gap = hn::Set(di, min_gap), k = hn::Set(di, layer);
   for (int32_t z = 0; z < kTileSide; ++z) {
     uint64_t has = 0, left = 0, up = 0;
@@ -76,9 +66,26 @@ void LinkLayer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t mi
             << x;
     }
     const size_t row = static_cast<size_t>(z);
+    if (only != nullptr) has &= (*only)[row];
     links.has[row] = has;
     links.left[row] = left & has & (has << 1);
     links.up[row] = z > 0 ? up & has & links.has[row - 1] : 0;
+  }
+}
+
+void LowRooms(const TileGaps& gaps, int32_t layer, int32_t room, CellRows& rows) {
+  const DI di;
+  const GapLayer& g = *gaps.layers[static_cast<size_t>(layer)];
+  const auto k = hn::Set(di, layer), least = hn::Set(di, room), sky = hn::Set(di, kOpenSkyMm);
+  for (size_t z = 0; z < kTileSide; ++z) {
+    rows[z] = 0;
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(di)) {
+      const size_t c = z * kTileSide + x;
+      const auto ceiling = hn::Load(di, &g.ceiling[c]);
+      const auto low =
+          hn::And(hn::Ne(ceiling, sky), hn::Lt(hn::Sub(ceiling, hn::Load(di, &g.top[c])), least));
+      rows[z] |= bits_of(di, hn::And(low, hn::Gt(hn::Load(di, &gaps.count[c]), k))) << x;
+    }
   }
 }
 
@@ -127,8 +134,7 @@ HWY_INLINE hn::Vec<DH> narrow(hn::Vec<DI> v) {
   return hn::TruncateTo(dh, hn::BitCast(dw, v));
 }
 
-void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits,
-               Sheet& sheet) {
+void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet) {
   const DI di;
   const DH dh;
   const DB db;
@@ -148,11 +154,8 @@ void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimit
     const auto feet = hn::Sub(hn::ShiftRight<8>(support), base);
     const auto code = hn::And(support, hn::Set(di, 255));
     const auto bad =
-        hn::Or(hn::Or(hn::Eq(support, hn::Set(di, kNoSupport)),
-                      hn::Eq(code, hn::Set(di, limits.blocked_code))),
-               hn::Or(hn::Gt(hn::Sub(top, feet), hn::Set(di, limits.max_bottom)),
-                      hn::Or(hn::Lt(feet, hn::Zero(di)),
-                             hn::Lt(ceiling, hn::Add(feet, hn::Set(di, limits.min_height))))));
+        hn::Or(hn::Eq(support, hn::Set(di, kNoSupport)),
+               hn::Or(hn::Lt(feet, hn::Zero(di)), hn::Gt(feet, hn::Set(di, kHighCeiling16))));
     const auto kept = hn::IfThenElse(bad, none, feet);
     if (here == (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL)) {
       hn::StoreU(narrow(top), dh, &sheet.top[c]);
@@ -282,6 +285,55 @@ void MakeTilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
                  &tilt[z * kTileSide + x]);
     }
   }
+}
+
+void KeepFeet(const CellRows& rows, Sheet& sheet) {
+  const DU du;
+  const auto none = hn::Set(du, kNone16);
+  auto low = none, high = hn::Zero(du);
+  sheet.present = 0;
+  for (size_t z = 0; z < kTileSide; ++z) {
+    uint64_t present = 0;
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
+      uint16_t* at = &sheet.feet[z * kTileSide + x];
+      const auto feet = hn::IfThenElse(mask_of(du, rows[z] >> x), hn::Load(du, at), none);
+      const auto stands = hn::Ne(feet, none);
+      low = hn::Min(low, feet);
+      high = hn::Max(high, hn::IfThenElseZero(stands, feet));
+      present |= bits_of(du, stands) << x;
+      hn::Store(feet, du, at);
+    }
+    sheet.present += static_cast<int32_t>(hwy::PopCount(present));
+  }
+  sheet.low_feet = hn::GetLane(hn::MinOfLanes(du, low));
+  sheet.high_feet = hn::GetLane(hn::MaxOfLanes(du, high));
+}
+
+bool UsefulCells(const Sheet& sheet, const BodyNeed& need, CellRows& rows) {
+  const DU du;
+  const DC dc;
+  const auto none = hn::Set(du, kNone16);
+  const auto set = [&](int32_t v) {
+    return hn::Set(du, static_cast<uint16_t>(std::clamp(v, 0, int32_t{kHighCeiling16})));
+  };
+  const auto bottom = set(need.bottom), height = set(need.height), barred = set(need.blocked_code);
+  const auto at_most = [](hn::Vec<DU> a, hn::Vec<DU> b) { return hn::Eq(hn::Min(a, b), a); };
+  uint64_t any = 0;
+  for (size_t z = 0; z < kTileSide; ++z) {
+    uint64_t row = 0;
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
+      const size_t c = z * kTileSide + x;
+      const auto feet = hn::Load(du, &sheet.feet[c]);
+      const auto code = hn::PromoteTo(du, hn::LoadU(dc, &sheet.code[c]));
+      const auto stands = hn::And(hn::Ne(feet, none), hn::Ne(code, barred));
+      const auto low = at_most(hn::Load(du, &sheet.top[c]), hn::SaturatedAdd(feet, bottom));
+      // Saturated, a head passes under the open sky only.
+      const auto room = at_most(hn::SaturatedAdd(feet, height), hn::Load(du, &sheet.ceiling[c]));
+      row |= bits_of(du, hn::And(stands, hn::And(low, room))) << x;
+    }
+    any |= rows[z] = row;
+  }
+  return any != 0;
 }
 
 void PresentBits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
@@ -423,6 +475,7 @@ HWY_AFTER_NAMESPACE();
 namespace throng {
 
 HWY_EXPORT(LinkLayer);
+HWY_EXPORT(LowRooms);
 HWY_EXPORT(LayerRange);
 HWY_EXPORT(RunRange);
 HWY_EXPORT(ClearSheet);
@@ -430,6 +483,8 @@ HWY_EXPORT(WriteGaps);
 HWY_EXPORT(Summarise);
 HWY_EXPORT(MayBePlane);
 HWY_EXPORT(MakeTilt);
+HWY_EXPORT(KeepFeet);
+HWY_EXPORT(UsefulCells);
 HWY_EXPORT(PresentBits);
 HWY_EXPORT(CeilingRange);
 HWY_EXPORT(ChooseGaps);
@@ -438,9 +493,13 @@ HWY_EXPORT(AddGapBits);
 HWY_EXPORT(PlaneFits);
 HWY_EXPORT(PutOnPlane);
 
-void link_layer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap,
+void link_layer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const CellRows* only,
                 LayerLinks& links) {
-  HWY_DYNAMIC_DISPATCH(LinkLayer)(gaps, layer, max_step, min_gap, links);
+  HWY_DYNAMIC_DISPATCH(LinkLayer)(gaps, layer, rule, only, links);
+}
+
+void low_rooms(const TileGaps& gaps, int32_t layer, int32_t room, CellRows& rows) {
+  HWY_DYNAMIC_DISPATCH(LowRooms)(gaps, layer, room, rows);
 }
 
 TopRange layer_range(const TileGaps& gaps, int32_t layer) {
@@ -453,9 +512,8 @@ TopRange run_range(const GapLayer& layer, int32_t z, uint64_t cells) {
 
 void clear_sheet(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(ClearSheet)(sheet); }
 
-void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits,
-                Sheet& sheet) {
-  HWY_DYNAMIC_DISPATCH(WriteGaps)(layer, z, cells, limits, sheet);
+void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet) {
+  HWY_DYNAMIC_DISPATCH(WriteGaps)(layer, z, cells, sheet);
 }
 
 void summarise(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(Summarise)(sheet); }
@@ -465,6 +523,12 @@ bool may_be_plane(const Sheet& sheet) { return HWY_DYNAMIC_DISPATCH(MayBePlane)(
 void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
   HWY_DYNAMIC_DISPATCH(MakeTilt)(sheet, tilt);
 }
+
+bool useful_cells(const Sheet& sheet, const BodyNeed& need, CellRows& rows) {
+  return HWY_DYNAMIC_DISPATCH(UsefulCells)(sheet, need, rows);
+}
+
+void keep_feet(const CellRows& rows, Sheet& sheet) { HWY_DYNAMIC_DISPATCH(KeepFeet)(rows, sheet); }
 
 void present_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
   HWY_DYNAMIC_DISPATCH(PresentBits)(sheet, rows);

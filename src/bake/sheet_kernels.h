@@ -7,6 +7,7 @@
 #include <span>
 
 #include "bake/sheets.h"
+#include "world/cell_blocks.h"
 
 /// The vector loops of sheets. Rows of 64 cells are words of bits: bit x is cell x.
 namespace throng {
@@ -18,8 +19,16 @@ struct LayerLinks {
   std::array<uint64_t, kTileSide> up;    // and at z - 1
 };
 
-void link_layer(const TileGaps& gaps, int32_t layer, int32_t max_step, int32_t min_gap,
+/// Gaps whose tops and rooms overlap so continue each other; bits of `only`, if any, are looked at.
+struct LinkRule {
+  int32_t step, gap;  // [mm]
+};
+
+void link_layer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const CellRows* only,
                 LayerLinks& links);
+
+/// Cells of a layer whose gap has less room than that.
+void low_rooms(const TileGaps& gaps, int32_t layer, int32_t room, CellRows& rows);
 
 /// Lowest and highest top over the cells of a layer that have a gap.
 struct TopRange {
@@ -33,8 +42,7 @@ TopRange run_range(const GapLayer& layer, int32_t z, uint64_t cells);
 void clear_sheet(Sheet& sheet);
 
 /// Copies the gaps of `layer` in row z whose bits are set into the sheet, whose base is set.
-void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, const BodyLimits& limits,
-                Sheet& sheet);
+void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet);
 
 /// Fills the sheet's counts and extremes.
 void summarise(Sheet& sheet);
@@ -45,6 +53,19 @@ bool may_be_plane(const Sheet& sheet);
 
 /// Half of what the feet may rise or fall over each cell, see world/surface.h. [mm]
 void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt);
+
+/// What the column of a body's feet must have: matter at most this far above them, room over them,
+/// and another surface.
+struct BodyNeed {
+  int32_t bottom, height;  // [mm]
+  int32_t blocked_code;
+};
+
+/// Cells with feet whose own columns have that, whatever is around. False if there are none.
+bool useful_cells(const Sheet& sheet, const BodyNeed& need, CellRows& rows);
+
+/// Takes the feet of all other cells away, and counts feet again.
+void keep_feet(const CellRows& rows, Sheet& sheet);
 
 /// Which cells have feet: 64 rows of 64 bits.
 void present_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows);

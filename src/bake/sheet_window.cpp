@@ -34,15 +34,15 @@ void rebase_row(const uint16_t* from, int32_t count, int32_t shift, uint16_t* to
 }
 
 // The sheet of a tile whose gap at `cell` is nearest to `near_top` (absolute), or null.
-const Sheet* nearest_sheet(const TileSheets& tile, size_t cell, int32_t near_top) {
+const Sheet* nearest_sheet(const SheetList& tile, size_t cell, int32_t near_top) {
   const Sheet* best = nullptr;
   int32_t best_distance = INT32_MAX;
-  for (const auto& sheet : tile) {
+  for (const Sheet* sheet : tile) {
     if (sheet->top[cell] == kNone16) continue;
     const int32_t distance = std::abs(sheet->base + sheet->top[cell] - near_top);
     if (distance < best_distance) {
       best_distance = distance;
-      best = sheet.get();
+      best = sheet;
     }
   }
   return best;
@@ -101,7 +101,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
 }
 
 void SheetWindow::assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach,
-                           int32_t max_step, int32_t min_gap) {
+                           const BodyLimits& limits) {
   reach_ = reach;
   pad_ = (reach + 31) / 32 * 32;
   stride_ = kTileSide + 2 * pad_;
@@ -113,9 +113,9 @@ void SheetWindow::assemble(const Neighbourhood& tiles, size_t sheet, int32_t rea
     std::fill_n(&top[begin], stride_, kNone16);
     std::fill_n(&ceiling[begin], stride_, uint16_t{0});
   }
-  const TileSheets& tile = *tiles[4];
+  const SheetList& tile = *tiles[4];
   copy_own(*tile[sheet]);
-  if (tile[sheet]->seams) fill_holes(tile, sheet, max_step, min_gap);
+  if (tile.seams && tile.size() > 1) fill_holes(tile, sheet, limits);
   fill_apron(tiles, *tile[sheet], reach);
 }
 
@@ -131,7 +131,7 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
   // Corners last: they look at the sides.
   for (const int32_t side : {1, 3, 5, 7, 0, 2, 6, 8}) {
     if (tiles[static_cast<size_t>(side)] == nullptr) continue;
-    const TileSheets& tile = *tiles[static_cast<size_t>(side)];
+    const SheetList& tile = *tiles[static_cast<size_t>(side)];
     if (tile.empty()) continue;
     const int32_t dx = side % 3 - 1, dz = side / 3 - 1;
     const auto range = [&](int32_t d) -> std::pair<int32_t, int32_t> {
@@ -162,7 +162,7 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
 
 // Several sheets beside the tile: lines of cells from the tile outward, each cell continuing the
 // one before it.
-void SheetWindow::fill_side(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz,
+void SheetWindow::fill_side(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz,
                             int32_t reach) {
   const bool is_row = dx == 0;  // lines along x
   const bool outward_up = dx + dz > 0;
@@ -208,7 +208,7 @@ void SheetWindow::fill_side(const TileSheets& tile, const Sheet& own, int32_t dx
   }
 }
 
-void SheetWindow::fill_corner(const TileSheets& tile, const Sheet& own, int32_t dx, int32_t dz,
+void SheetWindow::fill_corner(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz,
                               int32_t reach) {
   for (int32_t step_z = 0; step_z < reach; ++step_z) {
     const int32_t z = dz < 0 ? -1 - step_z : kTileSide + step_z;
@@ -228,14 +228,13 @@ void SheetWindow::fill_corner(const TileSheets& tile, const Sheet& own, int32_t 
 }
 
 // Where the sheet has no gap but another sheet of the tile continues it (a seam), takes that one's.
-void SheetWindow::fill_holes(const TileSheets& tile, size_t sheet, int32_t max_step,
-                             int32_t min_gap) {
+void SheetWindow::fill_holes(const SheetList& tile, size_t sheet, const BodyLimits& limits) {
   const Sheet& own = *tile[sheet];
   if (own.cells == kTileArea) return;
   std::array<uint64_t, kTileSide> filled{}, others{};
   add_gap_bits(own, filled);
-  for (const auto& other : tile) {
-    if (other.get() != &own) add_gap_bits(*other, others);
+  for (const Sheet* other : tile) {
+    if (other != &own) add_gap_bits(*other, others);
   }
   const auto try_fill = [&](int32_t x, int32_t z) {
     const size_t at = index(x, z);
@@ -249,8 +248,8 @@ void SheetWindow::fill_holes(const TileSheets& tile, size_t sheet, int32_t max_s
       const int32_t shift = other->base - own.base;
       const uint16_t other_top = rebased_top(other->top[cell], shift);
       const uint16_t other_ceiling = rebased_ceiling(other->ceiling[cell], shift);
-      if (std::abs(other_top - top[next]) > max_step ||
-          std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]) < min_gap) {
+      const int32_t room = std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]);
+      if (std::abs(other_top - top[next]) > limits.link_step || room < limits.low_gap) {
         continue;
       }
       top[at] = other_top;
@@ -289,7 +288,7 @@ bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
   const int32_t low_feet = own.base + 2 * own.low_feet - own.high_feet;
   const int32_t high_feet = own.base + 2 * own.high_feet - own.low_feet;
   if (own.high_feet - own.low_feet > body.step) return false;
-  for (const TileSheets* tile : tiles) {
+  for (const SheetList* tile : tiles) {
     if (tile == nullptr || tile->size() != 1) return false;
     const Sheet& other = *(*tile)[0];
     if (other.cells != kTileArea) return false;

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "bake/sheet_kernels.h"
 
@@ -21,7 +22,7 @@ namespace {
 constexpr int32_t kSide = kTileSide;
 constexpr int32_t kMaxRange = Sheet::kHighest - Sheet::kBelow;  // of tops in a sheet [mm]
 
-using Rows = std::array<uint64_t, kTileSide>;
+using Rows = CellRows;
 
 uint64_t run_mask(int32_t first, int32_t last) {
   return (~uint64_t{0} >> (63 - (last - first))) << first;
@@ -52,9 +53,16 @@ struct Piece {
 
 class Dealer {
  public:
-  Dealer(const TileGaps& gaps, const BodyLimits& limits) : gaps_(gaps), limits_(limits) {}
+  // `only`, if it is not empty: of each layer, the gaps to deal. They go on in the others.
+  Dealer(const TileGaps& gaps, const BodyLimits& limits, std::span<const Rows> only = {})
+      : gaps_(gaps), limits_(limits), only_(only) {
+    rule_ = {limits.link_step, only.empty() ? BodyLimits::kHighGap : limits.low_gap};
+  }
 
   void deal(SheetPool& pool, TileSheets& sheets);
+
+  // What has gone to no sheet, because it is too small for anybody.
+  [[nodiscard]] const std::vector<Piece>& crumbs() const { return crumbs_; }
 
  private:
   [[nodiscard]] const GapLayer& layer(int32_t k) const {
@@ -64,8 +72,13 @@ class Dealer {
     const GapLayer &p = layer(a), &q = layer(b);
     const int32_t high = std::max(p.top[cell_a], q.top[cell_b]);
     const int32_t low = std::min(p.top[cell_a], q.top[cell_b]);
-    if (high - low > limits_.max_bottom) return false;
-    return std::min(p.ceiling[cell_a], q.ceiling[cell_b]) - high >= limits_.min_gap;
+    if (high - low > rule_.step) return false;
+    return std::min(p.ceiling[cell_a], q.ceiling[cell_b]) - high >= rule_.gap;
+  }
+  // Is the gap one of those to deal?
+  [[nodiscard]] bool is_ours(size_t cell, int32_t k) const {
+    return only_.empty() ||
+           (only_[static_cast<size_t>(k)][cell / kTileSide] >> cell % kTileSide & 1) != 0;
   }
   int32_t root(int32_t run);
   void unite(int32_t a, int32_t b);
@@ -73,14 +86,17 @@ class Dealer {
   void join_ranks(size_t cell, size_t other, const int32_t* runs, const int32_t* other_runs);
   void make_components();
   void split(int32_t component);
-  [[nodiscard]] bool is_crumb(const Component& c) const;
+  [[nodiscard]] bool is_crumb(size_t component) const;
+  [[nodiscard]] bool goes_on(size_t component) const;
   int32_t pack(std::vector<int32_t>& sheet_of) const;
 
   const TileGaps& gaps_;
   const BodyLimits& limits_;
+  std::span<const Rows> only_;
+  LinkRule rule_;
   std::vector<Run> runs_;
   std::vector<Component> components_;
-  std::vector<Piece> pieces_;
+  std::vector<Piece> pieces_, crumbs_;
 };
 
 int32_t Dealer::root(int32_t run) {
@@ -104,9 +120,11 @@ void Dealer::join_ranks(size_t cell, size_t other, const int32_t* runs, const in
   for (int32_t k = 0; k < gaps_.count[cell]; ++k) {
     const int32_t top = layer(k).top[cell];
     const int32_t count = gaps_.count[other];
-    while (from < count && layer(from).top[other] < top - limits_.max_bottom) ++from;
-    for (int32_t m = from; m < count && layer(m).top[other] <= top + limits_.max_bottom; ++m) {
-      if (linked(cell, k, other, m)) unite(runs[k * kSide], other_runs[m * kSide]);
+    while (from < count && layer(from).top[other] < top - rule_.step) ++from;
+    if (!is_ours(cell, k)) continue;
+    for (int32_t m = from; m < count && layer(m).top[other] <= top + rule_.step; ++m) {
+      if (!is_ours(other, m) || !linked(cell, k, other, m)) continue;
+      unite(runs[k * kSide], other_runs[m * kSide]);
     }
   }
 }
@@ -115,7 +133,8 @@ void Dealer::find_runs() {
   const int32_t layers = gaps_.max_count;
   std::vector<LayerLinks> links(static_cast<size_t>(layers));
   for (int32_t k = 0; k < layers; ++k) {
-    link_layer(gaps_, k, limits_.max_bottom, limits_.min_gap, links[static_cast<size_t>(k)]);
+    const auto l = static_cast<size_t>(k);
+    link_layer(gaps_, k, rule_, only_.empty() ? nullptr : &only_[l], links[l]);
   }
   // Run of each layer and column, in this row and the one above.
   std::vector<int32_t> now(static_cast<size_t>(layers * kSide)), above(now.size());
@@ -137,7 +156,8 @@ void Dealer::find_runs() {
             ~(l.left[row] & has) & (first < 63 ? ~uint64_t{0} << (first + 1) : 0);
         const int32_t last = after == 0 ? 63 : std::countr_zero(after) - 1;
         const auto index = static_cast<int32_t>(runs_.size());
-        runs_.push_back({k, z, run_mask(first, last), index, -1});
+        const uint64_t cells = run_mask(first, last);
+        runs_.push_back({k, z, cells, index, -1});
         std::fill_n(&now[static_cast<size_t>(k * kSide + first)], last - first + 1, index);
         // One union per run above that it touches.
         uint64_t up = l.up[row] & runs_.back().cells;
@@ -222,7 +242,8 @@ void Dealer::split(int32_t index) {
       const int32_t low = std::min(component.tops.low, top),
                     high = std::max(component.tops.high, top);
       if (static_cast<int64_t>(high) - low > kMaxRange) return;
-      component.tops = {low, high};
+      component.tops.low = low;
+      component.tops.high = high;
       ++component.count;
       label_of(cell, k) = piece;
       taken[static_cast<size_t>(cell)] = piece;
@@ -263,12 +284,31 @@ void Dealer::split(int32_t index) {
 
 // True if no body of any class has room on the component: it is smaller than the smallest footprint
 // and ends inside the tile. Tops of pillars and rails go this way. A piece goes on in another one.
-bool Dealer::is_crumb(const Component& c) const {
+bool Dealer::is_crumb(size_t component) const {
+  const Component& c = components_[component];
   if (c.is_piece) return false;
   if (c.count >= limits_.min_footprint || c.cells[0] != 0 || c.cells[kSide - 1] != 0) return false;
   uint64_t columns = 0;
   for (const uint64_t row : c.cells) columns |= row;
-  return (columns & 0x8000000000000001u) == 0;
+  return (columns & 0x8000000000000001u) == 0 && (only_.empty() || !goes_on(component));
+}
+
+// True if a component goes on in gaps that are in sheets already.
+bool Dealer::goes_on(size_t component) const {
+  for (const Run& run : runs_) {
+    if (run.component != static_cast<int32_t>(component)) continue;
+    for (uint64_t cells = run.cells; cells != 0; cells &= cells - 1) {
+      // Crumbs end inside the tile: each cell has four neighbours.
+      const int32_t cell = run.z * kSide + std::countr_zero(cells);
+      for (const int32_t next : {cell - 1, cell + 1, cell - kSide, cell + kSide}) {
+        const auto at = static_cast<size_t>(cell), other = static_cast<size_t>(next);
+        for (int32_t m = 0; m < gaps_.count[other]; ++m) {
+          if (!is_ours(other, m) && linked(at, run.layer, other, m)) return true;
+        }
+      }
+    }
+  }
+  return false;
 }
 
 // Deals components to sheets, larger first, each to the first sheet of about its height whose
@@ -279,8 +319,7 @@ int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
   constexpr int32_t kSameHeight = 500;  // [mm]
   std::vector<int32_t> order;
   for (size_t i = 0; i < components_.size(); ++i) {
-    if (components_[i].count > 0 && !is_crumb(components_[i]))
-      order.push_back(static_cast<int32_t>(i));
+    if (components_[i].count > 0 && !is_crumb(i)) order.push_back(static_cast<int32_t>(i));
   }
   std::stable_sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
     return components_[static_cast<size_t>(a)].count > components_[static_cast<size_t>(b)].count;
@@ -341,14 +380,17 @@ void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
   for (const int32_t lowest : low) {
     dealt.push_back(pool.take());
     dealt.back()->base = lowest - Sheet::kBelow;
-    dealt.back()->seams = seams;
+    dealt.back()->seams = seams || !only_.empty();
+    dealt.back()->is_low = !only_.empty();
     clear_sheet(*dealt.back());
   }
   for (const Piece& piece : pieces_) {
     const int32_t sheet = sheet_of[static_cast<size_t>(piece.component)];
-    if (sheet < 0) continue;
-    write_gaps(layer(piece.layer), piece.z, piece.cells, limits_,
-               *dealt[static_cast<size_t>(sheet)]);
+    if (sheet < 0) {
+      crumbs_.push_back(piece);
+      continue;
+    }
+    write_gaps(layer(piece.layer), piece.z, piece.cells, *dealt[static_cast<size_t>(sheet)]);
   }
   for (auto& sheet : dealt) {
     summarise(*sheet);
@@ -359,19 +401,42 @@ void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
       sheets.push_back(std::move(sheet));
     }
   }
-  std::stable_sort(sheets.begin(), sheets.end(), [](const auto& a, const auto& b) {
-    return a->base + a->low_feet < b->base + b->low_feet;
-  });
+}
+
+// Per layer, the gaps that are too low for high sheets or were too few for one; empty if there are
+// none. High gaps are found among all by their tops.
+std::vector<Rows> gaps_to_add(const TileGaps& all, const TileGaps& high,
+                              const std::vector<Piece>& crumbs) {
+  std::vector<Rows> rows(static_cast<size_t>(all.max_count));
+  uint64_t any = 0;
+  for (int32_t k = 0; k < all.max_count; ++k) {
+    Rows& of_layer = rows[static_cast<size_t>(k)];
+    low_rooms(all, k, BodyLimits::kHighGap, of_layer);
+    for (const uint64_t row : of_layer) any |= row;
+  }
+  if (any == 0 && crumbs.empty()) return {};
+  for (const Piece& crumb : crumbs) {
+    const GapLayer& from = *high.layers[static_cast<size_t>(crumb.layer)];
+    for (uint64_t cells = crumb.cells; cells != 0; cells &= cells - 1) {
+      const int32_t x = std::countr_zero(cells);
+      const auto cell = static_cast<size_t>(crumb.z * kSide + x);
+      for (int32_t k = 0; k < all.count[cell]; ++k) {
+        const int32_t top = all.layers[static_cast<size_t>(k)]->top[cell] + all.base;
+        if (top != from.top[cell] + high.base) continue;
+        rows[static_cast<size_t>(k)][static_cast<size_t>(crumb.z)] |= uint64_t{1} << x;
+      }
+    }
+  }
+  return rows;
 }
 
 // A tile of single gaps that fit 16 bits needs no runs: any deal is as safe as any other.
-bool deal_single_layer(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
-                       TileSheets& sheets) {
+bool deal_single_layer(const TileGaps& gaps, SheetPool& pool, TileSheets& sheets) {
   const TopRange range = layer_range(gaps, 0);
   if (static_cast<int64_t>(range.high) - range.low > kMaxRange) return false;
   auto sheet = pool.take();
   sheet->base = range.low - Sheet::kBelow;
-  sheet->seams = false;
+  sheet->seams = sheet->is_low = false;
   uint64_t missing = 0;
   Rows has{};
   for (size_t c = 0; c < kTileArea; ++c) {
@@ -380,7 +445,7 @@ bool deal_single_layer(const TileGaps& gaps, const BodyLimits& limits, SheetPool
   for (const uint64_t row : has) missing |= ~row;
   if (missing != 0) clear_sheet(*sheet);
   for (int32_t z = 0; z < kSide; ++z) {
-    write_gaps(*gaps.layers[0], z, has[static_cast<size_t>(z)], limits, *sheet);
+    write_gaps(*gaps.layers[0], z, has[static_cast<size_t>(z)], *sheet);
   }
   summarise(*sheet);
   sheet->base += gaps.base;
@@ -402,11 +467,15 @@ int32_t height_mm(const AvatarClass& avatar) {
   return static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
 }
 
+int32_t min_gap_of(const AvatarClass& avatar) {
+  return std::max(1, height_mm(avatar) - bottom_mm(avatar));
+}
+
 namespace {
 
 // Cells that a body on one cell can touch, at least.
-int32_t footprint_cells(const AvatarClass& avatar, double cell) {
-  const auto reach = static_cast<int32_t>(std::floor(avatar.radius / cell / 1.5));
+int32_t footprint_cells(double radius, double cell) {
+  const auto reach = static_cast<int32_t>(std::floor(radius / cell / 1.5));
   return (2 * reach + 1) * (2 * reach + 1);
 }
 
@@ -415,18 +484,55 @@ int32_t footprint_cells(const AvatarClass& avatar, double cell) {
 BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes& codes,
                        double cell) {
   BodyLimits limits;
-  limits.min_gap = limits.min_height = limits.min_footprint = INT32_MAX;
+  int32_t min_room = INT32_MAX;
+  limits.min_height = INT32_MAX;
+  limits.min_footprint = footprint_cells(BodyLimits::kMinRadius, cell);
   for (const AvatarClass& avatar : classes) {
     const int32_t bottom = bottom_mm(avatar), height = height_mm(avatar);
-    limits.min_gap = std::min(limits.min_gap, std::max(1, height - bottom));
+    min_room = std::min(min_room, min_gap_of(avatar));
     limits.min_height = std::min(limits.min_height, height);
     limits.max_bottom = std::max(limits.max_bottom, bottom);
-    limits.min_footprint = std::min(limits.min_footprint, footprint_cells(avatar, cell));
+    limits.min_footprint = std::min(limits.min_footprint, footprint_cells(avatar.radius, cell));
   }
+  limits.low_gap = std::min(BodyLimits::kLowGap, min_room);
+  limits.min_gap = min_room < BodyLimits::kHighGap ? limits.low_gap : BodyLimits::kHighGap;
   limits.blocked_code = static_cast<int32_t>(codes.codes.size()) - 1;
   limits.allowed.assign(256, 0);
   std::copy(codes.allowed.begin(), codes.allowed.end(), limits.allowed.begin());
   return limits;
+}
+
+void set_borders(Sheet& sheet) {
+  constexpr size_t kEnd = kTileSide - 1;
+  constexpr std::array<size_t, 4> kFirst{0, kEnd, 0, kEnd * kTileSide};
+  for (size_t side = 0; side < 4; ++side) {
+    const size_t stride = side < 2 ? kTileSide : 1;
+    uint16_t lowest = kNone16;
+    for (size_t i = 0; i < kTileSide; ++i) {
+      const size_t cell = kFirst[side] + i * stride;
+      const auto useful = static_cast<uint16_t>(sheet.useful[cell / kTileSide] >> cell % kTileSide);
+      const uint16_t feet = sheet.feet[cell] | static_cast<uint16_t>((useful & 1) - 1);
+      sheet.border[side][i] = feet;
+      lowest = std::min(lowest, feet);
+    }
+    sheet.has_border[side] = lowest != kNone16;
+  }
+}
+
+void find_useful(const BodyLimits& limits, Sheet& sheet) {
+  // Most sheets are so even that their extremes tell.
+  sheet.all_useful =
+      sheet.one_code && sheet.some_code != limits.blocked_code &&
+      sheet.high_top <= sheet.low_feet + limits.max_bottom &&
+      (sheet.low_ceiling == kNone16 || sheet.low_ceiling >= sheet.high_feet + limits.min_height);
+  if (!sheet.all_useful) {
+    useful_cells(sheet, {limits.max_bottom, limits.min_height, limits.blocked_code}, sheet.useful);
+  } else if (sheet.present == kTileArea) {
+    sheet.useful.fill(~uint64_t{0});
+  } else {
+    present_bits(sheet, sheet.useful);
+  }
+  set_borders(sheet);
 }
 
 std::unique_ptr<Sheet> SheetPool::take() {
@@ -446,12 +552,24 @@ void SheetPool::give(std::unique_ptr<Sheet> sheet) {
   free_.push_back(std::move(sheet));
 }
 
-void deal_gaps(const TileGaps& gaps, const BodyLimits& limits, SheetPool& pool,
+void deal_gaps(const GapsToDeal& gaps, const BodyLimits& limits, SheetPool& pool,
                TileSheets& sheets) {
   sheets.clear();
-  if (gaps.max_count == 0) return;
-  if (gaps.max_count == 1 && deal_single_layer(gaps, limits, pool, sheets)) return;
-  Dealer(gaps, limits).deal(pool, sheets);
+  const TileGaps& high = gaps.high;
+  std::vector<Piece> crumbs;
+  if (high.max_count > 0) {
+    if (high.max_count > 1 || !deal_single_layer(high, pool, sheets)) {
+      Dealer dealer(high, limits);
+      dealer.deal(pool, sheets);
+      crumbs = dealer.crumbs();
+    }
+  }
+  if (gaps.all != nullptr && gaps.all->max_count > 1) {
+    const std::vector<Rows> low = gaps_to_add(*gaps.all, high, crumbs);
+    if (!low.empty()) Dealer(*gaps.all, limits, low).deal(pool, sheets);
+  }
+  std::stable_sort(sheets.begin(), sheets.end(),
+                   [](const auto& a, const auto& b) { return a->base < b->base; });
 }
 
 }  // namespace throng

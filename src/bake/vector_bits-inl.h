@@ -32,6 +32,19 @@ HWY_INLINE uint64_t bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   }
 }
 
+/// Lane i of the mask is bit i; bits past the lanes do not matter. [at most 64 lanes]
+template <class D>
+HWY_INLINE hwy::HWY_NAMESPACE::Mask<D> mask_of(D d, uint64_t bits) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  if constexpr (HWY_TARGET == HWY_SCALAR) {
+    return hn::MaskFromVec(hn::Set(d, static_cast<hn::TFromD<D>>((bits & 1) != 0 ? -1 : 0)));
+  } else {
+    alignas(8) uint8_t bytes[8];
+    __builtin_memcpy(bytes, &bits, 8);
+    return hn::LoadMaskBits(d, bytes);
+  }
+}
+
 /// 0, 1, 2 ... as a table: Highway 1.0 makes an Iota out of sixteen single stores and one load that
 /// has to wait for them all, which took a quarter of the time of all columns.
 template <class T>

@@ -213,12 +213,12 @@ void KeepClosed(const SheetWindow& window, ptrdiff_t first, WallScratch::Slab sl
 // Of some rows of a tile, marks the columns in which one gap holds the whole slab, but begins below
 // its floor: drops. `base` is what the slab's heights are from.
 // Nonzero if there are any.
-uint64_t MarkDrops(const TileSheets& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
+uint64_t MarkDrops(const SheetList& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
                    BitPlane& drops) {
   uint64_t any = 0;
   const hn::CappedTag<uint16_t, 32> du;
   const size_t lanes = hn::Lanes(du);
-  for (const auto& sheet : tile) {
+  for (const Sheet* sheet : tile) {
     const int32_t floor = slab.floor + base - sheet->base, high = slab.high + base - sheet->base;
     if (floor <= sheet->low_top) continue;
     const auto floors = hn::Set(du, static_cast<uint16_t>(std::min<int32_t>(floor, kNone16)));
@@ -606,7 +606,7 @@ void WallCheck::fill(Slab slab) {
   const ColumnNeed need{sheet_.base + slab.floor, sheet_.base + slab.low, sheet_.base + slab.high};
   for_wanted([&](size_t side, size_t cell, uint64_t& parts) {
     if (parts != 0) return;
-    const TileSheets* tile = tiles_[side];
+    const SheetList* tile = tiles_[side];
     if (tile == nullptr || !column_is_free(*tile, cell, need)) parts = ~uint64_t{0};
   });
 }

@@ -92,6 +92,9 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   plan.coder = &coder;
   plan.codes = coder.codes();
   plan.limits = body_limits(config.classes, plan.codes, config.cell);
+  for (const AvatarClass& avatar : config.classes) {
+    plan.is_tall.push_back(min_gap_of(avatar) >= BodyLimits::kHighGap);
+  }
   for (size_t c = 0; c < config.classes.size(); ++c) {
     plan.bodies.push_back(
         body_window(config.classes[c], static_cast<int32_t>(c), config.cell, config.fine));

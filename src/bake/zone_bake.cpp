@@ -27,9 +27,13 @@ constexpr int32_t kBand = 8;  // tile rows
 
 struct TileState {
   TileSheets sheets;
+  SheetList all, high;             // the sheets, and those that are not low, if some are
+  std::vector<size_t> high_of;     // which sheet of the tile each of the high ones is
   std::unique_ptr<BitPlane> bare;  // columns without any matter; of fine bakes
   std::vector<FloorPlane> planes;
   TileLegality legality;
+
+  [[nodiscard]] bool has_low() const { return high.size() != all.size(); }
 };
 
 // Tiles of a zone and its ring, row by row; the ring is row and column 0 and n + 1.
@@ -61,11 +65,17 @@ class ZoneJob {
   void for_tiles(int32_t row0, int32_t row1, Body body);
 
   void make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  void deal(TileState& tile, ZoneScratch::Worker& worker);
+  void give_back(TileState& tile);
   void judge(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  void judge_alike(int32_t column, int32_t row, const Neighbourhood& around,
+                   std::span<const size_t> classes, ZoneScratch::Worker& worker);
+  [[nodiscard]] Neighbourhood seen_around(int32_t column, int32_t row, bool low_too);
   void clear(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   [[nodiscard]] TileTriangles triangles_around(int32_t column, int32_t row) const;
-  void recheck_near_limit(int32_t column, int32_t row, size_t sheet, const BodyWindow& body,
-                          ZoneScratch::Worker& worker, LegalCells& cells);
+  void recheck_near_limit(const Sheet& sheet, const FloorPlane& floor, const BodyWindow& body,
+                          const TileTriangles& triangles, ZoneScratch::Worker& worker,
+                          LegalCells& cells);
   bool is_open(int32_t column, int32_t row, size_t avatar_class) const;
 
   const BakePlan& plan_;
@@ -81,7 +91,9 @@ class ZoneJob {
 
 struct ZoneScratch::Worker {
   TileColumns columns;
-  TileGaps gaps;
+  TileGaps gaps, high;            // all, and those of BodyLimits::kHighGap, if these are not all
+  std::vector<size_t> low, tall;  // classes that see the same in and around a tile
+  uint32_t beside_walls = 0;      // bit c: walls of the tile were looked at for class c
   LegalityScratch legality;
   CellPlanes planes;
   WallScratch walls;
@@ -146,55 +158,94 @@ void ZoneJob::make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& work
   if (plan_.config->fine) {
     tile.bare = std::make_unique<BitPlane>(bare_columns(worker.gaps));
   }
-  deal_gaps(worker.gaps, plan_.limits, scratch_.pool, tile.sheets);
-  for (auto& sheet : tile.sheets) tile.planes.push_back(fit_plane(*sheet));
+  deal(tile, worker);
   worker.seconds_levels += seconds_since(deal_start);
+}
+
+// What another class may stand on below or above must not change what a class reaches. So how gaps
+// are dealt does not depend on classes, and those who need high gaps see no others: in a bake for
+// them alone there are none.
+void ZoneJob::deal(TileState& tile, ZoneScratch::Worker& worker) {
+  const bool low_too = plan_.limits.min_gap < BodyLimits::kHighGap && worker.gaps.max_count > 1;
+  if (low_too) {
+    find_gaps(worker.columns, BodyLimits::kHighGap, worker.high);
+    lend_supports(worker.gaps);
+  }
+  const GapsToDeal gaps{.high = low_too ? worker.high : worker.gaps,
+                        .all = low_too ? &worker.gaps : nullptr};
+  deal_gaps(gaps, plan_.limits, scratch_.pool, tile.sheets);
+  if (tile.sheets.empty()) return;
+  for (auto& sheet : tile.sheets) {
+    tile.planes.push_back(fit_plane(*sheet));
+    find_useful(plan_.limits, *sheet);  // A plane may move feet by a millimetre.
+  }
+  for (size_t i = 0; i < tile.sheets.size(); ++i) {
+    const Sheet* sheet = tile.sheets[i].get();
+    tile.all.add(sheet);
+    if (sheet->is_low) continue;
+    tile.high.add(sheet);
+    tile.high_of.push_back(i);
+  }
+}
+
+void ZoneJob::give_back(TileState& tile) {
+  for (auto& sheet : tile.sheets) scratch_.pool.give(std::move(sheet));
+  tile = {};
+}
+
+Neighbourhood ZoneJob::seen_around(int32_t column, int32_t row, bool low_too) {
+  Neighbourhood around{};
+  for (int32_t i = 0; i < 9; ++i) {
+    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
+    if (!in_world(x, z)) continue;
+    const TileState& tile = at(x, z);
+    around[static_cast<size_t>(i)] = low_too ? &tile.all : &tile.high;
+  }
+  return around;
 }
 
 void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
   TileState& tile = at(column, row);
   if (tile.sheets.empty()) return;
   const auto start = Clock::now();
-  Neighbourhood around{};
-  std::array<const TileSheets*, 4> sides{};
-  for (int32_t i = 0; i < 9; ++i) {
-    const int32_t x = column + i % 3 - 1, z = row + i / 3 - 1;
-    if (in_world(x, z)) around[static_cast<size_t>(i)] = &at(x, z).sheets;
-  }
-  sides = {around[3], around[5], around[1], around[7]};
   tile.legality.resize(tile.sheets.size());
-  worker.walls.known = 0;
+  std::array<const TileSheets*, 4> sides{};
+  constexpr std::array<std::array<int32_t, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+  for (size_t i = 0; i < 4; ++i) {
+    const int32_t x = column + kSides[i][0], z = row + kSides[i][1];
+    if (in_world(x, z)) sides[i] = &at(x, z).sheets;
+  }
   for (size_t s = 0; s < tile.sheets.size(); ++s) {
-    const Sheet& sheet = *tile.sheets[s];
-    SheetLegality& legality = tile.legality[s];
-    legality.classes.resize(plan_.bodies.size());
-    link_sheet(sheet, sides, plan_.max_step, legality);
-    bool assembled = false;
-    for (size_t c = 0; c < plan_.bodies.size(); ++c) {
+    tile.legality[s].classes.resize(plan_.bodies.size());
+    link_sheet(*tile.sheets[s], sides, plan_.max_step, tile.legality[s]);
+  }
+  worker.walls.known = 0;
+  worker.beside_walls = 0;
+  const size_t classes = plan_.bodies.size();
+  const Neighbourhood around = seen_around(column, row, true);
+  bool any_low = false;
+  for (size_t i = 0; i < around.size(); ++i) {
+    const int32_t x = column + static_cast<int32_t>(i) % 3 - 1;
+    const int32_t z = row + static_cast<int32_t>(i) / 3 - 1;
+    any_low |= around[i] != nullptr && at(x, z).has_low();
+  }
+  worker.low.clear();
+  worker.tall.clear();
+  for (size_t c = 0; c < classes; ++c) {
+    (any_low && plan_.is_tall[c] ? worker.tall : worker.low).push_back(c);
+  }
+  judge_alike(column, row, around, worker.low, worker);
+  if (!worker.tall.empty()) {
+    judge_alike(column, row, seen_around(column, row, false), worker.tall, worker);
+  }
+
+  for (size_t s = 0; s < tile.sheets.size(); ++s) {
+    for (size_t c = 0; c < classes; ++c) {
       const BodyWindow& body = plan_.bodies[c];
-      SheetLegality::PerClass& verdict = legality.classes[c];
-      if (all_legal(around, s, body, plan_.limits)) {
-        verdict.legal.fill(~uint64_t{0});
-        verdict.all = verdict.any = true;
-        continue;
-      }
-      if (!assembled) {
-        worker.legality.window.assemble(around, s, plan_.reach, plan_.limits.max_bottom,
-                                        plan_.limits.min_gap);
-        make_tilt(sheet, worker.legality.tilt);
-        assembled = true;
-      }
-      LegalCells cells;
-      legal_cells(sheet, body, plan_.limits, worker.legality, cells);
-      recheck_slopes(sheet, body, worker.legality, cells);
-      if (body.barely) recheck_near_limit(column, row, s, body, worker, cells);
-      recheck_seams(around, s, body, worker.legality, cells);
-      const bool beside_walls =
-          body.fine && recheck_walls(around, s, body, triangles_around(column, row),
-                                     worker.legality, worker.walls, cells);
-      verdict.legal = cells.legal;
+      SheetLegality::PerClass& verdict = tile.legality[s].classes[c];
+      if (verdict.all) continue;
       uint64_t any = 0, all = ~uint64_t{0};
-      for (const uint64_t bits : cells.legal) {
+      for (const uint64_t bits : verdict.legal) {
         any |= bits;
         all &= bits;
       }
@@ -203,12 +254,51 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       // A window that fits within a step makes neighbours safe, but only where the sheet is the
       // only one: at a seam the neighbour that fits is another sheet's, and this one's may be a
       // storey off. Beside walls, a neighbour need not fit as a whole.
-      const bool window_is_enough =
-          tile.sheets.size() == 1 && body.bottom <= body.step && !beside_walls;
-      verdict.step_safe = any == 0 || window_is_enough || step_safe(sheet, cells.legal, body.step);
+      const bool window_is_enough = tile.sheets.size() == 1 && body.bottom <= body.step &&
+                                    (worker.beside_walls & body.class_bit) == 0;
+      verdict.step_safe =
+          any == 0 || window_is_enough || step_safe(*tile.sheets[s], verdict.legal, body.step);
     }
   }
   worker.seconds_clearance += seconds_since(start);
+}
+
+// Judges a tile for classes that see the same sheets in it and around it.
+void ZoneJob::judge_alike(int32_t column, int32_t row, const Neighbourhood& around,
+                          std::span<const size_t> classes, ZoneScratch::Worker& worker) {
+  TileState& tile = at(column, row);
+  const TileTriangles triangles = triangles_around(column, row);
+  const SheetList& seen = *around[4];
+  for (size_t i = 0; i < seen.size(); ++i) {
+    const Sheet& sheet = *seen[i];
+    const size_t s = &seen == &tile.high ? tile.high_of[i] : i;
+    bool assembled = false;
+    for (const size_t c : classes) {
+      const BodyWindow& body = plan_.bodies[c];
+      LegalCells cells;
+      BitPlane may;
+      if (all_legal(around, i, body, plan_.limits)) {
+        cells.legal.fill(~uint64_t{0});
+      } else if (may_stand(sheet, body, plan_.limits, may)) {
+        if (!assembled) {
+          worker.legality.window.assemble(around, i, plan_.reach, plan_.limits);
+          make_tilt(sheet, worker.legality.tilt);
+          assembled = true;
+        }
+        legal_cells(sheet, body, may, worker.legality, cells);
+        recheck_slopes(sheet, body, worker.legality, cells);
+        if (body.barely) {
+          recheck_near_limit(sheet, tile.planes[s], body, triangles, worker, cells);
+        }
+        recheck_seams(around, i, body, plan_.limits, worker.legality, cells);
+        if (body.fine &&
+            recheck_walls(around, i, body, triangles, worker.legality, worker.walls, cells)) {
+          worker.beside_walls |= body.class_bit;
+        }
+      }
+      tile.legality[s].classes[c].legal = cells.legal;
+    }
+  }
 }
 
 TileTriangles ZoneJob::triangles_around(int32_t column, int32_t row) const {
@@ -227,18 +317,16 @@ TileTriangles ZoneJob::triangles_around(int32_t column, int32_t row) const {
 }
 
 // The last word on cells of a slope that is near what a class can climb, from the triangles.
-void ZoneJob::recheck_near_limit(int32_t column, int32_t row, size_t sheet, const BodyWindow& body,
+void ZoneJob::recheck_near_limit(const Sheet& sheet, const FloorPlane& floor,
+                                 const BodyWindow& body, const TileTriangles& triangles,
                                  ZoneScratch::Worker& worker, LegalCells& cells) {
-  const TileState& tile = at(column, row);
-  const FloorPlane& floor = tile.planes[sheet];
   if (floor.found && (floor.slope_x | floor.slope_z) == 0) return;
   BitPlane asked;
   uint64_t any = 0;
   for (size_t z = 0; z < kTileSide; ++z) any |= asked[z] = cells.slanted[z] & ~cells.legal[z];
   if (any == 0) return;
-  find_surface_planes(worker.legality.window, tile.sheets[sheet]->base, asked, body,
-                      triangles_around(column, row), worker.planes);
-  recheck_planes(*tile.sheets[sheet], body, worker.planes, worker.legality, cells);
+  find_surface_planes(worker.legality.window, sheet.base, asked, body, triangles, worker.planes);
+  recheck_planes(sheet, body, worker.planes, worker.legality, cells);
 }
 
 // True if this tile and all around it are single sheets, legal everywhere, without a step between.
@@ -254,6 +342,26 @@ bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
     high = std::max(high, sheet.base + sheet.high_feet);
   }
   return high - low <= plan_.bodies[avatar_class].step;
+}
+
+// Feet of a sheet that are stored: where someone may stand, and beside the cells where a class is
+// legal, whose tilt comes from there (world/surface.h).
+void forget_feet(const CellRows& legal, Sheet& sheet) {
+  if (sheet.all_useful) return;
+  CellRows kept = sheet.useful;
+  const auto keep = [&](size_t z, uint64_t row) {
+    const uint64_t rims = (row & 1) << 2 | (row & uint64_t{1} << 63) >> 2;
+    kept[z] |= row | row << 1 | row >> 1 | rims;
+  };
+  constexpr size_t kLast = kTileSide - 1;
+  for (size_t z = 0; z < kTileSide; ++z) {
+    keep(z, legal[z]);
+    if (z > 0) kept[z] |= legal[z - 1];
+    if (z < kLast) kept[z] |= legal[z + 1];
+  }
+  kept[2] |= legal[0];
+  kept[kLast - 2] |= legal[kLast];
+  keep_feet(kept, sheet);
 }
 
 void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
@@ -275,6 +383,7 @@ void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
     const bool used = std::any_of(legality.classes.begin(), legality.classes.end(),
                                   [](const auto& verdict) { return verdict.any; });
     if (!used) continue;
+    CellRows needed{};
     for (size_t c = 0; c < classes; ++c) {
       ClearancePlanes& planes = worker.clearance[c];
       planes.all = false;
@@ -287,7 +396,10 @@ void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
         erode(around, s, c, plan_.bodies[c].step, planes);
       }
       worker.legal_cells[c] += static_cast<uint64_t>(planes.cells);
+      if (!legality.classes[c].any) continue;
+      for (size_t z = 0; z < kTileSide; ++z) needed[z] |= legality.classes[c].legal[z];
     }
+    forget_feet(needed, *tile.sheets[s]);
     pack_level(index, *tile.sheets[s], tile.planes[s], worker.clearance, worker.step_safe,
                plan_.codes, packs_[index]);
   }
@@ -328,16 +440,10 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
     pass(2, [&](int32_t x, int32_t z, Worker& w) { clear(x, z, w); });
     // Rows that nothing will look at again.
     for (int32_t z = std::max(row - 4, 0); z < std::min(end - 4, side_); ++z) {
-      for (int32_t x = 0; x < side_; ++x) {
-        for (auto& sheet : at(x, z).sheets) scratch_.pool.give(std::move(sheet));
-        at(x, z) = {};
-      }
+      for (int32_t x = 0; x < side_; ++x) give_back(at(x, z));
     }
   }
-  for (auto& tile : tiles_) {
-    for (auto& sheet : tile.sheets) scratch_.pool.give(std::move(sheet));
-    tile = {};
-  }
+  for (auto& tile : tiles_) give_back(tile);
   if (context.cancel) return false;
   for (const auto& worker : scratch_.workers) {
     result.seconds_columns += worker->seconds_columns;

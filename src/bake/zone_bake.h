@@ -27,6 +27,7 @@ struct BakePlan {
   SurfaceCodes codes;
   const SurfaceCoder* coder = nullptr;
   BodyLimits limits;
+  std::vector<bool> is_tall;  // classes that need gaps of BodyLimits::kHighGap
   std::vector<BodyWindow> bodies;
   int32_t reach = 0;     // of the widest body [cells]
   int32_t max_step = 0;  // [mm]

@@ -201,6 +201,8 @@ std::vector<int32_t> World::storeys() const {
   }
 
   // Groups of about one height that do not lie over each other share a storey.
+  // What is left of a floor where it was cut, under the low end of a ramp, founds none.
+  constexpr double kRemnant = 0.02;  // of a storey's cells
   struct Storey {
     double mean = 0, cells = 0;
     std::map<std::pair<int32_t, int32_t>, std::vector<uint32_t>> tiles;
@@ -222,10 +224,14 @@ std::vector<int32_t> World::storeys() const {
     double mean = 0;
     for (const uint32_t level : members[g]) mean += levels[level].mean * levels[level].cells;
     mean /= std::max(1.0, sizes[g]);
-    size_t best = storeys.size();
-    double best_distance = 1500;  // [mm]
+    size_t best = storeys.size(), nearest = storeys.size();
+    double best_distance = 1500, least = best_distance;  // [mm]
     for (size_t s = 0; s < storeys.size(); ++s) {
       const double distance = std::fabs(storeys[s].mean - mean);
+      if (distance < least && sizes[g] < kRemnant * storeys[s].cells) {
+        nearest = s;
+        least = distance;
+      }
       if (distance >= best_distance) continue;
       bool clash = false;
       for (const uint32_t level : members[g]) {
@@ -239,6 +245,7 @@ std::vector<int32_t> World::storeys() const {
       best = s;
       best_distance = distance;
     }
+    if (best == storeys.size()) best = nearest;
     if (best == storeys.size()) storeys.emplace_back();
     Storey& storey = storeys[best];
     storey.mean =

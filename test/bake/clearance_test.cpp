@@ -216,6 +216,10 @@ TEST(Clearance, AMarginThroughAStackOfSheetsFollowsTheLinkedOne) {
 }
 
 // Links: for each border cell the sheet across it whose feet are nearest, if within the step.
+bool is_useful(const Sheet& sheet, size_t cell) {
+  return (sheet.useful[cell / 64] >> cell % 64 & 1) != 0;
+}
+
 TEST(Clearance, LinksLeadToTheNearestFeetAcrossTheBorderWithinTheStep) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     uint64_t n = 0;
@@ -229,6 +233,8 @@ TEST(Clearance, LinksLeadToTheNearestFeetAcrossTheBorderWithinTheStep) {
         feet = static_cast<uint16_t>(4000 + below(900));
         if (below(10) == 0) feet = kNone16;
       }
+      for (uint64_t& row : sheet->useful) row = ~(uint64_t{1} << below(64));
+      set_borders(*sheet);
       return sheet;
     };
     const auto own = make();
@@ -251,6 +257,7 @@ TEST(Clearance, LinksLeadToTheNearestFeetAcrossTheBorderWithinTheStep) {
           const Sheet& other = *beside[side][s];
           const uint16_t a = own->feet[mine[side]], b = other.feet[theirs[side]];
           if (a == kNone16 || b == kNone16) continue;
+          if (!is_useful(*own, mine[side]) || !is_useful(other, theirs[side])) continue;
           const int32_t rise = std::abs(own->base + a - other.base - b);
           if (rise < best) {
             best = rise;

@@ -37,16 +37,20 @@ struct Dealt {
       bodies.push_back(body_window(classes[c], static_cast<int32_t>(c), cell));
       reach = std::max(reach, bodies.back().reach);
     }
-    TileGaps tile;
     for (size_t i = 0; i < 9; ++i) {
       const auto n = static_cast<int32_t>(i);
-      naive::fill_tile(gaps, n % 3 - 1, n / 3 - 1, tile);
-      deal_gaps(tile, limits, pool, tiles[i]);
-      around[i] = &tiles[i];
+      naive::deal_tile(gaps, n % 3 - 1, n / 3 - 1, limits, pool, tiles[i]);
+      list(i);
+      around[i] = &lists[i];
     }
   }
 
   std::vector<AvatarClass> classes;
+  void list(size_t tile) {
+    lists[tile] = {};
+    for (const auto& sheet : tiles[tile]) lists[tile].add(sheet.get());
+  }
+
   double cell;
   SurfaceCodes codes;
   BodyLimits limits;
@@ -55,6 +59,7 @@ struct Dealt {
   int32_t reach = 0;
   SheetPool pool;
   std::array<TileSheets, 9> tiles;
+  std::array<SheetList, 9> lists;
   Neighbourhood around;
 };
 
@@ -65,16 +70,17 @@ struct Verdict {
 
 Verdict judge(const Dealt& world, size_t sheet, size_t avatar_class) {
   LegalityScratch scratch;
-  scratch.window.assemble(world.around, sheet, world.reach, world.limits.max_bottom,
-                          world.limits.min_gap);
+  scratch.window.assemble(world.around, sheet, world.reach, world.limits);
   make_tilt(*world.tiles[4][sheet], scratch.tilt);
   LegalCells cells;
   const BodyWindow& body = world.bodies[avatar_class];
-  legal_cells(*world.tiles[4][sheet], body, world.limits, scratch, cells);
+  BitPlane may;
+  may_stand(*world.tiles[4][sheet], body, world.limits, may);
+  legal_cells(*world.tiles[4][sheet], body, may, scratch, cells);
   Verdict out;
   out.window = cells.legal;
   recheck_slopes(*world.tiles[4][sheet], body, scratch, cells);
-  recheck_seams(world.around, sheet, body, scratch, cells);
+  recheck_seams(world.around, sheet, body, world.limits, scratch, cells);
   out.legal = cells.legal;
   return out;
 }
@@ -298,15 +304,16 @@ TEST(Legality, OnASingleSheetTheWindowFindsExactlyWhatTheDefinitionSays) {
           for (naive::Gap& gap : plain.gaps.at(x, z)) {
             const auto slab = static_cast<uint64_t>((z + 64) / 23 * 10 + (x + 64) / 17);
             if (random_unit(seed, 3, slab) > 0.4) continue;
-            gap.ceiling = gap.top + 950 + static_cast<int32_t>(2500 * random_unit(seed, 4, slab));
+            gap.ceiling = gap.top + BodyLimits::kHighGap +
+                          static_cast<int32_t>(2000 * random_unit(seed, 4, slab));
           }
         }
       }
-      TileGaps tile;
       for (size_t i = 0; i < 9; ++i) {
         const auto n = static_cast<int32_t>(i);
-        naive::fill_tile(plain.gaps, n % 3 - 1, n / 3 - 1, tile);
-        deal_gaps(tile, plain.limits, plain.pool, plain.tiles[i]);
+        naive::deal_tile(plain.gaps, n % 3 - 1, n / 3 - 1, plain.limits, plain.pool,
+                         plain.tiles[i]);
+        plain.list(i);
       }
     }
     ASSERT_LE(plain.tiles[4].size(), 1u) << words(block);

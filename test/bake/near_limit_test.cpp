@@ -113,12 +113,18 @@ struct Soup {
       const auto items =
           std::span(bins.items).subspan(bins.first[i], bins.first[i + 1] - bins.first[i]);
       TileColumns columns;
-      TileGaps gaps;
+      TileGaps gaps, high;
       rasterise_tile(triangles, items, (n % 3 - 1) * kTileSide, (n / 3 - 1) * kTileSide, {},
                      limits.min_gap - 1, columns);
       find_gaps(columns, limits.min_gap, gaps);
-      deal_gaps(gaps, limits, pool, tiles[i]);
-      around[i] = &tiles[i];
+      find_gaps(columns, BodyLimits::kHighGap, high);
+      lend_supports(gaps);
+      deal_gaps({.high = high, .all = &gaps}, limits, pool, tiles[i]);
+      for (const auto& sheet : tiles[i]) {
+        find_useful(limits, *sheet);
+        lists[i].add(sheet.get());
+      }
+      around[i] = &lists[i];
       of_tiles.items[i] = items;
     }
     of_tiles.all = triangles;
@@ -156,6 +162,7 @@ struct Soup {
   TriangleBins bins;
   SheetPool pool;
   std::array<TileSheets, 9> tiles;
+  std::array<SheetList, 9> lists;
   Neighbourhood around{};
   TileTriangles of_tiles;
 };
@@ -172,7 +179,7 @@ TEST(SurfacePlanes, NoMatterBelowTheGapStandsAboveThePlaneByMoreThanTheExcess) {
     SheetWindow window;
     for (size_t s = 0; s < soup.tiles[4].size(); ++s) {
       const int32_t base = soup.tiles[4][s]->base;
-      window.assemble(soup.around, s, soup.body.reach, soup.limits.max_bottom, soup.limits.min_gap);
+      window.assemble(soup.around, s, soup.body.reach, soup.limits);
       find_surface_planes(window, base, asked, soup.body, soup.of_tiles, planes_of);
       for (uint64_t n = 0; n < soup.triangles.size(); ++n) {
         const CellTriangle& t = soup.triangles[n];

@@ -48,7 +48,22 @@ struct Expected {
 bool joined(const naive::Gap& a, const naive::Gap& b, const BodyLimits& limits) {
   const int64_t step = std::abs(int64_t{a.top} - b.top);
   const int64_t room = int64_t{std::min(a.ceiling, b.ceiling)} - std::max(a.top, b.top);
-  return step <= limits.max_bottom && room >= limits.min_gap;
+  const int32_t least =
+      limits.min_gap < BodyLimits::kHighGap ? limits.low_gap : BodyLimits::kHighGap;
+  return step <= limits.link_step && room >= least;
+}
+
+// The high gaps, and the others of `all`.
+naive::GapBlock by_height(const naive::GapBlock& high, const naive::GapBlock& all) {
+  naive::GapBlock out = all;
+  for (size_t c = 0; c < out.cells.size(); ++c) {
+    for (naive::Gap& gap : out.cells[c]) {
+      for (const naive::Gap& like : high.cells[c]) {
+        if (like.top == gap.top) gap = like;
+      }
+    }
+  }
+  return out;
 }
 
 // Every gap of the middle tile, and which of them hang together: a flood fill over all pairs of
@@ -94,12 +109,12 @@ Expected expect(const naive::GapBlock& block, const BodyLimits& limits) {
 // What a deal must be, whatever its choices.
 void expect_good_deal(const naive::GapBlock& block, const BodyLimits& limits,
                       const std::string& what) {
-  auto tile = std::make_unique<TileGaps>();
-  naive::fill_tile(block, 0, 0, *tile);
   SheetPool pool;
   TileSheets sheets;
-  deal_gaps(*tile, limits, pool, sheets);
-  const Expected expected = expect(block, limits);
+  naive::deal_tile(block, 0, 0, limits, pool, sheets);
+  const naive::GapBlock high = naive::high_gaps(block), lent = naive::with_lent_supports(block);
+  const Expected expected =
+      expect(limits.min_gap < BodyLimits::kHighGap ? by_height(high, lent) : high, limits);
 
   std::map<std::pair<int32_t, int32_t>, int32_t> dealt;  // cell and top: how often
   for (size_t s = 0; s < sheets.size(); ++s) {
@@ -115,7 +130,7 @@ void expect_good_deal(const naive::GapBlock& block, const BodyLimits& limits,
       ++cells;
       const int32_t top = sheet.base + sheet.top[cell];
       ++dealt[{c, top}];
-      const auto& column = block.at(c % 64, c / 64);
+      const auto& column = (sheet.is_low ? lent : high).at(c % 64, c / 64);
       const auto gap = std::find_if(column.begin(), column.end(),
                                     [&](const naive::Gap& g) { return g.top == top; });
       ASSERT_NE(gap, column.end()) << what << ": sheet " << s << " invents a top";
@@ -126,10 +141,12 @@ void expect_good_deal(const naive::GapBlock& block, const BodyLimits& limits,
       } else {  // exact, or as high as 16 bits tell
         ASSERT_EQ(sheet.ceiling[cell], std::min(gap->ceiling - sheet.base, 65534)) << what;
       }
-      const bool surface = gap->support != kNoSupport && gap->code != kBlockedCode;
+      const bool surface = gap->support != kNoSupport;
       const bool deep = surface && int64_t{gap->top} - gap->support > limits.max_bottom;
       const bool low = surface && int64_t{gap->ceiling} - gap->support < limits.min_height;
-      if (!surface || deep || low) {
+      const bool useful = surface && gap->code != kBlockedCode && !deep && !low;
+      ASSERT_EQ(sheet.useful[cell / 64] >> cell % 64 & 1, useful ? 1u : 0u) << what;
+      if (!surface || gap->support < sheet.base) {  // nothing to stand on, or out of range
         ASSERT_EQ(sheet.feet[cell], kNone16) << what;
         continue;
       }
@@ -141,11 +158,11 @@ void expect_good_deal(const naive::GapBlock& block, const BodyLimits& limits,
     }
     ASSERT_EQ(sheet.cells, cells) << what;
     ASSERT_EQ(sheet.present, present) << what;
-    ASSERT_GT(present, 0) << what << ": a sheet for nobody";
+    ASSERT_GT(present, 0) << what << ": a sheet without feet";
     ASSERT_EQ(sheet.base + sheet.low_feet, low_feet) << what;
     ASSERT_EQ(sheet.base + sheet.high_feet, high_feet) << what;
     if (s > 0) {
-      ASSERT_LE(sheets[s - 1]->base + sheets[s - 1]->low_feet, low_feet) << what << ": order";
+      ASSERT_LE(sheets[s - 1]->base, sheet.base) << what << ": order";
     }
   }
   for (const Node& node : expected.nodes) {
@@ -227,11 +244,9 @@ TEST(Sheets, HeightsKilometresApartAreExactAndTakeMoreSheets) {
       column.push_back({2'000'000 + rough, kOpenSkyMm, 2'000'000, 1});
     }
     ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, std::to_string(seed)));
-    auto tile = std::make_unique<TileGaps>();
-    naive::fill_tile(block, 0, 0, *tile);
     SheetPool pool;
     TileSheets sheets;
-    deal_gaps(*tile, limits, pool, sheets);
+    naive::deal_tile(block, 0, 0, limits, pool, sheets);
     EXPECT_EQ(sheets.size(), 4u);
   }
 }
@@ -257,11 +272,9 @@ TEST(Sheets, ALevelFloorUnderALevelFloorIsTwoSheetsLowestFirst) {
   for (int32_t c = 0; c < kTileArea; ++c) {
     block.at(c % 64, c / 64) = {{0, 2800, 0, 0}, {3000, kOpenSkyMm, 3000, 1}};
   }
-  auto tile = std::make_unique<TileGaps>();
-  naive::fill_tile(block, 0, 0, *tile);
   SheetPool pool;
   TileSheets sheets;
-  deal_gaps(*tile, limits, pool, sheets);
+  naive::deal_tile(block, 0, 0, limits, pool, sheets);
   ASSERT_EQ(sheets.size(), 2u);
   for (size_t s = 0; s < 2; ++s) {
     EXPECT_EQ(sheets[s]->present, kTileArea);
@@ -279,11 +292,9 @@ TEST(Sheets, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
   block.at(63, 40) = {{1500, kOpenSkyMm, 1500, 0}};
   for (const auto& [x, z] : {std::pair{20, 20}, {63, 40}})
     block.at(x, z).insert(block.at(x, z).begin(), {-9000, -7000, kNoSupport, 0});
-  auto tile = std::make_unique<TileGaps>();
-  naive::fill_tile(block, 0, 0, *tile);
   SheetPool pool;
   TileSheets sheets;
-  deal_gaps(*tile, limits, pool, sheets);
+  naive::deal_tile(block, 0, 0, limits, pool, sheets);
   int32_t inside = 0, border = 0;
   for (const auto& sheet : sheets) {
     inside += sheet->top[20 * 64 + 20] != kNone16 ? 1 : 0;
@@ -294,11 +305,9 @@ TEST(Sheets, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
 }
 
 TEST(Sheets, AnEmptyTileHasNone) {
-  auto tile = std::make_unique<TileGaps>();
-  naive::fill_tile({}, 0, 0, *tile);
   SheetPool pool;
   TileSheets sheets;
-  deal_gaps(*tile, limits_of(default_classes()), pool, sheets);
+  naive::deal_tile({}, 0, 0, limits_of(default_classes()), pool, sheets);
   EXPECT_TRUE(sheets.empty());
 }
 
@@ -307,14 +316,12 @@ TEST(Sheets, SameSheetsForEverySimdWidth) {
     uint64_t hash = 0;
     const BodyLimits limits = limits_of(default_classes());
     SheetPool pool;
-    auto tile = std::make_unique<TileGaps>();
     for (uint64_t seed = 1; seed <= 12; ++seed) {
-      naive::fill_tile(
+      const naive::GapBlock block =
           seed % 3 == 0 ? noise(seed, limits, 5, 1000)
-                        : naive::gaps_of(naive::random_solids(random_block(seed)), limits.min_gap),
-          0, 0, *tile);
+                        : naive::gaps_of(naive::random_solids(random_block(seed)), limits.min_gap);
       TileSheets sheets;
-      deal_gaps(*tile, limits, pool, sheets);
+      naive::deal_tile(block, 0, 0, limits, pool, sheets);
       for (auto& sheet : sheets) {
         hash = hash_span(std::span<const uint16_t>(sheet->top), hash);
         hash = hash_span(std::span<const uint16_t>(sheet->ceiling), hash);

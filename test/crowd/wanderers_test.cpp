@@ -71,7 +71,7 @@ TEST(Wanderers, SameStateForAnyNumberOfThreads) {
     auto crowd = Wanderers::create(world, {.avatars = 300, .seed = 11, .workers = workers});
     ASSERT_TRUE(crowd);
     for (int step = 0; step < 300; ++step) crowd->step();
-    EXPECT_EQ(crowd->state_hash(), 4079226971461599461u) << "workers = " << workers;
+    EXPECT_EQ(crowd->state_hash(), 13521025510094095464u) << "workers = " << workers;
   }
 }
 

@@ -113,6 +113,54 @@ GapBlock gaps_of(const SolidBlock& solids, int32_t min_gap) {
   return gaps;
 }
 
+namespace {
+
+bool is_above(const Gap& a, const Gap& b) {
+  return a.support != b.support ? a.support > b.support : a.code > b.code;
+}
+
+void lend(const Gap& from, Gap& to) {
+  if (!is_above(from, to)) return;
+  to.support = from.support;
+  to.code = from.code;
+}
+
+}  // namespace
+
+GapBlock with_lent_supports(const GapBlock& gaps) {
+  GapBlock out = gaps;
+  for (auto& column : out.cells) {
+    for (size_t i = 1; i < column.size(); ++i) lend(column[i - 1], column[i]);
+  }
+  return out;
+}
+
+GapBlock high_gaps(const GapBlock& gaps) {
+  GapBlock out;
+  for (size_t c = 0; c < gaps.cells.size(); ++c) {
+    const Gap* below = nullptr;
+    std::vector<Gap> joined = gaps.cells[c];
+    for (Gap& gap : joined) {
+      if (below != nullptr) lend(*below, gap);
+      const bool is_low =
+          gap.ceiling != kOpenSkyMm && int64_t{gap.ceiling} - gap.top < BodyLimits::kHighGap;
+      below = is_low ? &gap : nullptr;
+      if (!is_low) out.cells[c].push_back(gap);
+    }
+  }
+  return out;
+}
+
+void deal_tile(const GapBlock& gaps, int32_t tile_x, int32_t tile_z, const BodyLimits& limits,
+               SheetPool& pool, TileSheets& sheets) {
+  const auto all = std::make_unique<TileGaps>(), high = std::make_unique<TileGaps>();
+  fill_tile(high_gaps(gaps), tile_x, tile_z, *high);
+  fill_tile(with_lent_supports(gaps), tile_x, tile_z, *all);
+  const bool low_too = limits.min_gap < BodyLimits::kHighGap;
+  deal_gaps({.high = *high, .all = low_too ? all.get() : nullptr}, limits, pool, sheets);
+  for (const auto& sheet : sheets) find_useful(limits, *sheet);
+}
+
 void fill_tile(const GapBlock& block, int32_t tile_x, int32_t tile_z, TileGaps& out) {
   const auto column = [&](int32_t cell) -> const std::vector<Gap>& {
     return block.at(tile_x * kTileSide + cell % kTileSide, tile_z * kTileSide + cell / kTileSide);

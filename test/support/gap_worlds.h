@@ -52,6 +52,16 @@ GapBlock gaps_of(const SolidBlock& solids, int32_t min_gap);
 /// One tile of a block as the bake keeps it. Tile (0, 0) is the middle one.
 void fill_tile(const GapBlock& block, int32_t tile_x, int32_t tile_z, TileGaps& out);
 
+/// The same gaps, each with the highest support under it in its column.
+GapBlock with_lent_supports(const GapBlock& gaps);
+
+/// Those of BodyLimits::kHighGap and more: what is between lower ones is joined.
+GapBlock high_gaps(const GapBlock& gaps);
+
+/// Deals the gaps of a tile as the bake does.
+void deal_tile(const GapBlock& gaps, int32_t tile_x, int32_t tile_z, const BodyLimits& limits,
+               SheetPool& pool, TileSheets& sheets);
+
 struct RandomBlock {
   uint64_t seed = 1;
   int32_t ground = 0;  // 0 rolling, 1 terraces, 2 folded planes, 3 rough, 4 level

@@ -78,7 +78,9 @@ void find_pieces(const LevelTileContent& tile, size_t level, std::vector<Piece>&
 // several. A piece far from its storey's height goes to one around at just its own height, the
 // larger piece first, if nothing lies there yet; if something does, it is not shown. Pieces of
 // storeys that are not shown have no home: they join the nearest storey, or are not shown either.
-std::vector<size_t> deal_pieces(std::span<const Piece> pieces, std::span<const size_t> home,
+// At home, a piece keeps the cells where no larger one is: ground under the low end of a ramp has
+// the ramp's storey.
+std::vector<size_t> deal_pieces(std::span<Piece> pieces, std::span<const size_t> home,
                                 const LocalStoreys& local) {
   constexpr double kAtHome = 1500, kJustRight = 500, kReach = 2500;  // mm
   std::vector<size_t> order(pieces.size());
@@ -108,6 +110,7 @@ std::vector<size_t> deal_pieces(std::span<const Piece> pieces, std::span<const s
       }
     }
     if (best == kNotShown) continue;
+    pieces[p].cells &= ~taken[best];
     taken[best] |= pieces[p].cells;
     storey[p] = local.storey[best];
   }
@@ -128,6 +131,7 @@ uint64_t add_tile(std::span<const LevelTileContent> levels, std::span<const size
       left_out += pieces[p].count;
       continue;
     }
+    left_out += pieces[p].count - pieces[p].cells.count();
     const LevelTileContent& tile = levels[pieces[p].level];
     auto& out = sums[place[storeys[p]]];
     for (size_t i = 0; i < tile.floor.size(); ++i) {

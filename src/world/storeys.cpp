@@ -57,8 +57,9 @@ int32_t shared_cells(const LevelView& a, const LevelView& b, int32_t side, int32
   return count;
 }
 
-// Two levels of neighbouring tiles that continue each other. The more cells and the closer their
-// heights, the heavier: a floor goes on as a floor before it turns into the ramp to the next one.
+// Two levels of neighbouring tiles that continue each other. The more cells, the closer their
+// heights and the larger they are, the heavier: a floor goes on as a floor before it turns into the
+// ramp to the next one, or into what is left of it under the ramp's low end.
 struct Seam {
   uint32_t a = 0, b = 0;
   double weight = 0;
@@ -74,7 +75,9 @@ std::vector<Seam> find_seams(const WorldData& world, const std::vector<LevelInfo
       for (uint32_t b = tile.first; b < tile.last; ++b) {
         const int32_t shared = shared_cells(levels[a].view, levels[b].view, side, max_step);
         if (shared < 4) continue;
-        seams.push_back({a, b, shared / (1 + std::fabs(levels[a].mean - levels[b].mean) / 500)});
+        const double apart = std::fabs(levels[a].mean - levels[b].mean);
+        const int32_t cells = std::min(levels[a].cells, levels[b].cells);
+        seams.push_back({a, b, shared * static_cast<double>(cells) / (1 + apart / 500)});
       }
     }
   }

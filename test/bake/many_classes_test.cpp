@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <tuple>
@@ -125,6 +126,28 @@ TEST(ManyClasses, NorDoesItInSoupsForBodiesOfAnySize) {
     places += found.places;
   }
   EXPECT_GT(places, 100000);
+  RecordProperty("places", std::to_string(places));
+}
+
+TEST(ManyClasses, NorDoesItInSharedWorlds) {
+  const std::filesystem::path folder = THRONG_SHARED_WORLDS;
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no shared worlds here";
+  int64_t places = 0;
+  for (const char* model :
+       {"recast/nav_test.obj", "recast/dungeon.obj", "recast/undulating.obj", "sponza/sponza.obj",
+        "buildings/parking_garage.dae", "buildings/school.dae", "buildings/duplex_arch.obj",
+        "buildings/schependomlaan.obj", "quake3/am_thornish.bsp", "cities/lod3_railway.obj"}) {
+    Context context;
+    SceneConfig config;
+    config.sources.push_back({.path = folder / model, .up = {}, .scale = {}, .transform = {}});
+    const auto scene = load_scene(config, context);
+    ASSERT_TRUE(scene) << scene.error().message;
+    const Difference found = six_and_alone(*scene, 0.15, true);
+    EXPECT_EQ(found.unlike, 0) << model;
+    EXPECT_LE(found.feet, 2) << model;
+    places += found.places;
+  }
+  EXPECT_GT(places, 4000000);
   RecordProperty("places", std::to_string(places));
 }
 

@@ -404,9 +404,13 @@ class NodeBaker {
       begin = end;
     }
     begins_.push_back(sources_.size());
+    std::vector<std::optional<Result<std::unique_ptr<NodeData::Slot>>>> packed(zones_.size());
+    parallel_for(zones_.size(), config_.workers, [&](size_t z) {
+      if (zones_[z].first != zones_[z].last) packed[z] = pack_zone(z, arcs, arc_first);
+    });
     for (size_t z = 0; z < zones_.size(); ++z) {
-      if (zones_[z].first == zones_[z].last) continue;
-      auto slot = pack_zone(z, arcs, arc_first);
+      if (!packed[z]) continue;
+      auto& slot = *packed[z];
       if (!slot) return slot.error();
       (*slot)->first_node = zones_[z].first;
       nodes->summary.bytes += (*slot)->entry.bytes();
@@ -420,7 +424,7 @@ class NodeBaker {
   }
 
   Result<std::unique_ptr<NodeData::Slot>> pack_zone(size_t z, const std::vector<ArcRecord>& arcs,
-                                                    const std::vector<size_t>& arc_first) {
+                                                    const std::vector<size_t>& arc_first) const {
     const ZoneRange& zone = zones_[z];
     ZoneContent content;
     content.x = zone.x;
@@ -466,7 +470,7 @@ class NodeBaker {
   }
 
   // The doors of the patch that was written last.
-  void add_doors(uint32_t patch, const ZoneRange& zone, ZoneContent& content) {
+  void add_doors(uint32_t patch, const ZoneRange& zone, ZoneContent& content) const {
     const auto of = [](const PatchDoor& door, uint32_t p) { return door.patch < p; };
     for (auto door = std::lower_bound(doors_.begin(), doors_.end(), patch, of);
          door != doors_.end() && door->patch == patch; ++door) {
@@ -492,7 +496,7 @@ class NodeBaker {
   }
 
   // An arc's end as the zone writes it.
-  uint32_t target(uint32_t node, const ZoneRange& zone, ZoneContent& content) {
+  uint32_t target(uint32_t node, const ZoneRange& zone, ZoneContent& content) const {
     if (node >= zone.first && node < zone.last) return node - zone.first;
     const auto after = std::upper_bound(zones_.begin(), zones_.end(), node,
                                         [](uint32_t n, const ZoneRange& r) { return n < r.last; });

@@ -30,6 +30,13 @@ std::vector<BezierPatch> patches(size_t count) {
   return all;
 }
 
+PatchParts side_by_side(const std::vector<BezierPatch>& patches) {
+  PatchParts parts;
+  parts.resize(patches.size());
+  for (size_t p = 0; p < patches.size(); ++p) parts.set(p, patches[p]);
+  return parts;
+}
+
 void expect_same(const SurfaceBound& a, const SurfaceBound& b) {
   EXPECT_EQ(a.frame.centre, b.frame.centre);
   EXPECT_EQ(a.frame.side, b.frame.side);
@@ -46,7 +53,7 @@ void expect_same(const SurfaceBound& a, const SurfaceBound& b) {
 TEST(SurfaceBound, ManyAtOnceHaveTheSameBitsAsOneByOne) {
   const std::vector<BezierPatch> parts = patches(1003);
   std::vector<CellBounds> bounds(parts.size());
-  bound_cells_of(parts, bounds);
+  bound_cells_of(side_by_side(parts), bounds);
   size_t valid = 0;
   for (size_t p = 0; p < parts.size(); ++p) {
     const auto along = bound_surface(parts[p]);
@@ -58,6 +65,23 @@ TEST(SurfaceBound, ManyAtOnceHaveTheSameBitsAsOneByOne) {
   }
   EXPECT_GT(valid, 300u);
   EXPECT_LT(valid, 950u);
+}
+
+TEST(SurfaceBound, QuartersOfManyHaveTheSameBitsAsHalvesOfHalves) {
+  for (const size_t count : {1u, 4u, 7u, 203u}) {
+    const std::vector<BezierPatch> whole = patches(count);
+    PatchParts quarters;
+    quarter_parts(side_by_side(whole), quarters);
+    ASSERT_EQ(quarters.count, 4 * count);
+    for (size_t p = 0; p < count; ++p) {
+      for (size_t i = 0; i < 2; ++i) {
+        const auto halves = split_t(split_s(whole[p], 0.5)[i], 0.5);
+        for (size_t j = 0; j < 2; ++j) {
+          EXPECT_EQ(quarters.patch(4 * p + 2 * i + j).points, halves[j].points) << p;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

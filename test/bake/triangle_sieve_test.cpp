@@ -89,6 +89,7 @@ TEST(TriangleSieve, LosesNoTriangleThatEntersAndAnswersOnlyWhatIsSo) {
     for (size_t i = 0; i < c.triangles.size(); ++i) {
       list.add(static_cast<uint32_t>(i), c.triangles[i]);
     }
+    list.close();
     const uint32_t answered = sieve(list, c.question, hits);
     const bool all = answered == (1u << c.tubes.size()) - 1;
     kept += hits.count;
@@ -113,6 +114,57 @@ TEST(TriangleSieve, LosesNoTriangleThatEntersAndAnswersOnlyWhatIsSo) {
   EXPECT_LT(kept, 3000u * 37 / 4);  // It is of use.
 }
 
+TEST(TriangleSieve, AGlanceOverlooksNoTubeThatATriangleEnters) {
+  Dice dice{.seed = 5};
+  size_t met = 0, entered = 0, passed = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const Case c(dice);
+    SieveList list;
+    list.clear(c.frame.centre + dice.point(20));
+    const size_t few = 1 + static_cast<size_t>(round) % 20;  // else hardly a tube stays empty
+    for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
+    list.close();
+    std::vector<BodySweep> tubes;
+    for (const SieveTube& tube : c.tubes) tubes.push_back(tube.whole);
+    const uint32_t found = glance(list, c.frame, tubes);
+    for (size_t b = 0; b < tubes.size(); ++b) {
+      bool enters = false;
+      for (size_t i = 0; i < few; ++i) enters |= c.enters(i, tubes[b]);
+      ASSERT_TRUE(!enters || (found >> b & 1) != 0) << "round " << round << ", tube " << b;
+      met += found >> b & 1;
+      entered += enters;
+      passed += !enters && (found >> b & 1) == 0;
+    }
+  }
+  EXPECT_GT(entered, 1000u);
+  EXPECT_GT(passed, 1000u);
+  EXPECT_LT(met, 2 * entered);  // It is of use.
+}
+
+TEST(TriangleSieve, WhatSurelyEntersAnUprightTubeDoesSo) {
+  Dice dice{.seed = 6};
+  size_t sure = 0, entered = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const Case c(dice);
+    if (c.frame.up.y != 1) continue;
+    SieveList list;
+    list.clear(c.frame.centre + dice.point(20));
+    const size_t few = 1 + static_cast<size_t>(round) % 20;
+    for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
+    list.close();
+    for (const SieveTube& tube : c.tubes) {
+      bool enters = false;
+      for (size_t i = 0; i < few; ++i) enters |= c.enters(i, tube.whole);
+      const bool told = surely_enters(list, c.frame.centre, tube.whole);
+      ASSERT_TRUE(enters || !told) << "round " << round;
+      sure += told;
+      entered += enters;
+    }
+  }
+  EXPECT_GT(sure, 500u);
+  EXPECT_GT(2 * sure, entered);  // It is of use.
+}
+
 TEST(TriangleSieve, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {
   Dice dice{.seed = 4};
   SieveList near;
@@ -123,6 +175,7 @@ TEST(TriangleSieve, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {
     for (size_t i = 0; i < c.triangles.size(); ++i) {
       list.add(static_cast<uint32_t>(i), c.triangles[i]);
     }
+    list.close();
     Box3d box;
     box.add(c.frame.centre + dice.point(1));
     box.add(c.frame.centre + dice.point(1));

@@ -404,6 +404,10 @@ void PatchJudge::judge_posture(const Pending& cell, size_t posture, uint32_t squ
   for (size_t b = 1; b < sweeps_.size(); ++b) {
     if ((met >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
   }
+  // What stops bodies is mostly the ground that they stand on, where it is steep.
+  if (posture == 1 && (met & ~1u) != 0) {
+    met &= ~(surely_enters_uphill(block_, frame.centre, std::span(sweeps_).subspan(1)) << 1);
+  }
   if (met != 0) judge_met(cell, posture, met, promise);
 }
 

@@ -158,6 +158,67 @@ size_t Narrow(const SieveList& list, const float* middle, const float* half, Sie
   return kept;
 }
 
+// Where the planes of triangles come highest into upright tubes: uphill, at the rim. If such a
+// point is in the triangle, as seen from above and by more than the margin, the triangle is there
+// between the heights of its slab.
+uint32_t HoldsRim(const SieveList& list, const SieveAxis& axis, const SieveCylinder* tubes,
+                  size_t count) {
+  const DF df;
+  const uint32_t all = (1u << count) - 1;
+  const VF m = hn::Set(df, axis.margin), zero = hn::Zero(df);
+  uint32_t held = 0;
+  for (size_t i = 0; i < list.count && held != all; i += hn::Lanes(df)) {
+    const auto row = [&](size_t k)
+                         HWY_ATTR { return hn::LoadU(df, &list.plane[k * list.stride + i]); };
+    VF nx = row(0), ny = row(1), nz = row(2);
+    const VF at = hn::MulAdd(
+        nz, hn::Set(df, axis.centre[2]),
+        hn::MulAdd(ny, hn::Set(df, axis.centre[1]), hn::Mul(nx, hn::Set(df, axis.centre[0]))));
+    const VF from = hn::Sub(hn::Sub(row(3), at), m), to = hn::Add(hn::Sub(row(4), at), m);
+    // Upward; too steep a triangle tells too little.
+    const MF turned = hn::Lt(ny, zero);
+    nx = hn::IfThenElse(turned, hn::Neg(nx), nx);
+    ny = hn::Abs(ny);
+    nz = hn::IfThenElse(turned, hn::Neg(nz), nz);
+    const VF low = hn::IfThenElse(turned, hn::Neg(to), from);
+    const VF high = hn::IfThenElse(turned, hn::Neg(from), to);
+    const MF flat = hn::And(hn::Gt(ny, hn::Set(df, 0.1F)), lanes_of(list.count - i));
+    const VF across = hn::Sqrt(hn::MulAdd(nx, nx, hn::MulAdd(nz, nz, hn::Set(df, 1e-12F))));
+    const VF uphill_x = hn::Neg(hn::Div(nx, across)), uphill_z = hn::Neg(hn::Div(nz, across));
+    VF x[3], z[3], dx[3], dz[3], give[3];
+    for (size_t c = 0; c < 3; ++c) {
+      const float* corner = &list.corner[3 * c * list.stride + i];
+      x[c] = hn::Sub(hn::LoadU(df, corner), hn::Set(df, axis.centre[0]));
+      z[c] = hn::Sub(hn::LoadU(df, corner + 2 * list.stride), hn::Set(df, axis.centre[2]));
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      dx[c] = hn::Sub(x[(c + 1) % 3], x[c]);
+      dz[c] = hn::Sub(z[(c + 1) % 3], z[c]);
+      give[c] = hn::Mul(m, hn::Add(hn::Abs(dx[c]), hn::Abs(dz[c])));
+    }
+    for (uint32_t left = all & ~held; left != 0; left &= left - 1) {
+      const auto b = static_cast<size_t>(__builtin_ctz(left));
+      const VF radius = hn::Set(df, tubes[b].radius * 0.999F);
+      const VF qx = hn::Mul(uphill_x, radius), qz = hn::Mul(uphill_z, radius);
+      const VF rise = hn::MulAdd(nx, qx, hn::Mul(nz, qz));
+      // Heights there are (slab - rise) / ny.
+      MF in =
+          hn::And(hn::Gt(hn::Sub(low, rise), hn::Mul(ny, hn::Add(hn::Set(df, tubes[b].low), m))),
+                  hn::Lt(hn::Sub(high, rise), hn::Mul(ny, hn::Sub(hn::Set(df, tubes[b].high), m))));
+      MF left_of = flat, right_of = flat;
+      for (size_t c = 0; c < 3; ++c) {
+        const VF side =
+            hn::Sub(hn::Mul(dx[c], hn::Sub(qz, z[c])), hn::Mul(dz[c], hn::Sub(qx, x[c])));
+        left_of = hn::And(left_of, hn::Gt(side, give[c]));
+        right_of = hn::And(right_of, hn::Lt(side, hn::Neg(give[c])));
+      }
+      in = hn::And(in, hn::Or(left_of, right_of));
+      held |= hn::AllFalse(df, in) ? 0 : 1u << b;
+    }
+  }
+  return held;
+}
+
 // A triangle seen along the axis: how far its corners lie to the side, to the front and between.
 struct Outline {
   VF low, high, left, right, back, front, left_back, right_front, left_front, right_back;
@@ -422,6 +483,7 @@ namespace throng {
 HWY_EXPORT(FindPlanes);
 HWY_EXPORT(Glance);
 HWY_EXPORT(Holds);
+HWY_EXPORT(HoldsRim);
 HWY_EXPORT(Narrow);
 HWY_EXPORT(Sieve);
 
@@ -545,6 +607,21 @@ bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube) {
   const Vec3d at = centre - list.origin;
   const double margin = margin_of(list.extent + largest(at));
   return HWY_DYNAMIC_DISPATCH(Holds)(list, to_floats(at), shrunk(tube, margin));
+}
+
+uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre,
+                              std::span<const BodySweep> tubes) {
+  const Vec3d at = centre - list.origin;
+  const double margin = margin_of(list.extent + largest(at));
+  std::array<SieveCylinder, 31> cylinders;
+  double reach = 0;
+  for (size_t i = 0; i < tubes.size(); ++i) {
+    cylinders[i] = shrunk(tubes[i], margin);
+    reach = std::max(reach, reach_of(tubes[i]));
+  }
+  return HWY_DYNAMIC_DISPATCH(HoldsRim)(
+      list, {to_floats(at), {0, 1, 0}, static_cast<float>(margin + 1e-6 * reach), 0},
+      cylinders.data(), tubes.size());
 }
 
 uint32_t sieve(const SieveList& list, const SieveQuestion& question, SieveHits& hits) {

@@ -58,6 +58,11 @@ struct SieveQuestion {
 /// True only if a triangle enters an upright tube; most that do are noticed. Linear.
 [[nodiscard]] bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube);
 
+/// Bit i: a triangle surely enters upright tube i, uphill from its axis, as ground does on which a
+/// body stands too steep. [at most 31 tubes] Linear.
+[[nodiscard]] uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre,
+                                            std::span<const BodySweep> tubes);
+
 /// Triangles that may enter tubes: hit i those of which tubes[i] has the bits.
 struct SieveHits {
   size_t count = 0;

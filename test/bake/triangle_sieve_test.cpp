@@ -143,7 +143,7 @@ TEST(TriangleSieve, AGlanceOverlooksNoTubeThatATriangleEnters) {
 
 TEST(TriangleSieve, WhatSurelyEntersAnUprightTubeDoesSo) {
   Dice dice{.seed = 6};
-  size_t sure = 0, entered = 0;
+  size_t sure = 0, rims = 0, entered = 0;
   for (int round = 0; round < 3000; ++round) {
     const Case c(dice);
     if (c.frame.up.y != 1) continue;
@@ -159,10 +159,14 @@ TEST(TriangleSieve, WhatSurelyEntersAnUprightTubeDoesSo) {
       ASSERT_TRUE(enters || !told) << "round " << round;
       sure += told;
       entered += enters;
+      const bool uphill = surely_enters_uphill(list, c.frame.centre, {&tube.whole, 1}) != 0;
+      ASSERT_TRUE(enters || !uphill) << "round " << round;
+      rims += uphill;
     }
   }
   EXPECT_GT(sure, 500u);
   EXPECT_GT(2 * sure, entered);  // It is of use.
+  EXPECT_GT(rims, 150u);
 }
 
 TEST(TriangleSieve, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {

@@ -333,19 +333,6 @@ class NodeBaker {
     return both(node(l.a).promise, node(l.b).promise);
   }
 
-  [[nodiscard]] CellBall ball(uint32_t patch, uint32_t cell) const {
-    const PatchSource& source = sources_[patch];
-    if (source.kind == PatchKind::kBezier) {
-      const CellShape& shape = cells_[source.source].shape[cell];
-      return {shape.x, shape.y, shape.z, shape.radius};
-    }
-    // Seen from above, which can only be nearer.
-    const auto [x, z] = tile_place_[source.source];
-    const double side = data_.summary.cell;
-    return {(x * 64 + static_cast<double>(cell % 64) + 0.5) * side, 0,
-            (z * 64 + static_cast<double>(cell / 64) + 0.5) * side, side * 0.7072};
-  }
-
   void measure() {
     for (size_t s = 0; has_tiles_ && s < data_.slots.size(); ++s) {
       const Zone& zone = *data_.zone(s);
@@ -353,14 +340,21 @@ class NodeBaker {
         tile_place_.push_back(tile_of(data_, zone, zone.level(l)));
       }
     }
-    const CrossCells cross(pairs_);
+    std::vector<CellBalls> balls;
+    for (const PatchSource& source : sources_) {
+      if (source.kind == PatchKind::kBezier) {
+        balls.push_back({.listed = cells_[source.source].shape});
+        continue;
+      }
+      const auto [x, z] = tile_place_[source.source];
+      balls.push_back({.listed = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
+    }
+    const CrossCells cross(pairs_, sources_.size());
     const double most = bins_.width.back();
     widths_.resize(forest_.trees.size());
     parallel_for(widths_.size(), config_.workers, [&](size_t p) {
       if (context_.cancel) return;
-      const auto here = static_cast<uint32_t>(p);
-      widths_[p] = node_widths(forest_, here, cross, most,
-                               [&](uint32_t patch, uint32_t cell) { return ball(patch, cell); });
+      widths_[p] = node_widths(forest_, static_cast<uint32_t>(p), cross, most, balls);
     });
   }
 

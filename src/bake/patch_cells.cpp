@@ -34,17 +34,6 @@ inline void join(Box3d& box, const Box3d& other) {
              std::max(box.max.z, other.max.z)};
 }
 
-// A cylinder's heights and radius as seen from another's axis, at least.
-BodySweep seen_from(const BodyFrame& axis, const BodyFrame& frame, const BodySweep& sweep) {
-  const Vec3d at = axis.local(frame.centre);
-  const double cosine = dot(axis.up, frame.up);
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + kTurnMargin;
-  const double far = std::max(std::fabs(sweep.low), std::fabs(sweep.high));
-  return {.radius = std::sqrt(at.x * at.x + at.y * at.y) + sweep.radius + far * sine,
-          .low = at.z + std::min(sweep.low * cosine, sweep.high * cosine) - sweep.radius * sine,
-          .high = at.z + std::max(sweep.low * cosine, sweep.high * cosine) + sweep.radius * sine};
-}
-
 inline void join(BodySweep& sweep, const BodySweep& other) {
   sweep = {.radius = std::max(sweep.radius, other.radius),
            .low = std::min(sweep.low, other.low),
@@ -273,8 +262,7 @@ void PatchJudge::judge_pending(BezierCells& out) {
       const auto cells = all.subspan(k, std::min(kSquare, end - k));
       find_makers(cells, out);
       narrow(part_, boxes_[k / kSquare], block_);
-      judge_square(cells, 0, out);
-      judge_square(cells, 1, out);
+      judge_square(cells, out);
     }
   }
   pending_.clear();
@@ -330,38 +318,53 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
 }
 
 // Over open ground one look at the triangles' planes tells that nobody is stopped on any of the
-// cells: those that stand on one axis as all of theirs together, in or on which all of them are.
-void PatchJudge::judge_square(std::span<const Pending> cells, size_t posture, BezierCells& out) {
-  constexpr double kWidest = 1e30;
-  Vec3d centre, up;
-  double count = 0;
+// cells: all bodies together, as seen from an axis between theirs. Upright bodies on a slope would
+// not fit into a level one.
+void PatchJudge::judge_square(std::span<const Pending> cells, BezierCells& out) {
+  BodyFrame axis;
   for (const Pending& cell : cells) {
-    if (posture >= static_cast<size_t>(cell.postures)) continue;
-    centre = centre + cell.surface(posture).frame.centre;
-    up = up + cell.surface(posture).frame.up;
-    ++count;
+    axis.centre = axis.centre + cell.surface(0).frame.centre;
+    axis.up = axis.up + cell.surface(0).frame.up;
   }
-  if (count == 0) return;
-  uint32_t met = 3;
-  if (const double size = length(up); size > 0.5 * count) {
-    BodyFrame axis = cells[0].surface(posture).frame;
-    if (posture == 0) axis = BodyFrame::around(centre, up * (1 / size));
-    axis.centre = centre * (1 / count);
+  const auto count = static_cast<double>(cells.size());
+  bool met = false;
+  if (const double size = length(axis.up); size < 0.5 * count) {
+    met = true;
+  } else {
+    axis.centre = axis.centre * (1 / count);
+    axis.up = axis.up * (1 / size);
+    constexpr double kWidest = 1e30;
     std::array<BodySweep, 2> all;
     all.fill({.radius = 0, .low = kWidest, .high = -kWidest});
     for (const Pending& cell : cells) {
-      if (posture >= static_cast<size_t>(cell.postures)) continue;
-      const BodyFrame& frame = cell.surface(posture).frame;
-      join(all[0], seen_from(axis, frame, cell.prism[posture]));
-      join(all[1], seen_from(axis, frame, cell.bodies[posture]));
+      const BodyFrame& frame = cell.surface(0).frame;
+      const Vec3d away = frame.centre - axis.centre;
+      const double height = dot(away, axis.up), cosine = dot(axis.up, frame.up);
+      const double aside = std::sqrt(std::max(0.0, dot(away, away) - height * height));
+      const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + kTurnMargin;
+      met |= cosine < 0;
+      const auto add = [&](const BodySweep& sweep, BodySweep& to) {
+        const double far = std::max(std::fabs(sweep.low), std::fabs(sweep.high));
+        join(to,
+             {.radius = aside + kTurnMargin + sweep.radius + far * sine,
+              .low = height + std::min(sweep.low, sweep.low * cosine) - sweep.radius * sine,
+              .high = height + std::max(sweep.high, sweep.high * cosine) + sweep.radius * sine});
+      };
+      add(cell.prism[0], all[0]);
+      add(cell.bodies[0], all[1]);
     }
-    // Upright, most ground is its own ceiling to the least of bodies: no use to ask.
-    met = posture == 0 ? glance(block_, axis, all)
-                       : 1 | glance(block_, axis, std::span(all).last(1)) << 1;
+    met = met || glance(block_, axis, all) != 0;
   }
   for (const Pending& cell : cells) {
-    if (posture >= static_cast<size_t>(cell.postures)) continue;
-    judge_posture(cell, posture, met, out.promise.cells[cell.cell]);
+    Promise& promise = out.promise.cells[cell.cell];
+    if (met) {
+      judge_posture(cell, 0, promise);
+    } else {
+      for (const PatchBody& body : bodies_) {
+        if (is_asked(body, 0, cell)) promise.classes |= body.bit;
+      }
+    }
+    if (cell.postures > 1) judge_posture(cell, 1, promise);
   }
 }
 
@@ -371,29 +374,18 @@ BodySweep PatchJudge::low_room(const Pending& cell, size_t posture) const {
   return room;
 }
 
-// Tests the classes of one posture, and the free height along it. `square` has bit 0 if the room's
-// end, bit 1 if bodies may be met on any cell around.
-void PatchJudge::judge_posture(const Pending& cell, size_t posture, uint32_t square,
-                               Promise& promise) {
+// Tests the classes of one posture, and the free height along it.
+void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& promise) {
   const BodyFrame& frame = cell.surface(posture).frame;
-  if (square == 0) {
-    for (const PatchBody& body : bodies_) {
-      if (is_asked(body, posture, cell)) promise.classes |= body.bit;
-    }
-    return;
-  }
   sweeps_.clear();
   tube_bit_.clear();
   sweeps_.push_back(cell.prism[posture]);
   for (const PatchBody& body : bodies_) {
     if (!is_asked(body, posture, cell)) continue;
-    if ((square & 2) == 0) {
-      promise.classes |= body.bit;
-      continue;
-    }
     sweeps_.push_back(sweep_of(cell.surface(posture), body));
     tube_bit_.push_back(body.bit);
   }
+  // Upright, most ground is its own ceiling to the least of bodies: that is seen at once.
   uint32_t met = 0;
   if (posture == 0 || !surely_enters(block_, frame.centre, low_room(cell, 1))) {
     met = glance(block_, frame, sweeps_);

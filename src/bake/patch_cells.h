@@ -11,6 +11,7 @@
 #include "bake/body_sweep.h"
 #include "bake/surface_bound.h"
 #include "bake/triangle_sieve.h"
+#include "graph/node_width.h"
 #include "graph/quadtree.h"
 #include "throng/nodes.h"
 #include "throng/patch.h"
@@ -32,13 +33,6 @@ struct PatchBody {
 
 /// Where the body is while its feet are anywhere on the surface.
 [[nodiscard]] BodySweep sweep_of(const SurfaceBound& surface, const PatchBody& body);
-
-/// The middle of a cell and the radius around it that holds the cell, for floods.
-struct CellShape {
-  float x = 0, y = 0, z = 0;
-  float radius = 0;
-  float area = 0;
-};
 
 struct BezierCells {
   PatchCells promise;
@@ -82,8 +76,8 @@ class PatchJudge {
   void judge_pending(BezierCells& out);
   void gather(const Box3d& box);
   void find_makers(std::span<const Pending> cells, BezierCells& out);
-  void judge_square(std::span<const Pending> cells, size_t posture, BezierCells& out);
-  void judge_posture(const Pending& cell, size_t posture, uint32_t square, Promise& promise);
+  void judge_square(std::span<const Pending> cells, BezierCells& out);
+  void judge_posture(const Pending& cell, size_t posture, Promise& promise);
   void judge_met(const Pending& cell, size_t posture, uint32_t met, Promise& promise);
   /// Matter in here leaves no height.
   [[nodiscard]] BodySweep low_room(const Pending& cell, size_t posture) const;

@@ -307,9 +307,7 @@ class NodeBaker {
       linker.link_inside(static_cast<uint32_t>(p), cells_of(sources_[p]));
       lists[p] = linker.take();
     });
-    NodeLinker across(forest_);
-    for (const CellPair& pair : pairs_) across.link(pair);
-    links_ = across.take();
+    links_ = link_across();
     for (const auto& list : lists) links_.insert(links_.end(), list.begin(), list.end());
     merge_node_links(links_);
     // Beyond what any walker stands on, a way is climbed.
@@ -322,6 +320,29 @@ class NodeBaker {
       if (worst(l).inclination > code && l.kind == LinkKind::kWalk) l.kind = LinkKind::kClimb;
     }
     merge_node_links(links_);
+  }
+
+  // Pairs of different patches, in runs that are then merged two by two. A run drops a leap only
+  // for earlier ones that serve its classes, so what is left of all does not depend on the runs.
+  [[nodiscard]] std::vector<NodeLink> link_across() const {
+    constexpr size_t kRun = size_t{1} << 14;
+    std::vector<std::vector<NodeLink>> runs(pairs_.size() / kRun + 1);
+    parallel_for(runs.size(), config_.workers, [&](size_t r) {
+      NodeLinker linker(forest_);
+      const size_t end = std::min(pairs_.size(), (r + 1) * kRun);
+      for (size_t i = r * kRun; i < end; ++i) linker.link(pairs_[i]);
+      runs[r] = linker.take();
+    });
+    for (size_t step = 1; step < runs.size(); step *= 2) {
+      parallel_for((runs.size() + 2 * step - 1) / (2 * step), config_.workers, [&](size_t k) {
+        const size_t low = 2 * step * k, high = low + step;
+        if (high >= runs.size()) return;
+        runs[low].insert(runs[low].end(), runs[high].begin(), runs[high].end());
+        runs[high] = {};
+        merge_node_links(runs[low]);
+      });
+    }
+    return std::move(runs[0]);
   }
 
   [[nodiscard]] const PatchNode& node(uint32_t id) const {

@@ -131,10 +131,15 @@ Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep) {
 }
 
 TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&scene) {
-  const Box3d bounds = scene.bounds();
+  make_clusters(workers);
+  Box3d bounds;  // Clusters know it sooner than all triangles.
+  for (const Cluster& cluster : clusters_) {
+    const auto& b = cluster.box;
+    bounds.add({b[0], b[1], b[2]});
+    bounds.add({b[3], b[4], b[5]});
+  }
   origin_x_ = bounds.min.x;
   origin_z_ = bounds.min.z;
-  make_clusters(workers);
   const double width = bounds.max.x - bounds.min.x, depth = bounds.max.z - bounds.min.z;
   // Small against bodies and sub-patches, but not so many that the squares cost more than they
   // save.

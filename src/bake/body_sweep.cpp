@@ -179,8 +179,8 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
 
 namespace {
 
-constexpr size_t kRun = 2048;        // triangles that are sorted together
-constexpr double kCube = 1.5;        // [m]
+constexpr size_t kRun = 2048;         // triangles that are sorted together
+constexpr double kCube = 1.5;         // [m]
 constexpr uint64_t kBuckets = 32768;  // at most, to be counted instead of compared
 
 // Where a triangle of a run belongs: patch first, then cubes.

@@ -47,6 +47,7 @@ bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const Bod
   triangles_->find(box, found_);
   near_.clear(from.feet);
   for (const uint32_t t : found_) near_.add(t, triangles_->corners(t));
+  near_.close();
   return is_free(body, from, to, way, 0, 1);
 }
 

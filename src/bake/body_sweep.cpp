@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <numeric>
 
 #include "core/parallel.h"
 
@@ -124,20 +124,22 @@ Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep) {
     return sweep.radius * std::sqrt(1 - std::min(1.0, along * along));
   };
   const Vec3d r{across(up.x), across(up.y), across(up.z)};
-  Box3d box;
-  for (const double height : {sweep.low, sweep.high}) {
-    const Vec3d middle = frame.centre + up * height;
-    box.add(middle - r);
-    box.add(middle + r);
-  }
-  return box;
+  const Vec3d a = frame.centre + up * sweep.low, b = frame.centre + up * sweep.high;
+  const Vec3d low{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+  const Vec3d high{std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+  return {low - r, high + r};
 }
 
 TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&scene) {
-  const Box3d bounds = scene.bounds();
+  make_clusters(workers);
+  Box3d bounds;  // Clusters know it sooner than all triangles.
+  for (const Cluster& cluster : clusters_) {
+    const auto& b = cluster.box;
+    bounds.add({b[0], b[1], b[2]});
+    bounds.add({b[3], b[4], b[5]});
+  }
   origin_x_ = bounds.min.x;
   origin_z_ = bounds.min.z;
-  make_clusters(workers);
   const double width = bounds.max.x - bounds.min.x, depth = bounds.max.z - bounds.min.z;
   // Small against bodies and sub-patches, but not so many that the squares cost more than they
   // save.
@@ -155,22 +157,89 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   squares_z_ = bins.squares_z;
   first_.assign(bins.first.begin(), bins.first.end());
   items_.reserve(bins.items.size());
-  for (int32_t s = 0; s < squares_x_ * squares_z_; ++s) {
-    for (uint32_t i = first_[static_cast<size_t>(s)]; i < first_[static_cast<size_t>(s) + 1]; ++i) {
-      const auto& b = clusters_[bins.items[i]].box;
-      items_.push_back({.box = b,
-                        .cluster = bins.items[i],
-                        .begins_x = square(b[0], origin_x_, squares_x_) == s % squares_x_,
-                        .begins_z = square(b[2], origin_z_, squares_z_) == s / squares_x_});
+  // The first square of each, which boxes that only touch a border do not tell.
+  struct Place {
+    int32_t x = -1, z = 0;
+  };
+  std::vector<Place> begin(clusters_.size());
+  size_t s = 0;
+  for (int32_t z = 0; z < squares_z_; ++z) {
+    for (int32_t x = 0; x < squares_x_; ++x, ++s) {
+      for (uint32_t i = first_[s]; i < first_[s + 1]; ++i) {
+        const uint32_t c = bins.items[i];
+        if (begin[c].x < 0) begin[c] = {x, z};
+        items_.push_back({.box = clusters_[c].box,
+                          .cluster = c,
+                          .begins_x = x == begin[c].x,
+                          .begins_z = z == begin[c].z});
+      }
     }
   }
 }
 
+namespace {
+
+constexpr size_t kRun = 2048;         // triangles that are sorted together
+constexpr double kCube = 1.5;         // [m]
+constexpr uint64_t kBuckets = 32768;  // at most, to be counted instead of compared
+
+// Where a triangle of a run belongs: patch first, then cubes.
+struct CubeKey {
+  uint32_t patch = 0;
+  std::array<int64_t, 3> cube{};
+
+  friend auto operator<=>(const CubeKey&, const CubeKey&) = default;
+};
+
+// std::floor() is a call where the oldest of machines must be able to go on.
+int64_t floor_of(double v) {
+  const auto whole = static_cast<int64_t>(v);
+  return whole - (static_cast<double>(whole) > v ? 1 : 0);
+}
+
+// Numbers the keys of a run so that equal ones are beside each other. Mostly the run is small and
+// of few patches, so that its cubes can be numbered row by row.
+void sort_run(std::span<const CubeKey> keys, std::vector<uint32_t>& order) {
+  order.resize(keys.size());
+  CubeKey low = keys[0], high = keys[0];
+  for (const CubeKey& key : keys) {
+    low.patch = std::min(low.patch, key.patch);
+    high.patch = std::max(high.patch, key.patch);
+    for (size_t k = 0; k < 3; ++k) {
+      low.cube[k] = std::min(low.cube[k], key.cube[k]);
+      high.cube[k] = std::max(high.cube[k], key.cube[k]);
+    }
+  }
+  double buckets = static_cast<double>(high.patch - low.patch) + 1;
+  std::array<uint64_t, 3> side;
+  for (size_t k = 0; k < 3; ++k) {
+    side[k] = static_cast<uint64_t>(high.cube[k] - low.cube[k]) + 1;
+    buckets *= static_cast<double>(side[k]);
+  }
+  if (buckets > kBuckets) {
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return keys[a] < keys[b]; });
+    return;
+  }
+  const auto bucket_of = [&](const CubeKey& key) {
+    uint64_t bucket = key.patch - low.patch;
+    for (size_t k = 0; k < 3; ++k) {
+      bucket = bucket * side[k] + static_cast<uint64_t>(key.cube[k] - low.cube[k]);
+    }
+    return bucket;
+  };
+  std::vector<uint32_t> next(static_cast<size_t>(buckets) + 1, 0);
+  for (const CubeKey& key : keys) ++next[bucket_of(key) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (uint32_t i = 0; i < keys.size(); ++i) order[next[bucket_of(keys[i])]++] = i;
+}
+
+}  // namespace
+
 // Runs of triangles that follow each other are sorted by cubes of kCube metres, and what lies in
 // one cube is a cluster. Whatever the order of a soup, clusters hold all its triangles.
 void TriangleSquares::make_clusters(int32_t workers) {
-  constexpr size_t kRun = 2048;
-  constexpr double kCube = 1.5;
   constexpr uint32_t kMost = 24;
   const size_t count = scene_->triangles.size();
   order_.resize(count);
@@ -179,30 +248,30 @@ void TriangleSquares::make_clusters(int32_t workers) {
   };
   std::vector<std::vector<Cluster>> lists((count + kRun - 1) / kRun);
   parallel_for(lists.size(), workers, [&](size_t run) {
-    using Key = std::tuple<uint32_t, int64_t, int64_t, int64_t, uint32_t>;  // patch first
-    std::vector<Key> keys;
     const size_t begin = run * kRun, end = std::min(count, begin + kRun);
+    std::vector<CubeKey> keys;
+    keys.reserve(end - begin);
     for (size_t t = begin; t < end; ++t) {
       const LocalTriangle c = corners(static_cast<uint32_t>(t));
       const Vec3d middle = (c[0] + c[1] + c[2]) * (1.0 / 3 / kCube);
-      const auto cube = [](double v) { return static_cast<int64_t>(std::floor(v)); };
-      keys.emplace_back(patch_of(t), cube(middle.x), cube(middle.z), cube(middle.y),
-                        static_cast<uint32_t>(t));
+      keys.push_back({patch_of(t), {floor_of(middle.x), floor_of(middle.z), floor_of(middle.y)}});
     }
-    std::sort(keys.begin(), keys.end());
-    const auto same_cube = [](const Key& a, const Key& b) {
-      return std::get<0>(a) == std::get<0>(b) && std::get<1>(a) == std::get<1>(b) &&
-             std::get<2>(a) == std::get<2>(b) && std::get<3>(a) == std::get<3>(b);
-    };
-    for (size_t i = 0; i < keys.size(); ++i) order_[begin + i] = std::get<4>(keys[i]);
+    std::vector<uint32_t> order;
+    sort_run(keys, order);
+    for (size_t i = 0; i < keys.size(); ++i) {
+      order_[begin + i] = static_cast<uint32_t>(begin) + order[i];
+    }
     for (size_t i = 0; i < keys.size();) {
       size_t j = i + 1;
-      while (j < keys.size() && j - i < kMost && same_cube(keys[i], keys[j])) ++j;
+      while (j < keys.size() && j - i < kMost && keys[order[j]] == keys[order[i]]) ++j;
       lists[run].push_back(
           measure(static_cast<uint32_t>(begin + i), static_cast<uint32_t>(begin + j)));
       i = j;
     }
   });
+  size_t total = 0;
+  for (const auto& list : lists) total += list.size();
+  clusters_.reserve(total);
   for (const auto& list : lists) clusters_.insert(clusters_.end(), list.begin(), list.end());
 }
 

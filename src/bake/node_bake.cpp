@@ -307,9 +307,7 @@ class NodeBaker {
       linker.link_inside(static_cast<uint32_t>(p), cells_of(sources_[p]));
       lists[p] = linker.take();
     });
-    NodeLinker across(forest_);
-    for (const CellPair& pair : pairs_) across.link(pair);
-    links_ = across.take();
+    links_ = link_across();
     for (const auto& list : lists) links_.insert(links_.end(), list.begin(), list.end());
     merge_node_links(links_);
     // Beyond what any walker stands on, a way is climbed.
@@ -324,6 +322,29 @@ class NodeBaker {
     merge_node_links(links_);
   }
 
+  // Pairs of different patches, in runs that are then merged two by two. A run drops a leap only
+  // for earlier ones that serve its classes, so what is left of all does not depend on the runs.
+  [[nodiscard]] std::vector<NodeLink> link_across() const {
+    constexpr size_t kRun = size_t{1} << 14;
+    std::vector<std::vector<NodeLink>> runs(pairs_.size() / kRun + 1);
+    parallel_for(runs.size(), config_.workers, [&](size_t r) {
+      NodeLinker linker(forest_);
+      const size_t end = std::min(pairs_.size(), (r + 1) * kRun);
+      for (size_t i = r * kRun; i < end; ++i) linker.link(pairs_[i]);
+      runs[r] = linker.take();
+    });
+    for (size_t step = 1; step < runs.size(); step *= 2) {
+      parallel_for((runs.size() + 2 * step - 1) / (2 * step), config_.workers, [&](size_t k) {
+        const size_t low = 2 * step * k, high = low + step;
+        if (high >= runs.size()) return;
+        runs[low].insert(runs[low].end(), runs[high].begin(), runs[high].end());
+        runs[high] = {};
+        merge_node_links(runs[low]);
+      });
+    }
+    return std::move(runs[0]);
+  }
+
   [[nodiscard]] const PatchNode& node(uint32_t id) const {
     const auto after = std::upper_bound(forest_.first.begin(), forest_.first.end(), id);
     const auto patch = static_cast<size_t>(after - forest_.first.begin()) - 1;
@@ -333,19 +354,6 @@ class NodeBaker {
     return both(node(l.a).promise, node(l.b).promise);
   }
 
-  [[nodiscard]] CellBall ball(uint32_t patch, uint32_t cell) const {
-    const PatchSource& source = sources_[patch];
-    if (source.kind == PatchKind::kBezier) {
-      const CellShape& shape = cells_[source.source].shape[cell];
-      return {shape.x, shape.y, shape.z, shape.radius};
-    }
-    // Seen from above, which can only be nearer.
-    const auto [x, z] = tile_place_[source.source];
-    const double side = data_.summary.cell;
-    return {(x * 64 + static_cast<double>(cell % 64) + 0.5) * side, 0,
-            (z * 64 + static_cast<double>(cell / 64) + 0.5) * side, side * 0.7072};
-  }
-
   void measure() {
     for (size_t s = 0; has_tiles_ && s < data_.slots.size(); ++s) {
       const Zone& zone = *data_.zone(s);
@@ -353,14 +361,21 @@ class NodeBaker {
         tile_place_.push_back(tile_of(data_, zone, zone.level(l)));
       }
     }
-    const CrossCells cross(pairs_);
+    std::vector<CellBalls> balls;
+    for (const PatchSource& source : sources_) {
+      if (source.kind == PatchKind::kBezier) {
+        balls.push_back({.listed = cells_[source.source].shape});
+        continue;
+      }
+      const auto [x, z] = tile_place_[source.source];
+      balls.push_back({.listed = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
+    }
+    const CrossCells cross(pairs_, sources_.size());
     const double most = bins_.width.back();
     widths_.resize(forest_.trees.size());
     parallel_for(widths_.size(), config_.workers, [&](size_t p) {
       if (context_.cancel) return;
-      const auto here = static_cast<uint32_t>(p);
-      widths_[p] = node_widths(forest_, here, cross, most,
-                               [&](uint32_t patch, uint32_t cell) { return ball(patch, cell); });
+      widths_[p] = node_widths(forest_, static_cast<uint32_t>(p), cross, most, balls);
     });
   }
 
@@ -404,9 +419,13 @@ class NodeBaker {
       begin = end;
     }
     begins_.push_back(sources_.size());
+    std::vector<std::optional<Result<std::unique_ptr<NodeData::Slot>>>> packed(zones_.size());
+    parallel_for(zones_.size(), config_.workers, [&](size_t z) {
+      if (zones_[z].first != zones_[z].last) packed[z] = pack_zone(z, arcs, arc_first);
+    });
     for (size_t z = 0; z < zones_.size(); ++z) {
-      if (zones_[z].first == zones_[z].last) continue;
-      auto slot = pack_zone(z, arcs, arc_first);
+      if (!packed[z]) continue;
+      auto& slot = *packed[z];
       if (!slot) return slot.error();
       (*slot)->first_node = zones_[z].first;
       nodes->summary.bytes += (*slot)->entry.bytes();
@@ -420,7 +439,7 @@ class NodeBaker {
   }
 
   Result<std::unique_ptr<NodeData::Slot>> pack_zone(size_t z, const std::vector<ArcRecord>& arcs,
-                                                    const std::vector<size_t>& arc_first) {
+                                                    const std::vector<size_t>& arc_first) const {
     const ZoneRange& zone = zones_[z];
     ZoneContent content;
     content.x = zone.x;
@@ -466,7 +485,7 @@ class NodeBaker {
   }
 
   // The doors of the patch that was written last.
-  void add_doors(uint32_t patch, const ZoneRange& zone, ZoneContent& content) {
+  void add_doors(uint32_t patch, const ZoneRange& zone, ZoneContent& content) const {
     const auto of = [](const PatchDoor& door, uint32_t p) { return door.patch < p; };
     for (auto door = std::lower_bound(doors_.begin(), doors_.end(), patch, of);
          door != doors_.end() && door->patch == patch; ++door) {
@@ -492,7 +511,7 @@ class NodeBaker {
   }
 
   // An arc's end as the zone writes it.
-  uint32_t target(uint32_t node, const ZoneRange& zone, ZoneContent& content) {
+  uint32_t target(uint32_t node, const ZoneRange& zone, ZoneContent& content) const {
     if (node >= zone.first && node < zone.last) return node - zone.first;
     const auto after = std::upper_bound(zones_.begin(), zones_.end(), node,
                                         [](uint32_t n, const ZoneRange& r) { return n < r.last; });

@@ -21,14 +21,23 @@ namespace throng {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr size_t kRegion = 256;        // cells that look for triangles together
-constexpr size_t kPart = 32;           // cells of a region that choose among these together
-constexpr size_t kSquare = 4;          // cells of a part that choose again
-constexpr double kSlopeMargin = 1e-6;  // a plane at exactly a limit keeps it
+constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for triangles together
+constexpr size_t kPart = 32;            // cells of a region that choose among these together
+constexpr size_t kSquare = 4;           // cells of a part that choose again
+constexpr double kTurnMargin = 1e-7;    // of a sine, for what rounding does to its cosine
+constexpr double kSlopeMargin = 1e-6;   // a plane at exactly a limit keeps it
 
-bool overlap(const Box3d& a, const Box3d& b) {
-  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-         a.min.z <= b.max.z && b.min.z <= a.max.z;
+inline void join(Box3d& box, const Box3d& other) {
+  box.min = {std::min(box.min.x, other.min.x), std::min(box.min.y, other.min.y),
+             std::min(box.min.z, other.min.z)};
+  box.max = {std::max(box.max.x, other.max.x), std::max(box.max.y, other.max.y),
+             std::max(box.max.z, other.max.z)};
+}
+
+inline void join(BodySweep& sweep, const BodySweep& other) {
+  sweep = {.radius = std::max(sweep.radius, other.radius),
+           .low = std::min(sweep.low, other.low),
+           .high = std::max(sweep.high, other.high)};
 }
 
 BodySweep surface_sweep(const SurfaceBound& surface) {
@@ -124,10 +133,18 @@ BezierCells PatchJudge::judge(uint32_t patch) {
 
 void PatchJudge::visit(const BezierPatch& part, int32_t level, int32_t s, int32_t t,
                        BezierCells& out) {
-  if (level == out.promise.depth) {
-    parts_.push_back(part);
-    part_cell_.push_back(out.promise.index(s, t));
-    if (parts_.size() >= kRegion) judge_pending(out);
+  const int32_t left = out.promise.depth - level;
+  if (left <= kRegionHalvings) {
+    cut_region(part, left);
+    for (uint32_t i = 0; i < parts_.count; ++i) {
+      int32_t cell_s = s << left, cell_t = t << left;
+      for (int32_t bit = 0; bit < left; ++bit) {
+        cell_s |= static_cast<int32_t>(i >> (2 * bit + 1) & 1) << bit;
+        cell_t |= static_cast<int32_t>(i >> (2 * bit) & 1) << bit;
+      }
+      part_cell_.push_back(out.promise.index(cell_s, cell_t));
+    }
+    judge_pending(out);
     return;
   }
   const auto by_s = split_s(part, 0.5);
@@ -139,9 +156,19 @@ void PatchJudge::visit(const BezierPatch& part, int32_t level, int32_t s, int32_
   }
 }
 
+// The cells of a part, in the order of a quadtree.
+void PatchJudge::cut_region(const BezierPatch& part, int32_t halvings) {
+  parts_.resize(1);
+  parts_.set(0, part);
+  for (int32_t k = 0; k < halvings; ++k) {
+    quarter_parts(parts_, coarser_);
+    std::swap(parts_, coarser_);
+  }
+}
+
 // What the surfaces alone tell; cells on which a body might stand are left pending.
 void PatchJudge::bound_cells(BezierCells& out) {
-  bounds_.resize(parts_.size());
+  bounds_.resize(parts_.count);
   bound_cells_of(parts_, bounds_);
   const auto bin_of = [&](double cosine) {
     uint8_t code = 0;
@@ -149,12 +176,12 @@ void PatchJudge::bound_cells(BezierCells& out) {
     return code;
   };
   const auto open = static_cast<uint8_t>(bins_->height.size());
-  for (size_t i = 0; i < parts_.size(); ++i) {
+  for (size_t i = 0; i < parts_.count; ++i) {
     Promise& promise = out.promise.cells[part_cell_[i]];
     promise = {.classes = 0, .inclination = 15, .height = 0, .headroom = 0};
     CellShape& shape = out.shape[part_cell_[i]];
     if (!bounds_[i].valid) {
-      const Box3d box = parts_[i].bounds();
+      const Box3d box = parts_.patch(i).bounds();
       const Vec3d middle = (box.min + box.max) * 0.5;
       shape = {static_cast<float>(middle.x), static_cast<float>(middle.y),
                static_cast<float>(middle.z), static_cast<float>(length(box.max - middle)), 0};
@@ -171,14 +198,14 @@ void PatchJudge::bound_cells(BezierCells& out) {
     // Every class's limit is an edge, so a closer look can change a verdict only if it can change
     // the bin.
     if (promise.inclination != bin_of(bound.frame.up.y)) {
-      steepest = std::max(steepest, steepest_cosine(parts_[i], bound));
+      steepest = std::max(steepest, steepest_cosine(parts_.patch(i), bound));
       promise.inclination = bin_of(steepest);
     }
     promise.height = promise.headroom = open;
     Pending& pending = pending_.emplace_back();
     pending.cell = part_cell_[i];
     pending.steepest = steepest;
-    pending.surface = {bound, bounds_[i].upright};
+    pending.bounds = &bounds_[i];
     add_posture(0, pending);
     if (bound.frame.up.y <= bound.sine) {  // It may lean over: it is its own ceiling.
       promise.headroom = 0;
@@ -186,12 +213,11 @@ void PatchJudge::bound_cells(BezierCells& out) {
       add_posture(1, pending);
     }
   }
-  parts_.clear();
   part_cell_.clear();
 }
 
 void PatchJudge::add_posture(size_t posture, Pending& cell) const {
-  const SurfaceBound& surface = cell.surface[posture];
+  const SurfaceBound& surface = cell.surface(posture);
   BodySweep& prism = cell.prism[posture];
   prism = {.radius = surface.radius + tallest_ * surface.sine,
            .low = surface.low + least_bottom_ * surface.cosine,
@@ -208,9 +234,12 @@ void PatchJudge::add_posture(size_t posture, Pending& cell) const {
               .high = std::max(bodies.high, sweep.high)};
   }
   if (!any) bodies = prism;
-  cell.box[posture] = sweep_box(surface.frame, {.radius = std::max(prism.radius, bodies.radius),
-                                                .low = std::min(prism.low, bodies.low),
-                                                .high = std::max(prism.high, bodies.high)});
+  // Makers come into the surface itself, below all bodies.
+  const Box3d box =
+      sweep_box(surface.frame, {.radius = std::max(prism.radius, bodies.radius),
+                                .low = std::min({prism.low, bodies.low, surface.low}),
+                                .high = std::max({prism.high, bodies.high, surface.high})});
+  join(cell.box, box);
   cell.postures = static_cast<int32_t>(posture) + 1;
 }
 
@@ -218,43 +247,22 @@ void PatchJudge::add_posture(size_t posture, Pending& cell) const {
 void PatchJudge::judge_pending(BezierCells& out) {
   bound_cells(out);
   if (pending_.empty()) return;
-  const auto box_of = [&](std::span<const Pending> cells, size_t posture) {
-    Box3d box;
-    for (const Pending& cell : cells) {
-      if (posture >= static_cast<size_t>(cell.postures)) continue;
-      box.add(cell.box[posture].min);
-      box.add(cell.box[posture].max);
-    }
-    return box;
-  };
-  const auto join = [](Box3d& box, const Box3d& other) {
-    if (other.empty()) return;
-    box.add(other.min);
-    box.add(other.max);
-  };
   const std::span<const Pending> all = pending_;
   Box3d box;
-  for (const Pending& cell : all) {  // Makers come into the surface itself, below all bodies.
-    join(box, sweep_box(cell.surface[0].frame, surface_sweep(cell.surface[0])));
-  }
-  join(box, box_of(all, 0));
-  join(box, box_of(all, 1));
+  boxes_.assign((all.size() + kSquare - 1) / kSquare, {});
+  for (size_t i = 0; i < all.size(); ++i) join(boxes_[i / kSquare], all[i].box);
+  for (const Box3d& square : boxes_) join(box, square);
   gather(box);
   for (size_t begin = 0; begin < all.size(); begin += kPart) {
-    const auto part = all.subspan(begin, std::min(kPart, all.size() - begin));
-    Box3d around = box_of(part, 0);
-    join(around, box_of(part, 1));
+    const size_t end = std::min(begin + kPart, all.size());
+    Box3d around;
+    for (size_t k = begin; k < end; k += kSquare) join(around, boxes_[k / kSquare]);
     narrow(near_, around, part_);
-    for (size_t k = 0; k < part.size(); k += kSquare) {
-      const auto cells = part.subspan(k, std::min(kSquare, part.size() - k));
+    for (size_t k = begin; k < end; k += kSquare) {
+      const auto cells = all.subspan(k, std::min(kSquare, end - k));
       find_makers(cells, out);
-      for (size_t posture = 0; posture < 2; ++posture) {
-        narrow(part_, box_of(cells, posture), block_);
-        for (const Pending& cell : cells) {
-          if (posture >= static_cast<size_t>(cell.postures)) continue;
-          judge_posture(cell, posture, out.promise.cells[cell.cell]);
-        }
-      }
+      narrow(part_, boxes_[k / kSquare], block_);
+      judge_square(cells, out);
     }
   }
   pending_.clear();
@@ -266,16 +274,16 @@ void PatchJudge::gather(const Box3d& box) {
   foreign_.clear(middle);
   found_.clear();
   triangles_->find(box, found_);
-  const auto& patch_of = triangles_->scene().patch_of_triangle;
+  const Scene& scene = triangles_->scene();
+  near_.add(scene, found_);
+  near_.close();
+  if (scene.patch_of_triangle.empty()) return;
   for (const uint32_t triangle : found_) {
-    const LocalTriangle corners = triangles_->corners(triangle);
-    Box3d around;
-    for (const Vec3d& corner : corners) around.add(corner);
-    if (!overlap(around, box)) continue;
-    near_.add(triangle, corners);
-    const uint32_t patch = patch_of.empty() ? kNoPatch : patch_of[triangle];
-    if (patch != kNoPatch && is_beside_[patch] == 0) foreign_.add(triangle, corners);
+    const uint32_t patch = scene.patch_of_triangle[triangle];
+    if (patch == kNoPatch || is_beside_[patch] != 0) continue;
+    foreign_.add(triangle, triangles_->corners(triangle));
   }
+  foreign_.close();
 }
 
 // Patches whose triangles come into the surfaces of cells.
@@ -283,15 +291,15 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
   if (foreign_.count == 0) return;
   Box3d box;
   for (const Pending& cell : cells) {
-    const Box3d b = sweep_box(cell.surface[0].frame, surface_sweep(cell.surface[0]));
+    const Box3d b = sweep_box(cell.surface(0).frame, surface_sweep(cell.surface(0)));
     box.add(b.min);
     box.add(b.max);
   }
   narrow(foreign_, box, block_);
   if (block_.count == 0) return;
   for (const Pending& cell : cells) {
-    const BodyFrame& frame = cell.surface[0].frame;
-    const BodySweep sweep = surface_sweep(cell.surface[0]);
+    const BodyFrame& frame = cell.surface(0).frame;
+    const BodySweep sweep = surface_sweep(cell.surface(0));
     const SieveTube tube{.whole = sweep, .decisive = {.radius = 0}};
     (void)sieve(block_,
                 {.frame = frame, .first = sweep, .second = sweep, .tubes = std::span(&tube, 1)},
@@ -309,35 +317,117 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
   }
 }
 
+// Over open ground one look at the triangles' planes tells that nobody is stopped on any of the
+// cells: all bodies together, as seen from an axis between theirs. Upright bodies on a slope would
+// not fit into a level one.
+void PatchJudge::judge_square(std::span<const Pending> cells, BezierCells& out) {
+  BodyFrame axis;
+  for (const Pending& cell : cells) {
+    axis.centre = axis.centre + cell.surface(0).frame.centre;
+    axis.up = axis.up + cell.surface(0).frame.up;
+  }
+  const auto count = static_cast<double>(cells.size());
+  bool met = false;
+  if (const double size = length(axis.up); size < 0.5 * count) {
+    met = true;
+  } else {
+    axis.centre = axis.centre * (1 / count);
+    axis.up = axis.up * (1 / size);
+    constexpr double kWidest = 1e30;
+    std::array<BodySweep, 2> all;
+    all.fill({.radius = 0, .low = kWidest, .high = -kWidest});
+    for (const Pending& cell : cells) {
+      const BodyFrame& frame = cell.surface(0).frame;
+      const Vec3d away = frame.centre - axis.centre;
+      const double height = dot(away, axis.up), cosine = dot(axis.up, frame.up);
+      const double aside = std::sqrt(std::max(0.0, dot(away, away) - height * height));
+      const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + kTurnMargin;
+      met |= cosine < 0;
+      const auto add = [&](const BodySweep& sweep, BodySweep& to) {
+        const double far = std::max(std::fabs(sweep.low), std::fabs(sweep.high));
+        join(to,
+             {.radius = aside + kTurnMargin + sweep.radius + far * sine,
+              .low = height + std::min(sweep.low, sweep.low * cosine) - sweep.radius * sine,
+              .high = height + std::max(sweep.high, sweep.high * cosine) + sweep.radius * sine});
+      };
+      add(cell.prism[0], all[0]);
+      add(cell.bodies[0], all[1]);
+    }
+    met = met || glance(block_, axis, all) != 0;
+  }
+  for (const Pending& cell : cells) {
+    Promise& promise = out.promise.cells[cell.cell];
+    if (met) {
+      judge_posture(cell, 0, promise);
+    } else {
+      for (const PatchBody& body : bodies_) {
+        if (is_asked(body, 0, cell)) promise.classes |= body.bit;
+      }
+    }
+    if (cell.postures > 1) judge_posture(cell, 1, promise);
+  }
+}
+
+BodySweep PatchJudge::low_room(const Pending& cell, size_t posture) const {
+  BodySweep room = cell.prism[posture];
+  room.high = std::min(room.high, cell.surface(posture).high + bins_->height.front());
+  return room;
+}
+
 // Tests the classes of one posture, and the free height along it.
 void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& promise) {
-  const SurfaceBound& surface = cell.surface[posture];
+  const BodyFrame& frame = cell.surface(posture).frame;
+  sweeps_.clear();
+  tube_bit_.clear();
+  sweeps_.push_back(cell.prism[posture]);
+  for (const PatchBody& body : bodies_) {
+    if (!is_asked(body, posture, cell)) continue;
+    sweeps_.push_back(sweep_of(cell.surface(posture), body));
+    tube_bit_.push_back(body.bit);
+  }
+  // Upright, most ground is its own ceiling to the least of bodies: that is seen at once.
+  uint32_t met = 0;
+  if (posture == 0 || !surely_enters(block_, frame.centre, low_room(cell, 1))) {
+    met = glance(block_, frame, sweeps_);
+  } else {
+    promise.headroom = bins_->height_code(0);
+    if (sweeps_.size() > 1) met = glance(block_, frame, std::span(sweeps_).subspan(1)) << 1;
+  }
+  for (size_t b = 1; b < sweeps_.size(); ++b) {
+    if ((met >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
+  }
+  // What stops bodies is mostly the ground that they stand on, where it is steep.
+  if (posture == 1 && (met & ~1u) != 0) {
+    met &= ~(surely_enters_uphill(block_, frame.centre, std::span(sweeps_).subspan(1)) << 1);
+  }
+  if (met != 0) judge_met(cell, posture, met, promise);
+}
+
+// Those of sweeps_ that a plane comes into.
+void PatchJudge::judge_met(const Pending& cell, size_t posture, uint32_t met, Promise& promise) {
+  const SurfaceBound& surface = cell.surface(posture);
   const BodyFrame& frame = surface.frame;
   const BodySweep& prism = cell.prism[posture];
   tubes_.clear();
-  tube_bit_.clear();
-  SieveTube& room = tubes_.emplace_back();
-  room = {.whole = prism,
-          .decisive = prism};  // What is deeper than any height asks for leaves none.
-  room.decisive.high = std::min(prism.high, surface.high + bins_->height.front());
-  for (const PatchBody& body : bodies_) {
-    if (!is_asked(body, posture, cell)) continue;
-    const BodySweep sweep = sweep_of(surface, body);
-    tubes_.push_back({.whole = sweep, .decisive = sweep});
-    tube_bit_.push_back(body.bit);
+  for (uint32_t left = met; left != 0; left &= left - 1) {
+    const auto b = static_cast<size_t>(std::countr_zero(left));
+    // What is deeper than any height asks for leaves none.
+    const BodySweep decisive = b == 0 ? low_room(cell, posture) : sweeps_[b];
+    tubes_.push_back({.whole = sweeps_[b], .decisive = decisive});
   }
   const uint32_t answered = sieve(
       block_, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
       hits_);
+  const uint32_t room = met & 1;  // bit 0, if it is asked for
   const uint32_t all = (1u << tubes_.size()) - 1;
-  uint32_t entered = answered;  // bit 0: no height; then bodies that matter has stopped
-  double free = (answered & 1) != 0 ? surface.high : kNever;
+  uint32_t entered = answered;  // no height; then bodies that matter has stopped
+  double free = (answered & room) != 0 ? surface.high : kNever;
   for (size_t i = 0; i < hits_.count && entered != all; ++i) {
     uint32_t asked = hits_.tubes[i] & ~entered;
     if (asked == 0) continue;
     LocalTriangle local = triangles_->corners(hits_.triangle[i]);
     for (Vec3d& corner : local) corner = frame.local(corner);
-    if ((asked & 1) != 0) {
+    if ((asked & room) != 0) {
       const double low = std::min({local[0].z, local[1].z, local[2].z});
       if (low < free) free = std::min(free, lowest_entry(local, prism));
       if (free < kNever && bins_->height_code(std::max(0.0, free - surface.high)) == 0) {
@@ -350,8 +440,11 @@ void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& pro
       if (lowest_entry(local, tubes_[b].whole) < kNever) entered |= 1u << b;
     }
   }
-  for (size_t b = 1; b < tubes_.size(); ++b) {
-    if ((entered >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
+  uint32_t bodies = met & ~1u;
+  for (size_t b = room; bodies != 0; ++b, bodies &= bodies - 1) {
+    if ((entered >> b & 1) == 0) {
+      promise.classes |= tube_bit_[static_cast<size_t>(std::countr_zero(bodies)) - 1];
+    }
   }
   // The highest feet have the least.
   if (free < kNever) {

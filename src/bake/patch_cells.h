@@ -11,6 +11,7 @@
 #include "bake/body_sweep.h"
 #include "bake/surface_bound.h"
 #include "bake/triangle_sieve.h"
+#include "graph/node_width.h"
 #include "graph/quadtree.h"
 #include "throng/nodes.h"
 #include "throng/patch.h"
@@ -33,13 +34,6 @@ struct PatchBody {
 /// Where the body is while its feet are anywhere on the surface.
 [[nodiscard]] BodySweep sweep_of(const SurfaceBound& surface, const PatchBody& body);
 
-/// The middle of a cell and the radius around it that holds the cell, for floods.
-struct CellShape {
-  float x = 0, y = 0, z = 0;
-  float radius = 0;
-  float area = 0;
-};
-
 struct BezierCells {
   PatchCells promise;
   std::vector<CellShape> shape;
@@ -59,16 +53,21 @@ class PatchJudge {
   struct Pending {
     size_t cell = 0;
     double steepest = 0;
-    std::array<SurfaceBound, 2> surface;  ///< Along the normal, and upright.
-    std::array<BodySweep, 2> prism;       ///< What tells the height.
-    std::array<BodySweep, 2> bodies;      ///< All that may stand there, by their inclination.
-    std::array<Box3d, 2> box;             ///< Of both.
+    const CellBounds* bounds = nullptr;
+    std::array<BodySweep, 2> prism;   ///< What tells the height, along the normal and upright.
+    std::array<BodySweep, 2> bodies;  ///< All that may stand there, by their inclination.
+    Box3d box;                        ///< Of these, and of the surface.
     int32_t postures = 0;
+
+    [[nodiscard]] const SurfaceBound& surface(size_t posture) const {
+      return posture == 0 ? bounds->along : bounds->upright;
+    }
   };
 
   /// How often a patch is halved.
   [[nodiscard]] int32_t depth_of(const BezierPatch& patch) const;
   void visit(const BezierPatch& part, int32_t level, int32_t s, int32_t t, BezierCells& out);
+  void cut_region(const BezierPatch& part, int32_t halvings);
   void bound_cells(BezierCells& out);
   void add_posture(size_t posture, Pending& cell) const;
   [[nodiscard]] bool is_asked(const PatchBody& body, size_t posture, const Pending& cell) const {
@@ -77,7 +76,11 @@ class PatchJudge {
   void judge_pending(BezierCells& out);
   void gather(const Box3d& box);
   void find_makers(std::span<const Pending> cells, BezierCells& out);
+  void judge_square(std::span<const Pending> cells, BezierCells& out);
   void judge_posture(const Pending& cell, size_t posture, Promise& promise);
+  void judge_met(const Pending& cell, size_t posture, uint32_t met, Promise& promise);
+  /// Matter in here leaves no height.
+  [[nodiscard]] BodySweep low_room(const Pending& cell, size_t posture) const;
 
   const TriangleSquares* triangles_;
   const PatchSet* set_;
@@ -89,16 +92,18 @@ class PatchJudge {
 
   std::vector<uint32_t> beside_;    // patches that go on from this one
   std::vector<uint8_t> is_beside_;  // by patch; and those known to pierce it
-  std::vector<BezierPatch> parts_;  // of so many cells of the patch
+  PatchParts parts_, coarser_;      // so many cells of the patch
   std::vector<size_t> part_cell_;   // which they are
   std::vector<CellBounds> bounds_;
   std::vector<Pending> pending_;  // in the order of a quadtree: runs of 4^n make a square
+  std::vector<Box3d> boxes_;      // of each kSquare of them
   SieveList near_, foreign_;      // triangles near them; those of other patches, not beside
   SieveList part_, block_;        // those near a part of the region, and near a square of cells
   std::vector<uint32_t> found_;
   SieveHits hits_;
-  std::vector<SieveTube> tubes_;    // where a height ends, then bodies of the posture
+  std::vector<BodySweep> sweeps_;   // where a height ends, then bodies of the posture
   std::vector<uint16_t> tube_bit_;  // by body of the posture: its class
+  std::vector<SieveTube> tubes_;    // of these, those that matter may enter
 };
 
 }  // namespace throng

@@ -21,9 +21,6 @@ namespace throng {
 
 constexpr double kWidestCone = 0.94;  // sine of its half angle
 constexpr size_t kBoundLanes = 8;     // at most, in a vector
-constexpr size_t kPatchDoubles = 48;
-static_assert(sizeof(BezierPatch) == kPatchDoubles * sizeof(double));
-
 // Bounds of as many cells as there are lanes.
 struct BoundLanes {
   using Lanes = std::array<double, kBoundLanes>;
@@ -41,7 +38,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using DD = hn::CappedTag<double, kBoundLanes>;
-using DL = hn::Rebind<int64_t, DD>;
 using VD = hn::Vec<DD>;
 
 struct V3 {
@@ -66,18 +62,62 @@ HWY_INLINE V3 normal_to(const V3& a, const V3& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-void BoundLanesOf(const BezierPatch* parts, BoundLanes& out) {
+HWY_INLINE VD middle_of(VD a, VD b) {
+  const VD half = hn::Set(DD(), 0.5);  // As split_s() has it: products first.
+  return hn::Add(hn::Mul(a, half), hn::Mul(b, half));
+}
+
+// The control points of both halves of a curve.
+HWY_INLINE void halve(const VD (&c)[4], VD (&low)[4], VD (&high)[4]) {
+  const VD ab = middle_of(c[0], c[1]), bc = middle_of(c[1], c[2]), cd = middle_of(c[2], c[3]);
+  low[0] = c[0];
+  low[1] = ab;
+  low[2] = middle_of(ab, bc);
+  high[1] = middle_of(bc, cd);
+  high[2] = cd;
+  high[3] = c[3];
+  low[3] = high[0] = middle_of(low[2], high[1]);
+}
+
+// Along s, then each half along t. Points are as far apart as coordinates times the stride.
+void Quarter(const double* in, size_t stride, size_t count, double* out, size_t out_stride) {
   const DD dd;
-  const DL dl;
-  alignas(64) int64_t offsets[kBoundLanes];
-  for (size_t i = 0; i < hn::Lanes(dd); ++i) offsets[i] = static_cast<int64_t>(kPatchDoubles * i);
-  const auto index = hn::Load(dl, offsets);
+  for (size_t i = 0; i < count; i += hn::Lanes(dd)) {
+    for (size_t k = 0; k < 3; ++k) {
+      const auto row = [&](size_t point) { return (3 * point + k); };
+      VD left[16], right[16];
+      for (size_t j = 0; j < 4; ++j) {
+        VD c[4], low[4], high[4];
+        for (size_t n = 0; n < 4; ++n) c[n] = hn::LoadU(dd, in + row(4 * j + n) * stride + i);
+        halve(c, low, high);
+        for (size_t n = 0; n < 4; ++n) {
+          left[4 * j + n] = low[n];
+          right[4 * j + n] = high[n];
+        }
+      }
+      for (size_t n = 0; n < 4; ++n) {
+        const VD from[2][4] = {{left[n], left[4 + n], left[8 + n], left[12 + n]},
+                               {right[n], right[4 + n], right[8 + n], right[12 + n]}};
+        VD part[4][4];
+        halve(from[0], part[0], part[1]);
+        halve(from[1], part[2], part[3]);
+        for (size_t j = 0; j < 4; ++j) {
+          hn::StoreInterleaved4(part[0][j], part[1][j], part[2][j], part[3][j], dd,
+                                out + row(4 * j + n) * out_stride + 4 * i);
+        }
+      }
+    }
+  }
+}
+
+// Of the parts from `first` on.
+void BoundLanesOf(const double* parts, size_t stride, size_t first, BoundLanes& out) {
+  const DD dd;
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
   V3 p[16];
   for (size_t k = 0; k < 16; ++k) {
-    p[k] = {hn::GatherIndex(dd, &parts->points[k].x, index),
-            hn::GatherIndex(dd, &parts->points[k].y, index),
-            hn::GatherIndex(dd, &parts->points[k].z, index)};
+    const double* at = parts + 3 * k * stride + first;
+    p[k] = {hn::LoadU(dd, at), hn::LoadU(dd, at + stride), hn::LoadU(dd, at + 2 * stride)};
   }
   const VD three = hn::Set(dd, 3.0), twelfth = hn::Set(dd, 1.0 / 12);
   V3 along_s[12], along_t[12], mean_s{zero, zero, zero}, mean_t = mean_s, centre = mean_s;
@@ -158,6 +198,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace throng {
 
+HWY_EXPORT(Quarter);
 HWY_EXPORT(BoundLanesOf);
 HWY_EXPORT(BoundLaneCount);
 
@@ -259,13 +300,45 @@ SurfaceBound upright_bound(const BezierPatch& patch, const SurfaceBound& along) 
   return bound;
 }
 
-void bound_cells_of(std::span<const BezierPatch> parts, std::span<CellBounds> out) {
+void PatchParts::resize(size_t parts) {
+  count = parts;
+  stride = (parts + kBoundLanes - 1) / kBoundLanes * kBoundLanes;
+  if (at.size() < kPatchDoubles * stride) at.resize(kPatchDoubles * stride);
+}
+
+void PatchParts::set(size_t part, const BezierPatch& patch) {
+  for (size_t p = 0; p < 16; ++p) {
+    at[(3 * p) * stride + part] = patch.points[p].x;
+    at[(3 * p + 1) * stride + part] = patch.points[p].y;
+    at[(3 * p + 2) * stride + part] = patch.points[p].z;
+  }
+}
+
+BezierPatch PatchParts::patch(size_t part) const {
+  BezierPatch patch;
+  for (size_t p = 0; p < 16; ++p) {
+    patch.points[p] = {at[(3 * p) * stride + part], at[(3 * p + 1) * stride + part],
+                       at[(3 * p + 2) * stride + part]};
+  }
+  return patch;
+}
+
+// The lanes past the last part hold whatever was there, and so do their quarters.
+void quarter_parts(const PatchParts& parts, PatchParts& out) {
   const size_t lanes = HWY_DYNAMIC_DISPATCH(BoundLaneCount)();
-  size_t done = 0;
+  const size_t rounded = (parts.count + lanes - 1) / lanes * lanes;
+  out.resize(4 * rounded);
+  out.count = 4 * parts.count;
+  HWY_DYNAMIC_DISPATCH(Quarter)
+  (parts.at.data(), parts.stride, parts.count, out.at.data(), out.stride);
+}
+
+void bound_cells_of(const PatchParts& parts, std::span<CellBounds> out) {
+  const size_t lanes = HWY_DYNAMIC_DISPATCH(BoundLaneCount)();
   BoundLanes bounds;
-  while (parts.size() - done >= lanes) {
-    HWY_DYNAMIC_DISPATCH(BoundLanesOf)(&parts[done], bounds);
-    for (size_t i = 0; i < lanes; ++i) {
+  for (size_t done = 0; done < parts.count; done += lanes) {
+    HWY_DYNAMIC_DISPATCH(BoundLanesOf)(parts.at.data(), parts.stride, done, bounds);
+    for (size_t i = 0; i < std::min(lanes, parts.count - done); ++i) {
       CellBounds& cell = out[done + i];
       cell.valid = bounds.size[i] > 0 && bounds.off[i] < kWidestCone * bounds.size[i];
       if (!cell.valid) continue;
@@ -288,14 +361,6 @@ void bound_cells_of(std::span<const BezierPatch> parts, std::span<CellBounds> ou
                       .high = bounds.upright_high[i],
                       .area = bounds.size[i]};
     }
-    done += lanes;
-  }
-  for (; done < parts.size(); ++done) {
-    const auto along = bound_surface(parts[done]);
-    out[done].valid = along.has_value();
-    if (!along) continue;
-    out[done].along = *along;
-    out[done].upright = upright_bound(parts[done], *along);
   }
 }
 

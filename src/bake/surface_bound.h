@@ -4,12 +4,15 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "bake/body_sweep.h"
 #include "throng/patch.h"
 
 /// Where sub-patches of Bezier patches lie and how far they are inclined.
 namespace throng {
+
+inline constexpr size_t kPatchDoubles = 48;  // of a patch's control points
 
 /// Where all surface points of a sub-patch and their normals are: a cone around `frame.up` of the
 /// normals, a cylinder around the frame's axis of the points.
@@ -40,7 +43,23 @@ struct CellBounds {
   SurfaceBound along, upright;
 };
 
+/// Parts of patches, side by side: coordinate k of control point p of part i is
+/// at[(3 * p + k) * stride + i].
+struct PatchParts {
+  size_t count = 0;
+  size_t stride = 0;  ///< Room for `count` and what fills up a vector.
+  std::vector<double> at;
+
+  void resize(size_t parts);
+  void set(size_t part, const BezierPatch& patch);
+  [[nodiscard]] BezierPatch patch(size_t part) const;
+};
+
+/// Halves all along s and those along t: part 4 i + 2 a + b of `out` is split_t's b-th of
+/// split_s's a-th half of part i. Eight at a time or so; the same bits as one by one. Linear.
+void quarter_parts(const PatchParts& parts, PatchParts& out);
+
 /// Both for each of some cells, eight at a time or so; the same bits as one by one. Linear.
-void bound_cells_of(std::span<const BezierPatch> parts, std::span<CellBounds> out);
+void bound_cells_of(const PatchParts& parts, std::span<CellBounds> out);
 
 }  // namespace throng

@@ -15,20 +15,26 @@
 namespace throng {
 
 /// Triangles around an origin. Coordinate k of corner c of triangle i is
-/// corner[(3 * c + k) * stride + i].
+/// corner[(3 * c + k) * stride + i]; its normal is plane[k * stride + i], along which it lies from
+/// plane[3 * stride + i] to plane[4 * stride + i]; then come the middle and the radius of a ball
+/// around it.
 struct SieveList {
   Vec3d origin;
   double extent = 0;  ///< No coordinate is larger. [m]
   size_t count = 0;
   size_t stride = 0;  ///< Room for `count` and a vector.
   std::vector<float> corner;
+  std::vector<float> plane;  ///< Known after close().
   std::vector<uint32_t> triangle;
 
   void clear(Vec3d around);
   void add(uint32_t id, const LocalTriangle& corners);
+  void add(const Scene& scene, std::span<const uint32_t> ids);
+  void close();  ///< After the last was added, before anything is asked.
 };
 
-/// Replaces `out` by those triangles of `list` whose boxes may overlap `box`. Linear.
+/// Replaces `out` by those triangles of `list` whose balls may come as near to `box` as to be in
+/// its way: none that overlaps it is lost. Linear.
 void narrow(const SieveList& list, const Box3d& box, SieveList& out);
 
 /// A cylinder around a question's axis. Matter that enters `decisive`, which is a part of it,
@@ -43,6 +49,19 @@ struct SieveQuestion {
   BodySweep first, second;
   std::span<const SieveTube> tubes;  ///< [at most 31]
 };
+
+/// Bit i: some triangle's plane and ball come into tube i; all triangles stay outside of the
+/// others. It costs a fraction of sieve(). [at most 31 tubes] Linear.
+[[nodiscard]] uint32_t glance(const SieveList& list, const BodyFrame& frame,
+                              std::span<const BodySweep> tubes);
+
+/// True only if a triangle enters an upright tube; most that do are noticed. Linear.
+[[nodiscard]] bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube);
+
+/// Bit i: a triangle surely enters upright tube i, uphill from its axis, as ground does on which a
+/// body stands too steep. [at most 31 tubes] Linear.
+[[nodiscard]] uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre,
+                                            std::span<const BodySweep> tubes);
 
 /// Triangles that may enter tubes: hit i those of which tubes[i] has the bits.
 struct SieveHits {

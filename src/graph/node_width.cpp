@@ -14,23 +14,34 @@ uint64_t key_of(uint32_t patch, uint32_t cell) { return uint64_t{patch} << 32 | 
 
 }  // namespace
 
-CrossCells::CrossCells(std::span<const CellPair> pairs) {
-  std::vector<std::pair<uint64_t, Cell>> all;
-  all.reserve(2 * pairs.size());
+// Dealt to their patches, then sorted there; of one cell they keep the order of the pairs.
+CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches)
+    : first_(patches + 1, 0), key_(2 * pairs.size()), cell_(2 * pairs.size()) {
   for (const CellPair& p : pairs) {
-    all.push_back({key_of(p.patch_a, p.cell_a), {p.patch_b, p.cell_b, p.classes, p.side_a}});
-    all.push_back({key_of(p.patch_b, p.cell_b), {p.patch_a, p.cell_a, p.classes, p.side_b}});
+    ++first_[p.patch_a + 1];
+    ++first_[p.patch_b + 1];
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (const auto& [key, cell] : all) {
-    key_.push_back(key);
-    cell_.push_back(cell);
+  for (size_t p = 0; p < patches; ++p) first_[p + 1] += first_[p];
+  using Entry = std::pair<uint32_t, Cell>;
+  std::vector<Entry> dealt(2 * pairs.size());
+  std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+  for (const CellPair& p : pairs) {
+    dealt[next[p.patch_a]++] = {p.cell_a, {p.patch_b, p.cell_b, p.classes, p.side_a}};
+    dealt[next[p.patch_b]++] = {p.cell_b, {p.patch_a, p.cell_a, p.classes, p.side_b}};
+  }
+  for (size_t p = 0; p < patches; ++p) {
+    std::stable_sort(dealt.begin() + first_[p], dealt.begin() + first_[p + 1],
+                     [](const Entry& a, const Entry& b) { return a.first < b.first; });
+  }
+  for (size_t i = 0; i < dealt.size(); ++i) {
+    key_[i] = dealt[i].first;
+    cell_[i] = dealt[i].second;
   }
 }
 
 std::span<const CrossCells::Cell> CrossCells::beside(uint32_t patch, uint32_t cell) const {
-  const auto [first, last] = std::equal_range(key_.begin(), key_.end(), key_of(patch, cell));
+  const auto [first, last] =
+      std::equal_range(key_.begin() + first_[patch], key_.begin() + first_[patch + 1], cell);
   return {cell_.data() + (first - key_.begin()), static_cast<size_t>(last - first)};
 }
 
@@ -85,11 +96,17 @@ class KeySet {
 
 class Flood {
  public:
-  Flood(const NodeForest& forest, const CrossCells& cross, double most,
-        const std::function<CellBall(uint32_t, uint32_t)>& ball)
-      : forest_(forest), cross_(cross), most_(most), ball_(ball) {}
+  Flood(const NodeForest& forest, uint32_t home, const CrossCells& cross, double most,
+        std::span<const CellBalls> balls)
+      : forest_(forest),
+        home_(home),
+        cross_(cross),
+        most_(most),
+        balls_(balls),
+        round_seen_(size_t{1} << (2 * forest.trees[home].depth), 0) {}
 
-  double width(uint32_t patch, const PatchNode& node) {
+  double width(const PatchNode& node) {
+    const uint32_t patch = home_;
     const PatchTree& tree = forest_.trees[patch];
     const int32_t size = 1 << (tree.depth - node.level);
     const int32_t s0 = node.s * size, t0 = node.t * size;
@@ -98,7 +115,7 @@ class Flood {
     int32_t count = 0;
     for (int32_t t = (size - 1) / 2; t <= size / 2; ++t) {
       for (int32_t s = (size - 1) / 2; s <= size / 2; ++s, ++count) {
-        const CellBall b = ball_(patch, cell_of(tree, s0 + s, t0 + t));
+        const CellBall b = balls_[patch][cell_of(tree, s0 + s, t0 + t)];
         middle_ = {middle_.x + b.x, middle_.y + b.y, middle_.z + b.z, 0};
       }
     }
@@ -106,6 +123,7 @@ class Flood {
     promise_ = node.promise;
     nearest_ = most_;
     seen_.clear();
+    ++round_;
     ring_.clear();
     for (int32_t i = (size - 1) / 2; i <= size / 2; ++i) {
       for (int32_t j = (size - 1) / 2; j <= size / 2; ++j) {
@@ -127,13 +145,18 @@ class Flood {
 
   // The least distance at which a cell can be.
   [[nodiscard]] double distance(uint32_t patch, uint32_t cell) const {
-    const CellBall b = ball_(patch, cell);
+    const CellBall b = balls_[patch][cell];
     const double x = b.x - middle_.x, y = b.y - middle_.y, z = b.z - middle_.z;
     return std::max(0.0, std::sqrt(x * x + y * y + z * z) - b.radius);
   }
 
   void enter(uint32_t patch, uint32_t cell) {
-    if (!seen_.insert(key_of(patch, cell))) return;
+    if (patch == home_) {
+      if (round_seen_[cell] == round_) return;
+      round_seen_[cell] = round_;
+    } else if (!seen_.insert(key_of(patch, cell))) {
+      return;
+    }
     const double far = distance(patch, cell);
     if (far >= nearest_) return;
     const PatchTree& tree = forest_.trees[patch];
@@ -169,25 +192,28 @@ class Flood {
   }
 
   const NodeForest& forest_;
+  uint32_t home_;  // the patch whose nodes are measured
   const CrossCells& cross_;
   double most_;
-  const std::function<CellBall(uint32_t, uint32_t)>& ball_;
+  std::span<const CellBalls> balls_;
   CellBall middle_;
   Promise promise_;
   double nearest_ = 0;
-  KeySet seen_;
+  std::vector<uint32_t> round_seen_;  // by cell of that patch: in which flood
+  uint32_t round_ = 0;
+  KeySet seen_;  // cells of others
   std::vector<std::pair<uint32_t, uint32_t>> ring_, last_;
 };
 
 }  // namespace
 
 std::vector<double> node_widths(const NodeForest& forest, uint32_t patch, const CrossCells& cross,
-                                double most,
-                                const std::function<CellBall(uint32_t, uint32_t)>& ball) {
-  Flood flood(forest, cross, most, ball);
+                                double most, std::span<const CellBalls> balls) {
+  Flood flood(forest, patch, cross, most, balls);
   std::vector<double> widths;
+  widths.reserve(forest.trees[patch].nodes.size());
   for (const PatchNode& node : forest.trees[patch].nodes) {
-    widths.push_back(flood.width(patch, node));
+    widths.push_back(flood.width(node));
   }
   return widths;
 }

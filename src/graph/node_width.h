@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,15 +11,39 @@
 /// How far around its middle nothing is more restrictive than a node: the seed's cylinder width.
 namespace throng {
 
+/// The middle of a cell and the radius around it that holds the cell, for floods.
+struct CellShape {
+  float x = 0, y = 0, z = 0;
+  float radius = 0;
+  float area = 0;
+};
+
 /// A cell as a ball that holds it. Distances along the ground are at least those between balls.
 struct CellBall {
   double x = 0, y = 0, z = 0, radius = 0;
 };
 
+/// The cells of one patch as balls: listed, or those of a level tile seen from above, which can
+/// only be nearer.
+struct CellBalls {
+  std::span<const CellShape> listed;
+  double x = 0, z = 0;  ///< Else: the first of 64 x 64 cells, of all there are.
+  double side = 0;      ///< Of these. [m]
+
+  [[nodiscard]] CellBall operator[](uint32_t cell) const {
+    if (!listed.empty()) {
+      const CellShape& shape = listed[cell];
+      return {shape.x, shape.y, shape.z, shape.radius};
+    }
+    return {(x + cell % 64 + 0.5) * side, 0, (z + cell / 64 + 0.5) * side, side * 0.7072};
+  }
+};
+
 /// Cells beside each other over the borders of patches, found from either side.
 class CrossCells {
  public:
-  explicit CrossCells(std::span<const CellPair> pairs);
+  /// [pairs name patches below `patches`]
+  CrossCells(std::span<const CellPair> pairs, size_t patches);
 
   struct Cell {
     uint32_t patch = 0, cell = 0;
@@ -30,14 +53,15 @@ class CrossCells {
   [[nodiscard]] std::span<const Cell> beside(uint32_t patch, uint32_t cell) const;
 
  private:
-  std::vector<uint64_t> key_;  // patch and cell, ascending
+  std::vector<uint32_t> first_;  // of each patch, and the end
+  std::vector<uint32_t> key_;    // cell, ascending in each patch
   std::vector<Cell> cell_;
 };
 
 /// Widths of the nodes of one patch, by a flood over cells from each node's middle that ends
-/// at `most`. [m]
-[[nodiscard]] std::vector<double> node_widths(
-    const NodeForest& forest, uint32_t patch, const CrossCells& cross, double most,
-    const std::function<CellBall(uint32_t patch, uint32_t cell)>& ball);
+/// at `most`. `balls` are those of every patch. [m]
+[[nodiscard]] std::vector<double> node_widths(const NodeForest& forest, uint32_t patch,
+                                              const CrossCells& cross, double most,
+                                              std::span<const CellBalls> balls);
 
 }  // namespace throng

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "simd_targets.h"
 
 namespace throng {
 namespace {
@@ -30,6 +31,13 @@ std::vector<BezierPatch> patches(size_t count) {
   return all;
 }
 
+PatchParts side_by_side(const std::vector<BezierPatch>& patches) {
+  PatchParts parts;
+  parts.resize(patches.size());
+  for (size_t p = 0; p < patches.size(); ++p) parts.set(p, patches[p]);
+  return parts;
+}
+
 void expect_same(const SurfaceBound& a, const SurfaceBound& b) {
   EXPECT_EQ(a.frame.centre, b.frame.centre);
   EXPECT_EQ(a.frame.side, b.frame.side);
@@ -44,20 +52,43 @@ void expect_same(const SurfaceBound& a, const SurfaceBound& b) {
 }
 
 TEST(SurfaceBound, ManyAtOnceHaveTheSameBitsAsOneByOne) {
-  const std::vector<BezierPatch> parts = patches(1003);
-  std::vector<CellBounds> bounds(parts.size());
-  bound_cells_of(parts, bounds);
-  size_t valid = 0;
-  for (size_t p = 0; p < parts.size(); ++p) {
-    const auto along = bound_surface(parts[p]);
-    ASSERT_EQ(bounds[p].valid, along.has_value()) << p;
-    if (!along) continue;
-    ++valid;
-    expect_same(bounds[p].along, *along);
-    expect_same(bounds[p].upright, upright_bound(parts[p], *along));
-  }
-  EXPECT_GT(valid, 300u);
-  EXPECT_LT(valid, 950u);
+  test::for_every_simd_target([](const char* target) {
+    SCOPED_TRACE(target);
+    const std::vector<BezierPatch> parts = patches(1003);
+    std::vector<CellBounds> bounds(parts.size());
+    bound_cells_of(side_by_side(parts), bounds);
+    size_t valid = 0;
+    for (size_t p = 0; p < parts.size(); ++p) {
+      const auto along = bound_surface(parts[p]);
+      ASSERT_EQ(bounds[p].valid, along.has_value()) << p;
+      if (!along) continue;
+      ++valid;
+      expect_same(bounds[p].along, *along);
+      expect_same(bounds[p].upright, upright_bound(parts[p], *along));
+    }
+    EXPECT_GT(valid, 300u);
+    EXPECT_LT(valid, 950u);
+  });
+}
+
+TEST(SurfaceBound, QuartersOfManyHaveTheSameBitsAsHalvesOfHalves) {
+  test::for_every_simd_target([](const char* target) {
+    SCOPED_TRACE(target);
+    for (const size_t count : {1u, 4u, 7u, 203u}) {
+      const std::vector<BezierPatch> whole = patches(count);
+      PatchParts quarters;
+      quarter_parts(side_by_side(whole), quarters);
+      ASSERT_EQ(quarters.count, 4 * count);
+      for (size_t p = 0; p < count; ++p) {
+        for (size_t i = 0; i < 2; ++i) {
+          const auto halves = split_t(split_s(whole[p], 0.5)[i], 0.5);
+          for (size_t j = 0; j < 2; ++j) {
+            EXPECT_EQ(quarters.patch(4 * p + 2 * i + j).points, halves[j].points) << p;
+          }
+        }
+      }
+    }
+  });
 }
 
 }  // namespace

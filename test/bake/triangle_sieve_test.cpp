@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/random.h"
+#include "simd_targets.h"
 
 namespace throng {
 namespace {
@@ -79,67 +80,136 @@ struct Case {
 };
 
 TEST(TriangleSieve, LosesNoTriangleThatEntersAndAnswersOnlyWhatIsSo) {
-  Dice dice{.seed = 3};
-  SieveHits hits;
-  size_t answers = 0, kept = 0, entered = 0;
-  for (int round = 0; round < 3000; ++round) {
-    const Case c(dice);
-    SieveList list;
-    list.clear(c.frame.centre + dice.point(20));
-    for (size_t i = 0; i < c.triangles.size(); ++i) {
-      list.add(static_cast<uint32_t>(i), c.triangles[i]);
-    }
-    const uint32_t answered = sieve(list, c.question, hits);
-    const bool all = answered == (1u << c.tubes.size()) - 1;
-    kept += hits.count;
-    for (size_t b = 0; b < c.tubes.size(); ++b) {
-      bool enters = false;
+  test::for_every_simd_target([](const char* target) {
+    SCOPED_TRACE(target);
+    Dice dice{.seed = 3};
+    SieveHits hits;
+    size_t answers = 0, kept = 0, entered = 0;
+    for (int round = 0; round < 3000; ++round) {
+      const Case c(dice);
+      SieveList list;
+      list.clear(c.frame.centre + dice.point(20));
       for (size_t i = 0; i < c.triangles.size(); ++i) {
-        enters |= c.enters(i, c.tubes[b].decisive);
-        if (all || (answered >> b & 1) != 0 || !c.enters(i, c.tubes[b].whole)) continue;
-        ++entered;
-        const auto end = hits.triangle.begin() + static_cast<ptrdiff_t>(hits.count);
-        const auto hit = std::find(hits.triangle.begin(), end, i);
-        ASSERT_NE(hit, end) << "round " << round << ", triangle " << i << ", tube " << b;
-        ASSERT_NE(hits.tubes[static_cast<size_t>(hit - hits.triangle.begin())] >> b & 1, 0u);
+        list.add(static_cast<uint32_t>(i), c.triangles[i]);
       }
-      if ((answered >> b & 1) == 0) continue;
-      ++answers;
-      ASSERT_TRUE(enters) << "round " << round << ", tube " << b;
+      list.close();
+      const uint32_t answered = sieve(list, c.question, hits);
+      const bool all = answered == (1u << c.tubes.size()) - 1;
+      kept += hits.count;
+      for (size_t b = 0; b < c.tubes.size(); ++b) {
+        bool enters = false;
+        for (size_t i = 0; i < c.triangles.size(); ++i) {
+          enters |= c.enters(i, c.tubes[b].decisive);
+          if (all || (answered >> b & 1) != 0 || !c.enters(i, c.tubes[b].whole)) continue;
+          ++entered;
+          const auto end = hits.triangle.begin() + static_cast<ptrdiff_t>(hits.count);
+          const auto hit = std::find(hits.triangle.begin(), end, i);
+          ASSERT_NE(hit, end) << "round " << round << ", triangle " << i << ", tube " << b;
+          ASSERT_NE(hits.tubes[static_cast<size_t>(hit - hits.triangle.begin())] >> b & 1, 0u);
+        }
+        if ((answered >> b & 1) == 0) continue;
+        ++answers;
+        ASSERT_TRUE(enters) << "round " << round << ", tube " << b;
+      }
     }
-  }
-  EXPECT_GT(answers, 1000u);
-  EXPECT_GT(entered, 1000u);
-  EXPECT_LT(kept, 3000u * 37 / 4);  // It is of use.
+    EXPECT_GT(answers, 1000u);
+    EXPECT_GT(entered, 1000u);
+    EXPECT_LT(kept, 3000u * 37 / 4);  // It is of use.
+  });
+}
+
+TEST(TriangleSieve, AGlanceOverlooksNoTubeThatATriangleEnters) {
+  test::for_every_simd_target([](const char* target) {
+    SCOPED_TRACE(target);
+    Dice dice{.seed = 5};
+    size_t met = 0, entered = 0, passed = 0;
+    for (int round = 0; round < 3000; ++round) {
+      const Case c(dice);
+      SieveList list;
+      list.clear(c.frame.centre + dice.point(20));
+      const size_t few = 1 + static_cast<size_t>(round) % 20;  // else hardly a tube stays empty
+      for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
+      list.close();
+      std::vector<BodySweep> tubes;
+      for (const SieveTube& tube : c.tubes) tubes.push_back(tube.whole);
+      const uint32_t found = glance(list, c.frame, tubes);
+      for (size_t b = 0; b < tubes.size(); ++b) {
+        bool enters = false;
+        for (size_t i = 0; i < few; ++i) enters |= c.enters(i, tubes[b]);
+        ASSERT_TRUE(!enters || (found >> b & 1) != 0) << "round " << round << ", tube " << b;
+        met += found >> b & 1;
+        entered += enters;
+        passed += !enters && (found >> b & 1) == 0;
+      }
+    }
+    EXPECT_GT(entered, 1000u);
+    EXPECT_GT(passed, 1000u);
+    EXPECT_LT(met, 2 * entered);  // It is of use.
+  });
+}
+
+TEST(TriangleSieve, WhatSurelyEntersAnUprightTubeDoesSo) {
+  test::for_every_simd_target([](const char* target) {
+    SCOPED_TRACE(target);
+    Dice dice{.seed = 6};
+    size_t sure = 0, rims = 0, entered = 0;
+    for (int round = 0; round < 3000; ++round) {
+      const Case c(dice);
+      if (c.frame.up.y != 1) continue;
+      SieveList list;
+      list.clear(c.frame.centre + dice.point(20));
+      const size_t few = 1 + static_cast<size_t>(round) % 20;
+      for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
+      list.close();
+      for (const SieveTube& tube : c.tubes) {
+        bool enters = false;
+        for (size_t i = 0; i < few; ++i) enters |= c.enters(i, tube.whole);
+        const bool told = surely_enters(list, c.frame.centre, tube.whole);
+        ASSERT_TRUE(enters || !told) << "round " << round;
+        sure += told;
+        entered += enters;
+        const bool uphill = surely_enters_uphill(list, c.frame.centre, {&tube.whole, 1}) != 0;
+        ASSERT_TRUE(enters || !uphill) << "round " << round;
+        rims += uphill;
+      }
+    }
+    EXPECT_GT(sure, 500u);
+    EXPECT_GT(2 * sure, entered);  // It is of use.
+    EXPECT_GT(rims, 150u);
+  });
 }
 
 TEST(TriangleSieve, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {
-  Dice dice{.seed = 4};
-  SieveList near;
-  for (int round = 0; round < 300; ++round) {
-    const Case c(dice);
-    SieveList list;
-    list.clear(dice.point(5));
-    for (size_t i = 0; i < c.triangles.size(); ++i) {
-      list.add(static_cast<uint32_t>(i), c.triangles[i]);
+  test::for_every_simd_target([](const char* target) {
+    SCOPED_TRACE(target);
+    Dice dice{.seed = 4};
+    SieveList near;
+    for (int round = 0; round < 300; ++round) {
+      const Case c(dice);
+      SieveList list;
+      list.clear(dice.point(5));
+      for (size_t i = 0; i < c.triangles.size(); ++i) {
+        list.add(static_cast<uint32_t>(i), c.triangles[i]);
+      }
+      list.close();
+      Box3d box;
+      box.add(c.frame.centre + dice.point(1));
+      box.add(c.frame.centre + dice.point(1));
+      narrow(list, box, near);
+      const auto gap = [&](size_t i) {  // between the boxes; negative: they overlap
+        Box3d b;
+        for (const Vec3d& p : c.triangles[i]) b.add(p);
+        return std::max({b.min.x - box.max.x, box.min.x - b.max.x, b.min.y - box.max.y,
+                         box.min.y - b.max.y, b.min.z - box.max.z, box.min.z - b.max.z});
+      };
+      const auto end = near.triangle.begin() + static_cast<ptrdiff_t>(near.count);
+      for (size_t i = 0; i < c.triangles.size(); ++i) {
+        const bool kept = std::find(near.triangle.begin(), end, i) != end;
+        EXPECT_TRUE(kept || gap(i) > 0);
+        EXPECT_FALSE(kept && gap(i) > 0.01);
+      }
     }
-    Box3d box;
-    box.add(c.frame.centre + dice.point(1));
-    box.add(c.frame.centre + dice.point(1));
-    narrow(list, box, near);
-    const auto gap = [&](size_t i) {  // between the boxes; negative: they overlap
-      Box3d b;
-      for (const Vec3d& p : c.triangles[i]) b.add(p);
-      return std::max({b.min.x - box.max.x, box.min.x - b.max.x, b.min.y - box.max.y,
-                       box.min.y - b.max.y, b.min.z - box.max.z, box.min.z - b.max.z});
-    };
-    const auto end = near.triangle.begin() + static_cast<ptrdiff_t>(near.count);
-    for (size_t i = 0; i < c.triangles.size(); ++i) {
-      const bool kept = std::find(near.triangle.begin(), end, i) != end;
-      EXPECT_TRUE(kept || gap(i) > 0);
-      EXPECT_FALSE(kept && gap(i) > 0.01);
-    }
-  }
+  });
 }
 
 }  // namespace

@@ -69,22 +69,111 @@ class Filler {
   const StepCuts* cuts_;
 };
 
+uint64_t lowest(uint64_t cells) { return cells & (0 - cells); }
+
+// Cells of a run.
+uint32_t length(uint64_t run) {
+  return static_cast<uint32_t>(64 - std::countl_zero(run) - std::countr_zero(run));
+}
+
+// What tells most parts from several at a glance: rows of one run each, that meet the one above.
+struct Chain {
+  uint64_t rows = 0, meets = 0, split = 0;
+
+  explicit Chain(const CellRows& open) {
+    uint64_t above = 0;
+    for (size_t z = 0; z < 64; ++z) {
+      const uint64_t row = open[z];
+      split |= row & (row + lowest(row));
+      rows |= uint64_t{row != 0} << z;
+      meets |= uint64_t{(row & above) != 0} << z;
+      above = row;
+    }
+  }
+  [[nodiscard]] bool is_one_part() const { return split == 0 && meets == (rows & (rows - 1)); }
+};
+
 }  // namespace
 
 CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z) {
   return Filler(open, cuts).fill(x, z);
 }
 
-std::vector<CellRows> connected_parts(const CellRows& open, const StepCuts* cuts) {
-  std::vector<CellRows> parts;
-  CellRows left = open;
-  for (size_t z = 0; z < 64; ++z) {
-    while (left[z] != 0) {
-      parts.push_back(Filler(open, cuts).fill(std::countr_zero(left[z]), static_cast<int32_t>(z)));
-      for (size_t i = z; i < 64; ++i) left[i] &= ~parts.back()[i];
+void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list) {
+  const auto start = static_cast<uint32_t>(list.rows.size());
+  if (cuts == nullptr) {
+    const Chain chain(open);
+    if (chain.rows == 0) return;
+    if (chain.is_one_part()) {
+      const auto begin = static_cast<uint16_t>(std::countr_zero(chain.rows));
+      const auto end = static_cast<uint16_t>(64 - std::countl_zero(chain.rows));
+      uint32_t cells = 0;
+      for (size_t z = begin; z < end; ++z) cells += length(open[z]);
+      list.parts.push_back({start, begin, end, cells});
+      list.rows.insert(list.rows.end(), open.begin() + begin, open.begin() + end);
+      return;
     }
   }
-  return parts;
+  find_runs(open, cuts);
+  // Parents come first: one look-up leads to the root.
+  const size_t first_part = list.parts.size();
+  part_.resize(cells_.size());
+  for (size_t z = 0; z < 64; ++z) {
+    for (size_t i = first_[z]; i < first_[z + 1]; ++i) {
+      parent_[i] = parent_[parent_[i]];
+      if (parent_[i] == i) {
+        part_[i] = static_cast<uint32_t>(list.parts.size());
+        list.parts.push_back({0, static_cast<uint16_t>(z), 0, 0});
+      }
+      PartList::Part& part = list.parts[part_[parent_[i]]];
+      part.end = static_cast<uint16_t>(z + 1);
+      part.cells += length(cells_[i]);
+    }
+  }
+  uint32_t rows = start;
+  for (size_t p = first_part; p < list.parts.size(); ++p) {
+    list.parts[p].rows = rows;
+    rows += static_cast<uint32_t>(list.parts[p].end - list.parts[p].begin);
+  }
+  list.rows.resize(rows, 0);
+  for (size_t z = 0; z < 64; ++z) {
+    for (size_t i = first_[z]; i < first_[z + 1]; ++i) {
+      const PartList::Part& part = list.parts[part_[parent_[i]]];
+      list.rows[part.rows + z - part.begin] |= cells_[i];
+    }
+  }
+}
+
+uint16_t PartFinder::root(uint16_t run) {
+  while (parent_[run] != run) run = parent_[run] = parent_[parent_[run]];
+  return run;
+}
+
+void PartFinder::find_runs(const CellRows& open, const StepCuts* cuts) {
+  cells_.clear();
+  parent_.clear();
+  for (size_t z = 0; z < 64; ++z) {
+    first_[z] = static_cast<uint16_t>(cells_.size());
+    const uint64_t row = open[z], cut = cuts != nullptr ? cuts->across[z] : 0;
+    const uint64_t pass = cuts != nullptr && z > 0 ? ~cuts->along[z - 1] : ~uint64_t{0};
+    size_t above = z > 0 ? first_[z - 1] : 0;
+    uint64_t left = row;
+    for (uint64_t ends = row & (~(row >> 1) | cut); ends != 0; ends &= ends - 1) {
+      const uint64_t up_to = ends ^ (ends - 1), run = left & up_to;
+      left &= ~up_to;
+      const auto own = static_cast<uint16_t>(cells_.size());
+      cells_.push_back(run);
+      parent_.push_back(own);
+      // Those above that end before it begins end before all that follow.
+      while (above < first_[z] && cells_[above] < lowest(run)) ++above;
+      for (size_t i = above; i < first_[z] && lowest(cells_[i]) <= run; ++i) {
+        if ((cells_[i] & run & pass) == 0) continue;
+        const uint16_t a = root(static_cast<uint16_t>(i)), b = root(own);
+        parent_[std::max(a, b)] = std::min(a, b);
+      }
+    }
+  }
+  first_[64] = static_cast<uint16_t>(cells_.size());
 }
 
 }  // namespace throng

@@ -119,10 +119,12 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
   const auto at = [&](size_t t) {
     return std::pair{static_cast<int32_t>(t) % zone.side, static_cast<int32_t>(t) / zone.side};
   };
-  parallel_for(zone.tiles.size(), workers, [&](size_t t) {
+  std::vector<TileScratch> scratch(static_cast<size_t>(worker_count(workers)));
+  parallel_for_worker(zone.tiles.size(), workers, [&](size_t t, int32_t worker) {
     if (context.cancel) return;
     const auto [x, z] = at(t);
-    zone.tiles[t] = finder.linked_parts(zone.first_x + x, zone.first_z + z);
+    zone.tiles[t] = finder.linked_parts(zone.first_x + x, zone.first_z + z,
+                                        scratch[static_cast<size_t>(worker)]);
   });
   if (context.cancel) return std::nullopt;
   RegionTables tables;
@@ -130,7 +132,7 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
   number_regions(world, slot, zone, tables, cells);
 
   std::vector<std::vector<RegionLink>> found(zone.tiles.size());
-  parallel_for(zone.tiles.size(), workers, [&](size_t t) {
+  parallel_for_worker(zone.tiles.size(), workers, [&](size_t t, int32_t worker) {
     if (context.cancel) return;
     const int32_t x = at(t).first, z = at(t).second;
     const auto add = [&](const std::vector<RegionLink>& links, size_t to) {
@@ -139,7 +141,8 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
       }
     };
     const auto border = [&](TileSide side, size_t to) {
-      add(finder.border(zone.first_x + x, zone.first_z + z, side, zone.tiles[t], zone.tiles[to]),
+      add(finder.border(zone.first_x + x, zone.first_z + z, side, zone.tiles[t], zone.tiles[to],
+                        scratch[static_cast<size_t>(worker)]),
           to);
     };
     add(zone.tiles[t].links, t);
@@ -163,20 +166,23 @@ std::vector<format::RegionLink> find_zone_links(const WorldData& world, const Zo
   const auto tiles = static_cast<int32_t>(world.tiles_per_zone);
   const TileRegions finder(world);
   std::vector<std::vector<RegionLink>> found(world.tiles_per_zone);
-  parallel_for(found.size(), workers, [&](size_t i) {
+  std::vector<TileScratch> of_workers(static_cast<size_t>(worker_count(workers)));
+  parallel_for_worker(found.size(), workers, [&](size_t i, int32_t worker) {
+    TileScratch& scratch = of_workers[static_cast<size_t>(worker)];
     const auto along = static_cast<int32_t>(i);
     const int32_t x = a.x() * tiles + (side == kEast ? tiles - 1 : along);
     const int32_t z = a.z() * tiles + (side == kEast ? along : tiles - 1);
-    const TileParts here = finder.parts(x, z);
+    const TileParts here = finder.parts(x, z, scratch);
     if (here.levels == 0) return;
-    const TileParts there = side == kEast ? finder.parts(x + 1, z) : finder.parts(x, z + 1);
+    const TileParts there =
+        side == kEast ? finder.parts(x + 1, z, scratch) : finder.parts(x, z + 1, scratch);
     if (there.levels == 0) return;
     const auto first_region = [&](const ZoneBorder& zone, const TileParts& tile) {
       return zone.regions->level_regions(tile.first_level - world.slots[zone.slot]->first_level)
           .first;
     };
     const uint32_t base_a = first_region(from, here), base_b = first_region(to, there);
-    for (const RegionLink& link : finder.border(x, z, side, here, there)) {
+    for (const RegionLink& link : finder.border(x, z, side, here, there, scratch)) {
       found[i].push_back({link.a + base_a, link.b + base_b, link.classes});
     }
   });

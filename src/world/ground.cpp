@@ -12,12 +12,17 @@ GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_l
   level.zone = &zone;
   level.world_level = world_level;
   level.view = zone.view(zone_level);
+  set_class(level, zone_level, avatar_class);
+  return level;
+}
+
+void set_class(GroundLevel& level, uint32_t zone_level, int32_t avatar_class) {
   const format::Clearance& clearance =
-      zone.clearance(zone_level, static_cast<uint32_t>(avatar_class));
+      level.zone->clearance(zone_level, static_cast<uint32_t>(avatar_class));
   level.kind = clearance.kind();
   level.step_safe = clearance.step_safe() != 0;
-  if (level.kind == format::CellsKind::Blocks) level.legal = zone.words(clearance.offset());
-  return level;
+  level.legal = nullptr;
+  if (level.kind == format::CellsKind::Blocks) level.legal = level.zone->words(clearance.offset());
 }
 
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class) {

@@ -27,6 +27,8 @@ struct GroundLevel {
 
 GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_level,
                          int32_t avatar_class);
+/// Makes it the same level for another class.
+void set_class(GroundLevel& level, uint32_t zone_level, int32_t avatar_class);
 /// By the world's number; null zone if its zone cannot be used.
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class);
 

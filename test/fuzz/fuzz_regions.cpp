@@ -14,15 +14,15 @@ namespace {
 volatile uint64_t seen = 0;
 
 void ask(const RegionZone& zone) {
+  const std::vector<ZoneComponent> components = zone.components();
   for (uint32_t level = 0; level < zone.level_count(); ++level) {
     const auto [first, last] = zone.level_regions(level);
     for (uint32_t r = first; r < last; ++r) {
       for (uint32_t c = 0; c < zone.class_count(); ++c) {
         if ((zone.regions()[r].classes() >> c & 1) == 0) continue;
-        const auto [begin, end] = zone.class_components(c);
         const uint32_t of = zone.component(r, c);
-        if (of < begin || of >= end) std::abort();
-        seen = seen + zone.components()[of].cells();
+        if (of >= components.size() || components[of].avatar_class != c) std::abort();
+        seen = seen + components[of].cells;
       }
     }
   }
@@ -93,16 +93,18 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   try_regions(owned());
   try_links(owned());
   (void)read_graph_index({bytes, size}, "fuzz", WorldData{}, 0);
-  if (size < 6) return 0;
+  if (size < 8) return 0;
   // The first bytes say how long the arrays are.
-  const uint8_t *at = bytes + 6, *end = bytes + size;
+  const uint8_t *at = bytes + 8, *end = bytes + size;
   RegionTables t;
+  t.classes = bytes[4];
   t.first = take<uint32_t>(at, end, bytes[0]);
   t.regions = take<format::Region>(at, end, bytes[1]);
-  t.part_component = take<uint32_t>(at, end, bytes[2]);
-  t.class_first = take<uint32_t>(at, end, bytes[3]);
-  t.components = take<format::ZoneComponent>(at, end, bytes[4]);
-  t.links = take<format::RegionLink>(at, end, bytes[5]);
+  t.groups.groups = take<format::RegionGroup>(at, end, bytes[2]);
+  t.groups.blocks = take<format::GroupBlock>(at, end, bytes[3]);
+  t.groups.names = take<uint8_t>(at, end, bytes[5]);
+  t.groups.begun = take<uint8_t>(at, end, bytes[6]);
+  t.links = take<format::RegionLink>(at, end, bytes[7]);
   try_regions(region_zone_bytes(0, 0, 0, t));
   try_index(bytes, size);
   return 0;

@@ -157,6 +157,17 @@ class LevelRegions {
   size_t begin_;
 };
 
+// To the link of the pair, if another class has just made it.
+void add_link(std::vector<RegionLink>& links, const RegionLink& link) {
+  for (size_t i = links.size(), tries = 0; i > 0 && tries < 4; --i, ++tries) {
+    RegionLink& last = links[i - 1];
+    if (last.a != link.a || last.b != link.b) continue;
+    last.classes |= link.classes;
+    return;
+  }
+  links.push_back(link);
+}
+
 // One side of a border: who may stand where, and heights along it, each read once, and only if
 // somebody asks.
 class BorderLevels {
@@ -232,7 +243,9 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
   scratch.legal.resize(std::max(scratch.legal.size(), tile.classes.size()));
   scratch.grounds.resize(std::max(scratch.grounds.size(), tile.classes.size()));
   scratch.shapes.clear();
+  tile.heights.reserve(tile.levels);
   for (uint32_t l = 0; l < tile.levels; ++l) {
+    tile.heights.push_back(height_range(levels.zone->view(levels.zone_first + l)));
     tile.first.push_back(static_cast<uint32_t>(tile.regions.size()));
     find_level(levels, l, tile, scratch);
   }
@@ -251,6 +264,7 @@ TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z, TileScratch&
   }
   for (uint32_t a = 0; a < tile.levels; ++a) {
     for (uint32_t b = a + 1; b < tile.levels; ++b) {
+      if (!tile.heights[a].is_near(tile.heights[b], longest_)) continue;
       if (!is_beside(scratch.anyone[a], scratch.anyone[b])) continue;
       for (CellRows& rows : scratch.rises.known) rows.fill(0);
       for (size_t c = 0; c < steps_.size(); ++c) {
@@ -276,6 +290,7 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
   for (uint32_t a = 0; a < from.levels; ++a) {
     for (uint32_t b = 0; b < to.levels; ++b) {
       if ((here.anyone(a) & there.anyone(b)) == 0) continue;
+      if (!from.heights[a].is_near(to.heights[b], longest_)) continue;
       // Cells where it is known if the step is low enough for any class, and if so.
       uint64_t known = 0, low = 0;
       const auto any = [&](uint64_t cells, size_t c) {
@@ -302,7 +317,7 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
             const uint64_t both = from.parts[p].side[side] & to.parts[q].side[back];
             // One will do: first where other classes have looked.
             if (!any(both & low, c) && !any(both & ~known, c)) continue;
-            links.push_back({from.parts[p].region, to.parts[q].region, uint32_t{1} << c});
+            add_link(links, {from.parts[p].region, to.parts[q].region, uint32_t{1} << c});
           }
         }
       }
@@ -417,7 +432,7 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
   for (uint32_t p = as.first; p < as.last; ++p) {
     for (uint32_t q = bs.first; q < bs.last; ++q) {
       if (!touch(shapes.parts[p], shapes.parts[q])) continue;
-      tile.links.push_back({tile.parts[p].region, tile.parts[q].region, uint32_t{1} << c});
+      add_link(tile.links, {tile.parts[p].region, tile.parts[q].region, uint32_t{1} << c});
     }
   }
 }

@@ -45,10 +45,11 @@ struct TileParts {
 
   uint32_t first_level = 0, levels = 0;  // of the world
   std::vector<Region> regions;           // in order of levels
+  std::vector<HeightRange> heights;      // per level
   std::vector<uint32_t> first;           // per level: its first region; one more at the end
   std::vector<ClassParts> classes;       // per level and class
   std::vector<RegionPart> parts;
-  std::vector<RegionLink> links;  // one class a link, a < b
+  std::vector<RegionLink> links;  // a < b, maybe several for a pair
 };
 
 /// What finding takes beside its results, kept from tile to tile: one for each worker.
@@ -86,8 +87,8 @@ class TileRegions {
   [[nodiscard]] TileParts parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const;
   /// And the links between its levels.
   [[nodiscard]] TileParts linked_parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const;
-  /// Links over the border between a tile and its neighbour to the east or south, one class a link:
-  /// from a region of `from` to a region of `to`.
+  /// Links over the border between a tile and its neighbour to the east or south, maybe several
+  /// for a pair: from a region of `from` to a region of `to`.
   [[nodiscard]] std::vector<RegionLink> border(int32_t tile_x, int32_t tile_z, TileSide side,
                                                const TileParts& from, const TileParts& to,
                                                TileScratch& scratch) const;

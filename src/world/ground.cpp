@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "world/ground.h"
 
+#include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace throng {
 
@@ -30,6 +32,32 @@ GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_
   const Zone* zone = world.zone(slot);
   if (zone == nullptr) return {};
   return ground_level(*zone, level - world.slots[slot]->first_level, level, avatar_class);
+}
+
+HeightRange height_range(const LevelView& view) {
+  HeightRange range{INT32_MAX, INT32_MIN};
+  const auto add = [&](int32_t low, int32_t high) {
+    range = {std::min(range.low, low), std::max(range.high, high)};
+  };
+  if (view.floor == nullptr) {  // Planes are highest and lowest at corners.
+    for (const auto& [x, z] : {std::pair{0, 0}, {63, 0}, {0, 63}, {63, 63}}) {
+      add(view.sample(x, z), view.sample(x, z));
+    }
+    return range;
+  }
+  uint64_t used = view.present != nullptr ? view.present[0] | view.present[1] : ~uint64_t{0};
+  for (; used != 0; used &= used - 1) {
+    const ValueBlock block = unpack_head(view.floor[std::countr_zero(used)]);
+    const int32_t x = slope_part(block, 7, 0), z = slope_part(block, 0, 7);
+    const int32_t low = block.base + std::min(x, 0) + std::min(z, 0);
+    const int32_t high = block.base + std::max(x, 0) + std::max(z, 0) + (1 << block.width) - 1;
+    if (low < 0 || high > UINT16_MAX) {  // What lies beyond comes back from the other end.
+      add(view.floor_base, view.floor_base + UINT16_MAX);
+    } else {
+      add(view.floor_base + low, view.floor_base + high);
+    }
+  }
+  return range;
 }
 
 void unpack_floor(const LevelView& view, uint16_t* samples) {

@@ -47,8 +47,8 @@ class Passes {
   Result<void> find_regions(size_t slot);
   Result<void> find_links(size_t slot, DisjointSets& sets);
   Result<flatbuffers::DetachedBuffer> make_links(size_t slot, uint64_t input, const Around& around);
-  [[nodiscard]] format::GraphComponent place_of(size_t slot, const ZoneComponent& part,
-                                                const RegionZone& zone) const;
+  [[nodiscard]] GraphComponent place_of(size_t slot, const ZoneComponent& part,
+                                        const RegionZone& zone) const;
   void number_components(DisjointSets& sets);
   [[nodiscard]] uint64_t region_input(size_t slot) const;
   [[nodiscard]] Result<Side> side(int32_t slot) const;
@@ -228,20 +228,18 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
 }
 
 // A component of the world that begins with one of a zone, without what it is made of.
-format::GraphComponent Passes::place_of(size_t slot, const ZoneComponent& part,
-                                        const RegionZone& zone) const {
+GraphComponent Passes::place_of(size_t slot, const ZoneComponent& part,
+                                const RegionZone& zone) const {
   const uint32_t key = zone.regions()[part.first_region].key();
   const auto cell = [&](int32_t of_zone, uint32_t tile, uint32_t in_tile) {
     return (of_zone * static_cast<int32_t>(world_.tiles_per_zone) + static_cast<int32_t>(tile)) *
                kTileCells +
            static_cast<int32_t>(in_tile);
   };
-  return {0,
-          part.feet * 1e-3,
-          0,
-          world_.slots[slot]->first_level + part.level,
-          cell(zone.root().x(), part.tile % world_.tiles_per_zone, key % kTileCells),
-          cell(zone.root().z(), part.tile / world_.tiles_per_zone, key / kTileCells)};
+  return {.level = world_.slots[slot]->first_level + part.level,
+          .cell_x = cell(zone.root().x(), part.tile % world_.tiles_per_zone, key % kTileCells),
+          .cell_z = cell(zone.root().z(), part.tile / world_.tiles_per_zone, key / kTileCells),
+          .feet = part.feet};
 }
 
 // The components of each class, the largest first, then by their first region: the roots of the
@@ -249,7 +247,7 @@ format::GraphComponent Passes::place_of(size_t slot, const ZoneComponent& part,
 void Passes::number_components(DisjointSets& sets) {
   GraphData& graph = *made_.graph;
   const size_t classes = world_.summary.classes.size();
-  std::vector<std::vector<format::GraphComponent>> found(classes);
+  std::vector<std::vector<GraphComponent>> found(classes);
   std::vector<uint8_t> class_of(components_);  // of the components of zones
   std::vector<uint32_t> of_root(components_, 0), component_of(components_, 0);
   for (size_t s = 0; s < graph.slots.size(); ++s) {
@@ -263,13 +261,9 @@ void Passes::number_components(DisjointSets& sets) {
         of_root[i] = static_cast<uint32_t>(of_class.size());
         of_class.push_back(place_of(s, part, zone));
       }
-      format::GraphComponent& all = of_class[of_root[root]];
-      all = {all.cells() + part.cells,
-             all.feet(),
-             all.regions() + part.regions,
-             all.level(),
-             all.cell_x(),
-             all.cell_z()};
+      GraphComponent& all = of_class[of_root[root]];
+      all.cells += part.cells;
+      all.regions += part.regions;
       ++i;
     }
     zone.give_back();
@@ -280,9 +274,8 @@ void Passes::number_components(DisjointSets& sets) {
     std::vector<uint32_t> order(found[c].size());
     rank[c].resize(order.size());
     std::iota(order.begin(), order.end(), uint32_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-      return found[c][a].cells() > found[c][b].cells();
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return found[c][a].cells > found[c][b].cells; });
     for (uint32_t i = 0; i < order.size(); ++i) {
       rank[c][order[i]] = i;
       graph.components.push_back(found[c][order[i]]);
@@ -293,6 +286,7 @@ void Passes::number_components(DisjointSets& sets) {
     component_of[i] = rank[class_of[i]][of_root[sets.find(i)]];
   }
   graph.component_of = std::move(component_of);
+  graph.class_of = std::move(class_of);
 }
 
 Result<GraphMade> Passes::run() {

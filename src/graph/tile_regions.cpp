@@ -245,7 +245,7 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
   scratch.shapes.clear();
   tile.heights.reserve(tile.levels);
   for (uint32_t l = 0; l < tile.levels; ++l) {
-    tile.heights.push_back(height_range(levels.zone->view(levels.zone_first + l)));
+    tile.heights.push_back(floor_range(levels.zone->view(levels.zone_first + l)));
     tile.first.push_back(static_cast<uint32_t>(tile.regions.size()));
     find_level(levels, l, tile, scratch);
   }

@@ -45,7 +45,7 @@ struct TileParts {
 
   uint32_t first_level = 0, levels = 0;  // of the world
   std::vector<Region> regions;           // in order of levels
-  std::vector<HeightRange> heights;      // per level
+  std::vector<FloorRange> heights;       // per level
   std::vector<uint32_t> first;           // per level: its first region; one more at the end
   std::vector<ClassParts> classes;       // per level and class
   std::vector<RegionPart> parts;

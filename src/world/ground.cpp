@@ -34,8 +34,8 @@ GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_
   return ground_level(*zone, level - world.slots[slot]->first_level, level, avatar_class);
 }
 
-HeightRange height_range(const LevelView& view) {
-  HeightRange range{INT32_MAX, INT32_MIN};
+FloorRange floor_range(const LevelView& view) {
+  FloorRange range{INT32_MAX, INT32_MIN};
   const auto add = [&](int32_t low, int32_t high) {
     range = {std::min(range.low, low), std::max(range.high, high)};
   };

@@ -34,15 +34,15 @@ GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_
 
 /// Heights between which the floor of a level lies, maybe wider than it does: told by the heads of
 /// its blocks. [mm]
-struct HeightRange {
+struct FloorRange {
   int32_t low = 0, high = 0;
 
   /// Is any height of it within `step` of one of the other's? [step >= 0]
-  [[nodiscard]] bool is_near(const HeightRange& other, int32_t step) const {
+  [[nodiscard]] bool is_near(const FloorRange& other, int32_t step) const {
     return low <= int64_t{other.high} + step && other.low <= int64_t{high} + step;
   }
 };
-HeightRange height_range(const LevelView& view);
+FloorRange floor_range(const LevelView& view);
 
 /// The floor of a level row by row, kNoValue where there is none: for LevelView::samples of whoever
 /// reads many of its cells. `samples` holds 4096. [view.floor != nullptr]

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <tuple>
 
 #include "core/hash.h"
+#include "world/graph_index.h"
 #include "world/place.h"
 
 namespace throng {
@@ -17,8 +17,6 @@ namespace {
 constexpr const char* kRegionIdentifier = "THRZ";
 constexpr const char* kLinkIdentifier = "THLZ";
 constexpr const char* kIndexIdentifier = "THGI";
-constexpr double kHighestFeet = 2'200'000;  // [m]: more than 32 bits of mm tell
-constexpr int32_t kMostCells = 1 << 20;     // along a side of the grid
 
 template <class T>
 std::span<const T> numbers(const flatbuffers::Vector<T>& values) {
@@ -68,11 +66,10 @@ uint64_t sum_of(uint64_t head, std::span<const format::RegionLink> east,
 }
 
 uint64_t sum_of(uint64_t world_hash, std::span<const format::GraphZone> zones,
-                std::span<const uint32_t> class_first,
-                std::span<const format::GraphComponent> components,
-                std::span<const uint32_t> component_of) {
+                std::span<const uint32_t> class_first, std::span<const uint8_t> sizes,
+                std::span<const uint8_t> of_zones) {
   const uint64_t head = chained(class_first, chained(zones, head_sum(0, 0, world_hash)));
-  return chained(component_of, chained(components, head));
+  return chained(of_zones, chained(sizes, head));
 }
 
 // Offsets from 0 to `end`, none before the last.
@@ -92,17 +89,6 @@ bool leads(const format::RegionLink& link, const RegionZone& from, const RegionZ
   return link.a() < from.regions().size() && link.b() < to.regions().size() &&
          (link.classes() & ~uint32_t{from.regions()[link.a()].classes()}) == 0 &&
          (link.classes() & ~uint32_t{to.regions()[link.b()].classes()}) == 0;
-}
-
-bool is_place(double feet, int32_t cell_x, int32_t cell_z) {
-  return std::fabs(feet) <= kHighestFeet && cell_x >= 0 && cell_z >= 0 && cell_x < kMostCells &&
-         cell_z < kMostCells;
-}
-
-// Where each class's components begin: as many as there are classes, one more, and in all.
-bool are_classes(std::span<const uint32_t> class_first, size_t components) {
-  return class_first.size() >= 2 && class_first.size() <= kMaxAvatarClasses + 1 &&
-         is_ascending(class_first, components);
 }
 
 }  // namespace
@@ -344,12 +330,12 @@ void GraphData::show(const WorldData& of_world) {
   by_class.assign(class_first.size() - 1, {});
   for (size_t c = 0; c < by_class.size(); ++c) {
     for (uint32_t i = class_first[c]; i < class_first[c + 1]; ++i) {
-      const format::GraphComponent& from = components[i];
-      by_class[c].push_back(
-          {static_cast<double>(from.cells()) * (of.cell * of.cell),
-           from.regions(),
-           {{of.origin.x + middle(from.cell_x()), from.feet(), of.origin.z + middle(from.cell_z())},
-            from.level() + 1}});
+      const GraphComponent& from = components[i];
+      by_class[c].push_back({static_cast<double>(from.cells) * (of.cell * of.cell),
+                             from.regions,
+                             {{of.origin.x + middle(from.cell_x), from.feet * 1e-3,
+                               of.origin.z + middle(from.cell_z)},
+                              from.level + 1}});
     }
   }
   summary.regions = summary.links = 0;
@@ -362,18 +348,17 @@ void GraphData::show(const WorldData& of_world) {
 }
 
 std::vector<uint8_t> write_graph_index(const GraphData& graph, uint64_t world_hash) {
-  // Room for all of it: as it grew it would be there three times.
-  flatbuffers::FlatBufferBuilder builder(graph.slots.size() * sizeof(format::GraphZone) +
-                                         graph.components.size() * sizeof(format::GraphComponent) +
-                                         graph.component_of.size() * sizeof(uint32_t) + 1024);
+  const PackedComponents packed = pack_components(graph);
   std::vector<format::GraphZone> zones;
   for (const auto& slot : graph.slots) zones.push_back(slot->entry);
-  builder.Finish(
-      format::CreateGraphIndexDirect(
-          builder, kGraphVersion, world_hash,
-          sum_of(world_hash, zones, graph.class_first, graph.components, graph.component_of),
-          &zones, &graph.class_first, &graph.components, &graph.component_of),
-      kIndexIdentifier);
+  // Room for all of it: as it grew it would be there three times.
+  flatbuffers::FlatBufferBuilder builder(zones.size() * sizeof(format::GraphZone) +
+                                         packed.sizes.size() + packed.of_zones.size() + 1024);
+  builder.Finish(format::CreateGraphIndexDirect(
+                     builder, kGraphVersion, world_hash,
+                     sum_of(world_hash, zones, graph.class_first, packed.sizes, packed.of_zones),
+                     &zones, &graph.class_first, &packed.sizes, &packed.of_zones),
+                 kIndexIdentifier);
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 
@@ -385,19 +370,18 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
   if (!found) return found.error();
   const format::GraphIndex& root = **found;
   if (root.world() != world_hash) return bad_file(name, "belongs to another bake of this world");
-  if (!root.zones() || !root.class_first() || !root.components() || !root.component_of() ||
-      !is_aligned(*root.zones()) || !is_aligned(*root.components())) {
+  if (!root.zones() || !root.class_first() || !root.sizes() || !root.of_zones() ||
+      !is_aligned(*root.zones())) {
     return bad_file(name, "an array is missing");
   }
   const auto class_first = numbers(*root.class_first());
-  const auto component_of = numbers(*root.component_of());
-  if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first,
-                           structs(*root.components()), component_of)) {
+  const auto sizes = numbers(*root.sizes()), of_zones = numbers(*root.of_zones());
+  if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first, sizes, of_zones)) {
     return bad_file(name, "its sum is wrong");
   }
-  if (root.zones()->size() != world.slots.size() ||
+  if (root.zones()->size() != world.slots.size() || class_first.size() < 2 ||
       class_first.size() != world.summary.classes.size() + 1 ||
-      !are_classes(class_first, root.components()->size())) {
+      !is_ascending(class_first, class_first.back())) {
     return bad_file(name, "its arrays do not fit together");
   }
   auto graph = std::make_shared<GraphData>();
@@ -412,19 +396,13 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
     graph->slots.push_back(std::make_unique<GraphData::Slot>());
     graph->slots.back()->entry = entry;
   }
-  if (components != root.component_of()->size()) {
+  graph->class_first.assign(class_first.begin(), class_first.end());
+  if (const char* what = unpack_components(sizes, of_zones, world, *graph)) {
+    return bad_file(name, what);
+  }
+  if (components != graph->component_of.size()) {
     return bad_file(name, "its zones miscount their components");
   }
-  graph->class_first.assign(class_first.begin(), class_first.end());
-  for (const format::GraphComponent* of : *root.components()) {
-    if (of->cells() == 0 || of->regions() == 0 || of->level() >= world.level_count ||
-        !is_place(of->feet(), of->cell_x(), of->cell_z()) || of->cell_x() >= world.width ||
-        of->cell_z() >= world.depth) {
-      return bad_file(name, "a component makes no sense");
-    }
-    graph->components.push_back(*of);
-  }
-  graph->component_of.assign(component_of.begin(), component_of.end());
   graph->show(world);
   return graph;
 }

@@ -101,6 +101,15 @@ class LinkZone : public ZoneFile<LinkZone> {
   std::span<const format::RegionLink> east_, south_;
 };
 
+/// What holds together in the world, for one class.
+struct GraphComponent {
+  uint64_t cells = 0;  // legal
+  uint32_t regions = 0;
+  uint32_t level = 0;              // of the world, of its place
+  int32_t cell_x = 0, cell_z = 0;  // of the grid: its place is the middle of this cell
+  int32_t feet = 0;                // there [mm]
+};
+
 /// What Graph points to. Its zones are those of the world, slot by slot.
 struct GraphData {
   struct Slot : ZoneSlot<RegionZone> {
@@ -110,9 +119,10 @@ struct GraphData {
   World world;
   std::string path;  // of the folder; empty: in memory
   std::vector<std::unique_ptr<Slot>> slots;
-  std::vector<uint32_t> class_first;  // classes + 1
-  std::vector<format::GraphComponent> components;
+  std::vector<uint32_t> class_first;             // classes + 1
+  std::vector<GraphComponent> components;        // per class the largest first
   std::vector<uint32_t> component_of;            // of components of zones: within their class
+  std::vector<uint8_t> class_of;                 // of these
   std::vector<std::vector<Component>> by_class;  // `components` as they are shown
   GraphSummary summary;
 

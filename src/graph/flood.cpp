@@ -76,22 +76,27 @@ uint32_t length(uint64_t run) {
   return static_cast<uint32_t>(64 - std::countl_zero(run) - std::countr_zero(run));
 }
 
-// What tells most parts from several at a glance: rows of one run each, that meet the one above.
-struct Chain {
-  uint64_t rows = 0, meets = 0, split = 0;
+// The rows from the first to the last that are open.
+struct OpenRows {
+  size_t begin = 0, end = 64;
 
-  explicit Chain(const CellRows& open) {
-    uint64_t above = 0;
-    for (size_t z = 0; z < 64; ++z) {
-      const uint64_t row = open[z];
-      split |= row & (row + lowest(row));
-      rows |= uint64_t{row != 0} << z;
-      meets |= uint64_t{(row & above) != 0} << z;
-      above = row;
-    }
+  explicit OpenRows(const CellRows& open) {
+    while (begin < 64 && open[begin] == 0) ++begin;
+    while (end > begin && open[end - 1] == 0) --end;
   }
-  [[nodiscard]] bool is_one_part() const { return split == 0 && meets == (rows & (rows - 1)); }
 };
+
+// Tells most parts from several at a glance: rows of one run each that meet the one above. Without
+// comparing, so that compilers make vectors of it. [rows.begin < rows.end]
+bool is_chain(const CellRows& open, OpenRows rows) {
+  uint64_t split = 0, meets = ~uint64_t{0};
+  for (size_t z = rows.begin; z < rows.end; ++z) split |= open[z] & (open[z] + lowest(open[z]));
+  for (size_t z = rows.begin + 1; z < rows.end; ++z) {
+    const uint64_t both = open[z] & open[z - 1];
+    meets &= both | (0 - both);  // the highest bit: not 0
+  }
+  return split == 0 && meets >> 63 != 0;
+}
 
 }  // namespace
 
@@ -101,18 +106,16 @@ CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z)
 
 void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list) {
   const auto start = static_cast<uint32_t>(list.rows.size());
-  if (cuts == nullptr) {
-    const Chain chain(open);
-    if (chain.rows == 0) return;
-    if (chain.is_one_part()) {
-      const auto begin = static_cast<uint16_t>(std::countr_zero(chain.rows));
-      const auto end = static_cast<uint16_t>(64 - std::countl_zero(chain.rows));
-      uint32_t cells = 0;
-      for (size_t z = begin; z < end; ++z) cells += length(open[z]);
-      list.parts.push_back({start, begin, end, cells});
-      list.rows.insert(list.rows.end(), open.begin() + begin, open.begin() + end);
-      return;
-    }
+  const OpenRows open_rows(open);
+  if (open_rows.begin == open_rows.end) return;
+  if (cuts == nullptr && is_chain(open, open_rows)) {
+    const auto begin = static_cast<uint16_t>(open_rows.begin);
+    const auto end = static_cast<uint16_t>(open_rows.end);
+    uint32_t cells = 0;
+    for (size_t z = begin; z < end; ++z) cells += length(open[z]);
+    list.parts.push_back({start, begin, end, cells});
+    list.rows.insert(list.rows.end(), open.begin() + begin, open.begin() + end);
+    return;
   }
   find_runs(open, cuts);
   // Parents come first: one look-up leads to the root.

@@ -7,6 +7,22 @@
 #include <utility>
 
 namespace throng {
+namespace {
+
+// By how much a cell of the block differs from the slopes at most.
+int32_t highest_rest(const LevelView& view, const ValueBlock& block) {
+  if (block.width < 16) return (1 << block.width) - 1;
+  // Of 16 bits nothing follows.
+  const uint64_t* words = view.floor + kValueHead + block.first;
+  int32_t highest = 0;
+  for (uint32_t i = 0; i < 64; ++i) {
+    const auto rest = static_cast<int32_t>(rest_at(block, words, i % 8, i / 8));
+    if (!block.holes || rest != kNoValue) highest = std::max(highest, rest);
+  }
+  return highest;
+}
+
+}  // namespace
 
 GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_level,
                          int32_t avatar_class) {
@@ -47,15 +63,25 @@ FloorRange floor_range(const LevelView& view) {
   }
   uint64_t used = view.present != nullptr ? view.present[0] | view.present[1] : ~uint64_t{0};
   for (; used != 0; used &= used - 1) {
-    const ValueBlock block = unpack_head(view.floor[std::countr_zero(used)]);
+    const auto b = static_cast<uint32_t>(std::countr_zero(used));
+    const ValueBlock block = unpack_head(view.floor[b]);
     const int32_t x = slope_part(block, 7, 0), z = slope_part(block, 0, 7);
-    const int32_t low = block.base + std::min(x, 0) + std::min(z, 0);
-    const int32_t high = block.base + std::max(x, 0) + std::max(z, 0) + (1 << block.width) - 1;
-    if (low < 0 || high > UINT16_MAX) {  // What lies beyond comes back from the other end.
-      add(view.floor_base, view.floor_base + UINT16_MAX);
-    } else {
-      add(view.floor_base + low, view.floor_base + high);
+    int32_t low = block.base + std::min(x, 0) + std::min(z, 0);
+    int32_t high = block.base + std::max(x, 0) + std::max(z, 0) + highest_rest(view, block);
+    if (high > UINT16_MAX) {
+      // The base may be one below 0, modulo 2^16: any cell tells, as it is no lower than its base.
+      const uint64_t cells = view.present != nullptr ? block_cells(view.present, b) : 1;
+      if (cells == 0) continue;  // in files that are not true
+      const auto i = static_cast<uint32_t>(std::countr_zero(cells));
+      const uint32_t cx = i % 8, cz = i / 8;
+      const int32_t value = value_at(view.floor, static_cast<int32_t>(b % 8 * 8 + cx),
+                                     static_cast<int32_t>(b / 8 * 8 + cz));
+      if (value < block.base + slope_part(block, cx, cz)) {
+        low -= 1 << 16;
+        high -= 1 << 16;
+      }
     }
+    add(view.floor_base + std::max(low, 0), view.floor_base + std::min<int32_t>(high, UINT16_MAX));
   }
   return range;
 }

@@ -33,7 +33,7 @@ void set_class(GroundLevel& level, uint32_t zone_level, int32_t avatar_class);
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class);
 
 /// Heights between which the floor of a level lies, maybe wider than it does: told by the heads of
-/// its blocks. [mm]
+/// its blocks, as a bake makes them. [mm]
 struct FloorRange {
   int32_t low = 0, high = 0;
 

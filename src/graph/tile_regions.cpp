@@ -381,8 +381,8 @@ bool TileRegions::steps_both_ways(size_t c, const GroundLevel& a, const GroundLe
 
 // Links a class's parts of two levels of one tile where their sheets meet.
 void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const {
-  const auto [tile_x, tile_z, c, a, b] = seam;
-  const size_t at_a = a * steps_.size() + c, at_b = b * steps_.size() + c;
+  const size_t c = seam.c;
+  const size_t at_a = seam.a * steps_.size() + c, at_b = seam.b * steps_.size() + c;
   const TileParts::ClassParts as = tile.classes[at_a], bs = tile.classes[at_b];
   if (as.first == as.last || bs.first == bs.last) return;
   const GroundLevel &level_a = scratch.grounds[at_a], &level_b = scratch.grounds[at_b];
@@ -411,7 +411,7 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
         low = (low & ~bit) | (std::abs(rise) <= longest_ ? bit : 0);
       }
       if ((low & bit) == 0) continue;
-      const int32_t gx = tile_x * 64 + x, gz = tile_z * 64 + row;
+      const int32_t gx = seam.tile_x * 64 + x, gz = seam.tile_z * 64 + row;
       if (steps_both_ways(c, level_a, level_b, gx, gz, gx + dx, gz + dz)) return true;
     }
     return false;

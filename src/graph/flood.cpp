@@ -69,22 +69,114 @@ class Filler {
   const StepCuts* cuts_;
 };
 
+uint64_t lowest(uint64_t cells) { return cells & (0 - cells); }
+
+// Cells of a run.
+uint32_t length(uint64_t run) {
+  return static_cast<uint32_t>(64 - std::countl_zero(run) - std::countr_zero(run));
+}
+
+// The rows from the first to the last that are open.
+struct OpenRows {
+  size_t begin = 0, end = 64;
+
+  explicit OpenRows(const CellRows& open) {
+    while (begin < 64 && open[begin] == 0) ++begin;
+    while (end > begin && open[end - 1] == 0) --end;
+  }
+};
+
+// Tells most parts from several at a glance: rows of one run each that meet the one above. Without
+// comparing, so that compilers make vectors of it. [rows.begin < rows.end]
+bool is_chain(const CellRows& open, OpenRows rows) {
+  uint64_t split = 0, meets = ~uint64_t{0};
+  for (size_t z = rows.begin; z < rows.end; ++z) split |= open[z] & (open[z] + lowest(open[z]));
+  for (size_t z = rows.begin + 1; z < rows.end; ++z) {
+    const uint64_t both = open[z] & open[z - 1];
+    meets &= both | (0 - both);  // the highest bit: not 0
+  }
+  return split == 0 && meets >> 63 != 0;
+}
+
 }  // namespace
 
 CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z) {
   return Filler(open, cuts).fill(x, z);
 }
 
-std::vector<CellRows> connected_parts(const CellRows& open, const StepCuts* cuts) {
-  std::vector<CellRows> parts;
-  CellRows left = open;
+void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list) {
+  const auto start = static_cast<uint32_t>(list.rows.size());
+  const OpenRows open_rows(open);
+  if (open_rows.begin == open_rows.end) return;
+  if (cuts == nullptr && is_chain(open, open_rows)) {
+    const auto begin = static_cast<uint16_t>(open_rows.begin);
+    const auto end = static_cast<uint16_t>(open_rows.end);
+    uint32_t cells = 0;
+    for (size_t z = begin; z < end; ++z) cells += length(open[z]);
+    list.parts.push_back({start, begin, end, cells});
+    list.rows.insert(list.rows.end(), open.begin() + begin, open.begin() + end);
+    return;
+  }
+  find_runs(open, cuts);
+  // Parents come first: one look-up leads to the root.
+  const size_t first_part = list.parts.size();
+  part_.resize(cells_.size());
   for (size_t z = 0; z < 64; ++z) {
-    while (left[z] != 0) {
-      parts.push_back(Filler(open, cuts).fill(std::countr_zero(left[z]), static_cast<int32_t>(z)));
-      for (size_t i = z; i < 64; ++i) left[i] &= ~parts.back()[i];
+    for (size_t i = first_[z]; i < first_[z + 1]; ++i) {
+      parent_[i] = parent_[parent_[i]];
+      if (parent_[i] == i) {
+        part_[i] = static_cast<uint32_t>(list.parts.size());
+        list.parts.push_back({0, static_cast<uint16_t>(z), 0, 0});
+      }
+      PartList::Part& part = list.parts[part_[parent_[i]]];
+      part.end = static_cast<uint16_t>(z + 1);
+      part.cells += length(cells_[i]);
     }
   }
-  return parts;
+  uint32_t rows = start;
+  for (size_t p = first_part; p < list.parts.size(); ++p) {
+    list.parts[p].rows = rows;
+    rows += static_cast<uint32_t>(list.parts[p].end - list.parts[p].begin);
+  }
+  list.rows.resize(rows, 0);
+  for (size_t z = 0; z < 64; ++z) {
+    for (size_t i = first_[z]; i < first_[z + 1]; ++i) {
+      const PartList::Part& part = list.parts[part_[parent_[i]]];
+      list.rows[part.rows + z - part.begin] |= cells_[i];
+    }
+  }
+}
+
+uint16_t PartFinder::root(uint16_t run) {
+  while (parent_[run] != run) run = parent_[run] = parent_[parent_[run]];
+  return run;
+}
+
+void PartFinder::find_runs(const CellRows& open, const StepCuts* cuts) {
+  cells_.clear();
+  parent_.clear();
+  for (size_t z = 0; z < 64; ++z) {
+    first_[z] = static_cast<uint16_t>(cells_.size());
+    const uint64_t row = open[z], cut = cuts != nullptr ? cuts->across[z] : 0;
+    const uint64_t pass = cuts != nullptr && z > 0 ? ~cuts->along[z - 1] : ~uint64_t{0};
+    size_t above = z > 0 ? first_[z - 1] : 0;
+    uint64_t left = row;
+    for (uint64_t ends = row & (~(row >> 1) | cut); ends != 0; ends &= ends - 1) {
+      const uint64_t up_to = ends ^ (ends - 1), run = left & up_to;
+      left &= ~up_to;
+      const auto own = static_cast<uint16_t>(cells_.size());
+      cells_.push_back(run);
+      parent_.push_back(own);
+      // Those above that end before it begins end before all that follow.
+      while (above < first_[z] && cells_[above] < lowest(run)) ++above;
+      for (size_t i = above; i < first_[z] && lowest(cells_[i]) <= run; ++i) {
+        if ((cells_[i] & run & pass) == 0) continue;
+        const uint16_t a = root(static_cast<uint16_t>(i)), b = root(own);
+        parent_[std::max(a, b)] = std::min(a, b);
+      }
+    }
+  }
+  first_[64] = static_cast<uint16_t>(cells_.size());
 }
 
 }  // namespace throng

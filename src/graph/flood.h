@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,7 +22,44 @@ struct StepCuts {
 /// side. `cuts` may be null.
 CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z);
 
-/// All connected parts of `open`, in the order of their first cells, row by row.
-std::vector<CellRows> connected_parts(const CellRows& open, const StepCuts* cuts);
+/// Connected parts of level tiles. Of each, only the rows from its first cell to its last are kept.
+struct PartList {
+  struct Part {
+    uint32_t rows = 0;            // where its rows begin in `rows`
+    uint16_t begin = 0, end = 0;  // rows of the tile: [begin, end)
+    uint32_t cells = 0;
+  };
+
+  std::vector<Part> parts;
+  std::vector<uint64_t> rows;
+
+  void clear() {
+    parts.clear();
+    rows.clear();
+  }
+  /// Row z of a part. [begin <= z < end]
+  [[nodiscard]] uint64_t row(const Part& part, size_t z) const {
+    return rows[part.rows + z - part.begin];
+  }
+};
+
+/// Finds parts. What it needs beside them it keeps from one time to the next.
+class PartFinder {
+ public:
+  /// Adds all connected parts of `open` to a list, in the order of their first cells, row by row.
+  /// `cuts` may be null.
+  void find(const CellRows& open, const StepCuts* cuts, PartList& list);
+
+ private:
+  void find_runs(const CellRows& open, const StepCuts* cuts);
+  uint16_t root(uint16_t run);
+
+  // Runs of cells of all rows, row by row; those that hold together are trees whose roots are the
+  // first of them.
+  std::vector<uint64_t> cells_;
+  std::vector<uint16_t> parent_;
+  std::vector<uint32_t> part_;        // of the roots
+  std::array<uint16_t, 65> first_{};  // per row: its first run
+};
 
 }  // namespace throng

@@ -47,6 +47,8 @@ class Passes {
   Result<void> find_regions(size_t slot);
   Result<void> find_links(size_t slot, DisjointSets& sets);
   Result<flatbuffers::DetachedBuffer> make_links(size_t slot, uint64_t input, const Around& around);
+  [[nodiscard]] GraphComponent place_of(size_t slot, const ZoneComponent& part,
+                                        const RegionZone& zone) const;
   void number_components(DisjointSets& sets);
   [[nodiscard]] uint64_t region_input(size_t slot) const;
   [[nodiscard]] Result<Side> side(int32_t slot) const;
@@ -110,10 +112,10 @@ Result<void> Passes::find_regions(size_t slot) {
     const auto tables = find_zone_regions(world_, slot, workers_, context_);
     if (!tables) return cancelled();
     const std::string name = region_file_name(entry.x(), entry.z());
-    const uint64_t bytes = tables->regions.size() * sizeof(format::Region) +
-                           tables->part_component.size() * sizeof(uint32_t) +
-                           tables->components.size() * sizeof(format::ZoneComponent) +
-                           tables->links.size() * sizeof(format::RegionLink);
+    const uint64_t bytes =
+        tables->first.size() * sizeof(uint32_t) + tables->regions.size() * sizeof(format::Region) +
+        tables->groups.groups.size() * 5 + tables->groups.names.size() +
+        tables->groups.begun.size() + tables->links.size() * sizeof(format::RegionLink);
     if (bytes > kMostZoneBytes) {
       return Error{Errc::kLimit, name + ": more than 2 GiB of regions; use smaller zones"};
     }
@@ -125,7 +127,7 @@ Result<void> Passes::find_regions(size_t slot) {
       if (auto ok = files_->write(name, zone->bytes()); !ok) return ok.error();
     }
   }
-  if (uint64_t{components_} + zone->components().size() >= UINT32_MAX) {
+  if (uint64_t{components_} + zone->component_count() >= UINT32_MAX) {
     return Error{Errc::kLimit, "graph: more than 2^32 parts; use a larger cell"};
   }
   auto own = std::make_unique<GraphData::Slot>();
@@ -133,7 +135,7 @@ Result<void> Passes::find_regions(size_t slot) {
                 entry.z(),
                 static_cast<uint32_t>(zone->regions().size()),
                 static_cast<uint32_t>(zone->links().size()),
-                static_cast<uint32_t>(zone->components().size()),
+                zone->component_count(),
                 components_,
                 zone->bytes().size(),
                 hash_bytes(zone->bytes().data(), zone->bytes().size()),
@@ -225,55 +227,66 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
   return {};
 }
 
+// A component of the world that begins with one of a zone, without what it is made of.
+GraphComponent Passes::place_of(size_t slot, const ZoneComponent& part,
+                                const RegionZone& zone) const {
+  const uint32_t key = zone.regions()[part.first_region].key();
+  const auto cell = [&](int32_t of_zone, uint32_t tile, uint32_t in_tile) {
+    return (of_zone * static_cast<int32_t>(world_.tiles_per_zone) + static_cast<int32_t>(tile)) *
+               kTileCells +
+           static_cast<int32_t>(in_tile);
+  };
+  return {.level = world_.slots[slot]->first_level + part.level,
+          .cell_x = cell(zone.root().x(), part.tile % world_.tiles_per_zone, key % kTileCells),
+          .cell_z = cell(zone.root().z(), part.tile / world_.tiles_per_zone, key / kTileCells),
+          .feet = part.feet};
+}
+
 // The components of each class, the largest first, then by their first region: the roots of the
 // sets are in that order.
 void Passes::number_components(DisjointSets& sets) {
   GraphData& graph = *made_.graph;
-  graph.class_first.assign(1, 0);
+  const size_t classes = world_.summary.classes.size();
+  std::vector<std::vector<GraphComponent>> found(classes);
+  std::vector<uint8_t> class_of(components_);  // of the components of zones
   std::vector<uint32_t> of_root(components_, 0), component_of(components_, 0);
-  const auto each_of_class = [&](uint32_t c, auto visit) {
-    for (size_t s = 0; s < graph.slots.size(); ++s) {
-      const RegionZone& zone = *graph.zone(world_, s);
-      const auto [first, last] = zone.class_components(c);
-      for (uint32_t i = first; i < last; ++i) {
-        visit(s, graph.slots[s]->entry.first_component() + i, zone.components()[i], zone);
+  for (size_t s = 0; s < graph.slots.size(); ++s) {
+    const RegionZone& zone = *graph.zone(world_, s);
+    uint32_t i = graph.slots[s]->entry.first_component();
+    for (const ZoneComponent& part : zone.components()) {
+      auto& of_class = found[part.avatar_class];
+      const uint32_t root = sets.find(i);
+      class_of[i] = static_cast<uint8_t>(part.avatar_class);
+      if (root == i) {
+        of_root[i] = static_cast<uint32_t>(of_class.size());
+        of_class.push_back(place_of(s, part, zone));
       }
-      zone.give_back();
+      GraphComponent& all = of_class[of_root[root]];
+      all.cells += part.cells;
+      all.regions += part.regions;
+      ++i;
     }
-  };
-  for (uint32_t c = 0; c < world_.summary.classes.size(); ++c) {
-    std::vector<format::GraphComponent> found;
-    each_of_class(
-        c, [&](size_t s, uint32_t i, const format::ZoneComponent& part, const RegionZone& zone) {
-          const uint32_t root = sets.find(i);
-          if (root == i) {
-            const uint32_t level =
-                world_.slots[s]->first_level + zone.regions()[part.first_region()].level();
-            of_root[i] = static_cast<uint32_t>(found.size());
-            found.emplace_back(0, part.feet(), 0, level, part.cell_x(), part.cell_z());
-          }
-          format::GraphComponent& all = found[of_root[root]];
-          all = {all.cells() + part.cells(),
-                 all.feet(),
-                 all.regions() + part.regions(),
-                 all.level(),
-                 all.cell_x(),
-                 all.cell_z()};
-        });
-    std::vector<uint32_t> order(found.size()), rank(found.size());
+    zone.give_back();
+  }
+  std::vector<std::vector<uint32_t>> rank(classes);
+  graph.class_first.assign(1, 0);
+  for (size_t c = 0; c < classes; ++c) {
+    std::vector<uint32_t> order(found[c].size());
+    rank[c].resize(order.size());
     std::iota(order.begin(), order.end(), uint32_t{0});
     std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return found[a].cells() > found[b].cells(); });
+                     [&](uint32_t a, uint32_t b) { return found[c][a].cells > found[c][b].cells; });
     for (uint32_t i = 0; i < order.size(); ++i) {
-      rank[order[i]] = i;
-      graph.components.push_back(found[order[i]]);
+      rank[c][order[i]] = i;
+      graph.components.push_back(found[c][order[i]]);
     }
-    each_of_class(c, [&](size_t, uint32_t i, const format::ZoneComponent&, const RegionZone&) {
-      component_of[i] = rank[of_root[sets.find(i)]];
-    });
     graph.class_first.push_back(static_cast<uint32_t>(graph.components.size()));
   }
+  for (uint32_t i = 0; i < components_; ++i) {
+    component_of[i] = rank[class_of[i]][of_root[sets.find(i)]];
+  }
   graph.component_of = std::move(component_of);
+  graph.class_of = std::move(class_of);
 }
 
 Result<GraphMade> Passes::run() {

@@ -3,9 +3,9 @@
 #include "graph/tile_regions.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdlib>
-#include <span>
 #include <tuple>
 #include <utility>
 
@@ -18,27 +18,38 @@
 namespace throng {
 namespace {
 
-uint64_t column(const CellRows& rows, int32_t x) {
-  uint64_t bits = 0;
-  for (size_t z = 0; z < 64; ++z) bits |= ((rows[z] >> x) & 1) << z;
-  return bits;
+using Part = PartList::Part;
+
+// Cells of a row of a list's part that are not taken.
+uint64_t row_without(const PartList& list, const Part& part, size_t z, const CellRows* taken) {
+  if (z < part.begin || z >= part.end) return 0;
+  return list.row(part, z) & ~(taken != nullptr ? (*taken)[z] : 0);
 }
 
-uint32_t shared_cells(const CellRows& a, const CellRows& b) {
+// The rows that both parts have.
+struct RowRange {
+  size_t begin, end;
+
+  RowRange(const Part& a, const Part& b)
+      : begin(std::max(a.begin, b.begin)), end(std::min(a.end, b.end)) {}
+};
+
+bool share_cells(const PartList& a, const Part& p, const PartList& b, const Part& q) {
+  const RowRange range(p, q);
+  for (size_t z = range.begin; z < range.end; ++z) {
+    if ((a.row(p, z) & b.row(q, z)) != 0) return true;
+  }
+  return false;
+}
+
+uint32_t shared_cells(const PartList& a, const Part& p, const PartList& b, const Part& q) {
+  const RowRange range(p, q);
   uint32_t count = 0;
-  for (size_t z = 0; z < 64; ++z) {
-    const uint64_t both = a[z] & b[z];  // Most parts are small: most rows share nothing.
-    if (both != 0) count += static_cast<uint32_t>(std::popcount(both));
+  for (size_t z = range.begin; z < range.end; ++z) {
+    const uint64_t both = a.row(p, z) & b.row(q, z);
+    if (both != 0) count += count_ones(both);
   }
   return count;
-}
-
-CellRows together(std::span<const CellRows> parts) {
-  CellRows all{};
-  for (const CellRows& part : parts) {
-    for (size_t z = 0; z < 64; ++z) all[z] |= part[z];
-  }
-  return all;
 }
 
 CellRows without(CellRows cells, const CellRows& taken) {
@@ -48,103 +59,216 @@ CellRows without(CellRows cells, const CellRows& taken) {
 
 // Is any cell of `a` beside one of `b`?
 bool is_beside(const CellRows& a, const CellRows& b) {
-  uint64_t found = 0;
-  for (size_t z = 0; z < 64; ++z) {
-    const uint64_t over = z > 0 ? a[z - 1] : 0, under = z < 63 ? a[z + 1] : 0;
-    found |= (a[z] << 1 | a[z] >> 1 | over | under) & b[z];
+  uint64_t found = (a[0] << 1 | a[0] >> 1 | a[1]) & b[0];
+  for (size_t z = 1; z < 63; ++z) {
+    found |= (a[z] << 1 | a[z] >> 1 | a[z - 1] | a[z + 1]) & b[z];
   }
+  found |= (a[63] << 1 | a[63] >> 1 | a[62]) & b[63];
   return found != 0;
 }
 
-uint32_t first_cell(const CellRows& rows) {
-  for (uint32_t z = 0; z < 64; ++z) {
-    if (rows[z] != 0) return z * 64 + static_cast<uint32_t>(std::countr_zero(rows[z]));
+RegionPart make_part(const PartList& list, const Part& part) {
+  RegionPart made{0, part.cells, {}};
+  uint64_t west = 0, east = 0;
+  for (size_t z = part.begin; z < part.end; ++z) {
+    const uint64_t row = list.row(part, z);
+    west |= (row & 1) << z;
+    east |= (row >> 63) << z;
   }
-  return 0;
+  made.side[kWest] = west;
+  made.side[kEast] = east;
+  made.side[kNorth] = part.begin == 0 ? list.row(part, 0) : 0;
+  made.side[kSouth] = part.end == 64 ? list.row(part, 63) : 0;
+  return made;
 }
 
-RegionPart make_part(uint32_t region, const CellRows& rows) {
-  RegionPart part{region, 0, {column(rows, 0), column(rows, 63), rows[0], rows[63]}};
-  for (const uint64_t row : rows) {
-    if (row != 0) part.cells += static_cast<uint32_t>(std::popcount(row));
-  }
-  return part;
-}
-
-// The parts of one level, class after class, with the regions that they make.
+// The regions of one level, as one class after the other makes them of its parts.
 class LevelRegions {
  public:
-  LevelRegions(uint32_t level, TileParts& tile) : level_(level), tile_(&tile) {
-    begin_ = tile.regions.size();
+  LevelRegions(uint32_t level, TileParts& tile, const PartList& shapes, PartList& common)
+      : level_(level), tile_(tile), shapes_(shapes), common_(common), begin_(tile.regions.size()) {
+    common_.clear();
   }
 
-  // Gives each part of a class its region: of those that other classes have made and no other part
-  // of this class has taken, the one with which it shares most cells, or a new one.
-  std::vector<uint32_t> add(std::span<const CellRows> parts, uint32_t class_bit) {
-    std::vector<uint32_t> regions(parts.size());
-    for (size_t p = 0; p < parts.size(); ++p) {
-      size_t best = common_.size();
-      uint32_t most = 0;
-      for (size_t r = 0; r < common_.size(); ++r) {
-        if ((tile_->regions[begin_ + r].classes & class_bit) != 0) continue;
-        const uint32_t shared = shared_cells(common_[r], parts[p]);
-        if (shared <= most) continue;
-        most = shared;
-        best = r;
-      }
-      if (best == common_.size()) {
-        common_.push_back(parts[p]);
-        tile_->regions.push_back({level_, 0, 0});
-      }
-      for (size_t z = 0; z < 64; ++z) common_[best][z] &= parts[p][z];
-      Region& region = tile_->regions[begin_ + best];
-      region.classes |= class_bit;
-      region.key = first_cell(common_[best]);
-      regions[p] = static_cast<uint32_t>(begin_ + best);
+  // Gives a class's part its region: of those that other classes have made and no other part of
+  // this class has taken, the one with which it shares most cells, or a new one.
+  uint32_t add(const Part& part, uint32_t class_bit) {
+    const size_t best = best_region(part, class_bit);
+    if (best == common_.parts.size()) {
+      Part all = part;
+      all.rows = static_cast<uint32_t>(common_.rows.size());
+      common_.parts.push_back(all);
+      const auto rows = shapes_.rows.begin() + part.rows;
+      common_.rows.insert(common_.rows.end(), rows, rows + (part.end - part.begin));
+      tile_.regions.push_back({level_, 0, 0});
+    } else {
+      keep_shared(common_.parts[best], part);
     }
-    return regions;
+    tile_.regions[begin_ + best].classes |= class_bit;
+    return static_cast<uint32_t>(begin_ + best);
+  }
+
+  // When all classes have been added.
+  void set_keys() {
+    for (size_t r = 0; r < common_.parts.size(); ++r) {
+      const Part& all = common_.parts[r];
+      size_t z = all.begin;
+      while (common_.row(all, z) == 0) ++z;
+      const auto x = static_cast<uint32_t>(std::countr_zero(common_.row(all, z)));
+      tile_.regions[begin_ + r].key = static_cast<uint32_t>(z) * 64 + x;
+    }
   }
 
  private:
+  [[nodiscard]] size_t best_region(const Part& part, uint32_t class_bit) const {
+    size_t best = common_.parts.size();
+    uint32_t most = 0;  // 0: not counted, as only one is there to choose
+    for (size_t r = 0; r < common_.parts.size(); ++r) {
+      if ((tile_.regions[begin_ + r].classes & class_bit) != 0) continue;
+      if (!share_cells(common_, common_.parts[r], shapes_, part)) continue;
+      if (best == common_.parts.size()) {
+        best = r;
+        continue;
+      }
+      if (most == 0) most = shared_cells(common_, common_.parts[best], shapes_, part);
+      if (most == part.cells) break;
+      const uint32_t shared = shared_cells(common_, common_.parts[r], shapes_, part);
+      if (shared <= most) continue;
+      most = shared;
+      best = r;
+    }
+    return best;
+  }
+
+  void keep_shared(Part& all, const Part& part) {
+    const RowRange range(all, part);
+    uint64_t* kept = &common_.rows[all.rows + range.begin - all.begin];
+    const uint64_t* rows = &shapes_.rows[part.rows + range.begin - part.begin];
+    for (size_t z = 0; z < range.end - range.begin; ++z) kept[z] &= rows[z];
+    all.rows += static_cast<uint32_t>(range.begin - all.begin);
+    all.begin = static_cast<uint16_t>(range.begin);
+    all.end = static_cast<uint16_t>(range.end);
+  }
+
   uint32_t level_;
-  TileParts* tile_;
-  size_t begin_ = 0;
-  std::vector<CellRows> common_;  // per region: cells that all its classes' parts share
+  TileParts& tile_;
+  const PartList& shapes_;
+  PartList& common_;
+  size_t begin_;
+};
+
+// To the link of the pair, if another class has just made it.
+void add_link(std::vector<RegionLink>& links, const RegionLink& link) {
+  for (size_t i = links.size(), tries = 0; i > 0 && tries < 4; --i, ++tries) {
+    RegionLink& last = links[i - 1];
+    if (last.a != link.a || last.b != link.b) continue;
+    last.classes |= link.classes;
+    return;
+  }
+  links.push_back(link);
+}
+
+// One side of a border: who may stand where, and heights along it, each read once, and only if
+// somebody asks.
+class BorderLevels {
+ public:
+  BorderLevels(const WorldData::TileLevels& levels, const TileParts& tile, TileSide side,
+               size_t classes, TileScratch::Border& kept)
+      : levels_(tile.levels), classes_(classes), side_(side), kept_(kept) {
+    kept.views.clear();
+    for (uint32_t l = 0; l < levels_; ++l) {
+      kept.views.push_back(levels.zone->view(levels.zone_first + l));
+    }
+    kept.known.assign(levels_, 0);
+    kept.heights.resize(std::max<size_t>(kept.heights.size(), levels_));
+    kept.legal.assign(tile.classes.size(), 0);
+    kept.anyone.assign(levels_, 0);
+    for (size_t at = 0; at < tile.classes.size(); ++at) {
+      const TileParts::ClassParts of = tile.classes[at];
+      for (uint32_t p = of.first; p < of.last; ++p) kept.legal[at] |= tile.parts[p].side[side];
+      kept.anyone[at / classes] |= kept.legal[at];
+    }
+  }
+
+  [[nodiscard]] uint64_t anyone(uint32_t l) const { return kept_.anyone[l]; }
+  [[nodiscard]] uint64_t legal(uint32_t l, size_t c) const { return kept_.legal[l * classes_ + c]; }
+
+  [[nodiscard]] int32_t height(uint32_t l, int32_t i) const {
+    int32_t& height = kept_.heights[l][static_cast<size_t>(i)];
+    if ((kept_.known[l] >> i & 1) == 0) {
+      const bool column = side_ == kWest || side_ == kEast;
+      const int32_t end = side_ == kEast || side_ == kSouth ? 63 : 0;
+      height = kept_.views[l].sample(column ? end : i, column ? i : end);
+      kept_.known[l] |= uint64_t{1} << i;
+    }
+    return height;
+  }
+
+  // Does a body of class c that comes from the other side at `feet` step onto level l at cell i, as
+  // step_to has it: is no level nearer, and none before it as near?
+  [[nodiscard]] bool is_nearest(uint32_t l, size_t c, int32_t i, int32_t feet) const {
+    const int32_t rise = std::abs(height(l, i) - feet);
+    for (uint32_t other = 0; other < levels_; ++other) {
+      if (other == l || (legal(other, c) >> i & 1) == 0) continue;
+      const int32_t its = std::abs(height(other, i) - feet);
+      if (its < rise || (its == rise && other < l)) return false;
+    }
+    return true;
+  }
+
+ private:
+  uint32_t levels_;
+  size_t classes_;
+  TileSide side_;
+  TileScratch::Border& kept_;
 };
 
 }  // namespace
 
 TileRegions::TileRegions(const WorldData& world) : world_(world) {
-  for (const AvatarClass& avatar : world.summary.classes) steps_.push_back(step_mm(avatar));
+  for (const AvatarClass& avatar : world.summary.classes) {
+    steps_.push_back(step_mm(avatar));
+    longest_ = std::max(longest_, steps_.back());
+  }
 }
 
-TileParts TileRegions::find(int32_t tile_x, int32_t tile_z, Shapes& shapes) const {
+TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const {
   TileParts tile;
   const auto levels = world_.tile_levels(tile_x, tile_z);
   tile.first_level = levels.first;
   tile.levels = levels.last - levels.first;
   tile.classes.resize(tile.levels * steps_.size());
-  shapes.assign(tile.classes.size(), {});
+  tile.first.reserve(tile.levels + 1);
+  tile.parts.reserve(tile.classes.size());
+  scratch.legal.resize(std::max(scratch.legal.size(), tile.classes.size()));
+  scratch.grounds.resize(std::max(scratch.grounds.size(), tile.classes.size()));
+  scratch.shapes.clear();
+  tile.heights.reserve(tile.levels);
   for (uint32_t l = 0; l < tile.levels; ++l) {
+    tile.heights.push_back(floor_range(levels.zone->view(levels.zone_first + l)));
     tile.first.push_back(static_cast<uint32_t>(tile.regions.size()));
-    find_level(levels, l, tile, shapes);
+    find_level(levels, l, tile, scratch);
   }
   tile.first.push_back(static_cast<uint32_t>(tile.regions.size()));
   return tile;
 }
 
-TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z) const {
-  Shapes shapes;
-  return find(tile_x, tile_z, shapes);
-}
-
-TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z) const {
-  Shapes shapes;
-  TileParts tile = find(tile_x, tile_z, shapes);
-  for (size_t c = 0; c < steps_.size(); ++c) {
-    for (uint32_t a = 0; a < tile.levels; ++a) {
-      for (uint32_t b = a + 1; b < tile.levels; ++b) {
-        link_seam(tile_x, tile_z, c, a, b, shapes, tile);
+TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const {
+  TileParts tile = parts(tile_x, tile_z, scratch);
+  if (tile.levels < 2) return tile;
+  scratch.anyone.assign(tile.levels, {});
+  for (size_t at = 0; at < tile.classes.size(); ++at) {
+    if (tile.classes[at].first == tile.classes[at].last) continue;
+    CellRows& anyone = scratch.anyone[at / steps_.size()];
+    for (size_t z = 0; z < 64; ++z) anyone[z] |= scratch.legal[at][z];
+  }
+  for (uint32_t a = 0; a < tile.levels; ++a) {
+    for (uint32_t b = a + 1; b < tile.levels; ++b) {
+      if (!tile.heights[a].is_near(tile.heights[b], longest_)) continue;
+      if (!is_beside(scratch.anyone[a], scratch.anyone[b])) continue;
+      for (CellRows& rows : scratch.rises.known) rows.fill(0);
+      for (size_t c = 0; c < steps_.size(); ++c) {
+        link_seam({tile_x, tile_z, c, a, b}, tile, scratch);
       }
     }
   }
@@ -152,23 +276,48 @@ TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z) const {
 }
 
 std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, TileSide side,
-                                            const TileParts& from, const TileParts& to) const {
+                                            const TileParts& from, const TileParts& to,
+                                            TileScratch& scratch) const {
   std::vector<RegionLink> links;
-  const TileSide back = side == kEast ? kWest : kNorth;
-  for (size_t c = 0; c < steps_.size(); ++c) {
-    for (uint32_t a = 0; a < from.levels; ++a) {
-      const auto as = from.classes[a * steps_.size() + c];
-      if (as.first == as.last) continue;
-      const GroundLevel level_a = ground(from.first_level + a, c);
-      for (uint32_t b = 0; b < to.levels; ++b) {
-        const auto bs = to.classes[b * steps_.size() + c];
-        if (bs.first == bs.last) continue;
-        const GroundLevel level_b = ground(to.first_level + b, c);
+  if (from.levels == 0 || to.levels == 0) return links;
+  const bool east = side == kEast;
+  const TileSide back = east ? kWest : kNorth;
+  const size_t classes = steps_.size();
+  const BorderLevels here(world_.tile_levels(tile_x, tile_z), from, side, classes, scratch.from);
+  const BorderLevels there(
+      world_.tile_levels(east ? tile_x + 1 : tile_x, east ? tile_z : tile_z + 1), to, back, classes,
+      scratch.to);
+  for (uint32_t a = 0; a < from.levels; ++a) {
+    for (uint32_t b = 0; b < to.levels; ++b) {
+      if ((here.anyone(a) & there.anyone(b)) == 0) continue;
+      if (!from.heights[a].is_near(to.heights[b], longest_)) continue;
+      // Cells where it is known if the step is low enough for any class, and if so.
+      uint64_t known = 0, low = 0;
+      const auto any = [&](uint64_t cells, size_t c) {
+        for (; cells != 0; cells &= cells - 1) {
+          const int32_t i = std::countr_zero(cells);
+          const int32_t feet = here.height(a, i), next = there.height(b, i);
+          const int32_t rise = std::abs(next - feet);
+          known |= uint64_t{1} << i;
+          low |= uint64_t{rise <= longest_} << i;
+          if (rise <= steps_[c] && there.is_nearest(b, c, i, feet) &&
+              here.is_nearest(a, c, i, next)) {
+            return true;
+          }
+        }
+        return false;
+      };
+      for (size_t c = 0; c < classes; ++c) {
+        if ((here.legal(a, c) & there.legal(b, c)) == 0) continue;
+        const TileParts::ClassParts as = from.classes[a * classes + c],
+                                    bs = to.classes[b * classes + c];
         for (uint32_t p = as.first; p < as.last; ++p) {
+          if ((from.parts[p].side[side] & there.legal(b, c)) == 0) continue;
           for (uint32_t q = bs.first; q < bs.last; ++q) {
             const uint64_t both = from.parts[p].side[side] & to.parts[q].side[back];
-            if (!crosses(tile_x, tile_z, side, c, level_a, level_b, both)) continue;
-            links.push_back({from.parts[p].region, to.parts[q].region, uint32_t{1} << c});
+            // One will do: first where other classes have looked.
+            if (!any(both & low, c) && !any(both & ~known, c)) continue;
+            add_link(links, {from.parts[p].region, to.parts[q].region, uint32_t{1} << c});
           }
         }
       }
@@ -178,36 +327,51 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
 }
 
 void TileRegions::find_level(const WorldData::TileLevels& levels, uint32_t l, TileParts& tile,
-                             Shapes& shapes) const {
-  LevelRegions regions(levels.first + l, tile);
+                             TileScratch& scratch) const {
+  LevelRegions regions(levels.first + l, tile, scratch.shapes, scratch.common);
+  const uint32_t zone_level = levels.zone_first + l;
+  GroundLevel ground = ground_level(*levels.zone, zone_level, levels.first + l, 0);
   for (size_t c = 0; c < steps_.size(); ++c) {
     const size_t at = l * steps_.size() + c;
-    const GroundLevel ground = ground_level(*levels.zone, levels.zone_first + l, levels.first + l,
-                                            static_cast<int32_t>(c));
-    const CellRows legal = legal_rows(ground);
-    if (ground.kind == format::CellsKind::All && ground.step_safe) {
-      shapes[at] = {legal};
-    } else {
-      const auto cuts = step_cuts(ground, legal, steps_[c]);
-      shapes[at] = connected_parts(legal, cuts ? &*cuts : nullptr);
+    const auto first = static_cast<uint32_t>(tile.parts.size());
+    set_class(ground, zone_level, static_cast<int32_t>(c));
+    scratch.grounds[at] = ground;
+    if (ground.kind != format::CellsKind::None) {
+      // A set that classes share is in the zone's file once.
+      const auto is_same = [&](const GroundLevel& other) {
+        return other.kind == ground.kind && other.legal == ground.legal && other.step_safe;
+      };
+      const auto own = scratch.grounds.begin() + static_cast<ptrdiff_t>(at);
+      const auto same = std::find_if(own - static_cast<ptrdiff_t>(c), own, is_same);
+      if (ground.step_safe && same != own) {
+        const auto like = static_cast<size_t>(same - scratch.grounds.begin());
+        scratch.legal[at] = scratch.legal[like];
+        const TileParts::ClassParts of = tile.classes[like];
+        for (uint32_t p = of.first; p < of.last; ++p) {
+          scratch.shapes.parts.push_back(Part(scratch.shapes.parts[p]));
+          tile.parts.push_back(RegionPart(tile.parts[p]));
+        }
+      } else {
+        scratch.legal[at] = legal_rows(ground);
+        const auto cuts = step_cuts(ground, scratch.legal[at], steps_[c]);
+        scratch.finder.find(scratch.legal[at], cuts ? &*cuts : nullptr, scratch.shapes);
+        for (size_t p = first; p < scratch.shapes.parts.size(); ++p) {
+          tile.parts.push_back(make_part(scratch.shapes, scratch.shapes.parts[p]));
+        }
+      }
+      for (size_t p = first; p < tile.parts.size(); ++p) {
+        tile.parts[p].region = regions.add(scratch.shapes.parts[p], uint32_t{1} << c);
+      }
     }
-    const std::vector<uint32_t> of = regions.add(shapes[at], uint32_t{1} << c);
-    tile.classes[at].first = static_cast<uint32_t>(tile.parts.size());
-    for (size_t p = 0; p < of.size(); ++p) tile.parts.push_back(make_part(of[p], shapes[at][p]));
-    tile.classes[at].last = static_cast<uint32_t>(tile.parts.size());
+    tile.classes[at] = {first, static_cast<uint32_t>(tile.parts.size())};
   }
-}
-
-GroundLevel TileRegions::ground(uint32_t level, size_t c) const {
-  return ground_level(world_, level, static_cast<int32_t>(c));
+  regions.set_keys();
 }
 
 // True if a class steps from cell (x, z) of the grid on level `a` to (nx, nz) on level `b`, and
 // back.
 bool TileRegions::steps_both_ways(size_t c, const GroundLevel& a, const GroundLevel& b, int32_t x,
                                   int32_t z, int32_t nx, int32_t nz) const {
-  const int32_t rise = b.view.sample(nx & 63, nz & 63) - a.view.sample(x & 63, z & 63);
-  if (std::abs(rise) > steps_[c]) return false;
   const WorldGround ground{world_, static_cast<int32_t>(c)};
   const auto there = step_to(ground, a, x, z, nx, nz, steps_[c]);
   if (!there || there->world_level != b.world_level) return false;
@@ -215,65 +379,62 @@ bool TileRegions::steps_both_ways(size_t c, const GroundLevel& a, const GroundLe
   return back && back->world_level == a.world_level;
 }
 
-// True if a step crosses the border at one of the cells in `both`.
-bool TileRegions::crosses(int32_t tile_x, int32_t tile_z, TileSide side, size_t c,
-                          const GroundLevel& a, const GroundLevel& b, uint64_t both) const {
-  if (a.view.is_constant() && b.view.is_constant() &&
-      std::abs(a.view.floor_base - b.view.floor_base) > steps_[c])
-    return false;
-  for (; both != 0; both &= both - 1) {
-    const int32_t i = std::countr_zero(both);
-    const int32_t x = tile_x * 64 + (side == kEast ? 63 : i);
-    const int32_t z = tile_z * 64 + (side == kEast ? i : 63);
-    const int32_t nx = side == kEast ? x + 1 : x, nz = side == kEast ? z : z + 1;
-    if (steps_both_ways(c, a, b, x, z, nx, nz)) return true;
-  }
-  return false;
-}
-
-// Links the parts of two levels of one tile where their sheets meet.
-void TileRegions::link_seam(int32_t tile_x, int32_t tile_z, size_t c, uint32_t a, uint32_t b,
-                            const Shapes& shapes, TileParts& tile) const {
-  const size_t at_a = a * steps_.size() + c, at_b = b * steps_.size() + c;
-  if (shapes[at_a].empty() || shapes[at_b].empty()) return;
-  const GroundLevel level_a = ground(tile.first_level + a, c);
-  const GroundLevel level_b = ground(tile.first_level + b, c);
+// Links a class's parts of two levels of one tile where their sheets meet.
+void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const {
+  const size_t c = seam.c;
+  const size_t at_a = seam.a * steps_.size() + c, at_b = seam.b * steps_.size() + c;
+  const TileParts::ClassParts as = tile.classes[at_a], bs = tile.classes[at_b];
+  if (as.first == as.last || bs.first == bs.last) return;
+  const GroundLevel &level_a = scratch.grounds[at_a], &level_b = scratch.grounds[at_b];
   // A body stays on its level where that goes on: it changes to the other only over cells where
   // its own has nothing, unless a step may be too high.
-  const CellRows all_a = together(shapes[at_a]), all_b = together(shapes[at_b]);
-  const CellRows taken_a = level_a.step_safe ? all_a : CellRows{};
-  const CellRows taken_b = level_b.step_safe ? all_b : CellRows{};
-  const CellRows to_any = without(all_b, taken_a);
-  if (!is_beside(without(all_a, taken_b), to_any)) return;
-  for (size_t p = 0; p < shapes[at_a].size(); ++p) {
-    const CellRows from_cells = without(shapes[at_a][p], taken_b);
-    if (!is_beside(from_cells, to_any)) continue;
-    for (size_t q = 0; q < shapes[at_b].size(); ++q) {
-      const CellRows to_cells = without(shapes[at_b][q], taken_a);
-      if (!touch(tile_x, tile_z, c, level_a, level_b, from_cells, to_cells)) continue;
-      const uint32_t from = tile.parts[tile.classes[at_a].first + p].region;
-      const uint32_t to = tile.parts[tile.classes[at_b].first + q].region;
-      tile.links.push_back({from, to, uint32_t{1} << c});
-    }
-  }
-}
+  const CellRows &all_a = scratch.legal[at_a], &all_b = scratch.legal[at_b];
+  const CellRows* taken_a = level_a.step_safe ? &all_a : nullptr;
+  const CellRows* taken_b = level_b.step_safe ? &all_b : nullptr;
+  const CellRows from_any = taken_b != nullptr ? without(all_a, *taken_b) : all_a;
+  const CellRows to_any = taken_a != nullptr ? without(all_b, *taken_a) : all_b;
+  if (!is_beside(from_any, to_any)) return;
 
-bool TileRegions::touch(int32_t tile_x, int32_t tile_z, size_t c, const GroundLevel& a,
-                        const GroundLevel& b, const CellRows& p, const CellRows& q) const {
-  const auto any = [&](uint64_t pairs, int32_t dx, int32_t dz, size_t row) {
-    for (; pairs != 0; pairs &= pairs - 1) {
-      const int32_t x = tile_x * 64 + std::countr_zero(pairs);
-      const int32_t z = tile_z * 64 + static_cast<int32_t>(row);
-      if (steps_both_ways(c, a, b, x, z, x + dx, z + dz)) return true;
+  const PartList& shapes = scratch.shapes;
+  TileScratch::Rises& rises = scratch.rises;
+  // `direction` 0 to 3: to greater and less x, to greater and less z.
+  const auto any = [&](uint64_t cells, size_t direction, size_t z) {
+    const int32_t dx = direction == 0 ? 1 : direction == 1 ? -1 : 0;
+    const int32_t dz = direction == 2 ? 1 : direction == 3 ? -1 : 0;
+    uint64_t &known = rises.known[direction][z], &low = rises.low[direction][z];
+    for (; cells != 0; cells &= cells - 1) {
+      const int32_t x = std::countr_zero(cells), row = static_cast<int32_t>(z);
+      const uint64_t bit = cells & (0 - cells);
+      if ((known & bit) == 0) {
+        const int32_t rise = level_b.view.sample(x + dx, row + dz) - level_a.view.sample(x, row);
+        known |= bit;
+        low = (low & ~bit) | (std::abs(rise) <= longest_ ? bit : 0);
+      }
+      if ((low & bit) == 0) continue;
+      const int32_t gx = seam.tile_x * 64 + x, gz = seam.tile_z * 64 + row;
+      if (steps_both_ways(c, level_a, level_b, gx, gz, gx + dx, gz + dz)) return true;
     }
     return false;
   };
-  for (size_t z = 0; z < 64; ++z) {
-    if (any(p[z] & (q[z] >> 1), 1, 0, z) || any(p[z] & (q[z] << 1), -1, 0, z)) return true;
-    if (z < 63 && any(p[z] & q[z + 1], 0, 1, z)) return true;
-    if (z > 0 && any(p[z] & q[z - 1], 0, -1, z)) return true;
+  const auto touch = [&](const Part& p, const Part& q) {
+    const size_t begin = std::max<size_t>(p.begin, q.begin > 0 ? q.begin - 1 : 0);
+    const size_t end = std::min<size_t>(p.end, q.end + 1);
+    for (size_t z = begin; z < end; ++z) {
+      const uint64_t from = row_without(shapes, p, z, taken_b);
+      if (from == 0) continue;
+      const uint64_t beside = row_without(shapes, q, z, taken_a);
+      if (any(from & (beside >> 1), 0, z) || any(from & (beside << 1), 1, z)) return true;
+      if (z < 63 && any(from & row_without(shapes, q, z + 1, taken_a), 2, z)) return true;
+      if (z > 0 && any(from & row_without(shapes, q, z - 1, taken_a), 3, z)) return true;
+    }
+    return false;
+  };
+  for (uint32_t p = as.first; p < as.last; ++p) {
+    for (uint32_t q = bs.first; q < bs.last; ++q) {
+      if (!touch(shapes.parts[p], shapes.parts[q])) continue;
+      add_link(tile.links, {tile.parts[p].region, tile.parts[q].region, uint32_t{1} << c});
+    }
   }
-  return false;
 }
 
 void merge_links(std::vector<RegionLink>& links) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -44,10 +45,36 @@ struct TileParts {
 
   uint32_t first_level = 0, levels = 0;  // of the world
   std::vector<Region> regions;           // in order of levels
+  std::vector<FloorRange> heights;       // per level
   std::vector<uint32_t> first;           // per level: its first region; one more at the end
   std::vector<ClassParts> classes;       // per level and class
   std::vector<RegionPart> parts;
-  std::vector<RegionLink> links;  // one class a link, a < b
+  std::vector<RegionLink> links;  // a < b, maybe several for a pair
+};
+
+/// What finding takes beside its results, kept from tile to tile: one for each worker.
+struct TileScratch {
+  // What is known of steps from cells of one level to those beside them of another, whoever goes.
+  struct Rises {
+    std::array<CellRows, 4> known, low;  // per direction; low: no higher than any class's step
+  };
+  // The levels of a tile along one of its borders.
+  struct Border {
+    std::vector<LevelView> views;                  // per level
+    std::vector<uint64_t> known;                   // per level: bit per cell whose height is known
+    std::vector<std::array<int32_t, 64>> heights;  // [mm]
+    std::vector<uint64_t> legal;                   // per level and class
+    std::vector<uint64_t> anyone;                  // per level
+  };
+
+  PartFinder finder;
+  PartList shapes;                   // of the tile's parts, in their order
+  std::vector<GroundLevel> grounds;  // per level and class
+  std::vector<CellRows> legal;       // per level and class
+  std::vector<CellRows> anyone;      // per level: legal for any class
+  PartList common;  // per region of a level: cells that all its classes' parts share
+  Rises rises;
+  Border from, to;
 };
 
 /// Finds regions and links tile by tile. The world must outlive it, and the zones of the tiles
@@ -57,32 +84,32 @@ class TileRegions {
   explicit TileRegions(const WorldData& world);
 
   /// The regions of a tile, without links.
-  [[nodiscard]] TileParts parts(int32_t tile_x, int32_t tile_z) const;
+  [[nodiscard]] TileParts parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const;
   /// And the links between its levels.
-  [[nodiscard]] TileParts linked_parts(int32_t tile_x, int32_t tile_z) const;
-  /// Links over the border between a tile and its neighbour to the east or south, one class a link:
-  /// from a region of `from` to a region of `to`.
+  [[nodiscard]] TileParts linked_parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const;
+  /// Links over the border between a tile and its neighbour to the east or south, maybe several
+  /// for a pair: from a region of `from` to a region of `to`.
   [[nodiscard]] std::vector<RegionLink> border(int32_t tile_x, int32_t tile_z, TileSide side,
-                                               const TileParts& from, const TileParts& to) const;
+                                               const TileParts& from, const TileParts& to,
+                                               TileScratch& scratch) const;
 
  private:
-  using Shapes = std::vector<std::vector<CellRows>>;  // of the parts, per level and class
+  // A class, and two levels of a tile.
+  struct Seam {
+    int32_t tile_x, tile_z;
+    size_t c;
+    uint32_t a, b;
+  };
 
-  TileParts find(int32_t tile_x, int32_t tile_z, Shapes& shapes) const;
   void find_level(const WorldData::TileLevels& levels, uint32_t l, TileParts& tile,
-                  Shapes& shapes) const;
-  [[nodiscard]] GroundLevel ground(uint32_t level, size_t c) const;
+                  TileScratch& scratch) const;
   [[nodiscard]] bool steps_both_ways(size_t c, const GroundLevel& a, const GroundLevel& b,
                                      int32_t x, int32_t z, int32_t nx, int32_t nz) const;
-  [[nodiscard]] bool crosses(int32_t tile_x, int32_t tile_z, TileSide side, size_t c,
-                             const GroundLevel& a, const GroundLevel& b, uint64_t both) const;
-  void link_seam(int32_t tile_x, int32_t tile_z, size_t c, uint32_t a, uint32_t b,
-                 const Shapes& shapes, TileParts& tile) const;
-  [[nodiscard]] bool touch(int32_t tile_x, int32_t tile_z, size_t c, const GroundLevel& a,
-                           const GroundLevel& b, const CellRows& p, const CellRows& q) const;
+  void link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const;
 
   const WorldData& world_;
   std::vector<int32_t> steps_;  // per class [mm]
+  int32_t longest_ = 0;         // of them
 };
 
 /// Makes one link for all classes of a pair, and sorts by a, then b.

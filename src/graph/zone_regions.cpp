@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "graph/zone_regions.h"
 
-#include <bit>
+#include <utility>
 
-#include "core/disjoint_sets.h"
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
 #include "graph/tile_regions.h"
+#include "graph/zone_components.h"
 #include "world/place.h"
 
 namespace throng {
@@ -28,80 +28,33 @@ std::vector<format::RegionLink> to_format(const std::vector<RegionLink>& links) 
 }
 
 // Regions in the zone's numbers, with their parts counted; `cells` gets those of each part.
-void number_regions(const WorldData& world, size_t slot, ZoneTiles& zone, RegionTables& tables,
-                    std::vector<uint32_t>& cells) {
-  const uint32_t first_level = world.slots[slot]->first_level;
+void number_regions(const WorldData& world, ZoneTiles& zone, RegionTables& tables,
+                    std::vector<uint32_t>& first_part, std::vector<uint32_t>& cells) {
   const size_t classes = world.summary.classes.size();
+  tables.classes = static_cast<uint32_t>(classes);
   tables.first.assign(1, 0);
-  uint32_t parts = 0;
+  first_part.assign(1, 0);
   for (const TileParts& tile : zone.tiles) {
     const auto base = static_cast<uint32_t>(tables.regions.size());
     zone.base.push_back(base);
     for (uint32_t l = 0; l < tile.levels; ++l) tables.first.push_back(base + tile.first[l + 1]);
     for (const Region& region : tile.regions) {
-      tables.regions.emplace_back(region.level - first_level, parts,
-                                  static_cast<uint16_t>(region.key),
+      tables.regions.emplace_back(0, static_cast<uint16_t>(region.key),
                                   static_cast<uint16_t>(region.classes));
-      parts += static_cast<uint32_t>(std::popcount(region.classes));
+      first_part.push_back(first_part.back() + count_ones(region.classes));
     }
   }
-  cells.assign(parts, 0);
+  cells.assign(first_part.back(), 0);
   for (size_t t = 0; t < zone.tiles.size(); ++t) {
     const TileParts& tile = zone.tiles[t];
     for (size_t i = 0; i < tile.classes.size(); ++i) {
       const uint32_t below = (uint32_t{1} << i % classes) - 1;
       for (uint32_t p = tile.classes[i].first; p < tile.classes[i].last; ++p) {
-        const format::Region& region = tables.regions[zone.base[t] + tile.parts[p].region];
-        const auto before = static_cast<uint32_t>(std::popcount(region.classes() & below));
-        cells[region.first_part() + before] = tile.parts[p].cells;
+        const uint32_t region = zone.base[t] + tile.parts[p].region;
+        const uint32_t before = count_ones(tables.regions[region].classes() & below);
+        cells[first_part[region] + before] = tile.parts[p].cells;
       }
     }
-  }
-}
-
-uint32_t part_of(const RegionTables& tables, uint32_t region, uint32_t avatar_class) {
-  const format::Region& of = tables.regions[region];
-  const uint32_t below = of.classes() & ((uint32_t{1} << avatar_class) - 1);
-  return of.first_part() + static_cast<uint32_t>(std::popcount(below));
-}
-
-// The middle of a region's key, of the grid and over it.
-format::ZoneComponent component_at_key(const WorldData& world, size_t slot,
-                                       const format::Region& region, uint32_t index) {
-  const GroundLevel level = ground_level(world, world.slots[slot]->first_level + region.level(), 0);
-  const auto [tile_x, tile_z] = tile_of(world, *level.zone, *level.view.record);
-  const int32_t x = tile_x * kTileCells + region.key() % kTileCells;
-  const int32_t z = tile_z * kTileCells + region.key() / kTileCells;
-  const auto middle = [](int32_t cell) { return (int64_t{cell} << kUnitBits) + kUnitsPerCell / 2; };
-  return {0, feet_at(level, {middle(x), middle(z)}), 0, index, x, z};
-}
-
-void find_components(const WorldData& world, size_t slot, const std::vector<uint32_t>& cells,
-                     RegionTables& tables) {
-  // A part belongs to one region and class, so one forest serves all classes.
-  DisjointSets sets(cells.size());
-  for (const format::RegionLink& link : tables.links) {
-    for (uint32_t left = link.classes(); left != 0; left &= left - 1) {
-      const auto c = static_cast<uint32_t>(std::countr_zero(left));
-      sets.join(part_of(tables, link.a(), c), part_of(tables, link.b(), c));
-    }
-  }
-  tables.part_component.assign(cells.size(), 0);
-  tables.class_first.assign(1, 0);
-  for (uint32_t c = 0; c < world.summary.classes.size(); ++c) {
-    for (uint32_t r = 0; r < tables.regions.size(); ++r) {
-      if ((tables.regions[r].classes() >> c & 1) == 0) continue;
-      const uint32_t part = part_of(tables, r, c), root = sets.find(part);
-      if (root == part) {  // Roots come first.
-        tables.part_component[part] = static_cast<uint32_t>(tables.components.size());
-        tables.components.push_back(component_at_key(world, slot, tables.regions[r], r));
-      }
-      const uint32_t index = tables.part_component[part] = tables.part_component[root];
-      const format::ZoneComponent& of = tables.components[index];
-      tables.components[index] = {of.cells() + cells[part], of.feet(),   of.regions() + 1,
-                                  of.first_region(),        of.cell_x(), of.cell_z()};
-    }
-    tables.class_first.push_back(static_cast<uint32_t>(tables.components.size()));
   }
 }
 
@@ -119,18 +72,20 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
   const auto at = [&](size_t t) {
     return std::pair{static_cast<int32_t>(t) % zone.side, static_cast<int32_t>(t) / zone.side};
   };
-  parallel_for(zone.tiles.size(), workers, [&](size_t t) {
+  std::vector<TileScratch> scratch(static_cast<size_t>(worker_count(workers)));
+  parallel_for_worker(zone.tiles.size(), workers, [&](size_t t, int32_t worker) {
     if (context.cancel) return;
     const auto [x, z] = at(t);
-    zone.tiles[t] = finder.linked_parts(zone.first_x + x, zone.first_z + z);
+    zone.tiles[t] = finder.linked_parts(zone.first_x + x, zone.first_z + z,
+                                        scratch[static_cast<size_t>(worker)]);
   });
   if (context.cancel) return std::nullopt;
   RegionTables tables;
-  std::vector<uint32_t> cells;
-  number_regions(world, slot, zone, tables, cells);
+  std::vector<uint32_t> first_part, cells;
+  number_regions(world, zone, tables, first_part, cells);
 
   std::vector<std::vector<RegionLink>> found(zone.tiles.size());
-  parallel_for(zone.tiles.size(), workers, [&](size_t t) {
+  parallel_for_worker(zone.tiles.size(), workers, [&](size_t t, int32_t worker) {
     if (context.cancel) return;
     const int32_t x = at(t).first, z = at(t).second;
     const auto add = [&](const std::vector<RegionLink>& links, size_t to) {
@@ -139,7 +94,8 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
       }
     };
     const auto border = [&](TileSide side, size_t to) {
-      add(finder.border(zone.first_x + x, zone.first_z + z, side, zone.tiles[t], zone.tiles[to]),
+      add(finder.border(zone.first_x + x, zone.first_z + z, side, zone.tiles[t], zone.tiles[to],
+                        scratch[static_cast<size_t>(worker)]),
           to);
     };
     add(zone.tiles[t].links, t);
@@ -151,7 +107,7 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
   for (const auto& of_tile : found) links.insert(links.end(), of_tile.begin(), of_tile.end());
   merge_links(links);
   tables.links = to_format(links);
-  find_components(world, slot, cells, tables);
+  find_components(world, slot, {first_part, cells}, tables);
   return tables;
 }
 
@@ -163,20 +119,23 @@ std::vector<format::RegionLink> find_zone_links(const WorldData& world, const Zo
   const auto tiles = static_cast<int32_t>(world.tiles_per_zone);
   const TileRegions finder(world);
   std::vector<std::vector<RegionLink>> found(world.tiles_per_zone);
-  parallel_for(found.size(), workers, [&](size_t i) {
+  std::vector<TileScratch> of_workers(static_cast<size_t>(worker_count(workers)));
+  parallel_for_worker(found.size(), workers, [&](size_t i, int32_t worker) {
+    TileScratch& scratch = of_workers[static_cast<size_t>(worker)];
     const auto along = static_cast<int32_t>(i);
     const int32_t x = a.x() * tiles + (side == kEast ? tiles - 1 : along);
     const int32_t z = a.z() * tiles + (side == kEast ? along : tiles - 1);
-    const TileParts here = finder.parts(x, z);
+    const TileParts here = finder.parts(x, z, scratch);
     if (here.levels == 0) return;
-    const TileParts there = side == kEast ? finder.parts(x + 1, z) : finder.parts(x, z + 1);
+    const TileParts there =
+        side == kEast ? finder.parts(x + 1, z, scratch) : finder.parts(x, z + 1, scratch);
     if (there.levels == 0) return;
     const auto first_region = [&](const ZoneBorder& zone, const TileParts& tile) {
       return zone.regions->level_regions(tile.first_level - world.slots[zone.slot]->first_level)
           .first;
     };
     const uint32_t base_a = first_region(from, here), base_b = first_region(to, there);
-    for (const RegionLink& link : finder.border(x, z, side, here, there)) {
+    for (const RegionLink& link : finder.border(x, z, side, here, there, scratch)) {
       found[i].push_back({link.a + base_a, link.b + base_b, link.classes});
     }
   });

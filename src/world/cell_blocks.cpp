@@ -40,16 +40,37 @@ uint32_t nth_bit(const uint64_t* words, uint32_t n) {
   }
 }
 
+namespace {
+
+// Swaps the bits of `lower` in one word with those `shift` higher in another.
+void swap_bits(uint64_t& a, uint64_t& b, uint32_t shift, uint64_t lower) {
+  const uint64_t changed = ((a >> shift) ^ b) & lower;
+  b ^= changed;
+  a ^= changed << shift;
+}
+
+// Byte z of word b becomes byte b of word z.
+void transpose_bytes(uint64_t* words) {
+  for (size_t i = 0; i < 4; ++i) swap_bits(words[i], words[i + 4], 32, 0x00000000ffffffff);
+  for (const size_t i : {0, 1, 4, 5}) swap_bits(words[i], words[i + 2], 16, 0x0000ffff0000ffff);
+  for (size_t i = 0; i < 8; i += 2) swap_bits(words[i], words[i + 1], 8, 0x00ff00ff00ff00ff);
+}
+
+}  // namespace
+
 void unpack_bits(const uint64_t* words, CellRows& rows) {
-  rows.fill(0);
   const uint64_t* next = words + kBitHead;
-  for (size_t block = 0; block < kBlocks; ++block) {
-    const bool mixed = (words[0] >> block & 1) != 0;
-    const uint64_t full = (words[1] >> block & 1) != 0 ? ~uint64_t{0} : 0;
-    const uint64_t cells = mixed ? *next++ : full;
-    if (cells == 0) continue;
-    uint64_t* row = &rows[block / 8 * 8];
-    for (size_t z = 0; z < 8; ++z) row[z] |= (cells >> (8 * z) & 0xff) << (block % 8 * 8);
+  for (uint32_t block = 0; block < kBlocks; block += 8) {  // a row of blocks at a time
+    const uint64_t mixed = words[0] >> block & 0xff, full = words[1] >> block & 0xff;
+    uint64_t* row = &rows[block];
+    if (mixed == 0 && (full == 0 || full == 0xff)) {
+      std::fill_n(row, 8, full == 0 ? 0 : ~uint64_t{0});
+      continue;
+    }
+    for (uint32_t i = 0; i < 8; ++i) {
+      row[i] = (mixed >> i & 1) != 0 ? *next++ : uint64_t{0} - (full >> i & 1);
+    }
+    transpose_bytes(row);
   }
 }
 

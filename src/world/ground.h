@@ -27,8 +27,22 @@ struct GroundLevel {
 
 GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_level,
                          int32_t avatar_class);
+/// Makes it the same level for another class.
+void set_class(GroundLevel& level, uint32_t zone_level, int32_t avatar_class);
 /// By the world's number; null zone if its zone cannot be used.
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class);
+
+/// Heights between which the floor of a level lies, maybe wider than it does: told by the heads of
+/// its blocks, as a bake makes them. [mm]
+struct FloorRange {
+  int32_t low = 0, high = 0;
+
+  /// Is any height of it within `step` of one of the other's? [step >= 0]
+  [[nodiscard]] bool is_near(const FloorRange& other, int32_t step) const {
+    return low <= int64_t{other.high} + step && other.low <= int64_t{high} + step;
+  }
+};
+FloorRange floor_range(const LevelView& view);
 
 /// The floor of a level row by row, kNoValue where there is none: for LevelView::samples of whoever
 /// reads many of its cells. `samples` holds 4096. [view.floor != nullptr]

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <bit>
 #include <tuple>
 
 #include "core/hash.h"
+#include "world/graph_index.h"
 #include "world/place.h"
 
 namespace throng {
@@ -16,11 +17,10 @@ namespace {
 constexpr const char* kRegionIdentifier = "THRZ";
 constexpr const char* kLinkIdentifier = "THLZ";
 constexpr const char* kIndexIdentifier = "THGI";
-constexpr double kHighestFeet = 2'200'000;  // [m]: more than 32 bits of mm tell
-constexpr int32_t kMostCells = 1 << 20;     // along a side of the grid
 
-std::span<const uint32_t> numbers(const flatbuffers::Vector<uint32_t>& values) {
-  return {reinterpret_cast<const uint32_t*>(values.Data()), values.size()};
+template <class T>
+std::span<const T> numbers(const flatbuffers::Vector<T>& values) {
+  return {reinterpret_cast<const T*>(values.Data()), values.size()};
 }
 
 // The root of a file of ours, or why it is none.
@@ -52,13 +52,12 @@ uint64_t head_sum(int32_t x, int32_t z, uint64_t input) {
   return hash_span(std::span<const uint64_t>(head));
 }
 
-uint64_t sum_of(uint64_t head, std::span<const uint32_t> first,
-                std::span<const format::Region> regions, std::span<const uint32_t> part_component,
-                std::span<const uint32_t> class_first,
-                std::span<const format::ZoneComponent> components,
+uint64_t sum_of(uint64_t head, uint32_t classes, std::span<const uint32_t> first,
+                std::span<const format::Region> regions, const RegionGroups& groups,
                 std::span<const format::RegionLink> links) {
-  head = chained(part_component, chained(regions, chained(first, head)));
-  return chained(links, chained(components, chained(class_first, head)));
+  head = chained(regions, chained(first, hash_bytes(&classes, sizeof classes, head)));
+  head = chained(groups.blocks, chained(groups.groups, head));
+  return chained(links, chained(groups.begun, chained(groups.names, head)));
 }
 
 uint64_t sum_of(uint64_t head, std::span<const format::RegionLink> east,
@@ -67,11 +66,10 @@ uint64_t sum_of(uint64_t head, std::span<const format::RegionLink> east,
 }
 
 uint64_t sum_of(uint64_t world_hash, std::span<const format::GraphZone> zones,
-                std::span<const uint32_t> class_first,
-                std::span<const format::GraphComponent> components,
-                std::span<const uint32_t> component_of) {
+                std::span<const uint32_t> class_first, std::span<const uint8_t> sizes,
+                std::span<const uint8_t> of_zones) {
   const uint64_t head = chained(class_first, chained(zones, head_sum(0, 0, world_hash)));
-  return chained(component_of, chained(components, head));
+  return chained(of_zones, chained(sizes, head));
 }
 
 // Offsets from 0 to `end`, none before the last.
@@ -93,33 +91,26 @@ bool leads(const format::RegionLink& link, const RegionZone& from, const RegionZ
          (link.classes() & ~uint32_t{to.regions()[link.b()].classes()}) == 0;
 }
 
-bool is_place(double feet, int32_t cell_x, int32_t cell_z) {
-  return std::fabs(feet) <= kHighestFeet && cell_x >= 0 && cell_z >= 0 && cell_x < kMostCells &&
-         cell_z < kMostCells;
-}
-
-// Where each class's components begin: as many as there are classes, one more, and in all.
-bool are_classes(std::span<const uint32_t> class_first, size_t components) {
-  return class_first.size() >= 2 && class_first.size() <= kMaxAvatarClasses + 1 &&
-         is_ascending(class_first, components);
-}
-
 }  // namespace
 
 flatbuffers::DetachedBuffer region_zone_bytes(int32_t x, int32_t z, uint64_t input,
                                               const RegionTables& t) {
-  flatbuffers::FlatBufferBuilder builder(t.regions.size() * 32 + t.components.size() * 32 +
+  const GroupTables& g = t.groups;
+  const RegionGroups groups{g.groups, g.blocks, g.names, g.begun};
+  flatbuffers::FlatBufferBuilder builder(t.first.size() * 4 + t.regions.size() * 8 +
+                                         g.groups.size() * 5 + g.names.size() + g.begun.size() +
                                          t.links.size() * 12 + 1024);
-  const uint64_t sum = sum_of(head_sum(x, z, input), t.first, t.regions, t.part_component,
-                              t.class_first, t.components, t.links);
+  const uint64_t sum =
+      sum_of(head_sum(x, z, input), t.classes, t.first, t.regions, groups, t.links);
   const auto first = builder.CreateVector(t.first);
   const auto regions = builder.CreateVectorOfStructs(t.regions);
-  const auto part_component = builder.CreateVector(t.part_component);
-  const auto class_first = builder.CreateVector(t.class_first);
-  const auto components = builder.CreateVectorOfStructs(t.components);
+  const auto of_groups = builder.CreateVectorOfStructs(g.groups);
+  const auto blocks = builder.CreateVectorOfStructs(g.blocks);
+  const auto names = builder.CreateVector(g.names);
+  const auto begun = builder.CreateVector(g.begun);
   const auto links = builder.CreateVectorOfStructs(t.links);
-  builder.Finish(format::CreateZoneRegions(builder, kGraphVersion, x, z, input, sum, first, regions,
-                                           part_component, class_first, components, links),
+  builder.Finish(format::CreateZoneRegions(builder, kGraphVersion, x, z, input, sum, t.classes,
+                                           first, regions, of_groups, blocks, names, begun, links),
                  kRegionIdentifier);
   return builder.Release();
 }
@@ -137,11 +128,16 @@ flatbuffers::DetachedBuffer link_zone_bytes(int32_t x, int32_t z, uint64_t input
   return builder.Release();
 }
 
-bool RegionZone::is_sound(const format::RegionLink& link) const {
+bool RegionZone::is_sound(const format::RegionLink& link,
+                          std::span<const uint32_t> begins_in) const {
   if (link.a() >= link.b() || !leads(link, *this, *this) || link.classes() == 0) return false;
+  const uint32_t a = regions_[link.a()].group(), b = regions_[link.b()].group();
+  if (a == b) return true;
   for (uint32_t left = link.classes(); left != 0; left &= left - 1) {
-    const auto c = static_cast<uint32_t>(std::countr_zero(left));
-    if (component(link.a(), c) != component(link.b(), c)) return false;
+    const auto c = static_cast<size_t>(std::countr_zero(left));
+    if (begins_in[a * size_t{class_count()} + c] != begins_in[b * size_t{class_count()} + c]) {
+      return false;
+    }
   }
   return true;
 }
@@ -149,44 +145,57 @@ bool RegionZone::is_sound(const format::RegionLink& link) const {
 // What is checked here need not be checked by any look-up.
 const char* RegionZone::fault() const {
   if (!is_ascending(first_, regions_.size())) return "its levels are out of order";
-  if (!are_classes(class_first_, components_.size())) return "its components are out of order";
-  uint64_t parts = 0;
-  for (uint32_t level = 0; level < level_count(); ++level) {
-    for (uint32_t r = first_[level]; r < first_[level + 1]; ++r) {
-      const format::Region& region = regions_[r];
-      if (region.level() != level || region.key() >= kTileCells * kTileCells ||
-          region.classes() == 0 || region.classes() >> class_count() != 0 ||
-          region.first_part() != parts) {
-        return "a region makes no sense";
-      }
-      parts += static_cast<uint64_t>(std::popcount(region.classes()));
-    }
-  }
-  if (parts != part_component_.size()) return "its regions miscount their classes";
+  if (class_count() == 0 || class_count() > kMaxAvatarClasses) return "it is of no classes";
+  std::vector<uint32_t> begins_in;
+  if (const char* what = groups_.fault(class_count(), begins_in)) return what;
+  uint32_t groups = 0;  // seen
   for (const format::Region& region : regions_) {
-    uint32_t part = region.first_part();
-    for (uint32_t left = region.classes(); left != 0; left &= left - 1) {
-      const auto [first, last] = class_components(static_cast<uint32_t>(std::countr_zero(left)));
-      const uint32_t of = part_component_[part++];
-      if (of < first || of >= last) return "a region is of a component of another class";
+    if (region.group() > groups || region.group() >= groups_.groups.size() ||
+        region.key() >= kTileCells * kTileCells ||
+        region.classes() != groups_.groups[region.group()].classes()) {
+      return "a region makes no sense";
     }
+    groups += region.group() == groups ? 1 : 0;
   }
-  for (uint32_t c = 0; c < class_count(); ++c) {
-    for (uint32_t i = class_first_[c]; i < class_first_[c + 1]; ++i) {
-      const format::ZoneComponent& of = components_[i];
-      if (of.first_region() >= regions_.size() ||
-          (regions_[of.first_region()].classes() >> c & 1) == 0 ||
-          component(of.first_region(), c) != i || of.cells() == 0 || of.regions() == 0 ||
-          of.regions() > regions_.size() || !is_place(of.feet(), of.cell_x(), of.cell_z())) {
-        return "a component makes no sense";
-      }
-    }
-  }
+  if (groups != groups_.groups.size()) return "a group has no regions";
   if (!in_order(links_)) return "its links are out of order";
   for (const format::RegionLink& link : links_) {
-    if (!is_sound(link)) return "a link makes no sense";
+    if (!is_sound(link, begins_in)) return "a link makes no sense";
   }
   return nullptr;
+}
+
+std::vector<ZoneComponent> RegionZone::components() const {
+  std::vector<ZoneComponent> found(component_count_);
+  std::vector<uint32_t> count(groups_.groups.size(), 0);  // regions of a group
+  uint32_t groups = 0, next = 0;
+  BegunReader reader{groups_.begun};
+  for (uint32_t level = 0; level < level_count(); ++level) {
+    for (uint32_t r = first_[level]; r < first_[level + 1]; ++r) {
+      const uint32_t group = regions_[r].group();
+      ++count[group];
+      if (group != groups) continue;
+      ++groups;
+      const uint32_t begins = groups_.groups[group].begins();
+      if (begins != 0) reader.next_place();
+      for (uint32_t left = begins; left != 0; left &= left - 1) {
+        reader.next_cells();
+        found[next++] = {.avatar_class = static_cast<uint32_t>(std::countr_zero(left)),
+                         .cells = static_cast<uint64_t>(reader.cells),
+                         .first_region = r,
+                         .level = level,
+                         .tile = reader.tile,
+                         .feet = static_cast<int32_t>(reader.feet)};
+      }
+    }
+  }
+  for (uint32_t g = 0; g < groups; ++g) {
+    for (uint32_t left = groups_.groups[g].classes(); left != 0; left &= left - 1) {
+      found[groups_.component(g, static_cast<uint32_t>(std::countr_zero(left)))].regions +=
+          count[g];
+    }
+  }
+  return found;
 }
 
 Result<void> RegionZone::attach(const std::string& name) {
@@ -194,22 +203,21 @@ Result<void> RegionZone::attach(const std::string& name) {
       checked_root<format::ZoneRegions>(bytes(), kRegionIdentifier, name, "a file of regions");
   if (!root) return root.error();
   root_ = *root;
-  if (!root_->first() || !root_->regions() || !root_->part_component() || !root_->class_first() ||
-      !root_->components() || !root_->links() || !is_aligned(*root_->components())) {
+  if (!root_->first() || !root_->regions() || !root_->groups() || !root_->blocks() ||
+      !root_->names() || !root_->begun() || !root_->links()) {
     return bad_file(name, "an array is missing");
   }
   first_ = numbers(*root_->first());
   regions_ = structs(*root_->regions());
-  part_component_ = numbers(*root_->part_component());
-  class_first_ = numbers(*root_->class_first());
-  components_ = structs(*root_->components());
+  groups_ = {structs(*root_->groups()), structs(*root_->blocks()), numbers(*root_->names()),
+             numbers(*root_->begun())};
   links_ = structs(*root_->links());
   const uint64_t head = head_sum(root_->x(), root_->z(), root_->input());
-  if (root_->sum() !=
-      sum_of(head, first_, regions_, part_component_, class_first_, components_, links_)) {
+  if (root_->sum() != sum_of(head, root_->classes(), first_, regions_, groups_, links_)) {
     return bad_file(name, "its sum is wrong");
   }
   if (const char* what = fault()) return bad_file(name, what);
+  component_count_ = groups_.component_count();
   return {};
 }
 
@@ -271,13 +279,14 @@ const RegionZone* GraphData::zone(const WorldData& of_world, size_t slot) const 
              [&](const RegionZone& found) {
                bool fits = is_of_slot(found, of_world, slot) &&
                            found.regions().size() == entry.regions() &&
-                           found.components().size() == entry.components();
+                           found.component_count() == entry.components();
                // While a bake makes the components of the world, there are none to name.
-               for (uint32_t c = 0; fits && !component_of.empty() && c < found.class_count(); ++c) {
-                 const auto [first, last] = found.class_components(c);
-                 for (uint32_t i = first; i < last; ++i) {
-                   fits = fits && component_of[entry.first_component() + i] <
-                                      class_first[c + 1] - class_first[c];
+               if (!fits || component_of.empty()) return fits;
+               uint32_t component = entry.first_component();
+               for (const format::RegionGroup& group : found.groups().groups) {
+                 for (uint32_t left = group.begins(); left != 0; left &= left - 1) {
+                   const auto c = static_cast<size_t>(std::countr_zero(left));
+                   fits = fits && component_of[component++] < class_first[c + 1] - class_first[c];
                  }
                }
                return fits;
@@ -321,12 +330,12 @@ void GraphData::show(const WorldData& of_world) {
   by_class.assign(class_first.size() - 1, {});
   for (size_t c = 0; c < by_class.size(); ++c) {
     for (uint32_t i = class_first[c]; i < class_first[c + 1]; ++i) {
-      const format::GraphComponent& from = components[i];
-      by_class[c].push_back(
-          {static_cast<double>(from.cells()) * (of.cell * of.cell),
-           from.regions(),
-           {{of.origin.x + middle(from.cell_x()), from.feet(), of.origin.z + middle(from.cell_z())},
-            from.level() + 1}});
+      const GraphComponent& from = components[i];
+      by_class[c].push_back({static_cast<double>(from.cells) * (of.cell * of.cell),
+                             from.regions,
+                             {{of.origin.x + middle(from.cell_x), from.feet * 1e-3,
+                               of.origin.z + middle(from.cell_z)},
+                              from.level + 1}});
     }
   }
   summary.regions = summary.links = 0;
@@ -339,18 +348,17 @@ void GraphData::show(const WorldData& of_world) {
 }
 
 std::vector<uint8_t> write_graph_index(const GraphData& graph, uint64_t world_hash) {
-  // Room for all of it: as it grew it would be there three times.
-  flatbuffers::FlatBufferBuilder builder(graph.slots.size() * sizeof(format::GraphZone) +
-                                         graph.components.size() * sizeof(format::GraphComponent) +
-                                         graph.component_of.size() * sizeof(uint32_t) + 1024);
+  const PackedComponents packed = pack_components(graph);
   std::vector<format::GraphZone> zones;
   for (const auto& slot : graph.slots) zones.push_back(slot->entry);
-  builder.Finish(
-      format::CreateGraphIndexDirect(
-          builder, kGraphVersion, world_hash,
-          sum_of(world_hash, zones, graph.class_first, graph.components, graph.component_of),
-          &zones, &graph.class_first, &graph.components, &graph.component_of),
-      kIndexIdentifier);
+  // Room for all of it: as it grew it would be there three times.
+  flatbuffers::FlatBufferBuilder builder(zones.size() * sizeof(format::GraphZone) +
+                                         packed.sizes.size() + packed.of_zones.size() + 1024);
+  builder.Finish(format::CreateGraphIndexDirect(
+                     builder, kGraphVersion, world_hash,
+                     sum_of(world_hash, zones, graph.class_first, packed.sizes, packed.of_zones),
+                     &zones, &graph.class_first, &packed.sizes, &packed.of_zones),
+                 kIndexIdentifier);
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 
@@ -362,19 +370,18 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
   if (!found) return found.error();
   const format::GraphIndex& root = **found;
   if (root.world() != world_hash) return bad_file(name, "belongs to another bake of this world");
-  if (!root.zones() || !root.class_first() || !root.components() || !root.component_of() ||
-      !is_aligned(*root.zones()) || !is_aligned(*root.components())) {
+  if (!root.zones() || !root.class_first() || !root.sizes() || !root.of_zones() ||
+      !is_aligned(*root.zones())) {
     return bad_file(name, "an array is missing");
   }
   const auto class_first = numbers(*root.class_first());
-  const auto component_of = numbers(*root.component_of());
-  if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first,
-                           structs(*root.components()), component_of)) {
+  const auto sizes = numbers(*root.sizes()), of_zones = numbers(*root.of_zones());
+  if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first, sizes, of_zones)) {
     return bad_file(name, "its sum is wrong");
   }
-  if (root.zones()->size() != world.slots.size() ||
+  if (root.zones()->size() != world.slots.size() || class_first.size() < 2 ||
       class_first.size() != world.summary.classes.size() + 1 ||
-      !are_classes(class_first, root.components()->size())) {
+      !is_ascending(class_first, class_first.back())) {
     return bad_file(name, "its arrays do not fit together");
   }
   auto graph = std::make_shared<GraphData>();
@@ -389,19 +396,13 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
     graph->slots.push_back(std::make_unique<GraphData::Slot>());
     graph->slots.back()->entry = entry;
   }
-  if (components != root.component_of()->size()) {
+  graph->class_first.assign(class_first.begin(), class_first.end());
+  if (const char* what = unpack_components(sizes, of_zones, world, *graph)) {
+    return bad_file(name, what);
+  }
+  if (components != graph->component_of.size()) {
     return bad_file(name, "its zones miscount their components");
   }
-  graph->class_first.assign(class_first.begin(), class_first.end());
-  for (const format::GraphComponent* of : *root.components()) {
-    if (of->cells() == 0 || of->regions() == 0 || of->level() >= world.level_count ||
-        !is_place(of->feet(), of->cell_x(), of->cell_z()) || of->cell_x() >= world.width ||
-        of->cell_z() >= world.depth) {
-      return bad_file(name, "a component makes no sense");
-    }
-    graph->components.push_back(*of);
-  }
-  graph->component_of.assign(component_of.begin(), component_of.end());
   graph->show(world);
   return graph;
 }

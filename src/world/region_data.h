@@ -4,7 +4,6 @@
 
 #include <flatbuffers/flatbuffers.h>
 
-#include <bit>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -14,6 +13,7 @@
 
 #include "throng/graph.h"
 #include "throng/result.h"
+#include "world/region_groups.h"
 #include "world/regions_generated.h"
 #include "world/zone_data.h"
 #include "world/zone_file.h"
@@ -22,17 +22,27 @@
 /// what is known of the whole world. See docs/design/003-graph.md.
 namespace throng {
 
-inline constexpr uint32_t kGraphVersion = 1;
+inline constexpr uint32_t kGraphVersion = 2;
 inline constexpr const char* kGraphIndexName = "graph.thm";
 
 /// Regions of one zone and what links them within it.
 struct RegionTables {
+  uint32_t classes = 0;         // of the world
   std::vector<uint32_t> first;  // levels + 1
   std::vector<format::Region> regions;
-  std::vector<uint32_t> part_component;
-  std::vector<uint32_t> class_first;  // classes + 1
-  std::vector<format::ZoneComponent> components;
+  GroupTables groups;
   std::vector<format::RegionLink> links;
+};
+
+/// What holds together within a zone, for one class.
+struct ZoneComponent {
+  uint32_t avatar_class = 0;
+  uint32_t regions = 0;
+  uint64_t cells = 0;         // legal
+  uint32_t first_region = 0;  // its key is a place of the component
+  uint32_t level = 0;         // of the zone: that region's
+  uint32_t tile = 0;          // within the zone
+  int32_t feet = 0;           // over the middle of the key [mm]
 };
 
 /// A file of regions after the verifier and the checks of its numbers.
@@ -40,40 +50,35 @@ class RegionZone : public ZoneFile<RegionZone> {
  public:
   [[nodiscard]] const format::ZoneRegions& root() const { return *root_; }
   [[nodiscard]] uint32_t level_count() const { return static_cast<uint32_t>(first_.size()) - 1; }
-  [[nodiscard]] uint32_t class_count() const {
-    return static_cast<uint32_t>(class_first_.size()) - 1;
-  }
+  [[nodiscard]] uint32_t class_count() const { return root_->classes(); }
   [[nodiscard]] std::span<const format::Region> regions() const { return regions_; }
   /// Regions of a level of the zone: [first, last).
   [[nodiscard]] std::pair<uint32_t, uint32_t> level_regions(uint32_t level) const {
     return {first_[level], first_[level + 1]};
   }
-  [[nodiscard]] std::span<const format::ZoneComponent> components() const { return components_; }
-  /// Components of a class: [first, last).
-  [[nodiscard]] std::pair<uint32_t, uint32_t> class_components(uint32_t avatar_class) const {
-    return {class_first_[avatar_class], class_first_[avatar_class + 1]};
-  }
+  [[nodiscard]] const RegionGroups& groups() const { return groups_; }
+  [[nodiscard]] uint32_t component_count() const { return component_count_; }
+  /// All of them, by first region, then class. Reads the whole file.
+  [[nodiscard]] std::vector<ZoneComponent> components() const;
   [[nodiscard]] std::span<const format::RegionLink> links() const { return links_; }
   /// Component of a region for a class that has a part in it.
   [[nodiscard]] uint32_t component(uint32_t region, uint32_t avatar_class) const {
-    const format::Region& of = regions_[region];
-    const uint32_t below = of.classes() & ((uint32_t{1} << avatar_class) - 1);
-    return part_component_[of.first_part() + static_cast<uint32_t>(std::popcount(below))];
+    return groups_.component(regions_[region].group(), avatar_class);
   }
 
  private:
   friend class ZoneFile<RegionZone>;
   Result<void> attach(const std::string& name);
   [[nodiscard]] const char* fault() const;
-  [[nodiscard]] bool is_sound(const format::RegionLink& link) const;
+  [[nodiscard]] bool is_sound(const format::RegionLink& link,
+                              std::span<const uint32_t> begins_in) const;
 
   const format::ZoneRegions* root_ = nullptr;
   std::span<const uint32_t> first_;
   std::span<const format::Region> regions_;
-  std::span<const uint32_t> part_component_;
-  std::span<const uint32_t> class_first_;
-  std::span<const format::ZoneComponent> components_;
+  RegionGroups groups_;
   std::span<const format::RegionLink> links_;
+  uint32_t component_count_ = 0;
 };
 
 /// A file of links over the eastern and the southern border of a zone, after the checks that it
@@ -96,6 +101,15 @@ class LinkZone : public ZoneFile<LinkZone> {
   std::span<const format::RegionLink> east_, south_;
 };
 
+/// What holds together in the world, for one class.
+struct GraphComponent {
+  uint64_t cells = 0;  // legal
+  uint32_t regions = 0;
+  uint32_t level = 0;              // of the world, of its place
+  int32_t cell_x = 0, cell_z = 0;  // of the grid: its place is the middle of this cell
+  int32_t feet = 0;                // there [mm]
+};
+
 /// What Graph points to. Its zones are those of the world, slot by slot.
 struct GraphData {
   struct Slot : ZoneSlot<RegionZone> {
@@ -105,9 +119,10 @@ struct GraphData {
   World world;
   std::string path;  // of the folder; empty: in memory
   std::vector<std::unique_ptr<Slot>> slots;
-  std::vector<uint32_t> class_first;  // classes + 1
-  std::vector<format::GraphComponent> components;
+  std::vector<uint32_t> class_first;             // classes + 1
+  std::vector<GraphComponent> components;        // per class the largest first
   std::vector<uint32_t> component_of;            // of components of zones: within their class
+  std::vector<uint8_t> class_of;                 // of these
   std::vector<std::vector<Component>> by_class;  // `components` as they are shown
   GraphSummary summary;
 

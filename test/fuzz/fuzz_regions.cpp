@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "world/graph_index.h"
 #include "world/region_data.h"
 
 // Files of regions and links that pass the checks must answer every look-up without reading past
@@ -14,15 +15,15 @@ namespace {
 volatile uint64_t seen = 0;
 
 void ask(const RegionZone& zone) {
+  const std::vector<ZoneComponent> components = zone.components();
   for (uint32_t level = 0; level < zone.level_count(); ++level) {
     const auto [first, last] = zone.level_regions(level);
     for (uint32_t r = first; r < last; ++r) {
       for (uint32_t c = 0; c < zone.class_count(); ++c) {
         if ((zone.regions()[r].classes() >> c & 1) == 0) continue;
-        const auto [begin, end] = zone.class_components(c);
         const uint32_t of = zone.component(r, c);
-        if (of < begin || of >= end) std::abort();
-        seen = seen + zone.components()[of].cells();
+        if (of >= components.size() || components[of].avatar_class != c) std::abort();
+        seen = seen + components[of].cells;
       }
     }
   }
@@ -68,8 +69,10 @@ void try_index(const uint8_t* bytes, size_t size) {
     world.slots.back()->entry = format::ZoneEntry(entry.x(), entry.z(), 1, 1, 0, 0);
   }
   graph.class_first = take<uint32_t>(at, end, bytes[1]);
-  graph.components = take<format::GraphComponent>(at, end, bytes[2]);
+  graph.components = take<GraphComponent>(at, end, bytes[2]);
   graph.component_of = take<uint32_t>(at, end, bytes[3]);
+  graph.class_of.assign(graph.component_of.size(), 0);
+  if (graph.class_first.empty()) return;
   world.summary.classes.resize(std::max<size_t>(graph.class_first.size(), 1) - 1);
   world.level_count = bytes[4];
   world.width = world.depth = 1000;
@@ -77,6 +80,26 @@ void try_index(const uint8_t* bytes, size_t size) {
   if (!found) return;
   for (const auto& of_class : (*found)->by_class) {
     for (const Component& component : of_class) seen = seen + component.regions;
+  }
+}
+
+// As the packed components of an index.
+void try_packed(const uint8_t* bytes, size_t size) {
+  if (size < 4) return;
+  GraphData graph;
+  graph.class_first = {0, bytes[0], uint32_t{bytes[0]} + bytes[1]};
+  WorldData world;
+  world.level_count = world.width = world.depth = 1000;
+  const size_t sizes = std::min<size_t>(bytes[2], size - 3);
+  if (unpack_components({bytes + 3, sizes}, {bytes + 3 + sizes, size - 3 - sizes}, world, graph)) {
+    return;
+  }
+  const PackedComponents packed = pack_components(graph);
+  GraphData again;
+  again.class_first = graph.class_first;
+  if (unpack_components(packed.sizes, packed.of_zones, world, again) ||
+      again.component_of != graph.component_of) {
+    std::abort();
   }
 }
 
@@ -93,16 +116,19 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   try_regions(owned());
   try_links(owned());
   (void)read_graph_index({bytes, size}, "fuzz", WorldData{}, 0);
-  if (size < 6) return 0;
+  try_packed(bytes, size);
+  if (size < 8) return 0;
   // The first bytes say how long the arrays are.
-  const uint8_t *at = bytes + 6, *end = bytes + size;
+  const uint8_t *at = bytes + 8, *end = bytes + size;
   RegionTables t;
+  t.classes = bytes[4];
   t.first = take<uint32_t>(at, end, bytes[0]);
   t.regions = take<format::Region>(at, end, bytes[1]);
-  t.part_component = take<uint32_t>(at, end, bytes[2]);
-  t.class_first = take<uint32_t>(at, end, bytes[3]);
-  t.components = take<format::ZoneComponent>(at, end, bytes[4]);
-  t.links = take<format::RegionLink>(at, end, bytes[5]);
+  t.groups.groups = take<format::RegionGroup>(at, end, bytes[2]);
+  t.groups.blocks = take<format::GroupBlock>(at, end, bytes[3]);
+  t.groups.names = take<uint8_t>(at, end, bytes[5]);
+  t.groups.begun = take<uint8_t>(at, end, bytes[6]);
+  t.links = take<format::RegionLink>(at, end, bytes[7]);
   try_regions(region_zone_bytes(0, 0, 0, t));
   try_index(bytes, size);
   return 0;

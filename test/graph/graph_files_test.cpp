@@ -88,10 +88,13 @@ size_t expect_whole(const World& opened, const std::string& path) {
   std::vector<RegionLink> links;
   for (size_t s = 0; s < zones.size(); ++s) {
     const auto regions = zones[s]->regions();
-    for (uint32_t r = 0; r < regions.size(); ++r) {
-      const Region& same = whole.regions[base[s] + r];
-      wrong += regions[r].level() + world.slots[s]->first_level != same.level ||
-               regions[r].classes() != same.classes || regions[r].key() != same.key;
+    for (uint32_t level = 0; level < zones[s]->level_count(); ++level) {
+      const auto [first, last] = zones[s]->level_regions(level);
+      for (uint32_t r = first; r < last; ++r) {
+        const Region& same = whole.regions[base[s] + r];
+        wrong += level + world.slots[s]->first_level != same.level ||
+                 regions[r].classes() != same.classes || regions[r].key() != same.key;
+      }
     }
     const auto add = [&](std::span<const format::RegionLink> found, size_t to) {
       for (const format::RegionLink& link : found) {

@@ -17,12 +17,13 @@ struct Tiles {
 
 Tiles find_tiles(const WorldData& world, const TileRegions& finder) {
   Tiles tiles;
+  TileScratch scratch;
   tiles.wide = world.summary.tiles_x;
   tiles.deep = world.summary.tiles_z;
   std::vector<uint32_t> of_level(world.level_count + 1, 0);
   for (int32_t z = 0; z < tiles.deep; ++z) {
     for (int32_t x = 0; x < tiles.wide; ++x) {
-      tiles.parts.push_back(finder.linked_parts(x, z));
+      tiles.parts.push_back(finder.linked_parts(x, z, scratch));
       const TileParts& tile = tiles.parts.back();
       for (uint32_t l = 0; l < tile.levels; ++l) {
         of_level[tile.first_level + l + 1] = tile.first[l + 1] - tile.first[l];
@@ -96,6 +97,7 @@ WholeGraph whole_graph(const World& of_world) {
       links[{std::min(from, to), std::max(from, to)}] |= link.classes;
     }
   };
+  TileScratch scratch;
   for (size_t t = 0; t < tiles.parts.size(); ++t) {
     const TileParts& tile = tiles.parts[t];
     if (tile.levels == 0) continue;
@@ -111,10 +113,10 @@ WholeGraph whole_graph(const World& of_world) {
     const size_t south = t + static_cast<size_t>(tiles.wide);
     add(tile.links, base, base);
     if (x + 1 < tiles.wide) {
-      add(finder.border(x, z, kEast, tile, tiles.parts[t + 1]), base, tiles.base[t + 1]);
+      add(finder.border(x, z, kEast, tile, tiles.parts[t + 1], scratch), base, tiles.base[t + 1]);
     }
     if (z + 1 < tiles.deep) {
-      add(finder.border(x, z, kSouth, tile, tiles.parts[south]), base, tiles.base[south]);
+      add(finder.border(x, z, kSouth, tile, tiles.parts[south], scratch), base, tiles.base[south]);
     }
   }
   for (const auto& [ends, bits] : links) graph.links.push_back({ends.first, ends.second, bits});

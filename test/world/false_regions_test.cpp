@@ -62,13 +62,15 @@ Made make_small(FilesInMemory& files) {
 
 RegionTables tables_of(const RegionZone& zone) {
   RegionTables t;
-  const auto& root = zone.root();
-  t.first.assign(root.first()->begin(), root.first()->end());
-  t.part_component.assign(root.part_component()->begin(), root.part_component()->end());
-  t.class_first.assign(root.class_first()->begin(), root.class_first()->end());
-  t.regions.assign(zone.regions().begin(), zone.regions().end());
-  t.components.assign(zone.components().begin(), zone.components().end());
-  t.links.assign(zone.links().begin(), zone.links().end());
+  const auto copy = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
+  t.classes = zone.class_count();
+  copy(t.first, *zone.root().first());
+  copy(t.regions, zone.regions());
+  copy(t.groups.groups, zone.groups().groups);
+  copy(t.groups.blocks, zone.groups().blocks);
+  copy(t.groups.names, zone.groups().names);
+  copy(t.groups.begun, zone.groups().begun);
+  copy(t.links, zone.links());
   return t;
 }
 
@@ -86,17 +88,27 @@ void change(std::vector<T>& values, uint64_t seed) {
 // Everything that may be asked of it.
 uint64_t use(const RegionZone& zone) {
   uint64_t sum = 0;
+  const auto components = zone.components();
+  std::vector<uint32_t> regions(components.size(), 0);
   for (uint32_t level = 0; level < zone.level_count(); ++level) {
     const auto [first, last] = zone.level_regions(level);
     for (uint32_t r = first; r < last; ++r) {
       for (uint32_t c = 0; c < zone.class_count(); ++c) {
         if ((zone.regions()[r].classes() >> c & 1) == 0) continue;
-        const auto [begin, end] = zone.class_components(c);
-        EXPECT_GE(zone.component(r, c), begin);
-        EXPECT_LT(zone.component(r, c), end);
-        sum += zone.components()[zone.component(r, c)].cells();
+        const uint32_t of = zone.component(r, c);
+        EXPECT_LT(of, components.size());
+        if (of >= components.size()) return 0;
+        EXPECT_EQ(components[of].avatar_class, c);
+        EXPECT_LE(components[of].first_region, r);
+        EXPECT_LE(components[of].level, level);
+        ++regions[of];
+        sum += components[of].cells;
       }
     }
+  }
+  for (size_t i = 0; i < components.size(); ++i) {
+    EXPECT_GT(components[i].cells, 0u);
+    EXPECT_EQ(components[i].regions, regions[i]);
   }
   for (const format::RegionLink& link : zone.links()) {
     sum += zone.regions()[link.a()].key() + zone.regions()[link.b()].key();
@@ -114,7 +126,7 @@ TEST(FalseRegions, AreRefusedByNameOrUsedWithoutACrash) {
     RegionTables t = tables_of(**zone);
     for (uint64_t k = 0; k <= seed % 2; ++k) {
       const uint64_t n = seed * 2 + k;
-      switch (random_below(n, 0, 0, 6)) {
+      switch (random_below(n, 0, 0, 8)) {
         case 0:
           change(t.first, n);
           break;
@@ -122,13 +134,19 @@ TEST(FalseRegions, AreRefusedByNameOrUsedWithoutACrash) {
           change(t.regions, n);
           break;
         case 2:
-          change(t.part_component, n);
+          change(t.groups.groups, n);
           break;
         case 3:
-          change(t.class_first, n);
+          change(t.groups.blocks, n);
           break;
         case 4:
-          change(t.components, n);
+          change(t.groups.names, n);
+          break;
+        case 5:
+          change(t.groups.begun, n);
+          break;
+        case 6:
+          t.classes += static_cast<uint32_t>(random_below(n, 5, 0, 3)) - 1;
           break;
         default:
           change(t.links, n);
@@ -171,7 +189,7 @@ TEST(FalseRegions, ChangedBytesAndCutFilesAreRefusedByTheSum) {
     }
   }
   EXPECT_GT(refused, 1500u);
-  EXPECT_LT(filling, 60u);  // What fills up words, or makes another way to the same numbers.
+  EXPECT_LT(filling, 80u);  // What fills up words, or makes another way to the same numbers.
   EXPECT_FALSE(RegionZone::from_bytes(owned(made.links[0]), "it"));
   EXPECT_FALSE(LinkZone::from_bytes(owned(made.regions[0]), "it"));
 }
@@ -255,13 +273,10 @@ TEST(FalseRegions, AFalseIndexIsRefusedOrNamesWhatIsThere) {
     for (size_t s = 0; s < world.slots.size(); ++s) {
       const RegionZone* zone = (*found)->zone(world, s);
       usable = usable && zone != nullptr;
-      for (uint32_t c = 0; zone != nullptr && c < zone->class_count(); ++c) {
-        const auto [first, last] = zone->class_components(c);
-        for (uint32_t i = first; i < last; ++i) {
-          const uint32_t of =
-              (*found)->component_of[(*found)->slots[s]->entry.first_component() + i];
-          ASSERT_LT(of, (*found)->by_class[c].size());
-        }
+      if (zone == nullptr) continue;
+      uint32_t i = (*found)->slots[s]->entry.first_component();
+      for (const ZoneComponent& part : zone->components()) {
+        ASSERT_LT((*found)->component_of[i++], (*found)->by_class[part.avatar_class].size());
       }
     }
     ++(usable ? used : refused);

@@ -24,7 +24,6 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for triangles together
 constexpr size_t kPart = 32;            // cells of a region that choose among these together
 constexpr size_t kSquare = 4;           // cells of a part that choose again
-constexpr double kTurnMargin = 1e-7;    // of a sine, for what rounding does to its cosine
 constexpr double kSlopeMargin = 1e-6;   // a plane at exactly a limit keeps it
 
 inline void join(Box3d& box, const Box3d& other) {
@@ -32,12 +31,6 @@ inline void join(Box3d& box, const Box3d& other) {
              std::min(box.min.z, other.min.z)};
   box.max = {std::max(box.max.x, other.max.x), std::max(box.max.y, other.max.y),
              std::max(box.max.z, other.max.z)};
-}
-
-inline void join(BodySweep& sweep, const BodySweep& other) {
-  sweep = {.radius = std::max(sweep.radius, other.radius),
-           .low = std::min(sweep.low, other.low),
-           .high = std::max(sweep.high, other.high)};
 }
 
 BodySweep surface_sweep(const SurfaceBound& surface) {
@@ -262,7 +255,11 @@ void PatchJudge::judge_pending(BezierCells& out) {
       const auto cells = all.subspan(k, std::min(kSquare, end - k));
       find_makers(cells, out);
       narrow(part_, boxes_[k / kSquare], block_);
-      judge_square(cells, out);
+      for (const Pending& cell : cells) {
+        Promise& promise = out.promise.cells[cell.cell];
+        judge_posture(cell, 0, promise);
+        if (cell.postures > 1) judge_posture(cell, 1, promise);
+      }
     }
   }
   pending_.clear();
@@ -317,61 +314,22 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
   }
 }
 
-// Over open ground one look at the triangles' planes tells that nobody is stopped on any of the
-// cells: all bodies together, as seen from an axis between theirs. Upright bodies on a slope would
-// not fit into a level one.
-void PatchJudge::judge_square(std::span<const Pending> cells, BezierCells& out) {
-  BodyFrame axis;
-  for (const Pending& cell : cells) {
-    axis.centre = axis.centre + cell.surface(0).frame.centre;
-    axis.up = axis.up + cell.surface(0).frame.up;
-  }
-  const auto count = static_cast<double>(cells.size());
-  bool met = false;
-  if (const double size = length(axis.up); size < 0.5 * count) {
-    met = true;
-  } else {
-    axis.centre = axis.centre * (1 / count);
-    axis.up = axis.up * (1 / size);
-    constexpr double kWidest = 1e30;
-    std::array<BodySweep, 2> all;
-    all.fill({.radius = 0, .low = kWidest, .high = -kWidest});
-    for (const Pending& cell : cells) {
-      const BodyFrame& frame = cell.surface(0).frame;
-      const Vec3d away = frame.centre - axis.centre;
-      const double height = dot(away, axis.up), cosine = dot(axis.up, frame.up);
-      const double aside = std::sqrt(std::max(0.0, dot(away, away) - height * height));
-      const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + kTurnMargin;
-      met |= cosine < 0;
-      const auto add = [&](const BodySweep& sweep, BodySweep& to) {
-        const double far = std::max(std::fabs(sweep.low), std::fabs(sweep.high));
-        join(to,
-             {.radius = aside + kTurnMargin + sweep.radius + far * sine,
-              .low = height + std::min(sweep.low, sweep.low * cosine) - sweep.radius * sine,
-              .high = height + std::max(sweep.high, sweep.high * cosine) + sweep.radius * sine});
-      };
-      add(cell.prism[0], all[0]);
-      add(cell.bodies[0], all[1]);
-    }
-    met = met || glance(block_, axis, all) != 0;
-  }
-  for (const Pending& cell : cells) {
-    Promise& promise = out.promise.cells[cell.cell];
-    if (met) {
-      judge_posture(cell, 0, promise);
-    } else {
-      for (const PatchBody& body : bodies_) {
-        if (is_asked(body, 0, cell)) promise.classes |= body.bit;
-      }
-    }
-    if (cell.postures > 1) judge_posture(cell, 1, promise);
-  }
-}
-
 BodySweep PatchJudge::low_room(const Pending& cell, size_t posture) const {
   BodySweep room = cell.prism[posture];
   room.high = std::min(room.high, cell.surface(posture).high + bins_->height.front());
   return room;
+}
+
+// Those of sweeps_ into which a plane through the cell's middle, as steep as the surface there,
+// comes uphill at the rim.
+uint32_t PatchJudge::too_steep(const Pending& cell) const {
+  const Vec3d up = cell.surface(0).frame.up;
+  const double slope = std::sqrt(std::max(0.0, 1 - up.y * up.y));
+  uint32_t steep = 0;
+  for (size_t b = 1; b < sweeps_.size(); ++b) {
+    if (slope * sweeps_[b].radius > sweeps_[b].low * up.y) steep |= 1u << b;
+  }
+  return steep;
 }
 
 // Tests the classes of one posture, and the free height along it.
@@ -385,20 +343,25 @@ void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& pro
     sweeps_.push_back(sweep_of(cell.surface(posture), body));
     tube_bit_.push_back(body.bit);
   }
-  // Upright, most ground is its own ceiling to the least of bodies: that is seen at once.
-  uint32_t met = 0;
-  if (posture == 0 || !surely_enters(block_, frame.centre, low_room(cell, 1))) {
-    met = glance(block_, frame, sweeps_);
-  } else {
-    promise.headroom = bins_->height_code(0);
-    if (sweeps_.size() > 1) met = glance(block_, frame, std::span(sweeps_).subspan(1)) << 1;
+  const uint32_t bodies = (1u << sweeps_.size()) - 2;
+  uint32_t asked = bodies | 1, stopped = 0, steep = 0;
+  if (posture == 1) {
+    // Upright, most ground is its own ceiling to the least of bodies: that is seen at once.
+    if (surely_enters(block_, frame.centre, low_room(cell, 1))) {
+      promise.headroom = bins_->height_code(0);
+      asked = bodies;
+    }
+    // What stops bodies is mostly the ground that they stand on, where it is steep.
+    steep = too_steep(cell);
+    if (steep != 0) stopped = surely_enters_uphill(block_, frame.centre, sweeps_, steep);
+    asked &= ~stopped;
   }
+  uint32_t met = asked == 0 ? 0 : glance(block_, frame, sweeps_, asked);
   for (size_t b = 1; b < sweeps_.size(); ++b) {
-    if ((met >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
+    if (((met | stopped) >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
   }
-  // What stops bodies is mostly the ground that they stand on, where it is steep.
-  if (posture == 1 && (met & ~1u) != 0) {
-    met &= ~(surely_enters_uphill(block_, frame.centre, std::span(sweeps_).subspan(1)) << 1);
+  if (const uint32_t left = met & bodies & ~steep; posture == 1 && left != 0) {
+    met &= ~surely_enters_uphill(block_, frame.centre, sweeps_, left);
   }
   if (met != 0) judge_met(cell, posture, met, promise);
 }

@@ -76,9 +76,9 @@ class PatchJudge {
   void judge_pending(BezierCells& out);
   void gather(const Box3d& box);
   void find_makers(std::span<const Pending> cells, BezierCells& out);
-  void judge_square(std::span<const Pending> cells, BezierCells& out);
   void judge_posture(const Pending& cell, size_t posture, Promise& promise);
   void judge_met(const Pending& cell, size_t posture, uint32_t met, Promise& promise);
+  [[nodiscard]] uint32_t too_steep(const Pending& cell) const;
   /// Matter in here leaves no height.
   [[nodiscard]] BodySweep low_room(const Pending& cell, size_t posture) const;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -162,9 +163,8 @@ size_t Narrow(const SieveList& list, const float* middle, const float* half, Sie
 // point is in the triangle, as seen from above and by more than the margin, the triangle is there
 // between the heights of its slab.
 uint32_t HoldsRim(const SieveList& list, const SieveAxis& axis, const SieveCylinder* tubes,
-                  size_t count) {
+                  uint32_t all) {
   const DF df;
-  const uint32_t all = (1u << count) - 1;
   const VF m = hn::Set(df, axis.margin), zero = hn::Zero(df);
   uint32_t held = 0;
   for (size_t i = 0; i < list.count && held != all; i += hn::Lanes(df)) {
@@ -341,9 +341,9 @@ struct Flank {
 };
 
 uint32_t Glance(const SieveList& list, const SieveAxis& axis, const SieveCylinder* tubes,
-                size_t count) {
+                uint32_t left) {
   const DF df;
-  uint32_t left = (1u << count) - 1, met = 0;
+  uint32_t met = 0;
   for (size_t i = 0; i < list.count && left != 0; i += hn::Lanes(df)) {
     const Slab slab(list, i, axis);
     const MF there = lanes_of(list.count - i);
@@ -590,17 +590,19 @@ void narrow(const SieveList& list, const Box3d& box, SieveList& out) {
                                            to_floats((high - low) * 0.5 + give).data(), out);
 }
 
-uint32_t glance(const SieveList& list, const BodyFrame& frame, std::span<const BodySweep> tubes) {
+uint32_t glance(const SieveList& list, const BodyFrame& frame, std::span<const BodySweep> tubes,
+                uint32_t asked) {
   const Vec3d centre = frame.centre - list.origin;
   const double margin = margin_of(list.extent + largest(centre));
   std::array<SieveCylinder, 31> cylinders;
   double reach = 0;
-  for (size_t i = 0; i < tubes.size(); ++i) {
+  for (uint32_t left = asked; left != 0; left &= left - 1) {
+    const auto i = static_cast<size_t>(std::countr_zero(left));
     cylinders[i] = grown(tubes[i], margin);
     reach = std::max(reach, reach_of(tubes[i]));
   }
   return HWY_DYNAMIC_DISPATCH(Glance)(list, axis_of(frame, centre, margin, reach), cylinders.data(),
-                                      tubes.size());
+                                      asked);
 }
 
 bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube) {
@@ -609,19 +611,20 @@ bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube) {
   return HWY_DYNAMIC_DISPATCH(Holds)(list, to_floats(at), shrunk(tube, margin));
 }
 
-uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre,
-                              std::span<const BodySweep> tubes) {
+uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre, std::span<const BodySweep> tubes,
+                              uint32_t asked) {
   const Vec3d at = centre - list.origin;
   const double margin = margin_of(list.extent + largest(at));
   std::array<SieveCylinder, 31> cylinders;
   double reach = 0;
-  for (size_t i = 0; i < tubes.size(); ++i) {
+  for (uint32_t left = asked; left != 0; left &= left - 1) {
+    const auto i = static_cast<size_t>(std::countr_zero(left));
     cylinders[i] = shrunk(tubes[i], margin);
     reach = std::max(reach, reach_of(tubes[i]));
   }
   return HWY_DYNAMIC_DISPATCH(HoldsRim)(
       list, {to_floats(at), {0, 1, 0}, static_cast<float>(margin + 1e-6 * reach), 0},
-      cylinders.data(), tubes.size());
+      cylinders.data(), asked);
 }
 
 uint32_t sieve(const SieveList& list, const SieveQuestion& question, SieveHits& hits) {

@@ -50,18 +50,18 @@ struct SieveQuestion {
   std::span<const SieveTube> tubes;  ///< [at most 31]
 };
 
-/// Bit i: some triangle's plane and ball come into tube i; all triangles stay outside of the
-/// others. It costs a fraction of sieve(). [at most 31 tubes] Linear.
+/// Bit i: some triangle's plane and ball come into tube i; all triangles stay outside of the other
+/// tubes of which `asked` has the bits. It costs a fraction of sieve(). [at most 31 tubes] Linear.
 [[nodiscard]] uint32_t glance(const SieveList& list, const BodyFrame& frame,
-                              std::span<const BodySweep> tubes);
+                              std::span<const BodySweep> tubes, uint32_t asked);
 
 /// True only if a triangle enters an upright tube; most that do are noticed. Linear.
 [[nodiscard]] bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube);
 
-/// Bit i: a triangle surely enters upright tube i, uphill from its axis, as ground does on which a
-/// body stands too steep. [at most 31 tubes] Linear.
+/// Bit i: tube i, which is upright, is asked about, and a triangle surely enters it uphill from its
+/// axis, as ground does on which a body stands too steep. [at most 31 tubes] Linear.
 [[nodiscard]] uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre,
-                                            std::span<const BodySweep> tubes);
+                                            std::span<const BodySweep> tubes, uint32_t asked);
 
 /// Triangles that may enter tubes: hit i those of which tubes[i] has the bits.
 struct SieveHits {

@@ -40,7 +40,7 @@ struct BodyWindow {
 BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell,
                        bool fine = false);
 
-/// Sheets of a tile that some classes see gaps of, by their lowest tops.
+/// Sheets of a tile that some classes see, all or the high ones, by their lowest tops.
 struct SheetList {
   std::vector<const Sheet*> sheets;
   bool seams = false;  // some of them continue each other inside the tile

@@ -19,11 +19,13 @@ struct LayerLinks {
   std::array<uint64_t, kTileSide> up;    // and at z - 1
 };
 
-/// Gaps whose tops and rooms overlap so continue each other; bits of `only`, if any, are looked at.
+/// Gaps of neighbouring columns continue each other if their tops are at most `step` apart and the
+/// room over both is at least `gap`.
 struct LinkRule {
   int32_t step, gap;  // [mm]
 };
 
+/// `only`, unless null: the gaps of the layer that count.
 void link_layer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const CellRows* only,
                 LayerLinks& links);
 

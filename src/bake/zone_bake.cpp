@@ -27,7 +27,7 @@ constexpr int32_t kBand = 8;  // tile rows
 
 struct TileState {
   TileSheets sheets;
-  SheetList all, high;             // the sheets, and those that are not low, if some are
+  SheetList all, high;             // the sheets, and those of them that are not low
   std::vector<size_t> high_of;     // which sheet of the tile each of the high ones is
   std::unique_ptr<BitPlane> bare;  // columns without any matter; of fine bakes
   std::vector<FloorPlane> planes;
@@ -92,7 +92,7 @@ class ZoneJob {
 struct ZoneScratch::Worker {
   TileColumns columns;
   TileGaps gaps, high;            // all, and those of BodyLimits::kHighGap, if these are not all
-  std::vector<size_t> low, tall;  // classes that see the same in and around a tile
+  std::vector<size_t> low, tall;  // classes that see all sheets of a tile, or high ones only
   uint32_t beside_walls = 0;      // bit c: walls of the tile were looked at for class c
   LegalityScratch legality;
   CellPlanes planes;

@@ -209,75 +209,82 @@ void Dealer::make_components() {
 
 // Cuts a component into pieces that lie over themselves nowhere, breadth first from its first gap.
 void Dealer::split(int32_t index) {
-  const size_t layers = static_cast<size_t>(gaps_.max_count);
-  constexpr int32_t kForeign = -1, kPending = -2;
-  std::vector<int32_t> label(layers * kTileArea, kForeign);
-  const auto label_of = [&](int32_t cell, int32_t k) -> int32_t& {
-    return label[static_cast<size_t>(k) * kTileArea + static_cast<size_t>(cell)];
-  };
+  const auto layers = static_cast<size_t>(gaps_.max_count);
   struct Gap {
-    int32_t cell, layer;
+    uint16_t cell, layer;
   };
-  std::vector<Gap> pending;
+  std::vector<Rows> pending(layers, Rows{});  // gaps that are in no piece yet
   for (const Run& run : runs_) {
     if (run.component != index) continue;
-    for (uint64_t cells = run.cells; cells != 0; cells &= cells - 1) {
-      pending.push_back({run.z * kSide + std::countr_zero(cells), run.layer});
-      label_of(pending.back().cell, run.layer) = kPending;
-    }
+    pending[static_cast<size_t>(run.layer)][static_cast<size_t>(run.z)] |= run.cells;
   }
-  std::vector<int32_t> taken(kTileArea, -1);  // which piece has a gap in this column
   std::vector<Gap> queue;
   std::vector<Rows> rows(layers);
-  components_[static_cast<size_t>(index)].count = 0;  // its number is used no more
-  for (const Gap& seed : pending) {
-    if (label_of(seed.cell, seed.layer) != kPending) continue;
+  // Row z + 1: columns with gaps that are pending, but not those where the piece has one. Most of
+  // what a gap has around is its own piece, and a few operations tell.
+  std::array<uint64_t, kTileSide + 2> open{};
+  const auto grow_piece = [&](int32_t seed_cell, int32_t seed_layer) {
     const auto piece = static_cast<int32_t>(components_.size());
-    Component component;
+    Component& component = components_.emplace_back();
     component.is_piece = true;
+    for (size_t z = 0; z < kTileSide; ++z) {
+      open[z + 1] = 0;
+      for (const Rows& of_layer : pending) open[z + 1] |= of_layer[z];
+    }
     for (Rows& r : rows) r.fill(0);
     queue.clear();
-    const auto take = [&](int32_t cell, int32_t k) {
-      const int32_t top = layer(k).top[static_cast<size_t>(cell)];
+    const auto take = [&](size_t cell, int32_t k) {
+      const auto l = static_cast<size_t>(k), z = cell / kTileSide;
+      const int32_t top = layer(k).top[cell];
       const int32_t low = std::min(component.tops.low, top),
                     high = std::max(component.tops.high, top);
       if (static_cast<int64_t>(high) - low > kMaxRange) return;
-      component.tops.low = low;
-      component.tops.high = high;
+      component.tops = {low, high};
       ++component.count;
-      label_of(cell, k) = piece;
-      taken[static_cast<size_t>(cell)] = piece;
-      const size_t z = static_cast<size_t>(cell / kSide);
-      component.cells[z] |= uint64_t{1} << (cell % kSide);
-      rows[static_cast<size_t>(k)][z] |= uint64_t{1} << (cell % kSide);
-      queue.push_back({cell, k});
+      const uint64_t bit = uint64_t{1} << cell % kTileSide;
+      pending[l][z] &= ~bit;
+      open[z + 1] &= ~bit;
+      component.cells[z] |= bit;
+      rows[l][z] |= bit;
+      queue.push_back({static_cast<uint16_t>(cell), static_cast<uint16_t>(k)});
     };
-    take(seed.cell, seed.layer);
+    take(static_cast<size_t>(seed_cell), seed_layer);
     for (size_t head = 0; head < queue.size(); ++head) {
       const Gap gap = queue[head];
-      const int32_t x = gap.cell % kSide, z = gap.cell / kSide;
-      const std::array<std::array<int32_t, 2>, 4> around{
-          {{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}};
-      for (const auto& [nx, nz] : around) {
-        if (nx < 0 || nz < 0 || nx >= kSide || nz >= kSide) continue;
-        const int32_t other = nz * kSide + nx;
-        if (taken[static_cast<size_t>(other)] == piece) continue;
-        for (int32_t m = 0; m < gaps_.count[static_cast<size_t>(other)]; ++m) {
-          if (label_of(other, m) != kPending ||
-              !linked(static_cast<size_t>(gap.cell), gap.layer, static_cast<size_t>(other), m)) {
+      const size_t z = gap.cell / kTileSide;
+      const uint64_t bit = uint64_t{1} << gap.cell % kTileSide;
+      const uint64_t left = bit >> 1 & open[z + 1], right = bit << 1 & open[z + 1];
+      const uint64_t up = bit & open[z], down = bit & open[z + 2];
+      if ((left | right | up | down) == 0) continue;
+      const auto grow_to = [&](size_t other, uint64_t other_bit) {
+        for (int32_t m = 0; m < gaps_.count[other]; ++m) {
+          if ((pending[static_cast<size_t>(m)][other / kTileSide] & other_bit) == 0 ||
+              !linked(gap.cell, gap.layer, other, m)) {
             continue;
           }
           take(other, m);
           break;
         }
+      };
+      if (left != 0) grow_to(gap.cell - size_t{1}, left);
+      if (right != 0) grow_to(gap.cell + size_t{1}, right);
+      if (up != 0) grow_to(gap.cell - size_t{kTileSide}, up);
+      if (down != 0) grow_to(gap.cell + size_t{kTileSide}, down);
+    }
+    for (size_t k = 0; k < layers; ++k) {
+      for (int32_t z = 0; z < kSide; ++z) {
+        const uint64_t cells = rows[k][static_cast<size_t>(z)];
+        if (cells != 0) pieces_.push_back({static_cast<int32_t>(k), z, cells, piece});
       }
     }
-    components_.push_back(component);
-    for (int32_t k = 0; k < gaps_.max_count; ++k) {
-      for (int32_t z = 0; z < kSide; ++z) {
-        const uint64_t cells = rows[static_cast<size_t>(k)][static_cast<size_t>(z)];
-        if (cells != 0) pieces_.push_back({k, z, cells, piece});
-      }
+  };
+  components_[static_cast<size_t>(index)].count = 0;  // its number is used no more
+  for (size_t i = 0; i < runs_.size(); ++i) {
+    const Run run = runs_[i];
+    if (run.component != index) continue;
+    const uint64_t& left = pending[static_cast<size_t>(run.layer)][static_cast<size_t>(run.z)];
+    while ((left & run.cells) != 0) {
+      grow_piece(run.z * kSide + std::countr_zero(left & run.cells), run.layer);
     }
   }
 }

@@ -88,7 +88,11 @@ BitPlane widened(const BitPlane& plane, int32_t reach) {
 
 bool column_is_free(const SheetList& tile, size_t cell, const ColumnNeed& need) {
   for (const Sheet* sheet : tile) {
-    if (sheet->top[cell] == kNone16) continue;
+    // Most sheets are other storeys: their extremes tell without a look at the cell.
+    if (sheet->base + sheet->low_top > need.high_top ||
+        sheet->base + sheet->high_top < need.low_top || sheet->top[cell] == kNone16) {
+      continue;
+    }
     const int32_t top = sheet->base + sheet->top[cell];
     const bool room =
         sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;

@@ -456,6 +456,29 @@ void LinkTops(const Sheet& sheet, int32_t step, TopLinks& links) {
   for (size_t z = 0; z + 1 < kTileSide; ++z) links.down[z] &= links.has[z + 1];
 }
 
+void EvenRuns(const Sheet& sheet, const LinkRule& rule, CellRows& rows) {
+  const DU du;
+  const auto step = hn::Set(du, static_cast<uint16_t>(rule.step));
+  const auto gap = hn::Set(du, static_cast<uint16_t>(rule.gap)), none = hn::Set(du, kNone16);
+  const auto at_most = [](hn::Vec<DU> a, hn::Vec<DU> b) { return hn::Eq(hn::Min(a, b), a); };
+  for (size_t z = 0; z < kTileSide; ++z) {
+    uint64_t has = 0, even = 0;
+    for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
+      const size_t c = z * kTileSide + x;
+      // Past the last row this reads the array that follows: masked below.
+      const auto top = hn::Load(du, &sheet.top[c]), next = hn::LoadU(du, &sheet.top[0] + c + 1);
+      const auto ceiling =
+          hn::Min(hn::Load(du, &sheet.ceiling[c]), hn::LoadU(du, &sheet.ceiling[0] + c + 1));
+      const auto high = hn::Max(top, next);
+      has |= bits_of(du, hn::Ne(top, none)) << x;
+      even |= bits_of(du, hn::And(at_most(hn::Sub(high, hn::Min(top, next)), step),
+                                  at_most(gap, hn::SaturatedSub(ceiling, high))))
+              << x;
+    }
+    rows[z] = even & has & has >> 1;
+  }
+}
+
 void AddGapBits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
@@ -489,6 +512,7 @@ HWY_EXPORT(PresentBits);
 HWY_EXPORT(CeilingRange);
 HWY_EXPORT(ChooseGaps);
 HWY_EXPORT(LinkTops);
+HWY_EXPORT(EvenRuns);
 HWY_EXPORT(AddGapBits);
 HWY_EXPORT(PlaneFits);
 HWY_EXPORT(PutOnPlane);
@@ -550,6 +574,10 @@ void put_on_plane(const LevelPlane& plane, Sheet& sheet) {
 
 void link_tops(const Sheet& sheet, int32_t step, TopLinks& links) {
   HWY_DYNAMIC_DISPATCH(LinkTops)(sheet, step, links);
+}
+
+void even_runs(const Sheet& sheet, const LinkRule& rule, CellRows& rows) {
+  HWY_DYNAMIC_DISPATCH(EvenRuns)(sheet, rule, rows);
 }
 
 void add_gap_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {

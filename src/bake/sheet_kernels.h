@@ -107,6 +107,10 @@ struct TopLinks {
 };
 void link_tops(const Sheet& sheet, int32_t step, TopLinks& links);
 
+/// Bit x of row z: both it and the next cell have a gap, tops are at most `rule.step` apart, and
+/// there is `rule.gap` of room over both.
+void even_runs(const Sheet& sheet, const LinkRule& rule, CellRows& rows);
+
 /// Adds the cells that have a gap to `rows`.
 void add_gap_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows);
 

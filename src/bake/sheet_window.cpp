@@ -48,6 +48,35 @@ const Sheet* nearest_sheet(const SheetList& tile, size_t cell, int32_t near_top)
   return best;
 }
 
+// Adds the holes of a sheet that another one's gaps continue by a step. Returns 0 if there are
+// none.
+uint64_t add_steps(const Sheet& own, const CellRows& own_gaps, const Sheet& other,
+                   const CellRows& other_gaps, int32_t step, CellRows& holes) {
+  // Most of the other sheets are other storeys.
+  if (own.base + own.low_top - step > other.base + other.high_top ||
+      own.base + own.high_top + step < other.base + other.low_top) {
+    return 0;
+  }
+  uint64_t any = 0;
+  const auto look = [&](uint64_t cells, size_t z, ptrdiff_t way) {
+    for (; cells != 0; cells &= cells - 1) {
+      const size_t cell = z * kTileSide + static_cast<size_t>(std::countr_zero(cells));
+      const int32_t own_top = own.top[static_cast<size_t>(static_cast<ptrdiff_t>(cell) + way)];
+      if (std::abs(other.base + other.top[cell] - own.base - own_top) > step) continue;
+      any |= holes[z] |= uint64_t{1} << cell % kTileSide;
+    }
+  };
+  for (size_t z = 0; z < kTileSide; ++z) {
+    const uint64_t open = other_gaps[z] & ~own_gaps[z];
+    if (open == 0) continue;
+    look(open & own_gaps[z] << 1, z, -1);
+    look(open & own_gaps[z] >> 1, z, 1);
+    if (z > 0) look(open & own_gaps[z - 1], z, -kTileSide);
+    if (z + 1 < kTileSide) look(open & own_gaps[z + 1], z, kTileSide);
+  }
+  return any;
+}
+
 // The parts, of the cell that lies (dx, dz) from a square's, that are nearer to the square than the
 // radius. [cells]
 uint64_t near_parts_of(int32_t dx, int32_t dz, double radius) {
@@ -231,11 +260,41 @@ void SheetWindow::fill_corner(const SheetList& tile, const Sheet& own, int32_t d
 void SheetWindow::fill_holes(const SheetList& tile, size_t sheet, const BodyLimits& limits) {
   const Sheet& own = *tile[sheet];
   if (own.cells == kTileArea) return;
-  std::array<uint64_t, kTileSide> filled{}, others{};
+  CellRows filled{}, others{}, hopeful{};
   add_gap_bits(own, filled);
+  uint64_t any = 0;
   for (const Sheet* other : tile) {
-    if (other != &own) add_gap_bits(*other, others);
+    if (other == &own) continue;
+    CellRows gaps{};
+    add_gap_bits(*other, gaps);
+    for (size_t z = 0; z < kTileSide; ++z) others[z] |= gaps[z];
+    any |= add_steps(own, filled, *other, gaps, limits.link_step, hopeful);
   }
+  if (any == 0) return;
+  // Which sheet has the gap nearest to a top, if it lies within a step. Gaps of a column have tops
+  // at least low_gap apart, so one that is nearer than half of that is the nearest: mostly the
+  // sheet's that the last hole was filled from.
+  size_t last = sheet == 0 ? 1 : 0;
+  const int32_t surely_nearest = (limits.low_gap - 1) / 2;
+  const auto next_floor = [&](size_t cell, int32_t near_top) {
+    const auto distance = [&](const Sheet& other) {
+      return std::abs(other.base + other.top[cell] - near_top);
+    };
+    if (tile[last]->top[cell] != kNone16 && distance(*tile[last]) <= surely_nearest) return last;
+    size_t best = tile.size();
+    int32_t best_distance = limits.link_step + 1;
+    for (size_t i = 0; i < tile.size(); ++i) {
+      const Sheet& other = *tile[i];
+      if (near_top < other.base + other.low_top - limits.link_step ||
+          near_top > other.base + other.high_top + limits.link_step || other.top[cell] == kNone16 ||
+          distance(other) >= best_distance) {
+        continue;
+      }
+      best_distance = distance(other);
+      best = i;
+    }
+    return best;
+  };
   const auto try_fill = [&](int32_t x, int32_t z) {
     const size_t at = index(x, z);
     const size_t cell = static_cast<size_t>(z * kTileSide + x);
@@ -243,33 +302,67 @@ void SheetWindow::fill_holes(const SheetList& tile, size_t sheet, const BodyLimi
                                        index(x, z + 1)};
     for (const size_t next : around) {
       if (top[next] == kNone16) continue;
-      const Sheet* other = nearest_sheet(tile, cell, own.base + top[next]);
-      if (other == nullptr) continue;
-      const int32_t shift = other->base - own.base;
-      const uint16_t other_top = rebased_top(other->top[cell], shift);
-      const uint16_t other_ceiling = rebased_ceiling(other->ceiling[cell], shift);
+      const size_t floor = next_floor(cell, own.base + top[next]);
+      if (floor == tile.size()) continue;
+      const Sheet& other = *tile[floor];
+      const int32_t shift = other.base - own.base;
+      const uint16_t other_top = rebased_top(other.top[cell], shift);
+      const uint16_t other_ceiling = rebased_ceiling(other.ceiling[cell], shift);
       const int32_t room = std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]);
       if (std::abs(other_top - top[next]) > limits.link_step || room < limits.low_gap) {
         continue;
       }
       top[at] = other_top;
       ceiling[at] = other_ceiling;
+      last = floor;
       return true;
     }
     return false;
   };
-  // Holes are filled from their rims inward, a row at a time: down the tile, then up.
+  // After a hole was filled, those to the right of it as far as the same floor is so even that
+  // each would be filled from the one before it.
+  std::vector<CellRows> even(tile.size());
+  std::vector<uint8_t> known(tile.size(), 0);
+  const auto fill_on = [&](int32_t x, int32_t z, uint64_t open) {
+    const Sheet& other = *tile[last];
+    const int32_t shift = other.base - own.base;
+    // All heights are told on this sheet's scale, too.
+    if (other.low_top + shift < 0 || other.high_top + shift + limits.low_gap > kHighCeiling16) {
+      return uint64_t{0};
+    }
+    if (known[last] == 0) even_runs(other, {surely_nearest, limits.low_gap}, even[last]);
+    known[last] = 1;
+    const uint64_t onward = open & even[last][static_cast<size_t>(z)] << 1;
+    const int32_t count = x < kTileSide - 1 ? std::countr_one(onward >> (x + 1)) : 0;
+    if (count == 0) return uint64_t{0};
+    const size_t from = static_cast<size_t>(z * kTileSide + x + 1), to = index(x + 1, z);
+    rebase_row(&other.top[from], count, shift, &top[to], rebased_top);
+    rebase_row(&other.ceiling[from], count, shift, &ceiling[to], rebased_ceiling);
+    return ~uint64_t{0} >> (64 - count) << (x + 1);
+  };
+  // Holes are filled from their rims inward, a row at a time: down the tile, then up. Each is asked
+  // once a pass, the first of a row's rim first; but those that are neither hopeful nor beside one
+  // that was filled would be asked in vain.
+  CellRows fresh{};  // filled here
   const auto fill_row = [&](int32_t z) {
     const auto r = static_cast<size_t>(z);
-    const uint64_t above = z > 0 ? filled[r - 1] : 0;
-    const uint64_t below = z + 1 < kTileSide ? filled[r + 1] : 0;
+    const auto beside = [&](const CellRows& rows) {
+      const uint64_t above = z > 0 ? rows[r - 1] : 0;
+      const uint64_t below = z + 1 < kTileSide ? rows[r + 1] : 0;
+      return above | below | rows[r] << 1 | rows[r] >> 1;
+    };
     uint64_t open = others[r] & ~filled[r];
     while (true) {
-      const uint64_t rim = open & (above | below | filled[r] << 1 | filled[r] >> 1);
-      if (rim == 0) return;
-      const uint64_t bit = rim & (~rim + 1);
-      open &= ~bit;
-      if (try_fill(std::countr_zero(bit), z)) filled[r] |= bit;
+      const uint64_t asked = open & (hopeful[r] | beside(fresh));
+      if (asked == 0) return;
+      const uint64_t bit = asked & (~asked + 1);
+      open &= ~(bit | (beside(filled) & (bit - 1)));
+      const int32_t x = std::countr_zero(bit);
+      if (!try_fill(x, z)) continue;
+      const uint64_t cells = bit | fill_on(x, z, open);
+      open &= ~cells;
+      filled[r] |= cells;
+      fresh[r] |= cells;
     }
   };
   for (int32_t z = 0; z < kTileSide; ++z) fill_row(z);

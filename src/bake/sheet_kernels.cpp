@@ -157,22 +157,18 @@ void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet) {
         hn::Or(hn::Eq(support, hn::Set(di, kNoSupport)),
                hn::Or(hn::Lt(feet, hn::Zero(di)), hn::Gt(feet, hn::Set(di, kHighCeiling16))));
     const auto kept = hn::IfThenElse(bad, none, feet);
+    const auto codes = hn::TruncateTo(db, hn::BitCast(hn::RebindToUnsigned<DI>(), code));
     if (here == (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL)) {
       hn::StoreU(narrow(top), dh, &sheet.top[c]);
       hn::StoreU(narrow(ceiling), dh, &sheet.ceiling[c]);
       hn::StoreU(narrow(kept), dh, &sheet.feet[c]);
+      hn::StoreU(codes, db, &sheet.code[c]);
     } else {
       const auto mask = mask_of(dh, here);
       hn::BlendedStore(narrow(top), mask, dh, &sheet.top[c]);
       hn::BlendedStore(narrow(ceiling), mask, dh, &sheet.ceiling[c]);
       hn::BlendedStore(narrow(kept), mask, dh, &sheet.feet[c]);
-    }
-    alignas(64) uint8_t codes[64];
-    const hn::RebindToUnsigned<DI> dw;
-    hn::StoreU(hn::TruncateTo(db, hn::BitCast(dw, code)), db, codes);
-    for (uint64_t left = here; left != 0; left &= left - 1) {
-      const int i = __builtin_ctzll(left);
-      sheet.code[c + static_cast<size_t>(i)] = codes[i];
+      hn::BlendedStore(codes, mask_of(db, here), db, &sheet.code[c]);
     }
   }
 }

@@ -70,10 +70,12 @@ class Dealer {
   }
   [[nodiscard]] bool linked(size_t cell_a, int32_t a, size_t cell_b, int32_t b) const {
     const GapLayer &p = layer(a), &q = layer(b);
-    const int32_t high = std::max(p.top[cell_a], q.top[cell_b]);
-    const int32_t low = std::min(p.top[cell_a], q.top[cell_b]);
-    if (high - low > rule_.step) return false;
-    return std::min(p.ceiling[cell_a], q.ceiling[cell_b]) - high >= rule_.gap;
+    return linked(p.top[cell_a], p.ceiling[cell_a], q.top[cell_b], q.ceiling[cell_b]);
+  }
+  [[nodiscard]] bool linked(int32_t top_a, int32_t ceiling_a, int32_t top_b,
+                            int32_t ceiling_b) const {
+    const int32_t high = std::max(top_a, top_b), low = std::min(top_a, top_b);
+    return high - low <= rule_.step && std::min(ceiling_a, ceiling_b) - high >= rule_.gap;
   }
   // Is the gap one of those to deal?
   [[nodiscard]] bool is_ours(size_t cell, int32_t k) const {
@@ -218,7 +220,7 @@ void Dealer::split(int32_t index) {
     if (run.component != index) continue;
     pending[static_cast<size_t>(run.layer)][static_cast<size_t>(run.z)] |= run.cells;
   }
-  std::vector<Gap> queue;
+  std::array<Gap, kTileArea> queue;
   std::vector<Rows> rows(layers);
   // Row z + 1: columns with gaps that are pending, but not those where the piece has one. Most of
   // what a gap has around is its own piece, and a few operations tell.
@@ -232,37 +234,38 @@ void Dealer::split(int32_t index) {
       for (const Rows& of_layer : pending) open[z + 1] |= of_layer[z];
     }
     for (Rows& r : rows) r.fill(0);
-    queue.clear();
-    const auto take = [&](size_t cell, int32_t k) {
+    TopRange tops;
+    size_t count = 0;
+    const auto take = [&](size_t cell, int32_t k, int32_t top) {
       const auto l = static_cast<size_t>(k), z = cell / kTileSide;
-      const int32_t top = layer(k).top[cell];
-      const int32_t low = std::min(component.tops.low, top),
-                    high = std::max(component.tops.high, top);
+      const int32_t low = std::min(tops.low, top), high = std::max(tops.high, top);
       if (static_cast<int64_t>(high) - low > kMaxRange) return;
-      component.tops = {low, high};
-      ++component.count;
+      tops = {low, high};
       const uint64_t bit = uint64_t{1} << cell % kTileSide;
       pending[l][z] &= ~bit;
       open[z + 1] &= ~bit;
       component.cells[z] |= bit;
       rows[l][z] |= bit;
-      queue.push_back({static_cast<uint16_t>(cell), static_cast<uint16_t>(k)});
+      queue[count++] = {static_cast<uint16_t>(cell), static_cast<uint16_t>(k)};
     };
-    take(static_cast<size_t>(seed_cell), seed_layer);
-    for (size_t head = 0; head < queue.size(); ++head) {
+    const auto seed = static_cast<size_t>(seed_cell);
+    take(seed, seed_layer, layer(seed_layer).top[seed]);
+    for (size_t head = 0; head < count; ++head) {
       const Gap gap = queue[head];
       const size_t z = gap.cell / kTileSide;
       const uint64_t bit = uint64_t{1} << gap.cell % kTileSide;
       const uint64_t left = bit >> 1 & open[z + 1], right = bit << 1 & open[z + 1];
       const uint64_t up = bit & open[z], down = bit & open[z + 2];
       if ((left | right | up | down) == 0) continue;
+      const GapLayer& own = layer(gap.layer);
+      const int32_t top = own.top[gap.cell], ceiling = own.ceiling[gap.cell];
       const auto grow_to = [&](size_t other, uint64_t other_bit) {
-        for (int32_t m = 0; m < gaps_.count[other]; ++m) {
-          if ((pending[static_cast<size_t>(m)][other / kTileSide] & other_bit) == 0 ||
-              !linked(gap.cell, gap.layer, other, m)) {
-            continue;
-          }
-          take(other, m);
+        const int32_t gaps_there = gaps_.count[other];
+        for (int32_t m = 0; m < gaps_there; ++m) {
+          if ((pending[static_cast<size_t>(m)][other / kTileSide] & other_bit) == 0) continue;
+          const GapLayer& theirs = layer(m);
+          if (!linked(top, ceiling, theirs.top[other], theirs.ceiling[other])) continue;
+          take(other, m, theirs.top[other]);
           break;
         }
       };
@@ -271,6 +274,8 @@ void Dealer::split(int32_t index) {
       if (up != 0) grow_to(gap.cell - size_t{kTileSide}, up);
       if (down != 0) grow_to(gap.cell + size_t{kTileSide}, down);
     }
+    component.tops = tops;
+    component.count = static_cast<int32_t>(count);
     for (size_t k = 0; k < layers; ++k) {
       for (int32_t z = 0; z < kSide; ++z) {
         const uint64_t cells = rows[k][static_cast<size_t>(z)];

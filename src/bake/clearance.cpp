@@ -76,9 +76,14 @@ void link_sheet(const Sheet& sheet, const std::array<const TileSheets*, 4>& side
     const auto& own = sheet.border[side];
     for (size_t s = 0; s < tile->size(); ++s) {
       const Sheet& other = *(*tile)[s];
-      if (!other.has_border[kAcross[side]]) continue;
-      const auto& across = other.border[kAcross[side]];
       const int32_t shift = other.base - sheet.base;
+      // Most are other storeys. (Feet may have moved by a millimetre since they were ranged.)
+      if (!other.has_border[kAcross[side]] ||
+          other.low_feet + shift > sheet.high_feet + max_step + 2 ||
+          other.high_feet + shift < sheet.low_feet - max_step - 2) {
+        continue;
+      }
+      const auto& across = other.border[kAcross[side]];
       for (size_t i = 0; i < kTileSide; ++i) {
         const int32_t apart = std::abs(across[i] + shift - own[i]);
         const int32_t rise = own[i] == kNone16 || across[i] == kNone16 ? kFar : apart;
@@ -109,21 +114,23 @@ void erode(const std::array<const TileLegality*, 9>& tiles, size_t sheet, size_t
   out = {};
   out.legal = own.classes[avatar_class].legal;
   for (const uint64_t row : out.legal) out.cells += std::popcount(row);
-  std::array<Row, kRows> next;
   bool full = out.cells == kTileArea;
+  // Rows from first to last have cells: many sheets are a storey of a few rows.
+  size_t first = 0, last = kRows - 1;
   for (int32_t k = 0; k < kMaxMargin; ++k) {
-    for (size_t z = 0; z < kRows; ++z) {
-      const Row row = rows[z];
-      const Row across = row & (row << 1) & (row >> 1);
-      const size_t up = z > 0 ? z - 1 : z, down = z + 1 < kRows ? z + 1 : z;
-      if (!kSquare[static_cast<size_t>(k)]) {
-        next[z] = across & rows[up] & rows[down];
-        continue;
+    while (first < last && rows[first] == 0) ++first;
+    while (last > first && rows[last] == 0) --last;
+    Row above = first > 0 ? 0 : rows[0];  // as it was
+    for (size_t z = first; z <= last; ++z) {
+      const Row row = rows[z], below = rows[z + 1 < kRows ? z + 1 : z];
+      if (kSquare[static_cast<size_t>(k)]) {
+        const Row column = row & above & below;
+        rows[z] = column & (column << 1) & (column >> 1);
+      } else {
+        rows[z] = row & (row << 1) & (row >> 1) & above & below;
       }
-      const Row column = row & rows[up] & rows[down];
-      next[z] = column & (column << 1) & (column >> 1);
+      above = row;
     }
-    rows = next;
     uint64_t left = 0, missing = 0;
     for (size_t z = 0; z < kTileSide; ++z) {
       const uint64_t survivors = static_cast<uint64_t>(rows[z + kApronBits] >> kApronBits);

@@ -112,7 +112,14 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BitPlane& gr
   uint16_t* aligned = scratch.rows.data();
   aligned += (64 - reinterpret_cast<uintptr_t>(aligned) % 64) % 64 / sizeof(uint16_t);
   const RowTable table{aligned, count};
+  // Rows that no allowed cell looks at are left out.
+  const auto is_asked = [&](int32_t z) {
+    const int32_t from = std::max(z - reach, 0), to = std::min(z + reach, kTileSide - 1);
+    return std::any_of(&ground[static_cast<size_t>(from)], &ground[static_cast<size_t>(to)] + 1,
+                       [](uint64_t row) { return row != 0; });
+  };
   for (int32_t z = -reach; z < kTileSide + reach; ++z) {
+    if (!is_asked(z)) continue;
     const uint16_t* top = &scratch.window.top[scratch.window.index(0, z)];
     const uint16_t* ceiling = &scratch.window.ceiling[scratch.window.index(0, z)];
     const auto row = [&](int32_t k, int32_t q) {

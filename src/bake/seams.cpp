@@ -39,19 +39,28 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
 
 // Cells of a sheet whose neighbour is continued by another sheet of the tile.
 BitPlane seam_cells(const SheetList& tile, const Sheet& own, int32_t max_step) {
+  // Most of the other sheets are other storeys, which continue nothing.
+  const auto is_near = [&](const Sheet& other) {
+    return &other != &own && other.base + other.low_top <= own.base + own.high_top + max_step &&
+           other.base + other.high_top >= own.base + own.low_top - max_step;
+  };
+  BitPlane others{}, seams{};
+  bool any = false;
+  for (const Sheet* other : tile) {
+    if (!is_near(*other)) continue;
+    add_gap_bits(*other, others);
+    any = true;
+  }
+  if (!any) return seams;
   TopLinks links;
   link_tops(own, max_step, links);
-  BitPlane others{}, seams{};
-  for (const Sheet* other : tile) {
-    if (other != &own) add_gap_bits(*other, others);
-  }
   const auto look = [&](uint64_t cells, int32_t z, int32_t dx, int32_t dz) {
     for (; cells != 0; cells &= cells - 1) {
       const int32_t x = std::countr_zero(cells);
       const int32_t top = own.base + own.top[static_cast<size_t>(z * kTileSide + x)];
       const auto next = static_cast<size_t>((z + dz) * kTileSide + x + dx);
       for (const Sheet* other : tile) {
-        if (other == &own || other->top[next] == kNone16) continue;
+        if (!is_near(*other) || other->top[next] == kNone16) continue;
         if (std::abs(other->base + other->top[next] - top) > max_step) continue;
         seams[static_cast<size_t>(z)] |= 1ULL << x;
         break;

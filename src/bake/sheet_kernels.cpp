@@ -262,6 +262,7 @@ void MakeTilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
   const size_t lanes = hn::Lanes(du);
   alignas(64) uint16_t along[kTileSide], across[kTileSide + 64];
   for (size_t z = 0; z < kTileSide; ++z) {
+    if (sheet.useful[z] == 0) continue;
     const size_t middle = std::clamp<size_t>(z, 1, kTileSide - 2);
     const uint16_t* row = &sheet.feet[z * kTileSide];
     const uint16_t* centre = &sheet.feet[middle * kTileSide];

@@ -53,7 +53,8 @@ void summarise(Sheet& sheet);
 /// to within 2 mm.
 bool may_be_plane(const Sheet& sheet);
 
-/// Half of what the feet may rise or fall over each cell, see world/surface.h. [mm]
+/// Half of what the feet may rise or fall over each cell, see world/surface.h; rows in which nobody
+/// may stand are left as they are. [mm]
 void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt);
 
 /// What the column of a body's feet must have: matter at most this far above them, room over them,

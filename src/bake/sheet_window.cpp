@@ -157,12 +157,23 @@ void SheetWindow::copy_own(const Sheet& own) {
 }
 
 void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach) {
+  // Only where a body on the sheet reaches: many sheets are a storey in the middle of the tile.
+  const uint64_t beside = (uint64_t{1} << reach) - 1;  // Bodies reach at most 49 cells.
+  const auto is_reached = [&](int32_t dx, int32_t dz) {
+    const uint64_t columns =
+        dx == 0 ? ~uint64_t{0} : (dx < 0 ? beside : beside << (kTileSide - reach));
+    const int32_t z0 = dz > 0 ? kTileSide - reach : 0, z1 = dz < 0 ? reach : kTileSide;
+    uint64_t any = 0;
+    for (int32_t z = z0; z < z1; ++z) any |= own.useful[static_cast<size_t>(z)] & columns;
+    return any != 0;
+  };
   // Corners last: they look at the sides.
   for (const int32_t side : {1, 3, 5, 7, 0, 2, 6, 8}) {
     if (tiles[static_cast<size_t>(side)] == nullptr) continue;
     const SheetList& tile = *tiles[static_cast<size_t>(side)];
     if (tile.empty()) continue;
     const int32_t dx = side % 3 - 1, dz = side / 3 - 1;
+    if (!is_reached(dx, dz)) continue;
     const auto range = [&](int32_t d) -> std::pair<int32_t, int32_t> {
       if (d < 0) return {-reach, 0};
       if (d > 0) return {kTileSide, kTileSide + reach};

@@ -234,6 +234,7 @@ TEST(Clearance, LinksLeadToTheNearestFeetAcrossTheBorderWithinTheStep) {
         if (below(10) == 0) feet = kNone16;
       }
       for (uint64_t& row : sheet->useful) row = ~(uint64_t{1} << below(64));
+      summarise(*sheet);
       set_borders(*sheet);
       return sheet;
     };

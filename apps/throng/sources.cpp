@@ -113,7 +113,20 @@ void append_scene(Scene& scene, const Scene& other) {
       scene.patch_of_triangle.push_back(patch == kNoPatch ? kNoPatch : first_patch + patch);
     }
     scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
+    const bool known = scene.patch_off.size() == scene.patches.size() &&
+                       other.patch_off.size() == other.patches.size();
     scene.patches.append(other.patches);
+    if (known) {
+      scene.patch_part.resize(first_triangle);
+      scene.patch_part.insert(scene.patch_part.end(), other.patch_part.begin(),
+                              other.patch_part.end());
+      scene.patch_part.resize(scene.triangles.size());
+      scene.patch_off.insert(scene.patch_off.end(), other.patch_off.begin(),
+                             other.patch_off.end());
+    } else {
+      scene.patch_part.clear();
+      scene.patch_off.clear();
+    }
   }
   scene.report.triangles_read += other.report.triangles_read;
   scene.report.non_finite += other.report.non_finite;

@@ -129,12 +129,23 @@ struct TessellationConfig {
   uint64_t most_triangles = 100'000'000;  ///< More are refused. [<= 4 thousand million]
 };
 
+/// Which part of a patch's parameters a triangle covers, in 256ths rounded outward, with both ends:
+/// s from s0 / 256 to (s1 + 1) / 256.
+struct PatchPart {
+  uint8_t s0 = 0, s1 = 255, t0 = 0, t1 = 255;
+  friend bool operator==(const PatchPart&, const PatchPart&) = default;
+};
+
 /// Triangles of patch p: triangles[first[p]] to triangles[first[p + 1]], counter-clockwise seen
 /// from where the normal points to.
 struct PatchMesh {
   std::vector<Vec3d> positions;
   std::vector<std::array<uint32_t, 3>> triangles;
-  std::vector<uint32_t> first;  ///< patches + 1
+  std::vector<uint32_t> first;   ///< patches + 1
+  std::vector<PatchPart> parts;  ///< One per triangle.
+  /// By patch: how far its vertices are from its surface at their parameters, at most: what rounds
+  /// them, and on an edge whose neighbour has another curve what lies between. [m]
+  std::vector<double> off;
 };
 
 /// Cuts all patches, each as finely as its own curvature needs, in steps that are powers of two (at

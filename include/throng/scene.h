@@ -60,6 +60,10 @@ struct THRONG_API Scene {
   PatchSet patches;              ///< Curved ground; its triangles are among the above.
   /// One per triangle, kNoPatch for those of no patch; empty where there are no patches.
   std::vector<uint32_t> patch_of_triangle;
+  /// As PatchMesh has them: one per triangle, those of no patch hold nothing; and one per patch.
+  /// Both empty where nobody knows: then a patch's own triangles are taken for anybody's.
+  std::vector<PatchPart> patch_part;
+  std::vector<double> patch_off;
   std::vector<Material> materials;  ///< Of the parts; empty where nobody asked for them.
   std::vector<Texture> textures;
   /// One per triangle; empty where nothing has a texture.

@@ -15,15 +15,18 @@
 // angle w of m, and its points within a radius a of m's axis and between e0 and e1 along it, then
 // all bodies on it lie within a + radius + height sin(w) of the axis and between
 // e0 + b cos(w) - radius sin(w) and e1 + height + radius sin(w). No triangle there, no triangle in
-// any body. The patch's own triangles and its neighbours' are tested like all others: only where
-// they bend by more than a body's bottom do they get in its way.
+// any body. The neighbours' triangles are tested like all others. So are the patch's own, unless
+// they are known to rise by less than a body's bottom around any feet (own_ground): a cylinder that
+// holds bodies all over a cell meets the cell's own slope where none of the bodies does.
 namespace throng {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for triangles together
-constexpr size_t kPart = 32;            // cells of a region that choose among these together
-constexpr size_t kSquare = 4;           // cells of a part that choose again
+constexpr int32_t kBlockHalvings = 2;   // of a block's, that choose among these together
+constexpr size_t kBlock = size_t{1} << (2 * kBlockHalvings);
+constexpr size_t kSquare = 4;           // cells of a block that choose again
+constexpr double kRiseMargin = 1e-6;    // for rounding; everything else is told by a bound [m]
 constexpr double kSlopeMargin = 1e-6;   // a plane at exactly a limit keeps it
 
 inline void join(Box3d& box, const Box3d& other) {
@@ -77,8 +80,7 @@ PatchJudge::PatchJudge(const TriangleSquares& triangles, std::span<const AvatarC
     bin_cosine_.push_back(rounded_cosine(edge) - kSlopeMargin);
   }
   tallest_ = bins.height.back();
-  least_bottom_ = kNever;
-  for (const PatchBody& body : bodies_) least_bottom_ = std::min(least_bottom_, body.bottom);
+  for (const PatchBody& body : bodies_) greatest_bottom_ = std::max(greatest_bottom_, body.bottom);
 }
 
 int32_t PatchJudge::depth_of(const BezierPatch& patch) const {
@@ -116,8 +118,8 @@ BezierCells PatchJudge::judge(uint32_t patch) {
   const size_t cells = size_t{1} << (2 * out.promise.depth);
   out.promise.cells.resize(cells);
   out.shape.resize(cells);
+  patch_ = patch;
   visit(whole, 0, 0, 0, out);
-  judge_pending(out);
   for (const uint32_t p : beside_) is_beside_[p] = 0;
   for (const uint32_t p : out.makers) is_beside_[p] = 0;
   std::sort(out.makers.begin(), out.makers.end());
@@ -137,7 +139,8 @@ void PatchJudge::visit(const BezierPatch& part, int32_t level, int32_t s, int32_
       }
       part_cell_.push_back(out.promise.index(cell_s, cell_t));
     }
-    judge_pending(out);
+    bound_cells(out);
+    if (!bounded_.empty()) judge_region(level, s, t, out);
     return;
   }
   const auto by_s = split_s(part, 0.5);
@@ -154,12 +157,13 @@ void PatchJudge::cut_region(const BezierPatch& part, int32_t halvings) {
   parts_.resize(1);
   parts_.set(0, part);
   for (int32_t k = 0; k < halvings; ++k) {
-    quarter_parts(parts_, coarser_);
+    if (halvings - k == kBlockHalvings) std::swap(blocks_, parts_);
+    quarter_parts(halvings - k == kBlockHalvings ? blocks_ : parts_, coarser_);
     std::swap(parts_, coarser_);
   }
 }
 
-// What the surfaces alone tell; cells on which a body might stand are left pending.
+// What the surfaces alone tell.
 void PatchJudge::bound_cells(BezierCells& out) {
   bounds_.resize(parts_.count);
   bound_cells_of(parts_, bounds_);
@@ -168,8 +172,10 @@ void PatchJudge::bound_cells(BezierCells& out) {
     while (code < bin_cosine_.size() && cosine < bin_cosine_[code]) ++code;
     return code;
   };
-  const auto open = static_cast<uint8_t>(bins_->height.size());
+  bounded_.clear();
+  block_at_.clear();
   for (size_t i = 0; i < parts_.count; ++i) {
+    if (i % kBlock == 0) block_at_.push_back(bounded_.size());
     Promise& promise = out.promise.cells[part_cell_[i]];
     promise = {.classes = 0, .inclination = 15, .height = 0, .headroom = 0};
     CellShape& shape = out.shape[part_cell_[i]];
@@ -194,18 +200,13 @@ void PatchJudge::bound_cells(BezierCells& out) {
       steepest = std::max(steepest, steepest_cosine(parts_.patch(i), bound));
       promise.inclination = bin_of(steepest);
     }
-    promise.height = promise.headroom = open;
-    Pending& pending = pending_.emplace_back();
-    pending.cell = part_cell_[i];
-    pending.steepest = steepest;
-    pending.bounds = &bounds_[i];
-    add_posture(0, pending);
-    if (bound.frame.up.y <= bound.sine) {  // It may lean over: it is its own ceiling.
-      promise.headroom = 0;
-    } else {
-      add_posture(1, pending);
-    }
+    promise.height = static_cast<uint8_t>(bins_->height.size());
+    // What may lean over is its own ceiling.
+    const bool upright = bound.frame.up.y > bound.sine;
+    promise.headroom = upright ? promise.height : uint8_t{0};
+    bounded_.push_back({.cell = part_cell_[i], .part = i, .steepest = steepest, .upright = upright});
   }
+  block_at_.push_back(bounded_.size());
   part_cell_.clear();
 }
 
@@ -213,12 +214,12 @@ void PatchJudge::add_posture(size_t posture, Pending& cell) const {
   const SurfaceBound& surface = cell.surface(posture);
   BodySweep& prism = cell.prism[posture];
   prism = {.radius = surface.radius + tallest_ * surface.sine,
-           .low = surface.low + least_bottom_ * surface.cosine,
+           .low = surface.low + greatest_bottom_ * surface.cosine,
            .high = surface.high + tallest_};
   BodySweep& bodies = cell.bodies[posture];
   bool any = false;
   for (const PatchBody& body : bodies_) {
-    if (!is_asked(body, posture, cell)) continue;
+    if (!is_asked(body, posture, cell.steepest)) continue;
     const BodySweep sweep = sweep_of(surface, body);
     if (!any) bodies = sweep;
     any = true;
@@ -236,51 +237,178 @@ void PatchJudge::add_posture(size_t posture, Pending& cell) const {
   cell.postures = static_cast<int32_t>(posture) + 1;
 }
 
-// The cells of a region look for triangles together, then squares of them choose among these.
-void PatchJudge::judge_pending(BezierCells& out) {
-  bound_cells(out);
-  if (pending_.empty()) return;
-  const std::span<const Pending> all = pending_;
-  Box3d box;
-  boxes_.assign((all.size() + kSquare - 1) / kSquare, {});
-  for (size_t i = 0; i < all.size(); ++i) join(boxes_[i / kSquare], all[i].box);
-  for (const Box3d& square : boxes_) join(box, square);
-  gather(box);
-  for (size_t begin = 0; begin < all.size(); begin += kPart) {
-    const size_t end = std::min(begin + kPart, all.size());
-    Box3d around;
-    for (size_t k = begin; k < end; k += kSquare) join(around, boxes_[k / kSquare]);
-    narrow(near_, around, part_);
-    for (size_t k = begin; k < end; k += kSquare) {
-      const auto cells = all.subspan(k, std::min(kSquare, end - k));
-      find_makers(cells, out);
-      narrow(part_, boxes_[k / kSquare], block_);
-      for (const Pending& cell : cells) {
-        Promise& promise = out.promise.cells[cell.cell];
-        judge_posture(cell, 0, promise);
-        if (cell.postures > 1) judge_posture(cell, 1, promise);
-      }
-    }
+// The cells of a region look for triangles together, then blocks and squares of them choose among
+// these. Where no triangle is left but spared ones, a block is done.
+void PatchJudge::judge_region(int32_t level, int32_t s, int32_t t, BezierCells& out) {
+  const int32_t side = 256 >> level;
+  const OwnGround own(set_->patches[patch_],
+                      {static_cast<uint8_t>(s * side), static_cast<uint8_t>((s + 1) * side - 1),
+                       static_cast<uint8_t>(t * side), static_cast<uint8_t>((t + 1) * side - 1)});
+  const size_t blocks = block_at_.size() - 1;
+  block_boxes_.assign(blocks, {});
+  if (blocks > 1) {
+    block_bounds_.resize(blocks);
+    bound_cells_of(blocks_, block_bounds_);
   }
-  pending_.clear();
+  Box3d around;
+  for (size_t b = 0; b < blocks; ++b) {
+    Box3d& box = block_boxes_[b];
+    if (blocks > 1 && block_bounds_[b].valid) {
+      box = box_of(block_bounds_[b]);
+    } else {
+      for (size_t i = block_at_[b]; i < block_at_[b + 1]; ++i) join(box, pending(bounded_[i]).box);
+    }
+    if (block_at_[b] < block_at_[b + 1]) join(around, box);
+  }
+  gather(around, own);
+  for (size_t b = 0; b < blocks; ++b) {
+    const auto cells = std::span(bounded_).subspan(block_at_[b], block_at_[b + 1] - block_at_[b]);
+    if (!cells.empty()) judge_block(cells, block_boxes_[b], out);
+  }
 }
 
-void PatchJudge::gather(const Box3d& box) {
+PatchJudge::Pending PatchJudge::pending(const Bounded& cell) const {
+  Pending pending;
+  pending.cell = cell.cell;
+  pending.steepest = cell.steepest;
+  pending.bounds = &bounds_[cell.part];
+  add_posture(0, pending);
+  if (cell.upright) add_posture(1, pending);
+  return pending;
+}
+
+// Of all bodies on a block, whatever its inclination.
+Box3d PatchJudge::box_of(const CellBounds& block) const {
+  Pending whole;
+  whole.steepest = 1;
+  whole.bounds = &block;
+  add_posture(0, whole);
+  add_posture(1, whole);
+  return whole.box;
+}
+
+void PatchJudge::judge_block(std::span<const Bounded> cells, const Box3d& box, BezierCells& out) {
+  const bool alone = others_.region.count == 0;
+  if (!alone) narrow(others_.region, box, others_.block);
+  uint32_t asked = 0;
+  bool upright = false;
+  for (const Bounded& cell : cells) {
+    asked |= bodies_on(cell);
+    upright |= cell.upright;
+  }
+  all_is_asked_ =
+      !spares_height_[0] || (upright && !spares_height_[1]) || (asked & ~spared_) != 0;
+  if (!all_is_asked_ && (alone || others_.block.count == 0)) {
+    for (const Bounded& cell : cells) stand_on(cell, out);
+    return;
+  }
+  if (alone) others_.block.clear(others_.region.origin);
+  if (all_is_asked_) {
+    if (!all_is_filled_) fill_all();
+    narrow(all_.region, box, all_.block);
+  }
+  pending_.clear();
+  for (const Bounded& cell : cells) pending_.push_back(pending(cell));
+  const std::span<const Pending> all = pending_;
+  for (size_t k = 0; k < all.size(); k += kSquare) {
+    const size_t count = std::min(kSquare, all.size() - k);
+    const auto square = all.subspan(k, count);
+    Box3d around;
+    for (const Pending& cell : square) join(around, cell.box);
+    find_makers(square, out);
+    narrow(others_.block, around, others_.square);
+    if (all_is_asked_) {
+      narrow(all_.block, around, all_.square);
+    } else if (others_.square.count == 0) {
+      for (const Bounded& cell : cells.subspan(k, count)) stand_on(cell, out);
+      continue;
+    }
+    for (const Pending& cell : square) {
+      Promise& promise = out.promise.cells[cell.cell];
+      judge_posture(cell, 0, promise);
+      if (cell.postures > 1) judge_posture(cell, 1, promise);
+    }
+  }
+}
+
+// Nothing is in the way of what a cell's inclination allows.
+void PatchJudge::stand_on(const Bounded& cell, BezierCells& out) const {
+  uint16_t& classes = out.promise.cells[cell.cell].classes;
+  for (uint32_t left = bodies_on(cell); left != 0; left &= left - 1) {
+    classes |= bodies_[static_cast<size_t>(std::countr_zero(left))].bit;
+  }
+}
+
+// Of bodies_, those that a cell's inclination allows.
+uint32_t PatchJudge::bodies_on(const Bounded& cell) const {
+  uint32_t bodies = 0;
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const size_t posture = bodies_[b].climbs ? 0 : 1;
+    if (posture == 1 && !cell.upright) continue;
+    if (is_asked(bodies_[b], posture, cell.steepest)) bodies |= 1u << b;
+  }
+  return bodies;
+}
+
+// The triangles near a box, but those of the patch's own ground that no body can meet.
+void PatchJudge::gather(const Box3d& box, const OwnGround& own) {
   const Vec3d middle = (box.min + box.max) * 0.5;
-  near_.clear(middle);
+  all_.region.clear(middle);
+  others_.region.clear(middle);
   foreign_.clear(middle);
+  all_is_filled_ = false;
+  spared_ = 0;
+  spares_height_ = {false, false};
   found_.clear();
   triangles_->find(box, found_);
   const Scene& scene = triangles_->scene();
-  near_.add(scene, found_);
-  near_.close();
-  if (scene.patch_of_triangle.empty()) return;
+  if (scene.patch_of_triangle.empty()) {
+    others_.region.add(scene, found_);
+    others_.region.close();
+    return;
+  }
+  const bool known = !scene.patch_part.empty() && patch_ < scene.patch_off.size();
+  other_ids_.clear();
+  int32_t span_s = 0, span_t = 0;  // of triangles that are left out
   for (const uint32_t triangle : found_) {
     const uint32_t patch = scene.patch_of_triangle[triangle];
+    if (patch == patch_ && known) {
+      const PatchPart& part = scene.patch_part[triangle];
+      if (own.holds(part)) {
+        span_s = std::max(span_s, part.s1 + 1 - part.s0);
+        span_t = std::max(span_t, part.t1 + 1 - part.t0);
+        continue;
+      }
+    }
+    other_ids_.push_back(triangle);
     if (patch == kNoPatch || is_beside_[patch] != 0) continue;
     foreign_.add(triangle, triangles_->corners(triangle));
   }
-  foreign_.close();
+  if (!other_ids_.empty()) {
+    found_others_.clear(middle);
+    found_others_.add(scene, other_ids_);
+    found_others_.close();
+    narrow(found_others_, box, others_.region);
+    foreign_.close();
+  }
+  if (known) set_spared(own, own.gap(span_s, span_t) + scene.patch_off[patch_]);
+}
+
+// Which bodies and heights no triangle of the part comes up to.
+void PatchJudge::set_spared(const OwnGround& own, double gap) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const double rise = own.rise(!bodies_[b].climbs, bodies_[b].radius, gap);
+    if (rise + kRiseMargin < bodies_[b].bottom) spared_ |= 1u << b;
+  }
+  for (size_t posture = 0; posture < 2; ++posture) {
+    spares_height_[posture] = own.rise(posture == 1, 0, gap) + kRiseMargin < greatest_bottom_;
+  }
+}
+
+void PatchJudge::fill_all() {
+  all_.region.add(triangles_->scene(), found_);
+  all_.region.close();
+  all_is_filled_ = true;
 }
 
 // Patches whose triangles come into the surfaces of cells.
@@ -292,13 +420,13 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
     box.add(b.min);
     box.add(b.max);
   }
-  narrow(foreign_, box, block_);
-  if (block_.count == 0) return;
+  narrow(foreign_, box, maker_);
+  if (maker_.count == 0) return;
   for (const Pending& cell : cells) {
     const BodyFrame& frame = cell.surface(0).frame;
     const BodySweep sweep = surface_sweep(cell.surface(0));
     const SieveTube tube{.whole = sweep, .decisive = {.radius = 0}};
-    (void)sieve(block_,
+    (void)sieve(maker_,
                 {.frame = frame, .first = sweep, .second = sweep, .tubes = std::span(&tube, 1)},
                 hits_);
     for (size_t i = 0; i < hits_.count; ++i) {
@@ -334,40 +462,62 @@ uint32_t PatchJudge::too_steep(const Pending& cell) const {
 
 // Tests the classes of one posture, and the free height along it.
 void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& promise) {
-  const BodyFrame& frame = cell.surface(posture).frame;
   sweeps_.clear();
   tube_bit_.clear();
   sweeps_.push_back(cell.prism[posture]);
   for (const PatchBody& body : bodies_) {
-    if (!is_asked(body, posture, cell)) continue;
+    if (!is_asked(body, posture, cell.steepest)) continue;
     sweeps_.push_back(sweep_of(cell.surface(posture), body));
     tube_bit_.push_back(body.bit);
   }
-  const uint32_t bodies = (1u << sweeps_.size()) - 2;
-  uint32_t asked = bodies | 1, stopped = 0, steep = 0;
-  if (posture == 1) {
-    // Upright, most ground is its own ceiling to the least of bodies: that is seen at once.
-    if (surely_enters(block_, frame.centre, low_room(cell, 1))) {
-      promise.headroom = bins_->height_code(0);
-      asked = bodies;
-    }
-    // What stops bodies is mostly the ground that they stand on, where it is steep.
-    steep = too_steep(cell);
-    if (steep != 0) stopped = surely_enters_uphill(block_, frame.centre, sweeps_, steep);
-    asked &= ~stopped;
+  // Bodies, and the height, that the patch's own triangles may meet are tested against all.
+  const uint32_t asked = (1u << sweeps_.size()) - 1;
+  uint32_t spared = spares_height_[posture] ? 1 : 0;
+  for (size_t k = 0, b = 1; k < bodies_.size(); ++k) {
+    if (!is_asked(bodies_[k], posture, cell.steepest)) continue;
+    spared |= (spared_ >> k & 1) << b++;
   }
-  uint32_t met = asked == 0 ? 0 : glance(block_, frame, sweeps_, asked);
+  uint32_t stopped = 0;
+  if ((asked & spared) != 0) {
+    stopped = judge_against(others_.square, cell, posture, asked & spared, promise);
+  }
+  if ((asked & ~spared) != 0) {
+    stopped |= judge_against(all_.square, cell, posture, asked & ~spared, promise);
+  }
   for (size_t b = 1; b < sweeps_.size(); ++b) {
-    if (((met | stopped) >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
+    if ((stopped >> b & 1) == 0) promise.classes |= tube_bit_[b - 1];
   }
-  if (const uint32_t left = met & bodies & ~steep; posture == 1 && left != 0) {
-    met &= ~surely_enters_uphill(block_, frame.centre, sweeps_, left);
-  }
-  if (met != 0) judge_met(cell, posture, met, promise);
 }
 
-// Those of sweeps_ that a plane comes into.
-void PatchJudge::judge_met(const Pending& cell, size_t posture, uint32_t met, Promise& promise) {
+// Those bodies of sweeps_ that a triangle enters.
+uint32_t PatchJudge::judge_against(const SieveList& list, const Pending& cell, size_t posture,
+                                   uint32_t asked, Promise& promise) {
+  if (list.count == 0) return 0;
+  const BodyFrame& frame = cell.surface(posture).frame;
+  uint32_t stopped = 0, steep = 0;
+  if (posture == 1) {
+    // Upright, ground may be its own ceiling: that is seen at once.
+    if ((asked & 1) != 0 && surely_enters(list, frame.centre, low_room(cell, 1))) {
+      promise.headroom = bins_->height_code(0);
+      asked &= ~1u;
+    }
+    // What stops bodies is mostly the ground that they stand on, where it is steep.
+    steep = too_steep(cell) & asked;
+    if (steep != 0) stopped = surely_enters_uphill(list, frame.centre, sweeps_, steep);
+    asked &= ~stopped;
+  }
+  uint32_t met = asked == 0 ? 0 : glance(list, frame, sweeps_, asked);
+  if (const uint32_t left = met & ~1u & ~steep; posture == 1 && left != 0) {
+    const uint32_t uphill = surely_enters_uphill(list, frame.centre, sweeps_, left);
+    stopped |= uphill;
+    met &= ~uphill;
+  }
+  return met == 0 ? stopped : stopped | judge_met(list, cell, posture, met, promise);
+}
+
+// Those of sweeps_ that a plane comes into; returns those that a triangle does.
+uint32_t PatchJudge::judge_met(const SieveList& list, const Pending& cell, size_t posture,
+                               uint32_t met, Promise& promise) {
   const SurfaceBound& surface = cell.surface(posture);
   const BodyFrame& frame = surface.frame;
   const BodySweep& prism = cell.prism[posture];
@@ -379,7 +529,7 @@ void PatchJudge::judge_met(const Pending& cell, size_t posture, uint32_t met, Pr
     tubes_.push_back({.whole = sweeps_[b], .decisive = decisive});
   }
   const uint32_t answered = sieve(
-      block_, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
+      list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
       hits_);
   const uint32_t room = met & 1;  // bit 0, if it is asked for
   const uint32_t all = (1u << tubes_.size()) - 1;
@@ -403,17 +553,17 @@ void PatchJudge::judge_met(const Pending& cell, size_t posture, uint32_t met, Pr
       if (lowest_entry(local, tubes_[b].whole) < kNever) entered |= 1u << b;
     }
   }
+  uint32_t stopped = 0;
   uint32_t bodies = met & ~1u;
   for (size_t b = room; bodies != 0; ++b, bodies &= bodies - 1) {
-    if ((entered >> b & 1) == 0) {
-      promise.classes |= tube_bit_[static_cast<size_t>(std::countr_zero(bodies)) - 1];
-    }
+    if ((entered >> b & 1) != 0) stopped |= bodies & (0 - bodies);
   }
   // The highest feet have the least.
   if (free < kNever) {
     (posture == 0 ? promise.height : promise.headroom) =
         bins_->height_code(std::max(0.0, free - surface.high));
   }
+  return stopped;
 }
 
 }  // namespace throng

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bake/body_sweep.h"
+#include "bake/own_ground.h"
 #include "bake/surface_bound.h"
 #include "bake/triangle_sieve.h"
 #include "graph/node_width.h"
@@ -49,7 +50,15 @@ class PatchJudge {
   [[nodiscard]] BezierCells judge(uint32_t patch);
 
  private:
-  /// A cell whose surface is known, but not yet who may stand on it.
+  /// A cell whose surface is known.
+  struct Bounded {
+    size_t cell = 0;
+    size_t part = 0;  ///< of parts_
+    double steepest = 0;
+    bool upright = false;  ///< Surely not a ceiling.
+  };
+
+  /// A cell against whose bodies triangles have to be tested; or a block of them, for its box.
   struct Pending {
     size_t cell = 0;
     double steepest = 0;
@@ -70,14 +79,25 @@ class PatchJudge {
   void cut_region(const BezierPatch& part, int32_t halvings);
   void bound_cells(BezierCells& out);
   void add_posture(size_t posture, Pending& cell) const;
-  [[nodiscard]] bool is_asked(const PatchBody& body, size_t posture, const Pending& cell) const {
-    return body.climbs == (posture == 0) && cell.steepest >= body.steepest;
+  [[nodiscard]] bool is_asked(const PatchBody& body, size_t posture, double steepest) const {
+    return body.climbs == (posture == 0) && steepest >= body.steepest;
   }
-  void judge_pending(BezierCells& out);
-  void gather(const Box3d& box);
+  /// The bounded cells of block (s, t) of a level.
+  void judge_region(int32_t level, int32_t s, int32_t t, BezierCells& out);
+  void judge_block(std::span<const Bounded> cells, const Box3d& box, BezierCells& out);
+  [[nodiscard]] Pending pending(const Bounded& cell) const;
+  [[nodiscard]] Box3d box_of(const CellBounds& block) const;
+  [[nodiscard]] uint32_t bodies_on(const Bounded& cell) const;
+  void gather(const Box3d& box, const OwnGround& own);
+  void fill_all();
+  void stand_on(const Bounded& cell, BezierCells& out) const;
+  void set_spared(const OwnGround& own, double gap);
   void find_makers(std::span<const Pending> cells, BezierCells& out);
   void judge_posture(const Pending& cell, size_t posture, Promise& promise);
-  void judge_met(const Pending& cell, size_t posture, uint32_t met, Promise& promise);
+  uint32_t judge_against(const SieveList& list, const Pending& cell, size_t posture, uint32_t asked,
+                         Promise& promise);
+  uint32_t judge_met(const SieveList& list, const Pending& cell, size_t posture, uint32_t met,
+                     Promise& promise);
   [[nodiscard]] uint32_t too_steep(const Pending& cell) const;
   /// Matter in here leaves no height.
   [[nodiscard]] BodySweep low_room(const Pending& cell, size_t posture) const;
@@ -88,18 +108,30 @@ class PatchJudge {
   const NodeBins* bins_;
   std::vector<double> bin_cosine_;
   double size_;
-  double tallest_ = 0, least_bottom_ = 0;
+  double tallest_ = 0, greatest_bottom_ = 0;
 
+  uint32_t patch_ = 0;              // that is judged
   std::vector<uint32_t> beside_;    // patches that go on from this one
   std::vector<uint8_t> is_beside_;  // by patch; and those known to pierce it
   PatchParts parts_, coarser_;      // so many cells of the patch
+  PatchParts blocks_;               // the same in blocks
   std::vector<size_t> part_cell_;   // which they are
-  std::vector<CellBounds> bounds_;
-  std::vector<Pending> pending_;  // in the order of a quadtree: runs of 4^n make a square
-  std::vector<Box3d> boxes_;      // of each kSquare of them
-  SieveList near_, foreign_;      // triangles near them; those of other patches, not beside
-  SieveList part_, block_;        // those near a part of the region, and near a square of cells
-  std::vector<uint32_t> found_;
+  std::vector<CellBounds> bounds_, block_bounds_;
+  std::vector<Bounded> bounded_;  // in the order of a quadtree: runs of 4^n make a square
+  std::vector<size_t> block_at_;  // where in these each block begins
+  std::vector<Pending> pending_;  // those of one block
+  std::vector<Box3d> block_boxes_;
+  /// Triangles near a region, a block and a square of cells.
+  struct NearLists {
+    SieveList region, block, square;
+  };
+  NearLists others_, all_;    // without those of its own that are spared, and with them
+  SieveList foreign_, maker_;  // those of other patches, not beside; near a square
+  SieveList found_others_;     // before their boxes are looked at
+  bool all_is_filled_ = false, all_is_asked_ = false;
+  uint32_t spared_ = 0;  // bodies that the patch's own triangles here do not reach
+  std::array<bool, 2> spares_height_{};  // along the normal and upright
+  std::vector<uint32_t> found_, other_ids_;
   SieveHits hits_;
   std::vector<BodySweep> sweeps_;   // where a height ends, then bodies of the posture
   std::vector<uint16_t> tube_bit_;  // by body of the posture: its class

@@ -95,6 +95,7 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
       if (!scene.patch_of_triangle.empty()) {
         scene.patch_of_triangle[kept] = scene.patch_of_triangle[from];
       }
+      if (!scene.patch_part.empty()) scene.patch_part[kept] = scene.patch_part[from];
       if (!scene.texture_corners.empty()) {
         scene.texture_corners[kept] = scene.texture_corners[from];
       }
@@ -106,6 +107,7 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
   scene.triangles.resize(kept);
   scene.area.resize(kept);
   if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
+  if (!scene.patch_part.empty()) scene.patch_part.resize(kept);
   if (!scene.texture_corners.empty()) scene.texture_corners.resize(kept);
 }
 

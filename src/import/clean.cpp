@@ -41,6 +41,7 @@ void filter_triangles(Scene& scene, Keep keep) {
       if (!scene.patch_of_triangle.empty()) {
         scene.patch_of_triangle[kept] = scene.patch_of_triangle[done];
       }
+      if (!scene.patch_part.empty()) scene.patch_part[kept] = scene.patch_part[done];
       if (!scene.texture_corners.empty()) {
         scene.texture_corners[kept] = scene.texture_corners[done];
       }
@@ -61,6 +62,7 @@ void filter_triangles(Scene& scene, Keep keep) {
   scene.triangles.resize(kept);
   scene.area.resize(kept);
   if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
+  if (!scene.patch_part.empty()) scene.patch_part.resize(kept);
   if (!scene.texture_corners.empty()) scene.texture_corners.resize(kept);
 }
 

@@ -71,6 +71,7 @@ class Cutter {
     scene_.triangles = std::move(triangles_);
     scene_.area = std::move(area_);
     if (!scene_.patch_of_triangle.empty()) scene_.patch_of_triangle = std::move(patch_);
+    if (!scene_.patch_part.empty()) scene_.patch_part = std::move(part_);
     if (!scene_.texture_corners.empty()) scene_.texture_corners = std::move(texture_);
   }
 
@@ -81,6 +82,7 @@ class Cutter {
     triangles_.push_back({a, b, c});
     area_.push_back(kind);
     if (!scene_.patch_of_triangle.empty()) patch_.push_back(scene_.patch_of_triangle[from]);
+    if (!scene_.patch_part.empty()) part_.push_back(scene_.patch_part[from]);
     if (scene_.texture_corners.empty()) return;
     TextureCorners& corners = texture_.emplace_back();
     const std::array<uint32_t, 3> piece{a, b, c};
@@ -199,6 +201,7 @@ class Cutter {
   std::vector<std::array<uint32_t, 3>> triangles_;
   std::vector<AreaKind> area_;
   std::vector<uint32_t> patch_;
+  std::vector<PatchPart> part_;
   std::vector<TextureCorners> texture_;
 };
 

@@ -58,13 +58,18 @@ class Tessellator {
     if (!count_triangles()) return too_many();
     mesh_.positions.resize(vertices_);
     mesh_.triangles.resize(mesh_.first.back());
+    mesh_.parts.resize(mesh_.first.back());
+    mesh_.off.resize(set_.size());
     place_vertices();
     parallel_ranges(set_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
       for (size_t p = begin; p < end; ++p) {
-        auto* out = mesh_.triangles.data() + mesh_.first[p];
-        for_each_triangle(static_cast<uint32_t>(p), [&](uint32_t a, uint32_t b, uint32_t c) {
-          *out++ = {a, b, c};
-        });
+        size_t out = mesh_.first[p];
+        for_each_triangle(static_cast<uint32_t>(p),
+                          [&](uint32_t a, uint32_t b, uint32_t c, PatchPart part) {
+                            mesh_.parts[out] = part;
+                            mesh_.triangles[out++] = {a, b, c};
+                          });
+        mesh_.off[p] = vertices_off(static_cast<uint32_t>(p));
       }
     });
     return std::move(mesh_);
@@ -79,12 +84,13 @@ class Tessellator {
                         set_.size(), config_.most_triangles, config_.tolerance)};
   }
 
+  [[nodiscard]] double rounding() const { return std::sqrt(3.0) / 2 / grid_; }
+
   void measure() {
-    const double rounding = std::sqrt(3.0) / 2 / grid_;
     steps_.resize(set_.size());
     parallel_ranges(set_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
       for (size_t p = begin; p < end; ++p) {
-        steps_[p] = steps_within(set_.patches[p], config_.tolerance - rounding);
+        steps_[p] = steps_within(set_.patches[p], config_.tolerance - rounding());
       }
     });
   }
@@ -180,7 +186,7 @@ class Tessellator {
       for (size_t p = begin; p < end; ++p) {
         uint32_t triangles = 0;
         for_each_triangle(static_cast<uint32_t>(p),
-                          [&](uint32_t, uint32_t, uint32_t) { ++triangles; });
+                          [&](uint32_t, uint32_t, uint32_t, PatchPart) { ++triangles; });
         count[p] = triangles;
       }
     });
@@ -283,12 +289,35 @@ class Tessellator {
     out.push_back({corner_[4 * side.patch + (side.edge + 1) % 4], kUnits});
   }
 
-  // Calls emit(a, b, c) for each triangle of a patch; those that a collapsed edge makes flat are
-  // left out.
+  // How far the vertices of a patch are from its surface at their parameters. Those of its edges
+  // may lie on a neighbour's curve.
+  [[nodiscard]] double vertices_off(uint32_t p) const {
+    thread_local std::vector<EdgePoint> points;
+    double off = rounding();
+    for (uint32_t e = 0; e < 4; ++e) {
+      collect_edge({p, e}, points);
+      const auto curve = set_.patches[p].edge(static_cast<int32_t>(e));
+      for (const EdgePoint& point : points) {
+        const Vec3d own = cubic_point(curve, static_cast<double>(point.at) / kUnits);
+        off = std::max(off, length(mesh_.positions[point.vertex] - own));
+      }
+    }
+    return off;
+  }
+
+  // Between two parameters that are given in units, along s or t.
+  static std::array<uint8_t, 2> part_between(uint32_t from, uint32_t to) {
+    constexpr uint32_t kUnitsAPart = kUnits / 256;
+    const uint32_t end = (to + kUnitsAPart - 1) / kUnitsAPart;
+    return {static_cast<uint8_t>(from / kUnitsAPart), static_cast<uint8_t>(end - 1)};
+  }
+
+  // Calls emit(a, b, c, part) for each triangle of a patch; those that a collapsed edge makes flat
+  // are left out.
   template <class Emit>
   void for_each_triangle(uint32_t p, Emit emit_any) const {
-    const auto emit = [&](uint32_t a, uint32_t b, uint32_t c) {
-      if (a != b && b != c && a != c) emit_any(a, b, c);
+    const auto emit = [&](uint32_t a, uint32_t b, uint32_t c, PatchPart part) {
+      if (a != b && b != c && a != c) emit_any(a, b, c, part);
     };
     thread_local std::array<std::vector<EdgePoint>, 4> edges;
     for (uint32_t e = 0; e < 4; ++e) collect_edge({p, e}, edges[e]);
@@ -299,11 +328,13 @@ class Tessellator {
     };
     const auto cut_quads = [&](uint32_t i0, uint32_t i1, uint32_t j0, uint32_t j1, auto vertex) {
       for (uint32_t j = j0; j < j1; ++j) {
+        const auto [t0, t1] = part_between(j * (kUnits / nt), (j + 1) * (kUnits / nt));
         for (uint32_t i = i0; i < i1; ++i) {
           const uint32_t a = vertex(i, j);
           const uint32_t c = vertex(i + 1, j + 1);
-          emit(a, vertex(i, j + 1), c);
-          emit(a, c, vertex(i + 1, j));
+          const auto [s0, s1] = part_between(i * (kUnits / ns), (i + 1) * (kUnits / ns));
+          emit(a, vertex(i, j + 1), c, {s0, s1, t0, t1});
+          emit(a, c, vertex(i + 1, j), {s0, s1, t0, t1});
         }
       }
     };
@@ -319,25 +350,41 @@ class Tessellator {
       return;
     }
     cut_quads(1, ns - 1, 1, nt - 1, inner);
-    join(edges[0], nt, emit, [&](uint32_t k) { return inner(1, k); });
-    join(edges[1], ns, emit, [&](uint32_t k) { return inner(k, nt - 1); });
-    join(edges[2], nt, emit, [&](uint32_t k) { return inner(ns - 1, nt - k); });
-    join(edges[3], ns, emit, [&](uint32_t k) { return inner(ns - k, 1); });
+    // The ring's triangles lie between an edge and the first inner points beside it. Edges 2 and 3
+    // run back along their parameter.
+    const auto emit_ring = [&](uint32_t e) {
+      const uint32_t across = kUnits / (e % 2 == 0 ? ns : nt);
+      const auto [w0, w1] =
+          e == 0 || e == 3 ? part_between(0, across) : part_between(kUnits - across, kUnits);
+      return [&emit, e, w0 = w0, w1 = w1](uint32_t a, uint32_t b, uint32_t c, uint32_t from,
+                                          uint32_t to) {
+        const auto [l0, l1] =
+            e < 2 ? part_between(from, to) : part_between(kUnits - to, kUnits - from);
+        emit(a, b, c, e % 2 == 0 ? PatchPart{w0, w1, l0, l1} : PatchPart{l0, l1, w0, w1});
+      };
+    };
+    join(edges[0], nt, emit_ring(0), [&](uint32_t k) { return inner(1, k); });
+    join(edges[1], ns, emit_ring(1), [&](uint32_t k) { return inner(k, nt - 1); });
+    join(edges[2], nt, emit_ring(2), [&](uint32_t k) { return inner(ns - 1, nt - k); });
+    join(edges[3], ns, emit_ring(3), [&](uint32_t k) { return inner(ns - k, 1); });
   }
 
-  // Triangles between an edge and the row of inner points beside it, n - 1 of them at k / n. Goes
-  // along both and always closes the gap towards the nearer next point.
+  // Triangles between an edge and the row of inner points beside it, n - 1 of them at k / n, each
+  // with from where to where it reaches along the edge. Goes along both and always closes the gap
+  // towards the nearer next point.
   template <class Emit, class Row>
   static void join(const std::vector<EdgePoint>& edge, uint32_t n, Emit emit, Row row) {
     uint32_t k = 1;
     for (size_t b = 0; b + 1 < edge.size() || k + 1 < n;) {
       const bool along_edge =
           k + 1 >= n || (b + 1 < edge.size() && 2 * n * edge[b + 1].at <= kUnits * (2 * k + 1));
+      const uint32_t here = k * (kUnits / n), from = std::min(edge[b].at, here);
       if (along_edge) {
-        emit(edge[b].vertex, edge[b + 1].vertex, row(k));
+        emit(edge[b].vertex, edge[b + 1].vertex, row(k), from, std::max(edge[b + 1].at, here));
         ++b;
       } else {
-        emit(edge[b].vertex, row(k + 1), row(k));
+        emit(edge[b].vertex, row(k + 1), row(k), from,
+             std::max(edge[b].at, (k + 1) * (kUnits / n)));
         ++k;
       }
     }

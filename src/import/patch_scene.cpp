@@ -21,6 +21,7 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
   // As a scene of its own first, so that rules see these parts alone.
   Scene cut;
   cut.triangles = std::move(mesh->triangles);
+  cut.patch_part = std::move(mesh->parts);
   cut.area.reserve(cut.triangles.size());
   cut.patch_of_triangle.reserve(cut.triangles.size());
   for (const PatchRun& run : scene.patches.runs) {
@@ -57,6 +58,13 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
   scene.patch_of_triangle.resize(first_triangle, kNoPatch);
   scene.patch_of_triangle.insert(scene.patch_of_triangle.end(), cut.patch_of_triangle.begin(),
                                  cut.patch_of_triangle.end());
+  if (first_triangle == 0) {
+    scene.patch_part = std::move(cut.patch_part);
+  } else {
+    scene.patch_part.resize(first_triangle);
+    scene.patch_part.insert(scene.patch_part.end(), cut.patch_part.begin(), cut.patch_part.end());
+  }
+  scene.patch_off = std::move(mesh->off);
   if (!scene.texture_corners.empty()) scene.texture_corners.resize(scene.triangles.size());
   for (ScenePart& part : cut.parts) {
     part.first_triangle += first_triangle;

@@ -43,9 +43,8 @@ class NodeJudge {
  public:
   NodeJudge(const Nodes& nodes, const Scene& scene, const VerifyConfig& config)
       : nodes_(nodes), config_(config), tree_(scene, config.workers), summary_(nodes.summary()) {
-    least_bottom_ = 1e9;
     for (const AvatarClass& avatar : summary_.classes) {
-      least_bottom_ = std::min(least_bottom_, bottom_of(avatar));
+      greatest_bottom_ = std::max(greatest_bottom_, bottom_of(avatar));
     }
     avatar_ = summary_.classes[static_cast<size_t>(config.avatar_class)];
   }
@@ -98,9 +97,9 @@ class NodeJudge {
       if (info.kind == PatchKind::kBezier) {
         sample.steeper |= slope > bins.inclination_of(info.inclination) + kAngleMargin;
         sample.lower |=
-            free_height({place.feet, place.normal}, least_bottom_, height) < height - 1e-6;
+            free_height({place.feet, place.normal}, greatest_bottom_, height) < height - 1e-6;
         sample.lower |=
-            free_height({place.feet, {0, 1, 0}}, least_bottom_, headroom) < headroom - 1e-6;
+            free_height({place.feet, {0, 1, 0}}, greatest_bottom_, headroom) < headroom - 1e-6;
       } else {
         const double from = body_bottom(avatar_);
         sample.lower |= free_height({place.feet, {0, 1, 0}}, from, headroom) < headroom - 2e-3;
@@ -161,7 +160,7 @@ class NodeJudge {
   const TriangleTree tree_;
   NodeSummary summary_;
   AvatarClass avatar_;
-  double least_bottom_ = 0;
+  double greatest_bottom_ = 0;
 };
 
 }  // namespace

@@ -10,8 +10,10 @@
 #include <set>
 
 #include "baked.h"
+#include "core/random.h"
 #include "graph/node_bins.h"
 #include "patch_nets.h"
+#include "verify/turned_body.h"
 
 namespace throng {
 namespace {
@@ -76,8 +78,8 @@ class Naive {
 
   uint8_t height(const SurfaceBound& surface) const {
     const double tallest = bins_.height.back();
-    double bottom = kNever;
-    for (const PatchBody& body : patch_bodies(classes_)) bottom = std::min(bottom, body.bottom);
+    double bottom = 0;
+    for (const PatchBody& body : patch_bodies(classes_)) bottom = std::max(bottom, body.bottom);
     const double free =
         entry(surface.frame, {surface.radius + tallest * surface.sine,
                               surface.low + bottom * surface.cosine, surface.high + tallest});
@@ -104,18 +106,26 @@ std::set<uint32_t> beside(const PatchSet& set, uint32_t patch) {
   return all;
 }
 
-TEST(PatchCells, PromiseWhatALookAtEveryTriangleOfTheSceneFinds) {
+std::vector<AvatarClass> four_classes() {
   std::vector<AvatarClass> classes{{.name = "adult"},
                                    {.name = "giant", .height = 3, .radius = 0.5, .step = 0.8},
                                    {.name = "climber"},
                                    {.name = "gecko", .height = 0.5, .radius = 0.2, .step = 0.25}};
   classes[2].climb_slope = 120;
   classes[3].climb_slope = 180;
+  return classes;
+}
+
+// Where nobody knows of which part of its patch a triangle is, the patch's own are like all others.
+TEST(PatchCells, PromiseWhatALookAtEveryTriangleOfTheSceneFinds) {
+  const std::vector<AvatarClass> classes = four_classes();
   const NodeBins bins = make_bins(classes);
   size_t stopped = 0, stands = 0, low = 0, made = 0;
   for (const bool rocks : {false, true}) {
-    const Scene scene = rocks ? test::builtin({.name = "landscape", .size = 64})
-                              : test::net_scene({.side = 3, .cell = 8, .relief = 5});
+    Scene scene = rocks ? test::builtin({.name = "landscape", .size = 64})
+                        : test::net_scene({.side = 3, .cell = 8, .relief = 5});
+    scene.patch_part.clear();
+    scene.patch_off.clear();
     ASSERT_GT(scene.patches.size(), 0u);
     const TriangleSquares triangles(scene, 1);
     const Naive naive(scene, classes, bins);
@@ -160,6 +170,61 @@ TEST(PatchCells, PromiseWhatALookAtEveryTriangleOfTheSceneFinds) {
   EXPECT_GT(stopped, 20u);
   EXPECT_GT(low, 20u);
   EXPECT_GT(made, 4u);
+}
+
+// Where the patch's own triangles are spared, cells only promise more, and still no body anywhere on
+// them meets any triangle of the scene.
+TEST(PatchCells, NoBodyMeetsTheGroundThatItWasNotTestedAgainst) {
+  const std::vector<AvatarClass> classes = four_classes();
+  const std::vector<PatchBody> bodies = patch_bodies(classes);
+  const NodeBins bins = make_bins(classes);
+  size_t posed = 0, more = 0, entered = 0;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    const bool rocks = seed > 6;
+    const Scene scene =
+        rocks ? test::builtin({.name = "landscape", .size = 64, .seed = seed})
+              : test::net_scene({.side = 3,
+                                 .cell = 10,
+                                 .relief = static_cast<double>(seed),
+                                 .jitter = seed % 2 == 0 ? 0.02 : 0,
+                                 .seed = seed});
+    Scene blind = scene;
+    blind.patch_part.clear();
+    blind.patch_off.clear();
+    const TriangleSquares triangles(scene, 1), without(blind, 1);
+    const verify::TriangleTree tree(scene, 1);
+    PatchJudge judge(triangles, classes, bins, 1), strict(without, classes, bins, 1);
+    for (uint32_t p = 0; p < scene.patches.size(); ++p) {
+      const BezierCells cells = judge.judge(p), least = strict.judge(p);
+      EXPECT_EQ(cells.makers, least.makers);
+      const double side = cells.promise.side();
+      for (size_t i = 0; i < cells.promise.cells.size(); ++i) {
+        const Promise& found = cells.promise.cells[i];
+        const Promise& expected = least.promise.cells[i];
+        ASSERT_EQ(found.classes & expected.classes, expected.classes);
+        ASSERT_EQ(found.inclination, expected.inclination);
+        ASSERT_GE(found.height, expected.height);
+        ASSERT_GE(found.headroom, expected.headroom);
+        more += found.classes != expected.classes;
+        for (size_t b = 0; b < bodies.size(); ++b) {
+          if ((found.classes & ~expected.classes & bodies[b].bit) == 0) continue;
+          const auto at = [&](uint64_t k) { return random_unit(seed, p * 64 + b, 2 * i + k); };
+          const auto row = static_cast<size_t>(cells.promise.side());
+          const double s = static_cast<double>(i % row) + at(0);
+          const double t = static_cast<double>(i / row) + at(1);
+          const BezierPatch& patch = scene.patches.patches[p];
+          const verify::Pose pose{
+              patch.at(s / side, t / side),
+              bodies[b].climbs ? patch.normal(s / side, t / side) : Vec3d{0, 1, 0}};
+          ++posed;
+          entered += verify::turned_intruder(tree, classes[b], pose).has_value();
+        }
+      }
+    }
+  }
+  EXPECT_EQ(entered, 0u);
+  EXPECT_GT(posed, 5000u);
+  EXPECT_GT(more, 5000u);
 }
 
 // Bodies begin above their feet, but makers are whatever comes into the surface.

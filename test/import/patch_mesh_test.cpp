@@ -88,6 +88,42 @@ TEST(PatchMesh, TrianglesStayWithinTheToleranceOfTheirPatch) {
   EXPECT_GT(worst, 0.2);  // Not simply cut as fine as can be.
 }
 
+// Every corner of a triangle is a point of the surface within its part, as far off as is told.
+TEST(PatchMesh, EveryTriangleTellsItsPartOfThePatch) {
+  size_t rings = 0;
+  double most = 0;
+  for (const double jitter : {0.0, 0.05}) {
+    const PatchSet set = test::make_net({.side = 3, .jitter = jitter, .seed = 6});
+    const PatchMesh mesh = cut(set, 0.02);
+    ASSERT_EQ(mesh.parts.size(), mesh.triangles.size());
+    ASSERT_EQ(mesh.off.size(), set.size());
+    for (uint32_t p = 0; p < set.size(); ++p) {
+      most = std::fmax(most, mesh.off[p]);
+      for (uint32_t t = mesh.first[p]; t < mesh.first[p + 1]; ++t) {
+        const PatchPart& part = mesh.parts[t];
+        ASSERT_LE(part.s0, part.s1);
+        ASSERT_LE(part.t0, part.t1);
+        // Corners lie at whole 512ths, of 4 parts of 128 steps, and most at the part's own.
+        const int32_t step_s = part.s1 - part.s0 > 32 ? 32 : 1;
+        const int32_t step_t = part.t1 - part.t0 > 32 ? 32 : 1;
+        for (const uint32_t corner : mesh.triangles[t]) {
+          double nearest = 1e9;
+          for (int32_t s = 2 * part.s0; s <= 2 * part.s1 + 2; s += step_s) {
+            for (int32_t u = 2 * part.t0; u <= 2 * part.t1 + 2; u += step_t) {
+              const Vec3d at = set.patches[p].at(s / 512.0, u / 512.0);
+              nearest = std::fmin(nearest, length(at - mesh.positions[corner]));
+            }
+          }
+          ASSERT_LE(nearest, mesh.off[p] + 1e-9);
+        }
+        rings += part.s1 - part.s0 != mesh.parts[mesh.first[p]].s1 - mesh.parts[mesh.first[p]].s0;
+      }
+    }
+  }
+  EXPECT_GT(rings, 10u);
+  EXPECT_GT(most, 0.01);  // The neighbours' curves.
+}
+
 // Bent by its corners alone: all of its gap comes from the mixed derivative.
 TEST(PatchMesh, ATwistedPatchIsCutByItsTwist) {
   PatchSet set;

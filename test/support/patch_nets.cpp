@@ -337,6 +337,8 @@ Scene patch_scene(const PatchSet& set) {
   if (!mesh) return scene;
   scene.positions = mesh->positions;
   scene.triangles = mesh->triangles;
+  scene.patch_part = mesh->parts;
+  scene.patch_off = mesh->off;
   scene.area.assign(scene.triangles.size(), kAreaWalkable);
   for (uint32_t p = 0; p < set.size(); ++p) {
     scene.patch_of_triangle.insert(scene.patch_of_triangle.end(),

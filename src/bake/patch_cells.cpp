@@ -80,7 +80,12 @@ PatchJudge::PatchJudge(const TriangleSquares& triangles, std::span<const AvatarC
     bin_cosine_.push_back(rounded_cosine(edge) - kSlopeMargin);
   }
   tallest_ = bins.height.back();
-  for (const PatchBody& body : bodies_) greatest_bottom_ = std::max(greatest_bottom_, body.bottom);
+  steepest_walk_ = 1;
+  for (const PatchBody& body : bodies_) {
+    greatest_bottom_ = std::max(greatest_bottom_, body.bottom);
+    if (!body.climbs) steepest_walk_ = std::min(steepest_walk_, body.steepest);
+  }
+  if (steepest_walk_ == 1) steepest_walk_ = -1;  // All climb.
 }
 
 int32_t PatchJudge::depth_of(const BezierPatch& patch) const {
@@ -201,8 +206,8 @@ void PatchJudge::bound_cells(BezierCells& out) {
       promise.inclination = bin_of(steepest);
     }
     promise.height = static_cast<uint8_t>(bins_->height.size());
-    // What may lean over is its own ceiling.
-    const bool upright = bound.frame.up.y > bound.sine;
+    // What may lean over is its own ceiling, and where nobody stands upright nobody asks.
+    const bool upright = bound.frame.up.y > bound.sine && steepest >= steepest_walk_;
     promise.headroom = upright ? promise.height : uint8_t{0};
     bounded_.push_back({.cell = part_cell_[i], .part = i, .steepest = steepest, .upright = upright});
   }

@@ -55,7 +55,7 @@ class PatchJudge {
     size_t cell = 0;
     size_t part = 0;  ///< of parts_
     double steepest = 0;
-    bool upright = false;  ///< Surely not a ceiling.
+    bool upright = false;  ///< Surely not a ceiling, nor too steep for every walker.
   };
 
   /// A cell against whose bodies triangles have to be tested; or a block of them, for its box.
@@ -109,6 +109,7 @@ class PatchJudge {
   std::vector<double> bin_cosine_;
   double size_;
   double tallest_ = 0, greatest_bottom_ = 0;
+  double steepest_walk_ = 0;  // cosine of what any walker may stand on
 
   uint32_t patch_ = 0;              // that is judged
   std::vector<uint32_t> beside_;    // patches that go on from this one

@@ -8,9 +8,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
+#include <mutex>
 #include <utility>
 
 #include "core/hash.h"
+#include "core/parallel.h"
 #include "import/raw_scene.h"
 
 namespace throng {
@@ -19,6 +22,32 @@ namespace {
 constexpr double kFarthest = 1e9;      // [m] Beyond it a double keeps less than a micrometre.
 constexpr double kLargestWorld = 1e6;  // [m] 1000 km.
 constexpr double kSpikeLength = 1000;  // [m] Shorter ones do no harm.
+
+// Calls look(begin, end, share) over all triangles, and add(share) for each share, one by one: it
+// must not matter in which order.
+template <class Share, class Look>
+void share_out(size_t triangles, Look look, const std::function<void(Share&)>& add) {
+  constexpr size_t kGrain = 1 << 16;
+  std::mutex mutex;
+  parallel_ranges(triangles, kGrain, 0, [&](size_t begin, size_t end) {
+    Share share{};
+    look(begin, end, share);
+    const std::scoped_lock lock(mutex);
+    add(share);
+  });
+}
+
+template <class IsCounted>
+uint64_t count_triangles(const Scene& scene, IsCounted is_counted) {
+  uint64_t sum = 0;
+  share_out<uint64_t>(
+      scene.triangles.size(),
+      [&](size_t begin, size_t end, uint64_t& share) {
+        for (size_t t = begin; t < end; ++t) share += is_counted(t) ? 1 : 0;
+      },
+      [&](uint64_t& share) { sum += share; });
+  return sum;
+}
 
 bool is_finite(Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -68,6 +97,16 @@ void filter_triangles(Scene& scene, Keep keep) {
 
 void drop_broken(Scene& scene) {
   const size_t vertices = scene.positions.size();
+  const uint64_t broken = count_triangles(scene, [&](size_t t) {
+    for (const uint32_t corner : scene.triangles[t]) {
+      if (corner >= vertices || !is_finite(scene.positions[corner])) return true;
+    }
+    return false;
+  });
+  if (broken == 0) {
+    std::erase_if(scene.parts, [](const ScenePart& part) { return part.triangle_count == 0; });
+    return;
+  }
   filter_triangles(scene, [&](size_t t) {
     const auto& corners = scene.triangles[t];
     for (const uint32_t corner : corners) {
@@ -104,16 +143,15 @@ void drop_unused_vertices(Scene& scene) {
 
 // Triangles without area. They stay: a wire is matter.
 uint64_t count_degenerate(const Scene& scene) {
-  uint64_t count = 0;
-  for (const auto& [ia, ib, ic] : scene.triangles) {
+  return count_triangles(scene, [&](size_t t) {
+    const auto& [ia, ib, ic] = scene.triangles[t];
     const Vec3d a = scene.positions[ia];
     const Vec3d ab = scene.positions[ib] - a;
     const Vec3d ac = scene.positions[ic] - a;
     const Vec3d normal = cross(ab, ac);
     const double longest = std::max(dot(ab, ab), dot(ac, ac));
-    if (!(dot(normal, normal) > 1e-20 * longest * longest)) ++count;
-  }
-  return count;
+    return !(dot(normal, normal) > 1e-20 * longest * longest);
+  });
 }
 
 // Triangles with the same three corners in whatever order, beyond the first of each: one 64-bit
@@ -146,9 +184,14 @@ uint64_t count_duplicates(const Scene& scene) {
 // corner went astray. The box of the others grows by the shorter candidates first, so a model of
 // kilometres that really is that large has none.
 Box3d count_spikes(Scene& scene) {
+  using Candidates = std::vector<std::pair<double, uint32_t>>;
+  struct Share {
+    Box3d box;
+    Candidates candidates;
+  };
   Box3d box;
-  std::vector<std::pair<double, uint32_t>> candidates;
-  for (size_t t = 0; t < scene.triangles.size(); ++t) {
+  Candidates candidates;
+  const auto look = [&](size_t t, Share& share) {
     const auto& [ia, ib, ic] = scene.triangles[t];
     const Vec3d a = scene.positions[ia];
     const Vec3d b = scene.positions[ib];
@@ -157,11 +200,23 @@ Box3d count_spikes(Scene& scene) {
     const double longest = *std::max_element(sides.begin(), sides.end());
     const double shortest = *std::min_element(sides.begin(), sides.end());
     if (longest > kSpikeLength * kSpikeLength && shortest < 0.01 * longest) {
-      candidates.emplace_back(std::sqrt(longest), static_cast<uint32_t>(t));
-      continue;
+      share.candidates.emplace_back(std::sqrt(longest), static_cast<uint32_t>(t));
+      return;
     }
-    for (const Vec3d& p : {a, b, c}) box.add(p);
-  }
+    for (const Vec3d& p : {a, b, c}) share.box.add(p);
+  };
+  share_out<Share>(
+      scene.triangles.size(),
+      [&](size_t begin, size_t end, Share& share) {
+        for (size_t t = begin; t < end; ++t) look(t, share);
+      },
+      [&](Share& share) {
+        if (!share.box.empty()) {
+          box.add(share.box.min);
+          box.add(share.box.max);
+        }
+        candidates.insert(candidates.end(), share.candidates.begin(), share.candidates.end());
+      });
   std::sort(candidates.begin(), candidates.end());
   for (const auto& [length_of, t] : candidates) {
     if (!box.empty() && length_of > 10 * length(box.max - box.min)) {
@@ -197,18 +252,15 @@ Box3d bulk_box(const Scene& scene) {
 }
 
 uint64_t count_outside(const Scene& scene, const Box3d& bulk, double margin) {
-  uint64_t count = 0;
-  for (const auto& corners : scene.triangles) {
-    for (const uint32_t corner : corners) {
+  return count_triangles(scene, [&](size_t t) {
+    for (const uint32_t corner : scene.triangles[t]) {
       const Vec3d p = scene.positions[corner];
       const double away = std::max({bulk.min.x - p.x, p.x - bulk.max.x, bulk.min.y - p.y,
                                     p.y - bulk.max.y, bulk.min.z - p.z, p.z - bulk.max.z});
-      if (away <= margin) continue;
-      ++count;
-      break;
+      if (away > margin) return true;
     }
-  }
-  return count;
+    return false;
+  });
 }
 
 void warn_of_dropped(Scene& scene, const std::string& name) {

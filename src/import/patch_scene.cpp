@@ -47,20 +47,19 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
   if (first_vertex == 0 && first_triangle == 0) {  // Moved: a large landscape fits in memory once.
     scene.positions = std::move(mesh->positions);
     scene.triangles = std::move(cut.triangles);
+    scene.area = std::move(cut.area);
+    scene.patch_of_triangle = std::move(cut.patch_of_triangle);
+    scene.patch_part = std::move(cut.patch_part);
   } else {
     scene.positions.insert(scene.positions.end(), mesh->positions.begin(), mesh->positions.end());
     scene.triangles.reserve(scene.triangles.size() + cut.triangles.size());
     for (const auto& [a, b, c] : cut.triangles) {
       scene.triangles.push_back({first_vertex + a, first_vertex + b, first_vertex + c});
     }
-  }
-  scene.area.insert(scene.area.end(), cut.area.begin(), cut.area.end());
-  scene.patch_of_triangle.resize(first_triangle, kNoPatch);
-  scene.patch_of_triangle.insert(scene.patch_of_triangle.end(), cut.patch_of_triangle.begin(),
-                                 cut.patch_of_triangle.end());
-  if (first_triangle == 0) {
-    scene.patch_part = std::move(cut.patch_part);
-  } else {
+    scene.area.insert(scene.area.end(), cut.area.begin(), cut.area.end());
+    scene.patch_of_triangle.resize(first_triangle, kNoPatch);
+    scene.patch_of_triangle.insert(scene.patch_of_triangle.end(), cut.patch_of_triangle.begin(),
+                                   cut.patch_of_triangle.end());
     scene.patch_part.resize(first_triangle);
     scene.patch_part.insert(scene.patch_part.end(), cut.patch_part.begin(), cut.patch_part.end());
   }

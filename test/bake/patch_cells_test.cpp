@@ -149,10 +149,14 @@ TEST(PatchCells, PromiseWhatALookAtEveryTriangleOfTheSceneFinds) {
           const SurfaceBound upright = upright_bound(part, *along);
           const Promise expected = naive.judge(*along, upright);
           EXPECT_EQ(found.height, expected.height);
-          const bool leans = along->frame.up.y <= along->sine;
+          const double steepest = std::max(along->steepest_cosine(), steepest_cosine(part, *along));
+          double walked = 1;
+          for (const PatchBody& body : patch_bodies(classes)) {
+            if (!body.climbs) walked = std::min(walked, body.steepest);
+          }
+          const bool leans = along->frame.up.y <= along->sine || steepest < walked;
           EXPECT_EQ(found.headroom, leans ? 0 : expected.headroom);
           uint16_t allowed = 0;  // by inclination
-          const double steepest = std::max(along->steepest_cosine(), steepest_cosine(part, *along));
           for (const PatchBody& body : patch_bodies(classes)) {
             if (steepest >= body.steepest && (body.climbs || !leans)) allowed |= body.bit;
           }

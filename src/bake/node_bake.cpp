@@ -175,6 +175,10 @@ class NodeBaker {
     });
     forest_.first = {0};
     for (PatchTree& tree : trees) forest_.add(std::move(tree));
+    promises_.reserve(forest_.size());
+    for (const PatchTree& tree : forest_.trees) {
+      for (const PatchNode& node : tree.nodes) promises_.push_back(node.promise);
+    }
   }
 
   void find_pairs() {
@@ -316,10 +320,13 @@ class NodeBaker {
       steepest = std::max(steepest, avatar.max_slope);
     }
     const uint8_t code = bins_.inclination_code(steepest);
+    bool changed = false;
     for (NodeLink& l : links_) {
-      if (worst(l).inclination > code && l.kind == LinkKind::kWalk) l.kind = LinkKind::kClimb;
+      if (l.kind != LinkKind::kWalk || worst(l).inclination <= code) continue;
+      l.kind = LinkKind::kClimb;
+      changed = true;
     }
-    merge_node_links(links_);
+    if (changed) merge_node_links(links_);
   }
 
   // Pairs of different patches, in runs that are then merged two by two. A run drops a leap only
@@ -345,13 +352,8 @@ class NodeBaker {
     return std::move(runs[0]);
   }
 
-  [[nodiscard]] const PatchNode& node(uint32_t id) const {
-    const auto after = std::upper_bound(forest_.first.begin(), forest_.first.end(), id);
-    const auto patch = static_cast<size_t>(after - forest_.first.begin()) - 1;
-    return forest_.trees[patch].nodes[id - forest_.first[patch]];
-  }
   [[nodiscard]] Promise worst(const NodeLink& l) const {
-    return both(node(l.a).promise, node(l.b).promise);
+    return both(promises_[l.a], promises_[l.b]);
   }
 
   void measure() {
@@ -370,7 +372,7 @@ class NodeBaker {
       const auto [x, z] = tile_place_[source.source];
       balls.push_back({.listed = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
     }
-    const CrossCells cross(pairs_, sources_.size());
+    const CrossCells cross(pairs_, sources_.size(), config_.workers);
     const double most = bins_.width.back();
     widths_.resize(forest_.trees.size());
     parallel_for(widths_.size(), config_.workers, [&](size_t p) {
@@ -532,6 +534,7 @@ class NodeBaker {
   std::vector<PatchSource> sources_;      // patches of the forest
   std::vector<uint32_t> bezier_, level_;  // where they are in the forest
   NodeForest forest_;
+  std::vector<Promise> promises_;        // by node
   std::vector<CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
   std::vector<PatchDoor> doors_;         // by patch of the scene
   std::vector<Leap> leaps_;

@@ -313,7 +313,7 @@ bool is_patch_edge(const DropInput& input, const CrossCells& cross, const DropEn
 std::vector<NodeDrop> find_drops(const DropInput& input, int32_t workers) {
   const WorldData& world = *input.links.world->data();
   const std::vector<PatchBody> bodies = patch_bodies(input.links.classes);
-  const CrossCells cross(input.edges, input.links.cells.size());
+  const CrossCells cross(input.edges, input.links.cells.size(), workers);
   std::vector<NodeDrop> drops;
   for (size_t c = 0; c < bodies.size(); ++c) {
     const AvatarClass& avatar = input.links.classes[c];

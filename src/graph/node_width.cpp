@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.h"
+
 namespace throng {
 namespace {
 
@@ -15,7 +17,7 @@ uint64_t key_of(uint32_t patch, uint32_t cell) { return uint64_t{patch} << 32 | 
 }  // namespace
 
 // Dealt to their patches, then sorted there; of one cell they keep the order of the pairs.
-CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches)
+CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches, int32_t workers)
     : first_(patches + 1, 0), key_(2 * pairs.size()), cell_(2 * pairs.size()) {
   for (const CellPair& p : pairs) {
     ++first_[p.patch_a + 1];
@@ -29,14 +31,14 @@ CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches)
     dealt[next[p.patch_a]++] = {p.cell_a, {p.patch_b, p.cell_b, p.classes, p.side_a}};
     dealt[next[p.patch_b]++] = {p.cell_b, {p.patch_a, p.cell_a, p.classes, p.side_b}};
   }
-  for (size_t p = 0; p < patches; ++p) {
+  parallel_for(patches, workers, [&](size_t p) {
     std::stable_sort(dealt.begin() + first_[p], dealt.begin() + first_[p + 1],
                      [](const Entry& a, const Entry& b) { return a.first < b.first; });
-  }
-  for (size_t i = 0; i < dealt.size(); ++i) {
-    key_[i] = dealt[i].first;
-    cell_[i] = dealt[i].second;
-  }
+    for (size_t i = first_[p]; i < first_[p + 1]; ++i) {
+      key_[i] = dealt[i].first;
+      cell_[i] = dealt[i].second;
+    }
+  });
 }
 
 std::span<const CrossCells::Cell> CrossCells::beside(uint32_t patch, uint32_t cell) const {

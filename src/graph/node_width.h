@@ -43,7 +43,7 @@ struct CellBalls {
 class CrossCells {
  public:
   /// [pairs name patches below `patches`]
-  CrossCells(std::span<const CellPair> pairs, size_t patches);
+  CrossCells(std::span<const CellPair> pairs, size_t patches, int32_t workers);
 
   struct Cell {
     uint32_t patch = 0, cell = 0;

@@ -76,28 +76,6 @@ uint32_t length(uint64_t run) {
   return static_cast<uint32_t>(64 - std::countl_zero(run) - std::countr_zero(run));
 }
 
-// The rows from the first to the last that are open.
-struct OpenRows {
-  size_t begin = 0, end = 64;
-
-  explicit OpenRows(const CellRows& open) {
-    while (begin < 64 && open[begin] == 0) ++begin;
-    while (end > begin && open[end - 1] == 0) --end;
-  }
-};
-
-// Tells most parts from several at a glance: rows of one run each that meet the one above. Without
-// comparing, so that compilers make vectors of it. [rows.begin < rows.end]
-bool is_chain(const CellRows& open, OpenRows rows) {
-  uint64_t split = 0, meets = ~uint64_t{0};
-  for (size_t z = rows.begin; z < rows.end; ++z) split |= open[z] & (open[z] + lowest(open[z]));
-  for (size_t z = rows.begin + 1; z < rows.end; ++z) {
-    const uint64_t both = open[z] & open[z - 1];
-    meets &= both | (0 - both);  // the highest bit: not 0
-  }
-  return split == 0 && meets >> 63 != 0;
-}
-
 }  // namespace
 
 CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z) {
@@ -106,14 +84,14 @@ CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z)
 
 void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list) {
   const auto start = static_cast<uint32_t>(list.rows.size());
-  const OpenRows open_rows(open);
-  if (open_rows.begin == open_rows.end) return;
-  if (cuts == nullptr && is_chain(open, open_rows)) {
-    const auto begin = static_cast<uint16_t>(open_rows.begin);
-    const auto end = static_cast<uint16_t>(open_rows.end);
-    uint32_t cells = 0;
-    for (size_t z = begin; z < end; ++z) cells += length(open[z]);
-    list.parts.push_back({start, begin, end, cells});
+  const bool is_chain = find_bands(open, cuts);
+  if (band_count_ == 0) return;
+  if (is_chain) {
+    const uint16_t begin = bands_[0].begin, end = bands_[band_count_ - 1].end;
+    PartList::Part& part = list.parts.emplace_back();
+    part.rows = start;
+    part.begin = begin;
+    for (size_t b = 0; b < band_count_; ++b) add_run(open[bands_[b].begin], bands_[b], part);
     list.rows.insert(list.rows.end(), open.begin() + begin, open.begin() + end);
     return;
   }
@@ -121,16 +99,14 @@ void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list
   // Parents come first: one look-up leads to the root.
   const size_t first_part = list.parts.size();
   part_.resize(cells_.size());
-  for (size_t z = 0; z < 64; ++z) {
-    for (size_t i = first_[z]; i < first_[z + 1]; ++i) {
+  for (size_t b = 0; b < band_count_; ++b) {
+    for (size_t i = bands_[b].first_run; i < bands_[b + 1].first_run; ++i) {
       parent_[i] = parent_[parent_[i]];
       if (parent_[i] == i) {
         part_[i] = static_cast<uint32_t>(list.parts.size());
-        list.parts.push_back({0, static_cast<uint16_t>(z), 0, 0});
+        list.parts.emplace_back().begin = bands_[b].begin;
       }
-      PartList::Part& part = list.parts[part_[parent_[i]]];
-      part.end = static_cast<uint16_t>(z + 1);
-      part.cells += length(cells_[i]);
+      add_run(cells_[i], bands_[b], list.parts[part_[parent_[i]]]);
     }
   }
   uint32_t rows = start;
@@ -139,12 +115,25 @@ void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list
     rows += static_cast<uint32_t>(list.parts[p].end - list.parts[p].begin);
   }
   list.rows.resize(rows, 0);
-  for (size_t z = 0; z < 64; ++z) {
-    for (size_t i = first_[z]; i < first_[z + 1]; ++i) {
+  for (size_t b = 0; b < band_count_; ++b) {
+    const Band& band = bands_[b];
+    for (size_t i = band.first_run; i < bands_[b + 1].first_run; ++i) {
       const PartList::Part& part = list.parts[part_[parent_[i]]];
-      list.rows[part.rows + z - part.begin] |= cells_[i];
+      uint64_t* row = &list.rows[part.rows + band.begin - part.begin];
+      for (size_t z = band.begin; z < band.end; ++z) *row++ |= cells_[i];
     }
   }
+}
+
+void PartFinder::add_run(uint64_t run, const Band& band, PartList::Part& part) {
+  const auto height = static_cast<uint32_t>(band.end - band.begin);
+  const uint64_t rows = ~uint64_t{0} >> (64 - height) << band.begin;
+  part.end = band.end;
+  part.cells += length(run) * height;
+  part.side[kWest] |= rows & (0 - (run & 1));
+  part.side[kEast] |= rows & (0 - (run >> 63));
+  if (band.begin == 0) part.side[kNorth] |= run;
+  if (band.end == 64) part.side[kSouth] |= run;
 }
 
 uint16_t PartFinder::root(uint16_t run) {
@@ -152,14 +141,36 @@ uint16_t PartFinder::root(uint16_t run) {
   return run;
 }
 
+// From the first row that is open to the last. True if it is seen at a glance that all is one part,
+// as most are: bands of one run each that meet the one above.
+bool PartFinder::find_bands(const CellRows& open, const StepCuts* cuts) {
+  band_count_ = 0;
+  size_t z = 0, end = 64;
+  while (z < 64 && open[z] == 0) ++z;
+  while (end > z && open[end - 1] == 0) --end;
+  uint64_t split = 0, above = ~uint64_t{0};
+  bool meets = true;
+  while (z < end) {
+    const size_t begin = z++;
+    const uint64_t row = open[begin];
+    while (cuts == nullptr && z < end && open[z] == row) ++z;
+    bands_[band_count_++] = {static_cast<uint16_t>(begin), static_cast<uint16_t>(z), 0};
+    split |= row & (row + lowest(row));
+    meets &= (row & above) != 0;
+    above = row;
+  }
+  return cuts == nullptr && meets && split == 0;
+}
+
 void PartFinder::find_runs(const CellRows& open, const StepCuts* cuts) {
   cells_.clear();
   parent_.clear();
-  for (size_t z = 0; z < 64; ++z) {
-    first_[z] = static_cast<uint16_t>(cells_.size());
+  for (size_t b = 0; b < band_count_; ++b) {
+    const size_t z = bands_[b].begin, end = cells_.size();
+    bands_[b].first_run = static_cast<uint16_t>(end);
     const uint64_t row = open[z], cut = cuts != nullptr ? cuts->across[z] : 0;
     const uint64_t pass = cuts != nullptr && z > 0 ? ~cuts->along[z - 1] : ~uint64_t{0};
-    size_t above = z > 0 ? first_[z - 1] : 0;
+    size_t above = b > 0 ? bands_[b - 1].first_run : 0;
     uint64_t left = row;
     for (uint64_t ends = row & (~(row >> 1) | cut); ends != 0; ends &= ends - 1) {
       const uint64_t up_to = ends ^ (ends - 1), run = left & up_to;
@@ -168,15 +179,15 @@ void PartFinder::find_runs(const CellRows& open, const StepCuts* cuts) {
       cells_.push_back(run);
       parent_.push_back(own);
       // Those above that end before it begins end before all that follow.
-      while (above < first_[z] && cells_[above] < lowest(run)) ++above;
-      for (size_t i = above; i < first_[z] && lowest(cells_[i]) <= run; ++i) {
+      while (above < end && cells_[above] < lowest(run)) ++above;
+      for (size_t i = above; i < end && lowest(cells_[i]) <= run; ++i) {
         if ((cells_[i] & run & pass) == 0) continue;
-        const uint16_t a = root(static_cast<uint16_t>(i)), b = root(own);
-        parent_[std::max(a, b)] = std::min(a, b);
+        const uint16_t a = root(static_cast<uint16_t>(i)), b_root = root(own);
+        parent_[std::max(a, b_root)] = std::min(a, b_root);
       }
     }
   }
-  first_[64] = static_cast<uint16_t>(cells_.size());
+  bands_[band_count_].first_run = static_cast<uint16_t>(cells_.size());
 }
 
 }  // namespace throng

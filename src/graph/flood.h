@@ -22,12 +22,15 @@ struct StepCuts {
 /// side. `cuts` may be null.
 CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z);
 
+enum TileSide : size_t { kWest, kEast, kNorth, kSouth };
+
 /// Connected parts of level tiles. Of each, only the rows from its first cell to its last are kept.
 struct PartList {
   struct Part {
     uint32_t rows = 0;            // where its rows begin in `rows`
     uint16_t begin = 0, end = 0;  // rows of the tile: [begin, end)
     uint32_t cells = 0;
+    std::array<uint64_t, 4> side{};  // its cells along the four borders of the tile
   };
 
   std::vector<Part> parts;
@@ -51,15 +54,25 @@ class PartFinder {
   void find(const CellRows& open, const StepCuts* cuts, PartList& list);
 
  private:
+  // Rows one after the other that are alike. Where walls run along the grid that are nearly all: 9
+  // of 10 in city400, 4 of 10 where they run askew.
+  struct Band {
+    uint16_t begin = 0, end = 0;  // rows of the tile: [begin, end)
+    uint16_t first_run = 0;
+  };
+
+  bool find_bands(const CellRows& open, const StepCuts* cuts);
   void find_runs(const CellRows& open, const StepCuts* cuts);
+  static void add_run(uint64_t run, const Band& band, PartList::Part& part);
   uint16_t root(uint16_t run);
 
-  // Runs of cells of all rows, row by row; those that hold together are trees whose roots are the
-  // first of them.
+  std::array<Band, 65> bands_{};  // one more at the end
+  size_t band_count_ = 0;
+  // Runs of cells of all bands, band by band; those that hold together are trees whose roots are
+  // the first of them.
   std::vector<uint64_t> cells_;
   std::vector<uint16_t> parent_;
-  std::vector<uint32_t> part_;        // of the roots
-  std::array<uint16_t, 65> first_{};  // per row: its first run
+  std::vector<uint32_t> part_;  // of the roots
 };
 
 }  // namespace throng

@@ -67,21 +67,6 @@ bool is_beside(const CellRows& a, const CellRows& b) {
   return found != 0;
 }
 
-RegionPart make_part(const PartList& list, const Part& part) {
-  RegionPart made{0, part.cells, {}};
-  uint64_t west = 0, east = 0;
-  for (size_t z = part.begin; z < part.end; ++z) {
-    const uint64_t row = list.row(part, z);
-    west |= (row & 1) << z;
-    east |= (row >> 63) << z;
-  }
-  made.side[kWest] = west;
-  made.side[kEast] = east;
-  made.side[kNorth] = part.begin == 0 ? list.row(part, 0) : 0;
-  made.side[kSouth] = part.end == 64 ? list.row(part, 63) : 0;
-  return made;
-}
-
 // The regions of one level, as one class after the other makes them of its parts.
 class LevelRegions {
  public:
@@ -356,7 +341,8 @@ void TileRegions::find_level(const WorldData::TileLevels& levels, uint32_t l, Ti
         const auto cuts = step_cuts(ground, scratch.legal[at], steps_[c]);
         scratch.finder.find(scratch.legal[at], cuts ? &*cuts : nullptr, scratch.shapes);
         for (size_t p = first; p < scratch.shapes.parts.size(); ++p) {
-          tile.parts.push_back(make_part(scratch.shapes, scratch.shapes.parts[p]));
+          const Part& part = scratch.shapes.parts[p];
+          tile.parts.push_back({0, part.cells, part.side});
         }
       }
       for (size_t p = first; p < tile.parts.size(); ++p) {

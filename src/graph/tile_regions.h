@@ -28,13 +28,11 @@ struct RegionLink {
   uint32_t classes = 0;
 };
 
-enum TileSide : size_t { kWest, kEast, kNorth, kSouth };
-
 /// One class's part of a region.
 struct RegionPart {
   uint32_t region = 0;  // of the tile
   uint32_t cells = 0;
-  uint64_t side[4] = {};  // legal cells along the four borders of the tile
+  std::array<uint64_t, 4> side{};  // legal cells along the four borders of the tile
 };
 
 struct TileParts {

@@ -66,11 +66,15 @@ class Parts {
       const PartList::Part& part = list_.parts[p];
       CellRows rows{};
       uint32_t cells = 0;
+      uint64_t west = 0, east = 0;
       for (size_t z = part.begin; z < part.end; ++z) {
         rows[z] = list_.row(part, z);
         cells += static_cast<uint32_t>(std::popcount(rows[z]));
+        west |= (rows[z] & 1) << z;
+        east |= (rows[z] >> 63) << z;
       }
       EXPECT_EQ(cells, part.cells);
+      EXPECT_EQ(part.side, (std::array<uint64_t, 4>{west, east, rows[0], rows[63]}));
       EXPECT_TRUE(rows[part.begin] != 0 && rows[part.end - 1u] != 0);
       found.push_back(rows);
     }
@@ -119,6 +123,21 @@ TEST(CellFlood, FindsTheSamePartsAsCellByCell) {
     for (const uint32_t share : {20u, 110u, 150u, 170u, 200u, 250u}) {
       const CellRows open = random_rows(share, n, share);
       expect_parts_as_naive(open, nullptr);
+      const StepCuts cuts{random_rows(share + 1, n, share / 3), random_rows(share + 2, n, 40)};
+      expect_parts_as_naive(open, &cuts);
+    }
+  }
+}
+
+TEST(CellFlood, FindsTheSamePartsWhereRowsAreAlike) {
+  for (uint64_t n = 0; n < 60; ++n) {
+    for (const uint32_t share : {20u, 110u, 170u, 250u}) {
+      CellRows open = random_rows(share, n, share);
+      for (size_t z = 1; z < 64; ++z) {
+        if (random_below(n, z, 0, 4) != 0) open[z] = open[z - 1];
+      }
+      expect_parts_as_naive(open, nullptr);
+      // Cuts are not alike.
       const StepCuts cuts{random_rows(share + 1, n, share / 3), random_rows(share + 2, n, 40)};
       expect_parts_as_naive(open, &cuts);
     }

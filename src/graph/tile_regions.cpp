@@ -76,8 +76,9 @@ class LevelRegions {
   }
 
   // Gives a class's part its region: of those that other classes have made and no other part of
-  // this class has taken, the one with which it shares most cells, or a new one.
-  uint32_t add(const Part& part, uint32_t class_bit) {
+  // this class has taken, the one with which it shares most cells, or a new one. `alike` are the
+  // classes before that have the same parts: regions of theirs hold nothing that is not the part's.
+  uint32_t add(const Part& part, uint32_t class_bit, uint32_t alike) {
     const size_t best = best_region(part, class_bit);
     if (best == common_.parts.size()) {
       Part all = part;
@@ -86,7 +87,7 @@ class LevelRegions {
       const auto rows = shapes_.rows.begin() + part.rows;
       common_.rows.insert(common_.rows.end(), rows, rows + (part.end - part.begin));
       tile_.regions.push_back({level_, 0, 0});
-    } else {
+    } else if ((tile_.regions[begin_ + best].classes & alike) == 0) {
       keep_shared(common_.parts[best], part);
     }
     tile_.regions[begin_ + best].classes |= class_bit;
@@ -173,9 +174,16 @@ class BorderLevels {
       for (uint32_t p = of.first; p < of.last; ++p) kept.legal[at] |= tile.parts[p].side[side];
       kept.anyone[at / classes] |= kept.legal[at];
     }
+    uint64_t once = 0;
+    for (const uint64_t anyone : kept.anyone) {
+      crowded_ |= once & anyone;
+      once |= anyone;
+    }
   }
 
   [[nodiscard]] uint64_t anyone(uint32_t l) const { return kept_.anyone[l]; }
+  // Cells over which somebody may stand on several levels.
+  [[nodiscard]] uint64_t crowded() const { return crowded_; }
   [[nodiscard]] uint64_t legal(uint32_t l, size_t c) const { return kept_.legal[l * classes_ + c]; }
 
   [[nodiscard]] int32_t height(uint32_t l, int32_t i) const {
@@ -205,6 +213,7 @@ class BorderLevels {
   uint32_t levels_;
   size_t classes_;
   TileSide side_;
+  uint64_t crowded_ = 0;
   TileScratch::Border& kept_;
 };
 
@@ -214,6 +223,7 @@ TileRegions::TileRegions(const WorldData& world) : world_(world) {
   for (const AvatarClass& avatar : world.summary.classes) {
     steps_.push_back(step_mm(avatar));
     longest_ = std::max(longest_, steps_.back());
+    shortest_ = std::min(shortest_, steps_.back());
   }
 }
 
@@ -227,6 +237,7 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
   tile.parts.reserve(tile.classes.size());
   scratch.legal.resize(std::max(scratch.legal.size(), tile.classes.size()));
   scratch.grounds.resize(std::max(scratch.grounds.size(), tile.classes.size()));
+  scratch.alike.resize(std::max(scratch.alike.size(), tile.classes.size()));
   scratch.shapes.clear();
   tile.heights.reserve(tile.levels);
   for (uint32_t l = 0; l < tile.levels; ++l) {
@@ -243,7 +254,7 @@ TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z, TileScratch&
   if (tile.levels < 2) return tile;
   scratch.anyone.assign(tile.levels, {});
   for (size_t at = 0; at < tile.classes.size(); ++at) {
-    if (tile.classes[at].first == tile.classes[at].last) continue;
+    if (tile.classes[at].first == tile.classes[at].last || scratch.alike[at] != 0) continue;
     CellRows& anyone = scratch.anyone[at / steps_.size()];
     for (size_t z = 0; z < 64; ++z) anyone[z] |= scratch.legal[at][z];
   }
@@ -272,12 +283,14 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
   const BorderLevels there(
       world_.tile_levels(east ? tile_x + 1 : tile_x, east ? tile_z : tile_z + 1), to, back, classes,
       scratch.to);
+  const uint64_t crowded = here.crowded() | there.crowded();
   for (uint32_t a = 0; a < from.levels; ++a) {
     for (uint32_t b = 0; b < to.levels; ++b) {
       if ((here.anyone(a) & there.anyone(b)) == 0) continue;
       if (!from.heights[a].is_near(to.heights[b], longest_)) continue;
-      // Cells where it is known if the step is low enough for any class, and if so.
-      uint64_t known = 0, low = 0;
+      // Cells where it is known if the step is low enough for any class, if so, and if for each of
+      // them, with no other level to step onto: whoever stands there goes.
+      uint64_t known = 0, low = 0, open = 0;
       const auto any = [&](uint64_t cells, size_t c) {
         for (; cells != 0; cells &= cells - 1) {
           const int32_t i = std::countr_zero(cells);
@@ -285,6 +298,7 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
           const int32_t rise = std::abs(next - feet);
           known |= uint64_t{1} << i;
           low |= uint64_t{rise <= longest_} << i;
+          open |= uint64_t{rise <= shortest_} << i & ~crowded;
           if (rise <= steps_[c] && there.is_nearest(b, c, i, feet) &&
               here.is_nearest(a, c, i, next)) {
             return true;
@@ -301,7 +315,7 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
           for (uint32_t q = bs.first; q < bs.last; ++q) {
             const uint64_t both = from.parts[p].side[side] & to.parts[q].side[back];
             // One will do: first where other classes have looked.
-            if (!any(both & low, c) && !any(both & ~known, c)) continue;
+            if ((both & open) == 0 && !any(both & low, c) && !any(both & ~known, c)) continue;
             add_link(links, {from.parts[p].region, to.parts[q].region, uint32_t{1} << c});
           }
         }
@@ -326,10 +340,12 @@ void TileRegions::find_level(const WorldData::TileLevels& levels, uint32_t l, Ti
       const auto is_same = [&](const GroundLevel& other) {
         return other.kind == ground.kind && other.legal == ground.legal && other.step_safe;
       };
-      const auto own = scratch.grounds.begin() + static_cast<ptrdiff_t>(at);
-      const auto same = std::find_if(own - static_cast<ptrdiff_t>(c), own, is_same);
-      if (ground.step_safe && same != own) {
-        const auto like = static_cast<size_t>(same - scratch.grounds.begin());
+      uint32_t& alike = scratch.alike[at] = 0;
+      for (size_t other = 0; ground.step_safe && other < c; ++other) {
+        if (is_same(scratch.grounds[at - c + other])) alike |= uint32_t{1} << other;
+      }
+      if (alike != 0) {
+        const size_t like = at - c + static_cast<size_t>(std::countr_zero(alike));
         scratch.legal[at] = scratch.legal[like];
         const TileParts::ClassParts of = tile.classes[like];
         for (uint32_t p = of.first; p < of.last; ++p) {
@@ -346,7 +362,7 @@ void TileRegions::find_level(const WorldData::TileLevels& levels, uint32_t l, Ti
         }
       }
       for (size_t p = first; p < tile.parts.size(); ++p) {
-        tile.parts[p].region = regions.add(scratch.shapes.parts[p], uint32_t{1} << c);
+        tile.parts[p].region = regions.add(scratch.shapes.parts[p], uint32_t{1} << c, alike);
       }
     }
     tile.classes[at] = {first, static_cast<uint32_t>(tile.parts.size())};

@@ -68,6 +68,7 @@ struct TileScratch {
   PartFinder finder;
   PartList shapes;                   // of the tile's parts, in their order
   std::vector<GroundLevel> grounds;  // per level and class
+  std::vector<uint32_t> alike;       // the same: classes before it that may stand on the same cells
   std::vector<CellRows> legal;       // per level and class
   std::vector<CellRows> anyone;      // per level: legal for any class
   PartList common;  // per region of a level: cells that all its classes' parts share
@@ -106,8 +107,8 @@ class TileRegions {
   void link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const;
 
   const WorldData& world_;
-  std::vector<int32_t> steps_;  // per class [mm]
-  int32_t longest_ = 0;         // of them
+  std::vector<int32_t> steps_;                  // per class [mm]
+  int32_t longest_ = 0, shortest_ = INT32_MAX;  // of them
 };
 
 /// Makes one link for all classes of a pair, and sorts by a, then b.

@@ -100,8 +100,7 @@ class TileRegions {
     uint32_t a, b;
   };
 
-  void find_level(const WorldData::TileLevels& levels, uint32_t l, TileParts& tile,
-                  TileScratch& scratch) const;
+  void find_level(uint32_t l, TileParts& tile, TileScratch& scratch) const;
   [[nodiscard]] bool steps_both_ways(size_t c, const GroundLevel& a, const GroundLevel& b,
                                      int32_t x, int32_t z, int32_t nx, int32_t nz) const;
   void link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const;

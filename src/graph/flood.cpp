@@ -83,8 +83,20 @@ CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z)
 }
 
 void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list) {
+  add_parts(open, cuts, find_bands(open, cuts), list);
+}
+
+bool PartFinder::find_few(const CellRows& open, PartList& list) {
+  constexpr size_t kFewBands = 12;
+  const bool is_chain = find_bands(open, nullptr);
+  if (!is_chain && band_count_ > kFewBands) return false;
+  add_parts(open, nullptr, is_chain, list);
+  return true;
+}
+
+void PartFinder::add_parts(const CellRows& open, const StepCuts* cuts, bool is_chain,
+                           PartList& list) {
   const auto start = static_cast<uint32_t>(list.rows.size());
-  const bool is_chain = find_bands(open, cuts);
   if (band_count_ == 0) return;
   if (is_chain) {
     const uint16_t begin = bands_[0].begin, end = bands_[band_count_ - 1].end;

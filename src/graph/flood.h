@@ -52,6 +52,8 @@ class PartFinder {
   /// Adds all connected parts of `open` to a list, in the order of their first cells, row by row.
   /// `cuts` may be null.
   void find(const CellRows& open, const StepCuts* cuts, PartList& list);
+  /// The same without cuts, but only if it takes little time: false if not, and then adds nothing.
+  bool find_few(const CellRows& open, PartList& list);
 
  private:
   // Rows one after the other that are alike. Where walls run along the grid that are nearly all: 9
@@ -62,6 +64,7 @@ class PartFinder {
   };
 
   bool find_bands(const CellRows& open, const StepCuts* cuts);
+  void add_parts(const CellRows& open, const StepCuts* cuts, bool is_chain, PartList& list);
   void find_runs(const CellRows& open, const StepCuts* cuts);
   static void add_run(uint64_t run, const Band& band, PartList::Part& part);
   uint16_t root(uint16_t run);

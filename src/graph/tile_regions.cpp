@@ -239,6 +239,7 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
   scratch.legal.resize(std::max(scratch.legal.size(), tile.classes.size()));
   scratch.grounds.resize(std::max(scratch.grounds.size(), tile.classes.size()));
   scratch.alike.resize(std::max(scratch.alike.size(), tile.classes.size()));
+  scratch.shapes_of.resize(std::max(scratch.shapes_of.size(), tile.classes.size()));
   scratch.shapes.clear();
   tile.heights.reserve(tile.levels);
   // Nearly half the time to unpack a set was the wait for its first word: ask for all in time.
@@ -338,41 +339,69 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
   return links;
 }
 
+// The parts of a level for each class.
+void TileRegions::find_shapes(uint32_t l, TileScratch& scratch) const {
+  const size_t begin = l * steps_.size();
+  PartList& shapes = scratch.shapes;
+  const auto shape_count = [&] { return static_cast<uint32_t>(shapes.parts.size()); };
+  scratch.together.clear();
+  for (size_t at = begin; at < begin + steps_.size(); ++at) {
+    const GroundLevel& ground = scratch.grounds[at];
+    uint32_t& alike = scratch.alike[at] = 0;
+    scratch.shapes_of[at] = {};
+    if (ground.kind == format::CellsKind::None) continue;
+    // A set that classes share is in the zone's file once.
+    for (size_t other = begin; ground.step_safe && other < at; ++other) {
+      const GroundLevel& its = scratch.grounds[other];
+      const bool is_same = its.kind == ground.kind && its.legal == ground.legal && its.step_safe;
+      if (is_same) alike |= uint32_t{1} << (other - begin);
+    }
+    if (alike != 0) {
+      scratch.legal[at] = scratch.legal[begin + static_cast<size_t>(std::countr_zero(alike))];
+      continue;
+    }
+    CellRows& legal = scratch.legal[at] = legal_rows(ground);
+    const auto cuts = step_cuts(ground, legal, steps_[at - begin]);
+    const uint32_t first = shape_count();
+    if (cuts || steps_.size() == 1) {
+      scratch.finder.find(legal, cuts ? &*cuts : nullptr, shapes);
+    } else if (!scratch.finder.find_few(legal, shapes)) {
+      scratch.together.push_back(at);
+    }
+    scratch.shapes_of[at] = {first, shape_count()};
+  }
+  if (scratch.together.size() == 1) {
+    const uint32_t first = shape_count();
+    scratch.finder.find(scratch.legal[scratch.together[0]], nullptr, shapes);
+    scratch.shapes_of[scratch.together[0]] = {first, shape_count()};
+  } else if (!scratch.together.empty()) {
+    std::array<const CellRows*, kMaxAvatarClasses> sets{};
+    std::array<uint32_t, kMaxAvatarClasses + 1> first{};
+    const size_t count = scratch.together.size();
+    for (size_t i = 0; i < count; ++i) sets[i] = &scratch.legal[scratch.together[i]];
+    find_parts_of({sets.data(), count}, scratch.lanes, shapes, {first.data(), count + 1});
+    for (size_t i = 0; i < count; ++i) {
+      scratch.shapes_of[scratch.together[i]] = {first[i], first[i + 1]};
+    }
+  }
+  for (size_t at = begin; at < begin + steps_.size(); ++at) {
+    const uint32_t alike = scratch.alike[at];
+    if (alike == 0) continue;
+    scratch.shapes_of[at] = scratch.shapes_of[begin + static_cast<size_t>(std::countr_zero(alike))];
+  }
+}
+
 void TileRegions::find_level(uint32_t l, TileParts& tile, TileScratch& scratch) const {
+  find_shapes(l, scratch);
   LevelRegions regions(tile.first_level + l, tile, scratch.shapes, scratch.common);
   for (size_t c = 0; c < steps_.size(); ++c) {
     const size_t at = l * steps_.size() + c;
     const auto first = static_cast<uint32_t>(tile.parts.size());
-    const GroundLevel& ground = scratch.grounds[at];
-    if (ground.kind != format::CellsKind::None) {
-      // A set that classes share is in the zone's file once.
-      const auto is_same = [&](const GroundLevel& other) {
-        return other.kind == ground.kind && other.legal == ground.legal && other.step_safe;
-      };
-      uint32_t& alike = scratch.alike[at] = 0;
-      for (size_t other = 0; ground.step_safe && other < c; ++other) {
-        if (is_same(scratch.grounds[at - c + other])) alike |= uint32_t{1} << other;
-      }
-      if (alike != 0) {
-        const size_t like = at - c + static_cast<size_t>(std::countr_zero(alike));
-        scratch.legal[at] = scratch.legal[like];
-        const TileParts::ClassParts of = tile.classes[like];
-        for (uint32_t p = of.first; p < of.last; ++p) {
-          scratch.shapes.parts.push_back(Part(scratch.shapes.parts[p]));
-          tile.parts.push_back(RegionPart(tile.parts[p]));
-        }
-      } else {
-        scratch.legal[at] = legal_rows(ground);
-        const auto cuts = step_cuts(ground, scratch.legal[at], steps_[c]);
-        scratch.finder.find(scratch.legal[at], cuts ? &*cuts : nullptr, scratch.shapes);
-        for (size_t p = first; p < scratch.shapes.parts.size(); ++p) {
-          const Part& part = scratch.shapes.parts[p];
-          tile.parts.push_back({0, part.cells, part.side});
-        }
-      }
-      for (size_t p = first; p < tile.parts.size(); ++p) {
-        tile.parts[p].region = regions.add(scratch.shapes.parts[p], uint32_t{1} << c, alike);
-      }
+    const TileParts::ClassParts shapes = scratch.shapes_of[at];
+    for (uint32_t p = shapes.first; p < shapes.last; ++p) {
+      const Part& part = scratch.shapes.parts[p];
+      const uint32_t region = regions.add(part, uint32_t{1} << c, scratch.alike[at]);
+      tile.parts.push_back({region, part.cells, part.side});
     }
     tile.classes[at] = {first, static_cast<uint32_t>(tile.parts.size())};
   }
@@ -407,6 +436,8 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
   if (!is_beside(from_any, to_any)) return;
 
   const PartList& shapes = scratch.shapes;
+  const Part* parts_a = &shapes.parts[scratch.shapes_of[at_a].first];
+  const Part* parts_b = &shapes.parts[scratch.shapes_of[at_b].first];
   TileScratch::Rises& rises = scratch.rises;
   // `direction` 0 to 3: to greater and less x, to greater and less z.
   const auto any = [&](uint64_t cells, size_t direction, size_t z) {
@@ -442,7 +473,7 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
   };
   for (uint32_t p = as.first; p < as.last; ++p) {
     for (uint32_t q = bs.first; q < bs.last; ++q) {
-      if (!touch(shapes.parts[p], shapes.parts[q])) continue;
+      if (!touch(parts_a[p - as.first], parts_b[q - bs.first])) continue;
       add_link(tile.links, {tile.parts[p].region, tile.parts[q].region, uint32_t{1} << c});
     }
   }

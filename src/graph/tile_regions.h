@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "graph/flood.h"
+#include "graph/lane_flood.h"
 #include "world/ground.h"
 
 /// Regions of single tiles: connected parts of level tiles, shared by classes, and the links
@@ -66,12 +67,15 @@ struct TileScratch {
   };
 
   PartFinder finder;
-  PartList shapes;                   // of the tile's parts, in their order
-  std::vector<GroundLevel> grounds;  // per level and class
-  std::vector<uint32_t> alike;       // the same: classes before it that may stand on the same cells
-  std::vector<CellRows> legal;       // per level and class
-  std::vector<CellRows> anyone;      // per level: legal for any class
-  PartList common;  // per region of a level: cells that all its classes' parts share
+  LaneScratch lanes;
+  PartList shapes;  // of the tile's parts; sets that are alike have the same
+  std::vector<TileParts::ClassParts> shapes_of;  // per level and class: which of them
+  std::vector<size_t> together;                  // sets of a level that are left to find in lanes
+  std::vector<GroundLevel> grounds;              // per level and class
+  std::vector<uint32_t> alike;   // the same: classes before it that may stand on the same cells
+  std::vector<CellRows> legal;   // per level and class
+  std::vector<CellRows> anyone;  // per level: legal for any class
+  PartList common;               // per region of a level: cells that all its classes' parts share
   Rises rises;
   Border from, to;
 };
@@ -100,6 +104,7 @@ class TileRegions {
     uint32_t a, b;
   };
 
+  void find_shapes(uint32_t l, TileScratch& scratch) const;
   void find_level(uint32_t l, TileParts& tile, TileScratch& scratch) const;
   [[nodiscard]] bool steps_both_ways(size_t c, const GroundLevel& a, const GroundLevel& b,
                                      int32_t x, int32_t z, int32_t nx, int32_t nz) const;

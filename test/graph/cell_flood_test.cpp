@@ -7,6 +7,7 @@
 
 #include "core/random.h"
 #include "graph/flood.h"
+#include "graph/lane_flood.h"
 
 namespace throng {
 namespace {
@@ -142,6 +143,53 @@ TEST(CellFlood, FindsTheSamePartsWhereRowsAreAlike) {
       expect_parts_as_naive(open, &cuts);
     }
   }
+}
+
+TEST(CellFlood, FindsTheSamePartsOfSeveralSetsAtOnce) {
+  LaneScratch scratch;
+  PartFinder finder;
+  PartList list;
+  for (uint64_t n = 0; n < 40; ++n) {
+    std::vector<CellRows> rows;
+    for (size_t set = 0; set <= n % 17; ++set) {
+      const auto share = static_cast<uint32_t>(random_below(n, set, 1, 257));
+      rows.push_back(random_rows(n, set, share));
+    }
+    std::vector<const CellRows*> sets;
+    for (const CellRows& of_set : rows) sets.push_back(&of_set);
+    std::vector<uint32_t> first(sets.size() + 1);
+    find_parts_of(sets, scratch, list, first);
+    ASSERT_EQ(first.back(), list.parts.size());
+    for (size_t set = 0; set < sets.size(); ++set) {
+      PartList alone;
+      finder.find(rows[set], nullptr, alone);
+      ASSERT_EQ(first[set + 1] - first[set], alone.parts.size());
+      for (size_t i = 0; i < alone.parts.size(); ++i) {
+        const PartList::Part &part = list.parts[first[set] + i], &same = alone.parts[i];
+        ASSERT_EQ(part.begin, same.begin);
+        ASSERT_EQ(part.end, same.end);
+        ASSERT_EQ(part.cells, same.cells);
+        ASSERT_EQ(part.side, same.side);
+        for (size_t z = part.begin; z < part.end; ++z) {
+          ASSERT_EQ(list.row(part, z), alone.row(same, z));
+        }
+      }
+    }
+  }
+}
+
+TEST(CellFlood, FindsFewPartsOrNone) {
+  PartFinder finder;
+  PartList list;
+  CellRows rows{};
+  EXPECT_TRUE(finder.find_few(rows, list));
+  EXPECT_TRUE(list.parts.empty());
+  rows.fill(5);  // two columns, all rows alike
+  EXPECT_TRUE(finder.find_few(rows, list));
+  EXPECT_EQ(list.parts.size(), 2u);
+  for (size_t z = 0; z < 64; z += 2) rows[z] = 21;  // and spots
+  EXPECT_FALSE(finder.find_few(rows, list));
+  EXPECT_EQ(list.parts.size(), 2u);
 }
 
 TEST(CellFlood, FollowsSpiralsAndFullAndEmptyTiles) {

@@ -66,10 +66,9 @@ uint64_t sum_of(uint64_t head, std::span<const format::RegionLink> east,
 }
 
 uint64_t sum_of(uint64_t world_hash, std::span<const format::GraphZone> zones,
-                std::span<const uint32_t> class_first, std::span<const uint8_t> sizes,
-                std::span<const uint8_t> of_zones) {
+                std::span<const uint32_t> class_first, std::span<const uint8_t> components) {
   const uint64_t head = chained(class_first, chained(zones, head_sum(0, 0, world_hash)));
-  return chained(of_zones, chained(sizes, head));
+  return chained(components, head);
 }
 
 // Offsets from 0 to `end`, none before the last.
@@ -348,17 +347,17 @@ void GraphData::show(const WorldData& of_world) {
 }
 
 std::vector<uint8_t> write_graph_index(const GraphData& graph, uint64_t world_hash) {
-  const PackedComponents packed = pack_components(graph);
+  const std::vector<uint8_t> packed = pack_components(graph);
   std::vector<format::GraphZone> zones;
   for (const auto& slot : graph.slots) zones.push_back(slot->entry);
   // Room for all of it: as it grew it would be there three times.
-  flatbuffers::FlatBufferBuilder builder(zones.size() * sizeof(format::GraphZone) +
-                                         packed.sizes.size() + packed.of_zones.size() + 1024);
-  builder.Finish(format::CreateGraphIndexDirect(
-                     builder, kGraphVersion, world_hash,
-                     sum_of(world_hash, zones, graph.class_first, packed.sizes, packed.of_zones),
-                     &zones, &graph.class_first, &packed.sizes, &packed.of_zones),
-                 kIndexIdentifier);
+  flatbuffers::FlatBufferBuilder builder(zones.size() * sizeof(format::GraphZone) + packed.size() +
+                                         1024);
+  builder.Finish(
+      format::CreateGraphIndexDirect(builder, kGraphVersion, world_hash,
+                                     sum_of(world_hash, zones, graph.class_first, packed), &zones,
+                                     &graph.class_first, &packed),
+      kIndexIdentifier);
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 
@@ -370,13 +369,12 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
   if (!found) return found.error();
   const format::GraphIndex& root = **found;
   if (root.world() != world_hash) return bad_file(name, "belongs to another bake of this world");
-  if (!root.zones() || !root.class_first() || !root.sizes() || !root.of_zones() ||
-      !is_aligned(*root.zones())) {
+  if (!root.zones() || !root.class_first() || !root.components() || !is_aligned(*root.zones())) {
     return bad_file(name, "an array is missing");
   }
   const auto class_first = numbers(*root.class_first());
-  const auto sizes = numbers(*root.sizes()), of_zones = numbers(*root.of_zones());
-  if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first, sizes, of_zones)) {
+  const auto packed = numbers(*root.components());
+  if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first, packed)) {
     return bad_file(name, "its sum is wrong");
   }
   if (root.zones()->size() != world.slots.size() || class_first.size() < 2 ||
@@ -397,7 +395,7 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
     graph->slots.back()->entry = entry;
   }
   graph->class_first.assign(class_first.begin(), class_first.end());
-  if (const char* what = unpack_components(sizes, of_zones, world, *graph)) {
+  if (const char* what = unpack_components(packed, world, *graph)) {
     return bad_file(name, what);
   }
   if (components != graph->component_of.size()) {

@@ -22,7 +22,7 @@
 /// what is known of the whole world. See docs/design/003-graph.md.
 namespace throng {
 
-inline constexpr uint32_t kGraphVersion = 2;
+inline constexpr uint32_t kGraphVersion = 3;
 inline constexpr const char* kGraphIndexName = "graph.thm";
 
 /// Regions of one zone and what links them within it.

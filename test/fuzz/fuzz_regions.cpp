@@ -90,15 +90,11 @@ void try_packed(const uint8_t* bytes, size_t size) {
   graph.class_first = {0, bytes[0], uint32_t{bytes[0]} + bytes[1]};
   WorldData world;
   world.level_count = world.width = world.depth = 1000;
-  const size_t sizes = std::min<size_t>(bytes[2], size - 3);
-  if (unpack_components({bytes + 3, sizes}, {bytes + 3 + sizes, size - 3 - sizes}, world, graph)) {
-    return;
-  }
-  const PackedComponents packed = pack_components(graph);
+  if (unpack_components({bytes + 2, size - 2}, world, graph)) return;
+  const std::vector<uint8_t> packed = pack_components(graph);
   GraphData again;
   again.class_first = graph.class_first;
-  if (unpack_components(packed.sizes, packed.of_zones, world, again) ||
-      again.component_of != graph.component_of) {
+  if (unpack_components(packed, world, again) || again.component_of != graph.component_of) {
     std::abort();
   }
 }

@@ -152,29 +152,39 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
                    at(b[5], origin_z_)};
   };
   const TriangleBins bins =
-      bin_boxes(clusters_.size(), box, 0, 0, squares(width), squares(depth), 1, 0);
+      bin_boxes(clusters_.size(), box, 0, 0, squares(width), squares(depth), 1, 0, workers);
   squares_x_ = bins.squares_x;
   squares_z_ = bins.squares_z;
   first_.assign(bins.first.begin(), bins.first.end());
-  items_.reserve(bins.items.size());
+  items_.resize(bins.items.size());
   // The first square of each, which boxes that only touch a border do not tell.
   struct Place {
     int32_t x = -1, z = 0;
   };
   std::vector<Place> begin(clusters_.size());
-  size_t s = 0;
-  for (int32_t z = 0; z < squares_z_; ++z) {
-    for (int32_t x = 0; x < squares_x_; ++x, ++s) {
-      for (uint32_t i = first_[s]; i < first_[s + 1]; ++i) {
-        const uint32_t c = bins.items[i];
-        if (begin[c].x < 0) begin[c] = {x, z};
-        items_.push_back({.box = clusters_[c].box,
-                          .cluster = c,
-                          .begins_x = x == begin[c].x,
-                          .begins_z = z == begin[c].z});
-      }
+  const auto for_each_item = [&](int32_t z, auto visit) {
+    for (int32_t x = 0; x < squares_x_; ++x) {
+      const size_t s = static_cast<size_t>(z) * static_cast<size_t>(squares_x_) +
+                       static_cast<size_t>(x);
+      for (uint32_t i = first_[s]; i < first_[s + 1]; ++i) visit(i, x);
     }
+  };
+  for (int32_t z = 0; z < squares_z_; ++z) {
+    for_each_item(z, [&](uint32_t i, int32_t x) {
+      Place& place = begin[bins.items[i]];
+      if (place.x < 0) place = {x, z};
+    });
   }
+  parallel_for(static_cast<size_t>(squares_z_), workers, [&](size_t row) {
+    const auto z = static_cast<int32_t>(row);
+    for_each_item(z, [&](uint32_t i, int32_t x) {
+      const uint32_t c = bins.items[i];
+      items_[i] = {.box = clusters_[c].box,
+                   .cluster = c,
+                   .begins_x = x == begin[c].x,
+                   .begins_z = z == begin[c].z};
+    });
+  });
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bake/grid.h"
+#include "core/parallel.h"
 #include "throng/avatar_class.h"
 #include "throng/math.h"
 #include "throng/scene.h"
@@ -87,7 +88,7 @@ struct CellBox {
 /// square on all sides. `box(i)` gives the box of triangle i of `count`.
 template <class Box>
 TriangleBins bin_boxes(size_t count, Box box, int32_t cell_x, int32_t cell_z, int32_t squares_x,
-                       int32_t squares_z, int32_t side, int32_t apron) {
+                       int32_t squares_z, int32_t side, int32_t apron, int32_t workers = 1) {
   TriangleBins bins;
   bins.squares_x = squares_x;
   bins.squares_z = squares_z;
@@ -113,18 +114,27 @@ TriangleBins bin_boxes(size_t count, Box box, int32_t cell_x, int32_t cell_z, in
   struct Touch {
     uint32_t square, item;
   };
-  std::vector<Touch> touched;
-  touched.reserve(count + count / 4);
-  for (size_t i = 0; i < count; ++i) {
-    for_each_square(i, [&](size_t square) {
-      ++bins.first[square + 1];
-      touched.push_back({static_cast<uint32_t>(square), static_cast<uint32_t>(i)});
-    });
+  constexpr size_t kRun = size_t{1} << 18;
+  std::vector<std::vector<Touch>> runs((count + kRun - 1) / kRun);
+  parallel_for(runs.size(), workers, [&](size_t run) {
+    const size_t begin = run * kRun, end = std::min(count, begin + kRun);
+    std::vector<Touch>& touched = runs[run];
+    touched.reserve(end - begin + (end - begin) / 4);
+    for (size_t i = begin; i < end; ++i) {
+      for_each_square(i, [&](size_t square) {
+        touched.push_back({static_cast<uint32_t>(square), static_cast<uint32_t>(i)});
+      });
+    }
+  });
+  for (const std::vector<Touch>& touched : runs) {
+    for (const Touch& touch : touched) ++bins.first[touch.square + 1];
   }
   std::inclusive_scan(bins.first.begin(), bins.first.end(), bins.first.begin());
   bins.items.resize(bins.first.back());
   std::vector<uint32_t> next(bins.first.begin(), bins.first.end() - 1);
-  for (const Touch& touch : touched) bins.items[next[touch.square]++] = touch.item;
+  for (const std::vector<Touch>& touched : runs) {
+    for (const Touch& touch : touched) bins.items[next[touch.square]++] = touch.item;
+  }
   return bins;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -62,11 +63,18 @@ Result<void> check_scene(const Scene& scene) {
   return {};
 }
 
-Box3d triangle_bounds(const Scene& scene) {
+Box3d triangle_bounds(const Scene& scene, int32_t workers) {
   Box3d box;
-  for (const auto& corner : scene.triangles) {
-    for (const uint32_t c : corner) box.add(scene.positions[c]);
-  }
+  std::mutex mutex;
+  parallel_ranges(scene.triangles.size(), size_t{1} << 16, workers, [&](size_t begin, size_t end) {
+    Box3d share;
+    for (size_t t = begin; t < end; ++t) {
+      for (const uint32_t c : scene.triangles[t]) share.add(scene.positions[c]);
+    }
+    const std::scoped_lock lock(mutex);
+    box.add(share.min);
+    box.add(share.max);
+  });
   return box;
 }
 
@@ -116,7 +124,8 @@ TriangleBins bin_zones(const BakePlan& plan) {
   return bin_boxes(
       scene.triangles.size(),
       [&](size_t i) { return scene_box(scene, static_cast<uint32_t>(i), plan.grid); }, 0, 0,
-      plan.zones_x, plan.zones_z, plan.tiles_per_zone * kTileSide, plan.apron());
+      plan.zones_x, plan.zones_z, plan.tiles_per_zone * kTileSide, plan.apron(),
+      plan.config->workers);
 }
 
 // Triangles by zone, and the inputs of the zones that have any.
@@ -191,7 +200,7 @@ ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const WorldData* old
 
 struct WorldBake::Plan {
   Plan(const Scene& scene, const BakeConfig& config)
-      : bounds(triangle_bounds(scene)),
+      : bounds(triangle_bounds(scene, config.workers)),
         coder(scene, config.classes, config.one_sided, config.workers) {}
 
   Box3d bounds;

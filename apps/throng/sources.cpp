@@ -121,8 +121,7 @@ void append_scene(Scene& scene, const Scene& other) {
       scene.patch_part.insert(scene.patch_part.end(), other.patch_part.begin(),
                               other.patch_part.end());
       scene.patch_part.resize(scene.triangles.size());
-      scene.patch_off.insert(scene.patch_off.end(), other.patch_off.begin(),
-                             other.patch_off.end());
+      scene.patch_off.insert(scene.patch_off.end(), other.patch_off.begin(), other.patch_off.end());
     } else {
       scene.patch_part.clear();
       scene.patch_off.clear();

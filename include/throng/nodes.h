@@ -79,12 +79,12 @@ struct THRONG_API NodeBins {
 struct NodeInfo {
   uint16_t classes = 0;     ///< Bit per class: its body may stand anywhere in the sub-patch.
   uint8_t inclination = 0;  ///< Steepest surface. [code]
-  /// Free height along the normal, above what any class climbs over (level tiles: straight up, above
-  /// the floor). [code]
+  /// Free height along the normal, above what any class climbs over (level tiles: straight up,
+  /// above the floor). [code]
   uint8_t height = 0;
-  uint8_t headroom = 0;     ///< The same straight up; nothing where it is too steep to walk. [code]
-  uint8_t width = 0;        ///< Radius around the middle without anything more restrictive. [code]
-  bool terminal = true;     ///< No smaller node lies in it.
+  uint8_t headroom = 0;  ///< The same straight up; nothing where it is too steep to walk. [code]
+  uint8_t width = 0;     ///< Radius around the middle without anything more restrictive. [code]
+  bool terminal = true;  ///< No smaller node lies in it.
   PatchKind kind = PatchKind::kLevelTile;
   uint32_t source = 0;   ///< Bezier patch of the scene, or level tile of the world.
   uint8_t depth = 0;     ///< The patch is cut into 2^depth x 2^depth finest sub-patches.

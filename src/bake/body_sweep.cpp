@@ -143,7 +143,7 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   const double width = bounds.max.x - bounds.min.x, depth = bounds.max.z - bounds.min.z;
   // Small against bodies and sub-patches, but not so many that the squares cost more than they
   // save.
-  side_ = std::max(2.0, std::max(width, depth) / 4096);
+  side_ = std::max(4.0, std::max(width, depth) / 4096);
   const auto squares = [&](double extent) { return static_cast<int32_t>(extent / side_) + 1; };
   const auto box = [&](size_t c) {
     const auto& b = clusters_[c].box;
@@ -164,8 +164,8 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   std::vector<Place> begin(clusters_.size());
   const auto for_each_item = [&](int32_t z, auto visit) {
     for (int32_t x = 0; x < squares_x_; ++x) {
-      const size_t s = static_cast<size_t>(z) * static_cast<size_t>(squares_x_) +
-                       static_cast<size_t>(x);
+      const size_t s =
+          static_cast<size_t>(z) * static_cast<size_t>(squares_x_) + static_cast<size_t>(x);
       for (uint32_t i = first_[s]; i < first_[s + 1]; ++i) visit(i, x);
     }
   };

@@ -25,9 +25,9 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for triangles together
 constexpr int32_t kBlockHalvings = 2;   // of a block's, that choose among these together
 constexpr size_t kBlock = size_t{1} << (2 * kBlockHalvings);
-constexpr size_t kSquare = 4;           // cells of a block that choose again
-constexpr double kRiseMargin = 1e-6;    // for rounding; everything else is told by a bound [m]
-constexpr double kSlopeMargin = 1e-6;   // a plane at exactly a limit keeps it
+constexpr size_t kSquare = 4;          // cells of a block that choose again
+constexpr double kRiseMargin = 1e-6;   // for rounding; everything else is told by a bound [m]
+constexpr double kSlopeMargin = 1e-6;  // a plane at exactly a limit keeps it
 
 inline void join(Box3d& box, const Box3d& other) {
   box.min = {std::min(box.min.x, other.min.x), std::min(box.min.y, other.min.y),
@@ -209,7 +209,8 @@ void PatchJudge::bound_cells(BezierCells& out) {
     // What may lean over is its own ceiling, and where nobody stands upright nobody asks.
     const bool upright = bound.frame.up.y > bound.sine && steepest >= steepest_walk_;
     promise.headroom = upright ? promise.height : uint8_t{0};
-    bounded_.push_back({.cell = part_cell_[i], .part = i, .steepest = steepest, .upright = upright});
+    bounded_.push_back(
+        {.cell = part_cell_[i], .part = i, .steepest = steepest, .upright = upright});
   }
   block_at_.push_back(bounded_.size());
   part_cell_.clear();
@@ -301,8 +302,7 @@ void PatchJudge::judge_block(std::span<const Bounded> cells, const Box3d& box, B
     asked |= bodies_on(cell);
     upright |= cell.upright;
   }
-  all_is_asked_ =
-      !spares_height_[0] || (upright && !spares_height_[1]) || (asked & ~spared_) != 0;
+  all_is_asked_ = !spares_height_[0] || (upright && !spares_height_[1]) || (asked & ~spared_) != 0;
   if (!all_is_asked_ && (alone || others_.block.count == 0)) {
     for (const Bounded& cell : cells) stand_on(cell, out);
     return;
@@ -533,9 +533,9 @@ uint32_t PatchJudge::judge_met(const SieveList& list, const Pending& cell, size_
     const BodySweep decisive = b == 0 ? low_room(cell, posture) : sweeps_[b];
     tubes_.push_back({.whole = sweeps_[b], .decisive = decisive});
   }
-  const uint32_t answered = sieve(
-      list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
-      hits_);
+  const uint32_t answered =
+      sieve(list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
+            hits_);
   const uint32_t room = met & 1;  // bit 0, if it is asked for
   const uint32_t all = (1u << tubes_.size()) - 1;
   uint32_t entered = answered;  // no height; then bodies that matter has stopped

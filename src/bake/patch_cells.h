@@ -126,11 +126,11 @@ class PatchJudge {
   struct NearLists {
     SieveList region, block, square;
   };
-  NearLists others_, all_;    // without those of its own that are spared, and with them
+  NearLists others_, all_;     // without those of its own that are spared, and with them
   SieveList foreign_, maker_;  // those of other patches, not beside; near a square
   SieveList found_others_;     // before their boxes are looked at
   bool all_is_filled_ = false, all_is_asked_ = false;
-  uint32_t spared_ = 0;  // bodies that the patch's own triangles here do not reach
+  uint32_t spared_ = 0;                  // bodies that the patch's own triangles here do not reach
   std::array<bool, 2> spares_height_{};  // along the normal and upright
   std::vector<uint32_t> found_, other_ids_;
   SieveHits hits_;

@@ -263,6 +263,22 @@ uint64_t count_outside(const Scene& scene, const Box3d& bulk, double margin) {
   });
 }
 
+Box3d bounds_of(const Scene& scene) {
+  Box3d box;
+  share_out<Box3d>(
+      scene.triangles.size(),
+      [&](size_t begin, size_t end, Box3d& share) {
+        for (size_t t = begin; t < end; ++t) {
+          for (const uint32_t corner : scene.triangles[t]) share.add(scene.positions[corner]);
+        }
+      },
+      [&](Box3d& share) {
+        box.add(share.min);
+        box.add(share.max);
+      });
+  return box;
+}
+
 void warn_of_dropped(Scene& scene, const std::string& name) {
   const SceneReport& report = scene.report;
   const uint64_t dropped = report.non_finite + report.bad_index;
@@ -298,7 +314,7 @@ Result<void> clean_scene(Scene& scene, const std::string& name, Context& context
   warn_of_dropped(scene, name);
   drop_unused_vertices(scene);
   if (context.cancel) return Error{Errc::kCancelled, "cancelled while cleaning"};
-  const Box3d all = scene.bounds();
+  const Box3d all = bounds_of(scene);
   for (const double value : {all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z}) {
     if (std::fabs(value) <= kFarthest) continue;
     return Error{Errc::kBadInput,

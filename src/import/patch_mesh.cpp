@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -56,9 +58,12 @@ class Tessellator {
     if (!number_vertices()) return too_many();
     if (context_.cancel) return cancelled();
     if (!count_triangles()) return too_many();
-    mesh_.positions.resize(vertices_);
-    mesh_.triangles.resize(mesh_.first.back());
-    mesh_.parts.resize(mesh_.first.back());
+    // Memory that is touched for the first time costs as much as what is then written there.
+    const std::array<std::function<void()>, 3> make_room{
+        [&] { mesh_.positions.resize(vertices_); },
+        [&] { mesh_.triangles.resize(mesh_.first.back()); },
+        [&] { mesh_.parts.resize(mesh_.first.back()); }};
+    parallel_for(make_room.size(), config_.workers, [&](size_t i) { make_room[i](); });
     mesh_.off.resize(set_.size());
     place_vertices();
     parallel_ranges(set_.size(), 64, config_.workers, [&](size_t begin, size_t end) {

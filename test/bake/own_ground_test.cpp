@@ -20,12 +20,11 @@ TEST(OwnGround, NoTriangleRisesHigherThanIsTold) {
   size_t seen = 0, known = 0;
   double closest = 0;  // of what is told, the greatest share that was met
   for (uint64_t seed = 1; seed <= 40; ++seed) {
-    const Scene scene =
-        test::net_scene({.side = 2,
-                         .cell = 8 + static_cast<double>(seed % 5) * 4,
-                         .relief = static_cast<double>(seed % 9),
-                         .jitter = seed % 3 == 0 ? 0.03 : 0,
-                         .seed = seed});
+    const Scene scene = test::net_scene({.side = 2,
+                                         .cell = 8 + static_cast<double>(seed % 5) * 4,
+                                         .relief = static_cast<double>(seed % 9),
+                                         .jitter = seed % 3 == 0 ? 0.03 : 0,
+                                         .seed = seed});
     for (uint32_t p = 0; p < scene.patches.size(); ++p) {
       const BezierPatch& patch = scene.patches.patches[p];
       const auto from_s = static_cast<uint8_t>(random_below(seed, p, 0, 4) * 64);

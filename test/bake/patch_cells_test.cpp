@@ -176,8 +176,8 @@ TEST(PatchCells, PromiseWhatALookAtEveryTriangleOfTheSceneFinds) {
   EXPECT_GT(made, 4u);
 }
 
-// Where the patch's own triangles are spared, cells only promise more, and still no body anywhere on
-// them meets any triangle of the scene.
+// Where the patch's own triangles are spared, cells only promise more, and still no body anywhere
+// on them meets any triangle of the scene.
 TEST(PatchCells, NoBodyMeetsTheGroundThatItWasNotTestedAgainst) {
   const std::vector<AvatarClass> classes = four_classes();
   const std::vector<PatchBody> bodies = patch_bodies(classes);
@@ -185,13 +185,12 @@ TEST(PatchCells, NoBodyMeetsTheGroundThatItWasNotTestedAgainst) {
   size_t posed = 0, more = 0, entered = 0;
   for (uint64_t seed = 1; seed <= 8; ++seed) {
     const bool rocks = seed > 6;
-    const Scene scene =
-        rocks ? test::builtin({.name = "landscape", .size = 64, .seed = seed})
-              : test::net_scene({.side = 3,
-                                 .cell = 10,
-                                 .relief = static_cast<double>(seed),
-                                 .jitter = seed % 2 == 0 ? 0.02 : 0,
-                                 .seed = seed});
+    const Scene scene = rocks ? test::builtin({.name = "landscape", .size = 64, .seed = seed})
+                              : test::net_scene({.side = 3,
+                                                 .cell = 10,
+                                                 .relief = static_cast<double>(seed),
+                                                 .jitter = seed % 2 == 0 ? 0.02 : 0,
+                                                 .seed = seed});
     Scene blind = scene;
     blind.patch_part.clear();
     blind.patch_off.clear();

@@ -372,7 +372,8 @@ void PatchJudge::gather(const Box3d& box, const OwnGround& own) {
     others_.region.close();
     return;
   }
-  const bool known = !scene.patch_part.empty() && patch_ < scene.patch_off.size();
+  const bool known = scene.patch_part.size() == scene.triangles.size() &&
+                     scene.patch_off.size() == scene.patches.size();
   other_ids_.clear();
   int32_t span_s = 0, span_t = 0;  // of triangles that are left out
   for (const uint32_t triangle : found_) {

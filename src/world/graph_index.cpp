@@ -82,8 +82,10 @@ std::vector<uint8_t> pack_components(const GraphData& graph) {
     cluster.cells.clear();
   };
   for (size_t i = 0; i < graph.component_of.size(); ++i) {
-    const size_t c = graph.class_of[i], at = size_t{graph.class_first[c]} + graph.component_of[i];
-    if (at >= order.size()) return {};  // of a graph that is none
+    const size_t c = graph.class_of[i];
+    if (c >= count.size()) return {};  // of a graph that is none
+    const size_t at = size_t{graph.class_first[c]} + graph.component_of[i];
+    if (at >= order.size()) return {};
     const GraphComponent& of = graph.components[at];
     const bool is_first = order[at] == kNotSeen;
     const bool is_elsewhere =

@@ -7,10 +7,12 @@
 #include <numeric>
 
 #include "core/var_number.h"
+#include "throng/avatar_class.h"
 
 namespace throng {
 namespace {
 
+constexpr size_t kMostClasses = kMaxAvatarClasses;
 constexpr uint64_t kMostCells = uint64_t{1} << 50;  // of a component
 
 // The place of the last component that was told; the next is told by what has changed.
@@ -83,7 +85,7 @@ std::vector<uint8_t> pack_components(const GraphData& graph) {
   };
   for (size_t i = 0; i < graph.component_of.size(); ++i) {
     const size_t c = graph.class_of[i];
-    if (c >= count.size()) return {};  // of a graph that is none
+    if (c >= count.size() || c >= kMostClasses) return {};  // of a graph that is none
     const size_t at = size_t{graph.class_first[c]} + graph.component_of[i];
     if (at >= order.size()) return {};
     const GraphComponent& of = graph.components[at];
@@ -124,6 +126,7 @@ class Unpacker {
         joined_(found_.size(), 0) {}
 
   const char* take_all() {
+    if (found_.size() > kMostClasses) return "it has more classes than a world can have";
     while (at_ < bytes_.size()) {
       if (const char* what = take_cluster()) return what;
     }

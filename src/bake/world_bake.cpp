@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -14,6 +13,7 @@
 #include "bake/air_bake.h"
 #include "bake/clearance.h"
 #include "bake/zone_input.h"
+#include "core/corner_box.h"
 #include "core/hash.h"
 #include "world/zone_data.h"
 
@@ -61,21 +61,6 @@ Result<void> check_scene(const Scene& scene) {
     }
   }
   return {};
-}
-
-Box3d triangle_bounds(const Scene& scene, int32_t workers) {
-  Box3d box;
-  std::mutex mutex;
-  parallel_ranges(scene.triangles.size(), size_t{1} << 16, workers, [&](size_t begin, size_t end) {
-    Box3d share;
-    for (size_t t = begin; t < end; ++t) {
-      for (const uint32_t c : scene.triangles[t]) share.add(scene.positions[c]);
-    }
-    const std::scoped_lock lock(mutex);
-    box.add(share.min);
-    box.add(share.max);
-  });
-  return box;
 }
 
 Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const Box3d& bounds,
@@ -200,7 +185,7 @@ ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const WorldData* old
 
 struct WorldBake::Plan {
   Plan(const Scene& scene, const BakeConfig& config)
-      : bounds(triangle_bounds(scene, config.workers)),
+      : bounds(corner_box(scene.positions, scene.triangles, config.workers)),
         coder(scene, config.classes, config.one_sided, config.workers) {}
 
   Box3d bounds;

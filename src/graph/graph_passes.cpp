@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 #include <vector>
 
 #include "core/disjoint_sets.h"
 #include "core/hash.h"
 #include "graph/zone_regions.h"
+#include "world/graph_index.h"
 #include "world/place.h"
 
 // Pass 1 looks at one zone at a time, pass 2 at a zone and the two behind its eastern and southern
@@ -268,20 +268,7 @@ void Passes::number_components(DisjointSets& sets) {
     }
     zone.give_back();
   }
-  std::vector<std::vector<uint32_t>> rank(classes);
-  graph.class_first.assign(1, 0);
-  for (size_t c = 0; c < classes; ++c) {
-    std::vector<uint32_t> order(found[c].size());
-    rank[c].resize(order.size());
-    std::iota(order.begin(), order.end(), uint32_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return found[c][a].cells > found[c][b].cells; });
-    for (uint32_t i = 0; i < order.size(); ++i) {
-      rank[c][order[i]] = i;
-      graph.components.push_back(found[c][order[i]]);
-    }
-    graph.class_first.push_back(static_cast<uint32_t>(graph.components.size()));
-  }
+  const auto rank = rank_components(found, graph);
   for (uint32_t i = 0; i < components_; ++i) {
     component_of[i] = rank[class_of[i]][of_root[sets.find(i)]];
   }

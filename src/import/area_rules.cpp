@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "import/scene_triangles.h"
+
 namespace throng {
 namespace {
 
@@ -90,25 +92,14 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
     const auto first = static_cast<uint32_t>(kept);
     for (uint32_t i = 0; i < part.triangle_count; ++i, ++kept) {
       const size_t from = size_t{part.first_triangle} + i;
-      scene.triangles[kept] = scene.triangles[from];
-      scene.area[kept] = kind.value_or(scene.area[from]);  // A plan's walls are blocked already.
-      if (!scene.patch_of_triangle.empty()) {
-        scene.patch_of_triangle[kept] = scene.patch_of_triangle[from];
-      }
-      if (!scene.patch_part.empty()) scene.patch_part[kept] = scene.patch_part[from];
-      if (!scene.texture_corners.empty()) {
-        scene.texture_corners[kept] = scene.texture_corners[from];
-      }
+      move_triangle(scene, from, kept);
+      if (kind) scene.area[kept] = *kind;  // A plan's walls are blocked already.
     }
     part.first_triangle = first;
     kept_parts.push_back(std::move(part));
   }
   scene.parts = std::move(kept_parts);
-  scene.triangles.resize(kept);
-  scene.area.resize(kept);
-  if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
-  if (!scene.patch_part.empty()) scene.patch_part.resize(kept);
-  if (!scene.texture_corners.empty()) scene.texture_corners.resize(kept);
+  keep_triangles(scene, kept);
 }
 
 }  // namespace throng

@@ -12,9 +12,11 @@
 #include <mutex>
 #include <utility>
 
+#include "core/corner_box.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "import/raw_scene.h"
+#include "import/scene_triangles.h"
 
 namespace throng {
 namespace {
@@ -65,15 +67,7 @@ void filter_triangles(Scene& scene, Keep keep) {
   const auto move_range = [&](size_t end) {
     for (; done < end; ++done) {
       if (!keep(done)) continue;
-      scene.triangles[kept] = scene.triangles[done];
-      scene.area[kept] = scene.area[done];
-      if (!scene.patch_of_triangle.empty()) {
-        scene.patch_of_triangle[kept] = scene.patch_of_triangle[done];
-      }
-      if (!scene.patch_part.empty()) scene.patch_part[kept] = scene.patch_part[done];
-      if (!scene.texture_corners.empty()) {
-        scene.texture_corners[kept] = scene.texture_corners[done];
-      }
+      move_triangle(scene, done, kept);
       ++kept;
     }
   };
@@ -88,11 +82,7 @@ void filter_triangles(Scene& scene, Keep keep) {
   }
   move_range(scene.triangles.size());
   scene.parts = std::move(parts);
-  scene.triangles.resize(kept);
-  scene.area.resize(kept);
-  if (!scene.patch_of_triangle.empty()) scene.patch_of_triangle.resize(kept);
-  if (!scene.patch_part.empty()) scene.patch_part.resize(kept);
-  if (!scene.texture_corners.empty()) scene.texture_corners.resize(kept);
+  keep_triangles(scene, kept);
 }
 
 void drop_broken(Scene& scene) {
@@ -263,22 +253,6 @@ uint64_t count_outside(const Scene& scene, const Box3d& bulk, double margin) {
   });
 }
 
-Box3d bounds_of(const Scene& scene) {
-  Box3d box;
-  share_out<Box3d>(
-      scene.triangles.size(),
-      [&](size_t begin, size_t end, Box3d& share) {
-        for (size_t t = begin; t < end; ++t) {
-          for (const uint32_t corner : scene.triangles[t]) share.add(scene.positions[corner]);
-        }
-      },
-      [&](Box3d& share) {
-        box.add(share.min);
-        box.add(share.max);
-      });
-  return box;
-}
-
 void warn_of_dropped(Scene& scene, const std::string& name) {
   const SceneReport& report = scene.report;
   const uint64_t dropped = report.non_finite + report.bad_index;
@@ -314,7 +288,7 @@ Result<void> clean_scene(Scene& scene, const std::string& name, Context& context
   warn_of_dropped(scene, name);
   drop_unused_vertices(scene);
   if (context.cancel) return Error{Errc::kCancelled, "cancelled while cleaning"};
-  const Box3d all = bounds_of(scene);
+  const Box3d all = corner_box(scene.positions, scene.triangles, 0);
   for (const double value : {all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z}) {
     if (std::fabs(value) <= kFarthest) continue;
     return Error{Errc::kBadInput,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "throng/scene.h"
 
+#include "core/corner_box.h"
+
 namespace throng {
 
 void Scene::add_triangle(Vec3d a, Vec3d b, Vec3d c, AreaKind kind) {
@@ -35,12 +37,6 @@ void Scene::add_box(Vec3d low, Vec3d high, AreaKind kind) {
 }
 
 // Through the triangles, not the positions: a corner that no triangle uses is not matter.
-Box3d Scene::bounds() const {
-  Box3d box;
-  for (const auto& triangle : triangles) {
-    for (const uint32_t corner : triangle) box.add(positions[corner]);
-  }
-  return box;
-}
+Box3d Scene::bounds() const { return corner_box(positions, triangles, 1); }
 
 }  // namespace throng

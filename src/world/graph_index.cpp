@@ -67,6 +67,26 @@ struct Cluster {
 
 }  // namespace
 
+std::vector<std::vector<uint32_t>> rank_components(
+    std::span<const std::vector<GraphComponent>> found, GraphData& graph) {
+  std::vector<std::vector<uint32_t>> rank(found.size());
+  graph.components.clear();
+  graph.class_first.assign(1, 0);
+  for (size_t c = 0; c < found.size(); ++c) {
+    std::vector<uint32_t> order(found[c].size());
+    rank[c].resize(order.size());
+    std::iota(order.begin(), order.end(), uint32_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return found[c][a].cells > found[c][b].cells; });
+    for (uint32_t i = 0; i < order.size(); ++i) {
+      rank[c][order[i]] = i;
+      graph.components.push_back(found[c][order[i]]);
+    }
+    graph.class_first.push_back(static_cast<uint32_t>(graph.components.size()));
+  }
+  return rank;
+}
+
 std::vector<uint8_t> pack_components(const GraphData& graph) {
   constexpr uint32_t kNotSeen = UINT32_MAX;
   std::vector<uint8_t> packed;
@@ -202,22 +222,12 @@ const char* unpack_components(std::span<const uint8_t> packed, const WorldData& 
   Unpacker unpacker(packed, world, graph);
   if (const char* what = unpacker.take_all()) return what;
   const auto& found = unpacker.found();
-  std::vector<std::vector<uint32_t>> rank(found.size());
-  graph.components.clear();
   for (size_t c = 0; c < found.size(); ++c) {
     if (found[c].size() != graph.class_first[c + 1] - graph.class_first[c]) {
       return "its components do not fit together";
     }
-    std::vector<uint32_t> order(found[c].size());
-    rank[c].resize(order.size());
-    std::iota(order.begin(), order.end(), uint32_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return found[c][a].cells > found[c][b].cells; });
-    for (uint32_t i = 0; i < order.size(); ++i) {
-      rank[c][order[i]] = i;
-      graph.components.push_back(found[c][order[i]]);
-    }
   }
+  const auto rank = rank_components(found, graph);
   for (size_t i = 0; i < graph.component_of.size(); ++i) {
     graph.component_of[i] = rank[graph.class_of[i]][graph.component_of[i]];
   }

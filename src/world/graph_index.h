@@ -14,6 +14,11 @@
 /// in the graph, the largest first, then as here, is found again.
 namespace throng {
 
+/// Puts the components of each class, in the order in which zones have them, into a graph: the
+/// largest first, then as they are. Where each went, by class, from that class's first on.
+std::vector<std::vector<uint32_t>> rank_components(
+    std::span<const std::vector<GraphComponent>> found, GraphData& graph);
+
 std::vector<uint8_t> pack_components(const GraphData& graph);
 
 /// Fills the components of a graph whose slots and `class_first`, from 0 on and in order, are

@@ -85,7 +85,7 @@ Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context
   }
   const Result<Nodes> nodes = Nodes::make(*world, scene, options.node_config, context);
   if (!nodes) return nodes.error();
-  if (auto ok = nodes->write(options.output); !ok) return ok.error();
+  if (auto ok = nodes->write(options.output, options.node_config.workers); !ok) return ok.error();
   return nodes->summary();
 }
 

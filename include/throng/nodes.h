@@ -156,8 +156,9 @@ class THRONG_API Nodes {
   /// The same for a world that was opened from its folder.
   [[nodiscard]] static Result<Nodes> open(const World& world);
   /// Puts them into the folder of the world that they were made for, in place of any that are
-  /// there. Fails with kIo or, if the folder holds another world, kBadFile.
-  [[nodiscard]] Result<void> write(const std::string& world_path) const;
+  /// there, on `workers` threads (0: all cores). Fails with kIo or, if the folder holds another
+  /// world, kBadFile.
+  [[nodiscard]] Result<void> write(const std::string& world_path, int32_t workers = 0) const;
   /// Checks every zone against the index. Fails with kBadFile and the zone's name.
   [[nodiscard]] Result<void> check_all() const;
 

@@ -304,29 +304,31 @@ class NodeBaker {
   }
 
   void link() {
-    std::vector<std::vector<NodeLink>> lists(sources_.size());
-    parallel_for(sources_.size(), config_.workers, [&](size_t p) {
-      if (context_.cancel || forest_.trees[p].nodes.size() < 2) return;
-      NodeLinker linker(forest_);
-      linker.link_inside(static_cast<uint32_t>(p), cells_of(sources_[p]));
-      lists[p] = linker.take();
-    });
-    links_ = link_across();
-    for (const auto& list : lists) links_.insert(links_.end(), list.begin(), list.end());
-    merge_node_links(links_);
     // Beyond what any walker stands on, a way is climbed.
     double steepest = 0;
     for (const AvatarClass& avatar : data_.summary.classes) {
       steepest = std::max(steepest, avatar.max_slope);
     }
     const uint8_t code = bins_.inclination_code(steepest);
-    bool changed = false;
-    for (NodeLink& l : links_) {
-      if (l.kind != LinkKind::kWalk || worst(l).inclination <= code) continue;
-      l.kind = LinkKind::kClimb;
-      changed = true;
-    }
-    if (changed) merge_node_links(links_);
+    const auto name_climbs = [&](std::vector<NodeLink>& links) {
+      bool changed = false;
+      for (NodeLink& l : links) {
+        if (l.kind != LinkKind::kWalk || worst(l).inclination <= code) continue;
+        l.kind = LinkKind::kClimb;
+        changed = true;
+      }
+      if (changed) merge_node_links(links);
+    };
+    inside_.resize(sources_.size());
+    parallel_for(sources_.size(), config_.workers, [&](size_t p) {
+      if (context_.cancel || forest_.trees[p].nodes.size() < 2) return;
+      NodeLinker linker(forest_);
+      linker.link_inside(static_cast<uint32_t>(p), cells_of(sources_[p]));
+      inside_[p] = linker.take();
+      name_climbs(inside_[p]);
+    });
+    across_ = link_across();
+    name_climbs(across_);
   }
 
   // Pairs of different patches, in runs that are then merged two by two. A run drops a leap only
@@ -404,11 +406,6 @@ class NodeBaker {
     nodes->size = config_.size;
     nodes->summary.bins = bins_;
     nodes->summary.bezier_patches = scene_.patches.size();
-    const std::vector<ArcRecord> arcs = arcs_of(links_, forest_.size());
-    std::vector<size_t> arc_first(forest_.size() + 1, 0);
-    for (const ArcRecord& arc : arcs) ++arc_first[arc.from + 1];
-    for (size_t n = 0; n < forest_.size(); ++n) arc_first[n + 1] += arc_first[n];
-
     for (size_t begin = 0; begin < sources_.size();) {
       size_t end = begin;
       const PatchSource& zone = sources_[begin];
@@ -421,9 +418,10 @@ class NodeBaker {
       begin = end;
     }
     begins_.push_back(sources_.size());
+    find_links_from_before();
     std::vector<std::optional<Result<std::unique_ptr<NodeData::Slot>>>> packed(zones_.size());
     parallel_for(zones_.size(), config_.workers, [&](size_t z) {
-      if (zones_[z].first != zones_[z].last) packed[z] = pack_zone(z, arcs, arc_first);
+      if (zones_[z].first != zones_[z].last) packed[z] = pack_zone(z);
     });
     for (size_t z = 0; z < zones_.size(); ++z) {
       if (!packed[z]) continue;
@@ -440,9 +438,46 @@ class NodeBaker {
     return nodes;
   }
 
-  Result<std::unique_ptr<NodeData::Slot>> pack_zone(size_t z, const std::vector<ArcRecord>& arcs,
-                                                    const std::vector<size_t>& arc_first) const {
+  // By zone the links across patches whose larger end lies in it and whose smaller end does not.
+  void find_links_from_before() {
+    from_before_.resize(zones_.size());
+    size_t z = 0;  // Zone of the smaller end: links are sorted by it.
+    for (size_t l = 0; l < across_.size(); ++l) {
+      while (across_[l].a >= zones_[z].last) ++z;
+      if (across_[l].b >= zones_[z].last) from_before_[zone_of(across_[l].b)].push_back(l);
+    }
+  }
+
+  [[nodiscard]] size_t zone_of(uint32_t node) const {
+    const auto after = std::upper_bound(zones_.begin(), zones_.end(), node,
+                                        [](uint32_t n, const ZoneRange& r) { return n < r.last; });
+    return static_cast<size_t>(after - zones_.begin());
+  }
+
+  // All links with an end in a zone.
+  [[nodiscard]] std::vector<NodeLink> links_of(size_t z) const {
     const ZoneRange& zone = zones_[z];
+    const auto first_from = [&](uint32_t node) {
+      return std::lower_bound(across_.begin(), across_.end(), node,
+                              [](const NodeLink& l, uint32_t n) { return l.a < n; });
+    };
+    const auto begin = first_from(zone.first), end = first_from(zone.last);
+    size_t count = from_before_[z].size() + static_cast<size_t>(end - begin);
+    for (size_t p = begins_[z]; p < begins_[z + 1]; ++p) count += inside_[p].size();
+    std::vector<NodeLink> links;
+    links.reserve(count);
+    for (const size_t l : from_before_[z]) links.push_back(across_[l]);
+    links.insert(links.end(), begin, end);
+    for (size_t p = begins_[z]; p < begins_[z + 1]; ++p) {
+      links.insert(links.end(), inside_[p].begin(), inside_[p].end());
+    }
+    merge_node_links(links);
+    return links;
+  }
+
+  Result<std::unique_ptr<NodeData::Slot>> pack_zone(size_t z) const {
+    const ZoneRange& zone = zones_[z];
+    const ZoneArcs arcs = arcs_of(links_of(z), zone);
     ZoneContent content;
     content.x = zone.x;
     content.z = zone.z;
@@ -474,11 +509,11 @@ class NodeBaker {
             node.parent == kNoNode ? UINT32_MAX : first + node.parent,
             static_cast<float>(area_of(source, tree, node)),
             static_cast<uint32_t>(content.arcs.size()));
-        for (size_t a = arc_first[id]; a < arc_first[id + 1]; ++a) {
-          if (arcs[a].leap1 != 0) add_leap(arcs[a], content);
-          const Promise least = worst({.a = arcs[a].from, .b = arcs[a].to});
-          content.arcs.emplace_back(target(arcs[a].to, zone, content), arcs[a].classes,
-                                    static_cast<uint8_t>(arcs[a].kind),
+        for (const ArcRecord& arc : arcs.of(id - zone.first)) {
+          if (arc.leap1 != 0) add_leap(arc, content);
+          const Promise least = worst({.a = arc.from, .b = arc.to});
+          content.arcs.emplace_back(target(arc.to, zone, content), arc.classes,
+                                    static_cast<uint8_t>(arc.kind),
                                     static_cast<uint8_t>(least.inclination << 4 | least.height));
         }
       }
@@ -515,9 +550,8 @@ class NodeBaker {
   // An arc's end as the zone writes it.
   uint32_t target(uint32_t node, const ZoneRange& zone, ZoneContent& content) const {
     if (node >= zone.first && node < zone.last) return node - zone.first;
-    const auto after = std::upper_bound(zones_.begin(), zones_.end(), node,
-                                        [](uint32_t n, const ZoneRange& r) { return n < r.last; });
-    return content.far_node({after->x, after->z, node - after->first});
+    const ZoneRange& other = zones_[zone_of(node)];
+    return content.far_node({other.x, other.z, node - other.first});
   }
 
   const World& world_;
@@ -538,11 +572,13 @@ class NodeBaker {
   std::vector<CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
   std::vector<PatchDoor> doors_;         // by patch of the scene
   std::vector<Leap> leaps_;
-  std::vector<NodeLink> links_;
+  std::vector<std::vector<NodeLink>> inside_;            // links by patch of the forest
+  std::vector<NodeLink> across_;                         // all others
   std::vector<std::pair<int32_t, int32_t>> tile_place_;  // by level of the world
   std::vector<std::vector<double>> widths_;
   std::vector<ZoneRange> zones_;
   std::vector<size_t> begins_;  // first patch of each zone
+  std::vector<std::vector<size_t>> from_before_;
 };
 
 }  // namespace

@@ -4,31 +4,41 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/hash.h"
+#include "core/parallel.h"
 
 namespace throng {
 namespace fs = std::filesystem;
 
-std::vector<ArcRecord> arcs_of(std::span<const NodeLink> links, uint32_t nodes) {
-  const auto goes_up = [](const NodeLink& l) { return !l.one_way || !l.turned; };
-  const auto goes_down = [](const NodeLink& l) { return !l.one_way || l.turned; };
-  std::vector<size_t> next(size_t{nodes} + 1, 0);
+ZoneArcs arcs_of(std::span<const NodeLink> links, const ZoneRange& zone) {
+  const auto is_here = [&](uint32_t node) { return node >= zone.first && node < zone.last; };
+  const auto goes_up = [&](const NodeLink& l) { return (!l.one_way || !l.turned) && is_here(l.a); };
+  const auto goes_down = [&](const NodeLink& l) {
+    return (!l.one_way || l.turned) && is_here(l.b);
+  };
+  ZoneArcs out;
+  // Counted two entries ahead: dealing then leaves at n + 1 where the arcs of node n end.
+  std::vector<size_t>& next = out.first;
+  next.assign(size_t{zone.last - zone.first} + 2, 0);
   for (const NodeLink& l : links) {
-    if (goes_up(l)) ++next[l.a + 1];
-    if (goes_down(l)) ++next[l.b + 1];
+    if (goes_up(l)) ++next[l.a - zone.first + 2];
+    if (goes_down(l)) ++next[l.b - zone.first + 2];
   }
-  for (size_t n = 0; n < nodes; ++n) next[n + 1] += next[n];
-  std::vector<ArcRecord> arcs(next[nodes]);
+  for (size_t n = 2; n < next.size(); ++n) next[n] += next[n - 1];
+  out.arcs.resize(next.back());
   // Links are sorted, so a stable deal to `from` leaves each node's arcs sorted.
   for (const NodeLink& l : links) {
-    if (goes_down(l)) arcs[next[l.b]++] = {l.b, l.a, l.classes, l.kind, l.leap1, !l.turned};
+    if (!goes_down(l)) continue;
+    out.arcs[next[l.b - zone.first + 1]++] = {l.b, l.a, l.classes, l.kind, l.leap1, !l.turned};
   }
   for (const NodeLink& l : links) {
-    if (goes_up(l)) arcs[next[l.a]++] = {l.a, l.b, l.classes, l.kind, l.leap1, l.turned};
+    if (!goes_up(l)) continue;
+    out.arcs[next[l.a - zone.first + 1]++] = {l.a, l.b, l.classes, l.kind, l.leap1, l.turned};
   }
-  return arcs;
+  return out;
 }
 
 uint32_t ZoneContent::far_node(const format::FarNode& node) {
@@ -81,7 +91,7 @@ uint64_t world_hash(const WorldData& world) {
   return hash_bytes(bytes.data(), bytes.size());
 }
 
-Result<void> Nodes::write(const std::string& world_path) const {
+Result<void> Nodes::write(const std::string& world_path, int32_t workers) const {
   THRONG_ASSERT(data_);
   const std::string manifest = world_path + "/manifest.thm";
   const auto map = FileMap::open(manifest);
@@ -95,11 +105,18 @@ Result<void> Nodes::write(const std::string& world_path) const {
   fs::remove_all(part, error);
   fs::create_directories(part, error);
   if (error) return Error{Errc::kIo, part.string() + ": cannot be created: " + error.message()};
-  for (size_t s = 0; s < data_->slots.size(); ++s) {
+  std::vector<std::optional<Error>> failed(data_->slots.size());
+  parallel_for(failed.size(), workers, [&](size_t s) {
     const NodeZone* zone = data_->zone(s);
-    if (zone == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
+    if (zone == nullptr) {
+      failed[s] = Error{Errc::kBadFile, data_->slots[s]->error};
+      return;
+    }
     const auto file = part / node_file_name(zone->x(), zone->z());
-    if (auto ok = write_file(file.string(), zone->bytes()); !ok) return ok.error();
+    if (auto ok = write_file(file.string(), zone->bytes()); !ok) failed[s] = ok.error();
+  });
+  for (const auto& failure : failed) {
+    if (failure) return *failure;
   }
   const auto index = part / kNodeIndexName;
   if (auto ok = write_file(index.string(), write_node_index(*data_)); !ok) return ok.error();

@@ -25,14 +25,24 @@ struct ArcRecord {
   bool backward = false;  ///< Against the leap.
 };
 
-/// Both directions of all links, by `from`, then `to`, then kind.
-[[nodiscard]] std::vector<ArcRecord> arcs_of(std::span<const NodeLink> links, uint32_t nodes);
-
 /// Nodes [first, last) of all belong to a zone.
 struct ZoneRange {
   int32_t x = 0, z = 0;
   uint32_t first = 0, last = 0;
 };
+
+/// The arcs out of a zone's nodes, by `from`, then `to`, then kind.
+struct ZoneArcs {
+  std::vector<ArcRecord> arcs;
+  std::vector<size_t> first;  ///< by node of the zone, and one more
+
+  [[nodiscard]] std::span<const ArcRecord> of(uint32_t local) const {
+    return std::span(arcs).subspan(first[local], first[local + 1] - first[local]);
+  }
+};
+
+/// Of links that are sorted as merge_node_links() does, among them all with an end in the zone.
+[[nodiscard]] ZoneArcs arcs_of(std::span<const NodeLink> links, const ZoneRange& zone);
 
 struct ZoneContent {
   int32_t x = 0, z = 0;

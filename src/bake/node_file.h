@@ -34,7 +34,7 @@ struct ZoneRange {
 /// The arcs out of a zone's nodes, by `from`, then `to`, then kind.
 struct ZoneArcs {
   std::vector<ArcRecord> arcs;
-  std::vector<size_t> first;  ///< by node of the zone, and one more
+  std::vector<size_t> first;  ///< by node of the zone, and two more: the end, twice
 
   [[nodiscard]] std::span<const ArcRecord> of(uint32_t local) const {
     return std::span(arcs).subspan(first[local], first[local + 1] - first[local]);

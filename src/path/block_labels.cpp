@@ -21,6 +21,11 @@ struct Entry {
   float length;
 };
 
+struct MiddleEntry {
+  uint32_t hub, trail;
+  float length;
+};
+
 // One worker's memory.
 class Lister {
  public:
@@ -58,17 +63,17 @@ class Lister {
   }
 
   // Of the middle alone.
-  std::vector<Entry> list_middle(uint32_t rect, uint32_t n) {
+  std::vector<MiddleEntry> list_middle(uint32_t rect, uint32_t n) {
     look(rect, n);
-    std::vector<Entry> entries;
+    std::vector<MiddleEntry> entries;
     for (const uint32_t hub : hubs_) {
       constexpr float kSlack =
           1e-3f;  // cells: the hub itself is one of those that it is reached by
       if (best_[hub].length > true_length(hub) + kSlack) continue;
-      entries.push_back({hub, best_[hub].candidate, best_[hub].length});
+      entries.push_back({hub, labels_.trail[best_[hub].label], best_[hub].length});
     }
     std::sort(entries.begin(), entries.end(),
-              [](const Entry& a, const Entry& b) { return a.hub < b.hub; });
+              [](const MiddleEntry& a, const MiddleEntry& b) { return a.hub < b.hub; });
     return entries;
   }
 
@@ -85,12 +90,13 @@ class Lister {
       const uint32_t corner = labels_.candidates[i].corner;
       if (ray_to_corner(mesh_, middle, corner) != RayEnd::kArrived) continue;
       const float here = from_middle(r, mesh_.corners[corner]);
-      for (const HubLabels::Label& label : labels_.of(corner)) {
+      for (uint32_t l = labels_.first[corner]; l < labels_.first[corner + 1]; ++l) {
+        const HubLabels::Label& label = labels_.labels[l];
         const float length = here + label.length;
         if (set_[label.hub] == now_ && best_[label.hub].length <= length) continue;
         if (set_[label.hub] != now_) hubs_.push_back(label.hub);
         set_[label.hub] = now_;
-        best_[label.hub] = {length, static_cast<uint16_t>(i - begin)};
+        best_[label.hub] = {length, l};
       }
     }
     return r;
@@ -124,7 +130,7 @@ class Lister {
   const HubLabels& labels_;
   struct Best {
     float length = 0;
-    uint16_t candidate = 0;
+    uint32_t label = 0;
   };
   std::vector<Best> best_;      // per hub
   std::vector<uint32_t> set_;   // per hub: for which block
@@ -200,9 +206,8 @@ BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, in
 
 MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers) {
   MiddleLabels out;
-  if (are_too_many(labels)) return out;
   const std::vector<Block> blocks = all_blocks(mesh);
-  std::vector<std::vector<Entry>> entries(blocks.size());
+  std::vector<std::vector<MiddleEntry>> entries(blocks.size());
   constexpr size_t kGrain = 64;
   parallel_ranges(blocks.size(), kGrain, workers, [&](size_t begin, size_t end) {
     Lister lister(mesh, labels);
@@ -211,9 +216,9 @@ MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, 
   });
   out.first.push_back(0);
   for (auto& of_block : entries) {
-    for (const Entry& entry : of_block) {
+    for (const MiddleEntry& entry : of_block) {
       out.labels.push_back({entry.hub, entry.length});
-      out.turn.push_back(entry.candidate);
+      out.trail.push_back(entry.trail);
     }
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_block = {};

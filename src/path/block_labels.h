@@ -25,7 +25,7 @@ struct BlockLabels {
 };
 
 /// For the middle of each block, labels as if it were a corner: the shortest way to each of its
-/// hubs and the corner at which that bends first.
+/// hubs.
 struct MiddleLabels {
   struct Label {
     uint32_t hub = 0;
@@ -33,10 +33,10 @@ struct MiddleLabels {
   };
   std::vector<uint32_t> first;  // per block, one more at the end; empty: there are none
   std::vector<Label> labels;    // by rising hub
-  std::vector<uint16_t> turn;   // per label: the corner's place in HubLabels' list of the block
+  std::vector<uint32_t> trail;  // per label: the place in HubLabels' trails of its way's corners
 
   [[nodiscard]] uint64_t bytes() const {
-    return first.size() * sizeof(uint32_t) + labels.size() * (sizeof(Label) + sizeof(uint16_t));
+    return (first.size() + trail.size()) * sizeof(uint32_t) + labels.size() * sizeof(Label);
   }
 };
 

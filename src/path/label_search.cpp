@@ -92,6 +92,71 @@ bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best
   return best.length < kFarthest;
 }
 
+namespace {
+
+// The shortest way between the middles of two blocks, and the labels that tell it.
+struct ByMiddles {
+  float length = kFarthest;
+  uint32_t first = 0, last = 0;
+};
+
+ByMiddles between_middles(const MiddleLabels& middles, uint32_t a, uint32_t b) {
+  const auto* const labels = middles.labels.data();
+  uint32_t i = middles.first[a], j = middles.first[b];
+  const uint32_t i_end = middles.first[a + 1], j_end = middles.first[b + 1];
+  ByMiddles best;
+  while (i < i_end && j < j_end) {
+    const uint32_t hub_i = labels[i].hub, hub_j = labels[j].hub;
+    if (hub_i == hub_j) {
+      const float here = labels[i].length + labels[j].length;
+      if (here < best.length) best = {here, i, j};
+    }
+    i += hub_i <= hub_j;
+    j += hub_j <= hub_i;
+  }
+  return best;
+}
+
+// After the way from one end to the hub, that from the hub to the other: what `walk` adds, which
+// comes from there and ends with the hub as well.
+template <class Walk>
+void turn_back(std::vector<uint32_t>& corners, Walk walk) {
+  const auto hub = static_cast<ptrdiff_t>(corners.size()) - 1;
+  walk();
+  corners.pop_back();
+  std::reverse(corners.begin() + hub + 1, corners.end());
+}
+
+// A block whose middle is seen from an end, and how far that is.
+struct SeenMiddle {
+  uint32_t block = 0;
+  double distance = 0;  // [cells]
+};
+
+// Behind an end, as seen from where its way bends first: a way from there comes by the end or
+// nearly so, and as much shorter as the end is away from there is the rest of it. Else `own`.
+SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, SeenMiddle own) {
+  const CellPoint at = in_cells(end.at);
+  const double gap = distance(at, bend);
+  if (!(gap > 0)) return own;
+  // The farther, the less it matters that a middle is not straight behind.
+  for (const double reach : {128.0, 48.0, 24.0, 12.0}) {  // cells
+    const auto behind = [&](double from, double to) {
+      return std::llround((from + (from - to) * (reach / gap)) * kUnitsPerCell);
+    };
+    const GroundPoint there{behind(at.x, bend.x), behind(at.z, bend.z)};
+    const uint32_t rect = mesh_ray(mesh, end.rect, end.at, there);
+    if (rect == kNoRect || rect == kUnsure) continue;
+    const uint32_t block = mesh.block_at(rect, there.cell_x(), there.cell_z());
+    const GroundPoint middle = middle_of(mesh.block(rect, block - mesh.rects[rect].first_block));
+    if (mesh_ray(mesh, end.rect, end.at, middle) != rect) continue;
+    return {block, distance(at, in_cells(middle))};
+  }
+  return own;
+}
+
+}  // namespace
+
 // The way by the middles of the ends' blocks, pulled taut. It is as short as the shortest but where
 // that passes something on another side. False if there is none, or if it cannot be proved to be no
 // longer than `kMostLonger` times the shortest; `length` is then still that of a way.
@@ -100,51 +165,42 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   const MiddleLabels& middles = labels.by_middle;
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
   const uint32_t a = block_of(mesh, from), b = block_of(mesh, to);
-  const auto* const from_list = middles.labels.data();
-  uint32_t i = middles.first[a], j = middles.first[b];
-  const uint32_t i_end = middles.first[a + 1], j_end = middles.first[b + 1];
-  float best = kFarthest;
-  uint32_t first = 0, last = 0;  // labels
-  while (i < i_end && j < j_end) {
-    const uint32_t hub_i = from_list[i].hub, hub_j = from_list[j].hub;
-    if (hub_i == hub_j) {
-      const float here = from_list[i].length + from_list[j].length;
-      if (here < best) {
-        best = here;
-        first = i;
-        last = j;
-      }
-    }
-    i += hub_i <= hub_j;
-    j += hub_j <= hub_i;
-  }
-  if (!(best < kFarthest)) return false;
+  const ByMiddles best = between_middles(middles, a, b);
+  if (!(best.length < kFarthest)) return false;
   const auto middle = [&](const Stop& end, uint32_t block) {
     const uint32_t n = block - mesh.rects[end.rect].first_block;
     return WayPoint{in_cells(middle_of(mesh.block(end.rect, n))), end.rect};
   };
   const WayPoint from_middle = middle(from, a), to_middle = middle(to, b);
-  const auto turn = [&](uint32_t block, uint32_t label) {
-    return labels.candidates[labels.first_candidate[block] + middles.turn[label]].corner;
-  };
-  trace(labels, {best, from_list[first].hub, turn(a, first), turn(b, last)}, corners);
+  labels.walk_trail(middles.trail[best.first], corners);
+  turn_back(corners, [&] { labels.walk_trail(middles.trail[best.last], corners); });
   way_.assign({{start, from.rect}, from_middle});
   for (const uint32_t c : corners) way_.push_back(way_point(mesh, c));
   way_.insert(way_.end(), {to_middle, {goal, to.rect}});
   if (!pull_.pull(mesh, way_, corners, length)) return false;
-  // No way is shorter than this.
-  const double least = best - distance(start, from_middle.at) - distance(goal, to_middle.at);
-  return length <= kMostLonger * std::max(least - kSlack, distance(start, goal));
+  // No way is shorter than that between two middles less the ends' distances from them.
+  const auto is_proved = [&](float between, double off) {
+    const double least = between - off;
+    return length <= kMostLonger * std::max(least - kSlack, distance(start, goal));
+  };
+  const SeenMiddle own_a{a, distance(start, from_middle.at)};
+  const SeenMiddle own_b{b, distance(goal, to_middle.at)};
+  if (is_proved(best.length, own_a.distance + own_b.distance)) return true;
+  const auto at = [&](uint32_t corner) { return way_point(mesh, corner).at; };
+  const SeenMiddle behind_a =
+      middle_behind(mesh, from, corners.empty() ? goal : at(corners.front()), own_a);
+  const SeenMiddle behind_b =
+      middle_behind(mesh, to, corners.empty() ? start : at(corners.back()), own_b);
+  const ByMiddles longer = between_middles(middles, behind_a.block, behind_b.block);
+  return longer.length < kFarthest &&
+         is_proved(longer.length, behind_a.distance + behind_b.distance);
 }
 
 // The corners from each end to the hub.
 void LabelSearch::trace(const HubLabels& labels, const Best& best,
                         std::vector<uint32_t>& corners) const {
   labels.walk(best.first, best.hub, corners);
-  const size_t middle = corners.size() - 1;
-  labels.walk(best.last, best.hub, corners);
-  corners.pop_back();  // the hub, which is there already
-  std::reverse(corners.begin() + static_cast<ptrdiff_t>(middle) + 1, corners.end());
+  turn_back(corners, [&] { labels.walk(best.last, best.hub, corners); });
 }
 
 namespace {

@@ -16,6 +16,29 @@
 #include "world/place.h"
 
 namespace throng {
+namespace {
+
+// Most of what feet take is the wait for the ground's bytes: all are asked for before any is read.
+void add_places(const WorldData& world, const PathMesh& mesh, const std::vector<Stop>& stops,
+                std::vector<LevelView>& views, Path& path) {
+  views.clear();
+  for (const Stop& stop : stops) {
+    const uint32_t level = mesh.rects[stop.rect].level;
+    const size_t slot = world.slot_of_level(level);
+    const Zone* zone = world.zone(slot);
+    views.push_back(zone == nullptr ? LevelView{}
+                                    : zone->view(level - world.slots[slot]->first_level));
+    views.back().ask_for_heads(stop.at.cell_x() & 63, stop.at.cell_z() & 63);
+  }
+  for (size_t i = 0; i < stops.size(); ++i) {
+    views[i].ask_for_cells(stops[i].at.cell_x() & 63, stops[i].at.cell_z() & 63);
+  }
+  for (size_t i = 0; i < stops.size(); ++i) {
+    path.points.push_back(place_at(world, mesh.rects[stops[i].rect].level, views[i], stops[i].at));
+  }
+}
+
+}  // namespace
 
 struct PathFinder::Shared {
   World world;
@@ -31,6 +54,7 @@ struct PathFinder::Scratch {
   ZoneSearch over_zones;
   std::vector<uint32_t> corners;
   std::vector<Stop> stops;
+  std::vector<LevelView> views;  // of the stops
 };
 
 PathFinder::PathFinder(std::shared_ptr<const Shared> shared)
@@ -133,10 +157,7 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
   }
   path.end = PathEnd::kReached;
   path.length = length * world.summary.cell;
-  for (const Stop& stop : scratch_->stops) {
-    const uint32_t level = mesh.rects[stop.rect].level;
-    path.points.push_back(place_at(world, ground_level(world, level, mesh.avatar_class), stop.at));
-  }
+  add_places(world, mesh, scratch_->stops, scratch_->views, path);
 }
 
 }  // namespace throng

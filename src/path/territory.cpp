@@ -233,6 +233,7 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
   const auto zones = group_zones(world, graph);
   graph.territories.resize(zones.size());
   std::vector<std::vector<uint32_t>> components(zones.size());
+  std::vector<Error> errors(zones.size());
   constexpr uint64_t kSamples = 128;
   parallel_for(zones.size(), workers, [&](size_t t) {
     Territory& territory = graph.territories[t];
@@ -246,9 +247,16 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
     const WayGraph ways = gate_graph(graph, territory, zones[t]);
     components[t] = components_of(ways);
     auto labels = label_graph(ways, kSamples, 1, context);
-    if (labels) territory.labels = std::move(*labels);
+    if (labels) {
+      territory.labels = std::move(*labels);
+    } else {
+      errors[t] = labels.error();
+    }
   });
   if (context.cancel) return cancelled;
+  for (const Error& error : errors) {
+    if (error.code != Errc::kOk) return error;
+  }
 
   choose_posts(world, components, graph);
   Edges edges(graph.post_territories.size());

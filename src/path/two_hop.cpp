@@ -97,20 +97,75 @@ std::vector<uint32_t> order_hubs(const WayGraph& graph, uint64_t samples, int32_
   return order;
 }
 
+// The nodes that have a hub, and how ways lead from them to it.
+class HubTree {
+ public:
+  explicit HubTree(size_t count) : at_(count, 0) {}
+
+  void clear() { nodes_.clear(); }
+  // Nodes come after the one that they lead to; the hub leads to itself.
+  void add(uint32_t node, uint32_t before) {
+    const auto n = static_cast<uint32_t>(nodes_.size());
+    at_[node] = n;
+    nodes_.push_back({node, at_[before], 1, n, 0});
+  }
+  // Adds the tree to the trails; calls place(node, its place).
+  template <class Place>
+  void write(std::vector<uint32_t>& trails, Place place) {
+    // From the ends on: the branch with most nodes goes on to where it leads.
+    for (size_t i = nodes_.size(); i-- > 1;) {
+      Node& to = nodes_[nodes_[i].before];
+      to.below += nodes_[i].below;
+      if (to.heavy == nodes_[i].before || nodes_[to.heavy].below <= nodes_[i].below)
+        to.heavy = static_cast<uint32_t>(i);
+    }
+    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+      const uint32_t before = nodes_[i].before;
+      if (i > 0 && nodes_[before].heavy == i) continue;
+      run_.assign(1, i);
+      while (nodes_[run_.back()].heavy != run_.back()) run_.push_back(nodes_[run_.back()].heavy);
+      for (size_t k = run_.size(); k-- > 0;) {
+        Node& node = nodes_[run_[k]];
+        node.place = static_cast<uint32_t>(trails.size());
+        place(node.node, node.place);
+        trails.push_back(node.node);
+      }
+      trails.push_back(i == 0 ? TwoHopLabels::kEnd : TwoHopLabels::kGoesOn | nodes_[before].place);
+    }
+  }
+
+ private:
+  struct Node {
+    uint32_t node, before;
+    uint32_t below;  // how many lead over it, with itself
+    uint32_t heavy;  // the one with most of them; itself: none
+    uint32_t place;
+  };
+  std::vector<Node> nodes_;
+  std::vector<uint32_t> at_;  // per node of the graph
+  std::vector<uint32_t> run_;
+};
+
 }  // namespace
+
+void TwoHopLabels::walk_trail(uint32_t place, std::vector<uint32_t>& nodes) const {
+  for (;;) {
+    const uint32_t word = trails[place];
+    if (word == kEnd) return;
+    if ((word & kGoesOn) != 0) {
+      place = word & ~kGoesOn;
+      continue;
+    }
+    nodes.push_back(word);
+    ++place;
+  }
+}
 
 void TwoHopLabels::walk(uint32_t node, uint32_t hub, std::vector<uint32_t>& nodes) const {
   const auto list = of(node);
   const auto at = std::lower_bound(list.begin(), list.end(), hub,
                                    [](const Label& l, uint32_t wanted) { return l.hub < wanted; });
-  auto label = static_cast<uint32_t>(&*at - labels.data());
-  for (;;) {
-    nodes.push_back(node);
-    const Next& after = next[label];
-    if (after.node == node) return;
-    node = after.node;
-    label = after.label;
-  }
+  walk_trail(trail[static_cast<size_t>(&*at - labels.data())], nodes);
 }
 
 Result<TwoHopLabels> label_graph(const WayGraph& graph, uint64_t samples, int32_t workers,
@@ -119,45 +174,44 @@ Result<TwoHopLabels> label_graph(const WayGraph& graph, uint64_t samples, int32_
   TwoHopLabels out;
   out.hubs = order_hubs(graph, samples, workers);
   struct Made {
-    uint32_t hub, next;
+    uint32_t hub, trail;
     double length;
   };
   std::vector<std::vector<Made>> labels(count);
   std::vector<double> to_root(count, kFar);  // per hub that the root has
   Spread spread(count);
+  HubTree tree(count);
   for (uint32_t rank = 0; rank < count; ++rank) {
     if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
+    // A tree of all nodes still has to fit: each is at most a run of its own.
+    if (out.trails.size() + 2 * count >= TwoHopLabels::kGoesOn) {
+      return Error{Errc::kLimit, "path: more than 2^30 labels; use a larger cell, or zones"};
+    }
     const uint32_t root = out.hubs[rank];
     for (const auto& label : labels[root]) to_root[label.hub] = label.length;
+    tree.clear();
     spread.run(graph, root, [&](uint32_t node, double length, uint32_t before) {
       for (const auto& label : labels[node]) {
         // An earlier hub lies on a way as short.
         if (to_root[label.hub] + label.length <= length + kSame) return false;
       }
-      labels[node].push_back({rank, before, length});
+      labels[node].push_back({rank, 0, length});
+      tree.add(node, before);
       return true;
     });
     for (const auto& label : labels[root]) to_root[label.hub] = kFar;
+    tree.write(out.trails,
+               [&](uint32_t node, uint32_t place) { labels[node].back().trail = place; });
   }
   out.first.push_back(0);
   for (auto& of_node : labels) {
     for (const Made& label : of_node) {
       out.labels.push_back({label.hub, static_cast<float>(label.length)});
-      out.next.push_back({label.next, 0});
+      out.trail.push_back(label.trail);
     }
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_node = {};
   }
-  constexpr size_t kGrain = 64;
-  parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
-    for (uint32_t i = out.first[begin]; i < out.first[end]; ++i) {
-      const auto list = out.of(out.next[i].node);
-      const auto at = std::lower_bound(
-          list.begin(), list.end(), out.labels[i].hub,
-          [](const TwoHopLabels::Label& label, uint32_t hub) { return label.hub < hub; });
-      out.next[i].label = static_cast<uint32_t>(&*at - out.labels.data());
-    }
-  });
   return out;
 }
 

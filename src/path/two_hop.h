@@ -34,28 +34,32 @@ struct TwoHopLabels {
     uint32_t hub = 0;  // rank: 0 is the hub of most ways
     float length = 0;  // to the hub
   };
-  // The node after this one on the way, and its label of the same hub; at the hub itself.
-  struct Next {
-    uint32_t node = 0, label = 0;
-  };
-  std::vector<uint32_t> first;  // per node, one more at the end
-  std::vector<Label> labels;    // of a node, by rising hub
-  std::vector<Next> next;       // per label
-  std::vector<uint32_t> hubs;   // by rank: the node
+  // The ways of all nodes to one hub are a tree, and its nodes lie here in runs of a way each, the
+  // longest that branch off: what is walked lies together. After a node comes the next on its way;
+  // where a run ends, a word that says at which place the way goes on, and after the hub, kEnd.
+  static constexpr uint32_t kGoesOn = uint32_t{1} << 31;  // with a place
+  static constexpr uint32_t kEnd = UINT32_MAX;
+  std::vector<uint32_t> first;   // per node, one more at the end
+  std::vector<Label> labels;     // of a node, by rising hub
+  std::vector<uint32_t> trail;   // per label: the place of its node in `trails`
+  std::vector<uint32_t> trails;  // of all hubs
+  std::vector<uint32_t> hubs;    // by rank: the node
 
   [[nodiscard]] std::span<const Label> of(uint32_t node) const {
     return {labels.data() + first[node], labels.data() + first[node + 1]};
   }
   /// Adds the nodes from one to a hub that it has, both of them included.
   void walk(uint32_t node, uint32_t hub, std::vector<uint32_t>& nodes) const;
+  /// The same from a place in `trails`.
+  void walk_trail(uint32_t place, std::vector<uint32_t>& nodes) const;
   [[nodiscard]] uint64_t bytes() const {
-    return (first.size() + hubs.size()) * sizeof(uint32_t) +
-           labels.size() * (sizeof(Label) + sizeof(Next));
+    return (first.size() + trail.size() + trails.size() + hubs.size()) * sizeof(uint32_t) +
+           labels.size() * sizeof(Label);
   }
 };
 
 /// Hubs are taken in the order of how many shortest ways from `samples` nodes lead over them. Fails
-/// with kCancelled. The same for any number of workers.
+/// with kCancelled or kLimit (too many labels). The same for any number of workers.
 Result<TwoHopLabels> label_graph(const WayGraph& graph, uint64_t samples, int32_t workers,
                                  Context& context);
 

@@ -40,10 +40,15 @@ constexpr uint32_t count_ones(uint64_t word) {
   return static_cast<uint32_t>((word * 0x0101010101010101) >> 56);
 }
 
+/// Where the word of a block of a set is, if it is mixed. [block < 64]
+inline const uint64_t* block_word(const uint64_t* words, uint32_t block) {
+  return words + kBitHead + count_ones(words[0] & ((uint64_t{1} << block) - 1));
+}
+
 /// The cells of one block of a set. [block < 64]
 inline uint64_t block_cells(const uint64_t* words, uint32_t block) {
   if (((words[0] >> block) & 1) == 0) return uint64_t{0} - ((words[1] >> block) & 1);
-  return words[kBitHead + count_ones(words[0] & ((uint64_t{1} << block) - 1))];
+  return *block_word(words, block);
 }
 
 inline bool bit_at(const uint64_t* words, int32_t x, int32_t z) {
@@ -106,6 +111,14 @@ inline uint32_t rest_at(const ValueBlock& block, const uint64_t* words, uint32_t
   const uint32_t inside = block.width - 1u;
   return static_cast<uint32_t>(words[row & inside] >> (column * 8 + (row & ~inside))) &
          ((1u << block.width) - 1);
+}
+
+/// Where the row of a cell's value begins, if its block has any words.
+inline const uint64_t* row_of_value(const uint64_t* words, int32_t x, int32_t z) {
+  const ValueBlock block = unpack_head(words[block_of(x, z)]);
+  const auto row = static_cast<uint32_t>(z & 7);
+  return words + kValueHead + block.first +
+         (block.width == 16 ? 2 * row : row & (block.width - 1u));
 }
 
 /// Value of a cell, kNoValue where there is none.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/prefetch.h"
 #include "world/cell_blocks.h"
 #include "world/surface.h"
 #include "world/zone_generated.h"
@@ -32,6 +33,17 @@ struct LevelView {
     return (slope_x | slope_z) == 0 ? floor_base : on_plane(x, z);
   }
   [[nodiscard]] bool is_constant() const { return floor == nullptr && (slope_x | slope_z) == 0; }
+
+  /// For whoever asks for many heights here and there, each of which would wait for memory twice:
+  /// first asks for the heads of a cell's blocks, then for what these say, and nothing waits.
+  void ask_for_heads(int32_t x, int32_t z) const {
+    if (floor != nullptr) prefetch(floor + block_of(x, z));
+    if (present != nullptr) prefetch(present);
+  }
+  void ask_for_cells(int32_t x, int32_t z) const {
+    if (floor != nullptr) prefetch(row_of_value(floor, x, z));
+    if (present != nullptr) prefetch(block_word(present, block_of(x, z)));
+  }
 
   /// Height of the feet in cell (x, z), `u` and `v` in 1/2048 cell from its corner. [mm]
   [[nodiscard]] int32_t feet(int32_t x, int32_t z, int32_t u, int32_t v) const {

@@ -48,20 +48,26 @@ inline std::pair<int32_t, int32_t> tile_of(const WorldData& world, const Zone& z
 }
 
 /// Height of the feet on a level. [m]
-inline double feet_at(const GroundLevel& level, GroundPoint p) {
-  return level.view.feet(p.cell_x() & 63, p.cell_z() & 63,
-                         static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
-                         static_cast<int32_t>(p.z & (kUnitsPerCell - 1))) *
+inline double feet_at(const LevelView& view, GroundPoint p) {
+  return view.feet(p.cell_x() & 63, p.cell_z() & 63,
+                   static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
+                   static_cast<int32_t>(p.z & (kUnitsPerCell - 1))) *
          1e-3;
 }
 
+inline double feet_at(const GroundLevel& level, GroundPoint p) { return feet_at(level.view, p); }
+
 /// The place of a point on a level: the middle of its unit, so that its coordinates lead back to
 /// it.
-inline Place place_at(const WorldData& world, const GroundLevel& level, GroundPoint p) {
+inline Place place_at(const WorldData& world, uint32_t level, const LevelView& view,
+                      GroundPoint p) {
   const double unit = world.summary.cell / kUnitsPerCell;
-  return {{world.summary.origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet_at(level, p),
+  return {{world.summary.origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet_at(view, p),
            world.summary.origin.z + (static_cast<double>(p.z) + 0.5) * unit},
-          level.world_level + 1};
+          level + 1};
+}
+inline Place place_at(const WorldData& world, const GroundLevel& level, GroundPoint p) {
+  return place_at(world, level.world_level, level.view, p);
 }
 
 /// A class's step in the whole millimetres of the moves.

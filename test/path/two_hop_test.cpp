@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/two_hop.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/random.h"
+
+// Looked-up ways of random graphs, against all shortest ways found by three nested loops.
+namespace throng {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+struct RandomGraph {
+  WayGraph ways;
+  std::vector<double> edge;      // count x count; infinite: none
+  std::vector<double> shortest;  // count x count
+
+  // Lengths are small whole numbers where `ties`, so that many ways are as short as another.
+  RandomGraph(uint64_t seed, uint32_t count, uint32_t edges, bool ties)
+      : edge(size_t{count} * count, kNever) {
+    for (uint32_t e = 0; e < edges; ++e) {
+      const auto a = static_cast<uint32_t>(random_below(seed, e, 0, count));
+      const auto b = static_cast<uint32_t>(random_below(seed, e, 1, count));
+      if (a == b) continue;
+      const double length = ties ? 1.0 + static_cast<double>(random_below(seed, e, 2, 3))
+                                 : 1.0 + static_cast<double>(random_below(seed, e, 2, 1000)) / 97;
+      double& there = edge[size_t{a} * count + b];
+      there = std::min(there, length);
+      edge[size_t{b} * count + a] = there;
+    }
+    ways.first.assign(1, 0);
+    shortest = edge;
+    for (uint32_t a = 0; a < count; ++a) {
+      for (uint32_t b = 0; b < count; ++b) {
+        if (edge[size_t{a} * count + b] < kNever)
+          ways.edges.push_back({b, edge[size_t{a} * count + b]});
+      }
+      ways.first.push_back(static_cast<uint32_t>(ways.edges.size()));
+      shortest[size_t{a} * count + a] = 0;
+    }
+    for (size_t k = 0; k < count; ++k) {
+      for (size_t a = 0; a < count; ++a) {
+        for (size_t b = 0; b < count; ++b) {
+          double& known = shortest[a * count + b];
+          known = std::min(known, shortest[a * count + k] + shortest[k * count + b]);
+        }
+      }
+    }
+  }
+
+  // Of a way by its edges; infinite if one is missing.
+  [[nodiscard]] double length(const std::vector<uint32_t>& nodes) const {
+    double sum = 0;
+    for (size_t i = 1; i < nodes.size(); ++i) sum += edge[nodes[i - 1] * ways.count() + nodes[i]];
+    return sum;
+  }
+};
+
+TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
+  constexpr int kGraphs = 60;
+  uint64_t joined = 0, apart = 0, steps = 0;
+  for (uint64_t seed = 0; seed < kGraphs; ++seed) {
+    const auto count = static_cast<uint32_t>(1 + random_below(seed, 0, 3, 60));
+    const auto edges = static_cast<uint32_t>(random_below(seed, 0, 4, 3 * count));
+    const RandomGraph graph(seed, count, edges, seed % 2 == 0);
+    Context context;
+    const auto labels = label_graph(graph.ways, 16, 1 + static_cast<int32_t>(seed % 3), context);
+    ASSERT_TRUE(labels);
+    for (uint32_t a = 0; a < count; ++a) {
+      for (uint32_t b = 0; b < count; ++b) {
+        SCOPED_TRACE(testing::Message() << seed << ": " << a << " to " << b);
+        double best = kNever;
+        uint32_t hub = 0;
+        for (const auto& p : labels->of(a)) {
+          for (const auto& q : labels->of(b)) {
+            if (p.hub != q.hub || !(double{p.length} + q.length < best)) continue;
+            best = double{p.length} + q.length;
+            hub = p.hub;
+          }
+        }
+        const double wanted = graph.shortest[size_t{a} * count + b];
+        if (wanted == kNever) {
+          EXPECT_EQ(best, kNever);
+          ++apart;
+          continue;
+        }
+        EXPECT_NEAR(best, wanted, 1e-4);
+        std::vector<uint32_t> nodes, back;
+        labels->walk(a, hub, nodes);
+        labels->walk(b, hub, back);
+        ASSERT_EQ(nodes.front(), a);
+        ASSERT_EQ(back.front(), b);
+        ASSERT_EQ(nodes.back(), labels->hubs[hub]);
+        ASSERT_EQ(back.back(), labels->hubs[hub]);
+        EXPECT_NEAR(graph.length(nodes) + graph.length(back), wanted, 1e-4);
+        steps += nodes.size() + back.size();
+        ++joined;
+      }
+    }
+    // Every node of a hub's tree lies in the trails once.
+    const auto nodes = std::count_if(labels->trails.begin(), labels->trails.end(),
+                                     [](uint32_t word) { return word < TwoHopLabels::kGoesOn; });
+    EXPECT_EQ(static_cast<size_t>(nodes), labels->labels.size());
+  }
+  EXPECT_GT(joined, 10000U);
+  EXPECT_GT(apart, 1000U);
+  EXPECT_GT(steps, 3 * joined);
+}
+
+TEST(TwoHop, AGraphWithoutNodesHasNoLabels) {
+  WayGraph none;
+  none.first = {0};
+  Context context;
+  const auto labels = label_graph(none, 16, 2, context);
+  ASSERT_TRUE(labels);
+  EXPECT_TRUE(labels->labels.empty());
+  EXPECT_TRUE(labels->trails.empty());
+}
+
+}  // namespace
+}  // namespace throng

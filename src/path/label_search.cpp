@@ -252,25 +252,34 @@ LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& lab
     length = kFarthest;
     return false;
   };
+  // To the first entry of a hub or a later one: most often far off, as a list has a run of each.
+  const auto skip = [&](uint32_t at, uint32_t end, uint32_t hub) {
+    constexpr uint32_t kStride = 8;
+    while (at + kStride < end && by_block.hub[at + kStride] < hub) at += kStride;
+    while (at < end && by_block.hub[at] < hub) ++at;
+    return at;
+  };
   for (;;) {
     best.length = kFarthest;
     uint32_t first = 0, last = 0;  // candidates
     uint32_t i = by_block.first[from_block], j = by_block.first[to_block];
     const uint32_t i_end = by_block.first[from_block + 1], j_end = by_block.first[to_block + 1];
     while (i < i_end && j < j_end) {
-      if (by_block.hub[i] < by_block.hub[j]) {
-        ++i;
-      } else if (by_block.hub[j] < by_block.hub[i]) {
-        ++j;
-      } else {
-        const uint32_t hub = by_block.hub[i];
-        const HubRun a(by_block, i, i_end, from_), b(by_block, j, j_end, to_);
-        if (a.length + b.length >= best.length) continue;
-        best.length = a.length + b.length;
-        best.hub = hub;
-        first = a.candidate;
-        last = b.candidate;
+      const uint32_t hub = by_block.hub[i], other = by_block.hub[j];
+      if (hub < other) {
+        i = skip(i, i_end, other);
+        continue;
       }
+      if (other < hub) {
+        j = skip(j, j_end, hub);
+        continue;
+      }
+      const HubRun a(by_block, i, i_end, from_), b(by_block, j, j_end, to_);
+      if (a.length + b.length >= best.length) continue;
+      best.length = a.length + b.length;
+      best.hub = hub;
+      first = a.candidate;
+      last = b.candidate;
     }
     if (!(best.length < kFarthest)) return Merge::kNone;
     bool unsure = false;

@@ -190,17 +190,20 @@ BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, in
   });
   if (total > most) return {};
   out.first.push_back(0);
-  out.hub.reserve(total);
   out.length.reserve(total);
   out.candidate.reserve(total);
   for (const auto& of_block : entries) {
     for (const Entry& entry : of_block) {
-      out.hub.push_back(entry.hub);
+      if (out.first.back() == out.hub.size() || out.hub.back() != entry.hub) {
+        out.hub.push_back(entry.hub);
+        out.entries.push_back(static_cast<uint32_t>(out.length.size()));
+      }
       out.length.push_back(entry.length);
       out.candidate.push_back(entry.candidate);
     }
     out.first.push_back(static_cast<uint32_t>(out.hub.size()));
   }
+  out.entries.push_back(static_cast<uint32_t>(out.length.size()));
   return out;
 }
 

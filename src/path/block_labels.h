@@ -16,12 +16,15 @@ struct HubLabels;
 /// shortest. Source: Du, Shen, Cheema. Ultrafast Euclidean Shortest Path Computation using Hub
 /// Labeling. AAAI 2023, [DSC23].
 struct BlockLabels {
-  std::vector<uint32_t> first;      // per block, one more at the end; empty: there are none
-  std::vector<uint32_t> hub;        // per entry
-  std::vector<float> length;        // from the corner to the hub [cells]
+  std::vector<uint32_t> first;      // per block its first hub, one more at the end; empty: none
+  std::vector<uint32_t> hub;        // of each block, rising
+  std::vector<uint32_t> entries;    // per hub of a block its first entry, one more at the end
+  std::vector<float> length;        // per entry: from the corner to the hub [cells]
   std::vector<uint16_t> candidate;  // the corner: its place in HubLabels' list of the block
 
-  [[nodiscard]] uint64_t bytes() const { return first.size() * 4 + hub.size() * (4 + 4 + 2); }
+  [[nodiscard]] uint64_t bytes() const {
+    return (first.size() + hub.size() + entries.size()) * 4 + length.size() * (4 + 2);
+  }
 };
 
 /// For the middle of each block, labels as if it were a corner: the shortest way to each of its

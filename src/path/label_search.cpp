@@ -216,14 +216,13 @@ void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
   }
 }
 
-// The next run of entries of one hub, and its shortest by the distances.
-struct HubRun {
+// The shortest of the entries of a block's hub, by the distances of an end.
+struct HubReach {
   float length = kFarthest;
   uint32_t candidate = 0;
 
-  HubRun(const BlockLabels& labels, uint32_t& at, uint32_t end, const std::vector<float>& to) {
-    const uint32_t hub = labels.hub[at];
-    for (; at < end && labels.hub[at] == hub; ++at) {
+  HubReach(const BlockLabels& labels, uint32_t hub, const std::vector<float>& to) {
+    for (uint32_t at = labels.entries[hub]; at < labels.entries[hub + 1]; ++at) {
       const float here = to[labels.candidate[at]] + labels.length[at];
       if (here >= length) continue;
       length = here;
@@ -252,13 +251,6 @@ LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& lab
     length = kFarthest;
     return false;
   };
-  // To the first entry of a hub or a later one: most often far off, as a list has a run of each.
-  const auto skip = [&](uint32_t at, uint32_t end, uint32_t hub) {
-    constexpr uint32_t kStride = 8;
-    while (at + kStride < end && by_block.hub[at + kStride] < hub) at += kStride;
-    while (at < end && by_block.hub[at] < hub) ++at;
-    return at;
-  };
   for (;;) {
     best.length = kFarthest;
     uint32_t first = 0, last = 0;  // candidates
@@ -267,19 +259,17 @@ LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& lab
     while (i < i_end && j < j_end) {
       const uint32_t hub = by_block.hub[i], other = by_block.hub[j];
       if (hub < other) {
-        i = skip(i, i_end, other);
-        continue;
+        ++i;
+      } else if (other < hub) {
+        ++j;
+      } else {
+        const HubReach a(by_block, i++, from_), b(by_block, j++, to_);
+        if (a.length + b.length >= best.length) continue;
+        best.length = a.length + b.length;
+        best.hub = hub;
+        first = a.candidate;
+        last = b.candidate;
       }
-      if (other < hub) {
-        j = skip(j, j_end, hub);
-        continue;
-      }
-      const HubRun a(by_block, i, i_end, from_), b(by_block, j, j_end, to_);
-      if (a.length + b.length >= best.length) continue;
-      best.length = a.length + b.length;
-      best.hub = hub;
-      first = a.candidate;
-      last = b.candidate;
     }
     if (!(best.length < kFarthest)) return Merge::kNone;
     bool unsure = false;

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "path/mesh.h"
+#include "path/two_hop.h"
 
 /// Labels of blocks: what hub labels say of the points of each, worked out before.
 namespace throng {
@@ -30,14 +32,14 @@ struct BlockLabels {
 /// For the middle of each block, labels as if it were a corner: the shortest way to each of its
 /// hubs.
 struct MiddleLabels {
-  struct Label {
-    uint32_t hub = 0;
-    float length = 0;  // [cells]
-  };
+  using Label = TwoHopLabels::Label;
   std::vector<uint32_t> first;  // per block, one more at the end; empty: there are none
-  std::vector<Label> labels;    // by rising hub
+  std::vector<Label> labels;    // by rising hub [cells]
   std::vector<uint32_t> trail;  // per label: the place in HubLabels' trails of its way's corners
 
+  [[nodiscard]] std::span<const Label> of(uint32_t block) const {
+    return {labels.data() + first[block], labels.data() + first[block + 1]};
+  }
   [[nodiscard]] uint64_t bytes() const {
     return (first.size() + trail.size()) * sizeof(uint32_t) + labels.size() * sizeof(Label);
   }

@@ -94,37 +94,8 @@ bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best
 
 namespace {
 
-// The shortest way between the middles of two blocks, and the labels that tell it.
-struct ByMiddles {
-  float length = kFarthest;
-  uint32_t first = 0, last = 0;
-};
-
-ByMiddles between_middles(const MiddleLabels& middles, uint32_t a, uint32_t b) {
-  const auto* const labels = middles.labels.data();
-  uint32_t i = middles.first[a], j = middles.first[b];
-  const uint32_t i_end = middles.first[a + 1], j_end = middles.first[b + 1];
-  ByMiddles best;
-  while (i < i_end && j < j_end) {
-    const uint32_t hub_i = labels[i].hub, hub_j = labels[j].hub;
-    if (hub_i == hub_j) {
-      const float here = labels[i].length + labels[j].length;
-      if (here < best.length) best = {here, i, j};
-    }
-    i += hub_i <= hub_j;
-    j += hub_j <= hub_i;
-  }
-  return best;
-}
-
-// After the way from one end to the hub, that from the hub to the other: what `walk` adds, which
-// comes from there and ends with the hub as well.
-template <class Walk>
-void turn_back(std::vector<uint32_t>& corners, Walk walk) {
-  const auto hub = static_cast<ptrdiff_t>(corners.size()) - 1;
-  walk();
-  corners.pop_back();
-  std::reverse(corners.begin() + hub + 1, corners.end());
+GroundPoint middle_of(const PathMesh& mesh, uint32_t rect, uint32_t block) {
+  return throng::middle_of(mesh.block(rect, block - mesh.rects[rect].first_block));
 }
 
 // A block whose middle is seen from an end, and how far that is.
@@ -148,7 +119,7 @@ SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, 
     const uint32_t rect = mesh_ray(mesh, end.rect, end.at, there);
     if (rect == kNoRect || rect == kUnsure) continue;
     const uint32_t block = mesh.block_at(rect, there.cell_x(), there.cell_z());
-    const GroundPoint middle = middle_of(mesh.block(rect, block - mesh.rects[rect].first_block));
+    const GroundPoint middle = middle_of(mesh, rect, block);
     if (mesh_ray(mesh, end.rect, end.at, middle) != rect) continue;
     return {block, distance(at, in_cells(middle))};
   }
@@ -165,15 +136,12 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   const MiddleLabels& middles = labels.by_middle;
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
   const uint32_t a = block_of(mesh, from), b = block_of(mesh, to);
-  const ByMiddles best = between_middles(middles, a, b);
+  const Meeting best = meet(middles.of(a), middles.of(b));
   if (!(best.length < kFarthest)) return false;
-  const auto middle = [&](const Stop& end, uint32_t block) {
-    const uint32_t n = block - mesh.rects[end.rect].first_block;
-    return WayPoint{in_cells(middle_of(mesh.block(end.rect, n))), end.rect};
-  };
-  const WayPoint from_middle = middle(from, a), to_middle = middle(to, b);
-  labels.walk_trail(middles.trail[best.first], corners);
-  turn_back(corners, [&] { labels.walk_trail(middles.trail[best.last], corners); });
+  const WayPoint from_middle{in_cells(middle_of(mesh, from.rect, a)), from.rect};
+  const WayPoint to_middle{in_cells(middle_of(mesh, to.rect, b)), to.rect};
+  labels.walk(middles.trail[middles.first[a] + best.first],
+              middles.trail[middles.first[b] + best.last], corners);
   way_.assign({{start, from.rect}, from_middle});
   for (const uint32_t c : corners) way_.push_back(way_point(mesh, c));
   way_.insert(way_.end(), {to_middle, {goal, to.rect}});
@@ -191,7 +159,7 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
       middle_behind(mesh, from, corners.empty() ? goal : at(corners.front()), own_a);
   const SeenMiddle behind_b =
       middle_behind(mesh, to, corners.empty() ? start : at(corners.back()), own_b);
-  const ByMiddles longer = between_middles(middles, behind_a.block, behind_b.block);
+  const Meeting longer = meet(middles.of(behind_a.block), middles.of(behind_b.block));
   return longer.length < kFarthest &&
          is_proved(longer.length, behind_a.distance + behind_b.distance);
 }
@@ -199,8 +167,7 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
 // The corners from each end to the hub.
 void LabelSearch::trace(const HubLabels& labels, const Best& best,
                         std::vector<uint32_t>& corners) const {
-  labels.walk(best.first, best.hub, corners);
-  turn_back(corners, [&] { labels.walk(best.last, best.hub, corners); });
+  labels.walk(labels.place_of(best.first, best.hub), labels.place_of(best.last, best.hub), corners);
 }
 
 namespace {

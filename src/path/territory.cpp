@@ -181,20 +181,6 @@ uint64_t ZoneGraph::label_count() const {
   return count;
 }
 
-Meeting meet(const TwoHopLabels& labels, uint32_t a, uint32_t b) {
-  const auto p = labels.of(a), q = labels.of(b);
-  Meeting best{kNever, 0};
-  size_t i = 0, j = 0;
-  while (i < p.size() && j < q.size()) {
-    const uint32_t hub_p = p[i].hub, hub_q = q[j].hub;
-    if (hub_p == hub_q && p[i].length + q[j].length < best.length)
-      best = {p[i].length + q[j].length, hub_p};
-    i += hub_p <= hub_q;
-    j += hub_q <= hub_p;
-  }
-  return best;
-}
-
 Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh, int32_t workers,
                                    Context& context) {
   const Error cancelled{Errc::kCancelled, "path: cancelled"};
@@ -264,7 +250,9 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
     add_edges(
         territory.posts.size(),
         [&](size_t a, size_t b) {
-          return meet(territory.labels, territory.post_gates[a], territory.post_gates[b]).length;
+          return meet(territory.labels.of(territory.post_gates[a]),
+                      territory.labels.of(territory.post_gates[b]))
+              .length;
         },
         [&](size_t post) { return territory.posts[post]; }, edges);
   }

@@ -40,13 +40,6 @@ struct ZoneGraph {
   [[nodiscard]] uint64_t label_count() const;
 };
 
-/// The shortest way between two nodes over a hub of both.
-struct Meeting {
-  float length = 0;  // infinite: there is no way
-  uint32_t hub = 0;
-};
-Meeting meet(const TwoHopLabels& labels, uint32_t a, uint32_t b);
-
 /// Fails with kBadConfig (a zone has too many corners) or kCancelled. The same for any number of
 /// workers.
 Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh, int32_t workers,

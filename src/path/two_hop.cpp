@@ -148,24 +148,44 @@ class HubTree {
 
 }  // namespace
 
-void TwoHopLabels::walk_trail(uint32_t place, std::vector<uint32_t>& nodes) const {
-  for (;;) {
-    const uint32_t word = trails[place];
-    if (word == kEnd) return;
-    if ((word & kGoesOn) != 0) {
-      place = word & ~kGoesOn;
-      continue;
-    }
-    nodes.push_back(word);
-    ++place;
-  }
-}
-
-void TwoHopLabels::walk(uint32_t node, uint32_t hub, std::vector<uint32_t>& nodes) const {
+uint32_t TwoHopLabels::place_of(uint32_t node, uint32_t hub) const {
   const auto list = of(node);
   const auto at = std::lower_bound(list.begin(), list.end(), hub,
                                    [](const Label& l, uint32_t wanted) { return l.hub < wanted; });
-  walk_trail(trail[static_cast<size_t>(&*at - labels.data())], nodes);
+  return trail[static_cast<size_t>(&*at - labels.data())];
+}
+
+void TwoHopLabels::walk(uint32_t from, uint32_t to, std::vector<uint32_t>& nodes) const {
+  const auto to_hub = [&](uint32_t place) {
+    for (uint32_t word = trails[place]; word != kEnd; word = trails[place]) {
+      if ((word & kGoesOn) != 0) {
+        place = word & ~kGoesOn;
+      } else {
+        nodes.push_back(word);
+        ++place;
+      }
+    }
+  };
+  to_hub(from);
+  const auto after_hub = static_cast<ptrdiff_t>(nodes.size());
+  to_hub(to);
+  nodes.pop_back();  // the hub, which is there already
+  std::reverse(nodes.begin() + after_hub, nodes.end());
+}
+
+Meeting meet(std::span<const TwoHopLabels::Label> from, std::span<const TwoHopLabels::Label> to) {
+  Meeting best;
+  uint32_t i = 0, j = 0;
+  while (i < from.size() && j < to.size()) {
+    const uint32_t hub_i = from[i].hub, hub_j = to[j].hub;
+    if (hub_i == hub_j) {
+      const float here = from[i].length + to[j].length;
+      if (here < best.length) best = {here, hub_i, i, j};
+    }
+    i += hub_i <= hub_j;
+    j += hub_j <= hub_i;
+  }
+  return best;
 }
 
 Result<TwoHopLabels> label_graph(const WayGraph& graph, uint64_t samples, int32_t workers,

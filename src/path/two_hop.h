@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -48,15 +49,23 @@ struct TwoHopLabels {
   [[nodiscard]] std::span<const Label> of(uint32_t node) const {
     return {labels.data() + first[node], labels.data() + first[node + 1]};
   }
-  /// Adds the nodes from one to a hub that it has, both of them included.
-  void walk(uint32_t node, uint32_t hub, std::vector<uint32_t>& nodes) const;
-  /// The same from a place in `trails`.
-  void walk_trail(uint32_t place, std::vector<uint32_t>& nodes) const;
+  /// Where in `trails` the way from a node to a hub that it has begins.
+  [[nodiscard]] uint32_t place_of(uint32_t node, uint32_t hub) const;
+  /// Adds the nodes of the way from one place to another of the same hub's, over the hub.
+  void walk(uint32_t from, uint32_t to, std::vector<uint32_t>& nodes) const;
   [[nodiscard]] uint64_t bytes() const {
     return (first.size() + trail.size() + trails.size() + hubs.size()) * sizeof(uint32_t) +
            labels.size() * sizeof(Label);
   }
 };
+
+/// The shortest way over a hub of two lists, and where its labels are in these.
+struct Meeting {
+  float length = std::numeric_limits<float>::infinity();  // there is no way
+  uint32_t hub = 0;
+  uint32_t first = 0, last = 0;
+};
+Meeting meet(std::span<const TwoHopLabels::Label> from, std::span<const TwoHopLabels::Label> to);
 
 /// Hubs are taken in the order of how many shortest ways from `samples` nodes lead over them. Fails
 /// with kCancelled or kLimit (too many labels). The same for any number of workers.

@@ -126,7 +126,8 @@ void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop
   if (!first || !last) return;
   const Territory& start = graph.territories[start_.territory];
   const Territory& goal = graph.territories[goal_.territory];
-  const Meeting met = meet(graph.post_labels, start.posts[*first], goal.posts[*last]);
+  const Meeting met =
+      meet(graph.post_labels.of(start.posts[*first]), graph.post_labels.of(goal.posts[*last]));
   constexpr float kSlack = 1.00001f;  // floats
   float known = kSlack * std::min(best.length, start_.posts[*first].length + met.length +
                                                    goal_.posts[*last].length);
@@ -156,11 +157,9 @@ void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop
 // Adds the gates from one of a territory to another over a hub, without the first.
 void ZoneSearch::add_gates(const Territory& territory, uint32_t from, uint32_t hub, uint32_t to) {
   walked_.clear();
-  back_.clear();
-  territory.labels.walk(from, hub, walked_);
-  territory.labels.walk(to, hub, back_);
+  const TwoHopLabels& labels = territory.labels;
+  labels.walk(labels.place_of(from, hub), labels.place_of(to, hub), walked_);
   for (size_t i = 1; i < walked_.size(); ++i) gates_.push_back(territory.gates[walked_[i]]);
-  for (size_t i = back_.size() - 1; i-- > 0;) gates_.push_back(territory.gates[back_[i]]);
 }
 
 // The gates of the way, from one of the first zone to one of the last.
@@ -181,14 +180,12 @@ void ZoneSearch::list_gates(const ZoneGraph& graph, const Best& best) {
   gates_.assign(1, first);
   add_gates(start, start.place_of_gate(first), first_hub, start.post_gates[best.first]);
   posts_.clear();
-  graph.post_labels.walk(start.posts[best.first], best.hub, posts_);
-  const size_t middle = posts_.size();
-  graph.post_labels.walk(goal.posts[best.last], best.hub, posts_);
-  posts_.pop_back();  // the hub, which is there already
-  std::reverse(posts_.begin() + static_cast<ptrdiff_t>(middle), posts_.end());
+  const TwoHopLabels& labels = graph.post_labels;
+  labels.walk(labels.place_of(start.posts[best.first], best.hub),
+              labels.place_of(goal.posts[best.last], best.hub), posts_);
   for (size_t i = 1; i < posts_.size(); ++i) {
     // Two posts of one border are joined in both territories.
-    Meeting least{kNever, 0};
+    Meeting least;
     const Territory* over = nullptr;
     uint32_t from = 0, to = 0;
     for (const uint32_t t : graph.post_territories[posts_[i - 1]]) {
@@ -200,7 +197,7 @@ void ZoneSearch::list_gates(const ZoneGraph& graph, const Best& best) {
         return territory.post_gates[static_cast<size_t>(at - territory.posts.begin())];
       };
       const uint32_t a = place(posts_[i - 1]), b = place(posts_[i]);
-      const Meeting met = meet(territory.labels, a, b);
+      const Meeting met = meet(territory.labels.of(a), territory.labels.of(b));
       if (!(met.length < least.length)) continue;
       least = met;
       over = &territory;

@@ -81,8 +81,8 @@ class ZoneSearch {
   Puller pull_;
   End start_, goal_;
   Reached post_hubs_;
-  std::vector<uint32_t> gates_;          // of the way
-  std::vector<uint32_t> walked_, back_;  // scratch of walks over labels
+  std::vector<uint32_t> gates_;   // of the way
+  std::vector<uint32_t> walked_;  // scratch of a walk over labels
   std::vector<uint32_t> posts_;
   std::vector<WayPoint> way_, tail_;
   std::vector<uint32_t> near_corners_;

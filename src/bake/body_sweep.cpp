@@ -131,9 +131,9 @@ Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep) {
 }
 
 TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&scene) {
-  make_clusters(workers);
+  const std::vector<Cluster> clusters = make_clusters(workers);
   Box3d bounds;  // Clusters know it sooner than all triangles.
-  for (const Cluster& cluster : clusters_) {
+  for (const Cluster& cluster : clusters) {
     const auto& b = cluster.box;
     bounds.add({b[0], b[1], b[2]});
     bounds.add({b[3], b[4], b[5]});
@@ -146,13 +146,13 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   side_ = std::max(4.0, std::max(width, depth) / 4096);
   const auto squares = [&](double extent) { return static_cast<int32_t>(extent / side_) + 1; };
   const auto box = [&](size_t c) {
-    const auto& b = clusters_[c].box;
+    const auto& b = clusters[c].box;
     const auto at = [&](double v, double origin) { return (v - origin) / side_; };
     return CellBox{at(b[0], origin_x_), at(b[3], origin_x_), at(b[2], origin_z_),
                    at(b[5], origin_z_)};
   };
   const TriangleBins bins =
-      bin_boxes(clusters_.size(), box, 0, 0, squares(width), squares(depth), 1, 0, workers);
+      bin_boxes(clusters.size(), box, 0, 0, squares(width), squares(depth), 1, 0, workers);
   squares_x_ = bins.squares_x;
   squares_z_ = bins.squares_z;
   first_.assign(bins.first.begin(), bins.first.end());
@@ -161,7 +161,7 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   struct Place {
     int32_t x = -1, z = 0;
   };
-  std::vector<Place> begin(clusters_.size());
+  std::vector<Place> begin(clusters.size());
   const auto for_each_item = [&](int32_t z, auto visit) {
     for (int32_t x = 0; x < squares_x_; ++x) {
       const size_t s =
@@ -179,8 +179,9 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
     const auto z = static_cast<int32_t>(row);
     for_each_item(z, [&](uint32_t i, int32_t x) {
       const uint32_t c = bins.items[i];
-      items_[i] = {.box = clusters_[c].box,
-                   .cluster = c,
+      items_[i] = {.box = clusters[c].box,
+                   .first = clusters[c].first,
+                   .count = static_cast<uint8_t>(clusters[c].last - clusters[c].first),
                    .begins_x = x == begin[c].x,
                    .begins_z = z == begin[c].z};
     });
@@ -249,8 +250,8 @@ void sort_run(std::span<const CubeKey> keys, std::vector<uint32_t>& order) {
 
 // Runs of triangles that follow each other are sorted by cubes of kCube metres, and what lies in
 // one cube is a cluster. Whatever the order of a soup, clusters hold all its triangles.
-void TriangleSquares::make_clusters(int32_t workers) {
-  constexpr uint32_t kMost = 24;
+std::vector<TriangleSquares::Cluster> TriangleSquares::make_clusters(int32_t workers) {
+  constexpr uint32_t kMost = 24;  // An item counts them in a byte.
   const size_t count = scene_->triangles.size();
   order_.resize(count);
   const auto patch_of = [&](size_t t) {
@@ -281,8 +282,10 @@ void TriangleSquares::make_clusters(int32_t workers) {
   });
   size_t total = 0;
   for (const auto& list : lists) total += list.size();
-  clusters_.reserve(total);
-  for (const auto& list : lists) clusters_.insert(clusters_.end(), list.begin(), list.end());
+  std::vector<Cluster> clusters;
+  clusters.reserve(total);
+  for (const auto& list : lists) clusters.insert(clusters.end(), list.begin(), list.end());
+  return clusters;
 }
 
 TriangleSquares::Cluster TriangleSquares::measure(uint32_t first, uint32_t last) const {
@@ -327,8 +330,8 @@ void TriangleSquares::find(const Box3d& box, std::vector<uint32_t>& out) const {
           continue;
         }
         if ((x == x0 || item.begins_x) && (z == z0 || item.begins_z)) {
-          const Cluster& cluster = clusters_[item.cluster];
-          out.insert(out.end(), order_.begin() + cluster.first, order_.begin() + cluster.last);
+          const auto begin = order_.begin() + item.first;
+          out.insert(out.end(), begin, begin + item.count);
         }
       }
     }

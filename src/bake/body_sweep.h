@@ -60,13 +60,14 @@ class TriangleSquares {
     uint32_t first = 0, last = 0;  ///< of order_
   };
 
-  /// A cluster in one of its squares, with all that tells most of them to be out of reach.
+  /// A cluster in one of its squares.
   struct Item {
     std::array<float, 6> box;
-    uint32_t cluster = 0;
+    uint32_t first = 0;  ///< of order_
+    uint8_t count = 0;
     bool begins_x = false, begins_z = false;  ///< No square before this one has it.
   };
-  void make_clusters(int32_t workers);
+  std::vector<Cluster> make_clusters(int32_t workers);
   [[nodiscard]] Cluster measure(uint32_t first, uint32_t last) const;
   [[nodiscard]] int32_t square(double v, double origin, int32_t count) const;
 
@@ -74,7 +75,6 @@ class TriangleSquares {
   double side_ = 2;  // [m]
   double origin_x_ = 0, origin_z_ = 0;
   std::vector<uint32_t> order_;  // triangles
-  std::vector<Cluster> clusters_;
   std::vector<Item> items_;      // by square
   std::vector<uint32_t> first_;  // squares and the end
   int32_t squares_x_ = 0, squares_z_ = 0;

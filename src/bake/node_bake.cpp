@@ -80,6 +80,7 @@ class NodeBaker {
     add_drops();
     if (auto ok = add_jumps(); !ok) return ok.error();
     if (context_.cancel) return cancelled();
+    triangles_.reset();  // Nobody asks them again, and links need the room.
     link();
     measure();
     if (context_.cancel) return cancelled();

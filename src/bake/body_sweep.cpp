@@ -156,7 +156,7 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   squares_x_ = bins.squares_x;
   squares_z_ = bins.squares_z;
   first_.assign(bins.first.begin(), bins.first.end());
-  items_.resize(bins.items.size());
+  items_ = std::make_unique_for_overwrite<Item[]>(bins.items.size());
   // The first square of each, which boxes that only touch a border do not tell.
   struct Place {
     int32_t x = -1, z = 0;
@@ -253,7 +253,7 @@ void sort_run(std::span<const CubeKey> keys, std::vector<uint32_t>& order) {
 std::vector<TriangleSquares::Cluster> TriangleSquares::make_clusters(int32_t workers) {
   constexpr uint32_t kMost = 24;  // An item counts them in a byte.
   const size_t count = scene_->triangles.size();
-  order_.resize(count);
+  order_ = std::make_unique_for_overwrite<uint32_t[]>(count);
   const auto patch_of = [&](size_t t) {
     return scene_->patch_of_triangle.empty() ? kNoPatch : scene_->patch_of_triangle[t];
   };
@@ -330,7 +330,7 @@ void TriangleSquares::find(const Box3d& box, std::vector<uint32_t>& out) const {
           continue;
         }
         if ((x == x0 || item.begins_x) && (z == z0 || item.begins_z)) {
-          const auto begin = order_.begin() + item.first;
+          const uint32_t* begin = &order_[item.first];
           out.insert(out.end(), begin, begin + item.count);
         }
       }

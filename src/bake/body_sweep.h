@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -60,12 +61,12 @@ class TriangleSquares {
     uint32_t first = 0, last = 0;  ///< of order_
   };
 
-  /// A cluster in one of its squares.
+  /// A cluster in one of its squares. All are set by many threads, and by nobody before.
   struct Item {
     std::array<float, 6> box;
-    uint32_t first = 0;  ///< of order_
-    uint8_t count = 0;
-    bool begins_x = false, begins_z = false;  ///< No square before this one has it.
+    uint32_t first;  ///< of order_
+    uint8_t count;
+    bool begins_x, begins_z;  ///< No square before this one has it.
   };
   std::vector<Cluster> make_clusters(int32_t workers);
   [[nodiscard]] Cluster measure(uint32_t first, uint32_t last) const;
@@ -74,9 +75,9 @@ class TriangleSquares {
   const Scene* scene_;
   double side_ = 2;  // [m]
   double origin_x_ = 0, origin_z_ = 0;
-  std::vector<uint32_t> order_;  // triangles
-  std::vector<Item> items_;      // by square
-  std::vector<uint32_t> first_;  // squares and the end
+  std::unique_ptr<uint32_t[]> order_;  // triangles
+  std::unique_ptr<Item[]> items_;      // by square
+  std::vector<uint32_t> first_;        // squares and the end
   int32_t squares_x_ = 0, squares_z_ = 0;
 };
 

@@ -90,6 +90,11 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
       continue;
     }
     const auto first = static_cast<uint32_t>(kept);
+    if (!kind && kept == part.first_triangle) {  // Nothing to move, nothing to mark.
+      kept += part.triangle_count;
+      kept_parts.push_back(std::move(part));
+      continue;
+    }
     for (uint32_t i = 0; i < part.triangle_count; ++i, ++kept) {
       const size_t from = size_t{part.first_triangle} + i;
       move_triangle(scene, from, kept);

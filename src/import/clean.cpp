@@ -113,7 +113,21 @@ void drop_broken(Scene& scene) {
   });
 }
 
+bool uses_all_vertices(const Scene& scene) {
+  std::vector<uint8_t> used(scene.positions.size(), 0);
+  parallel_ranges(scene.triangles.size(), size_t{1} << 16, 0, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; ++t) {
+      // Many threads write the same.
+      for (const uint32_t corner : scene.triangles[t]) {
+        __atomic_store_n(&used[corner], uint8_t{1}, __ATOMIC_RELAXED);
+      }
+    }
+  });
+  return std::find(used.begin(), used.end(), 0) == used.end();
+}
+
 void drop_unused_vertices(Scene& scene) {
+  if (uses_all_vertices(scene)) return;
   std::vector<uint32_t> renamed(scene.positions.size(), kNoVertex);
   for (const auto& corners : scene.triangles) {
     for (const uint32_t corner : corners) renamed[corner] = 0;
@@ -124,7 +138,6 @@ void drop_unused_vertices(Scene& scene) {
     scene.positions[kept] = scene.positions[i];
     renamed[i] = kept++;
   }
-  if (kept == scene.positions.size()) return;
   scene.positions.resize(kept);
   for (auto& corners : scene.triangles) {
     for (uint32_t& corner : corners) corner = renamed[corner];
@@ -221,24 +234,26 @@ Box3d count_spikes(Scene& scene) {
 // The box that holds the middle 98 of 100 vertices on each axis, by at most a million samples.
 Box3d bulk_box(const Scene& scene) {
   const size_t stride = scene.positions.size() / 1'000'000 + 1;
-  std::vector<double> values;
-  const auto range = [&](auto member, double& low, double& high) {
-    values.clear();
+  struct Axis {
+    double Vec3d::*of;
+    double low = 0, high = 0;
+  };
+  std::array<Axis, 3> axes{{{&Vec3d::x}, {&Vec3d::y}, {&Vec3d::z}}};
+  parallel_for(axes.size(), 0, [&](size_t a) {
+    Axis& axis = axes[a];
+    std::vector<double> values;
+    values.reserve(scene.positions.size() / stride + 1);
     for (size_t i = 0; i < scene.positions.size(); i += stride) {
-      values.push_back(scene.positions[i].*member);
+      values.push_back(scene.positions[i].*axis.of);
     }
     const size_t tail = values.size() / 100;
     std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(tail), values.end());
-    low = values[tail];
+    axis.low = values[tail];
     const size_t top = values.size() - 1 - tail;
     std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(top), values.end());
-    high = values[top];
-  };
-  Box3d box;
-  range(&Vec3d::x, box.min.x, box.max.x);
-  range(&Vec3d::y, box.min.y, box.max.y);
-  range(&Vec3d::z, box.min.z, box.max.z);
-  return box;
+    axis.high = values[top];
+  });
+  return {{axes[0].low, axes[1].low, axes[2].low}, {axes[0].high, axes[1].high, axes[2].high}};
 }
 
 uint64_t count_outside(const Scene& scene, const Box3d& bulk, double margin) {

@@ -3,8 +3,11 @@
 #include "import/patch_scene.h"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <utility>
 
+#include "core/parallel.h"
 #include "import/area_rules.h"
 
 namespace throng {
@@ -22,8 +25,6 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
   Scene cut;
   cut.triangles = std::move(mesh->triangles);
   cut.patch_part = std::move(mesh->parts);
-  cut.area.reserve(cut.triangles.size());
-  cut.patch_of_triangle.reserve(cut.triangles.size());
   for (const PatchRun& run : scene.patches.runs) {
     const uint32_t first = mesh->first[run.first_patch];
     const uint32_t last = mesh->first[run.first_patch + run.patch_count];
@@ -32,12 +33,25 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
                          .material = run.material,
                          .first_triangle = first,
                          .triangle_count = last - first});
-    cut.area.insert(cut.area.end(), last - first, run.kind);
-    for (uint32_t p = run.first_patch; p < run.first_patch + run.patch_count; ++p) {
-      cut.patch_of_triangle.insert(cut.patch_of_triangle.end(), mesh->first[p + 1] - mesh->first[p],
-                                   p);
-    }
   }
+  // Beside each other: what costs is to touch so much memory for the first time.
+  const std::array<std::function<void()>, 2> fills{
+      [&] {
+        cut.area.reserve(cut.triangles.size());
+        for (size_t i = 0; i < cut.parts.size(); ++i) {
+          cut.area.insert(cut.area.end(), cut.parts[i].triangle_count, scene.patches.runs[i].kind);
+        }
+      },
+      [&] {
+        cut.patch_of_triangle.reserve(cut.triangles.size());
+        for (const PatchRun& run : scene.patches.runs) {
+          for (uint32_t p = run.first_patch; p < run.first_patch + run.patch_count; ++p) {
+            const uint32_t count = mesh->first[p + 1] - mesh->first[p];
+            cut.patch_of_triangle.insert(cut.patch_of_triangle.end(), count, p);
+          }
+        }
+      }};
+  parallel_for(fills.size(), 0, [&](size_t i) { fills[i](); });
   scene.report.triangles_read += cut.triangles.size();
   apply_rules(cut, config.rules);
   scene.report.ignored += cut.report.ignored;

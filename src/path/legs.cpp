@@ -13,6 +13,22 @@ namespace throng {
 namespace {
 
 constexpr int32_t kMostGrazed = 64;  // corners past which one leg is led
+constexpr double kGrazes = 0.02;     // cells
+
+bool is_same(GroundPoint a, GroundPoint b) { return a.x == b.x && a.z == b.z; }
+
+// The point a unit beside a corner in one of the four cells around it, counted around.
+GroundPoint quadrant(const CellCorner& corner, size_t i) {
+  return {(int64_t{corner.x} << kUnitBits) + (i == 0 || i == 3 ? 1 : -1),
+          (int64_t{corner.z} << kUnitBits) + (i < 2 ? 1 : -1)};
+}
+
+// From a corner to the line that a leg lies on. [cells]
+double distance(const CellCorner& corner, GroundPoint from, GroundPoint to) {
+  const CellPoint a = in_cells(from), b = in_cells(to);
+  const double dx = b.x - a.x, dz = b.z - a.z;
+  return std::fabs((corner.x - a.x) * dz - (corner.z - a.z) * dx) / std::hypot(dx, dz);
+}
 
 }  // namespace
 
@@ -44,10 +60,56 @@ bool LegWalker::leg(GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
   }
   if (depth == 0) return false;
   const auto past = grazed(level, from.at, to);
-  if (!past || (past->x == from.at.x && past->z == from.at.z) ||
-      (past->x == to.x && past->z == to.z))
-    return false;
+  if (!past || is_same(*past, from.at) || is_same(*past, to)) {
+    return slip_by(level, from.at, to, stops) && leg(to, depth - 1, stops);
+  }
   return leg(*past, depth / 2, stops) && leg(to, depth - 1, stops);
+}
+
+// Adds stops a unit beside the corner at which the leg ends, on whichever sides the body gets on
+// from. Between two cells on which it may stand the ground may rise by more than a step: nothing
+// is missing there, and who comes to the end of such a rise has to go around it, from one side of
+// one point to the other.
+bool LegWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
+                        std::vector<Stop>& stops) {
+  GroundLevel end = level;
+  const WalkStop stop = walk_far(ground_, end, from, to, mesh_->step);
+  // Both ends of the border that stops it, or the corner that does.
+  std::array<CellCorner, 2> corners;
+  for (int32_t i = 0; i < 2; ++i) {
+    corners[static_cast<size_t>(i)] = {
+        stop.toward_x != 0 ? std::max(stop.x, stop.x + stop.toward_x) : stop.x + i,
+        stop.toward_z != 0 ? std::max(stop.z, stop.z + stop.toward_z) : stop.z + i};
+  }
+  if (distance(corners[1], from, to) < distance(corners[0], from, to)) {
+    std::swap(corners[0], corners[1]);
+  }
+  for (const CellCorner& corner : corners) {
+    if (distance(corner, from, to) > kGrazes) continue;
+    const size_t before = stops.size();
+    for (size_t a = 0; a < 4; ++a) {
+      if (!leg(quadrant(corner, a), 0, stops)) continue;
+      if (gets_past(corner, stops.back(), to)) return true;
+      for (const size_t b : {(a + 1) % 4, (a + 3) % 4}) {
+        if (!leg(quadrant(corner, b), 0, stops)) continue;
+        if (gets_past(corner, stops.back(), to)) return true;
+        stops.pop_back();
+      }
+      stops.resize(before);
+    }
+  }
+  return false;
+}
+
+// Does a straight way from a stop lead out of the four cells around a corner, or to its end?
+bool LegWalker::gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const {
+  GroundLevel level =
+      ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
+  const WalkStop stop = walk_far(ground_, level, from.at, to, mesh_->step);
+  const auto is_beside = [](int32_t cell, int32_t line) {
+    return cell == line || cell == line - 1;
+  };
+  return stop.arrived || !is_beside(stop.x, corner.x) || !is_beside(stop.z, corner.z);
 }
 
 // The point beside the corner of the first cell in the way, if the leg just grazes it.
@@ -76,7 +138,7 @@ std::optional<GroundPoint> LegWalker::grazed(GroundLevel level, GroundPoint from
     const GroundPoint there{(int64_t{nx} << kUnitBits) + 1024, (int64_t{nz} << kUnitBits) + 1024};
     if (!throng::walk(ground_, next, here, there, mesh_->step)) {
       // Of the cells that may be in the way, the corner that the leg passes closest.
-      double nearest = 0.02;  // cells
+      double nearest = kGrazes;
       std::optional<GroundPoint> best;
       // The cells beside the leg first: a diagonal one that can be stood on shares their corner,
       // but it is not what is missing there.

@@ -11,6 +11,11 @@
 /// From the corners of a way to legs that a body can walk.
 namespace throng {
 
+/// A point that four cells of the grid share.
+struct CellCorner {
+  int32_t x = 0, z = 0;
+};
+
 /// Walks from `from` by way of the corners to `to`, a unit beside each corner, and past every other
 /// corner that a leg would graze. False if a leg is blocked for another reason.
 class LegWalker {
@@ -24,6 +29,9 @@ class LegWalker {
  private:
   bool leg(GroundPoint to, int32_t depth, std::vector<Stop>& stops);
   std::optional<GroundPoint> grazed(GroundLevel level, GroundPoint from, GroundPoint to) const;
+  bool slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
+               std::vector<Stop>& stops);
+  [[nodiscard]] bool gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const;
 
   WorldGround ground_;
   const PathMesh* mesh_;

@@ -9,6 +9,7 @@
 #include "path/label_search.h"
 #include "path/legs.h"
 #include "path/mesh.h"
+#include "path/portal_search.h"
 #include "path/reset_path.h"
 #include "path/search.h"
 #include "path/zone_search.h"
@@ -52,6 +53,7 @@ struct PathFinder::Scratch {
   PathSearch search;
   LabelSearch look_up;
   ZoneSearch over_zones;
+  PortalSearch portals;
   std::vector<uint32_t> corners;
   std::vector<Stop> stops;
   std::vector<LevelView> views;  // of the stops
@@ -147,12 +149,18 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
     result = scratch_->search.find(mesh, start, goal, max_nodes, scratch_->corners, length);
     path.nodes = scratch_->search.expanded();
   }
-  path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kGaveUp;
-  if (result != SearchResult::kFound) return;
-  LegWalker walker(world, mesh);
-  const bool walked = walker.walk(start, scratch_->corners, goal.at, scratch_->stops);
-  if (!walked || scratch_->stops.back().rect != goal.rect) {
-    path.end = PathEnd::kUnreachable;
+  // Both are of one component: a way there is, even if none can be drawn over corners.
+  const auto is_drawn = [&] {
+    LegWalker walker(world, mesh);
+    return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&
+           scratch_->stops.back().rect == goal.rect;
+  };
+  if (result == SearchResult::kNone || (result == SearchResult::kFound && !is_drawn())) {
+    result = scratch_->portals.find(mesh, start, goal, max_nodes, scratch_->stops, length);
+    path.nodes += scratch_->portals.expanded();
+  }
+  if (result != SearchResult::kFound) {
+    path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kGaveUp;
     return;
   }
   path.end = PathEnd::kReached;

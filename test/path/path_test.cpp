@@ -12,6 +12,7 @@
 #include "core/random.h"
 #include "throng/bake.h"
 #include "throng/graph.h"
+#include "throng/live_ground.h"
 #include "worlds.h"
 
 namespace throng {
@@ -240,6 +241,77 @@ TEST(Path, LeadsUpStairsRampsAndSpirals) {
   expect_as_graph(builtin({.name = "church"}, 0.15), 60);
   expect_as_graph(builtin({.name = "garage", .size = 45, .levels = 3}, 0.2), 60);
   expect_as_graph(builtin({.name = "maze", .size = 30, .levels = 2}, 0.1), 40);
+}
+
+// Hills whose slopes come to about a step a cell: between neighbouring cells, both legal, the
+// ground often rises by more than that.
+Scene hills(uint64_t seed, double side, double steepest) {
+  constexpr int32_t kSquares = 48;
+  const auto real = [&](uint64_t n) {
+    return static_cast<double>(random_below(seed, n, 0, 1 << 20)) / (1 << 20);
+  };
+  const auto height = [&](double x, double z) {
+    double sum = 0;
+    for (uint64_t wave = 0; wave < 5; ++wave) {
+      const double turn = 6.28 * real(wave * 3), along = x * std::cos(turn) + z * std::sin(turn);
+      const double often = 0.4 + 1.2 * real(wave * 3 + 1);
+      sum += steepest / 2.5 / often * std::sin(often * along + 6.28 * real(wave * 3 + 2));
+    }
+    return sum;
+  };
+  Scene scene;
+  const auto corner = [&](int32_t x, int32_t z) {
+    const double px = side * x / kSquares, pz = side * z / kSquares;
+    return Vec3d{px, height(px, pz), pz};
+  };
+  for (int32_t z = 0; z < kSquares; ++z) {
+    for (int32_t x = 0; x < kSquares; ++x) {
+      scene.add_quad(corner(x, z), corner(x, z + 1), corner(x + 1, z + 1), corner(x + 1, z));
+    }
+  }
+  return scene;
+}
+
+TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
+  const std::vector<AvatarClass> classes{
+      {.name = "low", .height = 1.5, .radius = 0.25, .step = 0.05, .max_slope = 40},
+      {.name = "high", .height = 1.5, .radius = 0.25, .step = 0.08, .max_slope = 40}};
+  Context context;
+  uint64_t together = 0, apart = 0;
+  double sum = 0, by_live = 0;
+  for (uint64_t seed = 0; seed < 12; ++seed) {
+    const World world = bake(hills(seed, 16, 0.4), seed % 2 == 0 ? 0.2 : 0.25, classes);
+    const auto graph = Graph::make(world, {}, context);
+    ASSERT_TRUE(graph);
+    for (const int32_t c : {0, 1}) {
+      PathFinder paths = finder(world, c), looked_up = finder(world, c, true);
+      auto over_zones = PathFinder::make(world, {.avatar_class = c, .zones = true}, context);
+      auto live = LiveGround::make(world, {.avatar_class = c});
+      ASSERT_TRUE(over_zones && live);
+      Path path, live_path;
+      for (uint64_t n = 0; n < 60; ++n) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed << ", class " << c << ", pair " << n);
+        const Place from = world.random_place(c, 3, 2 * n),
+                    to = world.random_place(c, 3, 2 * n + 1);
+        if (!from || !to) break;
+        const bool can = graph->component_at(c, from) == graph->component_at(c, to);
+        ++(can ? together : apart);
+        for (PathFinder* way : {&paths, &looked_up, &*over_zones}) {
+          way->find(from, to, path);
+          ASSERT_EQ(path.end, can ? PathEnd::kReached : PathEnd::kUnreachable);
+          if (can) expect_walkable(world, c, from, to, path);
+        }
+        live->find(from, to, live_path);
+        if (!can) continue;
+        paths.find(from, to, path);
+        sum += path.length;
+        by_live += live_path.length;
+      }
+    }
+  }
+  EXPECT_GT(together, 300u);
+  EXPECT_GT(apart, 50u);
+  EXPECT_LT(sum, by_live * 1.01);
 }
 
 // A city of many small zones, in territories of 8 x 8: ways over them beside the shortest.

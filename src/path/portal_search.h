@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "path/mesh.h"
+#include "path/search.h"
+
+/// Ways over a mesh from portal to portal: none is the shortest, but every leg is surely legal.
+namespace throng {
+
+/// Where neighbouring cells that can both be stood on lie a step apart, two sides of one line touch
+/// and a shortest way over corners may be drawn across it: nothing is missing there that it could
+/// keep a distance from. This search tells the way then. A* over the ends and the middles of
+/// portals; stops that a straight leg makes needless are left out. Owns its memory: one per thread,
+/// no allocation once it has grown.
+class PortalSearch {
+ public:
+  /// The stops from `from` to `to`, and their length in cells. Finds a way wherever both are of one
+  /// component. Gives up after `max_nodes` portals' ends and middles.
+  SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to, uint64_t max_nodes,
+                    std::vector<Stop>& stops, double& length);
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
+
+ private:
+  static constexpr uint32_t kPoints = 3;  // of a portal
+  static constexpr uint32_t kStart = UINT32_MAX;
+
+  // A point beyond a portal, by 3 portal + point.
+  struct Reached {
+    uint32_t search = 0;  // that set it
+    uint32_t before = kStart;
+    uint32_t rect = kNoRect;  // on this side
+    double cost = 0;
+  };
+  struct Open {
+    double estimate;
+    uint32_t point;
+    bool operator<(const Open& other) const {
+      return estimate != other.estimate ? estimate > other.estimate : point > other.point;
+    }
+  };
+  struct Crossing {
+    GroundPoint inside, beyond;
+  };
+
+  [[nodiscard]] Crossing crossing(uint32_t rect, uint32_t point) const;
+  void expand(const Stop& at, double cost, uint32_t before);
+  void draw(uint32_t last, const Stop& from, const Stop& to, std::vector<Stop>& stops);
+
+  const PathMesh* mesh_ = nullptr;
+  GroundPoint goal_;
+  uint32_t search_ = 0;
+  uint64_t expanded_ = 0;
+  std::vector<Reached> reached_;
+  std::vector<Open> open_;
+  std::vector<Stop> all_;
+};
+
+}  // namespace throng

@@ -113,6 +113,11 @@ int info(const Session& session, const InfoOptions& options) {
   if (options.check) {
     if (auto intact = world->check_all(); !intact) return fail(intact.error());
     if (auto intact = Graph::check_files(*world); !intact) return fail(intact.error());
+    if (Nodes::exist(*world)) {
+      const Result<Nodes> nodes = Nodes::open(*world);
+      if (!nodes) return fail(nodes.error());
+      if (auto intact = nodes->check_all(); !intact) return fail(intact.error());
+    }
   }
   const WorldSummary summary = world->summary();
   std::optional<AirSummary> air;

@@ -9,6 +9,7 @@
 
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "world/sealed_file.h"
 
 namespace throng {
 namespace fs = std::filesystem;
@@ -82,21 +83,16 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
 }
 
 uint64_t world_hash(const WorldData& world) {
-  if (!world.path.empty()) {
-    if (const auto map = FileMap::open(world.path + "/manifest.thm")) {
-      return hash_bytes(map->bytes().data(), map->bytes().size());
-    }
-  }
+  if (!world.path.empty()) return world.manifest_hash;
   const std::vector<uint8_t> bytes = write_manifest(world);
   return hash_bytes(bytes.data(), bytes.size());
 }
 
 Result<void> Nodes::write(const std::string& world_path, int32_t workers) const {
   THRONG_ASSERT(data_);
-  const std::string manifest = world_path + "/manifest.thm";
-  const auto map = FileMap::open(manifest);
-  if (!map) return map.error();
-  if (hash_bytes(map->bytes().data(), map->bytes().size()) != data_->world_hash) {
+  const auto world = World::open(world_path);
+  if (!world) return world.error();
+  if (world->summary().hash != data_->world_hash) {
     return Error{Errc::kBadFile, world_path + ": holds another world than these nodes' own"};
   }
   // Beside, then renamed: there are whole nodes or none.
@@ -119,7 +115,8 @@ Result<void> Nodes::write(const std::string& world_path, int32_t workers) const 
     if (failure) return *failure;
   }
   const auto index = part / kNodeIndexName;
-  if (auto ok = write_file(index.string(), write_node_index(*data_)); !ok) return ok.error();
+  if (auto ok = write_file(index.string(), sealed(write_node_index(*data_))); !ok)
+    return ok.error();
   fs::remove_all(target, error);
   fs::rename(part, target, error);
   if (error) return Error{Errc::kIo, target.string() + ": cannot be written: " + error.message()};

@@ -16,6 +16,7 @@
 
 #include "core/file_map.h"
 #include "core/hash.h"
+#include "world/sealed_file.h"
 
 // NAME.part is a whole world in the making: baked zones are written there and those that are kept
 // are linked there, so the world NAME stays as it is until both change names. What has been
@@ -109,6 +110,7 @@ std::shared_ptr<WorldData> WorldFolder::read_world(const std::string& path) {
   const auto map = FileMap::open(name);
   if (!map) return nullptr;
   auto world = read_manifest(map->bytes(), name);
+  if (!unsealed(map->bytes(), name)) return nullptr;
   return world ? std::move(*world) : nullptr;
 }
 
@@ -270,11 +272,15 @@ Result<void> WorldFolder::finish(const WorldData& world, const GraphData& graph)
   const uint64_t hash = hash_bytes(manifest.data(), manifest.size());
   if (world.air != nullptr) {
     const auto air = write_air_manifest(*world.air, hash);
-    if (auto ok = write_file((part_ / kAirManifest).string(), air); !ok) return ok.error();
+    if (auto ok = write_file((part_ / kAirManifest).string(), sealed(air)); !ok) return ok.error();
   }
   const auto index = write_graph_index(graph, hash);
-  if (auto ok = write_file((part_ / kGraphIndexName).string(), index); !ok) return ok.error();
-  if (auto ok = write_file((part_ / kManifest).string(), manifest); !ok) return ok.error();
+  if (auto ok = write_file((part_ / kGraphIndexName).string(), sealed(index)); !ok) {
+    return ok.error();
+  }
+  if (auto ok = write_file((part_ / kManifest).string(), sealed(manifest)); !ok) {
+    return ok.error();
+  }
   if (!exchange(part_, path_, path_ + ".old")) {
     return Error{Errc::kIo, path_ + ": cannot be written: " + std::strerror(errno)};
   }

@@ -10,6 +10,7 @@
 #include "graph/zone_regions.h"
 #include "world/place.h"
 #include "world/region_data.h"
+#include "world/sealed_file.h"
 
 namespace throng {
 namespace {
@@ -22,6 +23,7 @@ Result<std::shared_ptr<GraphData>> read_index(const WorldData& world) {
   if (!map) return std::shared_ptr<GraphData>();
   auto graph = read_graph_index(map->bytes(), name, world, world.manifest_hash);
   if (!graph) return graph.error();
+  if (const auto whole = unsealed(map->bytes(), name); !whole) return whole.error();
   (*graph)->path = world.path;
   (*graph)->summary.on_disk = true;
   return graph;

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "graph/node_surface.h"
 #include "world/node_data.h"
+#include "world/sealed_file.h"
 #include "world/zone_data.h"
 
 namespace throng {
@@ -80,9 +81,8 @@ Result<Nodes> Nodes::open(const World& world) {
   }
   auto nodes = read_node_index(map->bytes(), name);
   if (!nodes) return nodes.error();
-  const auto manifest = FileMap::open(world_path + "/manifest.thm");
-  if (!manifest) return manifest.error();
-  if (hash_bytes(manifest->bytes().data(), manifest->bytes().size()) != (*nodes)->world_hash) {
+  if (const auto whole = unsealed(map->bytes(), name); !whole) return whole.error();
+  if (world.data()->manifest_hash != (*nodes)->world_hash) {
     return Error{Errc::kBadFile, name + ": belongs to another world; bake it again with --nodes"};
   }
   (*nodes)->world = world;

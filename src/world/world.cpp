@@ -14,6 +14,7 @@
 #include "world/cell_blocks.h"
 #include "world/ground.h"
 #include "world/place.h"
+#include "world/sealed_file.h"
 #include "world/zone_data.h"
 
 namespace throng {
@@ -58,12 +59,15 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
   if (!world) return world.error();
   (*world)->path = path;
   (*world)->budget = config.resident_bytes;
-  (*world)->manifest_hash = hash_bytes(map->bytes().data(), map->bytes().size());
+  const auto manifest = unsealed(map->bytes(), name);
+  if (!manifest) return manifest.error();
+  (*world)->manifest_hash = hash_span(*manifest);
   (*world)->summary.hash = (*world)->manifest_hash;
   const std::string air_name = path + "/" + kAirManifest;
   if (const auto air_map = FileMap::open(air_name)) {
     auto air = read_air_manifest(air_map->bytes(), air_name, **world, (*world)->manifest_hash);
     if (!air) return air.error();
+    if (const auto whole = unsealed(air_map->bytes(), air_name); !whole) return whole.error();
     (*air)->path = path;
     for (size_t c = 0; c < (*world)->summary.classes.size(); ++c) {
       (*world)->summary.classes[c].flies = ((*air)->shape.flies >> c & 1) != 0;

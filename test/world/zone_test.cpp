@@ -123,15 +123,33 @@ TEST_F(ZoneFiles, AZoneOfAnyOtherLengthIsRefused) {
 }
 
 TEST_F(ZoneFiles, AManifestOfAnyOtherLengthIsRefused) {
+  const Bytes content(manifest_.begin(), manifest_.end() - 8);  // the sum is for the whole file
   for (size_t length = 0; length < manifest_.size(); ++length) {
     const Bytes cut(manifest_.begin(), manifest_.begin() + static_cast<int64_t>(length));
+    write_bytes(manifest_path(), cut);
+    const auto opened = World::open(path());
+    ASSERT_FALSE(opened) << length;
+    EXPECT_EQ(opened.error().code, Errc::kBadFile);
+    EXPECT_NE(opened.error().message.find("manifest.thm"), std::string::npos);
+    // And none is read past its end, whatever its sum.
     const auto world = read_manifest(cut, "m.thm");
-    if (world) {  // Only what fills up the last word may be missing.
-      ASSERT_GT(length + 8, manifest_.size());
-      EXPECT_EQ(write_manifest(**world), manifest_);
-      continue;
+    if (world) {
+      ASSERT_GT(length + 8, content.size());  // Only what fills up the last word may be missing.
+      EXPECT_EQ(write_manifest(**world), content);
     }
-    EXPECT_EQ(world.error().code, Errc::kBadFile);
+  }
+  Bytes longer = manifest_;
+  longer.push_back(0);
+  write_bytes(manifest_path(), longer);
+  EXPECT_FALSE(World::open(path()));
+}
+
+TEST_F(ZoneFiles, AnyChangedBitOfAManifestIsSeen) {
+  for (size_t i = 0; i < manifest_.size(); ++i) {
+    Bytes bytes = manifest_;
+    bytes[i] ^= static_cast<uint8_t>(1 << i % 8);
+    write_bytes(manifest_path(), bytes);
+    EXPECT_FALSE(World::open(path())) << i;
   }
 }
 

@@ -48,11 +48,17 @@ bool read_point(const Json& entry, const char* key, Vec3d& out) {
 }
 
 // Jumps from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways": false}].
-Result<std::vector<NodeJump>> read_jumps(const std::string& name, const World& world) {
+Result<std::vector<NodeJump>> read_jumps(const std::string& name,
+                                         const std::vector<AvatarClass>& classes) {
   std::ifstream file(name);
   if (!file) return Error{Errc::kBadFile, name + ": cannot be read"};
   const Json json = Json::parse(file, nullptr, false);
-  if (!json.is_array()) return Error{Errc::kBadFile, name + ": is no list of jumps in JSON"};
+  if (!json.is_array()) {
+    return Error{Errc::kBadFile,
+                 name +
+                     ": is no list of jumps in JSON, as [{\"from\": [0, 0, 0], \"to\": [3, 0, 0], "
+                     "\"class\": \"adult\", \"both_ways\": true}]"};
+  }
   std::vector<NodeJump> jumps;
   for (const Json& entry : json) {
     const auto bad = [&](const std::string& what) {
@@ -63,9 +69,15 @@ Result<std::vector<NodeJump>> read_jumps(const std::string& name, const World& w
       return bad("needs \"from\" and \"to\", three numbers each");
     }
     if (!entry.contains("class") || !entry["class"].is_string()) return bad("needs a \"class\"");
-    const Result<int32_t> index = class_named(world, entry["class"].get<std::string>());
-    if (!index) return bad(index.error().message);
-    jump.avatar_class = *index;
+    const auto wanted = entry["class"].get<std::string>();
+    const auto of = std::find_if(classes.begin(), classes.end(),
+                                 [&](const AvatarClass& avatar) { return avatar.name == wanted; });
+    if (of == classes.end()) {
+      std::string known;
+      for (const AvatarClass& avatar : classes) known += (known.empty() ? "" : ", ") + avatar.name;
+      return bad(fmt::format("there is no class {}; choose from {}", wanted, known));
+    }
+    jump.avatar_class = static_cast<int32_t>(of - classes.begin());
     if (entry.contains("both_ways")) {
       if (!entry["both_ways"].is_boolean()) return bad("both_ways must be true or false");
       jump.both_ways = entry["both_ways"].get<bool>();
@@ -78,11 +90,6 @@ Result<std::vector<NodeJump>> read_jumps(const std::string& name, const World& w
 Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
   const Result<World> world = World::open(options.output);
   if (!world) return world.error();
-  if (!options.jumps.empty()) {
-    Result<std::vector<NodeJump>> jumps = read_jumps(options.jumps, *world);
-    if (!jumps) return jumps.error();
-    options.node_config.jumps = *std::move(jumps);
-  }
   const Result<Nodes> nodes = Nodes::make(*world, scene, options.node_config, context);
   if (!nodes) return nodes.error();
   if (auto ok = nodes->write(options.output, options.node_config.workers); !ok) return ok.error();
@@ -161,6 +168,16 @@ int bake(Session& session, BakeOptions& options) {
   if (options.fly) options.config.classes.push_back(flyer_class());
   options.config.fine = !options.coarse;
   if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
+  // Before anything is baked: the new world would be in the old one's place, and without nodes.
+  if (wants_nodes(options)) {
+    options.node_config.workers = options.config.workers;
+    if (!options.jumps.empty()) {
+      Result<std::vector<NodeJump>> jumps = read_jumps(options.jumps, options.config.classes);
+      if (!jumps) return fail(jumps.error());
+      options.node_config.jumps = *std::move(jumps);
+    }
+    if (auto ok = check_node_config(options.node_config); !ok) return fail(ok.error());
+  }
   const Result<Scene> scene = read_sources(options.sources, session.context);
   const auto read = agree_over_ranks(scene ? Result<void>() : scene.error());
   if (!read) return fail(read.error());
@@ -172,9 +189,11 @@ int bake(Session& session, BakeOptions& options) {
   Json json = bake_json(options, *scene, *report, peak_read);
   std::string text = bake_text(options, *scene, *report);
   if (wants_nodes(options)) {
-    options.node_config.workers = options.config.workers;
     const Result<NodeSummary> nodes = bake_nodes(options, *scene, session.context);
-    if (!nodes) return fail(nodes.error());
+    if (!nodes) {
+      return fail({nodes.error().code,
+                   nodes.error().message + "; the world is baked, but it has no nodes yet"});
+    }
     json["nodes"] = nodes->nodes;
     json["node_arcs"] = nodes->arcs;
     json["node_bytes"] = nodes->bytes;

@@ -90,6 +90,7 @@ Result<Place> place_of(const World& world, const PathOptions& options, int32_t a
   };
   const Place place = world.find_place(avatar_class, position, options.reach);
   if (!place) {
+    if (auto ok = world.check_ground(); !ok) return ok.error();  // Its zone may be what is bad.
     return bad(
         fmt::format("is no place where class {} can stand, within {} m up or down; see "
                     "`throng picture`, or give a wider --reach",
@@ -99,6 +100,14 @@ Result<Place> place_of(const World& world, const PathOptions& options, int32_t a
 }
 
 double plan_distance(const Vec3d& a, const Vec3d& b) { return std::hypot(a.x - b.x, a.z - b.z); }
+
+// "1.200 m away in the plane and 2.900 m below it".
+std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
+  const double below = goal.y - nearest.y;
+  std::string text = fmt::format("{:.3f} m from there in the plane", plan_distance(nearest, goal));
+  if (std::fabs(below) < 0.0005) return text;
+  return text + fmt::format(" and {:.3f} m {}", std::fabs(below), below > 0 ? "below" : "above");
+}
 
 Json path_json(const PathOptions& options, const Path& path, const Place& to, double seconds) {
   Json points = Json::array();
@@ -115,6 +124,7 @@ Json path_json(const PathOptions& options, const Path& path, const Place& to, do
     const Vec3d& nearest = path.points.back().position;
     json["nearest"] = {{"place", numbers(nearest)},
                        {"distance", plan_distance(nearest, to.position)},
+                       {"below", to.position.y - nearest.y},
                        {"obstacle", app::word_for(path.obstacle)}};
   }
   return json;
@@ -139,9 +149,8 @@ std::string path_text(const PathOptions& options, const Path& path, const Place&
     text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;
-    text += fmt::format(
-        "  gets to ({}), {:.3f} m from there in the plane; what is in the way: {}\n",
-        where(nearest), plan_distance(nearest, to.position), app::word_for(path.obstacle));
+    text += fmt::format("  gets to ({}), {}; what is in the way: {}\n", where(nearest),
+                        how_near(nearest, to.position), app::word_for(path.obstacle));
   }
   size_t jump = 0;
   for (size_t i = 0; i < path.points.size(); ++i) {
@@ -388,7 +397,14 @@ int path(Session& session, const PathOptions& options) {
   if (options.fly && options.nodes) {
     return fail({Errc::kBadConfig, "--fly leads through the air, --nodes over the ground"});
   }
-  if (options.fly) return fly(session, options, *world, *avatar_class);
+  if (options.fly) {
+    if (options.is_live()) {
+      return fail({Errc::kBadConfig,
+                   "--block, --jump, --area-cost and --slope-cost change the ground; ways through "
+                   "the air (--fly) are of the world as it was baked"});
+    }
+    return fly(session, options, *world, *avatar_class);
+  }
   if (options.nodes || goes_over_nodes(avatar)) {
     if (!options.blocks.empty() || !options.jumps.empty() || !options.area_costs.empty()) {
       return fail({Errc::kBadConfig,
@@ -396,6 +412,10 @@ int path(Session& session, const PathOptions& options) {
                    "nodes take jumps from `throng bake --jumps`"});
     }
     return go_over_nodes(session, options, *world, *avatar_class);
+  }
+  if (options.is_live()) {
+    // Ground that changes is read as it is needed, and a zone that cannot be is nobody's ground.
+    if (auto ok = world->check_ground(); !ok) return fail(ok.error());
   }
   const auto from = place_of(*world, options, *avatar_class, options.from, "--from");
   if (!from) return fail(from.error());

@@ -74,6 +74,7 @@ Result<Image> draw_all_nodes(PictureOptions& options) {
 int picture(Session& session, PictureOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
+  if (auto ok = world->check_ground(); !ok) return fail(ok.error());
   const auto is_storey = [&] {
     const std::string& text = options.storey;
     const auto [end, error] =

@@ -173,6 +173,23 @@ void note(const std::string& sentence) {
   fmt::print(stderr, "throng: note: {}\n", sentence);
 }
 
+namespace {
+
+// Every reader of numbers takes "nan" for one, and no comparison that is to refuse it does.
+void refuse_nan(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& given : option->results()) {
+      std::string word = given.substr(given.find_first_not_of("+-") == 1 ? 1 : 0);
+      std::transform(word.begin(), word.end(), word.begin(),
+                     [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+      if (word != "nan" || option->get_positional()) continue;
+      throw CLI::ValidationError(option->get_name(), given + " is not a finite number");
+    }
+  }
+}
+
+}  // namespace
+
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example) {
   CLI::App* command = parser.add_subcommand(name, summary);
@@ -180,6 +197,7 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   std::string indented = "Example:\n  ";
   for (const char c : example) indented += c == '\n' ? std::string("\n  ") : std::string(1, c);
   command->footer(indented);
+  command->parse_complete_callback([command] { refuse_nan(*command); });
   return command;
 }
 

@@ -50,6 +50,9 @@ struct NodeConfig {
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
 };
 
+/// Can nodes be made so, whatever the world? Fails with kBadConfig.
+[[nodiscard]] THRONG_API Result<void> check_node_config(const NodeConfig& config);
+
 /// Edges of the bins in which promises are kept. A code k of inclination means "at most
 /// inclination[k] degrees" (180 beyond the last); a code k > 0 of a length means "at least
 /// edge[k - 1] metres", 0 promises nothing. Every class's own limits are edges.

@@ -28,10 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 Result<void> check(const World& world, const Scene& scene, const NodeConfig& config) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
-  if (!(config.size >= 0.05 && config.size <= 100)) {
-    return Error{Errc::kBadConfig, "nodes: the size must be 0.05 to 100 m"};
-  }
-  if (config.workers < 0) return Error{Errc::kBadConfig, "nodes: workers must be 0 or more"};
+  if (auto ok = check_node_config(config); !ok) return ok.error();
   if (scene.triangles.size() != world.summary().source_triangles) {
     return Error{Errc::kBadInput, "nodes: the world was not baked from this scene: it has " +
                                       std::to_string(world.summary().source_triangles) +
@@ -583,6 +580,21 @@ class NodeBaker {
 };
 
 }  // namespace
+
+Result<void> check_node_config(const NodeConfig& config) {
+  if (!(config.size >= 0.05 && config.size <= 100)) {
+    return Error{Errc::kBadConfig, "nodes: the size must be 0.05 to 100 m"};
+  }
+  if (config.workers < 0) return Error{Errc::kBadConfig, "nodes: workers must be 0 or more"};
+  for (size_t j = 0; j < config.jumps.size(); ++j) {
+    const NodeJump& jump = config.jumps[j];
+    const Vec3d sum = jump.from + jump.to;
+    if (std::isfinite(sum.x + sum.y + sum.z)) continue;
+    return Error{Errc::kBadConfig,
+                 "nodes: jump " + std::to_string(j + 1) + ": its ends must be finite"};
+  }
+  return {};
+}
 
 Result<Nodes> Nodes::make(const World& world, const Scene& scene, const NodeConfig& config,
                           Context& context) {

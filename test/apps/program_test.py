@@ -100,6 +100,7 @@ class Program(unittest.TestCase):
         self.assert_refused(fly("0.05,3,2", "4,3,4"), "--from", "neither in the air nor on the ground")
         self.assert_refused(self.run_throng("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "adult", "--fly"),
                             "does not fly")
+        self.assert_refused(fly("2,3,2", "4,3,4", "--block", "2,2,2,4,4,4"), "--block", "air")
 
     def test_ways_lead_around_boxes_and_say_what_is_in_the_way(self):
         def way(goal, *more):
@@ -125,6 +126,56 @@ class Program(unittest.TestCase):
         self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,13,2,9"), "--block", "opposite corners")
         self.assert_refused(self.run_throng(*ends, "--area-cost", "1.5=2"), "--area-cost", "whole numbers")
         self.assert_refused(self.run_throng(*ends, "--jump", "14,0,8,19,0,99"), "--jump", "outside")
+
+    def test_what_is_no_number_is_refused_wherever_one_is_asked_for(self):
+        ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
+        self.assert_refused(self.run_throng(*ends, "--reach", "nan"), "--reach", "finite")
+        self.assert_refused(self.run_throng(*ends, "--slope-cost", "-NaN"), "--slope-cost", "finite")
+        self.assert_refused(self.run_throng("place", self.world, "--at", "14,0,8", "--toward", "nan,0"), "--toward", "finite")
+        self.assert_refused(self.run_throng("region", self.world, "--at", "nan,0,8"), "--at", "finite")
+        self.assert_refused(self.run_throng("picture", self.world, "-o", "p.png", "--area", "nan,0,1,1"), "--area", "finite")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_what_nodes_are_asked_for_is_looked_at_before_the_old_world_goes(self):
+        done = self.run_throng("bake", "builtin:stairs", "--cell", "0.2", "--nodes", "-o", "w.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        before = {p: p.read_bytes() for p in self.path.rglob("*") if p.is_file()}
+        (self.path / "jumps.json").write_text('[{"from": [0, 0, 0], "to": [1, 0, 1], "class": "horse"}]')
+        (self.path / "list.json").write_text("{}")
+        again = ["bake", "builtin:garage", "--cell", "0.2", "-o", "w.throng"]
+        self.assert_refused(self.run_throng(*again, "--nodes", "--node-size", "1000"), "size")
+        self.assert_refused(self.run_throng(*again, "--jumps", "jumps.json"), "jump 1", "horse", "adult")
+        self.assert_refused(self.run_throng(*again, "--jumps", "list.json"), "no list", '"from"')
+        self.assert_refused(self.run_throng(*again, "--jumps", "missing.json"), "missing.json")
+        for path, content in before.items():
+            self.assertEqual(path.read_bytes(), content, path)
+
+    def test_a_changed_bit_in_any_file_of_a_world_is_found(self):
+        done = self.run_throng("bake", "builtin:cube", "--cell", "0.2", "--fly", "--nodes", "-o", "w.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        files = sorted(p for p in (self.path / "w.throng").rglob("*") if p.is_file())
+        self.assertEqual({p.name for p in files} & {"manifest.thm", "air.thm", "graph.thm", "index.thn"},
+                         {"manifest.thm", "air.thm", "graph.thm", "index.thn"})
+        self.assertEqual(self.run_throng("info", "w.throng", "--check").returncode, 0)
+        for path in files:
+            content = path.read_bytes()
+            for i in range(0, len(content), max(1, len(content) // 20)):
+                path.write_bytes(content[:i] + bytes([content[i] ^ 1 << i % 8]) + content[i + 1:])
+                self.assert_refused(self.run_throng("info", "w.throng", "--check"), path.name)
+            path.write_bytes(content)
+        self.assertEqual(self.run_throng("info", "w.throng", "--check").returncode, 0)
+
+    def test_a_damaged_zone_is_named_by_whoever_needs_it(self):
+        world = self.path / "w.throng"
+        shutil.copytree(self.world, world)
+        zone = next(iter(sorted(world.glob("zone_*.thz"))))
+        content = zone.read_bytes()
+        zone.write_bytes(content[:len(content) // 2] + b"?" + content[len(content) // 2 + 1:])
+        ends = ["--from", "14,0,8", "--to", "20,0,8"]
+        self.assert_refused(self.run_throng("path", "w.throng", *ends), zone.name)
+        self.assert_refused(self.run_throng("path", "w.throng", *ends, "--block", "16,0,0,17,2,9"), zone.name)
+        self.assert_refused(self.run_throng("picture", "w.throng", "-o", "p.png"), zone.name)
+        self.assert_refused(self.run_throng("place", "w.throng", "--at", "14,0,8"), zone.name)
 
     def test_landscapes_are_written_curved_read_back_and_refused_when_damaged(self):
         hills = self.path / "hills.patches.json"

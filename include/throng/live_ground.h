@@ -12,6 +12,7 @@
 #include "throng/path.h"
 #include "throng/prism.h"
 #include "throng/result.h"
+#include "throng/search_budget.h"
 #include "throng/world.h"
 
 /// A baked world as one class sees it now: with obstacles put up, doors shut, areas marked and
@@ -74,8 +75,9 @@ class THRONG_API LiveGround {
   /// A way of little cost, every leg a legal move: over points of the borders of rectangles, drawn
   /// straight afterwards, in the mean within 1 % of the best. Where none leads there
   /// (kUnreachable), `path` leads to the place of least distance to the goal that was met, and says
-  /// what is in the way. Gives up after `max_nodes` points. No allocation once it is warm.
-  void find(const Place& from, const Place& to, Path& path, uint64_t max_nodes = UINT64_MAX);
+  /// what is in the way. Gives up when the budget of points is spent. No allocation once it is
+  /// warm.
+  void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
   /// The same in slices: begin, then advance by some points a frame until it says true.
   void begin(const Place& from, const Place& to);
   bool advance(uint64_t max_nodes, Path& path);

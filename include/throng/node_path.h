@@ -11,6 +11,7 @@
 #include "throng/nodes.h"
 #include "throng/path.h"
 #include "throng/result.h"
+#include "throng/search_budget.h"
 
 /// Ways over nodes, for every class and with it for climbers: over walls and under ceilings.
 /// Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
@@ -82,9 +83,10 @@ class THRONG_API NodePathFinder {
 
   /// A way of little cost: A* over the middles of the lines along which nodes touch, then pulled
   /// taut within the nodes that it leads over. `spacing` is how far its points on curved ground
-  /// are apart at most. [m, > 0] `path` is reused: its memory stays. Gives up after `max_nodes`.
+  /// are apart at most. [m, > 0] `path` is reused: its memory stays. Gives up when the
+  /// budget is spent.
   void find(const NodePlace& from, const NodePlace& to, NodePath& path, double spacing = 0.25,
-            uint64_t max_nodes = UINT64_MAX);
+            const SearchBudget& budget = {});
 
   [[nodiscard]] NodePathSummary summary() const;
 

@@ -10,6 +10,7 @@
 #include "throng/context.h"
 #include "throng/ground_query.h"
 #include "throng/result.h"
+#include "throng/search_budget.h"
 #include "throng/world.h"
 
 /// Shortest ways for a class over the ground of a baked world.
@@ -78,9 +79,9 @@ class THRONG_API PathFinder {
   /// The shortest way from one place to another over all legal cells, any angle: no legal way is
   /// shorter by more than 1/1000 of a cell a corner. Wherever places hold together a way is found;
   /// where legal cells side by side lie more than a step apart, it may be one from portal to portal
-  /// that is a little longer. `path` is reused: its memory stays. After
-  /// `max_nodes` nodes the search gives up; with labels there is none.
-  void find(const Place& from, const Place& to, Path& path, uint64_t max_nodes = UINT64_MAX);
+  /// that is a little longer. `path` is reused: its memory stays. When
+  /// the budget is spent the search gives up; with labels there is none.
+  void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
 
   [[nodiscard]] PathSummary summary() const;
   /// What it searches on, for the library itself; as old as the finder and its copies.

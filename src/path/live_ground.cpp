@@ -188,9 +188,20 @@ bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   return true;
 }
 
-void LiveGround::find(const Place& from, const Place& to, Path& path, uint64_t max_nodes) {
+void LiveGround::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
   begin(from, to);
-  advance(max_nodes, path);
+  if (budget.cancel == nullptr) {
+    advance(budget.max_nodes, path);
+    return;
+  }
+  constexpr uint64_t kSlice = 64;
+  reset(path);
+  path.end = PathEnd::kGaveUp;
+  for (uint64_t left = budget.max_nodes; left > 0 && !*budget.cancel;) {
+    const uint64_t slice = std::min(left, kSlice);
+    if (advance(slice, path)) return;
+    left -= slice;
+  }
 }
 
 }  // namespace throng

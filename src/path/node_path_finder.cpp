@@ -260,7 +260,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
 }
 
 void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& path,
-                          double spacing, uint64_t max_nodes) {
+                          double spacing, const SearchBudget& budget) {
   THRONG_ASSERT(spacing > 0);
   const NodeMesh& mesh = shared_->mesh;
   path.end = PathEnd::kNoPlace;
@@ -291,7 +291,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   const BlockPoint start = block_of(from), goal = block_of(to);
   if (start.block == kNoNode || goal.block == kNoNode) return;
   Scratch& scratch = *scratch_;
-  path.end = scratch.search.find(start, goal, max_nodes, scratch.way);
+  path.end = scratch.search.find(start, goal, budget, scratch.way);
   path.nodes = scratch.search.looked_at();
   if (path.end == PathEnd::kGaveUp) return;
   path.searched_cost = scratch.search.cost();

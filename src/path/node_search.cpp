@@ -78,7 +78,7 @@ void NodeSearch::expand(uint32_t block, double s, double t, Vec3d at, double cos
   }
 }
 
-PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, uint64_t max_nodes,
+PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                          std::vector<Crossing>& way) {
   way.clear();
   looked_at_ = 0;
@@ -120,7 +120,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, uint64_t 
     State& state = states_[top.state];
     if (state.closed) continue;
     state.closed = true;
-    if (++looked_at_ > max_nodes) return PathEnd::kGaveUp;
+    if (budget.is_spent(++looked_at_)) return PathEnd::kGaveUp;
     const NodePortal& portal = mesh_->portals()[top.state / 2];
     const bool backward = (top.state & 1) != 0;
     const uint32_t block = backward ? portal.a : portal.b;

@@ -7,6 +7,7 @@
 
 #include "graph/node_mesh.h"
 #include "throng/path.h"
+#include "throng/search_budget.h"
 
 /// A* over the portals between blocks of nodes.
 namespace throng {
@@ -47,7 +48,7 @@ class NodeSearch {
 
   /// Fills `way` with the portals from one to the other, or, if none leads there, to the crossing
   /// that comes nearest.
-  PathEnd find(const BlockPoint& from, const BlockPoint& to, uint64_t max_nodes,
+  PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                std::vector<Crossing>& way);
   [[nodiscard]] double cost() const { return best_cost_; }
   [[nodiscard]] uint64_t looked_at() const { return looked_at_; }

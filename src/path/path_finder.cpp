@@ -116,7 +116,7 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
 PathSummary PathFinder::summary() const { return shared_->summary; }
 const PathMesh& PathFinder::mesh() const { return shared_->mesh; }
 
-void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t max_nodes) {
+void PathFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
   const WorldData& world = *shared_->world.data();
   const PathMesh& mesh = shared_->mesh;
   reset(path);
@@ -142,11 +142,11 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
     }
   } else if (shared_->zones) {
     ZoneSearch& search = scratch_->over_zones;
-    result = search.find(world, mesh, *shared_->zones, start, goal, max_nodes, scratch_->corners,
-                         length);
+    result =
+        search.find(world, mesh, *shared_->zones, start, goal, budget, scratch_->corners, length);
     path.nodes = search.expanded();
   } else {
-    result = scratch_->search.find(mesh, start, goal, max_nodes, scratch_->corners, length);
+    result = scratch_->search.find(mesh, start, goal, budget, scratch_->corners, length);
     path.nodes = scratch_->search.expanded();
   }
   // Both are of one component: a way there is, even if none can be drawn over corners.
@@ -156,7 +156,7 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, uint64_t m
            scratch_->stops.back().rect == goal.rect;
   };
   if (result == SearchResult::kNone || (result == SearchResult::kFound && !is_drawn())) {
-    result = scratch_->portals.find(mesh, start, goal, max_nodes, scratch_->stops, length);
+    result = scratch_->portals.find(mesh, start, goal, budget, scratch_->stops, length);
     path.nodes += scratch_->portals.expanded();
   }
   if (result != SearchResult::kFound) {

@@ -18,7 +18,8 @@ double between(GroundPoint a, GroundPoint b) {  // [cells]
 }  // namespace
 
 SearchResult PortalSearch::find(const PathMesh& mesh, const Stop& from, const Stop& to,
-                                uint64_t max_nodes, std::vector<Stop>& stops, double& length) {
+                                const SearchBudget& budget, std::vector<Stop>& stops,
+                                double& length) {
   mesh_ = &mesh;
   if (reached_.size() != mesh.portals.size() * kPoints) {
     reached_.assign(mesh.portals.size() * kPoints, {});
@@ -45,7 +46,7 @@ SearchResult PortalSearch::find(const PathMesh& mesh, const Stop& from, const St
     const auto [search, before, rect, cost] = reached_[next.point];
     const Stop at{crossing(rect, next.point).beyond, mesh.portals[next.point / kPoints].rect};
     if (next.estimate > cost + between(at.at, goal_)) continue;  // It was reached more cheaply.
-    if (++expanded_ > max_nodes) return SearchResult::kBudget;
+    if (budget.is_spent(++expanded_)) return SearchResult::kBudget;
     if (at.rect == to.rect) {
       best = cost + between(at.at, to.at);
       last = next.point;

@@ -19,9 +19,10 @@ namespace throng {
 class PortalSearch {
  public:
   /// The stops from `from` to `to`, and their length in cells. Finds a way wherever both are of one
-  /// component. Gives up after `max_nodes` portals' ends and middles.
-  SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to, uint64_t max_nodes,
-                    std::vector<Stop>& stops, double& length);
+  /// component. Gives up when as many portals' ends and middles as the budget allows were
+  /// looked at.
+  SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to,
+                    const SearchBudget& budget, std::vector<Stop>& stops, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:

@@ -13,8 +13,8 @@
 namespace throng {
 
 SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop& to,
-                              uint64_t max_nodes, std::vector<uint32_t>& corners, double& length,
-                              double longest) {
+                              const SearchBudget& budget, std::vector<uint32_t>& corners,
+                              double& length, double longest) {
   mesh_ = &mesh;
   goal_rect_ = to.rect;
   goal_ = in_cells(to.at);
@@ -42,7 +42,7 @@ SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop
     if (entry.estimate >= found_length_) break;
     const Node node = nodes_[entry.node];
     if (is_stale(node.root)) continue;
-    if (++expanded_ > max_nodes) return SearchResult::kBudget;
+    if (budget.is_spent(++expanded_)) return SearchResult::kBudget;
     expand(node);
   }
   if (found_root_ == UINT32_MAX) return SearchResult::kNone;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "path/mesh.h"
+#include "throng/search_budget.h"
 
 /// The shortest way over a mesh, by search over intervals.
 namespace throng {
@@ -18,10 +19,11 @@ enum class SearchResult { kFound, kNone, kBudget };
 class PathSearch {
  public:
   /// Corners of the shortest way from `from` to `to`, in order, ends left out; `length` in cells.
-  /// Gives up after `max_nodes` nodes, and does not look for ways that are not shorter than
+  /// Gives up when the budget is spent, and does not look for ways that are not shorter than
   /// `longest`.
-  SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to, uint64_t max_nodes,
-                    std::vector<uint32_t>& corners, double& length, double longest = kAnyLength);
+  SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to,
+                    const SearchBudget& budget, std::vector<uint32_t>& corners, double& length,
+                    double longest = kAnyLength);
   static constexpr double kAnyLength = 1e300;  // cells
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 

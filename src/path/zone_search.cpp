@@ -252,7 +252,7 @@ bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& 
 }
 
 SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
-                              const Stop& from, const Stop& to, uint64_t max_nodes,
+                              const Stop& from, const Stop& to, const SearchBudget& budget,
                               std::vector<uint32_t>& corners, double& length) {
   expanded_ = 0;
   if (mesh_ray(mesh, from.rect, from.at, to.at) == to.rect) {
@@ -269,8 +269,9 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
   // Near ends, or a way that stays in one zone: search for one that is shorter.
   constexpr uint64_t kNearNodes = 4096;
   double near = led ? length : PathSearch::kAnyLength;
-  const SearchResult result = search_.find(
-      mesh, from, to, led ? std::min(max_nodes, kNearNodes) : max_nodes, near_corners_, near, near);
+  const SearchBudget least(std::min(budget.max_nodes, kNearNodes), budget.cancel);
+  const SearchResult result =
+      search_.find(mesh, from, to, led ? least : budget, near_corners_, near, near);
   expanded_ = search_.expanded();
   if (result == SearchResult::kFound) {
     corners = near_corners_;

@@ -10,6 +10,7 @@
 #include "path/search.h"
 #include "path/sight.h"
 #include "path/territory.h"
+#include "throng/search_budget.h"
 
 /// Ways over large worlds: inside zones by their tables, inside territories by labels of their
 /// gates, between them by labels of their posts.
@@ -21,7 +22,7 @@ class ZoneSearch {
   /// As PathSearch::find. Between zones that touch, the shortest way if that is found within a
   /// budget; else the shortest of its kind (path/pull.h), led through gates.
   SearchResult find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
-                    const Stop& from, const Stop& to, uint64_t max_nodes,
+                    const Stop& from, const Stop& to, const SearchBudget& budget,
                     std::vector<uint32_t>& corners, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 

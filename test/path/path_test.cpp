@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -369,6 +370,41 @@ TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
       EXPECT_EQ(path.length, lengths[n]) << workers << " workers, pair " << n;
     }
   }
+}
+
+TEST(Path, StopsWhenItIsToldTo) {
+  const World world = builtin({.name = "garage", .size = 45, .levels = 3}, 0.2);
+  Context context;
+  auto over_zones = PathFinder::make(world, {.zones = true}, context);
+  auto live = LiveGround::make(world, {});
+  ASSERT_TRUE(over_zones && live);
+  PathFinder search = finder(world, 0);
+  std::atomic<bool> stop{true}, go{false};
+  uint64_t stopped = 0;
+  Path whole, path;
+  for (uint64_t n = 0; n < 40; ++n) {
+    SCOPED_TRACE(testing::Message() << "pair " << n);
+    const Place from = world.random_place(0, 5, 2 * n), to = world.random_place(0, 5, 2 * n + 1);
+    search.find(from, to, whole);
+    search.find(from, to, path, {UINT64_MAX, &go});
+    EXPECT_EQ(path.end, whole.end);
+    EXPECT_EQ(path.length, whole.length);
+    search.find(from, to, path, {UINT64_MAX, &stop});
+    // A goal in the start's own rectangle is not searched for.
+    EXPECT_TRUE(path.end == PathEnd::kGaveUp || whole.nodes == 0);
+    stopped += path.end == PathEnd::kGaveUp;
+    over_zones->find(from, to, path, {UINT64_MAX, &stop});
+    EXPECT_TRUE(path.end == PathEnd::kGaveUp || path.nodes <= 1);
+    live->find(from, to, whole);
+    live->find(from, to, path, {UINT64_MAX, &go});
+    EXPECT_EQ(path.end, whole.end);
+    EXPECT_EQ(path.length, whole.length);
+    live->find(from, to, path, {UINT64_MAX, &stop});
+    EXPECT_EQ(path.end, PathEnd::kGaveUp);
+    live->find(from, to, path, {5, &go});
+    EXPECT_TRUE(path.end == PathEnd::kGaveUp || path.nodes <= 5);
+  }
+  EXPECT_GT(stopped, 20u);
 }
 
 TEST(Path, SaysWhyThereIsNone) {

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <new>
+#include <string>
+
+#include "throng/bake.h"
+#include "throng/builtin_worlds.h"
+#include "throng/flight.h"
+#include "throng/live_ground.h"
+#include "throng/node_path.h"
+#include "throng/path.h"
+
+// A program of its own, because it counts every allocation: queries that have been asked before
+// make none when they are asked again.
+namespace {
+std::atomic<uint64_t> g_allocations{0};
+}  // namespace
+
+void* operator new(size_t size) {
+  ++g_allocations;
+  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+
+namespace throng {
+namespace {
+
+constexpr uint64_t kPairs = 60;
+
+// Asks all pairs three times: two to grow, as memories may change places between queries. Returns
+// how much the third time allocated.
+uint64_t late(const char* name, const std::function<void(uint64_t)>& ask) {
+  for (uint64_t n = 0; n < 2 * kPairs; ++n) ask(n % kPairs);
+  const uint64_t warm = g_allocations;
+  for (uint64_t n = 0; n < kPairs; ++n) ask(n);
+  const uint64_t more = g_allocations - warm;
+  std::printf("%s: %llu allocations once warm\n", name, static_cast<unsigned long long>(more));
+  return more;
+}
+
+template <class T>
+T need(Result<T> made) {
+  if (made) return *std::move(made);
+  std::fprintf(stderr, "%s\n", made.error().message.c_str());
+  std::exit(1);
+}
+
+int run() {
+  Context context;
+  const Scene scene = need(make_builtin_world({.name = "garage", .size = 45, .levels = 2}));
+  std::vector<AvatarClass> classes = default_classes();
+  classes.push_back(flyer_class());
+  const World world = need(bake_world(scene, {.cell = 0.2, .classes = classes}, context));
+  const auto from = [&](uint64_t n) { return world.random_place(0, 7, 2 * n); };
+  const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
+  uint64_t sum = 0, reached = 0;
+  Path path;
+  for (const PathConfig& config :
+       {PathConfig{}, PathConfig{.labels = true}, PathConfig{.zones = true}}) {
+    PathFinder finder = need(PathFinder::make(world, config, context));
+    sum += late(config.labels  ? "labels"
+                : config.zones ? "zones"
+                               : "search",
+                [&](uint64_t n) {
+                  finder.find(from(n), to(n), path);
+                  reached += path.end == PathEnd::kReached;
+                });
+  }
+  LiveGround live = need(LiveGround::make(world, {}));
+  sum += late("live ground", [&](uint64_t n) {
+    live.find(from(n), to(n), path);
+    reached += path.end == PathEnd::kReached;
+  });
+  const Nodes nodes = need(Nodes::make(world, scene, {}, context));
+  NodePathFinder over_nodes = need(NodePathFinder::make(nodes, {}, context));
+  NodePath node_path;
+  sum += late("nodes", [&](uint64_t n) {
+    over_nodes.find(over_nodes.find_place(from(n).position, 1),
+                    over_nodes.find_place(to(n).position, 1), node_path);
+    reached += node_path.end == PathEnd::kReached;
+  });
+  FlightFinder flight = need(FlightFinder::make(
+      world, {.avatar_class = static_cast<int32_t>(classes.size()) - 1}, context));
+  FlightPath flown;
+  sum += late("flight", [&](uint64_t n) {
+    flight.find({.from = from(n).position, .to = to(n).position}, flown);
+    reached += flown.end == PathEnd::kReached;
+  });
+  std::printf("%llu ways found\n", static_cast<unsigned long long>(reached));
+  return sum == 0 && reached > 5 * kPairs ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace throng
+
+int main() { return throng::run(); }

@@ -88,15 +88,16 @@ bool LegWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint 
     if (distance(corner, from, to) > kGrazes) continue;
     const size_t before = stops.size();
     for (size_t a = 0; a < 4; ++a) {
+      stops.resize(before);
       if (!leg(quadrant(corner, a), 0, stops)) continue;
       if (gets_past(corner, stops.back(), to)) return true;
       for (const size_t b : {(a + 1) % 4, (a + 3) % 4}) {
+        stops.resize(before + 1);
         if (!leg(quadrant(corner, b), 0, stops)) continue;
         if (gets_past(corner, stops.back(), to)) return true;
-        stops.pop_back();
       }
-      stops.resize(before);
     }
+    stops.resize(before);
   }
   return false;
 }

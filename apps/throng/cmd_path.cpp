@@ -101,7 +101,7 @@ Result<Place> place_of(const World& world, const PathOptions& options, int32_t a
 
 double plan_distance(const Vec3d& a, const Vec3d& b) { return std::hypot(a.x - b.x, a.z - b.z); }
 
-// "1.200 m away in the plane and 2.900 m below it".
+// "1.200 m from there in the plane and 2.900 m below".
 std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
   const double below = goal.y - nearest.y;
   std::string text = fmt::format("{:.3f} m from there in the plane", plan_distance(nearest, goal));

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -156,7 +157,9 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
            scratch_->stops.back().rect == goal.rect;
   };
   if (result == SearchResult::kNone || (result == SearchResult::kFound && !is_drawn())) {
-    result = scratch_->portals.find(mesh, start, goal, budget, scratch_->stops, length);
+    const SearchBudget rest(budget.max_nodes - std::min(budget.max_nodes, path.nodes),
+                            budget.cancel);
+    result = scratch_->portals.find(mesh, start, goal, rest, scratch_->stops, length);
     path.nodes += scratch_->portals.expanded();
   }
   if (result != SearchResult::kFound) {

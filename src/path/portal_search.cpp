@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "path/border.h"
 #include "path/mesh_ray.h"
 
 namespace throng {
 namespace {
 
-double between(GroundPoint a, GroundPoint b) {  // [cells]
-  const CellPoint p = in_cells(a), q = in_cells(b);
-  return std::hypot(p.x - q.x, p.z - q.z);
-}
+double between(GroundPoint a, GroundPoint b) { return distance(in_cells(a), in_cells(b)); }
 
 }  // namespace
 

@@ -171,6 +171,8 @@ int bake(Session& session, BakeOptions& options) {
   // Before anything is baked: the new world would be in the old one's place, and without nodes.
   if (wants_nodes(options)) {
     options.node_config.workers = options.config.workers;
+    options.node_config.fresh = options.fresh;
+    options.config.carry_nodes = !options.fresh;
     if (!options.jumps.empty()) {
       Result<std::vector<NodeJump>> jumps = read_jumps(options.jumps, options.config.classes);
       if (!jumps) return fail(jumps.error());
@@ -194,13 +196,16 @@ int bake(Session& session, BakeOptions& options) {
       return fail({nodes.error().code,
                    nodes.error().message + "; the world is baked, but it has no nodes yet"});
     }
+    json["node_zones_made"] = nodes->zones_made;
+    json["node_zones_kept"] = nodes->zones_kept;
     json["nodes"] = nodes->nodes;
     json["node_arcs"] = nodes->arcs;
     json["node_bytes"] = nodes->bytes;
     json["seconds_nodes"] = nodes->seconds;
     json["peak_bytes"] = peak_memory();
-    text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}\n", nodes->nodes, nodes->arcs,
-                        nodes->seconds, human_bytes(nodes->bytes));
+    text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}, over {} zones ({} kept)\n",
+                        nodes->nodes, nodes->arcs, nodes->seconds, human_bytes(nodes->bytes),
+                        nodes->zones_made + nodes->zones_kept, nodes->zones_kept);
   }
   print_result(session, json, text);
   return kDone;

@@ -38,6 +38,9 @@ struct BakeConfig {
   std::vector<AvatarClass> classes = default_classes();
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
   OldZones old_zones = OldZones::kKeep;  ///< Of the world or the killed bake that is in the way.
+  /// Into a folder: the old world's nodes are carried over, so that Nodes::make need not make again
+  /// what has not changed. They are of the new world only once it has.
+  bool carry_nodes = false;
 };
 
 /// What a bake did. Seconds are summed over threads where several work.

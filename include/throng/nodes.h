@@ -48,6 +48,8 @@ struct NodeConfig {
   uint16_t classes = 0xffff;  ///< Bit per class: whom to make nodes for.
   std::vector<NodeJump> jumps = {};
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
+  /// Make all zones, also those whose nodes lie in the world's folder, made of the same.
+  bool fresh = false;
 };
 
 /// Can nodes be made so, whatever the world? Fails with kBadConfig.
@@ -117,8 +119,10 @@ struct NodeSummary {
   uint64_t patches = 0;
   uint64_t bezier_patches = 0;
   uint64_t zones = 0;
-  uint64_t bytes = 0;  ///< Of all zones.
-  double seconds = 0;  ///< To make them; 0 if they were opened.
+  uint64_t zones_made = 0;  ///< Zones with patches, whether or not they got nodes.
+  uint64_t zones_kept = 0;  ///< The rest of them: nothing that they depend on has changed.
+  uint64_t bytes = 0;       ///< Of all zones.
+  double seconds = 0;       ///< To make them; 0 if they were opened.
   NodeBins bins;
   std::vector<AvatarClass> classes;
 };
@@ -148,8 +152,9 @@ class THRONG_API Nodes {
   explicit Nodes(std::shared_ptr<const NodeData> data) : data_(std::move(data)) {}
 
   /// Makes the nodes of a world from the scene that it was baked from: of its Bezier patches and,
-  /// where there are triangles that belong to none, of its level tiles. Fails with kBadConfig,
-  /// kBadFile (a zone cannot be used), kLimit or kCancelled.
+  /// where there are triangles that belong to none, of its level tiles. Zones whose nodes lie in
+  /// the world's folder (BakeConfig::carry_nodes) and would come out the same are kept. Fails with
+  /// kBadConfig, kBadFile (a zone cannot be used), kLimit or kCancelled.
   [[nodiscard]] static Result<Nodes> make(const World& world, const Scene& scene,
                                           const NodeConfig& config, Context& context);
   /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.

@@ -90,7 +90,7 @@ Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
   if (!world) return world.error();
   const auto graph = bake_graph(*folder, **world, config.workers, context, report);
   if (!graph) return graph.error();
-  if (auto ok = folder->finish(**world, **graph); !ok) return ok.error();
+  if (auto ok = folder->finish(**world, **graph, config.carry_nodes); !ok) return ok.error();
   report.seconds_total = seconds_since(start);
   return report;
 }

@@ -7,6 +7,8 @@
 
 #include "bake/node_drops.h"
 #include "bake/node_file.h"
+#include "bake/node_plan.h"
+#include "bake/old_nodes.h"
 #include "bake/patch_links.h"
 #include "core/file_map.h"
 #include "core/hash.h"
@@ -18,6 +20,7 @@
 #include "throng/scene.h"
 #include "world/node_data.h"
 #include "world/place.h"
+#include "world/region_data.h"
 
 // From patches and level tiles to nodes, links and widths. What decides is per cell and class;
 // everything after that only groups cells, so it is the same for Bezier patches and level tiles.
@@ -35,17 +38,8 @@ Result<void> check(const World& world, const Scene& scene, const NodeConfig& con
                                       " source triangles, the scene has " +
                                       std::to_string(scene.triangles.size())};
   }
-  return world.check_ground();
+  return {};
 }
-
-// A patch of the forest: where it comes from and which zone keeps it.
-struct PatchSource {
-  int32_t zone_z = 0, zone_x = 0;
-  PatchKind kind = PatchKind::kBezier;
-  uint32_t source = 0;
-
-  friend auto operator<=>(const PatchSource&, const PatchSource&) = default;
-};
 
 // Cells between which a body goes straight though they do not touch.
 struct Leap {
@@ -64,14 +58,14 @@ class NodeBaker {
 
   Result<Nodes> run() {
     const auto start = Clock::now();
-    choose_layers();
+    plan_ = plan_nodes(data_, scene_, config_);
+    if (plan_.needs_triangles()) triangles_.emplace(scene_, config_.workers);
+    choose_zones();
+    if (auto ok = list_patches(); !ok) return ok.error();
     judge_patches();
     if (context_.cancel) return cancelled();
-    list_patches();
     grow_trees();
-    if (forest_.size() >= kFarNode) {
-      return Error{Errc::kLimit, "nodes: more than 2^31 nodes; use a larger cell or node size"};
-    }
+    if (forest_.size() >= kFarNode) return too_many();
     find_pairs();
     if (context_.cancel) return cancelled();
     add_drops();
@@ -88,30 +82,64 @@ class NodeBaker {
   }
 
  private:
+  static Error too_many() {
+    return {Errc::kLimit, "nodes: more than 2^31 nodes; use a larger cell or node size"};
+  }
+
   static Error cancelled() { return {Errc::kCancelled, "nodes: cancelled"}; }
 
-  // Bezier patches carry everybody where all ground is made of them; where there is other ground
-  // too, level tiles carry those who walk, and patches those who climb.
-  void choose_layers() {
-    const auto& of = scene_.patch_of_triangle;
-    has_patches_ = !scene_.patches.empty();
-    has_tiles_ = of.empty() || std::find(of.begin(), of.end(), kNoPatch) != of.end();
-    on_patches_ = 0;
-    for (size_t c = 0; c < data_.summary.classes.size(); ++c) {
-      const bool climbs = data_.summary.classes[c].climb_slope > 0;
-      if (climbs || !has_tiles_) on_patches_ |= static_cast<uint16_t>(1u << c);
+  // Which zones have to be made, and which others tell what goes into these: all where nothing is
+  // kept. A world in memory does not know what it was made from.
+  void choose_zones() {
+    kept_.resize(plan_.zones.size());
+    is_made_.assign(plan_.zones.size(), 1);
+    is_seen_.assign(plan_.zones.size(), 1);
+    if (data_.path.empty()) return;
+    find_node_inputs(data_, scene_, config_, triangles_ ? &*triangles_ : nullptr, plan_);
+    if (config_.fresh) return;
+    const OldNodes old(data_.path);
+    parallel_for(plan_.zones.size(), config_.workers, [&](size_t z) {
+      const NodePlanZone& zone = plan_.zones[z];
+      auto kept = old.keep(zone.x, zone.z, zone.input);
+      if (!kept) return;
+      kept_[z] = std::move(*kept);
+      is_made_[z] = 0;
+    });
+    std::fill(is_seen_.begin(), is_seen_.end(), 0);
+    for (size_t z = 0; z < plan_.zones.size(); ++z) {
+      if (is_made_[z] == 0) continue;
+      for (const uint32_t near : plan_.zones[z].near) is_seen_[near] = 1;
     }
-    on_patches_ &= config_.classes;
-    if (on_patches_ == 0) has_patches_ = false;
+  }
+
+  Result<void> list_patches() {
+    bezier_.assign(plan_.has_patches ? scene_.patches.size() : 0, kNoNode);
+    level_.assign(plan_.has_tiles ? data_.level_count : 0, kNoNode);
+    for (size_t z = 0; z < plan_.zones.size(); ++z) {
+      if (is_seen_[z] == 0) continue;
+      const NodePlanZone& zone = plan_.zones[z];
+      zone_places_.push_back(z);
+      begins_.push_back(sources_.size());
+      for (uint32_t s = zone.first; s < zone.last; ++s) {
+        const PatchSource& source = plan_.sources[s];
+        const auto place = static_cast<uint32_t>(sources_.size());
+        (source.kind == PatchKind::kBezier ? bezier_ : level_)[source.source] = place;
+        if (source.kind == PatchKind::kLevelTile) levels_.push_back(source.source);
+        sources_.push_back(source);
+      }
+      const int32_t slot = plan_.has_tiles ? slot_at(data_, zone.x, zone.z) : -1;
+      if (slot < 0) continue;
+      slots_.push_back(static_cast<size_t>(slot));
+      if (data_.zone(slots_.back()) == nullptr) {
+        return Error{Errc::kBadFile, data_.slots[slots_.back()]->error};
+      }
+    }
+    begins_.push_back(sources_.size());
+    return {};
   }
 
   void judge_patches() {
-    for (size_t c = 0; c < data_.summary.classes.size(); ++c) {
-      const bool asked = (config_.classes >> c & 1) != 0;
-      if (asked && data_.summary.classes[c].max_drop > 0) drops_ = true;
-    }
-    if (has_patches_ || drops_) triangles_.emplace(scene_, config_.workers);
-    if (!has_patches_) return;
+    if (!plan_.has_patches) return;
     cells_.resize(scene_.patches.size());
     std::vector<uint8_t> blocked(cells_.size(), 0);
     for (size_t t = 0; t < scene_.triangles.size(); ++t) {
@@ -122,42 +150,12 @@ class NodeBaker {
         static_cast<size_t>(worker_count(config_.workers)),
         PatchJudge(*triangles_, data_.summary.classes, bins_, config_.size));
     parallel_for_worker(cells_.size(), config_.workers, [&](size_t p, int32_t worker) {
-      if (context_.cancel) return;
+      if (context_.cancel || bezier_[p] == kNoNode) return;
       cells_[p] = judges[static_cast<size_t>(worker)].judge(static_cast<uint32_t>(p));
       for (Promise& cell : cells_[p].promise.cells) {
-        cell.classes = blocked[p] != 0 ? uint16_t{0} : cell.classes & on_patches_;
+        cell.classes = blocked[p] != 0 ? uint16_t{0} : cell.classes & plan_.on_patches;
       }
     });
-  }
-
-  void list_patches() {
-    const auto per_zone = static_cast<int32_t>(data_.tiles_per_zone);
-    for (uint32_t p = 0; p < cells_.size(); ++p) {
-      const Box3d box = scene_.patches.patches[p].bounds();
-      const Vec3d middle = (box.min + box.max) * 0.5;
-      const auto zone = [&](double at, double origin, int32_t zones) {
-        const double tile = (at - origin) / data_.summary.cell / 64;
-        return std::clamp(static_cast<int32_t>(std::floor(tile / per_zone)), 0, zones - 1);
-      };
-      sources_.push_back({zone(middle.z, data_.summary.origin.z, data_.zones_z),
-                          zone(middle.x, data_.summary.origin.x, data_.zones_x), PatchKind::kBezier,
-                          p});
-    }
-    if (has_tiles_) {
-      for (size_t s = 0; s < data_.slots.size(); ++s) {
-        const auto& slot = *data_.slots[s];
-        for (uint32_t l = 0; l < slot.entry.levels(); ++l) {
-          sources_.push_back(
-              {slot.entry.z(), slot.entry.x(), PatchKind::kLevelTile, slot.first_level + l});
-        }
-      }
-    }
-    std::sort(sources_.begin(), sources_.end());
-    bezier_.resize(cells_.size());
-    level_.resize(has_tiles_ ? data_.level_count : 0);
-    for (uint32_t p = 0; p < sources_.size(); ++p) {
-      (sources_[p].kind == PatchKind::kBezier ? bezier_ : level_)[sources_[p].source] = p;
-    }
   }
 
   // The cells of level tiles are read again for their links: kept, they would fill the memory.
@@ -185,6 +183,7 @@ class NodeBaker {
       for (CellPair& pair : list) {
         pair.patch_a = of_a[pair.patch_a];
         pair.patch_b = of_b[pair.patch_b];
+        if (pair.patch_a == kNoNode || pair.patch_b == kNoNode) continue;  // Another zone's affair.
         if (pair.side_a == 4) {
           leaps_.push_back({pair.patch_a, pair.cell_a, pair.patch_b, pair.cell_b});
           pair.leap1 = static_cast<uint32_t>(leaps_.size());
@@ -192,22 +191,29 @@ class NodeBaker {
         pairs_.push_back(pair);
       }
     };
-    if (has_patches_) {
+    if (plan_.has_patches) {
       const PatchLinkInput input = link_input();
       EdgeLinks edges = link_edges(input, config_.workers);
       doors_ = std::move(edges.doors);
-      if (drops_) edges_ = edges.pairs;
+      if (plan_.drops) edges_ = edges.pairs;
       take(std::move(edges.pairs), bezier_, bezier_);
       take(link_holes(input, config_.workers), bezier_, bezier_);
-      if (has_tiles_) take(link_tiles(input, config_.workers), bezier_, level_);
+      if (plan_.has_tiles) take(link_tiles(input, config_.workers), bezier_, level_);
     }
-    if (!has_tiles_) return;
-    const int32_t tiles_x = data_.summary.tiles_x, tiles_z = data_.summary.tiles_z;
-    std::vector<std::vector<CellPair>> lists(static_cast<size_t>(tiles_x) *
-                                             static_cast<size_t>(tiles_z));
+    if (!plan_.has_tiles) return;
+    std::vector<std::pair<int32_t, int32_t>> tiles;
+    for (const size_t slot : slots_) {
+      const auto& entry = data_.slots[slot]->entry;
+      const auto side = static_cast<int32_t>(data_.tiles_per_zone);
+      const int32_t end_x = std::min((entry.x() + 1) * side, data_.summary.tiles_x);
+      const int32_t end_z = std::min((entry.z() + 1) * side, data_.summary.tiles_z);
+      for (int32_t z = entry.z() * side; z < end_z; ++z) {
+        for (int32_t x = entry.x() * side; x < end_x; ++x) tiles.push_back({x, z});
+      }
+    }
+    std::vector<std::vector<CellPair>> lists(tiles.size());
     parallel_for(lists.size(), config_.workers, [&](size_t i) {
-      const auto tile = static_cast<int32_t>(i);
-      if (!context_.cancel) lists[i] = tile_pairs(data_, tile % tiles_x, tile / tiles_x);
+      if (!context_.cancel) lists[i] = tile_pairs(data_, tiles[i].first, tiles[i].second);
     });
     for (auto& list : lists) take(std::move(list), level_, level_);
   }
@@ -221,13 +227,17 @@ class NodeBaker {
   }
 
   void add_drops() {
-    if (!drops_) return;
-    const DropInput input{
-        .links = link_input(), .edges = edges_, .tiles = has_tiles_, .wanted = config_.classes};
+    if (!plan_.drops) return;
+    const DropInput input{.links = link_input(),
+                          .edges = edges_,
+                          .tiles = plan_.has_tiles,
+                          .levels = levels_,
+                          .wanted = config_.classes};
     for (const NodeDrop& drop : find_drops(input, config_.workers)) {
       const auto patch_of = [&](const DropEnd& end) {
         return (end.kind == PatchKind::kBezier ? bezier_ : level_)[end.source];
       };
+      if (patch_of(drop.from) == kNoNode || patch_of(drop.to) == kNoNode) continue;
       // Of level tiles one from each block of 8 x 8 cells will do.
       const bool on_tile = drop.from.kind == PatchKind::kLevelTile;
       const uint32_t block = drop.from.cell / 512 * 8 + drop.from.cell % 64 / 8;
@@ -250,8 +260,9 @@ class NodeBaker {
     constexpr double kReach = 1;
     std::optional<std::pair<uint32_t, uint32_t>> best;
     double nearest = kReach * kReach;
-    if (has_tiles_) {
-      if (const Place place = world_.find_place(avatar_class, at, kReach)) {
+    if (plan_.has_tiles) {
+      const Place place = world_.find_place(avatar_class, at, kReach);
+      if (place && level_[place.level1 - 1] != kNoNode) {
         const GroundPoint p = to_ground(data_, place.position.x, place.position.z);
         best = {level_[place.level1 - 1],
                 static_cast<uint32_t>((p.cell_z() & 63) * 64 + (p.cell_x() & 63))};
@@ -272,6 +283,18 @@ class NodeBaker {
     return best;
   }
 
+  // Does a jump begin and end in or near zones all of which are kept?
+  [[nodiscard]] bool is_elsewhere(uint32_t jump) const {
+    bool is_near = false;
+    for (size_t z = 0; z < plan_.zones.size(); ++z) {
+      const auto& jumps = plan_.zones[z].jumps;
+      if (!std::binary_search(jumps.begin(), jumps.end(), jump)) continue;
+      if (is_made_[z] != 0) return false;
+      is_near = true;
+    }
+    return is_near;
+  }
+
   Result<void> add_jumps() {
     for (size_t j = 0; j < config_.jumps.size(); ++j) {
       const NodeJump& jump = config_.jumps[j];
@@ -282,6 +305,7 @@ class NodeBaker {
       if (jump.avatar_class < 0 || static_cast<size_t>(jump.avatar_class) >= classes.size()) {
         return bad("the world has no such avatar class");
       }
+      if (is_elsewhere(static_cast<uint32_t>(j))) continue;
       const auto from = cell_near(jump.avatar_class, jump.from);
       const auto to = cell_near(jump.avatar_class, jump.to);
       if (!from || !to) {
@@ -357,10 +381,11 @@ class NodeBaker {
   }
 
   void measure() {
-    for (size_t s = 0; has_tiles_ && s < data_.slots.size(); ++s) {
+    std::vector<std::pair<int32_t, int32_t>> tile_place(level_.size());
+    for (const size_t s : slots_) {
       const Zone& zone = *data_.zone(s);
       for (uint32_t l = 0; l < zone.level_count(); ++l) {
-        tile_place_.push_back(tile_of(data_, zone, zone.level(l)));
+        tile_place[data_.slots[s]->first_level + l] = tile_of(data_, zone, zone.level(l));
       }
     }
     std::vector<CellBalls> balls;
@@ -369,7 +394,7 @@ class NodeBaker {
         balls.push_back({.listed = cells_[source.source].shape});
         continue;
       }
-      const auto [x, z] = tile_place_[source.source];
+      const auto [x, z] = tile_place[source.source];
       balls.push_back({.listed = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
     }
     const CrossCells cross(pairs_, sources_.size(), config_.workers);
@@ -404,34 +429,35 @@ class NodeBaker {
     nodes->size = config_.size;
     nodes->summary.bins = bins_;
     nodes->summary.bezier_patches = scene_.patches.size();
-    for (size_t begin = 0; begin < sources_.size();) {
-      size_t end = begin;
-      const PatchSource& zone = sources_[begin];
-      while (end < sources_.size() && sources_[end].zone_x == zone.zone_x &&
-             sources_[end].zone_z == zone.zone_z) {
-        ++end;
-      }
-      zones_.push_back({zone.zone_x, zone.zone_z, forest_.first[begin], forest_.first[end]});
-      begins_.push_back(begin);
-      begin = end;
+    for (size_t z = 0; z < zone_places_.size(); ++z) {
+      const NodePlanZone& zone = plan_.zones[zone_places_[z]];
+      zones_.push_back({zone.x, zone.z, forest_.first[begins_[z]], forest_.first[begins_[z + 1]]});
     }
-    begins_.push_back(sources_.size());
     find_links_from_before();
-    std::vector<std::optional<Result<std::unique_ptr<NodeData::Slot>>>> packed(zones_.size());
+    std::vector<std::optional<Result<std::unique_ptr<NodeData::Slot>>>> packed(plan_.zones.size());
     parallel_for(zones_.size(), config_.workers, [&](size_t z) {
-      if (zones_[z].first != zones_[z].last) packed[z] = pack_zone(z);
+      const size_t place = zone_places_[z];
+      if (is_made_[place] == 0 || zones_[z].first == zones_[z].last) return;
+      packed[place] = pack_zone(z);
     });
-    for (size_t z = 0; z < zones_.size(); ++z) {
-      if (!packed[z]) continue;
-      auto& slot = *packed[z];
-      if (!slot) return slot.error();
-      (*slot)->first_node = zones_[z].first;
-      nodes->summary.bytes += (*slot)->entry.bytes();
-      nodes->summary.patches += (*slot)->entry.patches();
-      nodes->slots.push_back(std::move(*slot));
+    uint64_t count = 0;
+    for (size_t z = 0; z < packed.size(); ++z) {
+      ++(is_made_[z] != 0 ? nodes->summary.zones_made : nodes->summary.zones_kept);
+      if (!data_.path.empty()) {
+        nodes->inputs.emplace_back(plan_.zones[z].x, plan_.zones[z].z, plan_.zones[z].input);
+      }
+      if (packed[z] && !*packed[z]) return packed[z]->error();
+      auto slot = packed[z] ? std::move(**packed[z]) : std::move(kept_[z]);
+      if (slot == nullptr) continue;
+      slot->first_node = static_cast<uint32_t>(count);
+      count += slot->entry.nodes();
+      if (count >= kFarNode) return too_many();
+      nodes->summary.bytes += slot->entry.bytes();
+      nodes->summary.patches += slot->entry.patches();
+      nodes->slots.push_back(std::move(slot));
     }
-    nodes->node_count = forest_.size();
-    nodes->summary.nodes = forest_.size();
+    nodes->node_count = static_cast<uint32_t>(count);
+    nodes->summary.nodes = count;
     nodes->summary.zones = nodes->slots.size();
     return nodes;
   }
@@ -476,6 +502,8 @@ class NodeBaker {
   Result<std::unique_ptr<NodeData::Slot>> pack_zone(size_t z) const {
     const ZoneRange& zone = zones_[z];
     const ZoneArcs arcs = arcs_of(links_of(z), zone);
+    const int32_t slot = slot_at(data_, zone.x, zone.z);
+    const uint32_t first_level = slot < 0 ? 0 : data_.slots[static_cast<size_t>(slot)]->first_level;
     ZoneContent content;
     content.x = zone.x;
     content.z = zone.z;
@@ -487,7 +515,8 @@ class NodeBaker {
       const bool bezier = source.kind == PatchKind::kBezier;
       content.patches.emplace_back(static_cast<uint8_t>(source.kind),
                                    static_cast<uint8_t>(tree.depth), first,
-                                   static_cast<uint32_t>(tree.nodes.size()), source.source,
+                                   static_cast<uint32_t>(tree.nodes.size()),
+                                   bezier ? source.source : source.source - first_level,
                                    bezier ? static_cast<uint32_t>(content.points.size()) : 0);
       if (bezier) {
         for (const Vec3d& point : scene_.patches.patches[source.source].points) {
@@ -558,24 +587,26 @@ class NodeBaker {
   const NodeConfig& config_;
   Context& context_;
   NodeBins bins_;
-  bool has_patches_ = false, has_tiles_ = false;
-  bool drops_ = false;       // does a class drop?
-  uint16_t on_patches_ = 0;  // classes
+  NodePlan plan_;
+  std::vector<std::unique_ptr<NodeData::Slot>> kept_;  // by zone of the plan
+  std::vector<uint8_t> is_made_, is_seen_;             // likewise
   std::optional<TriangleSquares> triangles_;
   std::vector<BezierCells> cells_;        // by Bezier patch
-  std::vector<PatchSource> sources_;      // patches of the forest
-  std::vector<uint32_t> bezier_, level_;  // where they are in the forest
+  std::vector<PatchSource> sources_;      // patches of the forest: those of zones that are seen
+  std::vector<uint32_t> bezier_, level_;  // where they are in the forest, or kNoNode
+  std::vector<uint32_t> levels_;          // those of the forest
+  std::vector<size_t> slots_;             // of the world, whose levels these are
   NodeForest forest_;
   std::vector<Promise> promises_;        // by node
   std::vector<CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
   std::vector<PatchDoor> doors_;         // by patch of the scene
   std::vector<Leap> leaps_;
-  std::vector<std::vector<NodeLink>> inside_;            // links by patch of the forest
-  std::vector<NodeLink> across_;                         // all others
-  std::vector<std::pair<int32_t, int32_t>> tile_place_;  // by level of the world
+  std::vector<std::vector<NodeLink>> inside_;  // links by patch of the forest
+  std::vector<NodeLink> across_;               // all others
   std::vector<std::vector<double>> widths_;
-  std::vector<ZoneRange> zones_;
-  std::vector<size_t> begins_;  // first patch of each zone
+  std::vector<ZoneRange> zones_;     // that are seen
+  std::vector<size_t> zone_places_;  // where they are in the plan
+  std::vector<size_t> begins_;       // first patch of each, and the end
   std::vector<std::vector<size_t>> from_before_;
 };
 

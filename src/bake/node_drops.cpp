@@ -101,11 +101,6 @@ class DropFinder {
         bottom_(body_bottom(avatar_)),
         motion_(*input.links.triangles) {}
 
-  // How far a drop leads sideways at most. [m]
-  [[nodiscard]] static double reach(const AvatarClass& avatar, double cell) {
-    return 2 * avatar.radius + kDropCells * cell;
-  }
-
   void drop_from_patch(const Spot& from, std::vector<NodeDrop>& out) {
     if (const auto to = lower_place(from, nullptr)) out.push_back({from.end, to->end, body_.bit});
   }
@@ -169,8 +164,8 @@ class DropFinder {
   [[nodiscard]] std::optional<Spot> lower_place(const Spot& from, const GroundLevel* level) {
     lower_.clear();
     const double cell = world_.summary.cell;
-    const double far = reach(avatar_, std::max(cell, input_.links.size));
-    const double on_tiles = level != nullptr ? reach(avatar_, cell) : far;
+    const double far = drop_reach(avatar_, std::max(cell, input_.links.size));
+    const double on_tiles = level != nullptr ? drop_reach(avatar_, cell) : far;
     if (input_.tiles) tiles_near(from, on_tiles);
     patches_.for_each_near(from.feet, [&](const Spot& to) { consider(from, to, far); });
     if (lower_.empty()) return std::nullopt;
@@ -226,7 +221,7 @@ class DropFinder {
   // Corners as seen from the place where the drop begins, heights last.
   void gather(Vec3d from) {
     const double cell = std::max(world_.summary.cell, input_.links.size);
-    const double side = reach(avatar_, cell) + avatar_.radius;
+    const double side = drop_reach(avatar_, cell) + avatar_.radius;
     Box3d box;
     box.add(from - Vec3d{side, avatar_.max_drop, side});
     box.add(from + Vec3d{side, avatar_.height, side});
@@ -318,16 +313,16 @@ std::vector<NodeDrop> find_drops(const DropInput& input, int32_t workers) {
   for (size_t c = 0; c < bodies.size(); ++c) {
     const AvatarClass& avatar = input.links.classes[c];
     if (!(avatar.max_drop > 0) || (input.wanted & bodies[c].bit) == 0) continue;
-    const double far = DropFinder::reach(avatar, std::max(world.summary.cell, input.links.size));
+    const double far = drop_reach(avatar, std::max(world.summary.cell, input.links.size));
     const BezierSpots patches(input, bodies[c], avatar, far);
-    const size_t levels = input.tiles ? world.level_count : 0;
+    const auto levels = input.tiles ? input.levels : std::span<const uint32_t>();
     std::vector<DropFinder> finders(static_cast<size_t>(worker_count(workers)),
                                     DropFinder(input, patches, c, bodies[c]));
-    std::vector<std::vector<NodeDrop>> lists(patches.all().size() + levels);
+    std::vector<std::vector<NodeDrop>> lists(patches.all().size() + levels.size());
     parallel_for_worker(lists.size(), workers, [&](size_t i, int32_t worker) {
       DropFinder& finder = finders[static_cast<size_t>(worker)];
       if (i >= patches.all().size()) {
-        finder.drop_from_level(static_cast<uint32_t>(i - patches.all().size()), lists[i]);
+        finder.drop_from_level(levels[i - patches.all().size()], lists[i]);
         return;
       }
       const Spot& from = patches.all()[i];

@@ -32,11 +32,18 @@ struct NodeDrop {
 /// and a half. [cells]
 inline constexpr double kDropCells = 3;
 
+/// How far a drop of a class leads sideways at most, from cells of a size; 0 if it does not drop.
+/// [m]
+[[nodiscard]] inline double drop_reach(const AvatarClass& avatar, double cell) {
+  return avatar.max_drop > 0 ? 2 * avatar.radius + kDropCells * cell : 0;
+}
+
 struct DropInput {
   PatchLinkInput links;
-  std::span<const CellPair> edges;  ///< Over the edges of Bezier patches, by patch of the scene.
-  bool tiles = false;               ///< Whether level tiles carry anybody.
-  uint16_t wanted = 0xffff;         ///< Classes.
+  std::span<const CellPair> edges;   ///< Over the edges of Bezier patches, by patch of the scene.
+  bool tiles = false;                ///< Whether level tiles carry anybody.
+  std::span<const uint32_t> levels;  ///< Of the world: those from which drops are looked for.
+  uint16_t wanted = 0xffff;          ///< Classes.
 };
 
 /// For each class with a `max_drop` and each cell of its ground from which it cannot go on to one

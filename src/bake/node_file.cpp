@@ -120,6 +120,7 @@ Result<void> Nodes::write(const std::string& world_path, int32_t workers) const 
   fs::remove_all(target, error);
   fs::rename(part, target, error);
   if (error) return Error{Errc::kIo, target.string() + ": cannot be written: " + error.message()};
+  fs::remove_all(fs::path(world_path) / kOldNodeFolder, error);
   return {};
 }
 

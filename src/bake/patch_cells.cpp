@@ -88,7 +88,21 @@ PatchJudge::PatchJudge(const TriangleSquares& triangles, std::span<const AvatarC
   if (steepest_walk_ == 1) steepest_walk_ = -1;  // All climb.
 }
 
-int32_t PatchJudge::depth_of(const BezierPatch& patch) const {
+void find_patches_around(const PatchSet& set, uint32_t patch, std::vector<uint32_t>& out) {
+  out = {patch};
+  for (int ring = 0; ring < 2; ++ring) {
+    for (size_t i = 0, count = out.size(); i < count; ++i) {
+      for (const PatchEdge& edge : set.edges[out[i]]) {
+        for (const PatchSide& next : edge.next) {
+          if (next.patch == kNoPatch) continue;
+          if (std::find(out.begin(), out.end(), next.patch) == out.end()) out.push_back(next.patch);
+        }
+      }
+    }
+  }
+}
+
+int32_t patch_depth(const BezierPatch& patch, double size) {
   double longest = 0;
   for (int32_t e = 0; e < 4; ++e) {
     const auto curve = patch.edge(e);
@@ -96,30 +110,17 @@ int32_t PatchJudge::depth_of(const BezierPatch& patch) const {
                                     length(curve[3] - curve[2]));
   }
   int32_t depth = 0;
-  while (depth < kDeepestPatch && longest > size_ * (1 << depth)) ++depth;
+  while (depth < kDeepestPatch && longest > size * (1 << depth)) ++depth;
   return depth;
 }
 
 BezierCells PatchJudge::judge(uint32_t patch) {
-  // The patch, its neighbours and theirs, among them those that share a corner with it.
-  beside_ = {patch};
-  for (int ring = 0; ring < 2; ++ring) {
-    for (size_t i = 0, count = beside_.size(); i < count; ++i) {
-      for (const PatchEdge& edge : set_->edges[beside_[i]]) {
-        for (const PatchSide& next : edge.next) {
-          if (next.patch == kNoPatch) continue;
-          if (std::find(beside_.begin(), beside_.end(), next.patch) == beside_.end()) {
-            beside_.push_back(next.patch);
-          }
-        }
-      }
-    }
-  }
+  find_patches_around(*set_, patch, beside_);
   is_beside_.resize(set_->size());
   for (const uint32_t p : beside_) is_beside_[p] = 1;
   BezierCells out;
   const BezierPatch& whole = set_->patches[patch];
-  out.promise.depth = depth_of(whole);
+  out.promise.depth = patch_depth(whole, size_);
   const size_t cells = size_t{1} << (2 * out.promise.depth);
   out.promise.cells.resize(cells);
   out.shape.resize(cells);
@@ -372,8 +373,7 @@ void PatchJudge::gather(const Box3d& box, const OwnGround& own) {
     others_.region.close();
     return;
   }
-  const bool known = scene.patch_part.size() == scene.triangles.size() &&
-                     scene.patch_off.size() == scene.patches.size();
+  const bool known = knows_parts(scene);
   other_ids_.clear();
   int32_t span_s = 0, span_t = 0;  // of triangles that are left out
   for (const uint32_t triangle : found_) {

@@ -35,6 +35,18 @@ struct PatchBody {
 /// Where the body is while its feet are anywhere on the surface.
 [[nodiscard]] BodySweep sweep_of(const SurfaceBound& surface, const PatchBody& body);
 
+/// A patch, its neighbours and theirs, among them those that share a corner with it.
+void find_patches_around(const PatchSet& set, uint32_t patch, std::vector<uint32_t>& out);
+
+/// How often a patch is halved until its cells are of a size. [m]
+[[nodiscard]] int32_t patch_depth(const BezierPatch& patch, double size);
+
+/// Does a scene tell which part of its patch each triangle covers?
+[[nodiscard]] inline bool knows_parts(const Scene& scene) {
+  return scene.patch_part.size() == scene.triangles.size() &&
+         scene.patch_off.size() == scene.patches.size();
+}
+
 struct BezierCells {
   PatchCells promise;
   std::vector<CellShape> shape;
@@ -73,8 +85,6 @@ class PatchJudge {
     }
   };
 
-  /// How often a patch is halved.
-  [[nodiscard]] int32_t depth_of(const BezierPatch& patch) const;
   void visit(const BezierPatch& part, int32_t level, int32_t s, int32_t t, BezierCells& out);
   void cut_region(const BezierPatch& part, int32_t halvings);
   void bound_cells(BezierCells& out);

@@ -81,9 +81,11 @@ EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers) {
   std::vector<std::vector<CellPair>> lists(set.size());
   std::vector<std::vector<PatchDoor>> doors(set.size());
   parallel_for(set.size(), workers, [&](size_t p) {
+    if (!input.is_judged(static_cast<uint32_t>(p))) return;
     MotionJudge judge(*input.triangles);
     for (const EdgePair& pair : edge_pairs(set, depth, static_cast<uint32_t>(p))) {
       CellPair cells = pair.cells;
+      if (!input.is_judged(cells.patch_b)) continue;
       const uint16_t both = input.cells[cells.patch_a].promise.cells[cells.cell_a].classes &
                             input.cells[cells.patch_b].promise.cells[cells.cell_b].classes;
       if (both == 0) continue;
@@ -155,7 +157,7 @@ std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
     std::vector<Box3d> boxes;  // of so many cells of a maker
     for (size_t c = 0; c < bodies.size(); ++c) {
       const PatchBody& body = bodies[c];
-      const double widest = 3 * input.size + 2 * body.radius;  // of the gap between cells' middles
+      const double widest = patch_leap(body.radius, input.size);
       const std::vector<uint32_t> from = cells_of(here, body.bit);
       for (const uint32_t maker : here.makers) {
         const std::vector<uint32_t> to = cells_of(input.cells[maker], body.bit);

@@ -18,8 +18,10 @@ struct PatchLinkInput {
   const TriangleSquares* triangles = nullptr;
   const World* world = nullptr;
   std::span<const AvatarClass> classes;
-  std::span<const BezierCells> cells;  ///< By patch of the scene.
+  std::span<const BezierCells> cells;  ///< By patch of the scene; none of those not judged.
   double size = 1;                     ///< Of cells. [m]
+
+  [[nodiscard]] bool is_judged(uint32_t patch) const { return !cells[patch].promise.cells.empty(); }
 };
 
 /// A part of an edge over which the same classes go to the patch beyond and back, in 256ths of the
@@ -35,6 +37,9 @@ struct EdgeLinks {
   std::vector<CellPair> pairs;
   std::vector<PatchDoor> doors;  ///< By patch.
 };
+
+/// How far a class goes at most over a gap between patches, from cell to cell. [m]
+[[nodiscard]] inline double patch_leap(double radius, double size) { return 3 * size + 2 * radius; }
 
 /// Pairs of cells over all edges that patches share, and where exactly they touch. Where the
 /// surface has a crease, a climber must be able to turn over it.

@@ -14,6 +14,7 @@
 #include <fcntl.h>
 #endif
 
+#include "bake/old_nodes.h"
 #include "core/file_map.h"
 #include "core/hash.h"
 #include "world/sealed_file.h"
@@ -247,7 +248,7 @@ Result<void> WorldFolder::write_file_of_zone(const std::string& name,
   return write_file((part_ / name).string(), bytes);
 }
 
-Result<void> WorldFolder::finish(const WorldData& world, const GraphData& graph) {
+Result<void> WorldFolder::finish(const WorldData& world, const GraphData& graph, bool carry_nodes) {
   std::set<std::string> names;
   if (world.air != nullptr) {
     for (const auto& slot : world.air->slots) {
@@ -278,8 +279,12 @@ Result<void> WorldFolder::finish(const WorldData& world, const GraphData& graph)
   if (auto ok = write_file((part_ / kGraphIndexName).string(), sealed(index)); !ok) {
     return ok.error();
   }
-  if (auto ok = write_file((part_ / kManifest).string(), sealed(manifest)); !ok) {
-    return ok.error();
+  const auto whole = sealed(manifest);
+  if (auto ok = write_file((part_ / kManifest).string(), whole); !ok) return ok.error();
+  if (carry_nodes && old_ != nullptr) {
+    const auto before = FileMap::open((fs::path(path_) / kManifest).string());
+    const bool is_same = before && std::ranges::equal(before->bytes(), whole);
+    throng::carry_nodes(path_, part_.string(), is_same);
   }
   if (!exchange(part_, path_, path_ + ".old")) {
     return Error{Errc::kIo, path_ + ": cannot be written: " + std::strerror(errno)};

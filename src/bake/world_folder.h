@@ -69,8 +69,8 @@ class WorldFolder {
   [[nodiscard]] std::string part() const { return part_.string(); }
 
   /// Writes the manifest, and that of the air if there is any, and the index of the graph, and
-  /// puts the world in its place. Fails with kIo.
-  Result<void> finish(const WorldData& world, const GraphData& graph);
+  /// puts the world in its place. `carry_nodes`: see BakeConfig. Fails with kIo.
+  Result<void> finish(const WorldData& world, const GraphData& graph, bool carry_nodes);
 
  private:
   struct Done;

@@ -361,7 +361,7 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     if (!graph) {
       return failed(graph.error(), "all zones and some of their regions and links are finished");
     }
-    if (auto ok = folder->finish(**world, **graph); !ok) return ok.error();
+    if (auto ok = folder->finish(**world, **graph, config.carry_nodes); !ok) return ok.error();
     report.seconds_total = seconds_since(start);
   }
   return report;

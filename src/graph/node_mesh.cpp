@@ -85,7 +85,7 @@ void NodeMesh::list_blocks() {
       const auto p = static_cast<uint32_t>(patches_.size());
       patches_.push_back(surface_of(data, zone, patch));
       first_node_.push_back(first + patch.first_node());
-      if (patches_[p].points == nullptr) of_level_[patch.source()] = p;
+      if (patches_[p].points == nullptr) of_level_[patches_[p].source] = p;
       const auto stands = [&](const format::Node& node) {
         return (node.classes() >> avatar_class_ & 1) != 0;
       };

@@ -47,7 +47,7 @@ NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
   const auto kind = static_cast<PatchKind>(patch.kind());
   return {.kind = kind,
           .depth = patch.depth(),
-          .source = patch.source(),
+          .source = nodes.source_of(zone, patch),
           .points = kind == PatchKind::kBezier ? zone.points(patch) : nullptr,
           .world = nodes.world.data().get()};
 }

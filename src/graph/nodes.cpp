@@ -17,7 +17,7 @@
 namespace throng {
 namespace {
 
-NodeInfo info_of(const format::NodePatch& patch, const format::Node& node) {
+NodeInfo info_of(uint32_t source, const format::NodePatch& patch, const format::Node& node) {
   return {.classes = node.classes(),
           .inclination = static_cast<uint8_t>(node.surface() >> 4),
           .height = static_cast<uint8_t>(node.surface() & 15),
@@ -25,7 +25,7 @@ NodeInfo info_of(const format::NodePatch& patch, const format::Node& node) {
           .width = static_cast<uint8_t>(node.room() & 15),
           .terminal = node.terminal() != 0,
           .kind = static_cast<PatchKind>(patch.kind()),
-          .source = patch.source(),
+          .source = source,
           .depth = patch.depth(),
           .level = node.level(),
           .s = node.s(),
@@ -121,7 +121,8 @@ NodeInfo Nodes::node(uint32_t node) const {
   const auto [zone, local] = data_->find(node);
   if (zone == nullptr) return {};
   const format::Node& found = zone->nodes()[local];
-  NodeInfo info = info_of(zone->patch_of(local), found);
+  NodeInfo info =
+      info_of(data_->source_of(*zone, zone->patch_of(local)), zone->patch_of(local), found);
   if (found.parent() != UINT32_MAX) info.parent1 = node - local + found.parent() + 1;
   return info;
 }

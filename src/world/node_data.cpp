@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/hash.h"
+#include "world/region_data.h"
 
 namespace throng {
 namespace {
@@ -151,26 +152,28 @@ const NodeZone* NodeData::zone(size_t slot) const {
   std::call_once(entry.once, [&] {
     if (entry.zone || path.empty()) return;
     const format::NodeZoneEntry& listed = entry.entry;
-    entry.open({.name = path + "/" + node_file_name(listed.x(), listed.z()),
-                .bytes = listed.bytes(),
-                .hash = listed.hash(),
-                .whose = "the index's",
-                .remedy = kRemedy},
-               [&](const NodeZone& found) {
-                 bool belongs = found.x() == listed.x() && found.z() == listed.z() &&
-                                found.nodes().size() == listed.nodes();
-                 for (const format::FarNode& far : found.far()) {
-                   const size_t other = slot_at(far.x(), far.z());
-                   belongs =
-                       belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
-                 }
-                 for (const format::NodePatch& patch : found.patches()) {
-                   belongs = belongs &&
-                             (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier) ||
-                              (patch.source() < world.level_tile_count() && patch.depth() == 6));
-                 }
-                 return belongs;
-               });
+    entry.open(
+        {.name = path + "/" + node_file_name(listed.x(), listed.z()),
+         .bytes = listed.bytes(),
+         .hash = listed.hash(),
+         .whose = "the index's",
+         .remedy = kRemedy},
+        [&](const NodeZone& found) {
+          bool belongs = found.x() == listed.x() && found.z() == listed.z() &&
+                         found.nodes().size() == listed.nodes();
+          for (const format::FarNode& far : found.far()) {
+            const size_t other = slot_at(far.x(), far.z());
+            belongs = belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
+          }
+          const int32_t ground = throng::slot_at(*world.data(), found.x(), found.z());
+          const uint32_t levels =
+              ground < 0 ? 0 : world.data()->slots[static_cast<size_t>(ground)]->entry.levels();
+          for (const format::NodePatch& patch : found.patches()) {
+            belongs = belongs && (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier) ||
+                                  (patch.source() < levels && patch.depth() == 6));
+          }
+          return belongs;
+        });
   });
   return entry.zone.get();
 }
@@ -188,6 +191,13 @@ size_t NodeData::slot_at(int32_t x, int32_t z) const {
                                       });
   const bool hit = found != slots.end() && (*found)->entry.x() == x && (*found)->entry.z() == z;
   return hit ? static_cast<size_t>(found - slots.begin()) : slots.size();
+}
+
+uint32_t NodeData::source_of(const NodeZone& from, const format::NodePatch& patch) const {
+  if (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier)) return patch.source();
+  const WorldData& ground = *world.data();
+  const auto slot = static_cast<size_t>(throng::slot_at(ground, from.x(), from.z()));
+  return ground.slots[slot]->first_level + patch.source();
 }
 
 std::pair<const NodeZone*, uint32_t> NodeData::find(uint32_t node) const {
@@ -236,9 +246,10 @@ std::vector<uint8_t> write_node_index(const NodeData& nodes) {
   const auto height = builder.CreateVector(bins.height);
   const auto width = builder.CreateVector(bins.width);
   const auto zones = builder.CreateVectorOfStructs(entries);
+  const auto inputs = builder.CreateVectorOfStructs(nodes.inputs);
   builder.Finish(
       format::CreateNodeIndex(builder, kNodeVersion, nodes.world_hash, nodes.size, inclination,
-                              height, width, nodes.summary.bezier_patches, zones),
+                              height, width, nodes.summary.bezier_patches, zones, inputs),
       kIndexIdentifier);
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
@@ -254,9 +265,9 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
     return bad_nodes(name, "node version " + std::to_string(root.version()) +
                                ", this program reads " + std::to_string(kNodeVersion));
   }
-  if (!root.inclination() || !root.height() || !root.width() || !root.zones() ||
-      !is_aligned(*root.inclination()) || !is_aligned(*root.height()) ||
-      !is_aligned(*root.width()) || !is_aligned(*root.zones()) ||
+  if (!root.inclination() || !root.height() || !root.width() || !root.zones() || !root.inputs() ||
+      !is_aligned(*root.inputs()) || !is_aligned(*root.inclination()) ||
+      !is_aligned(*root.height()) || !is_aligned(*root.width()) || !is_aligned(*root.zones()) ||
       !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kFarthest) ||
       !ascending(*root.width(), 0, kFarthest) || !(root.size() > 0 && root.size() <= kFarthest)) {
     return bad_nodes(name, "its numbers make no sense");
@@ -287,6 +298,15 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
     summary.bytes += entry.bytes();
     summary.patches += entry.patches();
     nodes->slots.push_back(std::move(slot));
+  }
+  for (const format::NodeInput& input : structs(*root.inputs())) {
+    if (!nodes->inputs.empty()) {
+      const format::NodeInput& last = nodes->inputs.back();
+      if (std::pair{last.z(), last.x()} >= std::pair{input.z(), input.x()}) {
+        return bad_nodes(name, "its zones are out of order");
+      }
+    }
+    nodes->inputs.push_back(input);
   }
   if (count >= UINT32_MAX) return bad_nodes(name, "more than 2^32 nodes");
   nodes->node_count = static_cast<uint32_t>(count);

@@ -21,9 +21,10 @@
 /// Nodes in memory: zones mapped from files, or owned after they were made.
 namespace throng {
 
-inline constexpr uint32_t kNodeVersion = 2;
+inline constexpr uint32_t kNodeVersion = 3;
 inline constexpr const char* kNodeIndexName = "index.thn";
 inline constexpr const char* kNodeFolder = "nodes";
+inline constexpr const char* kOldNodeFolder = "nodes.old";  // of the world before this one
 inline constexpr uint32_t kFarNode = uint32_t{1} << 31;
 inline constexpr uint8_t kDeepestPatch = 6;
 inline constexpr uint16_t kEdgeUnits = 256;  // of an edge, as doors count along it
@@ -77,6 +78,7 @@ struct NodeData {
   double size = 0;
   std::string path;  // of their folder; empty: in memory
   std::vector<std::unique_ptr<Slot>> slots;
+  std::vector<format::NodeInput> inputs;  // by z, then x
   uint32_t node_count = 0;
   struct ClassAreas {
     std::once_flag once;
@@ -90,6 +92,8 @@ struct NodeData {
   [[nodiscard]] size_t slot_of(uint32_t node) const;
   /// Slot of a zone, or slots.size().
   [[nodiscard]] size_t slot_at(int32_t x, int32_t z) const;
+  /// Patch of the scene, or level tile of the world.
+  [[nodiscard]] uint32_t source_of(const NodeZone& zone, const format::NodePatch& patch) const;
   /// A node's zone and its number there; null if the zone cannot be used.
   [[nodiscard]] std::pair<const NodeZone*, uint32_t> find(uint32_t node) const;
   /// For a class, the nodes that share out its area (those whose parents it cannot stand on), and

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "baked.h"
 #include "core/random.h"
@@ -169,13 +170,16 @@ TEST(NodeDrops, AreThoseOfAPlainSearchOverAllPairs) {
     const auto plain = plain_drops(world, scene);
     for (const int32_t workers : {1, 3}) {
       std::map<std::pair<DropEnd, DropEnd>, uint16_t> found;
+      std::vector<uint32_t> levels(world.level_tile_count());
+      std::iota(levels.begin(), levels.end(), 0u);
       const auto drops = find_drops({.links = {.triangles = &triangles,
                                                .world = &world,
                                                .classes = world.summary().classes,
                                                .cells = {},
                                                .size = 1},
                                      .edges = {},
-                                     .tiles = true},
+                                     .tiles = true,
+                                     .levels = levels},
                                     workers);
       for (const NodeDrop& drop : drops) found[{drop.from, drop.to}] |= drop.classes;
       EXPECT_EQ(found.size(), drops.size()) << name;

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/body_sweep.h"
+#include "throng/nodes.h"
+#include "throng/scene.h"
+#include "world/zone_data.h"
+
+/// Which patches nodes are made of, zone by zone, and what each zone's nodes depend on.
+namespace throng {
+
+/// A patch of the forest: where it comes from and which zone keeps it.
+struct PatchSource {
+  int32_t zone_z = 0, zone_x = 0;
+  PatchKind kind = PatchKind::kBezier;
+  uint32_t source = 0;  ///< Patch of the scene, or level of the world.
+
+  friend auto operator<=>(const PatchSource&, const PatchSource&) = default;
+};
+
+/// A zone that patches belong to.
+struct NodePlanZone {
+  int32_t x = 0, z = 0;
+  uint32_t first = 0, last = 0;  ///< of the plan's sources
+  Box3d box = {};                ///< That holds its patches, heights left out.
+  std::vector<uint32_t> near =
+      {};  ///< Zones that its nodes depend on, itself among them; ascending.
+  std::vector<uint32_t> jumps = {};  ///< That begin or end in or near it, ascending.
+  uint64_t input = 0;                ///< XXH3 of all that its nodes depend on.
+};
+
+struct NodePlan {
+  bool has_patches = false;  ///< Do Bezier patches carry anybody,
+  bool has_tiles = false;    ///< do level tiles?
+  bool drops = false;        ///< Does a class drop?
+  uint16_t on_patches = 0;   ///< Classes that patches carry.
+  std::vector<PatchSource> sources;
+  std::vector<NodePlanZone> zones;  ///< By z, then x.
+
+  /// Do nodes ask for triangles at all?
+  [[nodiscard]] bool needs_triangles() const { return has_patches || drops; }
+};
+
+/// Lists patches and zones, by zones, then kinds, then sources.
+[[nodiscard]] NodePlan plan_nodes(const WorldData& world, const Scene& scene,
+                                  const NodeConfig& config);
+
+/// Finds which zones depend on which, and `input` of each: equal inputs give equal bytes. Needs the
+/// triangles if the plan does. Where a zone has to be made, its `near` are what is looked at.
+void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConfig& config,
+                      const TriangleSquares* triangles, NodePlan& plan);
+
+}  // namespace throng

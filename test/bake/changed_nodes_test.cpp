@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "baked.h"
+#include "core/random.h"
+#include "patch_nets.h"
+#include "scratch_folder.h"
+#include "throng/bake.h"
+#include "throng/nodes.h"
+
+// Nodes of a world that changes: zones on which nothing bears are kept, and nobody can tell from
+// the bytes.
+namespace throng {
+namespace {
+
+namespace fs = std::filesystem;
+using Folder = std::map<std::string, std::string>;  // files and their bytes
+
+Folder read(const std::string& path) {
+  Folder folder;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    folder[entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
+  }
+  return folder;
+}
+
+// Walkers, one of whom drops, and climbers.
+std::vector<AvatarClass> walkers() {
+  std::vector<AvatarClass> classes = {{.name = "adult"}, {.name = "diver"}};
+  classes[1].max_drop = 3;
+  return classes;
+}
+
+std::vector<AvatarClass> climbers() {
+  std::vector<AvatarClass> classes = walkers();
+  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  classes.back().climb_slope = 180;
+  classes.push_back({.name = "spider", .height = 1, .radius = 0.5, .step = 0.3});
+  classes.back().climb_slope = 100;
+  classes.back().max_drop = 2;
+  return classes;
+}
+
+void add_crate(Scene& scene, Vec3d low, Vec3d size) {
+  const bool parts = scene.patch_part.size() == scene.triangles.size();
+  scene.add_box(low, low + size);
+  if (scene.patches.empty()) return;
+  scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
+  if (parts) scene.patch_part.resize(scene.triangles.size());
+}
+
+// Numbers drawn from a seed.
+class Draw {
+ public:
+  explicit Draw(uint64_t seed) : seed_(seed) {}
+  double operator()(double low, double high) {
+    return low + (high - low) * random_unit(seed_, 0, count_++);
+  }
+
+ private:
+  uint64_t seed_, count_ = 0;
+};
+
+class ChangedNodes : public testing::Test {
+ protected:
+  // Bakes into a world that is there or not.
+  NodeSummary bake(const std::string& name, const Scene& scene, BakeConfig bake_config,
+                   NodeConfig config, bool fresh) {
+    Context context;
+    bake_config.old_zones = fresh ? OldZones::kBakeAgain : OldZones::kKeep;
+    bake_config.carry_nodes = !fresh;
+    config.fresh = fresh;
+    const auto report = bake_world_to(at(name), scene, bake_config, context);
+    EXPECT_TRUE(report) << report.error().message;
+    const auto world = World::open(at(name));
+    const auto nodes = Nodes::make(*world, scene, config, context);
+    EXPECT_TRUE(nodes) << nodes.error().message;
+    if (!nodes) return {};
+    EXPECT_TRUE(nodes->write(at(name)));
+    EXPECT_FALSE(fs::exists(at(name) + "/nodes.old"));
+    const auto opened = Nodes::open(at(name));
+    EXPECT_TRUE(opened && opened->check_all());
+    return nodes->summary();
+  }
+  // Bakes a scene into the world that is there and into a fresh one: the same bytes?
+  NodeSummary compare(const Scene& scene, const BakeConfig& bake_config, const NodeConfig& config,
+                      const std::string& what) {
+    const NodeSummary kept = bake("w", scene, bake_config, config, false);
+    const NodeSummary fresh = bake("fresh", scene, bake_config, config, true);
+    EXPECT_EQ(fresh.zones_kept, 0u);
+    EXPECT_EQ(kept.zones_made + kept.zones_kept, fresh.zones_made);
+    EXPECT_EQ(kept.nodes, fresh.nodes);
+    EXPECT_EQ(kept.arcs, fresh.arcs);
+    EXPECT_EQ(kept.bytes, fresh.bytes);
+    EXPECT_TRUE(read(at("w") + "/nodes") == read(at("fresh") + "/nodes")) << what;
+    return kept;
+  }
+  [[nodiscard]] std::string at(const std::string& name) const {
+    return folder_.path() + "/" + name;
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
+  const BakeConfig config{.cell = 0.5, .zone = 32, .classes = climbers()};
+  Scene bare = test::builtin({.name = "landscape", .size = 192});
+  const Vec3d corner = bare.patches.patches[0].bounds().min;
+  add_crate(bare, corner + Vec3d{40, 10, 40}, {2, 2, 2});  // There are level tiles, from now on.
+  Draw draw(1);
+  uint64_t kept = 0, made = 0;
+  compare(bare, config, {.size = 2}, "bare");
+  Scene scene = bare;
+  for (int i = 0; i < 6; ++i) {
+    if (i % 4 == 3) scene = bare;  // All that was built goes again.
+    add_crate(scene, {corner.x + draw(5, 180), draw(-5, 12), corner.z + draw(5, 180)},
+              {draw(0.3, 6), draw(0.3, 6), draw(0.3, 6)});
+    const NodeSummary summary = compare(scene, config, {.size = 2}, std::to_string(i));
+    kept += summary.zones_kept;
+    made += summary.zones_made;
+  }
+  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(made, 10u);
+}
+
+// In zones that are smaller than how far things bear on each other.
+TEST_F(ChangedNodes, PatchesThatMoveAreSeenByThoseAroundThem) {
+  const BakeConfig config{
+      .cell = 0.1, .zone = 6.4, .classes = {climbers()[0], climbers()[2], climbers()[3]}};
+  PatchSet net =
+      test::make_net({.side = 20, .cell = 3, .relief = 0.3, .sideways = 0.2, .split_some = false});
+  Draw draw(2);
+  uint64_t kept = 0, made = 0;
+  compare(test::patch_scene(net), config, {.size = 0.5}, "as it was");
+  for (int i = 0; i < 6; ++i) {
+    // An inner control point: no border moves with it.
+    BezierPatch& patch = net.patches[static_cast<size_t>(draw(0, static_cast<double>(net.size())))];
+    patch.points[5 + static_cast<size_t>(draw(0, 2)) + 4 * static_cast<size_t>(draw(0, 2))].y +=
+        draw(-0.4, 0.4);
+    const NodeSummary summary =
+        compare(test::patch_scene(net), config, {.size = 0.5}, std::to_string(i));
+    kept += summary.zones_kept;
+    made += summary.zones_made;
+  }
+  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(made, 10u);
+}
+
+// Ground in pieces, walls, and platforms to drop from.
+Scene field() {
+  Scene scene;
+  for (int z = 0; z < 16; ++z) {
+    for (int x = 0; x < 20; ++x) {
+      const double x0 = 3.2 * x, z0 = 3.2 * z, y = (x * 5 + z * 3) % 7 == 0 ? 1.5 : 0;
+      scene.add_quad({x0, y, z0}, {x0, y, z0 + 3.2}, {x0 + 3.2, y, z0 + 3.2}, {x0 + 3.2, y, z0});
+      if ((x * 7 + z * 3) % 11 == 0) scene.add_box({x0 + 1, 0, z0 + 1}, {x0 + 1.4, 2, z0 + 2.5});
+    }
+  }
+  return scene;
+}
+
+TEST_F(ChangedNodes, LevelTilesDropsAndJumpsAreMadeWhereSomethingBearsOnThem) {
+  const BakeConfig config{.cell = 0.2, .zone = 12.8, .classes = walkers()};
+  const Scene bare = field();
+  Draw draw(3);
+  NodeConfig nodes;
+  uint64_t kept = 0, made = 0;
+  compare(bare, config, nodes, "bare");
+  Scene scene = bare;
+  for (int i = 0; i < 16; ++i) {
+    if (i % 5 == 4) scene = bare;
+    if (i % 3 == 2) {
+      // Between places of the ground that no crate covers, at the rims of far zones.
+      nodes.jumps.push_back({.from = {3.2 * 4 + 1.6, 0.5, 3.2 * 2 + 1.6},
+                             .to = {3.2 * (6 + i % 5) + 2, 0.8, 3.2 * 10 + 1.6},
+                             .avatar_class = i % 2,
+                             .both_ways = i % 4 == 0});
+    } else {
+      add_crate(scene, {draw(16, 60), draw(0, 2.5), draw(10, 28)},
+                {draw(0.2, 3), draw(0.2, 2), draw(0.2, 3)});
+    }
+    const NodeSummary summary = compare(scene, config, nodes, std::to_string(i));
+    kept += summary.zones_kept;
+    made += summary.zones_made;
+    if (i % 7 == 6) nodes.jumps.erase(nodes.jumps.begin());
+  }
+  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(made, 20u);
+}
+
+TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
+  const BakeConfig config{.cell = 0.2, .zone = 12.8, .classes = walkers()};
+  const Scene scene = field();
+  const NodeSummary first = compare(scene, config, {}, "first");
+  EXPECT_EQ(first.zones_kept, 0u);
+  EXPECT_EQ(first.zones_made, 20u);
+  const Folder before = read(at("w") + "/nodes");
+  // The same world: its nodes are there at once.
+  Context context;
+  BakeConfig carry = config;
+  carry.carry_nodes = true;
+  ASSERT_TRUE(bake_world_to(at("w"), scene, carry, context));
+  ASSERT_TRUE(Nodes::open(at("w")));
+  const NodeSummary second = bake("w", scene, config, {}, false);
+  EXPECT_EQ(second.zones_kept, 20u);
+  EXPECT_EQ(second.zones_made, 0u);
+  EXPECT_TRUE(read(at("w") + "/nodes") == before);
+  // Other classes, sizes of cells, sizes of nodes: nothing can be kept.
+  EXPECT_EQ(bake("w", scene, config, {.classes = 1}, false).zones_kept, 0u);
+  EXPECT_EQ(bake("w", scene, config, {}, false).zones_kept, 0u);
+  // Damaged files are no loss but of time.
+  const std::string damaged = at("w") + "/nodes/zone_1_1.thn";
+  fs::remove(damaged);
+  std::ofstream(damaged, std::ios::binary) << "nothing";
+  EXPECT_EQ(bake("w", scene, config, {}, false).zones_made, 1u);
+  EXPECT_TRUE(read(at("w") + "/nodes") == before);
+  std::ofstream(at("w") + "/nodes/index.thn", std::ios::binary) << "nothing";
+  EXPECT_EQ(bake("w", scene, config, {}, false).zones_made, 20u);
+  EXPECT_TRUE(read(at("w") + "/nodes") == before);
+  // Who does not ask for nodes gets a world without them.
+  ASSERT_TRUE(bake_world_to(at("w"), scene, config, context));
+  EXPECT_FALSE(Nodes::open(at("w")));
+  EXPECT_FALSE(fs::exists(at("w") + "/nodes.old"));
+}
+
+}  // namespace
+}  // namespace throng

@@ -110,16 +110,22 @@ std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
 }
 
 Json path_json(const PathOptions& options, const Path& path, const Place& to, double seconds) {
-  Json points = Json::array();
+  Json points = Json::array(), links = Json::array();
   for (const Place& p : path.points) points.push_back(numbers(p.position));
-  Json json = {{"world", options.world},    {"class", options.avatar_class},
-               {"end", word_for(path.end)}, {"length", path.length},
-               {"points", points},          {"nodes", path.nodes},
-               {"seconds", seconds}};
-  if (options.is_live()) {
-    json["cost"] = path.cost;
-    json["jumps"] = path.jumps;
+  for (const uint32_t point : path.jumps) {
+    links.push_back({{"point", point}, {"kind", app::word_for(LinkKind::kJump)}});
   }
+  // Where nothing costs more than its length, that is the cost.
+  Json json = {{"world", options.world},
+               {"class", options.avatar_class},
+               {"end", word_for(path.end)},
+               {"length", path.length},
+               {"cost", options.is_live() ? path.cost : path.length},
+               {"points", points},
+               {"links", links},
+               {"nodes", path.nodes},
+               {"seconds", seconds}};
+  if (options.is_live()) json["jumps"] = path.jumps;
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d& nearest = path.points.back().position;
     json["nearest"] = {{"place", numbers(nearest)},
@@ -175,29 +181,44 @@ const char* word_for(LegKind kind) {
   return "";
 }
 
-Json flight_json(const PathOptions& options, const FlightPath& path, const FlightSummary& summary,
-                 double seconds) {
+Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d& to,
+                 const FlightSummary& summary, double seconds) {
   Json points = Json::array(), legs = Json::array();
   for (const Vec3d& p : path.points) points.push_back(numbers(p));
   for (const LegKind kind : path.legs) legs.push_back(word_for(kind));
-  return {
+  Json json = {
       {"world", options.world},
       {"class", options.avatar_class},
       {"end", word_for(path.end)},
       {"length", path.length},
+      {"cost", path.length},
       {"points", points},
       {"legs", legs},
       {"nodes", path.nodes},
       {"seconds", seconds},
       {"air", {{"boxes", summary.boxes}, {"bytes", summary.bytes}, {"seconds", summary.seconds}}}};
+  if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
+    const Vec3d& nearest = path.points.back();
+    json["nearest"] = {{"place", numbers(nearest)},
+                       {"distance", length(to - nearest)},
+                       {"obstacle", app::word_for(path.obstacle)}};
+  }
+  return json;
 }
 
-std::string flight_text(const PathOptions& options, const FlightPath& path, double seconds) {
-  if (path.end != PathEnd::kReached) {
-    return fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+std::string flight_text(const PathOptions& options, const FlightPath& path, const Vec3d& to,
+                        double seconds) {
+  std::string text;
+  if (path.end == PathEnd::kReached) {
+    text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
+                       options.avatar_class, path.legs.size(), seconds * 1e3);
+  } else {
+    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+    if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
+    const Vec3d& nearest = path.points.back();
+    text += fmt::format("  gets to ({}), {:.3f} m from there; what is in the way: {}\n",
+                        where(nearest), length(to - nearest), app::word_for(path.obstacle));
   }
-  std::string text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
-                                 options.avatar_class, path.legs.size(), seconds * 1e3);
   for (size_t i = 0; i < path.points.size(); ++i) {
     text += fmt::format("  {}{}\n", where(path.points[i]),
                         i == 0 ? "" : fmt::format("  {}", word_for(path.legs[i - 1])));
@@ -228,8 +249,8 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
       {.from = *from, .to = *to, .reach = options.reach, .cancel = &session.context.cancel}, found);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  print_result(session, flight_json(options, found, finder->summary(), seconds),
-               flight_text(options, found, seconds));
+  print_result(session, flight_json(options, found, *to, finder->summary(), seconds),
+               flight_text(options, found, *to, seconds));
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
 }
 

@@ -48,14 +48,22 @@ struct FlightQuery {
   uint64_t max_nodes = UINT64_MAX;  ///< Boxes that may be looked at; nodes, of each way on foot.
   /// Set from any thread to give up. A search on foot is gone through with before it is looked at.
   const std::atomic<bool>* cancel = nullptr;
+  /// Where no one flight leads there, look for ways that land, walk and take off again.
+  bool by_turns = true;
+  /// Where nothing leads there, find the way to what comes nearest. Linear in the boxes.
+  bool nearest = true;
 };
 
 struct FlightPath {
   PathEnd end = PathEnd::kNoPlace;
-  std::vector<Vec3d> points;  ///< Feet, from the start to the goal. [m]
+  /// Feet, from the start to the goal. If that is unreachable: to the point of the air that comes
+  /// nearest to it, or of the ground where nobody can take off. [m]
+  std::vector<Vec3d> points;
   std::vector<LegKind> legs;  ///< One less than the points.
   double length = 0;          ///< Of all legs. [m]
-  uint64_t nodes = 0;         ///< Boxes that the search looked at.
+  /// What is in the way to an unreachable goal: kNarrow, or, where it cannot take off, kLow.
+  Obstacle obstacle = Obstacle::kNone;
+  uint64_t nodes = 0;  ///< Boxes that the search looked at.
 };
 
 struct FlightSummary {
@@ -79,8 +87,10 @@ class THRONG_API FlightFinder {
   ~FlightFinder();
 
   /// A short way: over the ground where that is shorter, else from the ground straight up into the
-  /// air, through it, and down again; a place under which nothing can take off is walked from. The
-  /// whole body passes. Ways through the air are taut, not always the shortest (docs/results.md).
+  /// air, through it, and down again; a place under which nothing can take off is walked from. Air
+  /// that hangs together with the goal's only over the ground is left for the ground in between,
+  /// as few times as can be, where the first place of each ground is taken for it. The whole body
+  /// passes. Ways through the air are taut, not always the shortest (docs/results.md).
   /// `path` is reused: its memory stays.
   void find(const FlightQuery& query, FlightPath& path);
 
@@ -105,7 +115,14 @@ class THRONG_API FlightFinder {
  private:
   struct Shared;
   struct Scratch;
+  struct End;
   explicit FlightFinder(std::shared_ptr<const Shared> shared);
+
+  bool locate(Vec3d at, double reach, End& end) const;
+  void find_flight(const FlightQuery& query, FlightPath& path);
+  void find_by_turns(const FlightQuery& query, FlightPath& path);
+  void find_nearest(const FlightQuery& query, FlightPath& path);
+  PathEnd walk(const FlightQuery& query, const Place& from, const Place& to, Path& path);
 
   std::shared_ptr<const Shared> shared_;
   std::unique_ptr<Scratch> scratch_;

@@ -170,7 +170,9 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   parts.flight_finders[w].find({.from = parts.air->metres(here(body)),
                                 .to = parts.air->metres(flight.goal),
                                 .reach = kReach,
-                                .max_nodes = kMostBoxes},
+                                .max_nodes = kMostBoxes,
+                                .by_turns = false,
+                                .nearest = false},
                                path);
   flight.to_port = 0;
   if (lands) routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
@@ -249,7 +251,9 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   parts.flight_finders[w].find({.from = air.metres(from),
                                 .to = air.metres(flight.goal),
                                 .reach = kReach,
-                                .max_nodes = kMostBoxes},
+                                .max_nodes = kMostBoxes,
+                                .by_turns = false,
+                                .nearest = false},
                                path);
   std::vector<AirSpot> points;
   if (path.end == PathEnd::kReached) {

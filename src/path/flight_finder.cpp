@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 
 #include "core/check_class.h"
@@ -30,7 +31,35 @@ double distance(Vec3d a, Vec3d b) {
   return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
 
+void clear(FlightPath& path) {
+  path.end = PathEnd::kNoPlace;
+  path.points.clear();
+  path.legs.clear();
+  path.length = 0;
+  path.obstacle = Obstacle::kNone;
+}
+
+void add(Vec3d point, LegKind kind, FlightPath& path) {
+  if (!path.points.empty()) {
+    path.length += distance(path.points.back(), point);
+    path.legs.push_back(kind);
+  }
+  path.points.push_back(point);
+}
+
+void add_walk(const Path& ground, size_t first, FlightPath& path) {
+  for (size_t i = first; i < ground.points.size(); ++i) {
+    add(ground.points[i].position, LegKind::kWalk, path);
+  }
+}
+
 }  // namespace
+
+// A point of the air, or a place with the nearest place to take off or to land.
+struct FlightFinder::End {
+  std::optional<AirPoint> air;
+  Place ground, port;
+};
 
 struct FlightFinder::Shared {
   World world;
@@ -50,6 +79,33 @@ struct FlightFinder::Shared {
     const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
     return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
   }
+  [[nodiscard]] FlightPorts::Part part_of(const End& end) const {
+    if (end.air) return {space.component[space.box_at(*end.air)], true};
+    return {ground_of(end.ground), false};
+  }
+  // The middle of a cell.
+  [[nodiscard]] Place place_of(const FlightPorts::Cell& cell) const {
+    return place_at(*world.data(), ground_level(*world.data(), cell.level, avatar_class),
+                    {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
+                     (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2});
+  }
+  [[nodiscard]] Place nearest_ground(uint32_t component, Vec3d at) const {
+    Place nearest;
+    double least = std::numeric_limits<double>::infinity();
+    if (!walker) return nearest;
+    const GroundPoint to = to_ground(*world.data(), at.x, at.z);
+    for (const MeshRect& rect : walker->mesh().rects) {
+      if (rect.component != component) continue;
+      const Place place =
+          place_of({rect.level, std::clamp(to.cell_x(), rect.x, rect.x + rect.width - 1),
+                    std::clamp(to.cell_z(), rect.z, rect.z + rect.depth - 1)});
+      const double far = distance(place.position, at);
+      if (far >= least) continue;
+      least = far;
+      nearest = place;
+    }
+    return nearest;
+  }
 };
 
 struct FlightFinder::Scratch {
@@ -62,6 +118,8 @@ struct FlightFinder::Scratch {
   std::vector<AirPoint> way;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
+  FlightPorts::Scratch parts;
+  std::vector<FlightPorts::Part> route;
 };
 
 FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
@@ -157,25 +215,32 @@ Place FlightFinder::landing(Vec3d feet) const {
 }
 
 void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
+  find_flight(query, path);
+  if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
+  if (query.nearest && path.end == PathEnd::kUnreachable) find_nearest(query, path);
+}
+
+bool FlightFinder::locate(Vec3d at, double reach, End& end) const {
+  end.air = shared_->ends().in_air(at);
+  if (end.air) return true;
+  end.ground = shared_->world.find_place(shared_->avatar_class, at, reach);
+  return static_cast<bool>(end.ground);
+}
+
+PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
+                           Path& path) {
+  reset(path);
+  if (query.cancel != nullptr && *query.cancel) return PathEnd::kGaveUp;
+  scratch_->walker->find(from, to, path, query.max_nodes);
+  return path.end;
+}
+
+// One flight, or a walk.
+void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   const FlightEnds ends = shared_->ends();
   Scratch& scratch = *scratch_;
-  path.end = PathEnd::kNoPlace;
-  path.points.clear();
-  path.legs.clear();
-  path.length = 0;
+  clear(path);
   path.nodes = 0;
-
-  // An end is a point of the air, or a place with the nearest place to take off or to land.
-  struct End {
-    std::optional<AirPoint> air;
-    Place ground, port;
-  };
-  const auto locate = [&](Vec3d at, End& end) {
-    end.air = ends.in_air(at);
-    if (end.air) return true;
-    end.ground = shared_->world.find_place(shared_->avatar_class, at, query.reach);
-    return static_cast<bool>(end.ground);
-  };
   bool gave_up = false;  // somewhere: then what was not found may be there all the same
   const FlightSpace& space = shared_->space;
   const auto component_of = [&](AirPoint p) { return space.component[space.box_at(p)]; };
@@ -238,17 +303,12 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     return common != kNoBox && to_port(a, common) && to_port(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
-    reset(ground);
-    if (query.cancel != nullptr && *query.cancel) {
-      gave_up = true;
-      return false;
-    }
-    scratch.walker->find(a, b, ground, query.max_nodes);
-    gave_up = gave_up || ground.end == PathEnd::kGaveUp;
-    return ground.end == PathEnd::kReached;
+    const PathEnd end = walk(query, a, b, ground);
+    gave_up = gave_up || end == PathEnd::kGaveUp;
+    return end == PathEnd::kReached;
   };
   End from, to;
-  if (!locate(query.from, from) || !locate(query.to, to)) return;
+  if (!locate(query.from, query.reach, from) || !locate(query.to, query.reach, to)) return;
 
   double on_foot = INFINITY;
   if (from.ground && to.ground && scratch.walker &&
@@ -259,19 +319,6 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
       on_foot += distance(places[i - 1].position, places[i].position);
     }
   }
-  const auto add = [&](Vec3d point, LegKind kind) {
-    if (!path.points.empty()) {
-      path.length += distance(path.points.back(), point);
-      path.legs.push_back(kind);
-    }
-    path.points.push_back(point);
-  };
-  const auto walk = [&](const Path& ground, size_t first) {
-    for (size_t i = first; i < ground.points.size(); ++i) {
-      add(ground.points[i].position, LegKind::kWalk);
-    }
-  };
-
   const bool ports = to_ports(from, to);
   SearchResult result = SearchResult::kNone;
   if (ports && shared_->space.hold_together(*from.air, *to.air)) {
@@ -287,20 +334,20 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
       if (from.port.position.x != from.ground.position.x ||
           from.port.position.z != from.ground.position.z) {
         walked = find_on_foot(from.ground, from.port, scratch.walk_there);
-        walk(scratch.walk_there, 0);
+        add_walk(scratch.walk_there, 0, path);
       } else {
-        add(from.port.position, LegKind::kWalk);
+        add(from.port.position, LegKind::kWalk, path);
       }
     }
     for (size_t i = 0; i < scratch.way.size(); ++i) {
-      add(ends.to_metres(scratch.way[i]), i == 0 ? LegKind::kTakeOff : LegKind::kFly);
+      add(ends.to_metres(scratch.way[i]), i == 0 ? LegKind::kTakeOff : LegKind::kFly, path);
     }
     if (to.ground) {
-      add(to.port.position, LegKind::kLand);
+      add(to.port.position, LegKind::kLand, path);
       if (to.port.position.x != to.ground.position.x ||
           to.port.position.z != to.ground.position.z) {
         walked = find_on_foot(to.port, to.ground, scratch.walk_on) && walked;
-        walk(scratch.walk_on, 1);
+        add_walk(scratch.walk_on, 1, path);
       }
     }
     if (walked && path.length <= on_foot) {
@@ -308,13 +355,132 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
       return;
     }
   }
-  path.points.clear();
-  path.legs.clear();
-  path.length = 0;
+  clear(path);
   path.end = gave_up ? PathEnd::kGaveUp : PathEnd::kUnreachable;
   if (on_foot == INFINITY) return;
-  walk(scratch.walk_all, 0);
+  add_walk(scratch.walk_all, 0, path);
   path.end = PathEnd::kReached;
+}
+
+// From part to part of the ground and the air. Where it takes off and lands between two of them is
+// the nearest place to where it stands, or to the goal, else the one that is known of the two.
+void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
+  const FlightEnds ends = shared_->ends();
+  const FlightSpace& space = shared_->space;
+  Scratch& scratch = *scratch_;
+  End from, to;
+  if (!locate(query.from, query.reach, from) || !locate(query.to, query.reach, to)) return;
+  const FlightPorts::Part goal = shared_->part_of(to);
+  shared_->ports.search(shared_->part_of(from), goal, scratch.parts);
+  const auto& steps = scratch.parts.steps;
+  if (steps.size() < 2 || steps.back().part != goal) return;
+  scratch.route.clear();
+  for (uint32_t i = static_cast<uint32_t>(steps.size()) - 1;; i = steps[i].before) {
+    scratch.route.push_back(steps[i].part);
+    if (i == 0) break;
+  }
+  std::reverse(scratch.route.begin(), scratch.route.end());
+
+  PathEnd end = PathEnd::kReached;
+  Place feet = from.ground;  // where it is by now, or
+  AirPoint air = from.air.value_or(AirPoint{});
+  const auto go = [&](const Place& there) {
+    if (end != PathEnd::kReached) return;
+    end = walk(query, feet, there, scratch.walk_all);
+    add_walk(scratch.walk_all, 1, path);
+    feet = there;
+  };
+  const auto fly = [&](AirPoint there) {
+    if (end != PathEnd::kReached) return;
+    const SearchResult result =
+        scratch.search.find(space, air, there, query.max_nodes, query.cancel, scratch.way);
+    path.nodes += scratch.search.expanded();
+    end = result == SearchResult::kFound    ? PathEnd::kReached
+          : result == SearchResult::kBudget ? PathEnd::kGaveUp
+                                            : PathEnd::kUnreachable;
+    scratch.pull.pull(space, scratch.way);
+    for (size_t i = 1; i < scratch.way.size(); ++i) {
+      add(ends.to_metres(scratch.way[i]), LegKind::kFly, path);
+    }
+    air = there;
+  };
+  const auto port_near = [&](const Place& at, FlightPorts::Part ground, FlightPorts::Part over) {
+    const Place near =
+        at ? ends.nearest_take_off(at, kMostFloodCells, over.component, scratch.flood).place
+           : Place{};
+    return near ? near : shared_->place_of(shared_->ports.cell(ground.component, over.component));
+  };
+  clear(path);
+  add(from.air ? ends.to_metres(air) : feet.position, LegKind::kWalk, path);
+  for (size_t k = 1; k < scratch.route.size() && end == PathEnd::kReached; ++k) {
+    const FlightPorts::Part here = scratch.route[k - 1], next = scratch.route[k];
+    if (next.is_air) {
+      const Place port = port_near(feet, here, next);
+      go(port);
+      air = ends.take_off(port).value_or(AirPoint{});
+      add(ends.to_metres(air), LegKind::kTakeOff, path);
+    } else {
+      const bool last = k + 1 == scratch.route.size();
+      feet = port_near(last ? to.ground : Place{}, next, here);
+      fly(ends.take_off(feet).value_or(AirPoint{}));
+      add(feet.position, LegKind::kLand, path);
+    }
+  }
+  if (to.air) {
+    fly(*to.air);
+  } else {
+    go(to.ground);
+  }
+  if (end != PathEnd::kReached) clear(path);
+  path.end = end;
+}
+
+// To the point of all air that can be reached that is nearest to the goal; of the ground, if nobody
+// can take off from it: there of each rectangle the cell that is nearest in the plane.
+void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
+  const FlightEnds ends = shared_->ends();
+  const FlightSpace& space = shared_->space;
+  Scratch& scratch = *scratch_;
+  End from;
+  if (!locate(query.from, query.reach, from)) return;
+  const FlightPorts::Part start = shared_->part_of(from);
+  shared_->ports.search(start, {kNoBox, true}, scratch.parts);
+  std::vector<uint32_t>& airs = scratch.common;
+  airs.clear();
+  for (const auto& step : scratch.parts.steps) {
+    if (step.part.is_air) airs.push_back(step.part.component);
+  }
+  std::sort(airs.begin(), airs.end());
+  if (airs.empty()) {
+    const Place nearest = shared_->nearest_ground(start.component, query.to);
+    if (!nearest || walk(query, from.ground, nearest, scratch.walk_all) != PathEnd::kReached) {
+      return;
+    }
+    add_walk(scratch.walk_all, 0, path);
+    path.obstacle = Obstacle::kLow;
+    return;
+  }
+  const AirPoint goal = ends.to_air(query.to);
+  AirPoint nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t b = 0; b < space.boxes.size(); ++b) {
+    const AirCube& box = space.boxes[b];
+    const auto into = [&](double at, int32_t low) {
+      return std::clamp(at, low + kAirSkin, low + box.side - kAirSkin);
+    };
+    const AirPoint p{into(goal.x, box.x), into(goal.y, box.y), into(goal.z, box.z)};
+    const double far = air_distance(p, goal);
+    if (far >= least || !std::binary_search(airs.begin(), airs.end(), space.component[b])) continue;
+    least = far;
+    nearest = p;
+  }
+  FlightQuery nearer = query;
+  nearer.to = ends.to_metres(off_faces(nearest));
+  find_flight(nearer, path);
+  if (path.end == PathEnd::kUnreachable) find_by_turns(nearer, path);
+  if (path.end != PathEnd::kReached) clear(path);
+  path.end = PathEnd::kUnreachable;
+  path.obstacle = path.points.empty() ? Obstacle::kNone : Obstacle::kNarrow;
 }
 
 Result<AirSummary> air_summary(const World& world) {

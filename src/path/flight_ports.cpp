@@ -3,7 +3,8 @@
 #include "path/flight_ports.h"
 
 #include <algorithm>
-#include <utility>
+#include <numeric>
+#include <tuple>
 
 #include "core/parallel.h"
 #include "world/place.h"
@@ -11,11 +12,22 @@
 namespace throng {
 namespace {
 
-using Pair = std::pair<uint32_t, uint32_t>;  // ground, air
+// Ground, air, and where the one leads into the other.
+struct Pair {
+  uint32_t ground = 0, air = 0;
+  FlightPorts::Cell cell;
 
+  [[nodiscard]] auto key() const { return std::tuple(ground, air); }
+  [[nodiscard]] auto order() const { return std::tuple(ground, air, cell.level, cell.z, cell.x); }
+};
+
+// One of each, with the first of its cells.
 void sort_once(std::vector<Pair>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& a, const Pair& b) { return a.order() < b.order(); });
+  pairs.erase(std::unique(pairs.begin(), pairs.end(),
+                          [](const Pair& a, const Pair& b) { return a.key() == b.key(); }),
+              pairs.end());
 }
 
 }  // namespace
@@ -38,8 +50,8 @@ FlightPorts::FlightPorts(const WorldData& world, const PathMesh& mesh, const Fli
                                         (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
           const auto up = ends.take_off(place);
           if (!up) continue;
-          const Pair pair{rect.component, space.component[space.box_at(*up)]};
-          if (pairs.empty() || pairs.back() != pair) pairs.push_back(pair);
+          const Pair pair{rect.component, space.component[space.box_at(*up)], {level, x, z}};
+          if (pairs.empty() || pairs.back().key() != pair.key()) pairs.push_back(pair);
         }
       }
     }
@@ -48,14 +60,29 @@ FlightPorts::FlightPorts(const WorldData& world, const PathMesh& mesh, const Fli
   std::vector<Pair> all;
   for (const auto& pairs : of_level) all.insert(all.end(), pairs.begin(), pairs.end());
   sort_once(all);
-  for (const auto& [ground, air] : all) {
-    if (ground_.empty() || ground_.back() != ground) {
-      ground_.push_back(ground);
+  for (const Pair& pair : all) {
+    if (ground_.empty() || ground_.back() != pair.ground) {
+      ground_.push_back(pair.ground);
       first_.push_back(static_cast<uint32_t>(air_.size()));
     }
-    air_.push_back(air);
+    air_.push_back(pair.air);
+    cell_.push_back(pair.cell);
   }
   first_.push_back(static_cast<uint32_t>(air_.size()));
+  airs_ = air_;
+  std::sort(airs_.begin(), airs_.end());
+  airs_.erase(std::unique(airs_.begin(), airs_.end()), airs_.end());
+  under_first_.assign(airs_.size() + 1, 0);
+  const auto place_of = [&](uint32_t air) {
+    return static_cast<size_t>(std::lower_bound(airs_.begin(), airs_.end(), air) - airs_.begin());
+  };
+  for (const uint32_t air : air_) ++under_first_[place_of(air) + 1];
+  std::partial_sum(under_first_.begin(), under_first_.end(), under_first_.begin());
+  std::vector<uint32_t> next(under_first_.begin(), under_first_.end() - 1);
+  under_.resize(air_.size());
+  for (uint32_t g = 0; g < ground_.size(); ++g) {
+    for (uint32_t p = first_[g]; p < first_[g + 1]; ++p) under_[next[place_of(air_[p])]++] = g;
+  }
 }
 
 std::span<const uint32_t> FlightPorts::air_over(uint32_t ground) const {
@@ -68,6 +95,44 @@ std::span<const uint32_t> FlightPorts::air_over(uint32_t ground) const {
 bool FlightPorts::joins(uint32_t ground, uint32_t air) const {
   const auto over = air_over(ground);
   return std::binary_search(over.begin(), over.end(), air);
+}
+
+size_t FlightPorts::pair(uint32_t ground, uint32_t air) const {
+  const auto over = air_over(ground);
+  return static_cast<size_t>(std::lower_bound(over.begin(), over.end(), air) - over.begin()) +
+         static_cast<size_t>(over.data() - air_.data());
+}
+
+FlightPorts::Cell FlightPorts::cell(uint32_t ground, uint32_t air) const {
+  return cell_[pair(ground, air)];
+}
+
+void FlightPorts::search(Part from, Part goal, Scratch& scratch) const {
+  scratch.known_ground.assign(ground_.size(), 0);
+  scratch.known_air.assign(airs_.size(), 0);
+  scratch.steps.assign(1, {from, 0});
+  // Nothing leads back to where it began but what is known by then.
+  for (uint32_t i = 0; i < scratch.steps.size() && scratch.steps.back().part != goal; ++i) {
+    const Part part = scratch.steps[i].part;
+    const std::vector<uint32_t>& own = part.is_air ? airs_ : ground_;
+    const auto found = std::lower_bound(own.begin(), own.end(), part.component);
+    if (found == own.end() || *found != part.component) continue;
+    const auto place = static_cast<size_t>(found - own.begin());
+    (part.is_air ? scratch.known_air : scratch.known_ground)[place] = 1;
+    const std::vector<uint32_t>& first = part.is_air ? under_first_ : first_;
+    for (uint32_t k = first[place]; k < first[place + 1]; ++k) {
+      const Part next = part.is_air ? Part{ground_[under_[k]], false} : Part{air_[k], true};
+      uint8_t& known =
+          part.is_air
+              ? scratch.known_ground[under_[k]]
+              : scratch.known_air[static_cast<size_t>(
+                    std::lower_bound(airs_.begin(), airs_.end(), next.component) - airs_.begin())];
+      if (known != 0) continue;
+      known = 1;
+      scratch.steps.push_back({next, i});
+      if (next == goal) return;
+    }
+  }
 }
 
 }  // namespace throng

@@ -24,14 +24,49 @@ class FlightPorts {
   /// The air over some ground, ascending.
   [[nodiscard]] std::span<const uint32_t> air_over(uint32_t ground) const;
   [[nodiscard]] bool joins(uint32_t ground, uint32_t air) const;
+  /// A cell of some ground from which feet come into some air that it leads into: always the same.
+  struct Cell {
+    uint32_t level = 0;  ///< of the world
+    int32_t x = 0, z = 0;
+  };
+  [[nodiscard]] Cell cell(uint32_t ground, uint32_t air) const;
   [[nodiscard]] uint64_t bytes() const {
-    return (ground_.size() + first_.size() + air_.size()) * sizeof(uint32_t);
+    return (ground_.size() + first_.size() + air_.size() + airs_.size() + under_first_.size() +
+            under_.size()) *
+               sizeof(uint32_t) +
+           cell_.size() * sizeof(Cell);
   }
 
+  /// A component of the ground or of the air.
+  struct Part {
+    uint32_t component = 0;
+    bool is_air = false;
+
+    friend bool operator==(const Part&, const Part&) = default;
+  };
+  /// Memory for searches of parts.
+  struct Scratch {
+    struct Step {
+      Part part;
+      uint32_t before = 0;  ///< The step that led there; of the first: itself.
+    };
+    std::vector<Step> steps;  ///< In the order in which they were found.
+    std::vector<uint8_t> known_ground, known_air;
+  };
+  /// All parts that taking off and landing lead to from one, itself first, the fewest turns first;
+  /// stops at `goal`, if that is among them: then it is the last.
+  void search(Part from, Part goal, Scratch& scratch) const;
+
  private:
+  [[nodiscard]] size_t pair(uint32_t ground, uint32_t air) const;
+
   std::vector<uint32_t> ground_;  // components that lead into any air, ascending
   std::vector<uint32_t> first_;   // of each: its first in air_; one more
   std::vector<uint32_t> air_;
+  std::vector<Cell> cell_;             // likewise
+  std::vector<uint32_t> airs_;         // components that ground leads into, ascending
+  std::vector<uint32_t> under_first_;  // of each: its first in under_; one more
+  std::vector<uint32_t> under_;        // places in ground_, ascending
 };
 
 }  // namespace throng

@@ -102,6 +102,28 @@ class Program(unittest.TestCase):
                             "does not fly")
         self.assert_refused(fly("2,3,2", "4,3,4", "--block", "2,2,2,4,4,4"), "--block", "air")
 
+    def test_a_flight_into_a_closed_room_tells_how_near_it_comes(self):
+        lines, sides = [], ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
+        for low, high in (((0, -1, 0), (20, 0, 8)), ((10, 0, 1), (16, 5, 7))):
+            first = 8 * len(lines) // 14 + 1
+            lines += ["v " + " ".join(str((high if k >> axis & 1 else low)[axis]) for axis in range(3)) for k in range(8)]
+            lines += ["f " + " ".join(str(first + k) for k in side) for side in sides]
+        (self.path / "room.obj").write_text("\n".join(lines) + "\n", encoding="ascii")
+        done = self.run_throng("bake", "room.obj", "--fly", "--cell", "0.2", "-o", "room.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        way = ("path", "room.throng", "--from", "3,2,4", "--to", "13,2,4", "--class", "flyer", "--fly")
+        done = self.run_throng(*way, "--json")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["end"], found["nearest"]["obstacle"]), ("unreachable", "a wall, or too narrow"))
+        self.assertEqual(found["points"][-1], found["nearest"]["place"])
+        self.assertGreater(found["nearest"]["distance"], 3)  # Over the roof.
+        self.assertLess(found["nearest"]["distance"], 4.5)
+        self.assertAlmostEqual(found["cost"], found["length"])
+        text = self.run_throng(*way).stdout
+        self.assertIn("unreachable", text)
+        self.assertIn("what is in the way: a wall, or too narrow", text)
+
     def test_ways_lead_around_boxes_and_say_what_is_in_the_way(self):
         def way(goal, *more):
             done = self.run_throng("path", self.world, "--from", "14,0,8", "--to", goal, "--json", *more)

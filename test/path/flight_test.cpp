@@ -195,6 +195,103 @@ TEST(Flight, TellsWhatCannotBeReachedAndKeepsToItsBudget) {
   EXPECT_GT(path.nodes, 3u);
 }
 
+// Two halls without a roof that is open: only a door for those who walk leads from one to the
+// other.
+Scene two_halls(bool door) {
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, 8}, {20, 0, 8}, {20, 0, 0});
+  for (const double x : {0.0, 9.8, 19.8}) {
+    if (x != 9.8 || !door) {
+      scene.add_box({x, -0.1, 0}, {x + 0.2, 6, 8});
+      continue;
+    }
+    scene.add_box({x, -0.1, 0}, {x + 0.2, 6, 3.45});
+    scene.add_box({x, -0.1, 4.55}, {x + 0.2, 6, 8});
+    scene.add_box({x, 2, 3}, {x + 0.2, 6, 5});
+  }
+  scene.add_box({0, -0.1, 0}, {20, 6, 0.2});
+  scene.add_box({0, -0.1, 7.8}, {20, 6, 8});
+  scene.add_box({0, 5.8, 0}, {20, 6, 8});
+  return scene;
+}
+
+TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
+  const Scene scene = two_halls(true);
+  const World world = bake(scene);
+  FlightFinder flight = finder(world);
+  const Vec3d here{3, 2, 4}, there{16, 3, 3};
+  const FlightEnds ends(*world.data(), flight.space(), 0);
+  ASSERT_TRUE(ends.in_air(here) && ends.in_air(there));
+  ASSERT_FALSE(flight.space().hold_together(*ends.in_air(here), *ends.in_air(there)));
+  FlightPath path;
+  flight.find({.from = here, .to = there}, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  ASSERT_EQ(path.points.size(), path.legs.size() + 1);
+  std::vector<LegKind> kinds = path.legs;
+  kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
+  EXPECT_EQ(kinds, (std::vector{LegKind::kFly, LegKind::kLand, LegKind::kWalk, LegKind::kTakeOff,
+                                LegKind::kFly}));
+  EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
+  EXPECT_NEAR(length(path.points.back() - there), 0, 0.01);
+  double sum = 0;
+  for (size_t i = 1; i < path.points.size(); ++i)
+    sum += length(path.points[i] - path.points[i - 1]);
+  EXPECT_NEAR(path.length, sum, 1e-9);
+  // Whoever does not want that, or has no time for it.
+  flight.find({.from = here, .to = there, .by_turns = false, .nearest = false}, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_TRUE(path.points.empty());
+  flight.find({.from = here, .to = there, .max_nodes = 1}, path);
+  EXPECT_NE(path.end, PathEnd::kReached);
+}
+
+TEST(Flight, TellsHowNearItComesAndWhatIsInTheWay) {
+  const Scene scene = two_halls(false);
+  const World world = bake(scene);
+  FlightFinder flight = finder(world);
+  FlightPath path;
+  const Vec3d there{16, 3, 3};
+  for (const Vec3d here : {Vec3d{3, 2, 4}, Vec3d{3, 0, 6}}) {
+    flight.find({.from = here, .to = there}, path);
+    ASSERT_EQ(path.end, PathEnd::kUnreachable);
+    EXPECT_EQ(path.obstacle, Obstacle::kNarrow);
+    ASSERT_GE(path.points.size(), 2u);
+    EXPECT_EQ(path.points.size(), path.legs.size() + 1);
+    EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
+    // As near as the air comes, of all boxes, by many points of each.
+    double least = INFINITY;
+    const FlightEnds ends(*world.data(), flight.space(), 0);
+    const uint32_t part = flight.space().component[flight.space().box_at(*ends.in_air({3, 2, 4}))];
+    for (size_t b = 0; b < flight.space().boxes.size(); ++b) {
+      if (flight.space().component[b] != part) continue;
+      const AirCube& box = flight.space().boxes[b];
+      for (int i = 0; i < 27; ++i) {
+        const auto at = [&](int32_t low, int k) { return low + box.side * (0.01 + 0.49 * k); };
+        const Vec3d p = ends.to_metres({at(box.x, i % 3), at(box.y, i / 3 % 3), at(box.z, i / 9)});
+        least = std::min(least, length(p - there));
+      }
+    }
+    const double far = length(path.points.back() - there);
+    EXPECT_LE(far, least + 1e-6);
+    EXPECT_GT(far, 6.2);  // The wall, and half of the body, are in between.
+    EXPECT_TRUE(flight.is_legal(path.points.back()));
+  }
+  // Under a ceiling that leaves no room to take off.
+  Scene low = two_floors();
+  low.add_quad({0, 1.85, 0}, {8, 1.85, 0}, {8, 1.85, 8}, {0, 1.85, 8});
+  const World cellar = bake(low);
+  FlightFinder in_cellar = finder(cellar);
+  in_cellar.find({.from = {2, 0, 4}, .to = {32, 3, 4}}, path);
+  if (path.end == PathEnd::kUnreachable) {
+    EXPECT_EQ(path.obstacle, Obstacle::kLow);
+    ASSERT_FALSE(path.points.empty());
+    EXPECT_GT(path.points.back().x, 6.5);
+    EXPECT_NEAR(path.points.back().y, 0, 0.01);
+  } else {
+    ADD_FAILURE() << "it takes off";
+  }
+}
+
 // Under a roof that nothing takes off from, walked to behind a wall.
 TEST(Flight, GivingUpOnFootIsNoProofThatNothingLeadsThere) {
   Scene scene;

@@ -1,0 +1,135 @@
+# SPDX-FileCopyrightText: 2026 the throng authors
+# SPDX-License-Identifier: MIT
+"""Ways that the program finds: on foot, over nodes, through the air; and what it says where there are none.
+
+python3 program_ways_test.py build/release/throng"""
+import json
+import subprocess
+import unittest
+
+from program_case import ProgramCase
+
+
+class ProgramWays(ProgramCase):
+    def test_a_way_through_the_air_is_told_by_its_legs_and_bad_ends_are_refused(self):
+        self.assert_refused(self.run_throng("path", self.world, "--from", "14,0,8", "--to", "30,0,8", "--fly"), "baked without air")
+        done = self.run_throng("bake", "builtin:cube", "--fly", "--cell", "0.2", "-o", "cube.throng", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(json.loads(done.stdout)["air_bytes"], 0)
+        air = json.loads(self.run_throng("info", "cube.throng", "--json").stdout)["air"]
+        self.assertAlmostEqual(air["cell"], 0.4)
+
+        def fly(start, goal, *more):
+            return self.run_throng("path", "cube.throng", "--from", start, "--to", goal, "--class", "flyer", "--fly", *more)
+
+        found = json.loads(fly("2,3,2", "4,3,4", "--json").stdout)
+        self.assertEqual((found["end"], found["legs"]), ("reached", ["fly"]))
+        self.assert_refused(fly("nan,3,2", "4,3,4"), "--from", "finite")
+        self.assert_refused(fly("2,3,2", "400,3,4"), "--to", "outside")
+        self.assert_refused(fly("2,3,2", "4,900,4"), "--to", "neither in the air nor on the ground")
+        self.assert_refused(fly("0.05,3,2", "4,3,4"), "--from", "neither in the air nor on the ground")
+        self.assert_refused(self.run_throng("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "adult", "--fly"),
+                            "does not fly")
+        self.assert_refused(fly("2,3,2", "4,3,4", "--block", "2,2,2,4,4,4"), "--block", "air")
+
+    def test_a_flight_into_a_closed_room_tells_how_near_it_comes(self):
+        lines, sides = [], ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
+        for low, high in (((0, -1, 0), (20, 0, 8)), ((10, 0, 1), (16, 5, 7))):
+            first = 8 * len(lines) // 14 + 1
+            lines += ["v " + " ".join(str((high if k >> axis & 1 else low)[axis]) for axis in range(3)) for k in range(8)]
+            lines += ["f " + " ".join(str(first + k) for k in side) for side in sides]
+        (self.path / "room.obj").write_text("\n".join(lines) + "\n", encoding="ascii")
+        done = self.run_throng("bake", "room.obj", "--fly", "--cell", "0.2", "-o", "room.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        way = ("path", "room.throng", "--from", "3,2,4", "--to", "13,2,4", "--class", "flyer", "--fly")
+        done = self.run_throng(*way, "--json")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["end"], found["nearest"]["obstacle"]), ("unreachable", "a wall, or too narrow"))
+        self.assertEqual(found["points"][-1], found["nearest"]["place"])
+        self.assertGreater(found["nearest"]["distance"], 3)  # Over the roof.
+        self.assertLess(found["nearest"]["distance"], 4.5)
+        self.assertAlmostEqual(found["cost"], found["length"])
+        text = self.run_throng(*way).stdout
+        self.assertIn("unreachable", text)
+        self.assertIn("what is in the way: a wall, or too narrow", text)
+
+    def test_ways_lead_around_boxes_and_say_what_is_in_the_way(self):
+        def way(goal, *more):
+            done = self.run_throng("path", self.world, "--from", "14,0,8", "--to", goal, "--json", *more)
+            return done.returncode, json.loads(done.stdout)
+
+        code, straight = way("20,0,8")
+        self.assertEqual((code, straight["end"]), (0, "reached"))
+        code, around = way("20,0,8", "--block", "17,2,9,16,0,0")
+        self.assertEqual((code, around["end"]), (0, "reached"))
+        self.assertGreater(around["length"], straight["length"] + 0.5)
+        self.assertGreater(max(z for _, _, z in around["points"]), 9.2)
+        code, shut = way("20,0,8", "--block", "16,0,0,17,2,40")
+        self.assertEqual((code, shut["end"]), (1, "unreachable"))
+        self.assertEqual(shut["nearest"]["obstacle"], "a wall, or too narrow")
+        self.assertLess(shut["points"][-1][0], 16)
+        code, jump = way("20,0,8", "--block", "16,0,0,17,2,40", "--jump", "15,0,8,18,0,8")
+        self.assertEqual((code, len(jump["jumps"])), (0, 1))
+        code, up = way("30,2.9,30", "--class", "wheelchair")
+        self.assertEqual((code, up["end"], up["nearest"]["obstacle"]), (1, "unreachable", "a gap"))
+        ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
+        self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9"), "--from", "--block")
+        self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,13,2,9"), "--block", "opposite corners")
+        self.assert_refused(self.run_throng(*ends, "--area-cost", "1.5=2"), "--area-cost", "whole numbers")
+        self.assert_refused(self.run_throng(*ends, "--jump", "14,0,8,19,0,99"), "--jump", "outside")
+
+    def test_what_nodes_are_asked_for_is_looked_at_before_the_old_world_goes(self):
+        done = self.run_throng("bake", "builtin:stairs", "--cell", "0.2", "--nodes", "-o", "w.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        before = {p: p.read_bytes() for p in self.path.rglob("*") if p.is_file()}
+        (self.path / "jumps.json").write_text('[{"from": [0, 0, 0], "to": [1, 0, 1], "class": "horse"}]')
+        (self.path / "list.json").write_text("{}")
+        again = ["bake", "builtin:garage", "--cell", "0.2", "-o", "w.throng"]
+        self.assert_refused(self.run_throng(*again, "--nodes", "--node-size", "1000"), "size")
+        self.assert_refused(self.run_throng(*again, "--jumps", "jumps.json"), "jump 1", "horse", "adult")
+        self.assert_refused(self.run_throng(*again, "--jumps", "list.json"), "no list", '"from"')
+        self.assert_refused(self.run_throng(*again, "--jumps", "missing.json"), "missing.json")
+        for path, content in before.items():
+            self.assertEqual(path.read_bytes(), content, path)
+
+    def test_ways_are_gone_and_those_through_another_model_found_out(self):
+        done = self.run_throng("world", "garage", "--levels", 2, "-o", "ways.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ways = ("verify", self.world, "--paths", "--samples", 40, "--json", "--source")
+        done = self.run_throng(*ways, "ways.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        report = json.loads(done.stdout)
+        self.assertTrue(report["passed"])
+        for entry in report["classes"]:
+            self.assertEqual(entry["over"], "level tiles")
+            self.assertEqual(entry["pairs"], 40)
+            self.assertGreater(entry["reached"], 10)
+            self.assertEqual(sum(entry[fault] for fault in ("illegal", "entered", "unsupported", "torn", "disagree")), 0)
+        done = self.run_throng(*ways, "builtin:maze")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertFalse(json.loads(done.stdout)["passed"])
+
+    def test_regions_are_told_from_the_bakes_files_or_made_where_there_are_none(self):
+        def region(world):
+            done = self.run_throng("region", world, "--at", "14,0,8", "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return json.loads(done.stdout)
+        copy = self.path / "copy.throng"
+        subprocess.run(["cp", "-r", self.world, copy], check=True)
+        on_disk = region(copy)
+        self.assertTrue(on_disk.pop("on_disk"))
+        for entry in copy.iterdir():
+            if entry.suffix in (".thr", ".thl") or entry.name == "graph.thm":
+                entry.unlink()
+        made = region(copy)
+        self.assertFalse(made.pop("on_disk"))
+        self.assertGreater(on_disk["classes"][0]["components"], 0)
+        self.assertEqual(on_disk["classes"][0]["at"], 0)
+        for report in (on_disk, made):
+            del report["seconds"]
+        self.assertEqual(on_disk, made)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

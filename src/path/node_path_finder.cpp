@@ -144,15 +144,15 @@ Obstacle obstacle_towards(const NodeMesh& mesh, const BlockPoint& from, Vec3d go
     outside = s < 0 || t < 0 || s > 1 || t > 1;
   }
   if (surface.points == nullptr) {
+    // What stops a straight walk, as over level tiles without nodes.
     const WorldData& world = *surface.world;
-    const GroundLevel level = ground_level(world, surface.source, mesh.avatar_class());
-    const auto [x, z] = tile_of(world, *level.zone, *level.view.record);
     const WorldGround ground{world, mesh.avatar_class()};
-    const Vec3d feet = surface.at(std::clamp(s, s0, s0 + side - kEdgeStep),
-                                  std::clamp(t, t0, t0 + side - kEdgeStep));
-    return obstacle_at(ground, x * 64 + static_cast<int32_t>(std::floor(s * 64)),
-                       z * 64 + static_cast<int32_t>(std::floor(t * 64)),
-                       static_cast<int32_t>(std::lround(feet.y * 1000)));
+    GroundLevel level = ground_level(world, surface.source, mesh.avatar_class());
+    const Vec3d feet = surface.at(std::clamp(from.s, s0 + kEdgeStep, s0 + side - kEdgeStep),
+                                  std::clamp(from.t, t0 + kEdgeStep, t0 + side - kEdgeStep));
+    const WalkStop stop = walk_far(ground, level, to_ground(world, feet.x, feet.z),
+                                   to_ground(world, goal.x, goal.z), step_mm(avatar));
+    return stop.arrived ? Obstacle::kGap : obstacle_beyond(ground, level, stop);
   }
   if (outside) return Obstacle::kGap;
   const double limit = avatar.climb_slope > 0 ? avatar.climb_slope : avatar.max_slope;

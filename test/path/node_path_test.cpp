@@ -190,6 +190,7 @@ TEST(NodePath, WhereItEndsIsSaid) {
   Scene scene;  // A floor, a gap, another floor with a wall across.
   scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
   scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
+  scene.add_quad({0, 3, 0}, {0, 3, 6}, {6, 3, 6}, {6, 3, 0});  // and a deck
   const Nodes nodes = make(scene, 0.2, 1);
   NodePathFinder found = finder(nodes, 0);
   const NodePlace from = found.find_place({1, 0, 3}, 1), to = found.find_place({13, 0, 3}, 1);
@@ -202,6 +203,12 @@ TEST(NodePath, WhereItEndsIsSaid) {
   ASSERT_FALSE(path.points.empty());
   EXPECT_GT(path.points.back().place.feet.x, 4);
   EXPECT_LT(path.points.back().place.feet.x, 6);
+  // Right over it, and to the side: nothing stops it, and yet it does not get there.
+  for (const double x : {1.0, 4.0}) {
+    found.find(from, found.find_place({x, 3, 3}, 0.5), path);
+    EXPECT_EQ(path.end, PathEnd::kUnreachable);
+    EXPECT_EQ(path.obstacle, Obstacle::kGap) << x;
+  }
   found.find({}, to, path);
   EXPECT_EQ(path.end, PathEnd::kNoPlace);
   found.find(from, from, path);

@@ -29,6 +29,7 @@ int export_surface(Session& session, const ExportOptions& options) {
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());
+  const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
   const Result<Scene> surface = walkable_surface(*world, *avatar_class, session.context);
   if (!surface) return fail(surface.error());
   if (surface->triangles.empty()) {
@@ -44,10 +45,12 @@ int export_surface(Session& session, const ExportOptions& options) {
                {{"world", options.world},
                 {"class", options.avatar_class},
                 {"output", options.output},
+                {"goes_over_nodes", goes_over_nodes(avatar)},
                 {"triangles", surface->triangles.size()},
                 {"storeys", surface->parts.size()}},
                fmt::format("{}: {} triangles of floor for {}, {} storeys\n", options.output,
-                           surface->triangles.size(), options.avatar_class, surface->parts.size()));
+                           surface->triangles.size(), options.avatar_class, surface->parts.size()) +
+                   note_of_nodes(avatar));
   return kDone;
 }
 

@@ -58,6 +58,7 @@ Result<Image> draw_all_nodes(PictureOptions& options) {
   NodePictureConfig& config = options.node_config;
   config.width = options.config.width;
   config.storey = options.config.storey;
+  if (!options.avatar_class.empty()) config.avatar_class = options.config.avatar_class;
   config.title = options.config.title;
   if (!options.area.empty()) {
     config.area.add({options.area[0], 0, options.area[1]});
@@ -150,7 +151,10 @@ void add_picture(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--avatars", options->avatars, "Trajectories; the last step is drawn")
       ->type_name("FILE.csv");
-  command->add_option("--class", options->avatar_class, "Whose floors to show")->type_name("NAME");
+  command
+      ->add_option("--class", options->avatar_class,
+                   "Whose floors to show; with --nodes: whose nodes and links")
+      ->type_name("NAME");
   command->add_flag("--nodes", options->nodes, "Draw the world's nodes, by inclination");
   command->add_flag("--links", options->node_config.links, "With --nodes: also their links");
   command->add_flag("--air", options->node_config.air,

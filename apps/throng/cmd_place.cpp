@@ -70,12 +70,16 @@ int place(Session& session, const PlaceOptions& options) {
     return fail({Errc::kBadInput, options.world + ": --at is not a finite position"});
   }
   const Place found = query->nearest_place(at, options.radius);
-  Json json = {{"world", options.world}, {"class", options.avatar_class}};
+  const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
+  Json json = {{"world", options.world},
+               {"class", options.avatar_class},
+               {"goes_over_nodes", goes_over_nodes(avatar)}};
   if (!found) {
     json["place"] = nullptr;
     print_result(session, json,
                  fmt::format("no place for {} within {} m of ({})\n", options.avatar_class,
-                             options.radius, where(at)));
+                             options.radius, where(at)) +
+                     note_of_nodes(avatar));
     return kAnswerIsNo;
   }
   const double area = query->area_near(found, options.radius);
@@ -95,6 +99,7 @@ int place(Session& session, const PlaceOptions& options) {
     text += fmt::format("  at random: {}\n", where(p.position));
   }
   if (options.random > 0) json["random"] = random;
+  text += note_of_nodes(avatar);
   print_result(session, json, text);
   return kDone;
 }

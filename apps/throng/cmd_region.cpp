@@ -51,12 +51,15 @@ void describe(const World& world, const Graph& graph, const RegionOptions& optio
   const std::string& name = summary.classes[static_cast<size_t>(avatar_class)].name;
   const auto components = graph.components(avatar_class);
   const double area = total_area(components);
-  Json json = {{"class", name},
-               {"components", components.size()},
-               {"area", area},
-               {"largest", components_json(components, options.limit)}};
+  Json json = {
+      {"class", name},
+      {"goes_over_nodes", goes_over_nodes(summary.classes[static_cast<size_t>(avatar_class)])},
+      {"components", components.size()},
+      {"area", area},
+      {"largest", components_json(components, options.limit)}};
   text += fmt::format("{}: {} component{}, {:.1f} m2\n", name, components.size(),
                       components.size() == 1 ? "" : "s", area);
+  text += note_of_nodes(summary.classes[static_cast<size_t>(avatar_class)]);
   const size_t shown = std::min<size_t>(options.limit, components.size());
   for (size_t i = 0; i < shown; ++i) {
     const Component& c = components[i];

@@ -59,6 +59,9 @@ void add_model(CLI::App& command, SteeringModel& model);
 /// Index of the class that --class names. Fails with kNotFound and the names to choose from.
 Result<int32_t> class_named(const World& world, const std::string& name);
 
+/// A line for what tells of level tiles only, if the class also climbs or drops; else nothing.
+std::string note_of_nodes(const AvatarClass& avatar);
+
 /// "nothing", "too low", ...
 const char* word_for(Obstacle obstacle);
 /// "walk", "climb", ...

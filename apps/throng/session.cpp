@@ -226,6 +226,15 @@ Result<int32_t> class_named(const World& world, const std::string& name) {
                fmt::format("--class {}: the world has no such class; choose from {}", name, known)};
 }
 
+std::string note_of_nodes(const AvatarClass& avatar) {
+  if (!goes_over_nodes(avatar)) return {};
+  return fmt::format(
+      "  on level tiles, where it stands upright: what {} climbs or drops to besides, `throng "
+      "nodes` "
+      "and `throng path` tell\n",
+      avatar.name);
+}
+
 uint64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

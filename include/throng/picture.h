@@ -35,8 +35,9 @@ struct NodePictureConfig {
   bool links = false;
   bool air = false;     ///< Links of the air, and between air and ground; the world must have air.
   int32_t storey = -1;  ///< Only level tiles of this storey, or all nodes (-1).
-  Box3d area;           ///< Only nodes whose middle lies in its x and z; empty: all. [m]
-  std::vector<Vec3d> path;  ///< A way to draw over them.
+  int32_t avatar_class = -1;  ///< Only nodes and links of this class, or all (-1).
+  Box3d area;                 ///< Only nodes whose middle lies in its x and z; empty: all. [m]
+  std::vector<Vec3d> path;    ///< A way to draw over them.
   std::string title;
 };
 

@@ -172,7 +172,7 @@ class NodePicture {
   Result<Image> draw() {
     choose();
     if (shown_.empty()) {
-      return Error{Errc::kNotFound, "picture: no node lies in the area and storey asked for"};
+      return Error{Errc::kNotFound, "picture: no node of the area, storey and class asked for"};
     }
     if (config_.air) {
       auto lines = air_lines(nodes_.data()->world, config_.area);
@@ -204,10 +204,16 @@ class NodePicture {
   }
 
  private:
-  // Is a node on the storey asked for?
-  [[nodiscard]] bool on_storey(const NodeInfo& info) const {
-    return config_.storey < 0 ||
-           (info.kind == PatchKind::kLevelTile && storeys_[info.source] == config_.storey);
+  // Of the classes of a node or a link, is the one asked for there?
+  [[nodiscard]] bool is_for(uint16_t classes) const {
+    return config_.avatar_class < 0 || (classes >> config_.avatar_class & 1) != 0;
+  }
+
+  // Is a node on the storey and for the class asked for?
+  [[nodiscard]] bool is_asked(const NodeInfo& info) const {
+    const bool on_storey = config_.storey < 0 || (info.kind == PatchKind::kLevelTile &&
+                                                  storeys_[info.source] == config_.storey);
+    return on_storey && is_for(info.classes);
   }
 
   // Nodes to draw, in order; the widest view of them.
@@ -215,7 +221,7 @@ class NodePicture {
     const bool whole = config_.area.max.x <= config_.area.min.x;
     for (uint32_t n = 0; n < nodes_.node_count(); ++n) {
       const NodeInfo info = nodes_.node(n);
-      if (!on_storey(info)) continue;
+      if (!is_asked(info)) continue;
       const auto corners = nodes_.corners(n);
       Box3d box;
       for (const Vec3d& c : corners) box.add(c);
@@ -330,7 +336,7 @@ class NodePicture {
       const bool drops = arc.kind == LinkKind::kDrop;
       if (arc.to < node && !drops) continue;
       const NodeInfo other = nodes_.node(arc.to);
-      if (!on_storey(other)) continue;
+      if (!is_asked(other) || !is_for(arc.classes)) continue;
       // Large nodes that hold smaller ones would only add lines across them.
       if (!arc.leaps && (!info.terminal || !other.terminal)) continue;
       const double steepest =
@@ -364,47 +370,67 @@ class NodePicture {
         fmt::format("{} nodes ({} of them terminal), {} in all; {} links", shown_.size(), terminal_,
                     summary_.nodes, summary_.arcs / 2);
     draw_text(sheet, {kMargin, 52}, line, {.size = 9, .colour = kFaintInk});
-    const double y = kHeader + height_ + 20;
+    double y = kHeader + height_ + 20;
+    const double right = config_.width - kMargin;
+    double end = right - draw_scale(sheet, right, y) - 24;
     double x = kMargin;
+    // What does not fit beside the scale goes into a second row.
+    const auto make_room = [&](double width) {
+      if (x + width <= end) return;
+      x = kMargin;
+      y += 20;
+      end = right;
+    };
     double last = 0;
     std::vector<double> edges = summary_.bins.inclination;
     if (edges.empty() || edges.back() < 180) edges.push_back(180);
     for (const double edge : edges) {
-      sheet.fill({x, y, 22, 12}, inclination_colour(edge));
       const std::string label = fmt::format("{:.0f}-{:.0f}", last, edge);
+      const double width = 38 + text_width(label, {.size = 8});
+      make_room(width);
+      sheet.fill({x, y, 22, 12}, inclination_colour(edge));
       draw_text(sheet, {x + 27, y + 10}, label, {.size = 8});
-      x += 38 + text_width(label, {.size = 8});
+      x += width;
       last = edge;
     }
+    make_room(70);
     draw_text(sheet, {x, y + 10}, "degrees", {.size = 8});
     x += 70;
     const auto key = [&](Rgb colour, const char* label) {
+      const double width = 40 + text_width(label, {.size = 8});
+      make_room(width);
       sheet.line({x, y + 6}, {x + 20, y + 6}, 2, colour);
       draw_text(sheet, {x + 26, y + 10}, label, {.size = 8});
-      x += 40 + text_width(label, {.size = 8});
+      x += width;
     };
     if (config_.links) {
       key(kWalkLink, "link");
       key(kSteepLink, "steep");
       key(kOverLink, "overhanging");
       key(kLeapLink, "over a hole");
-      const bool drop = std::any_of(summary_.classes.begin(), summary_.classes.end(),
-                                    [](const AvatarClass& c) { return c.max_drop > 0; });
+      bool drop = false;
+      for (size_t c = 0; c < summary_.classes.size(); ++c) {
+        drop |= summary_.classes[c].max_drop > 0 && is_for(static_cast<uint16_t>(1u << c));
+      }
       if (drop) key(kDropLink, "drop");
     }
     if (config_.air) {
       key(kAirLink, "air");
       key(kGroundAirLink, "air to ground");
     }
-    // A length of 1, 2 or 5 times a power of ten, along the slanted x axis.
+  }
+
+  // A length of 1, 2 or 5 times a power of ten, along the slanted x axis. Returns what it takes.
+  double draw_scale(Canvas& sheet, double right, double y) const {
     double metres = 1;
     for (const double step : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0}) {
       if (step * scale_ < 120) metres = step;
     }
-    const double right = config_.width - kMargin;
+    const std::string label = fmt::format("{:g} m", metres);
     sheet.line({right - metres * scale_, y + 6}, {right, y + 6}, 2, kInk);
-    draw_text(sheet, {right - metres * scale_ - 8, y + 10}, fmt::format("{:g} m", metres),
+    draw_text(sheet, {right - metres * scale_ - 8, y + 10}, label,
               {.size = 8, .align = Align::kRight});
+    return metres * scale_ + 8 + text_width(label, {.size = 8});
   }
 
   const Nodes& nodes_;
@@ -425,6 +451,10 @@ class NodePicture {
 Result<Image> draw_nodes(const Nodes& nodes, const NodePictureConfig& config) {
   if (config.width < 200 || config.width > 16000) {
     return Error{Errc::kBadConfig, "picture: the width must be 200 to 16000 pixels"};
+  }
+  if (nodes.data() != nullptr &&
+      config.avatar_class >= static_cast<int32_t>(nodes.summary().classes.size())) {
+    return Error{Errc::kBadConfig, "picture: the world has no such avatar class"};
   }
   if (nodes.data() == nullptr || nodes.node_count() == 0) {
     return Error{Errc::kNotFound, "picture: this world has no nodes to draw"};

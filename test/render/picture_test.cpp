@@ -71,6 +71,13 @@ TEST(NodePicture, DrawsNodesAndAWayFromFarBeyondThem) {
   EXPECT_NE(upper->rgb, all->rgb);
   config.storey = 7;
   EXPECT_EQ(draw_nodes(*nodes, config).error().code, Errc::kNotFound);
+  config.storey = -1;
+  config.avatar_class = 3;  // Giants keep farther from the rims.
+  const auto giants = draw_nodes(*nodes, config);
+  ASSERT_TRUE(giants) << giants.error().message;
+  EXPECT_NE(giants->rgb, all->rgb);
+  config.avatar_class = 4;
+  EXPECT_EQ(draw_nodes(*nodes, config).error().code, Errc::kBadConfig);
 }
 
 TEST(Picture, DrawsABakedWorldForEachClass) {

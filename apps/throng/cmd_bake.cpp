@@ -159,27 +159,32 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
   return text;
 }
 
-int bake(Session& session, BakeOptions& options) {
+// Reads what the options name besides the models. Before anything is baked: the new world would be
+// in the old one's place, and without nodes.
+Result<void> prepare(BakeOptions& options) {
   if (!options.classes.empty()) {
     Result<std::vector<AvatarClass>> classes = load_classes(options.classes);
-    if (!classes) return fail(classes.error());
+    if (!classes) return classes.error();
     options.config.classes = *std::move(classes);
   }
   if (options.fly) options.config.classes.push_back(flyer_class());
   options.config.fine = !options.coarse;
   if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
-  // Before anything is baked: the new world would be in the old one's place, and without nodes.
-  if (wants_nodes(options)) {
-    options.node_config.workers = options.config.workers;
-    options.node_config.fresh = options.fresh;
-    options.config.carry_nodes = !options.fresh;
-    if (!options.jumps.empty()) {
-      Result<std::vector<NodeJump>> jumps = read_jumps(options.jumps, options.config.classes);
-      if (!jumps) return fail(jumps.error());
-      options.node_config.jumps = *std::move(jumps);
-    }
-    if (auto ok = check_node_config(options.node_config); !ok) return fail(ok.error());
+  if (!wants_nodes(options)) return {};
+  options.node_config.workers = options.config.workers;
+  options.node_config.fresh = options.fresh;
+  options.config.carry_nodes = !options.fresh;
+  if (!options.jumps.empty()) {
+    Result<std::vector<NodeJump>> jumps = read_jumps(options.jumps, options.config.classes);
+    if (!jumps) return jumps.error();
+    options.node_config.jumps = *std::move(jumps);
   }
+  return check_node_config(options.node_config);
+}
+
+int bake(Session& session, BakeOptions& options) {
+  const auto ready = agree_over_ranks(prepare(options));
+  if (!ready) return fail(ready.error());
   const Result<Scene> scene = read_sources(options.sources, session.context);
   const auto read = agree_over_ranks(scene ? Result<void>() : scene.error());
   if (!read) return fail(read.error());

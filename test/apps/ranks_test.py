@@ -175,6 +175,8 @@ def test_refusals(folder):
     assert "missing.obj" in refused("-n", "3", *bake_words(world, missing))
     assert "rank 1: " in refused("-n", "1", *here, ":", "-n", "1", *bake_words(world, missing))
     assert "cell" in refused("-n", "2", *bake_words(world, options=["--cell", "0"]))
+    for option in ("--jumps", "--classes"):
+        assert "missing.toml" in refused("-n", "3", *bake_words(world, options=[option, "missing.toml"]))
     other = bake_words(world, "builtin:city,size=300,seed=4")
     assert "rank 2 has read another scene" in refused("-n", "2", *here, ":", "-n", "1", *other)
     (folder / "refused.throng").write_text("not a world")

@@ -28,6 +28,8 @@ constexpr double kJumpReach = 1;          // Places are as near to a jump's ends
 constexpr double kMargin = 1;             // for rounding, and then some [m]
 constexpr double kHighest = 1e7;          // above and below all [m]
 
+// Bezier patches carry everybody where all ground is made of them; where there is other ground too,
+// level tiles carry those who walk, and patches those who climb.
 void choose_layers(const WorldData& world, const Scene& scene, const NodeConfig& config,
                    NodePlan& plan) {
   const auto& classes = world.summary.classes;

@@ -8,6 +8,7 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "folder_bytes.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
@@ -19,16 +20,8 @@ namespace throng {
 namespace {
 
 namespace fs = std::filesystem;
-using Folder = std::map<std::string, std::string>;  // files and their bytes
-
-Folder read(const std::string& path) {
-  Folder folder;
-  for (const auto& entry : fs::directory_iterator(path)) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    folder[entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
-  }
-  return folder;
-}
+using Folder = test::FolderBytes;
+using test::folder_bytes;
 
 // Walkers, one of whom drops, and climbers.
 std::vector<AvatarClass> walkers() {
@@ -98,7 +91,7 @@ class ChangedNodes : public testing::Test {
     EXPECT_EQ(kept.nodes, fresh.nodes);
     EXPECT_EQ(kept.arcs, fresh.arcs);
     EXPECT_EQ(kept.bytes, fresh.bytes);
-    EXPECT_TRUE(read(at("w") + "/nodes") == read(at("fresh") + "/nodes")) << what;
+    EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == folder_bytes(at("fresh") + "/nodes")) << what;
     return kept;
   }
   [[nodiscard]] std::string at(const std::string& name) const {
@@ -200,7 +193,7 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   const NodeSummary first = compare(scene, config, {}, "first");
   EXPECT_EQ(first.zones_kept, 0u);
   EXPECT_EQ(first.zones_made, 20u);
-  const Folder before = read(at("w") + "/nodes");
+  const Folder before = folder_bytes(at("w") + "/nodes");
   // The same world: its nodes are there at once.
   Context context;
   BakeConfig carry = config;
@@ -210,7 +203,7 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   const NodeSummary second = bake("w", scene, config, {}, false);
   EXPECT_EQ(second.zones_kept, 20u);
   EXPECT_EQ(second.zones_made, 0u);
-  EXPECT_TRUE(read(at("w") + "/nodes") == before);
+  EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == before);
   // Other classes, sizes of cells, sizes of nodes: nothing can be kept.
   EXPECT_EQ(bake("w", scene, config, {.classes = 1}, false).zones_kept, 0u);
   EXPECT_EQ(bake("w", scene, config, {}, false).zones_kept, 0u);
@@ -219,10 +212,10 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   fs::remove(damaged);
   std::ofstream(damaged, std::ios::binary) << "nothing";
   EXPECT_EQ(bake("w", scene, config, {}, false).zones_made, 1u);
-  EXPECT_TRUE(read(at("w") + "/nodes") == before);
+  EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == before);
   std::ofstream(at("w") + "/nodes/index.thn", std::ios::binary) << "nothing";
   EXPECT_EQ(bake("w", scene, config, {}, false).zones_made, 20u);
-  EXPECT_TRUE(read(at("w") + "/nodes") == before);
+  EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == before);
   // Who does not ask for nodes gets a world without them.
   ASSERT_TRUE(bake_world_to(at("w"), scene, config, context));
   EXPECT_FALSE(Nodes::open(at("w")));

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "folder_bytes.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
@@ -17,7 +18,8 @@ namespace throng {
 namespace {
 
 namespace fs = std::filesystem;
-using Folder = std::map<std::string, std::string>;  // files and their bytes
+using Folder = test::FolderBytes;
+using test::folder_bytes;
 
 constexpr double kZone = 12.8;  // [m]
 const BakeConfig kConfig{.cell = 0.2, .zone = kZone};
@@ -35,15 +37,6 @@ Scene field() {
     }
   }
   return scene;
-}
-
-Folder read(const std::string& path) {
-  Folder folder;
-  for (const auto& entry : fs::directory_iterator(path)) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    folder[entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
-  }
-  return folder;
 }
 
 class ChangedZones : public testing::Test {
@@ -69,14 +62,14 @@ TEST_F(ChangedZones, NothingChangedNothingIsBaked) {
   const BakeReport first = bake("w", field());
   EXPECT_EQ(first.zones_baked, 20u);
   EXPECT_EQ(first.zones_kept, 0u);
-  const Folder before = read(at("w"));
+  const Folder before = folder_bytes(at("w"));
   const BakeReport second = bake("w", field());
   EXPECT_EQ(second.zones_baked, 0u);
   EXPECT_EQ(second.zones_kept, 20u);
   EXPECT_EQ(first.zones_relinked, 20u);
   EXPECT_EQ(second.zones_relinked, 0u);
   EXPECT_EQ(second.graph_bytes, first.graph_bytes);
-  EXPECT_EQ(read(at("w")), before);
+  EXPECT_EQ(folder_bytes(at("w")), before);
   EXPECT_EQ(second.walkable_area, first.walkable_area);
   EXPECT_EQ(second.constant_level_tiles, first.constant_level_tiles);
   EXPECT_EQ(second.tiles, first.tiles);
@@ -122,7 +115,7 @@ TEST_F(ChangedZones, ATouchedTriangleIsBakedWhereItIsSeenAndNowhereElse) {
     EXPECT_EQ(report.zones_kept, 20 - touch.zones);
     EXPECT_EQ(report.zones_relinked, touch.links) << touch.x << ", " << touch.z;
     bake("new", scene, {.cell = 0.2, .zone = kZone, .old_zones = OldZones::kBakeAgain});
-    EXPECT_EQ(read(at("w")), read(at("new")));
+    EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
   }
 }
 
@@ -150,20 +143,20 @@ TEST_F(ChangedZones, AnotherStepMakesOtherRegions) {
   for (AvatarClass& avatar : config.classes) avatar.step *= 0.9;
   EXPECT_EQ(bake("w", field(), config).zones_relinked, 20u);
   bake("new", field(), config);
-  EXPECT_EQ(read(at("w")), read(at("new")));
+  EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
 }
 
 // What is under the ground is no matter to anybody: the zone is baked, its bytes are the same.
 TEST_F(ChangedZones, ATriangleThatChangesNothingRelinksNothing) {
   Scene scene = field();
   bake("w", scene);
-  const Folder before = read(at("w"));
+  const Folder before = folder_bytes(at("w"));
   const double x0 = kCorner + 3.2 * 2, z0 = kCorner;
   scene.add_quad({x0, 0, z0}, {x0, 0, z0 + 3.2}, {x0 + 3.2, 0, z0 + 3.2}, {x0 + 3.2, 0, z0});
   const BakeReport report = bake("w", scene);
   EXPECT_EQ(report.zones_baked, 1u);
   EXPECT_EQ(report.zones_relinked, 0u);
-  Folder after = read(at("w"));
+  Folder after = folder_bytes(at("w"));
   EXPECT_EQ(after["zone_0_0.thz"], before.at("zone_0_0.thz"));
   EXPECT_NE(after["manifest.thm"], before.at("manifest.thm"));
 }
@@ -171,7 +164,7 @@ TEST_F(ChangedZones, ATriangleThatChangesNothingRelinksNothing) {
 // Files of regions and links are believed as far as they go: they carry their input and a sum.
 TEST_F(ChangedZones, ABakeKilledBetweenItsPassesGoesOn) {
   bake("w", field());
-  const Folder whole = read(at("w"));
+  const Folder whole = folder_bytes(at("w"));
   for (const char* left : {".thz", ".thr", ".thl"}) {  // How far it came.
     fs::rename(at("w"), at("w.part"));
     fs::remove(at("w.part/manifest.thm"));
@@ -188,7 +181,7 @@ TEST_F(ChangedZones, ABakeKilledBetweenItsPassesGoesOn) {
     const BakeReport report = bake("w", field());
     EXPECT_EQ(report.zones_baked, 20u);  // No journal: the ground is baked again.
     EXPECT_EQ(report.zones_relinked, left == std::string(".thl") ? 1u : 20u);
-    EXPECT_EQ(read(at("w")), whole);
+    EXPECT_EQ(folder_bytes(at("w")), whole);
   }
 }
 
@@ -218,7 +211,7 @@ TEST_F(ChangedZones, AnotherAreaKindIsBaked) {
   scene.area[0] = 9;  // A new kind numbers the surfaces of the whole scene anew.
   EXPECT_EQ(bake("w", scene).zones_baked, 1u);
   bake("new", scene);
-  EXPECT_EQ(read(at("w")), read(at("new")));
+  EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
 }
 
 TEST_F(ChangedZones, TheGridStaysWhereItWasIfTheRimMovesInOrTheFarSideOut) {
@@ -226,11 +219,11 @@ TEST_F(ChangedZones, TheGridStaysWhereItWasIfTheRimMovesInOrTheFarSideOut) {
   bake("w", scene);
   scene.add_quad({-20, 0, -20}, {-20, 0, -19}, {-19, 0, -19}, {-19, 0, -20});
   EXPECT_EQ(bake("w", scene).zones_kept, 0u);  // It begins before the grid: another grid.
-  const Folder wide = read(at("w"));
+  const Folder wide = folder_bytes(at("w"));
   const BakeReport back = bake("w", field());  // The scene still begins on that grid.
   EXPECT_EQ(back.zones_kept, back.zones_baked + back.zones_kept);
   EXPECT_GT(back.zones_kept, 20u);
-  EXPECT_LT(read(at("w")).size(), wide.size());  // The island's zone is gone.
+  EXPECT_LT(folder_bytes(at("w")).size(), wide.size());  // The island's zone is gone.
 
   Scene far = field();
   far.add_quad({90, 0, 6}, {90, 0, 7}, {91, 0, 7}, {91, 0, 6});
@@ -243,7 +236,7 @@ TEST_F(ChangedZones, TheGridStaysWhereItWasIfTheRimMovesInOrTheFarSideOut) {
   far.add_quad({64, 0, 0.5}, {64, 0, 51}, {80, 0, 51}, {80, 0, 0.5});
   EXPECT_GT(bake("v", far).zones_kept, 10u);
   bake("new", far);
-  EXPECT_EQ(read(at("v")), read(at("new")));
+  EXPECT_EQ(folder_bytes(at("v")), folder_bytes(at("new")));
   fs::remove_all(at("new"));
 
   // A scene that shares no zone gets the grid that it would get in an empty folder.
@@ -251,31 +244,31 @@ TEST_F(ChangedZones, TheGridStaysWhereItWasIfTheRimMovesInOrTheFarSideOut) {
   other.add_quad({1.3, 0, 1.3}, {1.3, 0, 9}, {9, 0, 9}, {9, 0, 1.3});
   EXPECT_EQ(bake("w", other).zones_kept, 0u);
   bake("new", other);
-  EXPECT_EQ(read(at("w")), read(at("new")));
+  EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
 }
 
 TEST_F(ChangedZones, DamagedZonesAndManifestsAreBakedAgain) {
   bake("w", field());
-  const Folder whole = read(at("w"));
+  const Folder whole = folder_bytes(at("w"));
   std::ofstream(at("w") + "/zone_1_1.thz", std::ios::binary) << "no zone";
   fs::remove(at("w") + "/zone_2_1.thz");
   EXPECT_EQ(bake("w", field()).zones_baked, 2u);
-  EXPECT_EQ(read(at("w")), whole);
+  EXPECT_EQ(folder_bytes(at("w")), whole);
   Scene other = field();
   other.add_box({20, 0, 20}, {21, 1, 21});
   bake("other", other);
   fs::copy_file(at("other") + "/zone_1_1.thz", at("w") + "/zone_1_1.thz",
                 fs::copy_options::overwrite_existing);  // Sound, but of another bake.
   EXPECT_EQ(bake("w", field()).zones_baked, 1u);
-  EXPECT_EQ(read(at("w")), whole);
+  EXPECT_EQ(folder_bytes(at("w")), whole);
   std::ofstream(at("w") + "/manifest.thm", std::ios::binary) << "no manifest";
   EXPECT_EQ(bake("w", field()).zones_baked, 20u);
-  EXPECT_EQ(read(at("w")), whole);
+  EXPECT_EQ(folder_bytes(at("w")), whole);
 }
 
 TEST_F(ChangedZones, AJournalIsBelievedAsFarAsItsFilesAre) {
   bake("w", field());
-  const Folder whole = read(at("w"));
+  const Folder whole = folder_bytes(at("w"));
   for (const std::string& name :
        {std::string("junk"), std::string(47, '\0'), std::string(4800, 7)}) {
     fs::rename(at("w"), at("v"));
@@ -284,7 +277,7 @@ TEST_F(ChangedZones, AJournalIsBelievedAsFarAsItsFilesAre) {
     std::ofstream(at("w.part/zone_0_0.thz"), std::ios::binary) << name;
     std::ofstream(at("w.part/zone_9_9.thz"), std::ios::binary) << name;
     EXPECT_EQ(bake("w", field()).zones_baked, 20u);
-    EXPECT_EQ(read(at("w")), whole);
+    EXPECT_EQ(folder_bytes(at("w")), whole);
     fs::remove_all(at("v"));
   }
 }

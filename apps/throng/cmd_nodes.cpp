@@ -21,15 +21,17 @@ int print_nodes(Session& session, const std::string& path) {
   Json json = {{"world", path},
                {"nodes", summary.nodes},
                {"terminal", summary.terminal},
+               {"ragged", summary.ragged},
                {"arcs", summary.arcs},
                {"patches", summary.patches},
                {"zones", summary.zones},
                {"bytes", summary.bytes},
                {"bytes_a_node", static_cast<double>(summary.bytes) / count}};
   std::string text = fmt::format(
-      "{}: {} nodes ({} terminal), {} arcs, {} patches in {} zones, {} ({:.1f} bytes a node)\n",
-      path, summary.nodes, summary.terminal, summary.arcs, summary.patches, summary.zones,
-      human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
+      "{}: {} nodes ({} terminal, {} ragged), {} arcs, {} patches in {} zones, {} ({:.1f} bytes a "
+      "node)\n",
+      path, summary.nodes, summary.terminal, summary.ragged, summary.arcs, summary.patches,
+      summary.zones, human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
   json["classes"] = Json::array();
   for (size_t c = 0; c < summary.classes.size(); ++c) {
     const auto reach = nodes->reach(static_cast<int32_t>(c));

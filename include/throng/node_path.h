@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "throng/base.h"
@@ -65,6 +66,11 @@ struct NodePathSummary {
   double seconds = 0;  ///< To make them.
 };
 
+/// By the parameters of a patch.
+struct NodeSquare {
+  double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
+};
+
 /// Finds ways for one class over nodes. The nodes are shared by all copies; each copy has its own
 /// memory for searching: give every thread one. No allocation once it is warm.
 class THRONG_API NodePathFinder {
@@ -80,6 +86,12 @@ class THRONG_API NodePathFinder {
 
   /// The place of the class that is nearest to a position, or nowhere within `reach`. [m, m]
   [[nodiscard]] NodePlace find_place(Vec3d position, double reach) const;
+
+  /// A square of a node's patch that holds two of its places, a leg of a way, and on which the
+  /// class may go straight from anywhere to anywhere; none if the finder knows none. [s and t 0 to
+  /// 1]
+  [[nodiscard]] std::optional<NodeSquare> square(uint32_t node, double from_s, double from_t,
+                                                 double to_s, double to_t) const;
 
   /// A way of little cost: A* over the middles of the lines along which nodes touch, then pulled
   /// taut within the nodes that it leads over. `spacing` is how far its points on curved ground

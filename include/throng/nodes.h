@@ -80,9 +80,12 @@ struct THRONG_API NodeBins {
   }
 };
 
-/// A sub-patch and what bodies may rely on everywhere in it.
+/// A sub-patch and what bodies may rely on everywhere in it. Along walls level tiles have *ragged*
+/// nodes: some of a block's 8 x 8 cells, each of its classes on some of them, which hold together
+/// (Nodes::ragged_cells).
 struct NodeInfo {
-  uint16_t classes = 0;     ///< Bit per class: its body may stand anywhere in the sub-patch.
+  /// Bit per class: its body may stand anywhere in the sub-patch, or somewhere in a ragged one.
+  uint16_t classes = 0;
   uint8_t inclination = 0;  ///< Steepest surface. [code]
   /// Free height along the normal, above what any class climbs over (level tiles: straight up,
   /// above the floor). [code]
@@ -96,7 +99,8 @@ struct NodeInfo {
   uint8_t level = 0;     ///< The node is one of 2^level x 2^level blocks of the patch,
   uint8_t s = 0, t = 0;  ///< namely this one.
   uint32_t parent1 = 0;  ///< Smallest node around it, plus one; 0: none.
-  float area = 0;        ///< [m^2]
+  float area = 0;        ///< Of the sub-patch; of a ragged node's cells. [m^2]
+  uint64_t cells = 0;    ///< Ragged: which of its block's cells it is, bit 8 t + s. 0: all.
 };
 
 /// A way out of a node. Its opposite stands at the other node, always, save of drops and of jumps
@@ -115,6 +119,7 @@ struct NodeArc {
 struct NodeSummary {
   uint64_t nodes = 0;
   uint64_t terminal = 0;
+  uint64_t ragged = 0;
   uint64_t arcs = 0;  ///< Two a link.
   uint64_t patches = 0;
   uint64_t bezier_patches = 0;
@@ -174,8 +179,14 @@ class THRONG_API Nodes {
   [[nodiscard]] uint32_t node_count() const;
   [[nodiscard]] NodeInfo node(uint32_t node) const;
   [[nodiscard]] std::vector<NodeArc> arcs(uint32_t node) const;
-  /// Corners of a node's sub-patch, in the order of BezierPatch's vertices, at the ground. [m]
+  /// Those cells of a ragged node on which a class may stand, bit 8 t + s of its block of 8 x 8; 0
+  /// of nodes that are not ragged and of classes that are not the node's.
+  [[nodiscard]] uint64_t ragged_cells(int32_t avatar_class, uint32_t node) const;
+  /// Corners of a node's sub-patch, in the order of BezierPatch's vertices, at the ground; of a
+  /// ragged node's block, where there may be none. [m]
   [[nodiscard]] std::array<Vec3d, 4> corners(uint32_t node) const;
+  /// The ground in the middle of a node; of a ragged one, in the middle of one of its cells. [m]
+  [[nodiscard]] Vec3d middle(uint32_t node) const;
   /// The ground at (s, t) of the parameters of a node's patch, in the node or not. [m, 0 to 1]
   [[nodiscard]] Vec3d point(uint32_t node, double s, double t) const;
   /// The place at (s, t) of the patch's parameters, which must lie in the node; nowhere if the

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <tuple>
@@ -28,6 +29,8 @@ namespace throng {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+static_assert(kRaggedLevel + kRaggedDepth == kTileDepth);
 
 Result<void> check(const World& world, const Scene& scene, const NodeConfig& config) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
@@ -158,19 +161,33 @@ class NodeBaker {
     });
   }
 
-  // The cells of level tiles are read again for their links: kept, they would fill the memory.
   [[nodiscard]] PatchCells cells_of(const PatchSource& source) const {
     if (source.kind == PatchKind::kBezier) return cells_[source.source].promise;
     return tile_cells(world_, source.source, config_.classes, bins_);
   }
 
+  // And links within each patch, while its cells are at hand: all of them would fill the memory.
   void grow_trees() {
     std::vector<PatchTree> trees(sources_.size());
+    inside_.resize(sources_.size());
     parallel_for(sources_.size(), config_.workers, [&](size_t p) {
-      if (!context_.cancel) trees[p] = build_tree(cells_of(sources_[p]));
+      if (context_.cancel) return;
+      const PatchCells cells = cells_of(sources_[p]);
+      NodeForest alone;
+      alone.add(build_tree(cells));
+      NodeLinker linker(alone);
+      linker.link_inside(0, cells);
+      inside_[p] = linker.take();
+      trees[p] = std::move(alone.trees[0]);
     });
     forest_.first = {0};
-    for (PatchTree& tree : trees) forest_.add(std::move(tree));
+    for (size_t p = 0; p < trees.size(); ++p) {
+      for (NodeLink& link : inside_[p]) {
+        link.a += forest_.size();
+        link.b += forest_.size();
+      }
+      forest_.add(std::move(trees[p]));
+    }
     promises_.reserve(forest_.size());
     for (const PatchTree& tree : forest_.trees) {
       for (const PatchNode& node : tree.nodes) promises_.push_back(node.promise);
@@ -215,6 +232,9 @@ class NodeBaker {
     parallel_for(lists.size(), config_.workers, [&](size_t i) {
       if (!context_.cancel) lists[i] = tile_pairs(data_, tiles[i].first, tiles[i].second);
     });
+    size_t count = pairs_.size();
+    for (const auto& list : lists) count += list.size();
+    pairs_.reserve(count);
     for (auto& list : lists) take(std::move(list), level_, level_);
   }
 
@@ -233,14 +253,16 @@ class NodeBaker {
                           .tiles = plan_.has_tiles,
                           .levels = levels_,
                           .wanted = config_.classes};
+    uint32_t wide = 1;  // [cells]
+    while (wide < 8 && 2 * wide * data_.summary.cell <= 0.5) wide *= 2;
     for (const NodeDrop& drop : find_drops(input, config_.workers)) {
       const auto patch_of = [&](const DropEnd& end) {
         return (end.kind == PatchKind::kBezier ? bezier_ : level_)[end.source];
       };
       if (patch_of(drop.from) == kNoNode || patch_of(drop.to) == kNoNode) continue;
-      // Of level tiles one from each block of 8 x 8 cells will do.
+      // Of level tiles one every half metre will do.
       const bool on_tile = drop.from.kind == PatchKind::kLevelTile;
-      const uint32_t block = drop.from.cell / 512 * 8 + drop.from.cell % 64 / 8;
+      const uint32_t block = drop.from.cell / 64 / wide * 64 + drop.from.cell % 64 / wide;
       leaps_.push_back({patch_of(drop.from), drop.from.cell, patch_of(drop.to), drop.to.cell});
       pairs_.push_back({.patch_a = patch_of(drop.from),
                         .cell_a = drop.from.cell,
@@ -341,14 +363,7 @@ class NodeBaker {
       }
       if (changed) merge_node_links(links);
     };
-    inside_.resize(sources_.size());
-    parallel_for(sources_.size(), config_.workers, [&](size_t p) {
-      if (context_.cancel || forest_.trees[p].nodes.size() < 2) return;
-      NodeLinker linker(forest_);
-      linker.link_inside(static_cast<uint32_t>(p), cells_of(sources_[p]));
-      inside_[p] = linker.take();
-      name_climbs(inside_[p]);
-    });
+    parallel_for(sources_.size(), config_.workers, [&](size_t p) { name_climbs(inside_[p]); });
     across_ = link_across();
     name_climbs(across_);
   }
@@ -410,7 +425,8 @@ class NodeBaker {
                                const PatchNode& n) const {
     const int32_t size = 1 << (tree.depth - n.level);
     if (source.kind == PatchKind::kLevelTile) {
-      return size * size * data_.summary.cell * data_.summary.cell;
+      const int32_t cells = n.cells != 0 ? std::popcount(n.cells) : size * size;
+      return cells * data_.summary.cell * data_.summary.cell;
     }
     double area = 0;
     const BezierCells& cells = cells_[source.source];
@@ -528,11 +544,17 @@ class NodeBaker {
         const PatchNode& node = tree.nodes[n];
         const uint32_t id = forest_.first[p] + static_cast<uint32_t>(n);
         const uint8_t width = bins_.width_code(widths_[p][n]);
+        if (node.cells != 0) {
+          content.ragged.emplace_back(static_cast<uint32_t>(content.nodes.size()),
+                                      static_cast<uint32_t>(node.cells),
+                                      static_cast<uint32_t>(node.cells >> 32));
+        }
         content.nodes.emplace_back(
             node.promise.classes, node.level, node.s, node.t,
             static_cast<uint8_t>(node.promise.inclination << 4 | node.promise.height),
             static_cast<uint8_t>(node.promise.headroom << 4 | width),
-            static_cast<uint8_t>(node.terminal ? 1 : 0),
+            static_cast<uint8_t>((node.terminal ? kTerminalFlag : 0) |
+                                 (node.cells != 0 ? kRaggedFlag : 0)),
             node.parent == kNoNode ? UINT32_MAX : first + node.parent,
             static_cast<float>(area_of(source, tree, node)),
             static_cast<uint32_t>(content.arcs.size()));

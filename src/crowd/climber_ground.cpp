@@ -20,8 +20,9 @@ constexpr int kShorter = 8;         // tries to make a move short enough
 
 }  // namespace
 
-ClimberGround::ClimberGround(const World& world, const Nodes& nodes, int32_t avatar_class)
-    : nodes_(&nodes), avatar_class_(avatar_class) {
+ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const NodePathFinder& finder,
+                             int32_t avatar_class)
+    : nodes_(&nodes), finder_(&finder), avatar_class_(avatar_class) {
   const WorldData& data = *world.data();
   const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(avatar_class)];
   origin_ = data.summary.origin;
@@ -112,6 +113,25 @@ ClimberGround::Square ClimberGround::square_of(uint32_t node1) const {
           (info.t + 1) * side, info.kind,     info.source};
 }
 
+ClimberGround::Square ClimberGround::square_of(const ClimbStance& at, double s, double t) const {
+  Square square = square_of(at.node1);
+  if (nodes_->node(at.node1 - 1).cells == 0) return square;
+  const auto known = finder_->square(at.node1 - 1, at.s, at.t, s, t);
+  const NodeSquare free = known ? *known : NodeSquare{at.s, at.t, at.s, at.t};
+  square.s0 = free.s0;
+  square.t0 = free.t0;
+  square.s1 = free.s1;
+  square.t1 = free.t1;
+  return square;
+}
+
+ClimberGround::Square ClimberGround::square_here(const Climb& climb) const {
+  const ClimbStance& at = climb.at;
+  if (climb.count == 0) return square_of(at, at.s, at.t);
+  const ClimbPoint& aim = climb.points[std::min<size_t>(at.next, climb.count - 1u)];
+  return square_of(at, aim.s, aim.t);
+}
+
 double ClimberGround::Square::part_inside(double s, double t, double ds, double dt) const {
   double part = 1;
   const auto cut = [&](double at, double way, double low, double high) {
@@ -157,7 +177,7 @@ Vec3d ClimberGround::way_ahead(const Climb& climb) const {
     // Nearly only turning: as its middle moves.
     return way + (to->axis - climb.axis) * (height_ / 2);
   }
-  const Square here = square_of(at.node1);
+  const Square here = square_here(climb);
   size_t aim = std::min<size_t>(at.next, climb.count - 1u);
   const auto off = [&](size_t point) {
     return std::pair{climb.points[point].s - at.s, climb.points[point].t - at.t};
@@ -299,7 +319,7 @@ std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3
                                                         double most) const {
   const ClimbStance& at = climb.at;
   if (at.in_air != 0) return std::nullopt;
-  const Square here = square_of(at.node1);
+  const Square here = square_here(climb);
   const Slope slope = slope_at(here, at);
   const double a = dot(slope.along_s, slope.along_s), b = dot(slope.along_s, slope.along_t);
   const double c = dot(slope.along_t, slope.along_t), det = a * c - b * b;

@@ -7,6 +7,7 @@
 
 #include "crowd/climb.h"
 #include "crowd/flight.h"
+#include "throng/node_path.h"
 #include "throng/nodes.h"
 #include "throng/world.h"
 
@@ -27,7 +28,9 @@ struct ClimbHold {
 
 class ClimberGround {
  public:
-  ClimberGround(const World& world, const Nodes& nodes, int32_t avatar_class);
+  /// [the finder is the class's, and outlives this]
+  ClimberGround(const World& world, const Nodes& nodes, const NodePathFinder& finder,
+                int32_t avatar_class);
 
   /// Where the class stands on a node; none where it may not.
   [[nodiscard]] std::optional<ClimbPose> pose(uint32_t node1, double s, double t) const;
@@ -73,7 +76,11 @@ class ClimberGround {
   struct Slope {
     Vec3d along_s, along_t;
   };
+  /// The node's, or, of a ragged node, what is known to be free around a leg to (s, t): else only
+  /// the place itself.
+  [[nodiscard]] Square square_of(const ClimbStance& at, double s, double t) const;
   [[nodiscard]] Square square_of(uint32_t node1) const;
+  [[nodiscard]] Square square_here(const Climb& climb) const;
   [[nodiscard]] Slope slope_at(const Square& square, const ClimbStance& at) const;
   [[nodiscard]] std::optional<ClimbPose> pose_of_point(const Climb& climb, size_t point) const;
   [[nodiscard]] bool enters_next(const Climb& climb, const Square& here, double ds,
@@ -82,6 +89,7 @@ class ClimberGround {
   bool go_through_air(const Climb& climb, Step& step, double& most) const;
 
   const Nodes* nodes_;
+  const NodePathFinder* finder_;
   int32_t avatar_class_;
   Vec3d origin_;
   double unit_ = 0;                // [m]

@@ -90,7 +90,7 @@ Result<void> Crowd::State::open_nodes(int32_t number, ClassParts& parts, Context
   if (!finder) return finder.error();
   parts.node_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
   parts.node_paths.resize(parts.node_finders.size());
-  parts.nodes.emplace(world, config.nodes, number);
+  parts.nodes.emplace(world, config.nodes, parts.node_finders[0], number);
   return {};
 }
 
@@ -179,7 +179,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   path.points.clear();
   // Now to anywhere, now to a place of the same node.
   const NodeInfo info = config.nodes.node(climb.at.node1 - 1);
-  const bool is_roomy = info.area > kRoomy * kRoomy;
+  const bool is_roomy = info.cells == 0 && info.area > kRoomy * kRoomy;
   if (!is_roomy || random_below(seed, stream | 1, sub_step, 2) == 0) {
     const NodePlace to =
         config.nodes.random_place(body.avatar_class, seed, random_u64(seed, stream | 2, sub_step));
@@ -187,10 +187,18 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   }
   if (path.points.size() < 2) {
     const double side = 1.0 / (1 << info.level);
-    const NodePlace to =
-        config.nodes.place(body.avatar_class, climb.at.node1 - 1,
-                           (info.s + random_unit(seed, stream | 2, 2 * sub_step)) * side,
-                           (info.t + random_unit(seed, stream | 2, 2 * sub_step + 1)) * side);
+    NodeSquare square{info.s * side, info.t * side, (info.s + 1) * side, (info.t + 1) * side};
+    if (info.cells != 0) {
+      square = parts.node_finders[w]
+                   .square(climb.at.node1 - 1, climb.at.s, climb.at.t, climb.at.s, climb.at.t)
+                   .value_or(NodeSquare{climb.at.s, climb.at.t, climb.at.s, climb.at.t});
+    }
+    const auto within = [&](double low, double high, uint64_t draw) {
+      return low + random_unit(seed, stream | 2, draw) * (high - low);
+    };
+    const NodePlace to = config.nodes.place(body.avatar_class, climb.at.node1 - 1,
+                                            within(square.s0, square.s1, 2 * sub_step),
+                                            within(square.t0, square.t1, 2 * sub_step + 1));
     path.points.clear();
     path.points.push_back({.place = from, .on_surface = true});
     if (to) path.points.push_back({.place = to, .on_surface = true});

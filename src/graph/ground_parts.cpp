@@ -20,8 +20,10 @@ std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& lega
   StepCuts cuts;
   std::array<uint16_t, kBlocks * 64> samples;
   LevelView view = level.view;
-  if (view.floor != nullptr) unpack_floor(view, samples.data());
-  if (view.floor != nullptr) view.samples = samples.data();
+  if (view.floor != nullptr && view.samples == nullptr) {
+    unpack_floor(view, samples.data());
+    view.samples = samples.data();
+  }
   const auto is_high = [&](int32_t x, int32_t z, int32_t nx, int32_t nz) {
     return std::abs(view.sample(x, z) - view.sample(nx, nz)) > step;
   };

@@ -14,7 +14,7 @@ namespace throng {
 CellRows legal_rows(const GroundLevel& level);
 
 /// Steps between neighbouring legal cells that are too high for the class; none where the bake has
-/// proved that there are none. [mm]
+/// proved that there are none. Unpacks the floor, unless the level's view has samples. [mm]
 std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& legal, int32_t step);
 
 }  // namespace throng

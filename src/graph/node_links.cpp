@@ -11,7 +11,7 @@
 namespace throng {
 namespace {
 
-constexpr size_t kLongestChain = 16;  // a patch is halved at most 6 times
+constexpr size_t kLongestChain = 24;  // a patch is halved at most 6 times, classes are at most 16
 
 }  // namespace
 
@@ -20,11 +20,11 @@ void NodeForest::add(PatchTree tree) {
   trees.push_back(std::move(tree));
 }
 
-uint32_t NodeLinker::chain(uint32_t patch, uint32_t leaf, std::span<uint32_t> out) const {
+uint32_t NodeLinker::chain(uint32_t patch, size_t cell, std::span<uint32_t> out) const {
+  const PatchTree& tree = forest_->trees[patch];
   uint32_t count = 0;
-  for (uint32_t local = leaf - forest_->first[patch]; local != kNoNode;
-       local = forest_->trees[patch].nodes[local].parent) {
-    out[count++] = forest_->first[patch] + local;
+  for (uint32_t n = tree.leaf_of(cell); n != kNoNode; n = tree.next_around(n, cell)) {
+    out[count++] = forest_->first[patch] + n;
   }
   return count;
 }
@@ -43,16 +43,25 @@ void NodeLinker::add(uint32_t a, uint32_t b, uint16_t classes, LinkKind kind) {
   links_.push_back({a, b, classes, kind, leap1_, turned, one_way_, spot_});
 }
 
-void NodeLinker::link_chains(uint32_t patch_a, uint32_t leaf_a, uint32_t patch_b, uint32_t leaf_b,
+void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, size_t cell_b,
                              uint16_t classes, LinkKind kind) {
   std::array<uint32_t, kLongestChain> chain_a, chain_b;
-  uint32_t count_a = chain(patch_a, leaf_a, chain_a), count_b = chain(patch_b, leaf_b, chain_b);
+  uint32_t count_a = chain(patch_a, cell_a, chain_a), count_b = chain(patch_b, cell_b, chain_b);
   // Nodes that hold both cells need no link; their classes are free to go.
   uint32_t inside = 0;
   while (count_a > 0 && count_b > 0 && chain_a[count_a - 1] == chain_b[count_b - 1]) {
-    inside = node(patch_a, chain_a[count_a - 1]).promise.classes;
+    inside |= node(patch_a, chain_a[count_a - 1]).promise.classes;
     --count_a;
     --count_b;
+  }
+  // (Of ragged nodes others may lie between.)
+  for (uint32_t i = 0; i < count_a; ++i) {
+    const auto same = std::find(chain_b.begin(), chain_b.begin() + count_b, chain_a[i]);
+    if (same == chain_b.begin() + count_b) continue;
+    inside |= node(patch_a, chain_a[i]).promise.classes;
+    std::copy(same + 1, chain_b.begin() + count_b--, same);
+    std::copy(chain_a.begin() + i + 1, chain_a.begin() + count_a--, chain_a.begin() + i);
+    --i;
   }
   uint32_t linked = inside;
   const auto to_less_restrictive = [&](uint32_t from_patch, std::span<const uint32_t> from,
@@ -97,23 +106,40 @@ void NodeLinker::link_chains(uint32_t patch_a, uint32_t leaf_a, uint32_t patch_b
 void NodeLinker::link_inside(uint32_t patch, const PatchCells& cells) {
   const PatchTree& tree = forest_->trees[patch];
   if (tree.leaf.empty() || tree.nodes.empty()) return;
-  const int32_t side = cells.side();
   const auto visit = [&](size_t here, size_t next, const std::vector<uint16_t>& cuts) {
-    const uint32_t a = tree.leaf[here], b = tree.leaf[next];
-    if (a == b || a == kNoNode || b == kNoNode) return;
+    const uint32_t a = tree.leaf_of(here), b = tree.leaf_of(next);
+    // (One ragged node may be the first around both, and others around one.)
+    if (a == kNoNode || b == kNoNode || (a == b && tree.nodes[a].cells == 0)) return;
     const uint16_t together = cells.cells[here].classes & cells.cells[next].classes;
     const uint16_t cut = cuts.empty() ? uint16_t{0} : cuts[here];
     const auto classes = static_cast<uint16_t>(together & ~cut);
     if (classes == 0) return;
-    const uint32_t first = forest_->first[patch];
-    link_chains(patch, first + a, patch, first + b, classes,
+    link_chains(patch, here, patch, next, classes,
                 (together & cut) != 0 ? LinkKind::kStep : LinkKind::kWalk);
   };
-  for (int32_t t = 0; t < side; ++t) {
-    for (int32_t s = 0; s < side; ++s) {
-      const size_t here = cells.index(s, t);
-      if (s + 1 < side) visit(here, here + 1, cells.cut_s);
-      if (t + 1 < side) visit(here, here + static_cast<size_t>(side), cells.cut_t);
+  // Blocks of cells that know their nodes together: all cells, or 8 x 8.
+  const int32_t blocks = 1 << tree.leaf_depth, size = cells.side() / blocks;
+  const auto divides = [&](uint32_t leaf) {
+    return leaf != kNoNode && tree.nodes[leaf].cells != 0;
+  };
+  for (int32_t t = 0; t < blocks; ++t) {
+    for (int32_t s = 0; s < blocks; ++s) {
+      const size_t block = (static_cast<size_t>(t) << tree.leaf_depth) + static_cast<size_t>(s);
+      const uint32_t leaf = tree.leaf[block];
+      const auto differs = [&](size_t other) { return tree.leaf[other] != leaf || divides(leaf); };
+      const bool inside = divides(leaf);
+      const bool east = s + 1 < blocks && differs(block + 1);
+      const bool south = t + 1 < blocks && differs(block + static_cast<size_t>(blocks));
+      if (leaf == kNoNode || (!inside && !east && !south)) continue;
+      for (int32_t j = 0; j < size; ++j) {
+        for (int32_t i = 0; i < size; ++i) {
+          const size_t here = cells.index(s * size + i, t * size + j);
+          if (i + 1 < size ? inside : east) visit(here, here + 1, cells.cut_s);
+          if (j + 1 < size ? inside : south) {
+            visit(here, here + static_cast<size_t>(cells.side()), cells.cut_t);
+          }
+        }
+      }
     }
   }
 }
@@ -122,12 +148,15 @@ void NodeLinker::link(const CellPair& pair) {
   const uint32_t a = forest_->leaf(pair.patch_a, pair.cell_a);
   const uint32_t b = forest_->leaf(pair.patch_b, pair.cell_b);
   if (a == kNoNode || b == kNoNode || a == b) return;
-  const uint16_t classes =
-      node(pair.patch_a, a).promise.classes & node(pair.patch_b, b).promise.classes & pair.classes;
+  const auto classes =
+      static_cast<uint16_t>(forest_->trees[pair.patch_a].classes_on(pair.cell_a) &
+                            forest_->trees[pair.patch_b].classes_on(pair.cell_b) & pair.classes);
   leap1_ = pair.leap1;
   one_way_ = pair.one_way;
   spot_ = pair.spot;
-  if (classes != 0) link_chains(pair.patch_a, a, pair.patch_b, b, classes, pair.kind);
+  if (classes != 0) {
+    link_chains(pair.patch_a, pair.cell_a, pair.patch_b, pair.cell_b, classes, pair.kind);
+  }
   leap1_ = 0;
   one_way_ = false;
   spot_ = 0;

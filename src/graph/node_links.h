@@ -71,9 +71,9 @@ class NodeLinker {
     return forest_->trees[patch].nodes[id - forest_->first[patch]];
   }
   /// Nodes that hold a cell, the smallest first.
-  uint32_t chain(uint32_t patch, uint32_t leaf, std::span<uint32_t> out) const;
+  uint32_t chain(uint32_t patch, size_t cell, std::span<uint32_t> out) const;
 
-  void link_chains(uint32_t patch_a, uint32_t leaf_a, uint32_t patch_b, uint32_t leaf_b,
+  void link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, size_t cell_b,
                    uint16_t classes, LinkKind kind);
 
   const NodeForest* forest_;

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "core/parallel.h"
+#include "graph/ground_parts.h"
 #include "graph/patch_pairs.h"
 #include "graph/tile_cells.h"
+#include "world/place.h"
 
 // The class's largest nodes tile all that it can stand on: of the nodes around a cell that hold its
 // bit, the outermost. Inside one nothing is in the way, so what is left to know is where two of
@@ -47,7 +50,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
     steepest = std::max(steepest, avatar.max_slope);
   }
   mesh.walking_ = data.summary.bins.inclination_code(steepest);
-  mesh.list_blocks();
+  mesh.list_blocks(workers);
   std::vector<std::vector<NodePortal>> lists(mesh.patches_.size());
   parallel_for(lists.size(), workers, [&](size_t p) {
     if (!context.cancel) lists[p] = mesh.inside_patch(static_cast<uint32_t>(p));
@@ -74,10 +77,176 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
   return mesh;
 }
 
-void NodeMesh::list_blocks() {
+namespace {
+
+// The squares of one patch for a class, in the order of its quadtree.
+class BlockCutter {
+ public:
+  BlockCutter(const NodeData& data, const NodeZone& zone, const format::NodePatch& patch,
+              const NodeSurface& surface, uint32_t first_node, uint32_t place, int32_t avatar_class)
+      : data_(data),
+        zone_(zone),
+        patch_(patch),
+        surface_(surface),
+        first_node_(first_node),
+        place_(place),
+        class_(avatar_class) {}
+
+  std::vector<NodeBlock> cut() {
+    const uint32_t end = patch_.first_node() + patch_.nodes();
+    for (uint32_t n = patch_.first_node(); n < end; ++n) {
+      const format::Node& node = zone_.nodes()[n];
+      if (is_ragged(node)) {
+        n = cut_ragged(n, end) - 1;
+        continue;
+      }
+      const bool inside = node.parent() != UINT32_MAX && stands(zone_.nodes()[node.parent()]);
+      if (stands(node) && !inside) cut_block(block_of_node(n));
+    }
+    return std::move(blocks_);
+  }
+
+ private:
+  static bool is_ragged(const format::Node& node) { return (node.flags() & kRaggedFlag) != 0; }
+
+  [[nodiscard]] bool stands(const format::Node& node) const {
+    return (node.classes() >> class_ & 1) != 0;
+  }
+
+  [[nodiscard]] NodeBlock block_of_node(uint32_t n) const {
+    const format::Node& node = zone_.nodes()[n];
+    return {.patch = place_,
+            .node = first_node_ + n,
+            .level = node.level(),
+            .s = node.s(),
+            .t = node.t(),
+            .inclination = static_cast<uint8_t>(node.surface() >> 4)};
+  }
+
+  // Quarters, quarters of quarters ... until a block is small enough. Flat or bent, its diagonals
+  // tell: a patch that comes back to where it began is cut by its depth.
+  void cut_block(NodeBlock block) {
+    if (block.level >= surface_.depth) {
+      blocks_.push_back(block);
+      return;
+    }
+    const double side = block.side(), s = block.s * side, t = block.t * side;
+    const Vec3d middle = surface_.at(s + side / 2, t + side / 2);
+    double longest = 0;
+    for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+      const double inset = surface_.points == nullptr ? kInset : 0;
+      longest = std::max(
+          longest, length(surface_.at(s + i * (side - inset), t + j * (side - inset)) - middle));
+    }
+    if (longest <= kLargestBlock * 0.7072) {
+      blocks_.push_back(block);
+      return;
+    }
+    for (uint8_t q = 0; q < 4; ++q) cut_block(quarter(block, q));
+  }
+
+  static NodeBlock quarter(NodeBlock block, uint8_t q) {
+    ++block.level;
+    block.s = static_cast<uint8_t>(2 * block.s + q % 2);
+    block.t = static_cast<uint8_t>(2 * block.t + q / 2);
+    return block;
+  }
+
+  // All ragged nodes of one block, which follow each other from `first` on. Returns where they end.
+  uint32_t cut_ragged(uint32_t first, uint32_t end) {
+    const format::Node& node = zone_.nodes()[first];
+    pieces_.clear();
+    uint32_t n = first;
+    for (; n < end; ++n) {
+      const format::Node& other = zone_.nodes()[n];
+      if (!is_ragged(other) || other.s() != node.s() || other.t() != node.t()) break;
+      if (!stands(other)) continue;
+      const uint64_t cells = zone_.cells_of(n) & legal_in(node.s(), node.t());
+      if (cells != 0) pieces_.push_back({cells, n});
+    }
+    if (!pieces_.empty()) cut_square(block_of_node(first));
+    return n;
+  }
+
+  // A square of cells, if all of them are of one piece and no step in it is too high; or quarters.
+  void cut_square(const NodeBlock& square) {
+    const int32_t side = 64 >> square.level;
+    const int32_t s = square.s * side & 7, t = square.t * side & 7;
+    const uint64_t row = (uint64_t{1} << side) - 1;
+    uint64_t all = 0, inner_s = 0, inner_t = 0;
+    for (int32_t j = 0; j < side; ++j) {
+      all |= row << (8 * (t + j) + s);
+      inner_s |= (row >> 1) << (8 * (t + j) + s);
+      if (j + 1 < side) inner_t |= row << (8 * (t + j) + s);
+    }
+    uint64_t some = 0;
+    for (const Piece& piece : pieces_) {
+      some |= piece.cells & all;
+      if ((all & ~piece.cells) != 0) continue;
+      if ((cuts_in(square, true) & inner_s) != 0 || (cuts_in(square, false) & inner_t) != 0) break;
+      NodeBlock block = block_of_node(piece.node);
+      block.level = square.level;
+      block.s = square.s;
+      block.t = square.t;
+      cut_block(block);
+      return;
+    }
+    if (some == 0) return;
+    for (uint8_t q = 0; q < 4; ++q) cut_square(quarter(square, q));
+  }
+
+  void read_ground() {
+    if (ground_) return;
+    ground_ = ground_level(*data_.world.data(), surface_.source, class_);
+    const auto& avatar = data_.world.data()->summary.classes[static_cast<size_t>(class_)];
+    cuts_ = step_cuts(*ground_, legal_rows(*ground_), step_mm(avatar));
+  }
+
+  [[nodiscard]] uint64_t legal_in(uint32_t s, uint32_t t) {
+    read_ground();
+    return ground_->legal_in(t * 8 + s);
+  }
+
+  // Steps from cells of the 8 x 8 around a square that are too high, along s or along t.
+  [[nodiscard]] uint64_t cuts_in(const NodeBlock& square, bool along_s) {
+    if (!cuts_) return 0;
+    const CellRows& rows = along_s ? cuts_->across : cuts_->along;
+    const size_t s0 = size_t{square.s} * (64 >> square.level) & ~size_t{7};
+    const size_t t0 = size_t{square.t} * (64 >> square.level) & ~size_t{7};
+    uint64_t cells = 0;
+    for (size_t j = 0; j < 8; ++j) cells |= (rows[t0 + j] >> s0 & 0xff) << (8 * j);
+    return cells;
+  }
+
+  const NodeData& data_;
+  const NodeZone& zone_;
+  const format::NodePatch& patch_;
+  const NodeSurface& surface_;
+  uint32_t first_node_;  // of the zone, of all
+  uint32_t place_;       // of the patch in the mesh
+  int32_t class_;
+  struct Piece {
+    uint64_t cells = 0;
+    uint32_t node = 0;
+  };
+
+  std::vector<Piece> pieces_;  // of the class, of the ragged nodes of one block
+  std::optional<GroundLevel> ground_;
+  std::optional<StepCuts> cuts_;
+  std::vector<NodeBlock> blocks_;
+};
+
+}  // namespace
+
+void NodeMesh::list_blocks(int32_t workers) {
   const NodeData& data = *nodes_.data();
-  first_block_ = {0};
   of_level_.assign(data.world.data()->level_count, kNoNode);
+  struct Source {
+    const NodeZone* zone;
+    const format::NodePatch* patch;
+    uint32_t first;
+  };
+  std::vector<Source> sources;
   for (size_t s = 0; s < data.slots.size(); ++s) {
     const NodeZone& zone = *data.zone(s);
     const uint32_t first = data.slots[s]->first_node;
@@ -86,47 +255,20 @@ void NodeMesh::list_blocks() {
       patches_.push_back(surface_of(data, zone, patch));
       first_node_.push_back(first + patch.first_node());
       if (patches_[p].points == nullptr) of_level_[patches_[p].source] = p;
-      const auto stands = [&](const format::Node& node) {
-        return (node.classes() >> avatar_class_ & 1) != 0;
-      };
-      for (uint32_t n = patch.first_node(); n < patch.first_node() + patch.nodes(); ++n) {
-        const format::Node& node = zone.nodes()[n];
-        const bool inside = node.parent() != UINT32_MAX && stands(zone.nodes()[node.parent()]);
-        if (!stands(node) || inside) continue;
-        cut_block(p, {.patch = p,
-                      .node = first + n,
-                      .level = node.level(),
-                      .s = node.s(),
-                      .t = node.t(),
-                      .inclination = static_cast<uint8_t>(node.surface() >> 4)});
-      }
-      first_block_.push_back(static_cast<uint32_t>(blocks_.size()));
+      sources.push_back({&zone, &patch, first});
     }
   }
-}
-
-// Quarters, quarters of quarters ... until a block is small enough. Flat or bent, its diagonals
-// tell: a patch that comes back to where it began is cut by its depth.
-void NodeMesh::cut_block(uint32_t patch, NodeBlock block) {
-  const NodeSurface& surface = patches_[patch];
-  const double side = block.side(), s = block.s * side, t = block.t * side;
-  const Vec3d middle = surface.at(s + side / 2, t + side / 2);
-  double longest = 0;
-  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-    const double inset = surface.points == nullptr ? kInset : 0;
-    longest = std::max(longest,
-                       length(surface.at(s + i * (side - inset), t + j * (side - inset)) - middle));
-  }
-  if (block.level >= surface.depth || longest <= kLargestBlock * 0.7072) {
-    blocks_.push_back(block);
-    return;
-  }
-  for (uint8_t q = 0; q < 4; ++q) {
-    NodeBlock quarter = block;
-    ++quarter.level;
-    quarter.s = static_cast<uint8_t>(2 * block.s + q % 2);
-    quarter.t = static_cast<uint8_t>(2 * block.t + q / 2);
-    cut_block(patch, quarter);
+  std::vector<std::vector<NodeBlock>> lists(sources.size());
+  parallel_for(lists.size(), workers, [&](size_t p) {
+    const Source& source = sources[p];
+    lists[p] = BlockCutter(data, *source.zone, *source.patch, patches_[p], source.first,
+                           static_cast<uint32_t>(p), avatar_class_)
+                   .cut();
+  });
+  first_block_ = {0};
+  for (const auto& list : lists) {
+    blocks_.insert(blocks_.end(), list.begin(), list.end());
+    first_block_.push_back(static_cast<uint32_t>(blocks_.size()));
   }
 }
 

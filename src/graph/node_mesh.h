@@ -18,7 +18,8 @@
 namespace throng {
 
 /// A square of a patch on all of which the class may stand, and go straight by parameters: one of
-/// the largest nodes that hold the class, or a part of it no larger than kLargestBlock.
+/// the largest nodes that hold the class, or a part of it no larger than kLargestBlock; of a ragged
+/// node one of the largest squares of its quadtree on which it can.
 struct NodeBlock {
   uint32_t patch = 0;
   uint32_t node = 0;
@@ -81,8 +82,7 @@ class NodeMesh {
  private:
   NodeMesh(Nodes nodes, int32_t avatar_class) : nodes_(nodes), avatar_class_(avatar_class) {}
 
-  void list_blocks();
-  void cut_block(uint32_t patch, NodeBlock block);
+  void list_blocks(int32_t workers);
   [[nodiscard]] std::vector<NodePortal> inside_patch(uint32_t patch) const;
   void open_doors();
   [[nodiscard]] std::vector<NodePortal> over_tile(int32_t tile_x, int32_t tile_z) const;

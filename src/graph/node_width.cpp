@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
 #include "core/parallel.h"
+#include "world/cell_blocks.h"
 
 namespace throng {
 namespace {
@@ -105,9 +107,14 @@ class Flood {
         cross_(cross),
         most_(most),
         balls_(balls),
-        round_seen_(size_t{1} << (2 * forest.trees[home].depth), 0) {}
+        round_seen_(forest.trees[home].leaf_depth < forest.trees[home].depth
+                        ? 0
+                        : size_t{1} << (2 * forest.trees[home].depth),
+                    0) {}
 
+  // A ragged node has a more restrictive cell in its block, so it promises none.
   double width(const PatchNode& node) {
+    if (node.cells != 0) return 0;
     const uint32_t patch = home_;
     const PatchTree& tree = forest_.trees[patch];
     const int32_t size = 1 << (tree.depth - node.level);
@@ -124,12 +131,18 @@ class Flood {
     middle_ = {middle_.x / count, middle_.y / count, middle_.z / count, 0};
     promise_ = node.promise;
     nearest_ = most_;
+    is_home_known_ = tree.leaf_depth < tree.depth;
+    if (is_home_known_ && ends_on_tile(tree, s0 + size / 2, t0 + size / 2)) return nearest_;
     seen_.clear();
     ++round_;
     ring_.clear();
-    for (int32_t i = (size - 1) / 2; i <= size / 2; ++i) {
-      for (int32_t j = (size - 1) / 2; j <= size / 2; ++j) {
-        enter(patch, cell_of(tree, s0 + i, t0 + j));
+    if (is_home_known_) {
+      enter_rim(tree);
+    } else {
+      for (int32_t i = (size - 1) / 2; i <= size / 2; ++i) {
+        for (int32_t j = (size - 1) / 2; j <= size / 2; ++j) {
+          enter(patch, cell_of(tree, s0 + i, t0 + j));
+        }
       }
     }
     while (!ring_.empty()) {
@@ -141,6 +154,80 @@ class Flood {
   }
 
  private:
+  // Of a level tile rows of bits tell the nearest cell that is more restrictive, and a straight
+  // line there leads over none that is. Is that nearer than the tile's rim, where the flood must
+  // tell? The middle is the corner before cell (s, t). [0 < s, t < 64]
+  bool ends_on_tile(const PatchTree& tree, int32_t s, int32_t t) {
+    const CellRows& open = open_rows(tree);
+    for (int32_t beyond = 0; beyond < 64; ++beyond) {
+      bool any = false;
+      for (const int32_t row : {t - 1 - beyond, t + beyond}) {
+        if (row < 0 || row >= 64) continue;
+        const uint64_t shut = ~open[static_cast<size_t>(row)];
+        const uint64_t before = shut << (64 - s), after = shut >> s;
+        any |= distance(home_, cell_of(tree, s, row)) < nearest_;
+        if (before != 0) {
+          nearest_ = std::min(
+              nearest_, distance(home_, cell_of(tree, s - 1 - std::countl_zero(before), row)));
+        }
+        if (after != 0) {
+          nearest_ =
+              std::min(nearest_, distance(home_, cell_of(tree, s + std::countr_zero(after), row)));
+        }
+      }
+      if (!any) break;
+    }
+    const int32_t rim = std::min({s, t, 64 - s, 64 - t});
+    return nearest_ <= distance(home_, cell_of(tree, s - rim, t));  // as far off as its nearest
+  }
+
+  // The flood goes on over the tile's rim.
+  void enter_rim(const PatchTree& tree) {
+    for (int32_t i = 0; i < 64; ++i) {
+      for (const uint32_t cell :
+           {cell_of(tree, 0, i), cell_of(tree, 63, i), cell_of(tree, i, 0), cell_of(tree, i, 63)}) {
+        if (distance(home_, cell) < nearest_) ring_.push_back({home_, cell});
+      }
+    }
+  }
+
+  // The cells of the patch that promise what the node does.
+  const CellRows& open_rows(const PatchTree& tree) {
+    for (const auto& [promise, rows] : open_) {
+      if (promise == promise_) return rows;
+    }
+    CellRows rows{};
+    const int32_t blocks = 1 << tree.leaf_depth, size = 64 / blocks;
+    for (int32_t t = 0; t < blocks; ++t) {
+      for (int32_t s = 0; s < blocks; ++s) {
+        const uint32_t first = cell_of(tree, s * size, t * size);
+        const uint32_t leaf = tree.leaf_of(first);
+        const bool ragged = tree.is_ragged(first);
+        if (!ragged && (leaf == kNoNode || !covers(tree.nodes[leaf].promise, promise_))) continue;
+        for (int32_t j = 0; j < size; ++j) {
+          uint64_t bits = (uint64_t{1} << size) - 1;
+          if (ragged) {
+            bits = 0;
+            for (int32_t i = 0; i < size; ++i) {
+              bits |= uint64_t{covers_here(tree, cell_of(tree, s * size + i, t * size + j))} << i;
+            }
+          }
+          rows[static_cast<size_t>(t * size + j)] |= bits << (s * size);
+        }
+      }
+    }
+    return open_.emplace_back(promise_, rows).second;
+  }
+
+  // Does a cell promise what the node does?
+  [[nodiscard]] bool covers_here(const PatchTree& tree, uint32_t cell) const {
+    const uint32_t leaf = tree.nodes.empty() ? kNoNode : tree.leaf_of(cell);
+    if (leaf == kNoNode) return false;
+    Promise here = tree.nodes[leaf].promise;
+    here.classes = tree.classes_on(cell);
+    return covers(here, promise_);
+  }
+
   static uint32_t cell_of(const PatchTree& tree, int32_t s, int32_t t) {
     return (static_cast<uint32_t>(t) << tree.depth) + static_cast<uint32_t>(s);
   }
@@ -154,7 +241,7 @@ class Flood {
 
   void enter(uint32_t patch, uint32_t cell) {
     if (patch == home_) {
-      if (round_seen_[cell] == round_) return;
+      if (is_home_known_ || round_seen_[cell] == round_) return;
       round_seen_[cell] = round_;
     } else if (!seen_.insert(key_of(patch, cell))) {
       return;
@@ -162,8 +249,7 @@ class Flood {
     const double far = distance(patch, cell);
     if (far >= nearest_) return;
     const PatchTree& tree = forest_.trees[patch];
-    const uint32_t leaf = tree.nodes.empty() ? kNoNode : tree.leaf_of(cell);
-    if (leaf == kNoNode || !covers(tree.nodes[leaf].promise, promise_)) {
+    if (!covers_here(tree, cell)) {
       nearest_ = far;
       return;
     }
@@ -194,10 +280,12 @@ class Flood {
   }
 
   const NodeForest& forest_;
-  uint32_t home_;  // the patch whose nodes are measured
+  uint32_t home_;               // the patch whose nodes are measured
+  bool is_home_known_ = false;  // the nearest cell in it was told without a flood
   const CrossCells& cross_;
   double most_;
   std::span<const CellBalls> balls_;
+  std::vector<std::pair<Promise, CellRows>> open_;  // by what is promised
   CellBall middle_;
   Promise promise_;
   double nearest_ = 0;

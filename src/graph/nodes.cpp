@@ -3,6 +3,8 @@
 #include "throng/nodes.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <filesystem>
 #include <numeric>
 
@@ -17,13 +19,14 @@
 namespace throng {
 namespace {
 
-NodeInfo info_of(uint32_t source, const format::NodePatch& patch, const format::Node& node) {
+NodeInfo info_of(uint32_t source, const format::NodePatch& patch, const format::Node& node,
+                 uint64_t cells) {
   return {.classes = node.classes(),
           .inclination = static_cast<uint8_t>(node.surface() >> 4),
           .height = static_cast<uint8_t>(node.surface() & 15),
           .headroom = static_cast<uint8_t>(node.room() >> 4),
           .width = static_cast<uint8_t>(node.room() & 15),
-          .terminal = node.terminal() != 0,
+          .terminal = (node.flags() & kTerminalFlag) != 0,
           .kind = static_cast<PatchKind>(patch.kind()),
           .source = source,
           .depth = patch.depth(),
@@ -31,7 +34,18 @@ NodeInfo info_of(uint32_t source, const format::NodePatch& patch, const format::
           .s = node.s(),
           .t = node.t(),
           .parent1 = 0,
-          .area = node.area()};
+          .area = node.area(),
+          .cells = cells};
+}
+
+// Is a point in or on the border of one of the cells of a block? [s, t in cells of the block]
+bool touches(uint64_t cells, double s, double t) {
+  for (const int32_t j : {static_cast<int32_t>(std::ceil(t)) - 1, static_cast<int32_t>(t)}) {
+    for (const int32_t i : {static_cast<int32_t>(std::ceil(s)) - 1, static_cast<int32_t>(s)}) {
+      if (i >= 0 && i < 8 && j >= 0 && j < 8 && (cells >> (8 * j + i) & 1) != 0) return true;
+    }
+  }
+  return false;
 }
 
 // Drops lead one way, and jumps may; no two places hold together by one that does.
@@ -105,7 +119,10 @@ NodeSummary Nodes::summary() const {
   for (size_t s = 0; s < data_->slots.size(); ++s) {
     const NodeZone* zone = data_->zone(s);
     if (zone == nullptr) continue;
-    for (const format::Node& node : zone->nodes()) summary.terminal += node.terminal() != 0;
+    for (const format::Node& node : zone->nodes()) {
+      summary.terminal += (node.flags() & kTerminalFlag) != 0;
+      summary.ragged += (node.flags() & kRaggedFlag) != 0;
+    }
     for (uint32_t n = 0; n < zone->nodes().size(); ++n) summary.arcs += zone->arcs(n).size();
   }
   return summary;
@@ -121,8 +138,8 @@ NodeInfo Nodes::node(uint32_t node) const {
   const auto [zone, local] = data_->find(node);
   if (zone == nullptr) return {};
   const format::Node& found = zone->nodes()[local];
-  NodeInfo info =
-      info_of(data_->source_of(*zone, zone->patch_of(local)), zone->patch_of(local), found);
+  const format::NodePatch& patch = zone->patch_of(local);
+  NodeInfo info = info_of(data_->source_of(*zone, patch), patch, found, zone->cells_of(local));
   if (found.parent() != UINT32_MAX) info.parent1 = node - local + found.parent() + 1;
   return info;
 }
@@ -152,6 +169,13 @@ std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
   return out;
 }
 
+uint64_t Nodes::ragged_cells(int32_t avatar_class, uint32_t node) const {
+  THRONG_ASSERT(node < node_count());
+  const auto [zone, local] = data_->find(node);
+  if (zone == nullptr || avatar_class < 0 || avatar_class >= kMaxAvatarClasses) return 0;
+  return data_->cells_of(*zone, local, avatar_class);
+}
+
 std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
   const NodeInfo info = this->node(node);
   // Of a level tile the far corners lie in the next cells, which may have no floor.
@@ -160,6 +184,31 @@ std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
   const double s = info.s * whole, t = info.t * whole;
   return {point(node, s, t), point(node, s, t + side), point(node, s + side, t + side),
           point(node, s + side, t)};
+}
+
+Vec3d Nodes::middle(uint32_t node) const {
+  const NodeInfo info = this->node(node);
+  if (info.cells == 0) {
+    const double side = 1.0 / (1 << info.level);
+    return point(node, (info.s + 0.5) * side, (info.t + 0.5) * side);
+  }
+  // The middle of all cells may lie in none: the nearest of them.
+  const int32_t count = std::popcount(info.cells);
+  int32_t s = 0, t = 0, nearest = INT32_MAX, best = 0;
+  const auto for_cells = [&](auto visit) {
+    for (uint64_t left = info.cells; left != 0; left &= left - 1) visit(std::countr_zero(left));
+  };
+  for_cells([&](int32_t bit) {
+    s += bit % 8;
+    t += bit / 8;
+  });
+  for_cells([&](int32_t bit) {
+    const int32_t ds = bit % 8 * count - s, dt = bit / 8 * count - t;
+    if (ds * ds + dt * dt >= nearest) return;
+    nearest = ds * ds + dt * dt;
+    best = bit;
+  });
+  return point(node, (info.s * 8 + best % 8 + 0.5) / 64, (info.t * 8 + best / 8 + 0.5) / 64);
 }
 
 Vec3d Nodes::point(uint32_t node, double s, double t) const {
@@ -180,6 +229,11 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
   const bool inside = s * blocks >= found.s() && s * blocks <= found.s() + 1 &&
                       t * blocks >= found.t() && t * blocks <= found.t() + 1;
   if (!inside || (found.classes() >> avatar_class & 1) == 0) return {};
+  if ((found.flags() & kRaggedFlag) != 0 &&
+      !touches(data_->cells_of(*zone, local, avatar_class), s * 64 - found.s() * 8,
+               t * 64 - found.t() * 8)) {
+    return {};
+  }
   const NodeSurface surface = surface_of(*data_, *zone, zone->patch_of(local));
   const bool climbs = classes[static_cast<size_t>(avatar_class)].climb_slope > 0;
   const Vec3d normal = surface.normal(s, t);
@@ -196,6 +250,15 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
                                 [](double at, const auto& entry) { return at < entry.second; });
   if (found == areas.end()) --found;
   const NodeInfo info = node(found->first);
+  if (info.cells != 0) {
+    uint64_t cells = ragged_cells(avatar_class, found->first);
+    if (cells == 0) return {};
+    const auto count = static_cast<uint64_t>(std::popcount(cells));
+    for (uint64_t skip = random_below(seed, n, 3, count); skip > 0; --skip) cells &= cells - 1;
+    const int32_t bit = std::countr_zero(cells);
+    return place(avatar_class, found->first, (info.s * 8 + bit % 8 + random_unit(seed, n, 1)) / 64,
+                 (info.t * 8 + bit / 8 + random_unit(seed, n, 2)) / 64);
+  }
   const double side = 1.0 / (1 << info.level);
   return place(avatar_class, found->first, (info.s + random_unit(seed, n, 1)) * side,
                (info.t + random_unit(seed, n, 2)) * side);
@@ -220,7 +283,7 @@ std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>*
       const uint32_t parent = nodes[n].parent();
       const bool inside = parent != UINT32_MAX && (nodes[parent].classes() & bit) != 0;
       if (inside) sets.join(first + n, first + parent);
-      area[first + n] = inside ? 0 : nodes[n].area();
+      area[first + n] = inside ? 0 : data_->area_of(*zone, n, avatar_class);
       for (const format::Arc& arc : zone->arcs(n)) {
         if ((arc.classes() & bit) == 0) continue;
         const uint32_t to = data_->target(s, *zone, arc);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -32,9 +33,15 @@ inline Promise both(const Promise& a, const Promise& b) {
 /// True if `a` promises all that `b` does: it is no more restrictive.
 inline bool covers(const Promise& a, const Promise& b) { return both(a, b) == b; }
 
+/// The least blocks of patches with ragged nodes have 2^kRaggedDepth cells along a side.
+inline constexpr int32_t kRaggedDepth = 3;
+
 /// The finest sub-patches of one patch: 2^depth x 2^depth cells, cell = t * side + s.
 struct PatchCells {
   int32_t depth = 0;
+  /// Blocks of 2^kRaggedDepth cells along a side are divided no further: what is left of them are
+  /// ragged nodes. [depth >= kRaggedDepth]
+  bool ragged = false;
   std::vector<Promise> cells;
   /// Per cell, classes that may stand on it and on the next cell along s (along t), but cannot step
   /// from one to the other. Empty: none.
@@ -48,27 +55,90 @@ struct PatchCells {
 
 inline constexpr uint32_t kNoNode = UINT32_MAX;
 
-/// A block of cells on which a promise holds that is better than its parent's.
+/// A block of cells on which a promise holds that is better than its parent's; or a *ragged* node:
+/// some cells of a block of 8 x 8. Its classes stand on some of these cells, each on cells that
+/// hold together by its steps, and the rest of the promise holds on all of them.
 struct PatchNode {
   Promise promise;
-  uint8_t level = 0;          ///< Halvings from the whole patch: 2^level blocks along a side.
+  uint64_t cells = 0;   ///< Ragged: which of the block's, bit 8 t + s. 0: all, for all its classes.
+  uint32_t ragged = 0;  ///< Of such a node: which of the tree's ragged blocks it lies in.
+  uint8_t level = 0;    ///< Halvings from the whole patch: 2^level blocks along a side.
   uint8_t s = 0, t = 0;       ///< Which block of its level.
   bool terminal = true;       ///< No smaller node lies in it.
   uint32_t parent = kNoNode;  ///< The smallest node around it, of this patch.
 };
 
+/// Which bit of a ragged node's mask a cell is. [cell of a patch of that depth]
+inline uint32_t ragged_bit(size_t cell, int32_t depth) {
+  constexpr size_t kIn = (size_t{1} << kRaggedDepth) - 1;
+  return static_cast<uint32_t>(((cell >> depth) & kIn) << kRaggedDepth | (cell & kIn));
+}
+
 struct PatchTree {
   int32_t depth = 0;
   std::vector<PatchNode> nodes;  ///< Parents first.
-  /// Per cell the smallest node that holds it, or kNoNode. Empty: node 0 for all.
+  /// Per cell the smallest node that holds it, or kNoNode. Of a ragged patch per least block: its
+  /// first ragged node, if it has any; the others follow. Empty: node 0 for all.
   std::vector<uint32_t> leaf;
+  int32_t leaf_depth = 0;  ///< Of the blocks in `leaf`, as halvings of a side.
+  /// Who may stand on each cell of the blocks that have ragged nodes.
+  std::vector<std::array<uint16_t, 64>> ragged;
 
-  [[nodiscard]] uint32_t leaf_of(size_t cell) const { return leaf.empty() ? 0 : leaf[cell]; }
+  /// The smallest node that holds a cell, the first of them if they are ragged; or kNoNode.
+  [[nodiscard]] uint32_t leaf_of(size_t cell) const {
+    const uint32_t node = first_of(cell);
+    return node == kNoNode || nodes[node].cells == 0 ? node : first_from(node, cell);
+  }
+
+  /// The next larger of the nodes that hold a cell, or kNoNode.
+  [[nodiscard]] uint32_t next_around(uint32_t node, size_t cell) const {
+    const PatchNode& n = nodes[node];
+    if (n.cells == 0) return n.parent;
+    return is_beside(node + 1, n) ? first_from(node + 1, cell) : n.parent;
+  }
+
+  /// Does a cell lie in a block that has ragged nodes?
+  [[nodiscard]] bool is_ragged(size_t cell) const {
+    const uint32_t node = nodes.empty() ? kNoNode : first_of(cell);
+    return node != kNoNode && nodes[node].cells != 0;
+  }
+
+  /// Who may stand on a cell.
+  [[nodiscard]] uint16_t classes_on(size_t cell) const {
+    const uint32_t node = nodes.empty() ? kNoNode : first_of(cell);
+    if (node == kNoNode) return 0;
+    const PatchNode& n = nodes[node];
+    return n.cells == 0 ? n.promise.classes : ragged[n.ragged][ragged_bit(cell, depth)];
+  }
+
+ private:
+  [[nodiscard]] uint32_t first_of(size_t cell) const {
+    if (leaf.empty()) return 0;
+    const int32_t up = depth - leaf_depth;
+    const size_t s = cell & ((size_t{1} << depth) - 1), t = cell >> depth;
+    return leaf[(t >> up) << leaf_depth | s >> up];
+  }
+
+  // Is it another ragged node of the same block?
+  [[nodiscard]] bool is_beside(uint32_t node, const PatchNode& one) const {
+    return node < nodes.size() && nodes[node].cells != 0 && nodes[node].ragged == one.ragged;
+  }
+
+  // Of a block's ragged nodes from one on the first that holds a cell; else the node around them.
+  [[nodiscard]] uint32_t first_from(uint32_t node, size_t cell) const {
+    const PatchNode& one = nodes[node];
+    for (; is_beside(node, one); ++node) {
+      if ((nodes[node].cells >> ragged_bit(cell, depth) & 1) != 0) return node;
+    }
+    return one.parent;
+  }
 };
 
 /// A block gets a node if everything in it lets some class stand, and if it promises more than the
 /// node around it: those who can do more can do less, so a steep or low block keeps one node as a
-/// whole, and what is better inside it nodes of its own. Linear in the cells.
+/// whole, and what is better inside it nodes of its own. Of ragged patches the least blocks have,
+/// after such a node, ragged ones for the classes that stand on a part of them: as few as each
+/// class's cells in one hold together. Linear in the cells.
 [[nodiscard]] PatchTree build_tree(const PatchCells& cells);
 
 }  // namespace throng

@@ -3,7 +3,9 @@
 #include "graph/tile_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include "graph/ground_parts.h"
@@ -29,26 +31,66 @@ std::vector<uint8_t> inclination_by_class(const std::vector<AvatarClass>& classe
 
 }  // namespace
 
+namespace {
+
+// Rows of what each class may stand on, told together: calls visit(first cell, count, classes) for
+// runs of cells on which the same ones stand.
+template <class Visit>
+void for_runs(const std::array<CellRows, kMaxAvatarClasses>& legal, size_t classes, Visit visit) {
+  for (size_t z = 0; z < 64; ++z) {
+    uint64_t any = 0, changes = 1;
+    for (size_t c = 0; c < classes; ++c) {
+      any |= legal[c][z];
+      changes |= legal[c][z] ^ legal[c][z] << 1;
+    }
+    if (any == 0) continue;
+    while (changes != 0) {
+      const int32_t x = std::countr_zero(changes);
+      changes &= changes - 1;
+      const int32_t end = changes == 0 ? 64 : std::countr_zero(changes);
+      uint16_t stands = 0;
+      for (size_t c = 0; c < classes; ++c) {
+        if ((legal[c][z] >> x & 1) != 0) stands |= bit_of(c);
+      }
+      if (stands != 0) visit(z * 64 + static_cast<size_t>(x), end - x, stands);
+    }
+  }
+}
+
+// Ceilings of a level above its floors, kNoValue for none.
+std::optional<std::array<uint16_t, kArea>> unpack_ceilings(const Zone& zone,
+                                                           const format::Level& level) {
+  if (level.ceiling_kind() != format::HeightKind::Blocks) return std::nullopt;
+  std::array<uint16_t, kArea> ceilings;
+  unpack_values(zone.words(level.ceiling_offset()), ceilings.data());
+  return ceilings;
+}
+
+}  // namespace
+
 PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const NodeBins& bins) {
   const WorldData& data = *world.data();
   const std::vector<AvatarClass>& classes = data.summary.classes;
-  const std::vector<uint8_t> inclination = inclination_by_class(classes, bins);
   PatchCells patch;
   patch.depth = kTileDepth;
+  patch.ragged = true;
   patch.cells.assign(kArea, {.classes = 0, .inclination = 15, .height = 0, .headroom = 0});
+  GroundLevel ground = ground_level(data, level, 0);
+  if (ground.zone == nullptr) return patch;
+  const uint32_t zone_level = level - data.slots[data.slot_of_level(level)]->first_level;
+  std::array<uint16_t, kArea> samples;
+  if (ground.view.floor != nullptr) {
+    unpack_floor(ground.view, samples.data());
+    ground.view.samples = samples.data();
+  }
+  std::array<CellRows, kMaxAvatarClasses> legal;
   for (size_t c = 0; c < classes.size(); ++c) {
-    const GroundLevel ground = ground_level(data, level, static_cast<int32_t>(c));
+    legal[c] = {};
     if ((wanted & bit_of(c)) == 0) continue;
-    if (ground.zone == nullptr || ground.kind == format::CellsKind::None) continue;
-    const CellRows legal = legal_rows(ground);
-    for (size_t z = 0; z < 64; ++z) {
-      for (uint64_t left = legal[z]; left != 0; left &= left - 1) {
-        Promise& cell = patch.cells[z * 64 + static_cast<size_t>(std::countr_zero(left))];
-        cell.classes |= bit_of(c);
-        cell.inclination = std::min(cell.inclination, inclination[c]);
-      }
-    }
-    const auto cuts = step_cuts(ground, legal, step_mm(classes[c]));
+    set_class(ground, zone_level, static_cast<int32_t>(c));
+    legal[c] = legal_rows(ground);
+    if (ground.kind == format::CellsKind::None) continue;
+    const auto cuts = step_cuts(ground, legal[c], step_mm(classes[c]));
     if (!cuts) continue;
     const auto note = [&](const CellRows& rows, std::vector<uint16_t>& out) {
       for (size_t z = 0; z < 64; ++z) {
@@ -63,103 +105,244 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
     note(cuts->along, patch.cut_t);
   }
 
-  const LevelTileContent content = world.level_tile(level);
-  const LevelView view = ground_level(data, level, 0).view;
+  const format::Level& record = *ground.view.record;
+  const auto ceilings = unpack_ceilings(*ground.zone, record);
+  const bool is_flat = record.ceiling_kind() == format::HeightKind::Constant;
+  const std::vector<uint8_t> inclination = inclination_by_class(classes, bins);
   const auto open = static_cast<uint8_t>(bins.height.size());
-  for (int32_t z = 0; z < 64; ++z) {
-    for (int32_t x = 0; x < 64; ++x) {
-      const size_t i = patch.index(x, z);
-      if (patch.cells[i].classes == 0) continue;
-      uint8_t& room = patch.cells[i].headroom;
-      room = open;
-      if (content.ceiling[i] != kOpenSky) {
-        // Feet slant evenly over a cell: the highest are at a corner.
-        int32_t feet = INT32_MIN;
-        for (const int32_t u : {0, kUnitsPerCell - 1}) {
-          for (const int32_t v : {0, kUnitsPerCell - 1}) {
-            feet = std::max(feet, view.feet(x, z, u, v));
-          }
-        }
-        room = bins.height_code((static_cast<double>(content.ceiling[i]) - feet) * 1e-3);
+  // A body on a level tile stands upright: its height is the headroom.
+  const auto room_over = [&](size_t cell) {
+    if (!is_flat && (!ceilings || (*ceilings)[cell] == kNoValue)) return open;
+    const int32_t ceiling = record.ceiling_base() + (is_flat ? 0 : (*ceilings)[cell]);
+    // Feet slant evenly over a cell: the highest are at a corner.
+    int32_t feet = INT32_MIN;
+    for (const int32_t u : {0, kUnitsPerCell - 1}) {
+      for (const int32_t v : {0, kUnitsPerCell - 1}) {
+        feet = std::max(feet, ground.view.feet(static_cast<int32_t>(cell % 64),
+                                               static_cast<int32_t>(cell / 64), u, v));
       }
-      patch.cells[i].height = room;  // A body on a level tile stands upright.
     }
-  }
+    return bins.height_code((static_cast<double>(ceiling) - feet) * 1e-3);
+  };
+  for_runs(legal, classes.size(), [&](size_t first, int32_t count, uint16_t stands) {
+    uint8_t steepest = 15;
+    for (uint32_t left = stands; left != 0; left &= left - 1) {
+      steepest = std::min(steepest, inclination[static_cast<size_t>(std::countr_zero(left))]);
+    }
+    for (size_t i = first; i < first + static_cast<size_t>(count); ++i) {
+      const uint8_t room = room_over(i);
+      patch.cells[i] = {stands, steepest, room, room};
+    }
+  });
   return patch;
 }
 
 namespace {
 
-// Finds pairs from the cells of one level, towards greater x and z.
+// The cells along one side of a level: who may stand there, and how high.
+struct Rim {
+  std::array<uint16_t, 64> classes{};
+  std::array<int32_t, 64> feet{};  // of cells where somebody may [mm]
+};
+
+Rim rim_of(const WorldData& world, GroundLevel level, uint32_t zone_level, TileSide side) {
+  Rim rim;
+  const bool across = side == kWest || side == kEast, far = side == kEast || side == kSouth;
+  const uint32_t in = far ? 7 : 0;  // block, and cell in it
+  for (size_t c = 0; c < world.summary.classes.size(); ++c) {
+    set_class(level, zone_level, static_cast<int32_t>(c));
+    if (level.kind == format::CellsKind::None) continue;
+    for (uint32_t b = 0; b < 8; ++b) {
+      const uint64_t cells = level.legal_in(across ? b * 8 + in : in * 8 + b);
+      for (uint32_t i = 0; cells != 0 && i < 8; ++i) {
+        if ((cells >> (across ? i * 8 + in : in * 8 + i) & 1) != 0) {
+          rim.classes[b * 8 + i] |= bit_of(c);
+        }
+      }
+    }
+  }
+  for (int32_t i = 0; i < 64; ++i) {
+    const auto at = static_cast<size_t>(i);
+    const int32_t last = far ? 63 : 0;
+    if (rim.classes[at] == 0) continue;
+    rim.feet[at] = level.view.sample(across ? last : i, across ? i : last);
+  }
+  return rim;
+}
+
+// Finds pairs from the cells of one tile, towards greater x and z, by the moves' rule (step_to):
+// of the levels on which the class may stand, the one whose floor is nearest, if within a step.
 class PairFinder {
  public:
   PairFinder(const WorldData& world, int32_t tile_x, int32_t tile_z)
-      : world_(world), tile_x_(tile_x), tile_z_(tile_z) {
+      : world_(world), tile_x_(tile_x), tile_z_(tile_z), here_(levels_of(tile_x, tile_z)) {
     for (const AvatarClass& avatar : world.summary.classes) steps_.push_back(step_mm(avatar));
   }
 
   std::vector<CellPair> find() {
-    const auto levels = world_.tile_levels(tile_x_, tile_z_);
-    const auto beside = [&](int32_t x, int32_t z) {
-      const auto tile = world_.tile_levels(x, z);
-      return tile.last > tile.first;
-    };
-    const bool east = beside(tile_x_ + 1, tile_z_), south = beside(tile_x_, tile_z_ + 1);
-    const bool seams = levels.last - levels.first > 1;
-    for (uint32_t l = levels.first; l < levels.last; ++l) {
-      for (size_t c = 0; c < steps_.size(); ++c) {
-        const GroundLevel level = ground_level(world_, l, static_cast<int32_t>(c));
-        if (level.kind == format::CellsKind::None) continue;
-        const CellRows legal = legal_rows(level);
-        for (int32_t i = 0; i < 64; ++i) {
-          if (east && ((legal[static_cast<size_t>(i)] >> 63) & 1) != 0)
-            try_step(level, c, 63, i, 1, 0);
-          if (south && ((legal[63] >> i) & 1) != 0) try_step(level, c, i, 63, 0, 1);
-        }
-        if (seams) find_seams(level, c, legal);
-      }
-    }
+    if (here_.empty()) return {};
+    find_beyond(kEast);
+    find_beyond(kSouth);
+    if (here_.size() > 1) find_seams();
     return std::move(pairs_);
   }
 
  private:
-  // Within a tile a body changes its level only where its own does not go on.
-  void find_seams(const GroundLevel& level, size_t c, const CellRows& legal) {
-    const auto cuts = step_cuts(level, legal, steps_[c]);
-    for (size_t z = 0; z < 64; ++z) {
-      uint64_t ends = legal[z] & ~(legal[z] >> 1) & ~(uint64_t{1} << 63);
-      if (cuts) ends |= cuts->across[z];
-      for (; ends != 0; ends &= ends - 1) {
-        try_step(level, c, std::countr_zero(ends), static_cast<int32_t>(z), 1, 0);
-      }
-      if (z == 63) break;
-      ends = legal[z] & ~legal[z + 1];
-      if (cuts) ends |= cuts->along[z];
-      for (; ends != 0; ends &= ends - 1) {
-        try_step(level, c, std::countr_zero(ends), static_cast<int32_t>(z), 0, 1);
+  struct TileLevel {
+    GroundLevel ground;  // of class 0
+    uint32_t zone_level = 0;
+  };
+
+  [[nodiscard]] std::vector<TileLevel> levels_of(int32_t x, int32_t z) const {
+    std::vector<TileLevel> levels;
+    const auto tile = world_.tile_levels(x, z);
+    for (uint32_t l = tile.first; l < tile.last; ++l) {
+      const uint32_t zone_level = tile.zone_first + l - tile.first;
+      levels.push_back({ground_level(*tile.zone, zone_level, l, 0), zone_level});
+    }
+    return levels;
+  }
+
+  // Of levels the first whose floor is nearest, within a step: `rise(level)` is INT32_MAX where the
+  // class may not stand. kNoNode: none.
+  template <class Rise>
+  static uint32_t nearest(size_t levels, int32_t step, Rise rise) {
+    uint32_t best = kNoNode;
+    int32_t least = INT32_MAX;
+    for (uint32_t l = 0; l < levels; ++l) {
+      const int32_t r = rise(l);
+      if (r > step || r >= least) continue;
+      least = r;
+      best = l;
+    }
+    return best;
+  }
+
+  // Over a border of the tile.
+  void find_beyond(TileSide side) {
+    const bool east = side == kEast;
+    const auto beyond = levels_of(tile_x_ + (east ? 1 : 0), tile_z_ + (east ? 0 : 1));
+    if (beyond.empty()) return;
+    std::vector<Rim> ours, theirs;
+    for (const TileLevel& l : here_) ours.push_back(rim_of(world_, l.ground, l.zone_level, side));
+    for (const TileLevel& l : beyond) {
+      theirs.push_back(rim_of(world_, l.ground, l.zone_level, east ? kWest : kNorth));
+    }
+    std::vector<uint16_t> classes(beyond.size());  // that step to each
+    for (int32_t i = 0; i < 64; ++i) {
+      const auto at = static_cast<size_t>(i);
+      const auto to_one_of = [&](const std::vector<Rim>& rims, int32_t feet, size_t c) {
+        return nearest(rims.size(), steps_[c], [&](uint32_t l) {
+          if ((rims[l].classes[at] & bit_of(c)) == 0) return INT32_MAX;
+          return std::abs(rims[l].feet[at] - feet);
+        });
+      };
+      for (uint32_t l = 0; l < ours.size(); ++l) {
+        if (ours[l].classes[at] == 0) continue;
+        std::fill(classes.begin(), classes.end(), uint16_t{0});
+        for (uint32_t left = ours[l].classes[at]; left != 0; left &= left - 1) {
+          const auto c = static_cast<size_t>(std::countr_zero(left));
+          const uint32_t to = to_one_of(theirs, ours[l].feet[at], c);
+          if (to == kNoNode || to_one_of(ours, theirs[to].feet[at], c) != l) continue;
+          classes[to] |= bit_of(c);
+        }
+        for (uint32_t to = 0; to < classes.size(); ++to) {
+          if (classes[to] == 0) continue;
+          add(here_[l].ground, beyond[to].ground, classes[to], east ? 63 : i, east ? i : 63, east);
+        }
       }
     }
   }
 
-  void try_step(const GroundLevel& from, size_t c, int32_t x, int32_t z, int32_t dx, int32_t dz) {
-    const WorldGround ground{world_, static_cast<int32_t>(c)};
-    const int32_t gx = tile_x_ * 64 + x, gz = tile_z_ * 64 + z;
-    const auto to = step_to(ground, from, gx, gz, gx + dx, gz + dz, steps_[c]);
-    if (!to || to->world_level == from.world_level) return;
-    const auto back = step_to(ground, *to, gx + dx, gz + dz, gx, gz, steps_[c]);
-    if (!back || back->world_level != from.world_level) return;
+  // Within a tile a body changes its level only where its own does not go on and another does.
+  void find_seams() {
+    legal_.resize(here_.size());
+    safe_.resize(here_.size());
+    std::array<uint16_t, kArea> samples;
+    for (size_t c = 0; c < steps_.size(); ++c) {
+      for (size_t l = 0; l < here_.size(); ++l) {
+        GroundLevel level = here_[l].ground;
+        set_class(level, here_[l].zone_level, static_cast<int32_t>(c));
+        legal_[l] = legal_rows(level);
+        safe_[l] = level.step_safe ? 1 : 0;
+      }
+      for (uint32_t l = 0; l < here_.size(); ++l) {
+        const CellRows& own = legal_[l];
+        CellRows others{};
+        for (size_t o = 0; o < here_.size(); ++o) {
+          for (size_t z = 0; z < 64 && o != l; ++z) others[z] |= legal_[o][z];
+        }
+        uint64_t beside = 0;
+        for (size_t z = 0; z < 64; ++z) {
+          beside |= own[z] & (others[z] >> 1 | (z < 63 ? others[z + 1] : 0));
+        }
+        if (beside == 0) continue;
+        GroundLevel level = here_[l].ground;
+        set_class(level, here_[l].zone_level, static_cast<int32_t>(c));
+        if (level.view.floor != nullptr && !level.step_safe) {
+          unpack_floor(level.view, samples.data());
+          level.view.samples = samples.data();
+        }
+        const auto cuts = step_cuts(level, own, steps_[c]);
+        for (size_t z = 0; z < 64; ++z) {
+          uint64_t ends = ~(own[z] >> 1);
+          if (cuts) ends |= cuts->across[z];
+          ends &= own[z] & others[z] >> 1;
+          for (; ends != 0; ends &= ends - 1) {
+            cross_seam(l, c, std::countr_zero(ends), static_cast<int32_t>(z), true);
+          }
+          if (z == 63) break;
+          ends = ~own[z + 1];
+          if (cuts) ends |= cuts->along[z];
+          ends &= own[z] & others[z + 1];
+          for (; ends != 0; ends &= ends - 1) {
+            cross_seam(l, c, std::countr_zero(ends), static_cast<int32_t>(z), false);
+          }
+        }
+      }
+    }
+  }
+
+  // From a cell beyond which its own level does not go on.
+  void cross_seam(uint32_t from, size_t c, int32_t x, int32_t z, bool east) {
+    const int32_t nx = x + (east ? 1 : 0), nz = z + (east ? 0 : 1);
+    const auto to_level = [&](int32_t feet, int32_t at_x, int32_t at_z) {
+      return nearest(here_.size(), steps_[c], [&](uint32_t l) {
+        if ((legal_[l][static_cast<size_t>(at_z)] >> at_x & 1) == 0) return INT32_MAX;
+        return std::abs(here_[l].ground.view.sample(at_x, at_z) - feet);
+      });
+    };
+    const int32_t feet = here_[from].ground.view.sample(x, z);
+    const uint32_t to = to_level(feet, nx, nz);
+    if (to == kNoNode || to == from) return;
+    const int32_t there = here_[to].ground.view.sample(nx, nz);
+    // Its level may go on to the first cell; then nobody comes back.
+    if ((legal_[to][static_cast<size_t>(z)] >> x & 1) != 0 &&
+        (safe_[to] != 0 || std::abs(here_[to].ground.view.sample(x, z) - there) <= steps_[c])) {
+      return;
+    }
+    if (to_level(there, x, z) != from) return;
+    add(here_[from].ground, here_[to].ground, bit_of(c), x, z, east);
+  }
+
+  void add(const GroundLevel& from, const GroundLevel& to, uint16_t classes, int32_t x, int32_t z,
+           bool east) {
+    const int32_t nx = x + (east ? 1 : 0), nz = z + (east ? 0 : 1);
     pairs_.push_back({.patch_a = from.world_level,
                       .cell_a = static_cast<uint32_t>(z * 64 + x),
-                      .patch_b = to->world_level,
-                      .cell_b = static_cast<uint32_t>(((z + dz) & 63) * 64 + ((x + dx) & 63)),
-                      .classes = bit_of(c),
-                      .side_a = static_cast<uint8_t>(dx != 0 ? 2 : 1),
-                      .side_b = static_cast<uint8_t>(dx != 0 ? 0 : 3)});
+                      .patch_b = to.world_level,
+                      .cell_b = static_cast<uint32_t>((nz & 63) * 64 + (nx & 63)),
+                      .classes = classes,
+                      .side_a = static_cast<uint8_t>(east ? 2 : 1),
+                      .side_b = static_cast<uint8_t>(east ? 0 : 3)});
   }
 
   const WorldData& world_;
   int32_t tile_x_, tile_z_;
-  std::vector<int32_t> steps_;  // per class [mm]
+  std::vector<TileLevel> here_;
+  std::vector<int32_t> steps_;   // per class [mm]
+  std::vector<CellRows> legal_;  // of a class, by level of the tile
+  std::vector<uint8_t> safe_;    // likewise: no step on the level is too high
   std::vector<CellPair> pairs_;
 };
 
@@ -167,8 +350,8 @@ class PairFinder {
 
 std::vector<CellPair> tile_pairs(const WorldData& world, int32_t tile_x, int32_t tile_z) {
   std::vector<CellPair> pairs = PairFinder(world, tile_x, tile_z).find();
-  merge_cell_pairs(pairs);  // one for all its classes
-  return pairs;
+  merge_cell_pairs(pairs);                                   // one for all its classes
+  return std::vector<CellPair>(pairs.begin(), pairs.end());  // no room to grow: these are many
 }
 
 }  // namespace throng

@@ -222,6 +222,30 @@ NodePathSummary NodePathFinder::summary() const {
           .seconds = shared_->seconds};
 }
 
+std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, double from_t,
+                                                 double to_s, double to_t) const {
+  const NodeMesh& mesh = shared_->mesh;
+  THRONG_ASSERT(node < mesh.nodes().node_count());
+  constexpr double kLittle = 1e-9, kRounded = 1e-12;
+  const uint32_t patch = mesh.patch_of_node(node);
+  // On a border the block on either side may be the one that holds both.
+  for (const double j : {kLittle, -kLittle}) {
+    for (const double i : {kLittle, -kLittle}) {
+      const uint32_t block = mesh.block_at(patch, from_s + i, from_t + j);
+      if (block == kNoNode || mesh.blocks()[block].node != node) continue;
+      const NodeBlock& b = mesh.blocks()[block];
+      const double side = b.side();
+      const NodeSquare square{b.s * side, b.t * side, (b.s + 1) * side, (b.t + 1) * side};
+      const auto holds = [&](double s, double t) {
+        return s >= square.s0 - kRounded && s <= square.s1 + kRounded &&
+               t >= square.t0 - kRounded && t <= square.t1 + kRounded;
+      };
+      if (holds(from_s, from_t) && holds(to_s, to_t)) return square;
+    }
+  }
+  return std::nullopt;
+}
+
 NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
   const NodeMesh& mesh = shared_->mesh;
   if (!std::isfinite(position.x + position.y + position.z) || !(reach >= 0)) return {};
@@ -277,6 +301,15 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
     // On the border of a cell the other one may be meant.
     if (at.block == kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
+      constexpr double kLittle = 1e-9;
+      for (const auto& [i, j] : {std::pair{-1, -1}, {-1, 0}, {0, -1}, {-1, 1}, {1, -1}}) {
+        const double s = std::clamp(place.s + i * kLittle, 0.0, 1.0);
+        const double t = std::clamp(place.t + j * kLittle, 0.0, 1.0);
+        const uint32_t other = mesh.block_at(mesh.patch_of_node(place.node1 - 1), s, t);
+        if (other == kNoNode || mesh.blocks()[other].node != place.node1 - 1) continue;
+        at.block = other;
+        return at;
+      }
       const NodeInfo info = mesh.nodes().node(place.node1 - 1);
       const double side = 1.0 / (1 << info.level), in = 1e-9;
       const double s = std::clamp(place.s, info.s * side + in, (info.s + 1) * side - in);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -24,8 +25,9 @@ namespace throng {
 namespace {
 
 constexpr int32_t kSamples = 3;
-constexpr double kTurn = 0.45;  // of the view around the vertical [radians]
-constexpr double kTilt = 0.82;  // of the view above the horizon [radians]
+constexpr double kTurn = 0.45;   // of the view around the vertical [radians]
+constexpr double kTilt = 0.82;   // of the view above the horizon [radians]
+constexpr double kInset = 1e-5;  // into a tile's cell: its far border is the next cell's
 constexpr double kHeader = 64, kFooter = 58, kMargin = 24;  // [px]
 
 struct InclinationColour {
@@ -258,16 +260,21 @@ class NodePicture {
     return {(s.x - low_x_) * k + left, (s.y - low_y_) * k + 4 * kSamples, s.depth - nearer};
   }
 
+  // Of the parameters of a patch.
+  struct Block {
+    double s = 0, t = 0, wide = 1, deep = 1;
+  };
+
   // Calls quad(corners, normal) for pieces of a block of a patch, small enough to look curved.
   template <class Quad>
-  void pieces(uint32_t node, double s0, double t0, double side, int32_t parts, Quad quad) const {
-    const double step = side / parts;
+  void pieces(uint32_t node, const Block& block, int32_t parts, Quad quad) const {
+    const double wide = block.wide / parts, deep = block.deep / parts;
     for (int32_t j = 0; j < parts; ++j) {
       for (int32_t i = 0; i < parts; ++i) {
-        const double s = s0 + i * step, t = t0 + j * step;
-        const std::array<Vec3d, 4> c = {nodes_.point(node, s, t), nodes_.point(node, s, t + step),
-                                        nodes_.point(node, s + step, t + step),
-                                        nodes_.point(node, s + step, t)};
+        const double s = block.s + i * wide, t = block.t + j * deep;
+        const std::array<Vec3d, 4> c = {nodes_.point(node, s, t), nodes_.point(node, s, t + deep),
+                                        nodes_.point(node, s + wide, t + deep),
+                                        nodes_.point(node, s + wide, t)};
         quad(c, cross(c[2] - c[0], c[3] - c[1]));
       }
     }
@@ -287,7 +294,7 @@ class NodePicture {
   }
 
   void underlay(DepthCanvas& canvas, uint32_t node) const {
-    pieces(node, 0, 0, 1, 16, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
+    pieces(node, {}, 16, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
       fill(canvas, c, normal, kUnderlay, -0.15);
     });
   }
@@ -296,19 +303,30 @@ class NodePicture {
     const NodeInfo info = nodes_.node(node);
     // The far corners of a tile's cells lie in the next cells, which may have no floor.
     const double whole = 1.0 / (1 << info.level);
-    const double side = whole - (info.kind == PatchKind::kLevelTile ? 1e-5 : 0);
+    const double side = whole - (info.kind == PatchKind::kLevelTile ? kInset : 0);
     const double s0 = info.s * whole, t0 = info.t * whole;
     const Rgb colour = inclination_colour(summary_.bins.inclination_of(info.inclination));
     const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.level) : 1;
     const double nearer = 0.01 * info.level;
-    pieces(node, s0, t0, side, parts, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
-      fill(canvas, c, normal, colour, nearer);
-    });
+    const auto paint = [&](const Block& block) {
+      pieces(node, block, parts, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
+        fill(canvas, c, normal, colour, nearer);
+      });
+    };
+    const Rgb rim = shade(colour, 0.62);
+    if (info.cells != 0) {
+      const uint64_t cells =
+          config_.avatar_class < 0 ? info.cells : nodes_.ragged_cells(config_.avatar_class, node);
+      for_runs(info, cells, paint);
+      if (whole * 64 * nodes_.data()->world.summary().cell * scale_ >= 5)
+        rim_of_cells(canvas, info, node, cells, rim, nearer);
+      return;
+    }
+    paint({s0, t0, side, side});
     // The rim, unless it would be all that is seen.
     const auto corners = nodes_.corners(node);
     const double pixels = length(corners[2] - corners[0]) * scale_;
     if (pixels < 5) return;
-    const Rgb rim = shade(colour, 0.62);
     const auto edge = [&](double sa, double ta, double sb, double tb) {
       const int32_t n = 2 * parts;
       for (int32_t k = 0; k < n; ++k) {
@@ -324,9 +342,39 @@ class NodePicture {
     edge(s0, t0 + side, s0 + side, t0 + side);
   }
 
-  [[nodiscard]] Vec3d middle(const NodeInfo& info, uint32_t node) const {
-    const double side = 1.0 / (1 << info.level);
-    return nodes_.point(node, (info.s + 0.5) * side, (info.t + 0.5) * side);
+  // Calls visit(block) for each run of cells in the rows of a ragged node.
+  template <class Visit>
+  static void for_runs(const NodeInfo& info, uint64_t cells, Visit visit) {
+    constexpr double kCell = 1.0 / 64;
+    for (int32_t t = 0; t < 8; ++t) {
+      for (auto row = static_cast<uint32_t>(cells >> (8 * t) & 0xff); row != 0;) {
+        const int32_t s = std::countr_zero(row), count = std::countr_one(row >> s);
+        visit({(info.s * 8 + s) * kCell, (info.t * 8 + t) * kCell, count * kCell - kInset,
+               kCell - kInset});
+        row &= ~(((1u << count) - 1) << s);
+      }
+    }
+  }
+
+  // Sides of cells beyond which the node does not go on.
+  void rim_of_cells(DepthCanvas& canvas, const NodeInfo& info, uint32_t node, uint64_t cells,
+                    Rgb colour, double nearer) const {
+    constexpr double kCell = 1.0 / 64, kSide = kCell - kInset;
+    const auto is_in = [&](int32_t s, int32_t t) {
+      return s >= 0 && t >= 0 && s < 8 && t < 8 && (cells >> (8 * t + s) & 1) != 0;
+    };
+    for (uint64_t left = cells; left != 0; left &= left - 1) {
+      const int32_t i = std::countr_zero(left) % 8, j = std::countr_zero(left) / 8;
+      const double s = (info.s * 8 + i) * kCell, t = (info.t * 8 + j) * kCell;
+      const auto edge = [&](double sa, double ta, double sb, double tb) {
+        canvas.line(at(nodes_.point(node, sa, ta), nearer + 0.05),
+                    at(nodes_.point(node, sb, tb), nearer + 0.05), 1, colour);
+      };
+      if (!is_in(i - 1, j)) edge(s, t, s, t + kSide);
+      if (!is_in(i + 1, j)) edge(s + kSide, t, s + kSide, t + kSide);
+      if (!is_in(i, j - 1)) edge(s, t, s + kSide, t);
+      if (!is_in(i, j + 1)) edge(s, t + kSide, s + kSide, t + kSide);
+    }
   }
 
   void links(DepthCanvas& canvas, uint32_t node) const {
@@ -343,8 +391,8 @@ class NodePicture {
           summary_.bins.inclination_of(std::max(info.inclination, other.inclination));
       Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
       if (arc.leaps) colour = kLeapLink;
-      const Vec3d a = arc.leaps ? nodes_.point(node, arc.from_s, arc.from_t) : middle(info, node);
-      const Vec3d b = arc.leaps ? nodes_.point(arc.to, arc.to_s, arc.to_t) : middle(other, arc.to);
+      const Vec3d a = arc.leaps ? nodes_.point(node, arc.from_s, arc.from_t) : nodes_.middle(node);
+      const Vec3d b = arc.leaps ? nodes_.point(arc.to, arc.to_s, arc.to_t) : nodes_.middle(arc.to);
       if (drops) {
         const Vec3d over{b.x, a.y, b.z};
         canvas.line(at(a, 0.6), at(over, 0.6), 3, kDropLink);

@@ -3,6 +3,7 @@
 #include "view/overlays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -84,11 +85,6 @@ void add_tile(Marks& marks, const LevelTileContent& tile, const WorldSummary& su
   }
 }
 
-Vec3d middle_of(const Nodes& nodes, uint32_t node) {
-  const auto corners = nodes.corners(node);
-  return (corners[0] + corners[1] + corners[2] + corners[3]) * 0.25;
-}
-
 }  // namespace
 
 const char* word_for(Overlay overlay) {
@@ -155,11 +151,27 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     const NodeInfo info = nodes.node(n);
     if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMost) continue;
+    const double steep = bins.inclination_of(info.inclination) / 90;
+    const Rgba colour = ramp(0.5 - 0.5 * std::min(1.0, steep), 110), rim = rgba(255, 255, 255, 150);
     auto c = nodes.corners(n);
     for (Vec3d& p : c) p = p - origin + lift;
-    const double steep = bins.inclination_of(info.inclination) / 90;
-    add_quad(marks, c[0], c[1], c[2], c[3], ramp(0.5 - 0.5 * std::min(1.0, steep), 110));
-    for (size_t k = 0; k < 4; ++k) add_line(marks, c[k], c[(k + 1) % 4], rgba(255, 255, 255, 150));
+    if (info.cells == 0) {
+      add_quad(marks, c[0], c[1], c[2], c[3], colour);
+      for (size_t k = 0; k < 4; ++k) add_line(marks, c[k], c[(k + 1) % 4], rim);
+      continue;
+    }
+    // A ragged node row by row: its block's corners need not have a floor.
+    constexpr double kCell = 1.0 / 64, kSide = kCell - 1e-5;
+    for (int32_t row = 0; row < 8; ++row) {
+      for (auto left = static_cast<uint32_t>(info.cells >> (8 * row) & 0xff); left != 0;) {
+        const int32_t first = std::countr_zero(left), count = std::countr_one(left >> first);
+        left &= ~(((1u << count) - 1) << first);
+        const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
+        const auto at = [&](double u, double v) { return nodes.point(n, u, v) - origin + lift; };
+        const double end = s + (count - 1) * kCell + kSide;
+        add_quad(marks, at(s, t), at(s, t + kSide), at(end, t + kSide), at(end, t), colour);
+      }
+    }
   }
   marks.line_width = 1;
   return marks;
@@ -185,7 +197,7 @@ Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context) {
       if (arc.kind == LinkKind::kStep) colour = rgba(255, 150, 30, 220);
       if (arc.kind == LinkKind::kClimb) colour = rgba(240, 60, 220, 220);
       if (arc.kind == LinkKind::kJump) colour = rgba(60, 130, 255, 255);
-      add_line(marks, middle_of(nodes, n) + lift, middle_of(nodes, arc.to) + lift, colour);
+      add_line(marks, nodes.middle(n) + lift, nodes.middle(arc.to) + lift, colour);
     }
   }
   marks.line_width = 1.2F;

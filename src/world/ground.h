@@ -23,6 +23,11 @@ struct GroundLevel {
     if (kind == format::CellsKind::All) return true;
     return legal != nullptr && bit_at(legal, x, z);
   }
+  /// The legal cells of one of the level's blocks of 8 x 8. [block < kBlocks]
+  [[nodiscard]] uint64_t legal_in(uint32_t block) const {
+    if (kind == format::CellsKind::All) return ~uint64_t{0};
+    return legal != nullptr ? block_cells(legal, block) : 0;
+  }
 };
 
 GroundLevel ground_level(const Zone& zone, uint32_t zone_level, uint32_t world_level,

@@ -3,10 +3,12 @@
 #include "world/node_data.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <tuple>
 
 #include "core/hash.h"
+#include "world/ground.h"
 #include "world/region_data.h"
 
 namespace throng {
@@ -46,13 +48,14 @@ Result<void> NodeZone::attach(const std::string& name) {
                                ", this program reads " + std::to_string(kNodeVersion));
   }
   if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() || !root_->leaps() ||
-      !root_->doors() || !root_->points() || !is_aligned(*root_->points())) {
+      !root_->doors() || !root_->points() || !root_->ragged() || !is_aligned(*root_->points())) {
     return bad_nodes(name, "an array is missing");
   }
   patches_ = structs(*root_->patches());
   nodes_ = structs(*root_->nodes());
   arcs_ = structs(*root_->arcs());
   leaps_ = structs(*root_->leaps());
+  ragged_ = structs(*root_->ragged());
   far_ = structs(*root_->far());
   doors_ = structs(*root_->doors());
   points_ = {root_->points()->data(), root_->points()->size()};
@@ -64,7 +67,7 @@ const char* NodeZone::fault() const {
   for (const double p : points_) {
     if (!(std::fabs(p) <= kFarthest)) return "a control point makes no sense";
   }
-  uint64_t next = 0;
+  uint64_t next = 0, ragged = 0;
   for (const format::NodePatch& patch : patches_) {
     const bool bezier = patch.kind() == static_cast<uint8_t>(PatchKind::kBezier);
     if (patch.kind() > static_cast<uint8_t>(PatchKind::kLevelTile) ||
@@ -81,18 +84,31 @@ const char* NodeZone::fault() const {
           !(node.area() >= 0 && node.area() <= 1e12F)) {
         return "a node makes no sense";
       }
+      const bool is_ragged = (node.flags() & kRaggedFlag) != 0;
+      if (is_ragged) {
+        if (bezier || node.level() != kRaggedLevel || patch.depth() != kDeepestPatch ||
+            ragged >= ragged_.size() || ragged_[ragged].node() != n ||
+            (ragged_[ragged].low() | ragged_[ragged].high()) == 0) {
+          return "the cells of a ragged node make no sense";
+        }
+        ++ragged;
+      }
       if (node.parent() == UINT32_MAX) continue;
       if (node.parent() < patch.first_node() || node.parent() >= n) {
         return "a node's parent is not before it";
       }
       const format::Node& parent = nodes_[node.parent()];
       const int32_t up = node.level() - parent.level();
-      if (up <= 0 || node.s() >> up != parent.s() || node.t() >> up != parent.t()) {
+      // (A ragged node lies in a block beside that block's own node.)
+      const bool is_inside = is_ragged ? up >= 0 : up > 0;
+      if (!is_inside || (parent.flags() & kRaggedFlag) != 0 || node.s() >> up != parent.s() ||
+          node.t() >> up != parent.t()) {
         return "a node does not lie in its parent";
       }
     }
   }
   if (next != nodes_.size()) return "nodes without a patch";
+  if (ragged != ragged_.size()) return "cells of nodes that are not ragged";
   uint32_t last = 0;
   for (const format::Node& node : nodes_) {
     if (node.first_arc() < last || node.first_arc() > arcs_.size()) {
@@ -124,6 +140,14 @@ const char* NodeZone::fault() const {
     }
   }
   return nullptr;
+}
+
+uint64_t NodeZone::cells_of(uint32_t node) const {
+  if ((nodes_[node].flags() & kRaggedFlag) == 0) return 0;
+  const auto found = std::lower_bound(
+      ragged_.begin(), ragged_.end(), node,
+      [](const format::RaggedCells& cells, uint32_t n) { return cells.node() < n; });
+  return uint64_t{found->high()} << 32 | found->low();
 }
 
 const format::Leap* NodeZone::leap_of(uint32_t arc) const {
@@ -219,12 +243,28 @@ const NodeData::AreaList& NodeData::areas_before(int32_t avatar_class) const {
       for (uint32_t n = 0; n < nodes.size(); ++n) {
         const uint32_t parent = nodes[n].parent();
         if (!stands(n) || (parent != UINT32_MAX && stands(parent))) continue;
-        sum += static_cast<double>(nodes[n].area());
+        sum += area_of(*found, n, avatar_class);
         areas.list.push_back({slots[s]->first_node + n, sum});
       }
     }
   });
   return areas.list;
+}
+
+uint64_t NodeData::cells_of(const NodeZone& from, uint32_t node, int32_t avatar_class) const {
+  const uint64_t cells = from.cells_of(node);
+  const format::Node& found = from.nodes()[node];
+  if (cells == 0 || (found.classes() >> avatar_class & 1) == 0) return 0;
+  const GroundLevel ground =
+      ground_level(*world.data(), source_of(from, from.patch_of(node)), avatar_class);
+  return cells & ground.legal_in(block_of(found.s() * 8, found.t() * 8));
+}
+
+double NodeData::area_of(const NodeZone& from, uint32_t node, int32_t avatar_class) const {
+  const format::Node& found = from.nodes()[node];
+  if ((found.flags() & kRaggedFlag) == 0) return static_cast<double>(found.area());
+  const double cell = world.data()->summary.cell;
+  return std::popcount(cells_of(from, node, avatar_class)) * cell * cell;
 }
 
 uint32_t NodeData::target(size_t slot, const NodeZone& from, uint32_t to) const {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 #include "baked.h"
@@ -54,6 +55,7 @@ TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
     const Scene scene = builtin({.name = name});
     const World world = bake(scene, 0.2);
     const Nodes nodes = make(world, scene);
+    uint64_t ragged = 0;
     std::vector<std::vector<uint16_t>> covered(world.level_tile_count(),
                                                std::vector<uint16_t>(4096, 0));
     for (uint32_t n = 0; n < nodes.node_count(); ++n) {
@@ -62,10 +64,29 @@ TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
       const int32_t size = 64 >> info.level;
       for (int32_t t = info.t * size; t < (info.t + 1) * size; ++t) {
         for (int32_t s = info.s * size; s < (info.s + 1) * size; ++s) {
+          if (info.cells != 0) continue;
           covered[info.source][static_cast<size_t>(t * 64 + s)] |= info.classes;
         }
       }
+      for (int32_t c = 0; info.cells != 0 && c < 4; ++c) {
+        const uint64_t cells = nodes.ragged_cells(c, n);
+        EXPECT_EQ(cells != 0, (info.classes >> c & 1) != 0);
+        EXPECT_EQ(cells & ~info.cells, 0u);
+        double area = 0;
+        for (uint64_t left = cells; left != 0; left &= left - 1) {
+          const int32_t bit = std::countr_zero(left);
+          const int32_t s = info.s * 8 + bit % 8, t = info.t * 8 + bit / 8;
+          covered[info.source][static_cast<size_t>(t * 64 + s)] |= static_cast<uint16_t>(1u << c);
+          EXPECT_TRUE(nodes.place(c, n, (s + 0.5) / 64, (t + 0.5) / 64));
+          area += 0.04;
+        }
+        EXPECT_LE(area, static_cast<double>(info.area) + 1e-3);
+        EXPECT_NEAR(std::popcount(info.cells) * 0.04, info.area, 1e-5);
+      }
+      ragged += info.cells != 0 ? 1 : 0;
     }
+    EXPECT_GT(ragged, 100u);
+    EXPECT_EQ(ragged, nodes.summary().ragged);
     for (uint32_t l = 0; l < world.level_tile_count(); ++l) {
       const LevelTileContent tile = world.level_tile(l);
       for (size_t i = 0; i < 4096; ++i) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <numeric>
 
@@ -112,6 +113,127 @@ TEST(Quadtree, EveryClassHasTheCellsThatItHasAlone) {
   }
 }
 
+// The cells of a ragged node on which a class stands.
+uint64_t own_cells(const PatchCells& cells, const PatchNode& node, uint16_t bit) {
+  uint64_t own = 0;
+  for (uint64_t left = node.cells; left != 0; left &= left - 1) {
+    const int32_t at = std::countr_zero(left);
+    const size_t cell = cells.index(node.s * 8 + at % 8, node.t * 8 + at / 8);
+    if ((cells.cells[cell].classes & bit) != 0) own |= uint64_t{1} << at;
+  }
+  return own;
+}
+
+// Those of some cells of a block that hold together with the first, step by step.
+uint64_t first_piece(const PatchCells& cells, const PatchNode& node, uint64_t own, uint16_t bit) {
+  std::vector<int32_t> reached{std::countr_zero(own)};
+  uint64_t piece = own & (~own + 1);
+  const auto is_cut = [&](const std::vector<uint16_t>& cuts, int32_t at) {
+    return !cuts.empty() &&
+           (cuts[cells.index(node.s * 8 + at % 8, node.t * 8 + at / 8)] & bit) != 0;
+  };
+  for (size_t i = 0; i < reached.size(); ++i) {
+    const int32_t at = reached[i];
+    const auto go = [&](int32_t to, bool open) {
+      if (!open || (own >> to & 1) == 0 || (piece >> to & 1) != 0) return;
+      piece |= uint64_t{1} << to;
+      reached.push_back(to);
+    };
+    if (at % 8 < 7) go(at + 1, !is_cut(cells.cut_s, at));
+    if (at % 8 > 0) go(at - 1, !is_cut(cells.cut_s, at - 1));
+    if (at / 8 < 7) go(at + 8, !is_cut(cells.cut_t, at));
+    if (at / 8 > 0) go(at - 8, !is_cut(cells.cut_t, at - 8));
+  }
+  return piece;
+}
+
+// Each class alone has as many ragged nodes in a block as its cells there have pieces, and together
+// with others it has one node for each.
+TEST(Quadtree, RaggedNodesAreThePiecesOfEachClass) {
+  size_t tested = 0, shared = 0;
+  for (uint64_t seed = 1; seed <= 120; ++seed) {
+    PatchCells cells = random_cells(4 + static_cast<int32_t>(seed % 3), seed, seed % 2 == 0);
+    for (uint64_t k = 0; k < seed % 4 * 40; ++k) {  // And single cells.
+      const size_t i = random_below(seed, k, 50, cells.cells.size());
+      cells.cells[i].classes &= static_cast<uint16_t>(random_below(seed, k, 51, 16));
+    }
+    cells.ragged = true;
+    const PatchTree tree = build_tree(cells);
+    std::vector<uint16_t> covered(cells.cells.size(), 0);
+    for (const PatchNode& node : tree.nodes) {
+      const uint16_t from_parent =
+          node.parent == kNoNode ? uint16_t{0} : tree.nodes[node.parent].promise.classes;
+      ASSERT_LE(node.level, tree.leaf_depth);
+      if (node.cells == 0) {
+        for_cells(tree, node, [&](int32_t s, int32_t t) {
+          const uint16_t fresh = node.promise.classes & ~from_parent & 0xffff;
+          EXPECT_EQ(covered[cells.index(s, t)] & fresh, 0) << "seed " << seed;
+          covered[cells.index(s, t)] |= fresh;
+        });
+        continue;
+      }
+      ASSERT_EQ(node.level, tree.leaf_depth);
+      ASSERT_TRUE(node.terminal);
+      EXPECT_EQ(node.promise.classes & from_parent, 0);
+      shared += std::popcount(node.promise.classes) > 1 ? 1 : 0;
+      for (uint16_t bit = 1; bit < 16; bit = static_cast<uint16_t>(bit << 1)) {
+        if ((node.promise.classes & bit) == 0) continue;
+        const uint64_t own = own_cells(cells, node, bit);
+        ASSERT_NE(own, 0u) << "seed " << seed;
+        EXPECT_EQ(first_piece(cells, node, own, bit), own) << "seed " << seed;
+        for (uint64_t left = own; left != 0; left &= left - 1) {
+          const int32_t at = std::countr_zero(left);
+          const size_t cell = cells.index(node.s * 8 + at % 8, node.t * 8 + at / 8);
+          EXPECT_EQ(covered[cell] & bit, 0) << "seed " << seed;
+          covered[cell] |= bit;
+          const Promise& is = cells.cells[cell];
+          EXPECT_LE(is.inclination, node.promise.inclination);
+          EXPECT_GE(is.height, node.promise.height);
+          EXPECT_GE(is.headroom, node.promise.headroom);
+        }
+        ++tested;
+      }
+    }
+    for (size_t i = 0; i < cells.cells.size(); ++i) {
+      ASSERT_EQ(covered[i], cells.cells[i].classes) << "seed " << seed << " cell " << i;
+      ASSERT_EQ(tree.classes_on(i), cells.cells[i].classes) << "seed " << seed << " cell " << i;
+      // All nodes around a cell, the smallest first.
+      std::vector<uint32_t> around;
+      for (uint32_t n = tree.nodes.empty() ? kNoNode : tree.leaf_of(i); n != kNoNode;
+           n = tree.next_around(n, i)) {
+        around.push_back(n);
+      }
+      std::vector<uint32_t> all;
+      for (uint32_t n = 0; n < tree.nodes.size(); ++n) {
+        const PatchNode& node = tree.nodes[n];
+        const int32_t up = tree.depth - node.level;
+        const auto s = static_cast<int32_t>(i) & (cells.side() - 1);
+        const auto t = static_cast<int32_t>(i) >> tree.depth;
+        if (s >> up != node.s || t >> up != node.t) continue;
+        if (node.cells == 0 || (node.cells >> ((t & 7) * 8 + (s & 7)) & 1) != 0) all.push_back(n);
+      }
+      std::sort(around.begin(), around.end());
+      ASSERT_EQ(around, all) << "seed " << seed << " cell " << i;
+    }
+    // Alone.
+    PatchCells alone = cells;
+    for (Promise& cell : alone.cells) cell.classes &= 1;
+    for (auto* cuts : {&alone.cut_s, &alone.cut_t}) {
+      for (uint16_t& cut : *cuts) cut &= 1;
+    }
+    const auto pieces = [](const PatchTree& of) {
+      size_t count = 0;
+      for (const PatchNode& node : of.nodes) {
+        count += node.cells != 0 && (node.promise.classes & 1) != 0 ? 1 : 0;
+      }
+      return count;
+    };
+    EXPECT_EQ(pieces(build_tree(alone)), pieces(tree)) << "seed " << seed;
+  }
+  EXPECT_GT(tested, 2000u);
+  EXPECT_GT(shared, 300u);
+}
+
 TEST(Quadtree, AnEvenPatchIsOneNode) {
   PatchCells cells{.depth = 6, .cells = {}, .cut_s = {}, .cut_t = {}};
   cells.cells.assign(4096, {1, 2, 3, 4});
@@ -140,9 +262,11 @@ class Sets {
 // hold together for a class exactly if the nodes that hold them do.
 TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
   size_t tested = 0;
-  for (uint64_t seed = 1; seed <= 80; ++seed) {
-    const std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
-                                             random_cells(3, seed + 1000, seed % 3 == 0)};
+  for (uint64_t seed = 1; seed <= 160; ++seed) {
+    std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
+                                       random_cells(3, seed + 1000, seed % 3 == 0)};
+    cells[0].ragged = seed % 4 > 1;
+    cells[1].ragged = seed % 8 > 3;
     NodeForest forest;
     for (const PatchCells& patch : cells) forest.add(build_tree(patch));
     std::vector<CellPair> pairs;
@@ -198,14 +322,21 @@ TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
       for (uint32_t i = 0; i < 320; ++i) {
         const uint32_t p = i < 256 ? 0 : 1, cell = i < 256 ? i : i - 256;
         if ((cells[p].cells[cell].classes & bit) == 0) continue;
-        const uint32_t a = naive.find(i), b = nodes.find(forest.leaf(p, cell));
+        // Of the nodes around the cell one in which the class stands.
+        const PatchTree& tree = forest.trees[p];
+        uint32_t node = tree.leaf_of(cell);
+        while (node != kNoNode && (tree.nodes[node].promise.classes & bit) == 0) {
+          node = tree.next_around(node, cell);
+        }
+        ASSERT_NE(node, kNoNode);
+        const uint32_t a = naive.find(i), b = nodes.find(forest.first[p] + node);
         EXPECT_EQ(part_of.try_emplace(a, b).first->second, b) << "seed " << seed;
         EXPECT_EQ(back.try_emplace(b, a).first->second, a) << "seed " << seed;
         ++tested;
       }
     }
   }
-  EXPECT_GT(tested, 40000u);
+  EXPECT_GT(tested, 80000u);
 }
 
 TEST(NodeLinks, PairsOfTheSameCellsAndSidesAreOneInAnyOrder) {

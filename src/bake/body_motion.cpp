@@ -30,7 +30,37 @@ bool carries(const LocalTriangle& t, Vec3d at, double reach) {
   return std::fabs(height / sum - at.y) <= reach;
 }
 
+bool holds(const Box3d& outer, const Box3d& inner) {
+  return outer.min.x <= inner.min.x && outer.min.y <= inner.min.y && outer.min.z <= inner.min.z &&
+         outer.max.x >= inner.max.x && outer.max.y >= inner.max.y && outer.max.z >= inner.max.z;
+}
+
 }  // namespace
+
+double MotionJudge::reach_of(const PatchBody& body) {
+  return std::sqrt(body.height * body.height + body.radius * body.radius) + kGrowth;
+}
+
+void MotionJudge::list_triangles(const Box3d& box, Vec3d around, SieveList& out) {
+  found_.clear();
+  triangles_->find(box, found_);
+  out.clear(around);
+  for (const uint32_t t : found_) out.add(t, triangles_->corners(t));
+  out.close();
+}
+
+void MotionJudge::look_around(const Box3d& box) {
+  around_.box = box;
+  closer_.box = {};
+  list_triangles(box, (box.min + box.max) * 0.5, around_.list);
+}
+
+void MotionJudge::look_closer(const Box3d& box) {
+  closer_.box = {};
+  if (!holds(around_.box, box)) return;
+  closer_.box = box;
+  narrow(around_.list, box, closer_.list);
+}
 
 bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to) {
   if (dot(from.axis, to.axis) < -0.5) return false;  // Which way it turns would be a guess.
@@ -39,15 +69,18 @@ bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const Bod
   const double way = length(to.feet - from.feet) + 2 * far * length(to.axis - from.axis);
   Box3d box;
   for (const BodyPose& pose : {from, to}) {
-    const Vec3d reach{far + kGrowth, far + kGrowth, far + kGrowth};
+    const double around = reach_of(body);
+    const Vec3d reach{around, around, around};
     box.add(pose.feet - reach);
     box.add(pose.feet + reach);
   }
-  found_.clear();
-  triangles_->find(box, found_);
-  near_.clear(from.feet);
-  for (const uint32_t t : found_) near_.add(t, triangles_->corners(t));
-  near_.close();
+  if (holds(closer_.box, box)) {
+    narrow(closer_.list, box, near_);
+  } else if (holds(around_.box, box)) {
+    narrow(around_.list, box, near_);
+  } else {
+    list_triangles(box, from.feet, near_);
+  }
   return is_free(body, from, to, way, 0, 1);
 }
 

@@ -18,6 +18,13 @@ class MotionJudge {
  public:
   explicit MotionJudge(const TriangleSquares& triangles) : triangles_(&triangles) {}
 
+  /// For whoever asks about many motions near each other: their triangles are listed once, first
+  /// those in a box, then of these those in a smaller one. Changes no answer.
+  void look_around(const Box3d& box);
+  void look_closer(const Box3d& box);
+  /// From the feet of a body to the farthest point that any motion needs to know. [m]
+  [[nodiscard]] static double reach_of(const PatchBody& body);
+
   /// True if no triangle meets the body on its way. Proved, not sampled: between two poses the body
   /// is grown by as far as any of its points moves.
   [[nodiscard]] bool is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to);
@@ -27,11 +34,19 @@ class MotionJudge {
   [[nodiscard]] bool is_carried(Vec3d from, Vec3d to, double reach, double spacing);
 
  private:
+  // Triangles in a box.
+  struct Surroundings {
+    Box3d box;
+    SieveList list;
+  };
+
+  void list_triangles(const Box3d& box, Vec3d around, SieveList& out);
   [[nodiscard]] bool is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to,
                              double way, double t0, double t1);
 
   const TriangleSquares* triangles_;
   std::vector<uint32_t> found_;
+  Surroundings around_, closer_;
   SieveList near_;
   SieveHits hits_;
 };

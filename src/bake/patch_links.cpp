@@ -144,66 +144,134 @@ bool lacks_neighbour(const PatchCells& cells, uint32_t cell, uint16_t bit) {
   });
 }
 
+// How far from a cell's middle the motions of a leap look at triangles. [m]
+double motion_reach(const PatchBody& body, double size) {
+  constexpr double kRounded = 0.01;  // cells' middles are kept in floats
+  return patch_leap(body.radius, size) + MotionJudge::reach_of(body) + kRounded;
+}
+
+// Leaps from one patch.
+class HoleLinker {
+ public:
+  HoleLinker(const PatchLinkInput& input, const std::vector<PatchBody>& bodies, uint32_t patch)
+      : input_(input),
+        bodies_(bodies),
+        patch_(patch),
+        here_(input.cells[patch]),
+        judge_(*input.triangles) {
+    for (const PatchBody& body : bodies) {
+      farthest_ = std::max(farthest_, motion_reach(body, input.size));
+    }
+    for (size_t c = 0; c < bodies.size(); ++c) {
+      for (const uint32_t maker : here_.makers) add_target(c, maker);
+    }
+    Box3d box;
+    for (const CellShape& cell : here_.shape) box.add({cell.x, cell.y, cell.z});
+    judge_.look_around({.min = box.min - Vec3d{farthest_, farthest_, farthest_},
+                        .max = box.max + Vec3d{farthest_, farthest_, farthest_}});
+  }
+
+  std::vector<CellPair> link() {
+    for (uint32_t a = 0; a < here_.promise.cells.size(); ++a) {
+      looked_closer_ = false;
+      for (const Target& target : targets_) link_cell(a, target);
+    }
+    return std::move(pairs_);
+  }
+
+ private:
+  // The cells of a maker on which a class may stand.
+  struct Target {
+    size_t avatar_class = 0;
+    uint32_t maker = 0;
+    std::vector<uint32_t> cells;
+    std::vector<Box3d> boxes;  // of so many cells each
+    Box3d whole;
+  };
+
+  void add_target(size_t c, uint32_t maker) {
+    Target target{.avatar_class = c, .maker = maker, .cells = {}, .boxes = {}, .whole = {}};
+    target.cells = cells_of(input_.cells[maker], bodies_[c].bit);
+    if (target.cells.empty()) return;
+    target.boxes.resize((target.cells.size() + kBoxedCells - 1) / kBoxedCells);
+    for (size_t k = 0; k < target.cells.size(); ++k) {
+      const CellShape& cell = shape_of(input_, maker, target.cells[k]);
+      target.boxes[k / kBoxedCells].add({cell.x, cell.y, cell.z});
+      target.whole.add({cell.x, cell.y, cell.z});
+    }
+    targets_.push_back(std::move(target));
+  }
+
+  // Fills `nearest_` with the target's cells in reach, the nearest first.
+  void find_nearest(const CellShape& at, const Target& target, double widest) {
+    const Vec3d middle{at.x, at.y, at.z};
+    nearest_.clear();
+    for (size_t run = 0; run < target.boxes.size(); ++run) {
+      if (distance2(target.boxes[run], middle) > widest * widest) continue;
+      const size_t end = std::min(target.cells.size(), (run + 1) * kBoxedCells);
+      for (size_t k = run * kBoxedCells; k < end; ++k) {
+        const CellShape& other = shape_of(input_, target.maker, target.cells[k]);
+        const Vec3d d{double{other.x} - at.x, double{other.y} - at.y, double{other.z} - at.z};
+        if (const double far = dot(d, d); far <= widest * widest) {
+          nearest_.push_back({far, target.cells[k]});
+        }
+      }
+    }
+    std::sort(nearest_.begin(), nearest_.end());
+  }
+
+  void link_cell(uint32_t a, const Target& target) {
+    const PatchBody& body = bodies_[target.avatar_class];
+    if ((here_.promise.cells[a].classes & body.bit) == 0) return;
+    const CellShape& at = shape_of(input_, patch_, a);
+    const Vec3d middle{at.x, at.y, at.z};
+    const double widest = patch_leap(body.radius, input_.size);
+    if (distance2(target.whole, middle) > widest * widest) return;
+    if (!lacks_neighbour(here_.promise, a, body.bit)) return;
+    find_nearest(at, target, widest);
+    if (nearest_.empty()) return;
+    if (!looked_closer_) {
+      judge_.look_closer({.min = middle - Vec3d{farthest_, farthest_, farthest_},
+                          .max = middle + Vec3d{farthest_, farthest_, farthest_}});
+      looked_closer_ = true;
+    }
+    const BodyPose start = pose_on(input_, body, patch_, a);
+    for (size_t k = 0; k < std::min(kTries, nearest_.size()); ++k) {
+      const uint32_t b = nearest_[k].second;
+      if (!goes(judge_, body, start, pose_on(input_, body, target.maker, b),
+                input_.classes[target.avatar_class].step)) {
+        continue;
+      }
+      pairs_.push_back({.patch_a = patch_,
+                        .cell_a = a,
+                        .patch_b = target.maker,
+                        .cell_b = b,
+                        .classes = body.bit,
+                        .kind = LinkKind::kClimb});
+      return;
+    }
+  }
+
+  const PatchLinkInput& input_;
+  const std::vector<PatchBody>& bodies_;
+  uint32_t patch_;
+  const BezierCells& here_;
+  MotionJudge judge_;
+  double farthest_ = 0;  // from a cell's middle, that any leap looks at triangles [m]
+  std::vector<Target> targets_;
+  std::vector<std::pair<double, uint32_t>> nearest_;
+  bool looked_closer_ = false;  // at the cell whose leaps are tried
+  std::vector<CellPair> pairs_;
+};
+
 }  // namespace
 
 std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
   std::vector<std::vector<CellPair>> lists(input.cells.size());
   parallel_for(input.cells.size(), workers, [&](size_t p) {
-    const BezierCells& here = input.cells[p];
-    if (here.makers.empty()) return;
-    MotionJudge judge(*input.triangles);
-    std::vector<std::pair<double, uint32_t>> nearest;
-    std::vector<Box3d> boxes;  // of so many cells of a maker
-    for (size_t c = 0; c < bodies.size(); ++c) {
-      const PatchBody& body = bodies[c];
-      const double widest = patch_leap(body.radius, input.size);
-      const std::vector<uint32_t> from = cells_of(here, body.bit);
-      for (const uint32_t maker : here.makers) {
-        const std::vector<uint32_t> to = cells_of(input.cells[maker], body.bit);
-        boxes.assign((to.size() + kBoxedCells - 1) / kBoxedCells, {});
-        Box3d whole;
-        for (size_t k = 0; k < to.size(); ++k) {
-          const CellShape& cell = shape_of(input, maker, to[k]);
-          boxes[k / kBoxedCells].add({cell.x, cell.y, cell.z});
-          whole.add({cell.x, cell.y, cell.z});
-        }
-        for (const uint32_t a : from) {
-          const CellShape& at = shape_of(input, static_cast<uint32_t>(p), a);
-          const Vec3d middle{at.x, at.y, at.z};
-          if (distance2(whole, middle) > widest * widest) continue;
-          if (!lacks_neighbour(here.promise, a, body.bit)) continue;
-          nearest.clear();
-          for (size_t run = 0; run < boxes.size(); ++run) {
-            if (distance2(boxes[run], middle) > widest * widest) continue;
-            const size_t end = std::min(to.size(), (run + 1) * kBoxedCells);
-            for (size_t k = run * kBoxedCells; k < end; ++k) {
-              const CellShape& other = shape_of(input, maker, to[k]);
-              const Vec3d d{double{other.x} - at.x, double{other.y} - at.y, double{other.z} - at.z};
-              if (const double far = dot(d, d); far <= widest * widest) {
-                nearest.push_back({far, to[k]});
-              }
-            }
-          }
-          if (nearest.empty()) continue;
-          std::sort(nearest.begin(), nearest.end());
-          const BodyPose start = pose_on(input, body, static_cast<uint32_t>(p), a);
-          for (size_t k = 0; k < std::min(kTries, nearest.size()); ++k) {
-            const uint32_t b = nearest[k].second;
-            if (!goes(judge, body, start, pose_on(input, body, maker, b), input.classes[c].step)) {
-              continue;
-            }
-            lists[p].push_back({.patch_a = static_cast<uint32_t>(p),
-                                .cell_a = a,
-                                .patch_b = maker,
-                                .cell_b = b,
-                                .classes = body.bit,
-                                .kind = LinkKind::kClimb});
-            break;
-          }
-        }
-      }
-    }
+    if (input.cells[p].makers.empty()) return;
+    lists[p] = HoleLinker(input, bodies, static_cast<uint32_t>(p)).link();
   });
   return merged(lists);
 }

@@ -258,13 +258,7 @@ class TreeBuilder {
     const bool better = parent == kNoNode || block.promise != tree_.nodes[parent].promise;
     if (block.promise.classes != 0 && better) {
       here = static_cast<uint32_t>(tree_.nodes.size());
-      if (parent != kNoNode) tree_.nodes[parent].terminal = false;
-      tree_.nodes.push_back({.promise = block.promise,
-                             .level = static_cast<uint8_t>(level),
-                             .s = static_cast<uint8_t>(s),
-                             .t = static_cast<uint8_t>(t),
-                             .terminal = true,
-                             .parent = parent});
+      add_node({.promise = block.promise}, level, s, t, parent);
     }
     if (block.uniform || level == last_level_) {
       if (!tree_.leaf.empty()) fill(level, s, t, here);
@@ -282,16 +276,17 @@ class TreeBuilder {
     tree_.leaf[leaf_index(s, t)] = static_cast<uint32_t>(tree_.nodes.size());
     tree_.ragged.push_back(block.classes());
     for (const auto& [mask, promise] : block.divide()) {
-      if (parent != kNoNode) tree_.nodes[parent].terminal = false;
-      tree_.nodes.push_back({.promise = promise,
-                             .cells = mask,
-                             .ragged = place,
-                             .level = static_cast<uint8_t>(level),
-                             .s = static_cast<uint8_t>(s),
-                             .t = static_cast<uint8_t>(t),
-                             .terminal = true,
-                             .parent = parent});
+      add_node({.promise = promise, .cells = mask, .ragged = place}, level, s, t, parent);
     }
+  }
+
+  void add_node(PatchNode node, int32_t level, int32_t s, int32_t t, uint32_t parent) {
+    if (parent != kNoNode) tree_.nodes[parent].terminal = false;
+    node.level = static_cast<uint8_t>(level);
+    node.s = static_cast<uint8_t>(s);
+    node.t = static_cast<uint8_t>(t);
+    node.parent = parent;
+    tree_.nodes.push_back(node);
   }
 
   const PatchCells& cells_;

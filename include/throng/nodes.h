@@ -187,10 +187,11 @@ class THRONG_API Nodes {
   [[nodiscard]] std::array<Vec3d, 4> corners(uint32_t node) const;
   /// The ground in the middle of a node; of a ragged one, in the middle of one of its cells. [m]
   [[nodiscard]] Vec3d middle(uint32_t node) const;
-  /// The ground at (s, t) of the parameters of a node's patch, in the node or not. [m, 0 to 1]
+  /// The ground at (s, t) of the parameters of a node's patch, in the node or not; (0, 0, 0) if its
+  /// zone cannot be used. [m, 0 to 1]
   [[nodiscard]] Vec3d point(uint32_t node, double s, double t) const;
   /// The place at (s, t) of the patch's parameters, which must lie in the node; nowhere if the
-  /// class may not stand there.
+  /// class may not stand there or the ground's zone cannot be used (check_all says why).
   [[nodiscard]] NodePlace place(int32_t avatar_class, uint32_t node, double s, double t) const;
   /// The n-th of a reproducible stream of places of a class, about uniform over its area. Nowhere
   /// only if the class has no node.

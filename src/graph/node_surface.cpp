@@ -22,6 +22,7 @@ BezierPatch patch_of(const double* at) {
 // The ground of a level tile at parameters (s, t).
 Vec3d on_tile(const WorldData& world, uint32_t level, double s, double t) {
   const GroundLevel ground = ground_level(world, level, 0);
+  if (ground.zone == nullptr) return {};
   const auto [tile_x, tile_z] = tile_of(world, *ground.zone, *ground.view.record);
   const auto unit = [](int32_t tile, double at) {
     const double cells = std::clamp(at, 0.0, 1.0) * 64;
@@ -33,6 +34,10 @@ Vec3d on_tile(const WorldData& world, uint32_t level, double s, double t) {
 }
 
 }  // namespace
+
+bool NodeSurface::is_there() const {
+  return points != nullptr || world->zone(world->slot_of_level(source)) != nullptr;
+}
 
 Vec3d NodeSurface::at(double s, double t) const {
   return points != nullptr ? patch_of(points).at(s, t) : on_tile(*world, source, s, t);

@@ -19,6 +19,9 @@ struct NodeSurface {
   const double* points = nullptr;  ///< A Bezier patch's 48 numbers.
   const WorldData* world = nullptr;
 
+  /// False of a level tile whose zone cannot be used.
+  [[nodiscard]] bool is_there() const;
+  /// (0, 0, 0) if it is not there.
   [[nodiscard]] Vec3d at(double s, double t) const;
   /// Straight up on level tiles.
   [[nodiscard]] Vec3d normal(double s, double t) const;

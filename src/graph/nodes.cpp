@@ -235,6 +235,7 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
     return {};
   }
   const NodeSurface surface = surface_of(*data_, *zone, zone->patch_of(local));
+  if (!surface.is_there()) return {};
   const bool climbs = classes[static_cast<size_t>(avatar_class)].climb_slope > 0;
   const Vec3d normal = surface.normal(s, t);
   return {node + 1, surface.at(s, t), climbs ? normal : Vec3d{0, 1, 0}, normal, s, t};

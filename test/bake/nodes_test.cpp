@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <fstream>
 #include <map>
 
 #include "baked.h"
@@ -323,6 +324,47 @@ TEST(Nodes, AreWrittenAndOpened) {
   ASSERT_TRUE(bake_world_to(path, scene, {.cell = 0.5, .zone = 32}, context));
   EXPECT_FALSE(Nodes::open(path));
   EXPECT_EQ(made.write(path).error().message, path + ": holds another world than these nodes' own");
+}
+
+TEST(Nodes, OverGroundThatCannotBeReadNobodyStands) {
+  const test::ScratchFolder folder;
+  const std::string path = folder.path() + "/garage.throng";
+  const Scene scene = builtin({.name = "garage"});
+  Context context;
+  ASSERT_TRUE(bake_world_to(path, scene, {.cell = 0.2, .zone = 32}, context));
+  ASSERT_TRUE(make(*World::open(path), scene).write(path));
+  const std::string zone = path + "/zone_0_0.thz";
+  {
+    std::fstream file(zone, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(2000);
+    const auto byte = static_cast<char>(file.get() ^ 0x10);
+    file.seekp(2000);
+    file.put(byte);
+    ASSERT_TRUE(file);
+  }
+  const auto nodes = Nodes::open(path);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  size_t lost = 0, found = 0;
+  for (uint32_t n = 0; n < nodes->node_count(); ++n) {
+    const NodeInfo info = nodes->node(n);
+    const double side = 1.0 / (1 << info.level);
+    for (int32_t c = 0; c < 4; ++c) {
+      const bool stands =
+          static_cast<bool>(nodes->place(c, n, (info.s + 0.5) * side, (info.t + 0.5) * side));
+      found += stands ? 1 : 0;
+      lost += !stands && info.cells == 0 && (info.classes >> c & 1) != 0 ? 1 : 0;
+      EXPECT_TRUE(info.cells == 0 || (nodes->ragged_cells(c, n) & ~info.cells) == 0);
+    }
+    (void)nodes->corners(n);
+    (void)nodes->middle(n);
+  }
+  EXPECT_GT(lost, 100u);
+  EXPECT_GT(found, 1000u);
+  for (uint64_t n = 0; n < 1000; ++n) (void)nodes->random_place(0, 1, n);
+  EXPECT_GT(nodes->reach(0).size(), 0u);
+  const auto checked = nodes->check_all();
+  ASSERT_FALSE(checked);
+  EXPECT_NE(checked.error().message.find(zone), std::string::npos) << checked.error().message;
 }
 
 TEST(Nodes, BadInputIsRefusedAndNamed) {

@@ -254,6 +254,13 @@ class TreeBuilder {
   void visit(int32_t level, int32_t s, int32_t t, uint32_t parent) {
     const Block& block = at(level, s, t);
     if (block.any == 0) return;
+    const uint16_t above = parent == kNoNode ? uint16_t{0} : tree_.nodes[parent].promise.classes;
+    if (cells_.ragged && level == last_level_ && block.promise.classes != block.any) {
+      // Those who stand on all of it go with those who stand on a part.
+      fill(level, s, t, parent);
+      add_ragged(level, s, t, parent, static_cast<uint16_t>(block.any & ~above));
+      return;
+    }
     uint32_t here = parent;
     const bool better = parent == kNoNode || block.promise != tree_.nodes[parent].promise;
     if (block.promise.classes != 0 && better) {
@@ -262,14 +269,13 @@ class TreeBuilder {
     }
     if (block.uniform || level == last_level_) {
       if (!tree_.leaf.empty()) fill(level, s, t, here);
-      const auto rest = static_cast<uint16_t>(block.any & ~block.promise.classes);
-      if (rest != 0) add_ragged(level, s, t, here, rest);
       return;
     }
     for (int32_t q = 0; q < 4; ++q) visit(level + 1, 2 * s + q % 2, 2 * t + q / 2, here);
   }
 
-  // The classes that stand on a part of a block.
+  // The classes that stand on a block, of which some do on a part of it only, and that no larger
+  // node holds.
   void add_ragged(int32_t level, int32_t s, int32_t t, uint32_t parent, uint16_t rest) {
     RaggedBlock block(cells_, s << kRaggedDepth, t << kRaggedDepth, rest);
     const auto place = static_cast<uint32_t>(tree_.ragged.size());

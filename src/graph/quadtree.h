@@ -136,9 +136,9 @@ struct PatchTree {
 
 /// A block gets a node if everything in it lets some class stand, and if it promises more than the
 /// node around it: those who can do more can do less, so a steep or low block keeps one node as a
-/// whole, and what is better inside it nodes of its own. Of ragged patches the least blocks have,
-/// after such a node, ragged ones for the classes that stand on a part of them: as few as each
-/// class's cells in one hold together. Linear in the cells.
+/// whole, and what is better inside it nodes of its own. Of ragged patches the least blocks on
+/// which some class stands in part have ragged nodes for all that no larger node holds: as few as
+/// each class's cells in one hold together. Linear in the cells.
 [[nodiscard]] PatchTree build_tree(const PatchCells& cells);
 
 }  // namespace throng

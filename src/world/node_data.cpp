@@ -99,9 +99,7 @@ const char* NodeZone::fault() const {
       }
       const format::Node& parent = nodes_[node.parent()];
       const int32_t up = node.level() - parent.level();
-      // (A ragged node lies in a block beside that block's own node.)
-      const bool is_inside = is_ragged ? up >= 0 : up > 0;
-      if (!is_inside || (parent.flags() & kRaggedFlag) != 0 || node.s() >> up != parent.s() ||
+      if (up <= 0 || (parent.flags() & kRaggedFlag) != 0 || node.s() >> up != parent.s() ||
           node.t() >> up != parent.t()) {
         return "a node does not lie in its parent";
       }

@@ -221,10 +221,18 @@ TEST(Quadtree, RaggedNodesAreThePiecesOfEachClass) {
     for (auto* cuts : {&alone.cut_s, &alone.cut_t}) {
       for (uint16_t& cut : *cuts) cut &= 1;
     }
-    const auto pieces = [](const PatchTree& of) {
+    // (A class that goes anywhere in a block has a node there that is not ragged.)
+    const auto pieces = [&](const PatchTree& of) {
       size_t count = 0;
       for (const PatchNode& node : of.nodes) {
-        count += node.cells != 0 && (node.promise.classes & 1) != 0 ? 1 : 0;
+        if (node.cells == 0 || (node.promise.classes & 1) == 0) continue;
+        bool cut = false;
+        for (int32_t at = 0; at < 64 && !cells.cut_s.empty(); ++at) {
+          const size_t cell = cells.index(node.s * 8 + at % 8, node.t * 8 + at / 8);
+          cut |= at % 8 < 7 && (cells.cut_s[cell] & 1) != 0;
+          cut |= at / 8 < 7 && (cells.cut_t[cell] & 1) != 0;
+        }
+        count += cut || own_cells(cells, node, 1) != ~uint64_t{0} ? 1 : 0;
       }
       return count;
     };

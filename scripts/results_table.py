@@ -60,6 +60,19 @@ def write_between(marker, text, page="docs/results.md"):
     say(f"wrote {marker} into {page}")
 
 
+def rows_between(marker, page="docs/results.md"):
+    """The rows of the first table there, without its head, cells as text."""
+    content = (ROOT / page).read_text()
+    text = content.split(f"<!-- begin {marker} -->", 1)[1].split(f"<!-- end {marker} -->", 1)[0]
+    rows = []
+    for line in text.splitlines():
+        if line.startswith("|"):
+            rows.append(tuple(cell.strip() for cell in line.strip("|").split("|")))
+        elif rows:
+            break
+    return rows[2:]
+
+
 def human(count):
     for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if count >= size:

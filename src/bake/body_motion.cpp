@@ -35,11 +35,14 @@ bool holds(const Box3d& outer, const Box3d& inner) {
          outer.max.x >= inner.max.x && outer.max.y >= inner.max.y && outer.max.z >= inner.max.z;
 }
 
+// From a body's feet to its farthest point. [m]
+double farthest_of(const PatchBody& body) {
+  return std::sqrt(body.height * body.height + body.radius * body.radius);
+}
+
 }  // namespace
 
-double MotionJudge::reach_of(const PatchBody& body) {
-  return std::sqrt(body.height * body.height + body.radius * body.radius) + kGrowth;
-}
+double MotionJudge::reach_of(const PatchBody& body) { return farthest_of(body) + kGrowth; }
 
 void MotionJudge::list_triangles(const Box3d& box, Vec3d around, SieveList& out) {
   found_.clear();
@@ -64,12 +67,11 @@ void MotionJudge::look_closer(const Box3d& box) {
 
 bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to) {
   if (dot(from.axis, to.axis) < -0.5) return false;  // Which way it turns would be a guess.
-  const double far = std::sqrt(body.height * body.height + body.radius * body.radius);
+  const double far = farthest_of(body), around = reach_of(body);
   // The turning axis moves fastest half way, by the angle's tangent: twice the chord holds it.
   const double way = length(to.feet - from.feet) + 2 * far * length(to.axis - from.axis);
   Box3d box;
   for (const BodyPose& pose : {from, to}) {
-    const double around = reach_of(body);
     const Vec3d reach{around, around, around};
     box.add(pose.feet - reach);
     box.add(pose.feet + reach);

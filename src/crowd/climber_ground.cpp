@@ -109,13 +109,13 @@ double ClimberGround::travel(const ClimbPose& from, const ClimbPose& to) const {
 ClimberGround::Square ClimberGround::square_of(uint32_t node1) const {
   const NodeInfo info = nodes_->node(node1 - 1);
   const double side = 1.0 / (1 << info.level);
-  return {info.s * side,       info.t * side, (info.s + 1) * side,
-          (info.t + 1) * side, info.kind,     info.source};
+  return {info.s * side, info.t * side, (info.s + 1) * side, (info.t + 1) * side,
+          info.kind,     info.source,   info.cells != 0};
 }
 
 ClimberGround::Square ClimberGround::square_of(const ClimbStance& at, double s, double t) const {
   Square square = square_of(at.node1);
-  if (nodes_->node(at.node1 - 1).cells == 0) return square;
+  if (!square.ragged) return square;
   const auto known = finder_->square(at.node1 - 1, at.s, at.t, s, t);
   const NodeSquare free = known ? *known : NodeSquare{at.s, at.t, at.s, at.t};
   square.s0 = free.s0;

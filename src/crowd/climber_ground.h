@@ -64,6 +64,7 @@ class ClimberGround {
     double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
     PatchKind kind = PatchKind::kLevelTile;
     uint32_t source = 0;
+    bool ragged = false;  ///< Of a ragged node: its block, of which not all need be the node.
 
     /// (But for what rounding takes.)
     [[nodiscard]] bool holds(double s, double t) const {

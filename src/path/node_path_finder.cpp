@@ -121,6 +121,21 @@ class Teller {
   BlockPoint last_;
 };
 
+// A block of a node in or on whose border a point lies, and that is accepted; or kNoNode.
+template <class Accept>
+uint32_t block_around(const NodeMesh& mesh, uint32_t node, double s, double t, Accept accept) {
+  constexpr double kLittle = 1e-9;
+  const uint32_t patch = mesh.patch_of_node(node);
+  for (const double j : {kLittle, -kLittle}) {
+    for (const double i : {kLittle, -kLittle}) {
+      const uint32_t block = mesh.block_at(patch, s + i, t + j);
+      if (block == kNoNode || mesh.blocks()[block].node != node) continue;
+      if (accept(mesh.blocks()[block])) return block;
+    }
+  }
+  return kNoNode;
+}
+
 // What keeps the class from going on from a block towards a position.
 Obstacle obstacle_towards(const NodeMesh& mesh, const BlockPoint& from, Vec3d goal) {
   const NodeBlock& block = mesh.blocks()[from.block];
@@ -226,24 +241,21 @@ std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, d
                                                  double to_s, double to_t) const {
   const NodeMesh& mesh = shared_->mesh;
   THRONG_ASSERT(node < mesh.nodes().node_count());
-  constexpr double kLittle = 1e-9, kRounded = 1e-12;
-  const uint32_t patch = mesh.patch_of_node(node);
-  // On a border the block on either side may be the one that holds both.
-  for (const double j : {kLittle, -kLittle}) {
-    for (const double i : {kLittle, -kLittle}) {
-      const uint32_t block = mesh.block_at(patch, from_s + i, from_t + j);
-      if (block == kNoNode || mesh.blocks()[block].node != node) continue;
-      const NodeBlock& b = mesh.blocks()[block];
-      const double side = b.side();
-      const NodeSquare square{b.s * side, b.t * side, (b.s + 1) * side, (b.t + 1) * side};
-      const auto holds = [&](double s, double t) {
-        return s >= square.s0 - kRounded && s <= square.s1 + kRounded &&
-               t >= square.t0 - kRounded && t <= square.t1 + kRounded;
-      };
-      if (holds(from_s, from_t) && holds(to_s, to_t)) return square;
-    }
-  }
-  return std::nullopt;
+  const auto square_of = [&](const NodeBlock& b) {
+    const double side = b.side();
+    return NodeSquare{b.s * side, b.t * side, (b.s + 1) * side, (b.t + 1) * side};
+  };
+  const uint32_t found = block_around(mesh, node, from_s, from_t, [&](const NodeBlock& block) {
+    constexpr double kRounded = 1e-12;
+    const NodeSquare square = square_of(block);
+    const auto holds = [&](double s, double t) {
+      return s >= square.s0 - kRounded && s <= square.s1 + kRounded && t >= square.t0 - kRounded &&
+             t <= square.t1 + kRounded;
+    };
+    return holds(from_s, from_t) && holds(to_s, to_t);
+  });
+  if (found == kNoNode) return std::nullopt;
+  return square_of(mesh.blocks()[found]);
 }
 
 NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
@@ -301,13 +313,10 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
     // On the border of a cell the other one may be meant.
     if (at.block == kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
-      constexpr double kLittle = 1e-9;
-      for (const auto& [i, j] : {std::pair{-1, -1}, {-1, 0}, {0, -1}, {-1, 1}, {1, -1}}) {
-        const double s = std::clamp(place.s + i * kLittle, 0.0, 1.0);
-        const double t = std::clamp(place.t + j * kLittle, 0.0, 1.0);
-        const uint32_t other = mesh.block_at(mesh.patch_of_node(place.node1 - 1), s, t);
-        if (other == kNoNode || mesh.blocks()[other].node != place.node1 - 1) continue;
-        at.block = other;
+      const uint32_t own = block_around(mesh, place.node1 - 1, place.s, place.t,
+                                        [](const NodeBlock&) { return true; });
+      if (own != kNoNode) {
+        at.block = own;
         return at;
       }
       const NodeInfo info = mesh.nodes().node(place.node1 - 1);

@@ -15,6 +15,7 @@
 #include "render/text.h"
 #include "throng/nodes.h"
 #include "throng/picture.h"
+#include "throng/ragged_runs.h"
 #include "world/node_data.h"
 
 // Nodes as surfaces seen at a slant from the south, as in the last figures of [PACS00]: every
@@ -317,7 +318,11 @@ class NodePicture {
     if (info.cells != 0) {
       const uint64_t cells =
           config_.avatar_class < 0 ? info.cells : nodes_.ragged_cells(config_.avatar_class, node);
-      for_runs(info, cells, paint);
+      for_ragged_runs(cells, [&](int32_t first, int32_t row, int32_t count) {
+        constexpr double kCell = 1.0 / 64;
+        paint({(info.s * 8 + first) * kCell, (info.t * 8 + row) * kCell, count * kCell - kInset,
+               kCell - kInset});
+      });
       if (whole * 64 * nodes_.data()->world.summary().cell * scale_ >= 5)
         rim_of_cells(canvas, info, node, cells, rim, nearer);
       return;
@@ -340,20 +345,6 @@ class NodePicture {
     edge(s0, t0, s0, t0 + side);
     edge(s0 + side, t0, s0 + side, t0 + side);
     edge(s0, t0 + side, s0 + side, t0 + side);
-  }
-
-  // Calls visit(block) for each run of cells in the rows of a ragged node.
-  template <class Visit>
-  static void for_runs(const NodeInfo& info, uint64_t cells, Visit visit) {
-    constexpr double kCell = 1.0 / 64;
-    for (int32_t t = 0; t < 8; ++t) {
-      for (auto row = static_cast<uint32_t>(cells >> (8 * t) & 0xff); row != 0;) {
-        const int32_t s = std::countr_zero(row), count = std::countr_one(row >> s);
-        visit({(info.s * 8 + s) * kCell, (info.t * 8 + t) * kCell, count * kCell - kInset,
-               kCell - kInset});
-        row &= ~(((1u << count) - 1) << s);
-      }
-    }
   }
 
   // Sides of cells beyond which the node does not go on.

@@ -3,7 +3,6 @@
 #include "view/overlays.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -11,6 +10,7 @@
 
 #include "core/random.h"
 #include "throng/flight.h"
+#include "throng/ragged_runs.h"
 
 namespace throng {
 namespace {
@@ -162,16 +162,12 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
     }
     // A ragged node row by row: its block's corners need not have a floor.
     constexpr double kCell = 1.0 / 64, kSide = kCell - 1e-5;
-    for (int32_t row = 0; row < 8; ++row) {
-      for (auto left = static_cast<uint32_t>(info.cells >> (8 * row) & 0xff); left != 0;) {
-        const int32_t first = std::countr_zero(left), count = std::countr_one(left >> first);
-        left &= ~(((1u << count) - 1) << first);
-        const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
-        const auto at = [&](double u, double v) { return nodes.point(n, u, v) - origin + lift; };
-        const double end = s + (count - 1) * kCell + kSide;
-        add_quad(marks, at(s, t), at(s, t + kSide), at(end, t + kSide), at(end, t), colour);
-      }
-    }
+    for_ragged_runs(info.cells, [&](int32_t first, int32_t row, int32_t count) {
+      const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
+      const auto at = [&](double u, double v) { return nodes.point(n, u, v) - origin + lift; };
+      const double end = s + (count - 1) * kCell + kSide;
+      add_quad(marks, at(s, t), at(s, t + kSide), at(end, t + kSide), at(end, t), colour);
+    });
   }
   marks.line_width = 1;
   return marks;

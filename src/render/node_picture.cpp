@@ -306,7 +306,13 @@ class NodePicture {
     const double whole = 1.0 / (1 << info.level);
     const double side = whole - (info.kind == PatchKind::kLevelTile ? kInset : 0);
     const double s0 = info.s * whole, t0 = info.t * whole;
-    const Rgb colour = inclination_colour(summary_.bins.inclination_of(info.inclination));
+    uint8_t code = info.inclination;
+    if (info.cells != 0 && config_.avatar_class >= 0) {
+      // It promises the worst for all its classes. Where this one stands is within its own limit.
+      const auto c = static_cast<size_t>(config_.avatar_class);
+      code = std::min(code, summary_.bins.inclination_code(summary_.classes[c].max_slope));
+    }
+    const Rgb colour = inclination_colour(summary_.bins.inclination_of(code));
     const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.level) : 1;
     const double nearer = 0.01 * info.level;
     const auto paint = [&](const Block& block) {

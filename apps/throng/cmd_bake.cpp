@@ -29,6 +29,7 @@ struct BakeOptions {
   bool fly = false;
   BakeConfig config;
   NodeConfig node_config;
+  uint64_t node_memory = node_config.working_bytes >> 20;  // [MiB]
 };
 
 // Nodes are made when they are asked for, and whenever a class climbs or drops: only they carry it.
@@ -88,11 +89,11 @@ Result<std::vector<NodeJump>> read_jumps(const std::string& name,
 }
 
 Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
-  const Result<World> world = World::open(options.output);
+  constexpr uint64_t kResident = uint64_t{256} << 20;
+  const Result<World> world = World::open(options.output, {.resident_bytes = kResident});
   if (!world) return world.error();
-  const Result<Nodes> nodes = Nodes::make(*world, scene, options.node_config, context);
+  const Result<Nodes> nodes = Nodes::make_in_folder(*world, scene, options.node_config, context);
   if (!nodes) return nodes.error();
-  if (auto ok = nodes->write(options.output, options.node_config.workers); !ok) return ok.error();
   return nodes->summary();
 }
 
@@ -172,6 +173,7 @@ Result<void> prepare(BakeOptions& options) {
   if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
   if (!wants_nodes(options)) return {};
   options.node_config.workers = options.config.workers;
+  options.node_config.working_bytes = options.node_memory << 20;
   options.node_config.fresh = options.fresh;
   options.config.carry_nodes = !options.fresh;
   if (!options.jumps.empty()) {
@@ -252,6 +254,11 @@ void add_bake(CLI::App& parser, Session& session) {
       ->add_option("--node-size", options->node_config.size,
                    "Finest sub-patches of curved patches [m]")
       ->capture_default_str();
+  command
+      ->add_option("--node-memory", options->node_memory,
+                   "About how much memory nodes in the making may take: less is slower [MiB]")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 20));
   command->callback([&session, options] { session.exit_code = bake(session, *options); });
 }
 

@@ -50,6 +50,9 @@ struct NodeConfig {
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   /// Make all zones, also those whose nodes lie in the world's folder, made of the same.
   bool fresh = false;
+  /// About how much memory nodes may take while they are made: zones are made in so many batches,
+  /// each with what lies near it. Never changes the result. [bytes]
+  uint64_t working_bytes = uint64_t{1} << 30;
 };
 
 /// Can nodes be made so, whatever the world? Fails with kBadConfig.
@@ -162,6 +165,12 @@ class THRONG_API Nodes {
   /// kBadConfig, kBadFile (a zone cannot be used), kLimit or kCancelled.
   [[nodiscard]] static Result<Nodes> make(const World& world, const Scene& scene,
                                           const NodeConfig& config, Context& context);
+  /// The same for a world that was opened from its folder, into which they are put batch by batch:
+  /// no more of them are in memory than one. They take the place of any that are there once all are
+  /// made; where the call is cancelled or killed before, the next finds what was made. Also fails
+  /// with kIo.
+  [[nodiscard]] static Result<Nodes> make_in_folder(const World& world, const Scene& scene,
+                                                    const NodeConfig& config, Context& context);
   /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.
   [[nodiscard]] static Result<Nodes> open(const std::string& world_path);
   /// Were nodes ever written into the folder that a world was opened from?

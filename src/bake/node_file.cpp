@@ -3,16 +3,11 @@
 #include "bake/node_file.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <optional>
 #include <string>
 
 #include "core/hash.h"
-#include "core/parallel.h"
-#include "world/sealed_file.h"
 
 namespace throng {
-namespace fs = std::filesystem;
 
 ZoneArcs arcs_of(std::span<const NodeLink> links, const ZoneRange& zone) {
   const auto is_here = [&](uint32_t node) { return node >= zone.first && node < zone.last; };
@@ -88,42 +83,6 @@ uint64_t world_hash(const WorldData& world) {
   if (!world.path.empty()) return world.manifest_hash;
   const std::vector<uint8_t> bytes = write_manifest(world);
   return hash_bytes(bytes.data(), bytes.size());
-}
-
-Result<void> Nodes::write(const std::string& world_path, int32_t workers) const {
-  THRONG_ASSERT(data_);
-  const auto world = World::open(world_path);
-  if (!world) return world.error();
-  if (world->summary().hash != data_->world_hash) {
-    return Error{Errc::kBadFile, world_path + ": holds another world than these nodes' own"};
-  }
-  // Beside, then renamed: there are whole nodes or none.
-  const fs::path target = fs::path(world_path) / kNodeFolder, part = target.string() + ".part";
-  std::error_code error;
-  fs::remove_all(part, error);
-  fs::create_directories(part, error);
-  if (error) return Error{Errc::kIo, part.string() + ": cannot be created: " + error.message()};
-  std::vector<std::optional<Error>> failed(data_->slots.size());
-  parallel_for(failed.size(), workers, [&](size_t s) {
-    const NodeZone* zone = data_->zone(s);
-    if (zone == nullptr) {
-      failed[s] = Error{Errc::kBadFile, data_->slots[s]->error};
-      return;
-    }
-    const auto file = part / node_file_name(zone->x(), zone->z());
-    if (auto ok = write_file(file.string(), zone->bytes()); !ok) failed[s] = ok.error();
-  });
-  for (const auto& failure : failed) {
-    if (failure) return *failure;
-  }
-  const auto index = part / kNodeIndexName;
-  if (auto ok = write_file(index.string(), sealed(write_node_index(*data_))); !ok)
-    return ok.error();
-  fs::remove_all(target, error);
-  fs::rename(part, target, error);
-  if (error) return Error{Errc::kIo, target.string() + ": cannot be written: " + error.message()};
-  fs::remove_all(fs::path(world_path) / kOldNodeFolder, error);
-  return {};
 }
 
 }  // namespace throng

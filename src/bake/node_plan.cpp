@@ -317,4 +317,79 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
   }
 }
 
+namespace {
+
+// What the nodes of a zone take while they are made, about. [bytes]
+uint64_t working_bytes(const Scene& scene, const NodeConfig& config, const NodePlan& plan,
+                       const NodePlanZone& zone) {
+  constexpr uint64_t kLevelTile = 16384, kPatchCell = 48;
+  uint64_t sum = 0;
+  for (uint32_t s = zone.first; s < zone.last; ++s) {
+    if (plan.sources[s].kind == PatchKind::kLevelTile) {
+      sum += kLevelTile;
+      continue;
+    }
+    const int32_t depth = patch_depth(scene.patches.patches[plan.sources[s].source], config.size);
+    sum += kPatchCell << (2 * depth);
+  }
+  return sum;
+}
+
+// Halves zones along their longer side until each part is small enough.
+class BatchDealer {
+ public:
+  BatchDealer(const NodePlan& plan, std::vector<uint64_t> bytes, uint64_t most)
+      : zones_(plan.zones), bytes_(std::move(bytes)), most_(most) {}
+
+  void deal(std::vector<uint32_t> zones) {
+    uint64_t sum = 0;
+    Box3d box;
+    for (const uint32_t z : zones) {
+      sum += bytes_[z];
+      box.add({static_cast<double>(zones_[z].x), 0, static_cast<double>(zones_[z].z)});
+    }
+    if (sum <= most_ || zones.size() < 2) {
+      batches_.push_back(std::move(zones));
+      return;
+    }
+    const bool along_x = box.max.x - box.min.x > box.max.z - box.min.z;
+    const auto place = [&](uint32_t z) {
+      const int32_t x = zones_[z].x, at = zones_[z].z;
+      return along_x ? std::pair{x, at} : std::pair{at, x};
+    };
+    std::sort(zones.begin(), zones.end(),
+              [&](uint32_t a, uint32_t b) { return place(a) < place(b); });
+    size_t half = 1;
+    for (uint64_t left = bytes_[zones[0]]; half + 1 < zones.size() && 2 * left < sum; ++half) {
+      left += bytes_[zones[half]];
+    }
+    for (const auto& [from, to] : {std::pair{size_t{0}, half}, std::pair{half, zones.size()}}) {
+      std::vector<uint32_t> part(zones.begin() + static_cast<ptrdiff_t>(from),
+                                 zones.begin() + static_cast<ptrdiff_t>(to));
+      std::sort(part.begin(), part.end());
+      deal(std::move(part));
+    }
+  }
+  [[nodiscard]] std::vector<std::vector<uint32_t>> take() { return std::move(batches_); }
+
+ private:
+  const std::vector<NodePlanZone>& zones_;
+  const std::vector<uint64_t> bytes_;  // by zone
+  const uint64_t most_;
+  std::vector<std::vector<uint32_t>> batches_;
+};
+
+}  // namespace
+
+std::vector<std::vector<uint32_t>> node_batches(const Scene& scene, const NodeConfig& config,
+                                                const NodePlan& plan, std::vector<uint32_t> zones) {
+  std::vector<uint64_t> bytes;
+  for (const NodePlanZone& zone : plan.zones) {
+    bytes.push_back(working_bytes(scene, config, plan, zone));
+  }
+  BatchDealer dealer(plan, std::move(bytes), config.working_bytes);
+  dealer.deal(std::move(zones));
+  return dealer.take();
+}
+
 }  // namespace throng

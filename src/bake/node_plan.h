@@ -56,4 +56,12 @@ struct NodePlan {
 void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConfig& config,
                       const TriangleSquares* triangles, NodePlan& plan);
 
+/// Deals zones, given in ascending order, to batches whose nodes are made together: squares, as far
+/// as may be, of about `working_bytes` each, as what is near is made for company. At least one, and
+/// none but that is empty.
+[[nodiscard]] std::vector<std::vector<uint32_t>> node_batches(const Scene& scene,
+                                                              const NodeConfig& config,
+                                                              const NodePlan& plan,
+                                                              std::vector<uint32_t> zones);
+
 }  // namespace throng

@@ -14,7 +14,7 @@
 #include <fcntl.h>
 #endif
 
-#include "bake/old_nodes.h"
+#include "bake/node_folder.h"
 #include "core/file_map.h"
 #include "core/hash.h"
 #include "world/sealed_file.h"

@@ -81,7 +81,7 @@ def main():
         assert bake(new_model, world, "--fresh")["zones_kept"] == 0
         assert content(world) == references[empty][0]
         before = content(old)
-        killed = resumed = in_graph = opened = refused = without_nodes = 0
+        killed = resumed = in_graph = in_nodes = opened = refused = without_nodes = 0
         for point in range(POINTS):
             start = (empty, old)[point % 2]
             reference, seconds = references[start]
@@ -106,15 +106,17 @@ def main():
                     assert check.returncode == 2 and len(check.stderr.splitlines()) == 1, check.stderr
                     assert start == empty, f"point {point}: the old world is gone: {check.stderr}"
             resumed += 0 < len(list(folder.glob("w.throng.part/*.thz")))
+            in_nodes += 0 < len(list(world.glob("nodes.part/*.thn")))
             in_graph += 0 < len(list(folder.glob("w.throng.part/*.th[rl]")))
             bake(new_model, world)
             assert content(world) == reference, f"point {point}: other bytes than undisturbed"
             left = {file.name for file in folder.iterdir()} - {"old.obj", "new.obj", "old.throng", "w.throng"}
             assert not left, f"point {point}: left behind: {left}"
         print(f"{POINTS} points: {killed} killed, {resumed} with zones to resume from, {in_graph} while "
-              f"the graph was made; the world opened {opened} "
+              f"the graph was made, {in_nodes} with nodes to resume from; the world opened {opened} "
               f"times, {without_nodes} of them without its nodes, and was refused {refused} times")
         assert killed >= POINTS // 4 and resumed >= 2 and in_graph >= 1, "too few bakes were killed where it matters"
+        assert "--nodes" not in EXTRA or POINTS < 100 or in_nodes >= 1, "no bake was killed in its nodes"
 
 
 main()

@@ -72,11 +72,15 @@ class ChangedNodes : public testing::Test {
     const auto report = bake_world_to(at(name), scene, bake_config, context);
     EXPECT_TRUE(report) << report.error().message;
     const auto world = World::open(at(name));
-    const auto nodes = Nodes::make(*world, scene, config, context);
+    // All at once, and then written; or so many at a time as fit into little memory.
+    config.working_bytes = fresh ? UINT64_MAX : uint64_t{1} << (10 + 2 * (bakes_++ % 6));
+    const auto nodes = fresh ? Nodes::make(*world, scene, config, context)
+                             : Nodes::make_in_folder(*world, scene, config, context);
     EXPECT_TRUE(nodes) << nodes.error().message;
     if (!nodes) return {};
-    EXPECT_TRUE(nodes->write(at(name)));
+    if (fresh) EXPECT_TRUE(nodes->write(at(name)));
     EXPECT_FALSE(fs::exists(at(name) + "/nodes.old"));
+    EXPECT_FALSE(fs::exists(at(name) + "/nodes.part"));
     const auto opened = Nodes::open(at(name));
     EXPECT_TRUE(opened && opened->check_all());
     return nodes->summary();
@@ -99,6 +103,7 @@ class ChangedNodes : public testing::Test {
   }
 
   test::ScratchFolder folder_;
+  uint32_t bakes_ = 0;
 };
 
 TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
@@ -220,6 +225,63 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   ASSERT_TRUE(bake_world_to(at("w"), scene, config, context));
   EXPECT_FALSE(Nodes::open(at("w")));
   EXPECT_FALSE(fs::exists(at("w") + "/nodes.old"));
+}
+
+TEST_F(ChangedNodes, WhatIsMadeBeforeABakeStopsIsNotMadeAgain) {
+  const BakeConfig config{.cell = 0.2, .zone = 12.8, .classes = walkers()};
+  const Scene scene = field();
+  Context silent;
+  bake("fresh", scene, config, {}, true);
+  const Folder reference = folder_bytes(at("fresh") + "/nodes");
+  ASSERT_TRUE(bake_world_to(at("w"), scene, config, silent));
+  for (uint64_t stop_at = 1; stop_at < 20; stop_at += 6) {
+    const auto world = World::open(at("w"));
+    Context context;
+    context.on_progress = [&](const Progress& progress) {
+      EXPECT_EQ(progress.stage, "nodes");
+      EXPECT_EQ(progress.total, 20u);
+      context.cancel = progress.done >= stop_at;
+    };
+    const auto nodes = Nodes::make_in_folder(*world, scene, {.working_bytes = 1}, context);
+    ASSERT_FALSE(nodes);
+    EXPECT_EQ(nodes.error().code, Errc::kCancelled);
+    EXPECT_FALSE(Nodes::open(at("w")));
+    // The world is baked again in between: what was made is carried over to it.
+    BakeConfig carry = config;
+    carry.carry_nodes = true;
+    ASSERT_TRUE(bake_world_to(at("w"), scene, carry, silent));
+    EXPECT_TRUE(fs::exists(at("w") + "/nodes.part/index.thn"));
+  }
+  // Half a file, and one of nobody's.
+  std::ofstream(at("w") + "/nodes.part/zone_0_0.thn.part", std::ios::binary) << "half";
+  std::ofstream(at("w") + "/nodes.part/zone_77_0.thn", std::ios::binary) << "whose?";
+  const auto world = World::open(at("w"));
+  const auto nodes = Nodes::make_in_folder(*world, scene, {}, silent);
+  ASSERT_TRUE(nodes);
+  EXPECT_EQ(nodes->summary().zones_kept, 19u);
+  EXPECT_EQ(nodes->summary().zones_made, 1u);
+  EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == reference);
+  EXPECT_FALSE(fs::exists(at("w") + "/nodes.part"));
+}
+
+TEST_F(ChangedNodes, WhatCannotBeMadeLeavesNothingBehind) {
+  const BakeConfig config{.cell = 0.2, .zone = 12.8, .classes = walkers()};
+  const Scene scene = field();
+  Context context;
+  NodeConfig nodes{.working_bytes = 1};
+  nodes.jumps.push_back({.from = {8, 0.5, 8}, .to = {500, 0, 500}});
+  ASSERT_TRUE(bake_world_to(at("w"), scene, config, context));
+  const Folder before = folder_bytes(at("w"));
+  const auto world = World::open(at("w"));
+  const auto refused = Nodes::make_in_folder(*world, scene, nodes, context);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::kBadInput);
+  EXPECT_TRUE(folder_bytes(at("w")) == before);
+  const auto in_memory = bake_world(scene, config, context);
+  ASSERT_TRUE(in_memory);
+  const auto nowhere = Nodes::make_in_folder(*in_memory, scene, {}, context);
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().code, Errc::kBadInput);
 }
 
 }  // namespace

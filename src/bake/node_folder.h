@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "world/node_data.h"
+
+/// Nodes in a world's folder: those of earlier bakes, whole or killed, and those that are made.
+namespace throng {
+
+class OldNodes {
+ public:
+  /// Of the world itself, those that its bake has carried over from the world before it, and those
+  /// that a killed bake had made. What cannot be read is left out. [world_path may be empty: none]
+  explicit OldNodes(const std::string& world_path);
+
+  /// A zone's nodes that need not be made: `slot` is null if it has none, else mapped, from `file`.
+  struct Kept {
+    std::unique_ptr<NodeData::Slot> slot;
+    std::string file;
+  };
+  /// If they were made from this input and their file is whole.
+  [[nodiscard]] std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input) const;
+
+ private:
+  std::vector<std::shared_ptr<const NodeData>> folders_;  // their indexes
+};
+
+/// The folder that takes the place of a world's nodes in one go, once all are in it. Until then it
+/// lies beside them, and its index tells the next bake what is there. Every call may fail with kIo.
+class NodeFolder {
+ public:
+  /// Of a world in its folder. What a killed bake has left there stays for now.
+  static Result<NodeFolder> begin(const std::string& world_path);
+  NodeFolder(NodeFolder&& other) noexcept;
+  NodeFolder& operator=(NodeFolder&&) = delete;
+  /// Removes what was begun and not finished.
+  ~NodeFolder();
+
+  /// Adds a zone's nodes. From several threads, of different zones.
+  Result<void> write(const NodeZone& zone) const;
+  /// Adds those of an earlier bake, mapped from `file`.
+  Result<void> take_over(const NodeZone& zone, const std::string& file) const;
+  /// Writes the index of what is there so far.
+  Result<void> list(const NodeData& nodes) const;
+  /// Leaves what was begun to the next bake.
+  void leave() { part_.clear(); }
+  /// Writes the index of all; then they are the world's nodes.
+  Result<void> finish(const NodeData& nodes);
+
+ private:
+  explicit NodeFolder(std::string world_path);
+
+  std::string world_path_;
+  std::filesystem::path part_;  // empty: finished, left or moved from
+};
+
+/// Carries the nodes of the world in `from` over to `to`, which takes its place, as far as that can
+/// be done: as its own if it is the same world.
+void carry_nodes(const std::string& from, const std::string& to, bool is_same_world);
+
+}  // namespace throng

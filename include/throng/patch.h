@@ -148,8 +148,9 @@ struct PatchMesh {
   std::vector<double> off;
 };
 
-/// Cuts all patches, each as finely as its own curvature needs, in steps that are powers of two (at
-/// most 128 along a side; only a patch that needs more is farther off than the tolerance).
+/// Cuts all patches as finely as their curvature needs: each as a whole, or in 4 x 4 pieces, in
+/// equal steps (at most 128 along a side; only a patch that needs more is farther off than the
+/// tolerance).
 /// Neighbours share their vertices by index whatever their steps, across halves and quarters too,
 /// so that there is no crack: each edge of a triangle that is not on an open edge of a patch
 /// belongs to two triangles, in opposite directions. Where the curves of neighbours differ, one

@@ -13,33 +13,49 @@
 #include "import/patch_steps.h"
 #include "throng/patch.h"
 
-// Without cracks: a *seam* is what two patches share, the whole edge of one of them, cut once; both
-// sides use its vertices by index. A patch takes the seams around it as they come: where they are
-// as fine as its inside it is a grid, else a ring of triangles joins the seams to a grid of inner
-// points. Steps are powers of two and no seam is coarser than a patch beside it, so that the ring's
-// triangles span no more than the patch's own steps, and what bounds the gap of those holds for
-// them.
+// Without cracks: a *seam* is what pieces of patches share, a run of vertices between two corners
+// of pieces; both sides use them by index. Seams end wherever a piece on either side does, so a
+// piece has one or more on each edge. It takes them as they come: where they are as fine as its
+// inside it is a grid, else a ring of triangles joins the seams to a grid of inner points. No seam
+// is coarser than a piece beside it, so that the ring's triangles span no more than the piece's own
+// steps (see join), and what bounds the gap of those holds for them.
 namespace throng {
 namespace {
 
-constexpr uint32_t kUnits =
-    1024;  // Of a parameter along an edge: 2^7 steps in each of 4 parts fit.
+constexpr uint32_t kParts = 256;  // of a parameter of a patch, as PatchPart counts
 
-// One run of shared vertices: between its ends, which are corners, `first` and what follows.
 struct Seam {
-  PatchSide side;  // Whose curve it is.
-  int32_t halvings = 0;
-  uint32_t start = 0, end = 0;  // Vertices.
-  uint32_t first = 0;           // The first of 2^halvings - 1 vertices, in the direction of `side`.
+  uint32_t steps = 1;
+  uint32_t start = 0, end = 0;  // vertices
+  uint32_t first = 0;           // of the steps - 1 vertices between
   bool collapsed = false;
+};
+
+// The seams along the whole edge of a patch, in its direction, all but those that two smaller
+// neighbours share out.
+struct Run {
+  PatchSide side;  // whose curve it is
+  uint32_t first = 0, count = 1;
+};
+
+// A line between two pieces of one patch.
+struct InnerSeam {
+  uint32_t patch = 0;
+  uint32_t i = 0, j = 0;  // where it begins, in pieces
+  bool along_s = false;   // else along t
 };
 
 struct EdgePoint {
   uint32_t vertex = 0;
-  uint32_t at = 0;  // Along the edge. [1 / kUnits]
+  double at = 0;  // along the edge
 };
 
-int32_t along(const Halvings& h, uint32_t edge) { return edge % 2 == 0 ? h.t : h.s; }
+uint32_t along(Steps h, uint32_t edge) { return edge % 2 == 0 ? h.t : h.s; }
+
+// k of n pieces or steps.
+double share(uint32_t k, uint32_t n) { return static_cast<double>(k) / n; }
+
+uint32_t ceil_div(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 
 class Tessellator {
  public:
@@ -54,7 +70,8 @@ class Tessellator {
     measure();
     if (context_.cancel) return cancelled();
     number_corners();
-    make_seams();
+    make_runs();
+    make_inner_seams();
     if (!number_vertices()) return too_many();
     if (context_.cancel) return cancelled();
     if (!count_triangles()) return too_many();
@@ -66,16 +83,13 @@ class Tessellator {
     parallel_for(make_room.size(), config_.workers, [&](size_t i) { make_room[i](); });
     mesh_.off.resize(set_.size());
     place_vertices();
-    parallel_ranges(set_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p) {
-        size_t out = mesh_.first[p];
-        for_each_triangle(static_cast<uint32_t>(p),
-                          [&](uint32_t a, uint32_t b, uint32_t c, PatchPart part) {
-                            mesh_.parts[out] = part;
-                            mesh_.triangles[out++] = {a, b, c};
-                          });
-        mesh_.off[p] = vertices_off(static_cast<uint32_t>(p));
-      }
+    for_each_patch([&](uint32_t p) {
+      size_t out = mesh_.first[p];
+      for_each_triangle(p, [&](uint32_t a, uint32_t b, uint32_t c, PatchPart part) {
+        mesh_.parts[out] = part;
+        mesh_.triangles[out++] = {a, b, c};
+      });
+      mesh_.off[p] = vertices_off(p);
     });
     return std::move(mesh_);
   }
@@ -91,12 +105,19 @@ class Tessellator {
 
   [[nodiscard]] double rounding() const { return std::sqrt(3.0) / 2 / grid_; }
 
-  void measure() {
-    steps_.resize(set_.size());
+  template <class Body>
+  void for_each_patch(Body body) const {
     parallel_ranges(set_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p) {
-        steps_[p] = steps_within(set_.patches[p], config_.tolerance - rounding());
-      }
+      for (size_t p = begin; p < end; ++p) body(static_cast<uint32_t>(p));
+    });
+  }
+
+  [[nodiscard]] uint32_t pieces(uint32_t p) const { return static_cast<uint32_t>(cuts_[p].pieces); }
+
+  void measure() {
+    cuts_.resize(set_.size());
+    for_each_patch([&](uint32_t p) {
+      cuts_[p] = cut_within(set_.patches[p], config_.tolerance - rounding());
     });
   }
 
@@ -113,11 +134,12 @@ class Tessellator {
     }
     // A patch that closes on itself needs points between to enclose anything.
     for (uint32_t p = 0; p < set_.size(); ++p) {
+      if (pieces(p) > 1) continue;
       for (uint32_t e = 0; e < 4; ++e) {
         if (corner_[4 * p + e] != corner_[4 * p + (e + 1) % 4]) continue;
         if (is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)))) continue;
-        int32_t& halvings = e % 2 == 0 ? steps_[p].t : steps_[p].s;
-        halvings = std::max(halvings, 2);
+        uint8_t& steps = e % 2 == 0 ? cuts_[p].steps[0].t : cuts_[p].steps[0].s;
+        steps = std::max<uint8_t>(steps, 4);
       }
     }
   }
@@ -126,8 +148,8 @@ class Tessellator {
     return set_.edges[side.patch][side.edge];
   }
 
-  // A seam lies on the smaller patch's edge, or on that of the patch that comes first.
-  [[nodiscard]] bool owns_seam(PatchSide side) const {
+  // A run lies on the smaller patch's edge, or on that of the patch that comes first.
+  [[nodiscard]] bool owns_run(PatchSide side) const {
     const PatchEdge& edge = edge_at(side);
     if (edge.bind == EdgeBind::kTwo || edge.bind == EdgeBind::kFour) return false;
     if (edge.bind != EdgeBind::kOne) return true;
@@ -135,65 +157,193 @@ class Tessellator {
     return side.patch != next.patch ? side.patch < next.patch : side.edge < next.edge;
   }
 
-  void make_seams() {
-    seam_of_.assign(4 * set_.size(), 0);
+  // The k-th piece along an edge of a patch, in the edge's direction.
+  [[nodiscard]] Steps piece_along(PatchSide side, uint32_t k) const {
+    const PatchCut& cut = cuts_[side.patch];
+    const uint32_t last = pieces(side.patch) - 1;
+    switch (side.edge) {
+      case 0:
+        return cut.at(0, k);
+      case 1:
+        return cut.at(k, last);
+      case 2:
+        return cut.at(last, last - k);
+      default:
+        return cut.at(last - k, 0);
+    }
+  }
+
+  // Steps that a part of an edge asks for, the k-th of `count` that are no longer than its pieces.
+  [[nodiscard]] uint32_t asked(PatchSide side, uint32_t k, uint32_t count) const {
+    const uint32_t each = count / pieces(side.patch);
+    return ceil_div(along(piece_along(side, k / each), side.edge), each);
+  }
+
+  void make_runs() {
+    run_of_.assign(4 * set_.size(), 0);
     for (uint32_t p = 0; p < set_.size(); ++p) {
       for (uint32_t e = 0; e < 4; ++e) {
         const PatchSide side{p, e};
-        if (!owns_seam(side)) continue;
-        Seam seam{.side = side,
-                  .halvings = along(steps_[p], e),
-                  .start = corner_[4 * p + e],
-                  .end = corner_[4 * p + (e + 1) % 4],
-                  .first = 0,
-                  .collapsed = is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)))};
+        if (!owns_run(side)) continue;
         const PatchEdge& edge = edge_at(side);
-        if (edge.bind != EdgeBind::kOpen) {
-          // A half or a quarter of the neighbour's edge needs one or two halvings less.
-          const PatchSide next = edge.next[0];
-          const size_t parts = neighbour_count(edge_at(next).bind);
-          const int32_t less = parts == 4 ? 2 : parts == 2 ? 1 : 0;
-          seam.halvings = std::max(seam.halvings, along(steps_[next.patch], next.edge) - less);
+        // The neighbour's edge is one, two or four such runs.
+        const PatchSide next = edge.next[0];
+        const bool is_open = edge.bind == EdgeBind::kOpen;
+        const uint32_t runs = edge.bind == EdgeBind::kPart
+                                  ? static_cast<uint32_t>(neighbour_count(edge_at(next).bind))
+                                  : 1;
+        Run run{.side = side, .first = static_cast<uint32_t>(seams_.size()), .count = pieces(p)};
+        uint32_t which = 0;  // of the neighbour's runs, in its direction
+        if (!is_open) {
+          run.count = std::max(run.count, pieces(next.patch) / runs);
+          while (edge.bind == EdgeBind::kPart && edge_at(next).next[which] != side) ++which;
         }
-        seam_of_[4 * p + e] = static_cast<uint32_t>(seams_.size());
+        run_of_[4 * p + e] = static_cast<uint32_t>(runs_.size());
         if (edge.bind == EdgeBind::kOne) {
-          seam_of_[4 * edge.next[0].patch + edge.next[0].edge] = seam_of_[4 * p + e];
+          run_of_[4 * next.patch + next.edge] = run_of_[4 * p + e];
         }
-        seams_.push_back(seam);
+        runs_.push_back(run);
+        const bool collapsed = is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)));
+        for (uint32_t k = 0; k < run.count; ++k) {
+          Seam seam{.steps = asked(side, k, run.count), .collapsed = collapsed};
+          if (!is_open) {
+            const uint32_t across = (which + 1) * run.count - 1 - k;
+            seam.steps = std::max(seam.steps, asked(next, across, runs * run.count));
+          }
+          seams_.push_back(seam);
+        }
       }
     }
   }
 
-  // First the corners, then the seams, then the inner points of each patch.
+  // By patch, first those along t, then those along s.
+  void make_inner_seams() {
+    inner_first_seam_.resize(set_.size());
+    outer_seams_ = static_cast<uint32_t>(seams_.size());
+    for (uint32_t p = 0; p < set_.size(); ++p) {
+      inner_first_seam_[p] = static_cast<uint32_t>(seams_.size());
+      const uint32_t n = pieces(p);
+      const PatchCut& cut = cuts_[p];
+      for (uint32_t i = 1; i < n; ++i) {
+        for (uint32_t j = 0; j < n; ++j) {
+          seams_.push_back({.steps = std::max(cut.at(i - 1, j).t, cut.at(i, j).t)});
+          inner_.push_back({p, i, j, false});
+        }
+      }
+      for (uint32_t j = 1; j < n; ++j) {
+        for (uint32_t i = 0; i < n; ++i) {
+          seams_.push_back({.steps = std::max(cut.at(i, j - 1).s, cut.at(i, j).s)});
+          inner_.push_back({p, i, j, true});
+        }
+      }
+    }
+  }
+
+  // The seam before pieces (i, j): between (i - 1, j) and (i, j) along t, or between (i, j - 1) and
+  // (i, j) along s.
+  [[nodiscard]] uint32_t inner_seam(uint32_t p, uint32_t i, uint32_t j, bool along_s) const {
+    const uint32_t n = pieces(p), lines = along_s ? (n - 1) * n : 0;
+    return inner_first_seam_[p] + lines + (along_s ? (j - 1) * n + i : (i - 1) * n + j);
+  }
+
+  // First the corners of patches, then those of pieces on their edges and inside, then the seams,
+  // then the inner points of each piece.
   bool number_vertices() {
     uint64_t next = corner_source_.size();
+    for (const Run& run : runs_) {
+      const uint32_t start = corner_[4 * run.side.patch + run.side.edge];
+      const uint32_t end = corner_[4 * run.side.patch + (run.side.edge + 1) % 4];
+      for (uint32_t k = 0; k < run.count; ++k) {
+        Seam& seam = seams_[run.first + k];
+        seam.start = k == 0 ? start : seams_[run.first + k - 1].end;
+        seam.end =
+            k + 1 == run.count ? end : static_cast<uint32_t>(seam.collapsed ? start : next++);
+      }
+    }
+    crossing_first_.resize(set_.size());
+    for (uint32_t p = 0; p < set_.size(); ++p) {
+      crossing_first_[p] = static_cast<uint32_t>(next);
+      next += uint64_t{pieces(p) - 1} * (pieces(p) - 1);
+    }
+    for (size_t k = 0; k < inner_.size(); ++k) {
+      const InnerSeam& line = inner_[k];
+      Seam& seam = seams_[outer_seams_ + k];
+      seam.start = piece_corner(line.patch, line.i, line.j);
+      seam.end = piece_corner(line.patch, line.i + line.along_s, line.j + !line.along_s);
+    }
     for (Seam& seam : seams_) {
       seam.first = static_cast<uint32_t>(next);
-      if (!seam.collapsed) next += (uint64_t{1} << seam.halvings) - 1;
+      if (!seam.collapsed) next += seam.steps - 1;
     }
-    inner_first_.resize(set_.size());
-    inner_steps_.resize(set_.size());
+    if (next > config_.most_triangles) return false;
+    piece_first_.assign(1, 0);
     for (uint32_t p = 0; p < set_.size(); ++p) {
-      Halvings h = steps_[p];
-      if (!is_grid(p)) h = {std::max(h.s, 1), std::max(h.t, 1)};  // A ring needs an inside.
-      inner_steps_[p] = h;
-      inner_first_[p] = static_cast<uint32_t>(next);
-      next += ((uint64_t{1} << h.s) - 1) * ((uint64_t{1} << h.t) - 1);
+      const uint32_t n = pieces(p);
+      for (uint32_t k = 0; k < n * n; ++k) {
+        const Steps h = inner_steps(p, k % n, k / n);
+        inner_first_.push_back(static_cast<uint32_t>(next));
+        next += uint64_t{h.s - 1u} * (h.t - 1u);
+      }
       if (next > config_.most_triangles) return false;  // There are twice as many triangles.
+      piece_first_.push_back(static_cast<uint32_t>(inner_first_.size()));
     }
     vertices_ = next;
     return true;
   }
 
+  // The vertex where pieces of a patch meet. [i, j at most the pieces along a side]
+  [[nodiscard]] uint32_t piece_corner(uint32_t p, uint32_t i, uint32_t j) const {
+    const uint32_t n = pieces(p);
+    if (i > 0 && i < n && j > 0 && j < n) return crossing_first_[p] + (j - 1) * (n - 1) + i - 1;
+    // On an edge: where the piece that begins there, in the edge's direction, has its first seam.
+    uint32_t e = 0, k = j;
+    if (j == n && i < n) {
+      e = 1;
+      k = i;
+    } else if (i == n && j > 0) {
+      e = 2;
+      k = n - j;
+    } else if (j == 0 && i > 0) {
+      e = 3;
+      k = n - i;
+    }
+    uint32_t vertex = 0;
+    bool found = false;
+    for_each_seam({p, e}, k, [&](const Seam& seam, bool backward) {
+      if (!found) vertex = backward ? seam.end : seam.start;
+      found = true;
+    });
+    return vertex;
+  }
+
+  // The seams along the k-th piece of an edge, in the edge's direction.
+  template <class Body>
+  void for_each_seam(PatchSide side, uint32_t k, Body body) const {
+    const PatchEdge& edge = edge_at(side);
+    const uint32_t n = pieces(side.patch);
+    const bool is_own = owns_run(side);
+    const auto count = std::max(1u, static_cast<uint32_t>(neighbour_count(edge.bind)));
+    const uint32_t runs = is_own ? 1 : count;
+    // In parts of the edge that end wherever a piece or a run does.
+    const uint32_t parts = std::max(n, runs);
+    for (uint32_t part = k * parts / n; part < (k + 1) * parts / n; ++part) {
+      const uint32_t which = part * runs / parts;
+      const uint32_t in_run = parts / runs, at = part % in_run;
+      const PatchSide other = is_own ? side : edge.next[which];
+      const Run& run = runs_[run_of_[4 * other.patch + other.edge]];
+      const uint32_t each = run.count / in_run;
+      for (uint32_t i = at * each; i < (at + 1) * each; ++i) {
+        body(seams_[run.first + (is_own ? i : run.count - 1 - i)], !is_own);
+      }
+    }
+  }
+
   bool count_triangles() {
     std::vector<uint32_t> count(set_.size());
-    parallel_ranges(set_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p) {
-        uint32_t triangles = 0;
-        for_each_triangle(static_cast<uint32_t>(p),
-                          [&](uint32_t, uint32_t, uint32_t, PatchPart) { ++triangles; });
-        count[p] = triangles;
-      }
+    for_each_patch([&](uint32_t p) {
+      uint32_t triangles = 0;
+      for_each_triangle(p, [&](uint32_t, uint32_t, uint32_t, PatchPart) { ++triangles; });
+      count[p] = triangles;
     });
     mesh_.first.assign(1, 0);
     mesh_.first.reserve(set_.size() + 1);
@@ -217,81 +367,112 @@ class Tessellator {
       mesh_.positions[i] =
           rounded(set_.patches[source / 4].vertex(static_cast<int32_t>(source % 4)));
     }
-    parallel_ranges(seams_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const Seam& seam = seams_[i];
-        if (seam.collapsed) continue;
-        const auto curve = set_.patches[seam.side.patch].edge(static_cast<int32_t>(seam.side.edge));
-        const uint32_t n = 1u << seam.halvings;
-        for (uint32_t k = 1; k < n; ++k) {
-          mesh_.positions[seam.first + k - 1] =
-              rounded(cubic_point(curve, static_cast<double>(k) / n));
+    parallel_ranges(runs_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
+      for (size_t r = begin; r < end; ++r) {
+        const Run& run = runs_[r];
+        const auto curve = set_.patches[run.side.patch].edge(static_cast<int32_t>(run.side.edge));
+        for (uint32_t k = 0; k < run.count; ++k) {
+          const Seam& seam = seams_[run.first + k];
+          if (seam.collapsed) continue;
+          for (uint32_t i = 1; i < seam.steps; ++i) {
+            mesh_.positions[seam.first + i - 1] =
+                rounded(cubic_point(curve, (k + share(i, seam.steps)) / run.count));
+          }
+          if (k + 1 < run.count) {
+            mesh_.positions[seam.end] = rounded(cubic_point(curve, share(k + 1, run.count)));
+          }
         }
       }
     });
-    parallel_ranges(set_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p) {
-        const uint32_t ns = 1u << inner_steps_[p].s;
-        const uint32_t nt = 1u << inner_steps_[p].t;
-        uint32_t vertex = inner_first_[p];
-        for (uint32_t j = 1; j < nt; ++j) {
-          for (uint32_t i = 1; i < ns; ++i) {
-            mesh_.positions[vertex++] = rounded(
-                set_.patches[p].at(static_cast<double>(i) / ns, static_cast<double>(j) / nt));
+    parallel_ranges(inner_.size(), 64, config_.workers, [&](size_t begin, size_t end) {
+      for (size_t k = begin; k < end; ++k) {
+        const InnerSeam& line = inner_[k];
+        const Seam& seam = seams_[outer_seams_ + k];
+        const BezierPatch& patch = set_.patches[line.patch];
+        const uint32_t n = pieces(line.patch);
+        for (uint32_t i = 1; i < seam.steps; ++i) {
+          const double at = share(i, seam.steps);
+          mesh_.positions[seam.first + i - 1] = rounded(patch.at(
+              (line.i + (line.along_s ? at : 0)) / n, (line.j + (line.along_s ? 0 : at)) / n));
+        }
+      }
+    });
+    for_each_patch([&](uint32_t p) {
+      const BezierPatch& patch = set_.patches[p];
+      const uint32_t n = pieces(p);
+      for (uint32_t j = 1; j < n; ++j) {
+        for (uint32_t i = 1; i < n; ++i) {
+          mesh_.positions[piece_corner(p, i, j)] = rounded(patch.at(share(i, n), share(j, n)));
+        }
+      }
+      for (uint32_t piece = 0; piece < n * n; ++piece) {
+        const uint32_t i = piece % n, j = piece / n;
+        const Steps h = inner_steps(p, i, j);
+        uint32_t vertex = inner_first_[piece_first_[p] + piece];
+        for (uint32_t b = 1; b < h.t; ++b) {
+          for (uint32_t a = 1; a < h.s; ++a) {
+            mesh_.positions[vertex++] =
+                rounded(patch.at((i + share(a, h.s)) / n, (j + share(b, h.t)) / n));
           }
         }
       }
     });
   }
 
-  // The number of steps along an edge of the patch, over all its seams.
-  [[nodiscard]] uint32_t edge_steps(PatchSide side) const {
-    const PatchEdge& edge = edge_at(side);
-    const size_t count = neighbour_count(edge.bind);
-    if (count <= 1) return 1u << seams_[seam_of_[4 * side.patch + side.edge]].halvings;
-    uint32_t steps = 0;
-    for (size_t k = 0; k < count; ++k) {
-      steps += 1u << seams_[seam_of_[4 * edge.next[k].patch + edge.next[k].edge]].halvings;
-    }
-    return steps;
-  }
-
-  // No seam is coarser than the patch, so equal counts mean equal steps.
-  [[nodiscard]] bool is_grid(uint32_t p) const {
-    const uint32_t ns = 1u << steps_[p].s;
-    const uint32_t nt = 1u << steps_[p].t;
-    return edge_steps({p, 0}) == nt && edge_steps({p, 1}) == ns && edge_steps({p, 2}) == nt &&
-           edge_steps({p, 3}) == ns;
-  }
-
-  // Appends a seam that covers `part` of `parts` of an edge, without its last vertex.
-  void append_seam(const Seam& seam, bool backward, uint32_t part, uint32_t parts,
-                   std::vector<EdgePoint>& out) const {
-    const uint32_t n = 1u << seam.halvings;
-    for (uint32_t k = 0; k < n; ++k) {
-      const uint32_t step = backward ? n - k : k;
-      uint32_t vertex = seam.first + step - 1;
-      if (step == 0 || seam.collapsed) vertex = seam.start;
-      if (step == n) vertex = seam.end;
-      out.push_back({vertex, (part * n + k) * (kUnits / parts / n)});
-    }
-  }
-
-  // All vertices along an edge, from corner to corner.
-  void collect_edge(PatchSide side, std::vector<EdgePoint>& out) const {
-    out.clear();
-    const PatchEdge& edge = edge_at(side);
-    const size_t count = neighbour_count(edge.bind);
-    if (count <= 1) {
-      append_seam(seams_[seam_of_[4 * side.patch + side.edge]], !owns_seam(side), 0, 1, out);
+  // Calls body(seam, backward) for those along an edge of a piece, in the edge's direction.
+  template <class Body>
+  void for_each_seam_of_piece(uint32_t p, uint32_t i, uint32_t j, uint32_t e, Body body) const {
+    const uint32_t last = pieces(p) - 1;
+    if (e == 0 && i > 0) {
+      body(seams_[inner_seam(p, i, j, false)], false);
+    } else if (e == 1 && j < last) {
+      body(seams_[inner_seam(p, i, j + 1, true)], false);
+    } else if (e == 2 && i < last) {
+      body(seams_[inner_seam(p, i + 1, j, false)], true);
+    } else if (e == 3 && j > 0) {
+      body(seams_[inner_seam(p, i, j, true)], true);
     } else {
-      for (uint32_t k = 0; k < count; ++k) {
-        const PatchSide next = edge.next[k];
-        append_seam(seams_[seam_of_[4 * next.patch + next.edge]], true, k,
-                    static_cast<uint32_t>(count), out);
-      }
+      const uint32_t k = e == 0 ? j : e == 1 ? i : e == 2 ? last - j : last - i;
+      for_each_seam({p, e}, k, body);
     }
-    out.push_back({corner_[4 * side.patch + (side.edge + 1) % 4], kUnits});
+  }
+
+  // No seam is coarser than the piece, so equal counts mean equal steps.
+  [[nodiscard]] bool is_grid(uint32_t p, uint32_t i, uint32_t j) const {
+    const Steps h = cuts_[p].at(i, j);
+    for (uint32_t e = 0; e < 4; ++e) {
+      uint32_t steps = 0;
+      for_each_seam_of_piece(p, i, j, e, [&](const Seam& seam, bool) { steps += seam.steps; });
+      if (steps != along(h, e)) return false;
+    }
+    return true;
+  }
+
+  // A ring needs an inside.
+  [[nodiscard]] Steps inner_steps(uint32_t p, uint32_t i, uint32_t j) const {
+    const Steps h = cuts_[p].at(i, j);
+    if (is_grid(p, i, j)) return h;
+    return {std::max<uint8_t>(h.s, 2), std::max<uint8_t>(h.t, 2)};
+  }
+
+  // All vertices along an edge of a piece, from corner to corner.
+  void collect_edge(uint32_t p, uint32_t i, uint32_t j, uint32_t e,
+                    std::vector<EdgePoint>& out) const {
+    out.clear();
+    uint32_t parts = 0, part = 0, last = 0;
+    for_each_seam_of_piece(p, i, j, e, [&](const Seam&, bool) { ++parts; });
+    for_each_seam_of_piece(p, i, j, e, [&](const Seam& seam, bool backward) {
+      for (uint32_t k = 0; k < seam.steps; ++k) {
+        const uint32_t step = backward ? seam.steps - k : k;
+        uint32_t vertex = seam.first + step - 1;
+        if (step == 0 || seam.collapsed) vertex = seam.start;
+        if (step == seam.steps) vertex = seam.end;
+        out.push_back({vertex, (part + share(k, seam.steps)) / parts});
+      }
+      ++part;
+      last = backward ? seam.start : seam.end;
+    });
+    out.push_back({last, 1});
   }
 
   // How far the vertices of a patch are from its surface at their parameters. Those of its edges
@@ -299,22 +480,29 @@ class Tessellator {
   [[nodiscard]] double vertices_off(uint32_t p) const {
     thread_local std::vector<EdgePoint> points;
     double off = rounding();
+    const uint32_t n = pieces(p), last = n - 1;
     for (uint32_t e = 0; e < 4; ++e) {
-      collect_edge({p, e}, points);
       const auto curve = set_.patches[p].edge(static_cast<int32_t>(e));
-      for (const EdgePoint& point : points) {
-        const Vec3d own = cubic_point(curve, static_cast<double>(point.at) / kUnits);
-        off = std::max(off, length(mesh_.positions[point.vertex] - own));
+      for (uint32_t k = 0; k < n; ++k) {
+        const uint32_t i = e == 0 ? 0 : e == 1 ? k : e == 2 ? last : last - k;
+        const uint32_t j = e == 0 ? k : e == 1 ? last : e == 2 ? last - k : 0;
+        collect_edge(p, i, j, e, points);
+        for (const EdgePoint& point : points) {
+          const Vec3d own = cubic_point(curve, (k + point.at) / n);
+          off = std::max(off, length(mesh_.positions[point.vertex] - own));
+        }
       }
     }
     return off;
   }
 
-  // Between two parameters that are given in units, along s or t.
-  static std::array<uint8_t, 2> part_between(uint32_t from, uint32_t to) {
-    constexpr uint32_t kUnitsAPart = kUnits / 256;
-    const uint32_t end = (to + kUnitsAPart - 1) / kUnitsAPart;
-    return {static_cast<uint8_t>(from / kUnitsAPart), static_cast<uint8_t>(end - 1)};
+  // From one parameter of a piece to another, of the patch's parts.
+  static std::array<uint8_t, 2> part_between(uint32_t piece, uint32_t pieces, double from,
+                                             double to) {
+    const double scale = static_cast<double>(kParts) / pieces;
+    const auto begin = static_cast<int32_t>(std::floor((piece + from) * scale));
+    const auto end = static_cast<int32_t>(std::ceil((piece + to) * scale));
+    return {static_cast<uint8_t>(begin), static_cast<uint8_t>(end - 1)};
   }
 
   // Calls emit(a, b, c, part) for each triangle of a patch; those that a collapsed edge makes flat
@@ -324,33 +512,39 @@ class Tessellator {
     const auto emit = [&](uint32_t a, uint32_t b, uint32_t c, PatchPart part) {
       if (a != b && b != c && a != c) emit_any(a, b, c, part);
     };
+    const uint32_t n = pieces(p);
+    for (uint32_t j = 0; j < n; ++j) {
+      for (uint32_t i = 0; i < n; ++i) cut_piece(p, i, j, emit);
+    }
+  }
+
+  template <class Emit>
+  void cut_piece(uint32_t p, uint32_t i, uint32_t j, Emit emit) const {
     thread_local std::array<std::vector<EdgePoint>, 4> edges;
-    for (uint32_t e = 0; e < 4; ++e) collect_edge({p, e}, edges[e]);
-    const uint32_t ns = 1u << inner_steps_[p].s;
-    const uint32_t nt = 1u << inner_steps_[p].t;
-    const auto inner = [&](uint32_t i, uint32_t j) {
-      return inner_first_[p] + (j - 1) * (ns - 1) + (i - 1);
-    };
-    const auto cut_quads = [&](uint32_t i0, uint32_t i1, uint32_t j0, uint32_t j1, auto vertex) {
-      for (uint32_t j = j0; j < j1; ++j) {
-        const auto [t0, t1] = part_between(j * (kUnits / nt), (j + 1) * (kUnits / nt));
-        for (uint32_t i = i0; i < i1; ++i) {
-          const uint32_t a = vertex(i, j);
-          const uint32_t c = vertex(i + 1, j + 1);
-          const auto [s0, s1] = part_between(i * (kUnits / ns), (i + 1) * (kUnits / ns));
-          emit(a, vertex(i, j + 1), c, {s0, s1, t0, t1});
-          emit(a, c, vertex(i + 1, j), {s0, s1, t0, t1});
+    for (uint32_t e = 0; e < 4; ++e) collect_edge(p, i, j, e, edges[e]);
+    const uint32_t n = pieces(p);
+    const bool grid = is_grid(p, i, j);
+    const Steps h = inner_steps(p, i, j);
+    const uint32_t ns = h.s, nt = h.t, first = inner_first_[piece_first_[p] + j * n + i];
+    const auto inner = [&](uint32_t a, uint32_t b) { return first + (b - 1) * (ns - 1) + (a - 1); };
+    const auto cut_quads = [&](uint32_t a0, uint32_t a1, uint32_t b0, uint32_t b1, auto vertex) {
+      for (uint32_t b = b0; b < b1; ++b) {
+        const auto [t0, t1] = part_between(j, n, share(b, nt), share(b + 1, nt));
+        for (uint32_t a = a0; a < a1; ++a) {
+          const uint32_t low = vertex(a, b), high = vertex(a + 1, b + 1);
+          const auto [s0, s1] = part_between(i, n, share(a, ns), share(a + 1, ns));
+          emit(low, vertex(a, b + 1), high, {s0, s1, t0, t1});
+          emit(low, high, vertex(a + 1, b), {s0, s1, t0, t1});
         }
       }
     };
-    if (edges[0].size() == nt + 1 && edges[1].size() == ns + 1 && edges[2].size() == nt + 1 &&
-        edges[3].size() == ns + 1) {
-      cut_quads(0, ns, 0, nt, [&](uint32_t i, uint32_t j) {
-        if (i == 0) return edges[0][j].vertex;
-        if (j == nt) return edges[1][i].vertex;
-        if (i == ns) return edges[2][nt - j].vertex;
-        if (j == 0) return edges[3][ns - i].vertex;
-        return inner(i, j);
+    if (grid) {
+      cut_quads(0, ns, 0, nt, [&](uint32_t a, uint32_t b) {
+        if (a == 0) return edges[0][b].vertex;
+        if (b == nt) return edges[1][a].vertex;
+        if (a == ns) return edges[2][nt - b].vertex;
+        if (b == 0) return edges[3][ns - a].vertex;
+        return inner(a, b);
       });
       return;
     }
@@ -358,13 +552,14 @@ class Tessellator {
     // The ring's triangles lie between an edge and the first inner points beside it. Edges 2 and 3
     // run back along their parameter.
     const auto emit_ring = [&](uint32_t e) {
-      const uint32_t across = kUnits / (e % 2 == 0 ? ns : nt);
-      const auto [w0, w1] =
-          e == 0 || e == 3 ? part_between(0, across) : part_between(kUnits - across, kUnits);
-      return [&emit, e, w0 = w0, w1 = w1](uint32_t a, uint32_t b, uint32_t c, uint32_t from,
-                                          uint32_t to) {
-        const auto [l0, l1] =
-            e < 2 ? part_between(from, to) : part_between(kUnits - to, kUnits - from);
+      const double across = share(1, e % 2 == 0 ? ns : nt);
+      const uint32_t piece_across = e % 2 == 0 ? i : j, piece_along = e % 2 == 0 ? j : i;
+      const auto [w0, w1] = e == 0 || e == 3 ? part_between(piece_across, n, 0, across)
+                                             : part_between(piece_across, n, 1 - across, 1);
+      return [&emit, e, n, piece_along, w0 = w0, w1 = w1](uint32_t a, uint32_t b, uint32_t c,
+                                                          double from, double to) {
+        const auto [l0, l1] = e < 2 ? part_between(piece_along, n, from, to)
+                                    : part_between(piece_along, n, 1 - to, 1 - from);
         emit(a, b, c, e % 2 == 0 ? PatchPart{w0, w1, l0, l1} : PatchPart{l0, l1, w0, w1});
       };
     };
@@ -375,21 +570,24 @@ class Tessellator {
   }
 
   // Triangles between an edge and the row of inner points beside it, n - 1 of them at k / n, each
-  // with from where to where it reaches along the edge. Goes along both and always closes the gap
-  // towards the nearer next point.
+  // with from where to where it reaches along the edge. A step between inner points is joined to a
+  // point of the edge that lies within it, of which there is one since no step of the edge is
+  // longer, and to the one nearest to its middle; so the steps of the edge that are joined to an
+  // inner point lie within a step of it. No triangle spans more than 1 / n.
   template <class Emit, class Row>
   static void join(const std::vector<EdgePoint>& edge, uint32_t n, Emit emit, Row row) {
     uint32_t k = 1;
     for (size_t b = 0; b + 1 < edge.size() || k + 1 < n;) {
+      const double here = share(k, n);
       const bool along_edge =
-          k + 1 >= n || (b + 1 < edge.size() && 2 * n * edge[b + 1].at <= kUnits * (2 * k + 1));
-      const uint32_t here = k * (kUnits / n), from = std::min(edge[b].at, here);
+          k + 1 >= n ||
+          (b + 1 < edge.size() && (edge[b].at < here || 2 * n * edge[b + 1].at <= 2 * k + 1));
+      const double from = std::min(edge[b].at, here);
       if (along_edge) {
         emit(edge[b].vertex, edge[b + 1].vertex, row(k), from, std::max(edge[b + 1].at, here));
         ++b;
       } else {
-        emit(edge[b].vertex, row(k + 1), row(k), from,
-             std::max(edge[b].at, (k + 1) * (kUnits / n)));
+        emit(edge[b].vertex, row(k + 1), row(k), from, std::max(edge[b].at, share(k + 1, n)));
         ++k;
       }
     }
@@ -399,13 +597,18 @@ class Tessellator {
   const TessellationConfig& config_;
   Context& context_;
   double grid_;  // Vertices lie on whole 1 / grid_ of a metre.
-  std::vector<Halvings> steps_;
-  std::vector<Halvings> inner_steps_;
+  std::vector<PatchCut> cuts_;
   std::vector<uint32_t> corner_;         // Vertex of corner 4 * patch + i.
   std::vector<uint32_t> corner_source_;  // The corner that places vertex i.
-  std::vector<Seam> seams_;
-  std::vector<uint32_t> seam_of_;  // By 4 * patch + edge; unused where an edge has several.
-  std::vector<uint32_t> inner_first_;
+  std::vector<Run> runs_;
+  std::vector<uint32_t> run_of_;  // By 4 * patch + edge; unused where an edge has several.
+  std::vector<Seam> seams_;       // those of runs, then those inside patches
+  uint32_t outer_seams_ = 0;
+  std::vector<InnerSeam> inner_;
+  std::vector<uint32_t> inner_first_seam_;  // by patch
+  std::vector<uint32_t> crossing_first_;    // by patch: vertices where four of its pieces meet
+  std::vector<uint32_t> piece_first_;       // by patch, and the end
+  std::vector<uint32_t> inner_first_;       // by piece: its inner points
   uint64_t vertices_ = 0;
   PatchMesh mesh_;
 };

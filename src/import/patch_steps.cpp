@@ -14,8 +14,9 @@
 //
 // That is the error at equal parameters. What counts is the gap, and a surface that slides within
 // itself leaves none: seen as a height over a plane with slopes of at most g, the gap is at most
-// the error's height and g times the rest of it. A patch is looked at in pieces as small as its
-// steps (down to a quarter), because over a small piece g is small.
+// the error's height and g times the rest of it. What is cut evenly is looked at in parts, at most
+// 4 x 4, because over a small part g is small; steps end where parts do, so that each triangle lies
+// in one.
 namespace throng {
 namespace {
 
@@ -103,11 +104,10 @@ Bend bend_of(const BezierPatch& piece, double span_s, double span_t) {
   return bend;
 }
 
-constexpr int32_t kMostPieces = 2;  // Halvings.
-
-std::vector<Bend> bends_of(const BezierPatch& patch, Halvings pieces) {
-  std::vector<BezierPatch> parts{patch};
-  const auto halve = [&](auto split) {
+// The patch in 2^halvings x 2^halvings parts, by t, then s.
+std::vector<BezierPatch> parts_of(const BezierPatch& patch, int32_t halvings) {
+  std::vector<BezierPatch> rows{patch};
+  const auto halve = [&](std::vector<BezierPatch>& parts, auto split) {
     std::vector<BezierPatch> halves;
     halves.reserve(2 * parts.size());
     for (const BezierPatch& part : parts) {
@@ -115,41 +115,67 @@ std::vector<Bend> bends_of(const BezierPatch& patch, Halvings pieces) {
     }
     parts = std::move(halves);
   };
-  for (int32_t k = 0; k < pieces.s; ++k) halve(split_s);
-  for (int32_t k = 0; k < pieces.t; ++k) halve(split_t);
-  std::vector<Bend> bends;
-  bends.reserve(parts.size());
-  for (const BezierPatch& part : parts) {
-    bends.push_back(bend_of(part, 1.0 / (1 << pieces.s), 1.0 / (1 << pieces.t)));
-  }
-  return bends;
+  for (int32_t k = 0; k < halvings; ++k) halve(rows, split_t);
+  for (int32_t k = 0; k < halvings; ++k) halve(rows, split_s);
+  return rows;
 }
+
+// The fewest steps, multiples of what the surface was looked at in.
+Steps fewest_steps(const BezierPatch& patch, double tolerance, int32_t least, int32_t most,
+                   int32_t halvings) {
+  const int32_t parts = 1 << halvings;
+  std::vector<Bend> bends;
+  for (const BezierPatch& part : parts_of(patch, halvings)) {
+    bends.push_back(bend_of(part, 1.0 / parts, 1.0 / parts));
+  }
+  const auto is_enough = [&](int32_t s, int32_t t) {
+    // Also false for a NaN of wild coordinates.
+    return std::all_of(bends.begin(), bends.end(),
+                       [&](const Bend& bend) { return bend.gap(1.0 / s, 1.0 / t) <= tolerance; });
+  };
+  Steps best{static_cast<uint8_t>(most), static_cast<uint8_t>(most)};
+  const int32_t first = (least + parts - 1) / parts * parts;
+  // The more steps along s, the fewer along t.
+  int32_t t = most;
+  for (int32_t s = first; s <= most; s += parts) {
+    if (!is_enough(s, t)) continue;
+    while (t - parts >= first && is_enough(s, t - parts)) t -= parts;
+    if (s * t < best.count()) best = {static_cast<uint8_t>(s), static_cast<uint8_t>(t)};
+  }
+  return best;
+}
+
+// Of a few ways to look at it the one that asks for the least.
+Steps fewest_of(const BezierPatch& patch, double tolerance, int32_t least, int32_t most) {
+  constexpr int32_t kMostHalvings = 2;
+  Steps best = fewest_steps(patch, tolerance, least, most, 0);
+  for (int32_t h = 1; h <= kMostHalvings && best.count() > least * least; ++h) {
+    const Steps steps = fewest_steps(patch, tolerance, least, most, h);
+    if (steps.count() < best.count()) best = steps;
+  }
+  return best;
+}
+
+// Pieces are not cut more coarsely, so that no triangle of a patch in pieces covers more than a
+// sixteenth of a side: nodes know the ground around a cell as far as that (bake/own_ground).
+constexpr int32_t kLeastOfPiece = 4;
 
 }  // namespace
 
-Halvings steps_within(const BezierPatch& patch, double tolerance) {
-  Halvings h;
-  Halvings seen;
-  std::vector<Bend> bends = bends_of(patch, seen);
-  for (;;) {
-    const Halvings pieces{std::min(h.s, kMostPieces), std::min(h.t, kMostPieces)};
-    if (pieces != seen) bends = bends_of(patch, pieces);
-    seen = pieces;
-    const double a = 1.0 / (1 << h.s);
-    const double b = 1.0 / (1 << h.t);
-    Bend worst;
-    for (const Bend& bend : bends) {
-      if (!(bend.gap(a, b) <= worst.gap(a, b))) worst = bend;  // Also a NaN of wild coordinates.
-    }
-    if (worst.gap(a, b) <= tolerance) return h;
-    const bool more_s = h.s < kMostHalvings;
-    const bool more_t = h.t < kMostHalvings;
-    if (!more_s && !more_t) return h;
-    // Halve the direction that gives more.
-    const double by_s = a * (a * worst.ss + b * worst.st);
-    const double by_t = b * (b * worst.tt + a * worst.st);
-    ++(more_s && (!more_t || by_s >= by_t) ? h.s : h.t);
+PatchCut cut_within(const BezierPatch& patch, double tolerance) {
+  constexpr int32_t kPieces = PatchCut::kMostPieces;
+  PatchCut whole;
+  whole.steps[0] = fewest_of(patch, tolerance, 1, kMostSteps);
+  int32_t count = kPieces * kPieces * kLeastOfPiece * kLeastOfPiece;
+  if (whole.steps[0].count() <= count) return whole;
+  PatchCut pieces{.pieces = kPieces, .steps = {}};
+  const std::vector<BezierPatch> parts = parts_of(patch, 2);
+  count = 0;
+  for (size_t k = 0; k < parts.size(); ++k) {
+    pieces.steps[k] = fewest_of(parts[k], tolerance, kLeastOfPiece, kMostSteps / kPieces);
+    count += pieces.steps[k].count();
   }
+  return whole.steps[0].count() <= count ? whole : pieces;
 }
 
 }  // namespace throng

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "throng/patch.h"
@@ -9,17 +10,31 @@
 /// How finely a patch must be cut.
 namespace throng {
 
-/// A patch is cut into 2^s steps along s and 2^t along t.
-struct Halvings {
-  int32_t s = 0;
-  int32_t t = 0;
-  friend bool operator==(Halvings, Halvings) = default;
+/// Equal steps along s and t.
+struct Steps {
+  uint8_t s = 1;
+  uint8_t t = 1;
+  [[nodiscard]] int32_t count() const { return s * t; }
+  friend bool operator==(Steps, Steps) = default;
 };
 
-inline constexpr int32_t kMostHalvings = 7;
+/// A patch is cut as a whole, or in 4 x 4 pieces of which each has steps of its own: piece
+/// 4 * j + i, i along s and j along t.
+struct PatchCut {
+  static constexpr int32_t kMostPieces = 4;  // along a side
 
-/// The coarsest steps, found one halving at a time, whose triangles are nowhere farther than
-/// `tolerance` from the surface; or the finest allowed.
-[[nodiscard]] Halvings steps_within(const BezierPatch& patch, double tolerance);
+  int32_t pieces = 1;  ///< along a side
+  std::array<Steps, size_t{kMostPieces} * kMostPieces> steps;
+
+  [[nodiscard]] Steps at(uint32_t i, uint32_t j) const {
+    return steps[j * static_cast<uint32_t>(pieces) + i];
+  }
+};
+
+inline constexpr int32_t kMostSteps = 128;  ///< Along a side of a whole patch.
+
+/// The cut with the fewest triangles of those that are nowhere farther than `tolerance` from the
+/// surface, as far as bounds tell; or the finest allowed.
+[[nodiscard]] PatchCut cut_within(const BezierPatch& patch, double tolerance);
 
 }  // namespace throng

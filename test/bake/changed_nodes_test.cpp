@@ -78,7 +78,7 @@ class ChangedNodes : public testing::Test {
                              : Nodes::make_in_folder(*world, scene, config, context);
     EXPECT_TRUE(nodes) << nodes.error().message;
     if (!nodes) return {};
-    if (fresh) EXPECT_TRUE(nodes->write(at(name)));
+    EXPECT_TRUE(!fresh || nodes->write(at(name)));
     EXPECT_FALSE(fs::exists(at(name) + "/nodes.old"));
     EXPECT_FALSE(fs::exists(at(name) + "/nodes.part"));
     const auto opened = Nodes::open(at(name));

@@ -208,9 +208,17 @@ bool on_open_edge(const PatchSet& set, uint32_t p, Vec3d a, Vec3d b) {
     if (set.edges[p][e].bind != EdgeBind::kOpen) continue;
     const auto curve = set.patches[p].edge(static_cast<int32_t>(e));
     const auto lies_on = [&](Vec3d point) {
-      double nearest = INFINITY;
-      for (int k = 0; k <= 128; ++k) {
-        nearest = std::fmin(nearest, length(point - cubic_point(curve, k / 128.0)));
+      // The nearest of the curve, looked for on ever finer steps around the nearest so far.
+      double nearest = INFINITY, middle = 0.5;
+      for (double reach = 0.5; reach > 1e-7; reach /= 32) {
+        const double around = middle;
+        for (int k = -64; k <= 64; ++k) {
+          const double at = std::clamp(around + reach * k / 64, 0.0, 1.0);
+          const double far = length(point - cubic_point(curve, at));
+          if (far >= nearest) continue;
+          nearest = far;
+          middle = at;
+        }
       }
       return nearest < 0.05;
     };

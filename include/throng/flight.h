@@ -61,7 +61,8 @@ struct FlightPath {
   std::vector<Vec3d> points;
   std::vector<LegKind> legs;  ///< One less than the points.
   double length = 0;          ///< Of all legs. [m]
-  /// What is in the way to an unreachable goal: kNarrow, or, where it cannot take off, kLow.
+  /// What is in the straight way on to an unreachable goal: kLow where a body that is less tall
+  /// would go on, or where it cannot take off, else kNarrow.
   Obstacle obstacle = Obstacle::kNone;
   uint64_t nodes = 0;  ///< Boxes that the search looked at.
 };

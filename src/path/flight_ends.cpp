@@ -26,7 +26,36 @@ int32_t margin_at(const GroundLevel& level, uint32_t zone_level, int32_t avatar_
   return margin;
 }
 
+// Layers from that of the feet on in which there is room for the whole width of a body.
+int32_t free_layers(const AirData& air, const AirBody& body, int32_t x, int32_t y, int32_t z) {
+  for (int32_t dy = 0; dy <= body.up; ++dy) {
+    for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
+      const int32_t half = body.half_width[static_cast<size_t>(std::abs(dz))];
+      for (int32_t dx = -half; dx <= half; ++dx) {
+        if (!air.is_free(x + dx, y + dy, z + dz)) return dy;
+      }
+    }
+  }
+  return body.up + 1;
+}
+
 }  // namespace
+
+Obstacle air_obstacle(const AirData& air, const AirBody& body, const FlightSpace& space,
+                      AirPoint from, AirPoint to) {
+  constexpr double kStep = 0.25;  // [air cells]
+  const AirPoint way = to - from;
+  const double far = air_distance(from, to);
+  for (double at = 0; at < far; at += kStep) {
+    const AirPoint p = from + (at / far) * way;
+    if (space.box_at(p) != kNoBox) continue;
+    const int32_t layers =
+        free_layers(air, body, static_cast<int32_t>(std::floor(p.x)),
+                    static_cast<int32_t>(std::floor(p.y)), static_cast<int32_t>(std::floor(p.z)));
+    return layers > 0 ? Obstacle::kLow : Obstacle::kNarrow;
+  }
+  return Obstacle::kNone;
+}
 
 FlightEnds::FlightEnds(const WorldData& world, const FlightSpace& space, int32_t avatar_class)
     : world_(world),

@@ -7,10 +7,16 @@
 
 #include "path/circle_flood.h"
 #include "path/flight_space.h"
+#include "throng/ground_query.h"
 #include "throng/world.h"
 
 /// Between the ground and the air: where a body that stands comes into the air, and where it lands.
 namespace throng {
+
+/// What a body meets first on the straight line from where it may be: kLow where it would fit if it
+/// were less tall, else kNarrow; kNone if it meets nothing. Time: the line's cells.
+[[nodiscard]] Obstacle air_obstacle(const AirData& air, const AirBody& body,
+                                    const FlightSpace& space, AirPoint from, AirPoint to);
 
 class FlightEnds {
  public:

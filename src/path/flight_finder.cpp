@@ -64,6 +64,7 @@ struct FlightFinder::End {
 struct FlightFinder::Shared {
   World world;
   int32_t avatar_class = 0;
+  AirBody body;
   FlightSpace space;
   std::vector<uint64_t> cells_before;  // per box, and of all
   std::optional<PathFinder> walker;    // none where the class has no ground
@@ -153,10 +154,10 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
   }
   const auto start = std::chrono::steady_clock::now();
   if (auto ok = world.check_all(); !ok) return ok.error();
-  auto space = build_flight_space(*data.air, air_body(avatar, data.air->shape), kLargestBox,
-                                  config.workers, context);
-  if (!space) return space.error();
   auto shared = std::make_shared<Shared>();
+  shared->body = air_body(avatar, data.air->shape);
+  auto space = build_flight_space(*data.air, shared->body, kLargestBox, config.workers, context);
+  if (!space) return space.error();
   shared->world = world;
   shared->avatar_class = config.avatar_class;
   shared->space = std::move(*space);
@@ -480,7 +481,12 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   if (path.end == PathEnd::kUnreachable) find_by_turns(nearer, path);
   if (path.end != PathEnd::kReached) clear(path);
   path.end = PathEnd::kUnreachable;
-  path.obstacle = path.points.empty() ? Obstacle::kNone : Obstacle::kNarrow;
+  path.obstacle = Obstacle::kNone;
+  if (path.points.empty()) return;
+  path.obstacle =
+      air_obstacle(*shared_->world.data()->air, shared_->body, space, off_faces(nearest), goal);
+  // Air that begins right there and leads nowhere else: only a corner is between.
+  if (path.obstacle == Obstacle::kNone) path.obstacle = Obstacle::kNarrow;
 }
 
 Result<AirSummary> air_summary(const World& world) {

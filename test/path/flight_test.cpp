@@ -292,6 +292,34 @@ TEST(Flight, TellsHowNearItComesAndWhatIsInTheWay) {
   }
 }
 
+// Two halls with a hole in the wall between: as wide as the wall, or as high.
+TEST(Flight, TellsHolesThatAreTooLowFromThoseThatAreTooNarrow) {
+  for (const bool is_low : {true, false}) {
+    Scene scene;
+    scene.add_quad({0, 0, 0}, {0, 0, 8}, {20, 0, 8}, {20, 0, 0});
+    for (const double x : {0.0, 19.8}) scene.add_box({x, -0.1, 0}, {x + 0.2, 6, 8});
+    for (const double z : {0.0, 7.8}) scene.add_box({0, -0.1, z}, {20, 6, z + 0.2});
+    scene.add_box({0, 5.8, 0}, {20, 6, 8});
+    if (is_low) {
+      scene.add_box({9.8, -0.1, 0}, {10, 2, 8});
+      scene.add_box({9.8, 3, 0}, {10, 6, 8});
+    } else {
+      scene.add_box({9.8, -0.1, 0}, {10, 6, 3.8});
+      scene.add_box({9.8, -0.1, 4.2}, {10, 6, 8});
+    }
+    const World world = bake(scene);
+    FlightFinder flight = finder(world);
+    FlightPath path;
+    for (const double from : {3.0, 17.0}) {
+      flight.find({.from = {from, 2.5, 4}, .to = {20 - from, 2.25, 4}}, path);
+      ASSERT_EQ(path.end, PathEnd::kUnreachable);
+      EXPECT_EQ(path.obstacle, is_low ? Obstacle::kLow : Obstacle::kNarrow);
+      ASSERT_FALSE(path.points.empty());
+      EXPECT_NEAR(path.points.back().x, from < 10 ? 9.3 : 10.5, 0.8);
+    }
+  }
+}
+
 // Under a roof that nothing takes off from, walked to behind a wall.
 TEST(Flight, GivingUpOnFootIsNoProofThatNothingLeadsThere) {
   Scene scene;

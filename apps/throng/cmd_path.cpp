@@ -331,10 +331,13 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
   if (!to_position) return fail(to_position.error());
   const Result<Nodes> nodes = Nodes::open(options.world);
   if (!nodes) return fail(nodes.error());
-  auto finder = NodePathFinder::make(
-      *nodes,
-      {.avatar_class = avatar_class, .slope_cost = options.slope_cost, .workers = options.threads},
-      session.context);
+  auto finder =
+      NodePathFinder::make(*nodes,
+                           {.avatar_class = avatar_class,
+                            .slope_cost = options.slope_cost,
+                            .landmarks = false,  // For one way they are not worth their time.
+                            .workers = options.threads},
+                           session.context);
   if (!finder) return fail(finder.error());
   const NodePlace from = finder->find_place(*from_position, options.reach);
   const NodePlace to = finder->find_place(*to_position, options.reach);

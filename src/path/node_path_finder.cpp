@@ -18,23 +18,30 @@ namespace {
 
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
 constexpr size_t kMostPieces = 4096;
+constexpr size_t kManyCrossings = size_t{1} << 17;  // Fewer are looked at in no time.
 
 }  // namespace
 
 struct NodePathFinder::Shared {
   Shared(NodeMesh made, const NodePathConfig& config)
-      : mesh(std::move(made)), cost(mesh, config.slope_cost), squares(mesh) {}
+      : mesh(std::move(made)), cost(mesh, config.slope_cost), squares(mesh) {
+    if (config.landmarks && mesh.portals().size() >= kManyCrossings) {
+      landmarks = NodeLandmarks(mesh, config.workers);
+    }
+  }
   Shared(const Shared&) = delete;  // `cost` points to `mesh`
   Shared& operator=(const Shared&) = delete;
   NodeMesh mesh;
   PieceCost cost;
   BlockSquares squares;
+  NodeLandmarks landmarks;
   double seconds = 0;
 };
 
 struct NodePathFinder::Scratch {
   explicit Scratch(const Shared& shared)
-      : search(shared.mesh, shared.cost), pull(shared.mesh, shared.cost) {}
+
+      : search(shared.mesh, shared.cost, shared.landmarks), pull(shared.mesh, shared.cost) {}
   NodeSearch search;
   NodePull pull;
   std::vector<Crossing> way;
@@ -233,7 +240,7 @@ NodePathSummary NodePathFinder::summary() const {
   const NodeMesh& mesh = shared_->mesh;
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
-          .bytes = mesh.bytes() + shared_->squares.bytes(),
+          .bytes = mesh.bytes() + shared_->squares.bytes() + shared_->landmarks.bytes(),
           .seconds = shared_->seconds};
 }
 

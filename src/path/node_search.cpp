@@ -10,7 +10,8 @@
 // Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
 // 1968. A way goes from the middle of one portal to the middle of the next, straight by the
 // parameters of their block; a piece is measured over its middle, so it is never shorter than the
-// straight line, and the straight line to the goal never says too much.
+// straight line, and the straight line to the goal never says too much. Nor do landmarks; but what
+// they say is rounded, so a state may be found a better way to after it was left.
 namespace throng {
 namespace {
 
@@ -53,6 +54,10 @@ void NodeSearch::push(double estimate, uint32_t state) {
   });
 }
 
+double NodeSearch::left(uint32_t portal, Vec3d at) const {
+  return std::max(length(goal_ - at), landmarks_->least(portal, goal_far_));
+}
+
 void NodeSearch::expand(uint32_t block, double s, double t, Vec3d at, double cost,
                         uint32_t parent) {
   for (const uint32_t p : mesh_->portals_of(block)) {
@@ -61,7 +66,7 @@ void NodeSearch::expand(uint32_t block, double s, double t, Vec3d at, double cos
     const uint32_t id = 2 * p + (backward ? 1 : 0);
     if ((backward && portal.one_way) || (id ^ 1) == parent || id == parent) continue;
     State& state = states_[id];
-    if (state.query == query_ && (state.closed || state.cost <= cost)) continue;
+    if (state.query == query_ && state.cost <= cost) continue;
     const auto& on = backward ? portal.on_b : portal.on_a;
     const auto& beyond = backward ? portal.on_a : portal.on_b;
     const double s1 = (on[0] + on[2]) / 2, t1 = (on[1] + on[3]) / 2;
@@ -74,7 +79,7 @@ void NodeSearch::expand(uint32_t block, double s, double t, Vec3d at, double cos
     next += portal_length(portal, here, there);
     if (state.query == query_ && state.cost <= next) continue;
     state = {query_, parent, next, there, false};
-    push(next + length(goal_ - there), id);
+    push(next + left(p, there), id);
   }
 }
 
@@ -89,6 +94,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
   }
   open_.clear();
   goal_ = mesh_->surface(to.block).at(to.s, to.t);
+  goal_far_ = landmarks_->of(*mesh_, to.block, goal_);
   const Vec3d start = mesh_->surface(from.block).at(from.s, from.t);
   constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
   double found = std::numeric_limits<double>::infinity();

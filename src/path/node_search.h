@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "graph/node_mesh.h"
+#include "path/node_landmarks.h"
 #include "throng/path.h"
 #include "throng/search_budget.h"
 
@@ -44,7 +45,8 @@ struct Crossing {
 
 class NodeSearch {
  public:
-  NodeSearch(const NodeMesh& mesh, const PieceCost& cost) : mesh_(&mesh), cost_(&cost) {}
+  NodeSearch(const NodeMesh& mesh, const PieceCost& cost, const NodeLandmarks& landmarks)
+      : mesh_(&mesh), cost_(&cost), landmarks_(&landmarks) {}
 
   /// Fills `way` with the portals from one to the other, or, if none leads there, to the crossing
   /// that comes nearest.
@@ -69,14 +71,18 @@ class NodeSearch {
 
   void expand(uint32_t block, double s, double t, Vec3d at, double cost, uint32_t parent);
   void push(double estimate, uint32_t state);
+  /// What is left to the goal at least, beyond a portal.
+  [[nodiscard]] double left(uint32_t portal, Vec3d at) const;
   void trace(uint32_t state, std::vector<Crossing>& way) const;
 
   const NodeMesh* mesh_;
   const PieceCost* cost_;
+  const NodeLandmarks* landmarks_;
   std::vector<State> states_;
   std::vector<Open> open_;
   uint32_t query_ = 0;
   Vec3d goal_;
+  NodeLandmarks::Distances goal_far_{};
   double best_cost_ = 0;
   uint64_t looked_at_ = 0;
 };

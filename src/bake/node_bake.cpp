@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "bake/node_batch.h"
@@ -28,6 +30,14 @@ Result<void> check(const World& world, const Scene& scene, const NodeConfig& con
                                       std::to_string(world.summary().source_triangles) +
                                       " source triangles, the scene has " +
                                       std::to_string(scene.triangles.size())};
+  }
+  return {};
+}
+
+// Of calls that ran side by side.
+Result<void> first_failure(std::span<const std::optional<Error>> failed) {
+  for (const auto& failure : failed) {
+    if (failure) return *failure;
   }
   return {};
 }
@@ -79,11 +89,8 @@ class NodeBaker {
       if (auto ok = folder_->take_over(*slots_[z]->zone, kept->file); !ok) failed[z] = ok.error();
       slots_[z]->zone.reset();
     });
-    for (const auto& failure : failed) {
-      if (failure) return *failure;
-    }
     kept_ = std::accumulate(is_done_.begin(), is_done_.end(), uint64_t{0});
-    return {};
+    return first_failure(failed);
   }
 
   Result<void> make_zones() {
@@ -126,10 +133,7 @@ class NodeBaker {
       if (auto ok = folder_->write(*slot->zone); !ok) failed[i] = ok.error();
       slot->zone.reset();
     });
-    for (const auto& failure : failed) {
-      if (failure) return *failure;
-    }
-    return {};
+    return first_failure(failed);
   }
 
   // What is done so far. Where nodes stay in memory they are in it, and no longer here.
@@ -237,9 +241,7 @@ Result<void> Nodes::write(const std::string& world_path, int32_t workers) const 
       failed[s] = ok.error();
     }
   });
-  for (const auto& failure : failed) {
-    if (failure) return *failure;
-  }
+  if (auto ok = first_failure(failed); !ok) return ok;
   return folder->finish(*data_);
 }
 

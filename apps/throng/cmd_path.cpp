@@ -335,7 +335,7 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
       NodePathFinder::make(*nodes,
                            {.avatar_class = avatar_class,
                             .slope_cost = options.slope_cost,
-                            .landmarks = false,  // For one way they are not worth their time.
+                            .districts = false,  // For one way they are not worth their time.
                             .workers = options.threads},
                            session.context);
   if (!finder) return fail(finder.error());

@@ -23,10 +23,10 @@ struct NodePathConfig {
   /// A metre over ground that inclines by an angle a costs 1 + slope_cost * (1 - cos a): flat
   /// ground 1, a wall 1 + slope_cost, a ceiling 1 + 2 slope_cost. [>= 0]
   double slope_cost = 0;
-  /// Where there are many crossings (2^17), know from eight places how far it is to everywhere:
-  /// long searches look at a part of what they would else. Takes eight searches over all to make,
-  /// and 32 bytes a crossing. Never changes what a way costs.
-  bool landmarks = true;
+  /// Where there are many crossings (2^15), know what it costs to go through squares of ground:
+  /// long ways are put together of that, and are seldom much dearer than the best. Takes as long as
+  /// some searches over all to make.
+  bool districts = true;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
 };
 

@@ -32,6 +32,18 @@ uint32_t quad_order(uint32_t s, uint32_t t, int32_t level) {
   return order;
 }
 
+// Each list is given back once it is copied: of a large world all of them take gigabytes.
+template <class T>
+void append_all(std::vector<std::vector<T>>& lists, std::vector<T>& all) {
+  size_t count = all.size();
+  for (const auto& list : lists) count += list.size();
+  all.reserve(count);
+  for (auto& list : lists) {
+    all.insert(all.end(), list.begin(), list.end());
+    std::vector<T>().swap(list);
+  }
+}
+
 }  // namespace
 
 double portal_length(const NodePortal& portal, Vec3d out, Vec3d in) {
@@ -55,9 +67,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
   parallel_for(lists.size(), workers, [&](size_t p) {
     if (!context.cancel) lists[p] = mesh.inside_patch(static_cast<uint32_t>(p));
   });
-  for (const auto& list : lists) {
-    mesh.portals_.insert(mesh.portals_.end(), list.begin(), list.end());
-  }
+  append_all(lists, mesh.portals_);
   mesh.open_doors();
   const WorldData& world = *data.world.data();
   const bool tiles = std::any_of(mesh.patches_.begin(), mesh.patches_.end(),
@@ -68,9 +78,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
     const auto tile = static_cast<int32_t>(i);
     if (!context.cancel) lists[i] = mesh.over_tile(tile % tiles_x, tile / tiles_x);
   });
-  for (const auto& list : lists) {
-    mesh.portals_.insert(mesh.portals_.end(), list.begin(), list.end());
-  }
+  append_all(lists, mesh.portals_);
   mesh.add_leaps();
   if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
   mesh.index_portals();
@@ -267,9 +275,9 @@ void NodeMesh::list_blocks(int32_t workers) {
   });
   first_block_ = {0};
   for (const auto& list : lists) {
-    blocks_.insert(blocks_.end(), list.begin(), list.end());
-    first_block_.push_back(static_cast<uint32_t>(blocks_.size()));
+    first_block_.push_back(first_block_.back() + static_cast<uint32_t>(list.size()));
   }
+  append_all(lists, blocks_);
 }
 
 uint32_t NodeMesh::block_at(uint32_t patch, double s, double t) const {

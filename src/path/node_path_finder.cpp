@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "path/block_squares.h"
+#include "path/district_search.h"
+#include "path/node_parts.h"
 #include "path/node_pull.h"
 #include "path/node_search.h"
 #include "path/obstacle.h"
@@ -18,15 +20,22 @@ namespace {
 
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
 constexpr size_t kMostPieces = 4096;
-constexpr size_t kManyCrossings = size_t{1} << 17;  // Fewer are looked at in no time.
+constexpr size_t kManyCrossings = size_t{1} << 15;  // Fewer are looked at in no time.
+// Places no farther apart than so many sides of a district may be joined by a way that looks at so
+// few crossings that it need not be led over gates.
+constexpr double kNearSides = 3;
+constexpr uint64_t kNearCrossings = 2048;
 
 }  // namespace
 
 struct NodePathFinder::Shared {
   Shared(NodeMesh made, const NodePathConfig& config)
-      : mesh(std::move(made)), cost(mesh, config.slope_cost), squares(mesh) {
-    if (config.landmarks && mesh.portals().size() >= kManyCrossings) {
-      landmarks = NodeLandmarks(mesh, config.workers);
+      : mesh(std::move(made)),
+        cost(mesh, config.slope_cost),
+        squares(mesh),
+        parts(mesh, config.workers) {
+    if (config.districts && mesh.portals().size() >= kManyCrossings) {
+      districts = Districts(mesh, cost, config.workers);
     }
   }
   Shared(const Shared&) = delete;  // `cost` points to `mesh`
@@ -34,19 +43,52 @@ struct NodePathFinder::Shared {
   NodeMesh mesh;
   PieceCost cost;
   BlockSquares squares;
-  NodeLandmarks landmarks;
+  NodeParts parts;
+  Districts districts;
   double seconds = 0;
 };
 
 struct NodePathFinder::Scratch {
   explicit Scratch(const Shared& shared)
-
-      : search(shared.mesh, shared.cost, shared.landmarks), pull(shared.mesh, shared.cost) {}
+      : search(shared.mesh, shared.cost),
+        far_search(shared.mesh, shared.cost, shared.districts),
+        pull(shared.mesh, shared.cost) {}
   NodeSearch search;
+  DistrictSearch far_search;
+  NodeParts::Reached reached;
   NodePull pull;
   std::vector<Crossing> way;
   std::vector<PulledCrossing> pulled;
+
+  PathEnd find(const Shared& shared, const BlockPoint& from, const BlockPoint& to,
+               const SearchBudget& budget, NodePath& path);
 };
+
+PathEnd NodePathFinder::Scratch::find(const Shared& shared, const BlockPoint& from,
+                                      const BlockPoint& to, const SearchBudget& budget,
+                                      NodePath& path) {
+  SearchBudget left = budget;
+  const auto look = [&](auto&& searched, PathEnd end) {
+    path.nodes += searched.looked_at();
+    path.searched_cost = searched.cost();
+    left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, path.nodes);
+    return end;
+  };
+  if (!shared.districts.empty()) {
+    const double far = length(position(shared.mesh, to) - position(shared.mesh, from));
+    const bool small = left.max_nodes <= kNearCrossings;
+    if (small || far <= kNearSides * shared.districts.tiers().front().side) {
+      SearchBudget near = left;
+      near.max_nodes = std::min(near.max_nodes, kNearCrossings);
+      const PathEnd end = look(search, search.find(from, to, near, way));
+      const bool stopped = budget.cancel != nullptr && *budget.cancel;
+      if (end != PathEnd::kGaveUp || small || stopped) return end;
+    }
+    const PathEnd end = look(far_search, far_search.find(from, to, left, search, way));
+    if (end != PathEnd::kUnreachable) return end;
+  }
+  return look(search, search.find(from, to, left, way));
+}
 
 namespace {
 
@@ -240,7 +282,8 @@ NodePathSummary NodePathFinder::summary() const {
   const NodeMesh& mesh = shared_->mesh;
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
-          .bytes = mesh.bytes() + shared_->squares.bytes() + shared_->landmarks.bytes(),
+          .bytes = mesh.bytes() + shared_->squares.bytes() + shared_->parts.bytes() +
+                   shared_->districts.bytes(),
           .seconds = shared_->seconds};
 }
 
@@ -340,19 +383,14 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   const BlockPoint start = block_of(from), goal = block_of(to);
   if (start.block == kNoNode || goal.block == kNoNode) return;
   Scratch& scratch = *scratch_;
-  path.end = scratch.search.find(start, goal, budget, scratch.way);
-  path.nodes = scratch.search.looked_at();
-  if (path.end == PathEnd::kGaveUp) return;
-  path.searched_cost = scratch.search.cost();
   BlockPoint last = goal;
-  if (path.end == PathEnd::kUnreachable) {
-    last = start;
-    if (!scratch.way.empty()) {
-      const Crossing& end = scratch.way.back();
-      const NodePortal& portal = mesh.portals()[end.portal];
-      const auto& in = end.backward ? portal.on_a : portal.on_b;
-      last = {end.backward ? portal.a : portal.b, (in[0] + in[2]) / 2, (in[1] + in[3]) / 2};
-    }
+  shared_->parts.reach(start.block, scratch.reached);
+  const bool reachable = scratch.reached.holds(shared_->parts.of_block(goal.block));
+  if (!reachable) last = shared_->parts.nearest(mesh, start, to.feet, scratch.reached);
+  path.end = scratch.find(*shared_, start, last, budget, path);
+  if (path.end == PathEnd::kGaveUp) return;
+  if (!reachable) {
+    path.end = PathEnd::kUnreachable;
     path.obstacle = obstacle_towards(mesh, last, to.feet);
   }
   scratch.pull.pull(start, last, scratch.way, scratch.pulled);

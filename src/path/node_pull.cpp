@@ -62,6 +62,10 @@ void NodePull::pull(const BlockPoint& from, const BlockPoint& to, const std::vec
   out.clear();
   for (const Crossing& crossing : way) {
     out.emplace_back().crossing = crossing;
+    place(out.back(), 0);
+    out.back().first_at = out.back().out_at;
+    place(out.back(), 1);
+    out.back().last_at = out.back().out_at;
     place(out.back(), 0.5);
   }
   if (out.empty()) return;
@@ -74,14 +78,17 @@ void NodePull::pull(const BlockPoint& from, const BlockPoint& to, const std::vec
       PulledCrossing& here = out[i];
       const NodePortal& portal = mesh_->portals()[here.crossing.portal];
       if (portal.leaps) continue;
+      if (here.settled) {
+        all += here.around;
+        continue;
+      }
+      here.settled = true;
       const double before = cost_around(out, i, here, from, from_at, to, to_at);
       all += before;
-      PulledCrossing begin = here, end = here;
-      place(begin, 0);
-      place(end, 1);
+      here.around = before;
       const double along =
           unfolded(i > 0 ? out[i - 1].in_at : from_at,
-                   i + 1 < out.size() ? out[i + 1].out_at : to_at, begin.out_at, end.out_at);
+                   i + 1 < out.size() ? out[i + 1].out_at : to_at, here.first_at, here.last_at);
       if (std::fabs(along - here.along) < 1e-6) continue;
       PulledCrossing moved = here;
       place(moved, along);
@@ -89,6 +96,9 @@ void NodePull::pull(const BlockPoint& from, const BlockPoint& to, const std::vec
       if (!(after < before)) continue;
       gained += before - after;
       here = moved;
+      here.settled = false;
+      if (i > 0) out[i - 1].settled = false;
+      if (i + 1 < out.size()) out[i + 1].settled = false;
     }
     if (gained <= kLittle * all) break;
   }

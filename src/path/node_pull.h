@@ -15,6 +15,9 @@ struct PulledCrossing {
   double along = 0.5;  ///< From the portal's beginning to its end.
   BlockPoint out, in;  ///< In the block that it leaves, and in the one that it comes to.
   Vec3d out_at, in_at;
+  Vec3d first_at, last_at;  ///< Ends of the portal, in the block that it leaves.
+  double around = 0;        ///< What the way costs from the crossing before to the one after.
+  bool settled = false;  ///< It and its neighbours lie where they did when it was last looked at.
 };
 
 class NodePull {

@@ -10,8 +10,7 @@
 // Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
 // 1968. A way goes from the middle of one portal to the middle of the next, straight by the
 // parameters of their block; a piece is measured over its middle, so it is never shorter than the
-// straight line, and the straight line to the goal never says too much. Nor do landmarks; but what
-// they say is rounded, so a state may be found a better way to after it was left.
+// straight line, and the straight line to the goal never says too much.
 namespace throng {
 namespace {
 
@@ -54,62 +53,56 @@ void NodeSearch::push(double estimate, uint32_t state) {
   });
 }
 
-double NodeSearch::left(uint32_t portal, Vec3d at) const {
-  return std::max(length(goal_ - at), landmarks_->least(portal, goal_far_));
-}
-
-void NodeSearch::expand(uint32_t block, double s, double t, Vec3d at, double cost,
-                        uint32_t parent) {
-  for (const uint32_t p : mesh_->portals_of(block)) {
-    const NodePortal& portal = mesh_->portals()[p];
-    const bool backward = portal.a != block;
-    const uint32_t id = 2 * p + (backward ? 1 : 0);
-    if ((backward && portal.one_way) || (id ^ 1) == parent || id == parent) continue;
+void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent) {
+  for_each_way_out(*mesh_, from.block, [&](const Crossing& crossing) {
+    const uint32_t id = 2 * crossing.portal + (crossing.backward ? 1 : 0);
+    if ((id ^ 1) == parent || id == parent) return;
+    const NodePortal& portal = mesh_->portals()[crossing.portal];
+    const uint32_t into = crossing.backward ? portal.a : portal.b;
+    if (within_.district_of_block != nullptr &&
+        within_.district_of_block[into] != within_.district) {
+      return;
+    }
     State& state = states_[id];
-    if (state.query == query_ && state.cost <= cost) continue;
-    const auto& on = backward ? portal.on_b : portal.on_a;
-    const auto& beyond = backward ? portal.on_a : portal.on_b;
-    const double s1 = (on[0] + on[2]) / 2, t1 = (on[1] + on[3]) / 2;
-    const Vec3d here = mesh_->surface(block).at(s1, t1);
-    double next = cost + (*cost_)(block, s, t, at, s1, t1, here).cost;
-    if (state.query == query_ && state.cost <= next) continue;
-    const uint32_t into = backward ? portal.a : portal.b;
-    const Vec3d there =
-        mesh_->surface(into).at((beyond[0] + beyond[2]) / 2, (beyond[1] + beyond[3]) / 2);
+    if (state.query == query_ && state.cost <= cost) return;
+    const auto [out, in] = ends_of(*mesh_, crossing);
+    const Vec3d here = position(*mesh_, out);
+    double next = cost + (*cost_)(out.block, from.s, from.t, at, out.s, out.t, here).cost;
+    if (state.query == query_ && state.cost <= next) return;
+    const Vec3d there = position(*mesh_, in);
     next += portal_length(portal, here, there);
-    if (state.query == query_ && state.cost <= next) continue;
+    if (state.query == query_ && state.cost <= next) return;
     state = {query_, parent, next, there, false};
-    push(next + left(p, there), id);
-  }
+    push(next + length(goal_ - there), id);
+  });
 }
 
 PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                         std::vector<Crossing>& way) {
+                         std::vector<Crossing>& way, const KeepIn& within, double less_than) {
   way.clear();
   looked_at_ = 0;
+  within_ = within;
   states_.resize(2 * mesh_->portals().size());
   if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
-    std::fill(states_.begin(), states_.end(), State{});
+    states_.clear();
     query_ = 1;
   }
   open_.clear();
-  goal_ = mesh_->surface(to.block).at(to.s, to.t);
-  goal_far_ = landmarks_->of(*mesh_, to.block, goal_);
-  const Vec3d start = mesh_->surface(from.block).at(from.s, from.t);
+  goal_ = position(*mesh_, to);
+  const Vec3d start = position(*mesh_, from);
   constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
   double found = std::numeric_limits<double>::infinity();
   uint32_t last = kStart;
-  const auto arrive = [&](uint32_t block, double s, double t, Vec3d at, double cost,
-                          uint32_t parent) {
-    if (block != to.block) return;
-    const double all = cost + (*cost_)(block, s, t, at, to.s, to.t, goal_).cost;
+  const auto arrive = [&](const BlockPoint& in, Vec3d at, double cost, uint32_t parent) {
+    if (in.block != to.block) return;
+    const double all = cost + (*cost_)(in.block, in.s, in.t, at, to.s, to.t, goal_).cost;
     if (all >= found) return;
     found = all;
     last = parent;
     push(all, kGoal);
   };
-  arrive(from.block, from.s, from.t, start, 0, kStart);
-  expand(from.block, from.s, from.t, start, 0, kStart);
+  arrive(from, start, 0, kStart);
+  expand(from, start, 0, kStart);
   double nearest = length(goal_ - start);
   uint32_t nearest_state = kStart;
   while (!open_.empty()) {
@@ -118,6 +111,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
     });
     const Open top = open_.back();
     open_.pop_back();
+    if (top.estimate >= less_than) break;
     if (top.state == kGoal) {
       best_cost_ = found;
       trace(last, way);
@@ -127,26 +121,22 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
     if (state.closed) continue;
     state.closed = true;
     if (budget.is_spent(++looked_at_)) return PathEnd::kGaveUp;
-    const NodePortal& portal = mesh_->portals()[top.state / 2];
-    const bool backward = (top.state & 1) != 0;
-    const uint32_t block = backward ? portal.a : portal.b;
-    const auto& in = backward ? portal.on_a : portal.on_b;
-    const double s = (in[0] + in[2]) / 2, t = (in[1] + in[3]) / 2;
+    const BlockPoint in = ends_of(*mesh_, {top.state / 2, (top.state & 1) != 0}).in;
     const Vec3d at = state.at;
     const double cost = state.cost;
     if (const double far = length(goal_ - at); far < nearest) {
       nearest = far;
       nearest_state = top.state;
     }
-    arrive(block, s, t, at, cost, top.state);
-    expand(block, s, t, at, cost, top.state);
+    arrive(in, at, cost, top.state);
+    expand(in, at, cost, top.state);
   }
   best_cost_ = nearest_state == kStart ? 0 : states_[nearest_state].cost;
   trace(nearest_state, way);
   return PathEnd::kUnreachable;
 }
 
-void NodeSearch::trace(uint32_t state, std::vector<Crossing>& way) const {
+void NodeSearch::trace(uint32_t state, std::vector<Crossing>& way) {
   for (; state != UINT32_MAX; state = states_[state].parent) {
     way.push_back({state / 2, (state & 1) != 0});
   }

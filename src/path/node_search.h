@@ -3,21 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
-#include "graph/node_mesh.h"
-#include "path/node_landmarks.h"
+#include "core/paged.h"
+#include "path/crossing.h"
 #include "throng/path.h"
 #include "throng/search_budget.h"
 
 /// A* over the portals between blocks of nodes.
 namespace throng {
-
-/// Somewhere in a block.
-struct BlockPoint {
-  uint32_t block = kNoNode;
-  double s = 0, t = 0;
-};
 
 /// What a straight piece within a block costs.
 class PieceCost {
@@ -37,21 +32,21 @@ class PieceCost {
   std::vector<double> by_code_;  // cost of a metre on level tiles, by inclination
 };
 
-/// A portal as it is gone through.
-struct Crossing {
-  uint32_t portal = 0;
-  bool backward = false;  ///< From b to a.
+/// Which district each block lies in, and to which one a search is kept.
+struct KeepIn {
+  const uint32_t* district_of_block = nullptr;  ///< Null: it may go anywhere.
+  uint32_t district = 0;
 };
 
 class NodeSearch {
  public:
-  NodeSearch(const NodeMesh& mesh, const PieceCost& cost, const NodeLandmarks& landmarks)
-      : mesh_(&mesh), cost_(&cost), landmarks_(&landmarks) {}
+  NodeSearch(const NodeMesh& mesh, const PieceCost& cost) : mesh_(&mesh), cost_(&cost) {}
 
   /// Fills `way` with the portals from one to the other, or, if none leads there, to the crossing
-  /// that comes nearest.
+  /// that comes nearest. Ways that cost `less_than` and more are not looked for.
   PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-               std::vector<Crossing>& way);
+               std::vector<Crossing>& way, const KeepIn& within = {},
+               double less_than = std::numeric_limits<double>::infinity());
   [[nodiscard]] double cost() const { return best_cost_; }
   [[nodiscard]] uint64_t looked_at() const { return looked_at_; }
 
@@ -69,20 +64,17 @@ class NodeSearch {
     uint32_t state;
   };
 
-  void expand(uint32_t block, double s, double t, Vec3d at, double cost, uint32_t parent);
+  void expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent);
   void push(double estimate, uint32_t state);
-  /// What is left to the goal at least, beyond a portal.
-  [[nodiscard]] double left(uint32_t portal, Vec3d at) const;
-  void trace(uint32_t state, std::vector<Crossing>& way) const;
+  void trace(uint32_t state, std::vector<Crossing>& way);
 
   const NodeMesh* mesh_;
   const PieceCost* cost_;
-  const NodeLandmarks* landmarks_;
-  std::vector<State> states_;
+  KeepIn within_;
+  Paged<State> states_;
   std::vector<Open> open_;
   uint32_t query_ = 0;
   Vec3d goal_;
-  NodeLandmarks::Distances goal_far_{};
   double best_cost_ = 0;
   uint64_t looked_at_ = 0;
 };

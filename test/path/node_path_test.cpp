@@ -149,56 +149,6 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
 }
 
 // The exact any-angle finder of level tiles shares no code with nodes.
-TEST(NodePath, LandmarksTellWhatNeedNotBeLookedAt) {
-  Context context;
-  uint64_t with = 0, without = 0, reached = 0, unreachable = 0, drops = 0;
-  std::vector<AvatarClass> all = classes();
-  all[4].max_drop = 6;
-  for (const Scene& scene :
-       {builtin({.name = "landscape", .size = 160, .seed = 2}), builtin({.name = "garage"})}) {
-    const auto nodes = Nodes::make(bake(scene, 0.25, all), scene, {.size = 1}, context);
-    ASSERT_TRUE(nodes) << nodes.error().message;
-    for (const int32_t c : {0, 3, 4, 5}) {
-      const auto mesh = NodeMesh::make(*nodes, c, 1, context);
-      ASSERT_TRUE(mesh);
-      const NodeLandmarks landmarks(*mesh, 2), none;
-      EXPECT_EQ(landmarks.bytes(), 32 * mesh->portals().size());
-      for (const double slope_cost : {0.0, 2.0}) {
-        const PieceCost cost(*mesh, slope_cost);
-        NodeSearch knowing(*mesh, cost, landmarks), plain(*mesh, cost, none);
-        for (uint64_t n = 0; n < 40; ++n) {
-          const auto point = [&](uint64_t k) {
-            const NodePlace place = nodes->random_place(c, 7, k);
-            return BlockPoint{
-                mesh->block_at(mesh->patch_of_node(place.node1 - 1), place.s, place.t), place.s,
-                place.t};
-          };
-          const BlockPoint from = point(2 * n), to = point(2 * n + 1);
-          ASSERT_TRUE(from.block != kNoNode && to.block != kNoNode);
-          std::vector<Crossing> a, b;
-          const PathEnd end = knowing.find(from, to, {}, a);
-          ASSERT_EQ(end, plain.find(from, to, {}, b));
-          EXPECT_NEAR(knowing.cost(), plain.cost(), 1e-9 * plain.cost());
-          if (end != PathEnd::kReached) {
-            ++unreachable;
-            continue;
-          }
-          ++reached;
-          with += knowing.looked_at();
-          without += plain.looked_at();
-          for (const Crossing& crossing : a) {
-            drops += mesh->portals()[crossing.portal].kind == LinkKind::kDrop;
-          }
-        }
-      }
-    }
-  }
-  EXPECT_LT(3 * with, 2 * without);
-  EXPECT_GT(reached, 300u);
-  EXPECT_GT(unreachable, 10u);
-  EXPECT_GT(drops, 0u);
-}
-
 TEST(NodePath, OnLevelTilesWaysAreNearlyTheShortest) {
   Context context;
   for (const char* name : {"garage", "stairs", "church"}) {

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/district_graph.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace throng {
+namespace {
+
+constexpr double kNoWay = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+uint32_t DistrictGraph::place_of(uint32_t block) const {
+  const auto at = std::lower_bound(blocks_.begin(), blocks_.end(), block);
+  if (at == blocks_.end() || *at != block) return kNoNode;
+  return static_cast<uint32_t>(at - blocks_.begin());
+}
+
+void DistrictGraph::set(std::span<const uint32_t> blocks, bool keep) {
+  blocks_ = blocks;
+  looked_at_ = 0;
+  first_way_.assign(1, 0);
+  ways_.clear();
+  for (const uint32_t block : blocks_) {
+    for_each_way_out(*mesh_, block, [&](const Crossing& crossing) {
+      const auto [out, in] = ends_of(*mesh_, crossing);
+      Way way{crossing, out, in, position(*mesh_, out), position(*mesh_, in)};
+      way.through = portal_length(mesh_->portals()[crossing.portal], way.out_at, way.in_at);
+      way.into = place_of(in.block);
+      ways_.push_back(way);
+    });
+    first_way_.push_back(static_cast<uint32_t>(ways_.size()));
+  }
+  first_in_.assign(blocks_.size() + 1, 0);
+  for (const Way& way : ways_) {
+    if (way.into != kNoNode) ++first_in_[way.into + 1];
+  }
+  for (size_t b = 0; b < blocks_.size(); ++b) first_in_[b + 1] += first_in_[b];
+  in_of_.resize(first_in_.back());
+  for (size_t w = ways_.size(); w-- > 0;) {
+    const uint32_t into = ways_[w].into;
+    if (into == kNoNode) continue;
+    // Filled from the end of each block's own: what is left of them is counted in `first_in_`.
+    in_of_[--first_in_[into + 1]] = static_cast<uint32_t>(w);
+  }
+  // Each count now stands one place late.
+  first_in_.erase(first_in_.begin());
+  first_in_.push_back(static_cast<uint32_t>(in_of_.size()));
+  first_kept_.clear();
+  kept_.clear();
+  if (!keep) return;
+  for (const Way& way : ways_) {
+    first_kept_.push_back(kept_.size());
+    if (way.into == kNoNode) continue;
+    for (uint32_t w = first_way_[way.into]; w < first_way_[way.into + 1]; ++w) {
+      kept_.push_back(piece(way.in, way.in_at, ways_[w].out, ways_[w].out_at));
+    }
+  }
+}
+
+void DistrictGraph::reach(uint32_t way, double cost) {
+  if (cost >= cost_[way]) return;
+  cost_[way] = cost;
+  open_.push_back({cost, way});
+  std::push_heap(open_.begin(), open_.end());
+}
+
+bool DistrictGraph::next(Open& top) {
+  while (!open_.empty()) {
+    std::pop_heap(open_.begin(), open_.end());
+    top = open_.back();
+    open_.pop_back();
+    if (top.cost > cost_[top.way]) continue;
+    ++looked_at_;
+    return true;
+  }
+  return false;
+}
+
+const std::vector<double>& DistrictGraph::run(const BlockPoint& from) {
+  cost_.assign(ways_.size(), kNoWay);
+  open_.clear();
+  const uint32_t start = place_of(from.block);
+  const Vec3d at = position(*mesh_, from);
+  for (uint32_t w = first_way_[start]; w < first_way_[start + 1]; ++w) {
+    reach(w, piece(from, at, ways_[w].out, ways_[w].out_at) + ways_[w].through);
+  }
+  for (Open top; next(top);) {
+    const Way& way = ways_[top.way];
+    if (way.into == kNoNode) continue;
+    const uint32_t first = first_way_[way.into], last = first_way_[way.into + 1];
+    for (uint32_t w = first; w < last; ++w) {
+      if (cost_[w] <= top.cost) continue;
+      const double along = kept_.empty() ? piece(way.in, way.in_at, ways_[w].out, ways_[w].out_at)
+                                         : kept_[first_kept_[top.way] + w - first];
+      reach(w, top.cost + along + ways_[w].through);
+    }
+  }
+  return cost_;
+}
+
+const std::vector<double>& DistrictGraph::run_back(const BlockPoint& to) {
+  cost_.assign(ways_.size(), kNoWay);
+  open_.clear();
+  goal_ = to;
+  goal_at_ = position(*mesh_, to);
+  const uint32_t goal = place_of(to.block);
+  for (uint32_t k = first_in_[goal]; k < first_in_[goal + 1]; ++k) {
+    const Way& way = ways_[in_of_[k]];
+    reach(in_of_[k], piece(way.in, way.in_at, goal_, goal_at_));
+  }
+  for (Open top; next(top);) {
+    const Way& way = ways_[top.way];
+    const uint32_t from = place_of(way.out.block);
+    for (uint32_t k = first_in_[from]; k < first_in_[from + 1]; ++k) {
+      const Way& before = ways_[in_of_[k]];
+      if (cost_[in_of_[k]] <= top.cost) continue;
+      reach(in_of_[k],
+            piece(before.in, before.in_at, way.out, way.out_at) + way.through + top.cost);
+    }
+  }
+  return cost_;
+}
+
+double DistrictGraph::rest(const BlockPoint& from) const {
+  const Vec3d at = position(*mesh_, from);
+  double least = from.block == goal_.block ? piece(from, at, goal_, goal_at_) : kNoWay;
+  const uint32_t start = place_of(from.block);
+  for (uint32_t w = first_way_[start]; w < first_way_[start + 1]; ++w) {
+    const Way& way = ways_[w];
+    if (way.into == kNoNode || cost_[w] >= least) continue;
+    least = std::min(least, piece(from, at, way.out, way.out_at) + way.through + cost_[w]);
+  }
+  return least;
+}
+
+}  // namespace throng

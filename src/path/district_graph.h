@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "path/node_search.h"
+
+/// The ways within one district of a mesh, all from one point or all to one.
+namespace throng {
+
+class DistrictGraph {
+ public:
+  DistrictGraph(const NodeMesh& mesh, const PieceCost& cost) : mesh_(&mesh), piece_(&cost) {}
+
+  /// A way out of a block of the district: into another one, or out of the district.
+  struct Way {
+    Crossing crossing;
+    BlockPoint out, in;
+    Vec3d out_at, in_at;
+    double through = 0;       ///< From `out` to `in`. [m]
+    uint32_t into = kNoNode;  ///< Place of its block in the district; none: it leads out.
+  };
+
+  /// Of these blocks, rising; `keep` remembers what all pieces cost, for many calls of run().
+  void set(std::span<const uint32_t> blocks, bool keep);
+  /// In the order of the blocks that they leave.
+  [[nodiscard]] const std::vector<Way>& ways() const { return ways_; }
+  /// What each way costs at least from a point of the district until it has been gone; infinite if
+  /// none leads there. Dijkstra's algorithm.
+  const std::vector<double>& run(const BlockPoint& from);
+  /// What it costs at least from where each way has led to a point of the district.
+  const std::vector<double>& run_back(const BlockPoint& to);
+  /// After run_back(): from a point of the district.
+  [[nodiscard]] double rest(const BlockPoint& from) const;
+  /// Ways looked at since set().
+  [[nodiscard]] uint64_t looked_at() const { return looked_at_; }
+
+ private:
+  struct Open {
+    double cost;
+    uint32_t way;
+    bool operator<(const Open& other) const {
+      return cost != other.cost ? cost > other.cost : way > other.way;
+    }
+  };
+
+  [[nodiscard]] uint32_t place_of(uint32_t block) const;
+  [[nodiscard]] double piece(const BlockPoint& from, Vec3d at, const BlockPoint& to,
+                             Vec3d to_at) const {
+    return (*piece_)(from.block, from.s, from.t, at, to.s, to.t, to_at).cost;
+  }
+  void reach(uint32_t way, double cost);
+  bool next(Open& top);
+
+  const NodeMesh* mesh_;
+  const PieceCost* piece_;
+  std::span<const uint32_t> blocks_;
+  std::vector<uint32_t> first_way_;  // by place of the block that is left, and the end
+  std::vector<Way> ways_;
+  std::vector<uint32_t> first_in_, in_of_;  // by place of the block that is come to: ways
+  std::vector<size_t> first_kept_;
+  std::vector<double> kept_;  // by way, and way out of the block that it comes to
+  std::vector<double> cost_;
+  std::vector<Open> open_;
+  BlockPoint goal_;
+  Vec3d goal_at_;
+  uint64_t looked_at_ = 0;
+};
+
+}  // namespace throng

@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/district_search.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace throng {
+namespace {
+
+constexpr double kNoWay = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void DistrictSearch::begin() {
+  states_.resize(2 * districts_->gates().size());
+  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+    std::fill(states_.begin(), states_.end(), State{});
+    query_ = 1;
+  }
+  open_.clear();
+}
+
+void DistrictSearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t tier, Vec3d goal) {
+  State& state = states_[entry];
+  if (!(cost < kNoWay) || (state.query == query_ && state.cost <= cost)) return;
+  state = {query_, parent, cost, tier, false};
+  open_.push_back({cost + length(goal - districts_->at(entry)), entry});
+  std::push_heap(open_.begin(), open_.end());
+}
+
+bool DistrictSearch::next(Open& top) {
+  while (!open_.empty()) {
+    std::pop_heap(open_.begin(), open_.end());
+    top = open_.back();
+    open_.pop_back();
+    if (states_[top.entry].closed) continue;
+    states_[top.entry].closed = true;
+    return true;
+  }
+  return false;
+}
+
+PathEnd DistrictSearch::find(const BlockPoint& from, const BlockPoint& to,
+                             const SearchBudget& budget, NodeSearch& blocks,
+                             std::vector<Crossing>& way) {
+  way.clear();
+  looked_at_ = 0;
+  cost_ = 0;
+  if (const PathEnd end = over_gates(from, to, budget); end != PathEnd::kReached) return end;
+  const std::vector<uint32_t>& of_block = districts_->of_block();
+  if (first_ == kNoEntry) return within(of_block[from.block], from, to, budget, blocks, way);
+  for (size_t tier = districts_->tiers().size(); --tier > 0;) {
+    finer_.clear();
+    for (const Stretch& stretch : stretches_) {
+      if (stretch.tier < tier) {
+        finer_.push_back(stretch);
+      } else if (!refine(stretch)) {
+        return PathEnd::kUnreachable;  // Never: what a tier tells is made of the one below.
+      }
+    }
+    stretches_.swap(finer_);
+  }
+  BlockPoint at = from;
+  joints_.clear();
+  const auto go_to = [&](uint32_t entry) {
+    const Crossing crossing = districts_->crossing(entry);
+    const auto [out, in] = ends_of(*mesh_, crossing);
+    const PathEnd end = within(of_block[at.block], at, out, budget, blocks, way);
+    if (end != PathEnd::kReached) return end;
+    joints_.push_back(way.size());
+    way.push_back(crossing);
+    cost_ += portal_length(mesh_->portals()[crossing.portal], position(*mesh_, out),
+                           districts_->at(entry));
+    at = in;
+    return end;
+  };
+  PathEnd end = go_to(first_);
+  for (size_t i = 0; i < stretches_.size() && end == PathEnd::kReached; ++i) {
+    end = go_to(stretches_[i].to);
+  }
+  if (end == PathEnd::kReached) end = within(of_block[to.block], at, to, budget, blocks, way);
+  if (end == PathEnd::kReached) straighten(from, to, budget, blocks, way);
+  return end;
+}
+
+// From the middle of one district to the middle of the next, the way is looked for anew, free of
+// the gate between them.
+void DistrictSearch::straighten(const BlockPoint& from, const BlockPoint& to,
+                                const SearchBudget& budget, NodeSearch& blocks,
+                                std::vector<Crossing>& way) {
+  led_.clear();
+  cost_ = 0;
+  BlockPoint begin = from;
+  size_t first = 0;  // of what is led anew
+  for (size_t i = 0; i < joints_.size(); ++i) {
+    const bool ends = i + 1 == joints_.size();
+    const size_t last = ends ? way.size() : (joints_[i] + joints_[i + 1]) / 2;
+    if (!ends && last == joints_[i]) continue;  // No middle: over both gates at once.
+    const BlockPoint end = ends ? to : ends_of(*mesh_, way[last]).out;
+    const double known = cost_of(begin, end, way.data() + first, way.data() + last);
+    constexpr double kGain = 1e-6;  // Anything less is rounding.
+    SearchBudget left = budget;
+    left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, looked_at_);
+    const bool cheaper =
+        blocks.find(begin, end, left, piece_, {}, known * (1 - kGain)) == PathEnd::kReached;
+    looked_at_ += blocks.looked_at();
+    if (cheaper) {
+      led_.insert(led_.end(), piece_.begin(), piece_.end());
+      cost_ += blocks.cost();
+    } else {
+      led_.insert(led_.end(), way.begin() + static_cast<ptrdiff_t>(first),
+                  way.begin() + static_cast<ptrdiff_t>(last));
+      cost_ += known;
+    }
+    if (ends) break;
+    led_.push_back(way[last]);
+    const auto [out, in] = ends_of(*mesh_, way[last]);
+    cost_ += portal_length(mesh_->portals()[way[last].portal], position(*mesh_, out),
+                           position(*mesh_, in));
+    begin = in;
+    first = last + 1;
+  }
+  way.swap(led_);
+}
+
+double DistrictSearch::cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
+                               const Crossing* last) const {
+  double cost = 0;
+  BlockPoint at = from;
+  Vec3d here = position(*mesh_, at);
+  const auto go = [&](const BlockPoint& next) {
+    const Vec3d there = position(*mesh_, next);
+    cost += (*piece_cost_)(at.block, at.s, at.t, here, next.s, next.t, there).cost;
+    here = there;
+  };
+  for (; first != last; ++first) {
+    const auto [out, in] = ends_of(*mesh_, *first);
+    go(out);
+    const Vec3d beyond = position(*mesh_, in);
+    cost += portal_length(mesh_->portals()[first->portal], here, beyond);
+    at = in;
+    here = beyond;
+  }
+  go(to);
+  return cost;
+}
+
+// A* over entries. A district that does not hold the goal is gone through as one of the highest
+// tier over whose border it was come to.
+PathEnd DistrictSearch::over_gates(const BlockPoint& from, const BlockPoint& to,
+                                   const SearchBudget& budget) {
+  const auto& tiers = districts_->tiers();
+  const std::vector<uint32_t>& of_block = districts_->of_block();
+  const uint32_t start_district = of_block[from.block], goal_district = of_block[to.block];
+  const Vec3d goal = position(*mesh_, to);
+  stretches_.clear();
+  // What is left from the goal's district's entries, and from the start if it is there too.
+  graph_.set(districts_->blocks_of(goal_district), false);
+  graph_.run_back(to);
+  const auto goal_entries = tiers.front().entries_of(goal_district);
+  rest_.clear();
+  for (const uint32_t entry : goal_entries) {
+    const Crossing crossing = districts_->crossing(entry);
+    const bool closed = crossing.backward && mesh_->portals()[crossing.portal].one_way;
+    rest_.push_back(closed ? kNoWay : graph_.rest(ends_of(*mesh_, crossing).in));
+  }
+  double found = start_district == goal_district ? graph_.rest(from) : kNoWay;
+  first_ = last_ = kNoEntry;
+  looked_at_ += graph_.looked_at();
+  graph_.set(districts_->blocks_of(start_district), false);
+  const std::vector<double>& costs = graph_.run(from);
+  looked_at_ += graph_.looked_at();
+  if (budget.is_spent(looked_at_)) return PathEnd::kGaveUp;
+  begin();
+  for (uint32_t w = 0; w < costs.size(); ++w) {
+    const DistrictGraph::Way& way = graph_.ways()[w];
+    if (way.into != kNoNode) continue;
+    const uint32_t entry = districts_->entry_of(way.crossing);
+    if (entry != kNoNode) reach(entry, kNoEntry, costs[w], 0, goal);
+  }
+  // By tier: the goal's district.
+  std::array<uint32_t, 32> holds_goal{};
+  uint32_t district = goal_district;
+  for (size_t k = 0; k < tiers.size(); ++k) {
+    holds_goal[k] = district;
+    if (k + 1 < tiers.size()) district = tiers[k].above[district];
+  }
+  for (Open top; next(top);) {
+    if (top.estimate >= found) break;
+    if (budget.is_spent(++looked_at_)) return PathEnd::kGaveUp;
+    const uint32_t entry = top.entry;
+    const double cost = states_[entry].cost;
+    if (tiers.front().of_entry[entry] == goal_district) {
+      const double all = cost + rest_[tiers.front().place[entry]];
+      if (all < found) {
+        found = all;
+        last_ = entry;
+      }
+    }
+    uint8_t tier = districts_->gates()[entry / 2].tier;
+    while (tier > 0 && tiers[tier].of_entry[entry] == holds_goal[tier]) --tier;
+    const auto through = tiers[tier].costs_from(entry);
+    const auto others = tiers[tier].entries_of(tiers[tier].of_entry[entry]);
+    for (size_t j = 0; j < others.size(); ++j) {
+      reach(others[j] ^ 1, entry, cost + double{through[j]}, tier, goal);
+    }
+  }
+  if (!(found < kNoWay)) return PathEnd::kUnreachable;
+  for (uint32_t entry = last_; entry != kNoEntry; entry = states_[entry].parent) {
+    const State& state = states_[entry];
+    first_ = entry;
+    if (state.parent != kNoEntry) stretches_.push_back({state.parent, entry, state.tier});
+  }
+  std::reverse(stretches_.begin(), stretches_.end());
+  return PathEnd::kReached;
+}
+
+// Adds the same stretch to `finer_`, through districts of the tier below.
+bool DistrictSearch::refine(const Stretch& stretch) {
+  const Districts::Tier& tier = districts_->tiers()[stretch.tier];
+  const Districts::Tier& below = districts_->tiers()[stretch.tier - size_t{1}];
+  const auto finer = static_cast<uint8_t>(stretch.tier - 1);
+  const uint32_t district = tier.of_entry[stretch.from];
+  const Vec3d goal = districts_->at(stretch.to);
+  begin();
+  reach(stretch.from, kNoEntry, 0, 0, goal);
+  for (Open top; next(top);) {
+    if (top.entry == stretch.to) break;
+    ++looked_at_;
+    const double cost = states_[top.entry].cost;
+    const auto through = below.costs_from(top.entry);
+    const auto others = below.entries_of(below.of_entry[top.entry]);
+    for (size_t j = 0; j < others.size(); ++j) {
+      const uint32_t out = others[j] ^ 1;
+      if (out != stretch.to && below.above[below.of_entry[out]] != district) continue;
+      reach(out, top.entry, cost + double{through[j]}, finer, goal);
+    }
+  }
+  if (states_[stretch.to].query != query_) return false;
+  const size_t first = finer_.size();
+  for (uint32_t entry = stretch.to; entry != stretch.from; entry = states_[entry].parent) {
+    finer_.push_back({states_[entry].parent, entry, finer});
+  }
+  std::reverse(finer_.begin() + static_cast<ptrdiff_t>(first), finer_.end());
+  return true;
+}
+
+PathEnd DistrictSearch::within(uint32_t district, const BlockPoint& from, const BlockPoint& to,
+                               const SearchBudget& budget, NodeSearch& blocks,
+                               std::vector<Crossing>& way) {
+  SearchBudget left = budget;
+  left.max_nodes = budget.max_nodes > looked_at_ ? budget.max_nodes - looked_at_ : 0;
+  const PathEnd end =
+      blocks.find(from, to, left, piece_, {districts_->of_block().data(), district});
+  looked_at_ += blocks.looked_at();
+  if (end == PathEnd::kReached) {
+    way.insert(way.end(), piece_.begin(), piece_.end());
+    cost_ += blocks.cost();
+  }
+  return end;
+}
+
+}  // namespace throng

@@ -1,0 +1,315 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/districts.h"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "core/strong_parts.h"
+#include "path/district_graph.h"
+
+namespace throng {
+namespace {
+
+constexpr double kSmallestSide = 5;      // [m]
+constexpr size_t kFewDistricts = 8;      // No tier is made above so few.
+constexpr double kGatesApart = 1.0 / 8;  // of a side
+constexpr double kNoWay = std::numeric_limits<double>::infinity();
+
+uint64_t square_key(int64_t x, int64_t z) {
+  constexpr int64_t kMiddle = int64_t{1} << 31;
+  return static_cast<uint64_t>(z + kMiddle) << 32 | static_cast<uint64_t>(x + kMiddle);
+}
+
+uint64_t key_above(uint64_t key, uint32_t halvings) {
+  const uint64_t z = key >> 32, x = key & UINT32_MAX;
+  return z >> halvings << 32 | x >> halvings;
+}
+
+std::vector<uint64_t> distinct(std::vector<uint64_t> keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+std::vector<uint64_t> all_above(std::vector<uint64_t> keys, uint32_t halvings) {
+  for (uint64_t& key : keys) key = key_above(key, halvings);
+  return distinct(std::move(keys));
+}
+
+uint32_t place_in(const std::vector<uint64_t>& keys, uint64_t key) {
+  return static_cast<uint32_t>(std::lower_bound(keys.begin(), keys.end(), key) - keys.begin());
+}
+
+}  // namespace
+
+Districts::Districts(const NodeMesh& mesh, const PieceCost& cost, int32_t workers,
+                     size_t crossings) {
+  choose_sides(mesh, workers, crossings);
+  if (tiers_.empty()) return;
+  choose_gates(mesh, workers);
+  at_.resize(2 * gates_.size());
+  for (uint32_t entry = 0; entry < at_.size(); ++entry) {
+    at_[entry] = position(mesh, ends_of(mesh, crossing(entry)).in);
+  }
+  for (size_t k = 0; k < tiers_.size(); ++k) {
+    list_entries(mesh, tiers_[k], static_cast<uint8_t>(k));
+  }
+  look_through(mesh, cost, workers);
+  for (size_t k = 1; k < tiers_.size(); ++k) join_up(k, workers);
+}
+
+void Districts::choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossings) {
+  std::vector<uint64_t> of_block(mesh.blocks().size());
+  parallel_for(of_block.size(), workers, [&](size_t b) {
+    const NodeBlock& block = mesh.blocks()[b];
+    const Vec3d at = mesh.surface(static_cast<uint32_t>(b))
+                         .at((block.s + 0.5) * block.side(), (block.t + 0.5) * block.side());
+    of_block[b] = square_key(static_cast<int64_t>(std::floor(at.x / kSmallestSide)),
+                             static_cast<int64_t>(std::floor(at.z / kSmallestSide)));
+  });
+  std::vector<uint64_t> keys = distinct(of_block);
+  uint32_t halvings = 0;
+  while (keys.size() > 1 && mesh.portals().size() < crossings * keys.size()) {
+    keys = all_above(std::move(keys), 1);
+    ++halvings;
+  }
+  if (keys.size() < 2) return;
+  of_block_.resize(of_block.size());
+  parallel_for(of_block.size(), workers,
+               [&](size_t b) { of_block_[b] = place_in(keys, key_above(of_block[b], halvings)); });
+  first_block_.assign(keys.size() + 1, 0);
+  for (const uint32_t district : of_block_) ++first_block_[district + 1];
+  std::inclusive_scan(first_block_.begin(), first_block_.end(), first_block_.begin());
+  blocks_.resize(of_block_.size());
+  std::vector<uint32_t> next(first_block_.begin(), first_block_.end() - 1);
+  for (uint32_t b = 0; b < of_block_.size(); ++b) blocks_[next[of_block_[b]]++] = b;
+  double side = kSmallestSide * std::pow(2, halvings);
+  while (true) {
+    Tier tier;
+    tier.side = side;
+    tier.first.assign(keys.size() + 1, 0);
+    static_assert(kTimes == 4);
+    const std::vector<uint64_t> above = all_above(keys, 2);
+    if (keys.size() <= kFewDistricts || above.size() == 1) {
+      tiers_.push_back(std::move(tier));
+      return;
+    }
+    for (const uint64_t key : keys) tier.above.push_back(place_in(above, key_above(key, 2)));
+    tiers_.push_back(std::move(tier));
+    keys = above;
+    side *= kTimes;
+  }
+}
+
+void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
+  // Parts of each district by itself.
+  std::vector<uint32_t> part_of(of_block_.size());
+  std::vector<uint32_t> counts(first_block_.size() - 1);
+  parallel_for(counts.size(), workers, [&](size_t d) {
+    const auto blocks = blocks_of(static_cast<uint32_t>(d));
+    const StrongParts parts = strong_parts(
+        static_cast<uint32_t>(blocks.size()),
+        [&](uint32_t b) { return static_cast<uint32_t>(mesh.portals_of(blocks[b]).size()); },
+        [&](uint32_t b, uint32_t k) {
+          const NodePortal& portal = mesh.portals()[mesh.portals_of(blocks[b])[k]];
+          if (portal.one_way && portal.b == blocks[b]) return UINT32_MAX;
+          const uint32_t to = portal.a == blocks[b] ? portal.b : portal.a;
+          if (of_block_[to] != d) return UINT32_MAX;
+          const auto at = std::lower_bound(blocks.begin(), blocks.end(), to);
+          return static_cast<uint32_t>(at - blocks.begin());
+        });
+    for (size_t b = 0; b < blocks.size(); ++b) part_of[blocks[b]] = parts.of[b];
+    counts[d] = parts.count;
+  });
+  std::exclusive_scan(counts.begin(), counts.end(), counts.begin(), uint32_t{0});
+  struct Candidate {
+    uint32_t from, to;
+    bool one_way;
+    uint32_t portal;
+    [[nodiscard]] auto group() const { return std::tie(from, to, one_way); }
+  };
+  std::vector<Candidate> candidates;
+  for (uint32_t p = 0; p < mesh.portals().size(); ++p) {
+    const NodePortal& portal = mesh.portals()[p];
+    const uint32_t a = of_block_[portal.a], b = of_block_[portal.b];
+    if (a == b) continue;
+    uint32_t from = counts[a] + part_of[portal.a], to = counts[b] + part_of[portal.b];
+    if (!portal.one_way && from > to) std::swap(from, to);
+    candidates.push_back({from, to, portal.one_way, p});
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tuple_cat(a.group(), std::tie(a.portal)) <
+           std::tuple_cat(b.group(), std::tie(b.portal));
+  });
+  std::vector<Vec3d> chosen;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    if (i == 0 || candidates[i].group() != candidates[i - 1].group()) chosen.clear();
+    const NodePortal& portal = mesh.portals()[candidates[i].portal];
+    uint32_t a = of_block_[portal.a], b = of_block_[portal.b];
+    uint8_t top = 0;
+    while (top + size_t{1} < tiers_.size()) {
+      a = tiers_[top].above[a];
+      b = tiers_[top].above[b];
+      if (a == b) break;
+      ++top;
+    }
+    const double apart = tiers_[top].side * kGatesApart;
+    const Vec3d at = position(mesh, ends_of(mesh, {candidates[i].portal}).out);
+    if (std::any_of(chosen.begin(), chosen.end(),
+                    [&](Vec3d other) { return length(other - at) < apart; })) {
+      continue;
+    }
+    chosen.push_back(at);
+    gates_.push_back({candidates[i].portal, top});
+  }
+  std::sort(gates_.begin(), gates_.end(),
+            [](const Gate& a, const Gate& b) { return a.portal < b.portal; });
+}
+
+void Districts::list_entries(const NodeMesh& mesh, Tier& tier, uint8_t k) {
+  tier.of_entry.assign(2 * gates_.size(), kNoNode);
+  tier.place.assign(2 * gates_.size(), 0);
+  const size_t districts = tier.first.size() - 1;
+  for (uint32_t entry = 0; entry < tier.of_entry.size(); ++entry) {
+    if (gates_[entry / 2].tier < k) continue;
+    uint32_t district = of_block_[ends_of(mesh, crossing(entry)).in.block];
+    for (uint8_t below = 0; below < k; ++below) district = tiers_[below].above[district];
+    tier.of_entry[entry] = district;
+    ++tier.first[district + 1];
+  }
+  std::inclusive_scan(tier.first.begin(), tier.first.end(), tier.first.begin());
+  tier.entries.resize(tier.first.back());
+  std::vector<uint32_t> next(tier.first.begin(), tier.first.end() - 1);
+  for (uint32_t entry = 0; entry < tier.of_entry.size(); ++entry) {
+    const uint32_t district = tier.of_entry[entry];
+    if (district == kNoNode) continue;
+    tier.place[entry] = next[district] - tier.first[district];
+    tier.entries[next[district]++] = entry;
+  }
+  uint64_t costs = 0;
+  for (size_t d = 0; d < districts; ++d) {
+    tier.first_cost.push_back(costs);
+    const uint64_t count = tier.first[d + 1] - tier.first[d];
+    costs += count * count;
+  }
+  tier.costs.assign(costs, std::numeric_limits<float>::infinity());
+}
+
+// An entry of a one-way portal that cannot be gone backward leads nowhere: no way comes to it.
+void Districts::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
+  Tier& tier = tiers_.front();
+  std::vector<DistrictGraph> graphs(static_cast<size_t>(worker_count(workers)), {mesh, cost});
+  parallel_for_worker(tier.first.size() - 1, workers, [&](size_t d, int32_t worker) {
+    const auto district = static_cast<uint32_t>(d);
+    const auto entries = tier.entries_of(district);
+    if (entries.empty()) return;
+    DistrictGraph& graph = graphs[static_cast<size_t>(worker)];
+    graph.set(blocks_of(district), true);
+    // Ways out over gates, and in which column they are told.
+    std::vector<std::pair<uint32_t, uint32_t>> columns;
+    for (uint32_t w = 0; w < graph.ways().size(); ++w) {
+      const DistrictGraph::Way& way = graph.ways()[w];
+      if (way.into != kNoNode) continue;
+      const uint32_t entry = entry_of(way.crossing);
+      if (entry != kNoNode) columns.emplace_back(w, tier.place[entry ^ 1]);
+    }
+    for (size_t i = 0; i < entries.size(); ++i) {
+      const Crossing in = crossing(entries[i]);
+      if (in.backward && mesh.portals()[in.portal].one_way) continue;
+      const std::vector<double>& costs = graph.run(ends_of(mesh, in).in);
+      float* row = tier.costs.data() + tier.first_cost[d] + i * entries.size();
+      for (const auto& [way, column] : columns) {
+        if (column != i) row[column] = static_cast<float>(costs[way]);
+      }
+    }
+  });
+}
+
+// Through a district by way of those of the tier below that it holds.
+void Districts::join_up(size_t k, int32_t workers) {
+  Tier& tier = tiers_[k];
+  const Tier& below = tiers_[k - 1];
+  std::vector<std::vector<uint32_t>> parts(tier.first.size() - 1);
+  for (uint32_t d = 0; d < below.above.size(); ++d) parts[below.above[d]].push_back(d);
+  struct Open {
+    double cost;
+    uint32_t entry;
+    bool operator<(const Open& other) const {
+      return cost != other.cost ? cost > other.cost : entry > other.entry;
+    }
+  };
+  parallel_for(parts.size(), workers, [&](size_t d) {
+    const auto entries = tier.entries_of(static_cast<uint32_t>(d));
+    if (entries.empty()) return;
+    // Entries into parts lie here part by part.
+    std::vector<size_t> first;
+    size_t count = 0;
+    for (const uint32_t part : parts[d]) {
+      first.push_back(count);
+      count += below.entries_of(part).size();
+    }
+    const auto index = [&](uint32_t entry) {
+      const auto part = std::lower_bound(parts[d].begin(), parts[d].end(), below.of_entry[entry]);
+      return first[static_cast<size_t>(part - parts[d].begin())] + below.place[entry];
+    };
+    std::vector<double> cost;
+    std::vector<Open> open;
+    for (size_t i = 0; i < entries.size(); ++i) {
+      cost.assign(count, kNoWay);
+      float* row = tier.costs.data() + tier.first_cost[d] + i * entries.size();
+      cost[index(entries[i])] = 0;
+      open.assign(1, {0, entries[i]});
+      while (!open.empty()) {
+        std::pop_heap(open.begin(), open.end());
+        const Open top = open.back();
+        open.pop_back();
+        if (top.cost > cost[index(top.entry)]) continue;
+        const auto through = below.costs_from(top.entry);
+        const auto others = below.entries_of(below.of_entry[top.entry]);
+        for (size_t j = 0; j < others.size(); ++j) {
+          const double next = top.cost + double{through[j]};
+          if (!(next < kNoWay)) continue;
+          const uint32_t out = others[j] ^ 1;  // The gate gone through, out of the part.
+          if (below.above[below.of_entry[out]] != d) {
+            // Only over the district's own gates is it left.
+            float& known = row[tier.place[others[j]]];
+            known = std::min(known, static_cast<float>(next));
+            continue;
+          }
+          double& reached = cost[index(out)];
+          if (next >= reached) continue;
+          reached = next;
+          open.push_back({next, out});
+          std::push_heap(open.begin(), open.end());
+        }
+      }
+      row[i] = std::numeric_limits<float>::infinity();
+    }
+  });
+}
+
+uint32_t Districts::entry_of(const Crossing& crossing) const {
+  const auto at =
+      std::lower_bound(gates_.begin(), gates_.end(), crossing.portal,
+                       [](const Gate& gate, uint32_t portal) { return gate.portal < portal; });
+  if (at == gates_.end() || at->portal != crossing.portal) return kNoNode;
+  return 2 * static_cast<uint32_t>(at - gates_.begin()) + (crossing.backward ? 1 : 0);
+}
+
+uint64_t Districts::bytes() const {
+  uint64_t bytes = (of_block_.size() + first_block_.size() + blocks_.size()) * sizeof(uint32_t) +
+                   gates_.size() * sizeof(Gate) + at_.size() * sizeof(Vec3d);
+  for (const Tier& tier : tiers_) {
+    bytes += (tier.above.size() + tier.of_entry.size() + tier.first.size() + tier.entries.size() +
+              tier.place.size() + tier.costs.size()) *
+                 sizeof(uint32_t) +
+             tier.first_cost.size() * sizeof(uint64_t);
+  }
+  return bytes;
+}
+
+}  // namespace throng

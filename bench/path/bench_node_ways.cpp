@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "throng/node_path.h"
+#include "throng/nodes.h"
+
+// Ways over the nodes of a baked world, by districts and by a search of all crossings: how long
+// they take by distance, how much longer they are, and whether both say the same of who is reached.
+namespace throng::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string world, avatar_class = "adult";
+  std::vector<double> distances{100, 500, 1000, 2000};
+  int pairs = 60;
+  int judged = 30;  // pairs of each distance that all crossings are searched for, too
+  int threads = 2;  // for making the finders
+};
+
+[[noreturn]] void stop(const std::string& message) {
+  fmt::print(stderr, "bench_node_ways: {}\n", message);
+  std::exit(2);
+}
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Pair {
+  NodePlace from, to;
+};
+
+// About so far from each other, whether or not a way joins them.
+std::vector<Pair> find_pairs(const Nodes& nodes, int32_t avatar_class, double apart, int count) {
+  std::vector<Pair> pairs;
+  NodePlace from;
+  for (uint64_t n = 0; pairs.size() < static_cast<size_t>(count) && n < 400'000; ++n) {
+    constexpr uint64_t kTries = 512;  // of ends for each beginning
+    if (n % kTries == 0) from = nodes.random_place(avatar_class, 1, n);
+    const NodePlace to = nodes.random_place(avatar_class, 2, n);
+    if (!from || !to) stop("the class has no nodes");
+    const double far = length(to.feet - from.feet);
+    if (far < 0.9 * apart || far > 1.1 * apart) continue;
+    pairs.push_back({from, to});
+    n |= kTries - 1;
+  }
+  return pairs;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
+             NodePathFinder& search, double apart, const Options& options) {
+  const std::vector<Pair> pairs = find_pairs(nodes, avatar_class, apart, options.pairs);
+  std::vector<double> reached_ms, other_ms, search_ms, looked, searched;
+  double length_sum = 0, ours = 0, best = 0, worst = 0;
+  int differ = 0;
+  NodePath path, shortest;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    double start = now();
+    finder.find(pairs[i].from, pairs[i].to, path);
+    const double took = (now() - start) * 1e3;
+    const bool reached = path.end == PathEnd::kReached;
+    (reached ? reached_ms : other_ms).push_back(took);
+    if (reached) {
+      length_sum += path.length;
+      looked.push_back(static_cast<double>(path.nodes));
+    }
+    if (i >= static_cast<size_t>(options.judged)) continue;
+    start = now();
+    search.find(pairs[i].from, pairs[i].to, shortest);
+    const double plainly = (now() - start) * 1e3;
+    differ += shortest.end != path.end;
+    if (!reached || shortest.end != PathEnd::kReached) continue;
+    search_ms.push_back(plainly);
+    searched.push_back(static_cast<double>(shortest.nodes));
+    ours += path.length;
+    best += shortest.length;
+    worst = std::max(worst, path.length / shortest.length);
+  }
+  const auto most = [](const std::vector<double>& values) {
+    return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+  };
+  return {{"distance", apart},
+          {"pairs", pairs.size()},
+          {"reached", reached_ms.size()},
+          {"mean_length", length_sum / std::max<double>(1, static_cast<double>(reached_ms.size()))},
+          {"median_ms", median(reached_ms)},
+          {"most_ms", most(reached_ms)},
+          {"looked_at", median(looked)},
+          {"unreachable_median_ms", median(other_ms)},
+          {"unreachable_most_ms", most(other_ms)},
+          {"judged", search_ms.size()},
+          {"differ", differ},
+          {"search_median_ms", median(search_ms)},
+          {"search_most_ms", most(search_ms)},
+          {"searched", median(searched)},
+          {"mean_ratio", best > 0 ? ours / best : 0},
+          {"worst_ratio", worst}};
+}
+
+Json run(const Options& options) {
+  Context context;
+  const Result<Nodes> nodes = Nodes::open(options.world);
+  if (!nodes) stop(nodes.error().message);
+  const std::vector<AvatarClass> classes = nodes->summary().classes;
+  const auto found = std::find_if(classes.begin(), classes.end(), [&](const AvatarClass& avatar) {
+    return avatar.name == options.avatar_class;
+  });
+  if (found == classes.end()) stop("there is no class " + options.avatar_class);
+  const auto avatar_class = static_cast<int32_t>(found - classes.begin());
+  const auto make = [&](bool districts) {
+    auto made = NodePathFinder::make(
+        *nodes, {.avatar_class = avatar_class, .districts = districts, .workers = options.threads},
+        context);
+    if (!made) stop(made.error().message);
+    return *std::move(made);
+  };
+  NodePathFinder finder = make(true), search = make(false);
+  const NodePathSummary made = finder.summary(), plain = search.summary();
+  Json ways = Json::array();
+  for (const double apart : options.distances) {
+    ways.push_back(measure(*nodes, avatar_class, finder, search, apart, options));
+  }
+  return {{"world", options.world},      {"class", options.avatar_class},
+          {"crossings", made.crossings}, {"seconds", made.seconds},
+          {"bytes", made.bytes},         {"search_seconds", plain.seconds},
+          {"search_bytes", plain.bytes}, {"ways", ways}};
+}
+
+}  // namespace
+}  // namespace throng::bench
+
+int main(int argc, char** argv) {
+  using namespace throng::bench;
+  CLI::App parser{"Ways over the nodes of a baked world", "bench_node_ways"};
+  Options options;
+  parser.add_option("world", options.world, "World folder with nodes")->required();
+  parser.add_option("--class", options.avatar_class, "Avatar class")->capture_default_str();
+  parser.add_option("--distances", options.distances, "About how far the ends are apart [m]")
+      ->delimiter(',');
+  parser.add_option("--pairs", options.pairs, "Pairs of each distance")->capture_default_str();
+  parser.add_option("--judged", options.judged, "Pairs that are searched for plainly, too")
+      ->capture_default_str();
+  parser.add_option("--threads", options.threads, "Threads to make the finders")
+      ->capture_default_str();
+  CLI11_PARSE(parser, argc, argv);
+  fmt::print("{}\n", run(options).dump());
+  return 0;
+}

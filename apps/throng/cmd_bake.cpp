@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -91,10 +92,9 @@ Result<std::vector<NodeJump>> read_jumps(const std::string& name,
 Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
   constexpr uint64_t kResident = uint64_t{256} << 20;
   const Result<World> world = World::open(options.output, {.resident_bytes = kResident});
-  if (!world) return world.error();
-  const Result<Nodes> nodes = Nodes::make_in_folder(*world, scene, options.node_config, context);
-  if (!nodes) return nodes.error();
-  return nodes->summary();
+  const auto opened = meet_over_ranks(world ? Result<void>() : world.error(), context);
+  if (!opened) return opened.error();
+  return nodes_over_ranks(*world, scene, options.node_config, context);
 }
 
 Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport& report,
@@ -193,16 +193,28 @@ int bake(Session& session, BakeOptions& options) {
   const uint64_t peak_read = peak_memory();
   const Result<BakeReport> report =
       bake_over_ranks(options.output, *scene, options.config, session.context);
+  const bool nodes_follow = wants_nodes(options);
+  if (nodes_follow) {
+    // The others have baked their last zone while rank 0 still makes the graph.
+    const auto baked = meet_over_ranks(report ? Result<void>() : report.error(), session.context);
+    if (!baked) return fail(report ? baked.error() : report.error());
+  }
   if (!report) return fail(report.error());
+  std::optional<NodeSummary> nodes;
+  if (nodes_follow) {
+    const Result<NodeSummary> made = bake_nodes(options, *scene, session.context);
+    if (!made) {
+      return fail({made.error().code,
+                   made.error().message.empty()
+                       ? ""
+                       : made.error().message + "; the world is baked, but it has no nodes yet"});
+    }
+    nodes = *made;
+  }
   if (rank_info().rank > 0) return kDone;
   Json json = bake_json(options, *scene, *report, peak_read);
   std::string text = bake_text(options, *scene, *report);
-  if (wants_nodes(options)) {
-    const Result<NodeSummary> nodes = bake_nodes(options, *scene, session.context);
-    if (!nodes) {
-      return fail({nodes.error().code,
-                   nodes.error().message + "; the world is baked, but it has no nodes yet"});
-    }
+  if (nodes) {
     json["node_zones_made"] = nodes->zones_made;
     json["node_zones_kept"] = nodes->zones_kept;
     json["nodes"] = nodes->nodes;

@@ -8,6 +8,7 @@
 #include "throng/bake.h"
 #include "throng/base.h"
 #include "throng/context.h"
+#include "throng/nodes.h"
 #include "throng/result.h"
 #include "throng/scene.h"
 
@@ -30,6 +31,10 @@ struct RankInfo {
 /// built without MPI.
 [[nodiscard]] THRONG_API Result<void> agree_over_ranks(const Result<void>& mine);
 
+/// The same, for ranks that come to it at very different times: they wait without taking a core
+/// from those that work, and no longer than until their context is cancelled.
+[[nodiscard]] THRONG_API Result<void> meet_over_ranks(const Result<void>& mine, Context& context);
+
 /// bake_world_to by all ranks: zones are handed out one by one to whoever is free. The world's
 /// bytes do not depend on the number of ranks. Every rank has read the same scene; `path` is on a
 /// file system that all of them see. config.workers is per rank; 0 shares the cores of a machine
@@ -43,5 +48,15 @@ struct RankInfo {
                                                             const Scene& scene,
                                                             const BakeConfig& config,
                                                             Context& context);
+
+/// Nodes::make_in_folder by all ranks, of a world that each has opened from the same folder:
+/// batches of zones are handed out to whoever is free, so small, of config.working_bytes at most,
+/// that each rank gets some. The bytes do not depend on the number of ranks. The summary is whole
+/// on rank 0 and empty elsewhere. Fails as bake_over_ranks does; what was made lies in the folder's
+/// nodes.part, which the next call takes over.
+[[nodiscard]] THRONG_API Result<NodeSummary> nodes_over_ranks(const World& world,
+                                                              const Scene& scene,
+                                                              const NodeConfig& config,
+                                                              Context& context);
 
 }  // namespace throng

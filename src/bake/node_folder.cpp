@@ -16,8 +16,6 @@ namespace throng {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kPartFolder = "nodes.part";  // nodes in the making
-
 // Two names for one file, or two files where that cannot be.
 bool link_or_copy(const fs::path& from, const fs::path& to) {
   std::error_code error;
@@ -30,7 +28,7 @@ bool link_or_copy(const fs::path& from, const fs::path& to) {
 
 OldNodes::OldNodes(const std::string& world_path) {
   if (world_path.empty()) return;
-  for (const char* folder : {kNodeFolder, kOldNodeFolder, kPartFolder}) {
+  for (const char* folder : {kNodeFolder, kOldNodeFolder, kPartNodeFolder}) {
     const std::string path = (fs::path(world_path) / folder).string();
     const std::string name = path + "/" + kNodeIndexName;
     const auto map = FileMap::open(name);
@@ -69,14 +67,16 @@ std::optional<OldNodes::Kept> OldNodes::keep(int32_t x, int32_t z, uint64_t inpu
 }
 
 NodeFolder::NodeFolder(std::string world_path)
-    : world_path_(std::move(world_path)), part_(fs::path(world_path_) / kPartFolder) {}
+    : world_path_(std::move(world_path)), part_(fs::path(world_path_) / kPartNodeFolder) {}
 
 NodeFolder::NodeFolder(NodeFolder&& other) noexcept
-    : world_path_(std::move(other.world_path_)), part_(std::exchange(other.part_, {})) {}
+    : world_path_(std::move(other.world_path_)),
+      part_(std::exchange(other.part_, {})),
+      is_own_(other.is_own_) {}
 
 NodeFolder::~NodeFolder() {
   std::error_code error;
-  if (!part_.empty()) fs::remove_all(part_, error);
+  if (is_own_ && !part_.empty()) fs::remove_all(part_, error);
 }
 
 Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
@@ -86,6 +86,12 @@ Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
   if (error) {
     return Error{Errc::kIo, folder.part_.string() + ": cannot be created: " + error.message()};
   }
+  return folder;
+}
+
+NodeFolder NodeFolder::join(const std::string& world_path) {
+  NodeFolder folder(world_path);
+  folder.is_own_ = false;
   return folder;
 }
 
@@ -146,7 +152,7 @@ bool carry_folder(const fs::path& source, const fs::path& target) {
 
 void carry_nodes(const std::string& from, const std::string& to, bool is_same_world) {
   const fs::path source(from), target(to);
-  carry_folder(source / kPartFolder, target / kPartFolder);
+  carry_folder(source / kPartNodeFolder, target / kPartNodeFolder);
   if (carry_folder(source / kNodeFolder, target / (is_same_world ? kNodeFolder : kOldNodeFolder))) {
     return;
   }

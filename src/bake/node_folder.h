@@ -38,6 +38,8 @@ class NodeFolder {
  public:
   /// Of a world in its folder. What a killed bake has left there stays for now.
   static Result<NodeFolder> begin(const std::string& world_path);
+  /// One that another process has begun and will finish.
+  static NodeFolder join(const std::string& world_path);
   NodeFolder(NodeFolder&& other) noexcept;
   NodeFolder& operator=(NodeFolder&&) = delete;
   /// Removes what was begun and not finished.
@@ -59,6 +61,7 @@ class NodeFolder {
 
   std::string world_path_;
   std::filesystem::path part_;  // empty: finished, left or moved from
+  bool is_own_ = true;
 };
 
 /// Carries the nodes of the world in `from` over to `to`, which takes its place, as far as that can

@@ -382,14 +382,21 @@ class BatchDealer {
 }  // namespace
 
 std::vector<std::vector<uint32_t>> node_batches(const Scene& scene, const NodeConfig& config,
-                                                const NodePlan& plan, std::vector<uint32_t> zones) {
+                                                const NodePlan& plan, std::vector<uint32_t> zones,
+                                                uint64_t most_bytes) {
   std::vector<uint64_t> bytes;
   for (const NodePlanZone& zone : plan.zones) {
     bytes.push_back(working_bytes(scene, config, plan, zone));
   }
-  BatchDealer dealer(plan, std::move(bytes), config.working_bytes);
+  BatchDealer dealer(plan, std::move(bytes), most_bytes);
   dealer.deal(std::move(zones));
   return dealer.take();
+}
+
+uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config, const NodePlan& plan) {
+  uint64_t sum = 0;
+  for (const NodePlanZone& zone : plan.zones) sum += working_bytes(scene, config, plan, zone);
+  return sum;
 }
 
 }  // namespace throng

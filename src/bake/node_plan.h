@@ -57,11 +57,15 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
                       const TriangleSquares* triangles, NodePlan& plan);
 
 /// Deals zones, given in ascending order, to batches whose nodes are made together: squares, as far
-/// as may be, of about `working_bytes` each, as what is near is made for company. At least one, and
+/// as may be, of about `most_bytes` each, as what is near is made for company. At least one, and
 /// none but that is empty.
 [[nodiscard]] std::vector<std::vector<uint32_t>> node_batches(const Scene& scene,
                                                               const NodeConfig& config,
                                                               const NodePlan& plan,
-                                                              std::vector<uint32_t> zones);
+                                                              std::vector<uint32_t> zones,
+                                                              uint64_t most_bytes);
+/// What the nodes of all zones would take while they are made, about. [bytes]
+[[nodiscard]] uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config,
+                                         const NodePlan& plan);
 
 }  // namespace throng

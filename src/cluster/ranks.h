@@ -33,9 +33,12 @@ class Ranks {
   /// Of all ranks, by rank. All call it.
   [[nodiscard]] std::vector<uint64_t> gather(uint64_t mine);
 
-  void send(int32_t to, int32_t tag, std::span<const uint8_t> bytes);
+  /// Messages of one channel are not seen on another.
+  enum class Channel : uint8_t { kJobs, kMeetings };
+  void send(int32_t to, int32_t tag, std::span<const uint8_t> bytes,
+            Channel channel = Channel::kJobs);
   /// A message if one has come. Does not wait.
-  std::optional<RankMessage> poll();
+  std::optional<RankMessage> poll(Channel channel = Channel::kJobs);
 
   /// The program ends without parting: others may be dead, and parting waits for them.
   void abandon();

@@ -12,6 +12,12 @@ namespace {
 bool g_abandoned = false;
 
 // MPI is begun once in a process, and ended by whoever began it.
+MPI_Comm g_meetings = MPI_COMM_NULL;
+
+MPI_Comm comm_of(Ranks::Channel channel) {
+  return channel == Ranks::Channel::kJobs ? MPI_COMM_WORLD : g_meetings;
+}
+
 void part() {
   int over = 0;
   MPI_Finalized(&over);
@@ -41,6 +47,7 @@ Result<Ranks*> Ranks::join() {
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local);
   MPI_Comm_size(local, &ranks.local_size_);
   MPI_Comm_free(&local);
+  MPI_Comm_dup(MPI_COMM_WORLD, &g_meetings);
   return &ranks;
 }
 
@@ -50,20 +57,21 @@ std::vector<uint64_t> Ranks::gather(uint64_t mine) {
   return all;
 }
 
-void Ranks::send(int32_t to, int32_t tag, std::span<const uint8_t> bytes) {
-  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+void Ranks::send(int32_t to, int32_t tag, std::span<const uint8_t> bytes, Channel channel) {
+  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, comm_of(channel));
 }
 
-std::optional<RankMessage> Ranks::poll() {
+std::optional<RankMessage> Ranks::poll(Channel channel) {
+  const MPI_Comm comm = comm_of(channel);
   int found = 0;
   MPI_Status status;
-  MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &found, &status);
+  MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm, &found, &status);
   if (found == 0) return std::nullopt;
   int count = 0;
   MPI_Get_count(&status, MPI_BYTE, &count);
   RankMessage message{.from = status.MPI_SOURCE, .tag = status.MPI_TAG, .bytes = {}};
   message.bytes.resize(static_cast<size_t>(count));
-  MPI_Recv(message.bytes.data(), count, MPI_BYTE, message.from, message.tag, MPI_COMM_WORLD,
+  MPI_Recv(message.bytes.data(), count, MPI_BYTE, message.from, message.tag, comm,
            MPI_STATUS_IGNORE);
   return message;
 }

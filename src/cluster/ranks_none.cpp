@@ -12,8 +12,9 @@ Result<Ranks*> Ranks::join() {
 }
 
 std::vector<uint64_t> Ranks::gather(uint64_t mine) { return {mine}; }
-void Ranks::send(int32_t /*to*/, int32_t /*tag*/, std::span<const uint8_t> /*bytes*/) {}
-std::optional<RankMessage> Ranks::poll() { return std::nullopt; }
+void Ranks::send(int32_t /*to*/, int32_t /*tag*/, std::span<const uint8_t> /*bytes*/,
+                 Channel /*channel*/) {}
+std::optional<RankMessage> Ranks::poll(Channel) { return std::nullopt; }
 void Ranks::abandon() {}
 
 }  // namespace throng

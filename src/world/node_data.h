@@ -24,7 +24,8 @@ namespace throng {
 inline constexpr uint32_t kNodeVersion = 4;
 inline constexpr const char* kNodeIndexName = "index.thn";
 inline constexpr const char* kNodeFolder = "nodes";
-inline constexpr const char* kOldNodeFolder = "nodes.old";  // of the world before this one
+inline constexpr const char* kPartNodeFolder = "nodes.part";  // in the making
+inline constexpr const char* kOldNodeFolder = "nodes.old";    // of the world before this one
 inline constexpr uint32_t kFarNode = uint32_t{1} << 31;
 inline constexpr uint8_t kDeepestPatch = 6;
 inline constexpr uint16_t kEdgeUnits = 256;                   // of an edge, as doors count along it

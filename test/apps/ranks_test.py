@@ -38,7 +38,7 @@ def ours(text):
 
 
 def content(world):
-    return {file.name: file.read_bytes() for file in world.iterdir()}
+    return {str(file.relative_to(world)): file.read_bytes() for file in world.rglob("*") if file.is_file()}
 
 
 def child_of_rank(parent, rank):
@@ -160,6 +160,62 @@ def test_graph(folder, reference):
         shutil.rmtree(world)
 
 
+def kill_amid_nodes(world, rank, ranks, options):
+    """Bakes until some zones' nodes are made, kills one rank; what was said, or None if all were made before."""
+    part = world / "nodes.part"
+    words = bake_words(world, options=["--threads", "1", *options])
+    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=ENVIRONMENT,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        killed = False
+        while process.poll() is None:
+            if not killed and len(list(part.glob("*.thn"))) > 3:
+                victim = child_of_rank(process.pid, rank)
+                if victim is not None:
+                    os.kill(victim, signal.SIGKILL)
+                    killed = True
+            time.sleep(0.0005)
+        out, err = process.communicate(timeout=60)
+    return err if process.returncode != 0 and not out.strip() else None
+
+
+def test_nodes(folder):
+    """Batches of zones are dealt to all ranks."""
+    options = ["--nodes"]
+    world = folder / "nodes.throng"
+    done = run(bake_words(world, options=options))
+    assert done.returncode == 0, done.stderr
+    report, one = json.loads(done.stdout), content(world)
+    made = report["node_zones_made"]
+    assert made > 100 and report["node_zones_kept"] == 0, report
+    shutil.rmtree(world)
+    same = ("nodes", "node_arcs", "node_bytes", "node_zones_made", "node_zones_kept")
+    for ranks in (2, 3):
+        words = [*MPIRUN, "-n", str(ranks), *bake_words(world, options=options)]
+        done = run(words)
+        assert done.returncode == 0 and not ours(done.stderr), done.stderr
+        assert [json.loads(done.stdout)[key] for key in same] == [report[key] for key in same], done.stdout
+        assert content(world) == one, f"{ranks} ranks: other nodes than one process"
+        again = json.loads(run(words).stdout)
+        assert (again["node_zones_made"], again["node_zones_kept"]) == (0, made), again
+        assert content(world) == one, f"{ranks} ranks: other nodes when all are kept"
+        shutil.rmtree(world)
+    resumed = 0
+    for rank, ranks in ((1, 2), (0, 2), (2, 3)):
+        err = kill_amid_nodes(world, rank, ranks, options)
+        if err is not None:
+            said = ours(err)
+            assert all("goes on from there" in line and "it has no nodes yet" in line for line in said), err
+            assert len(said) <= 2 and all(f"rank {rank} of {ranks}" not in line for line in said), err
+        words = bake_words(world, options=options) if rank == 0 else [*MPIRUN, "-n", "2", *bake_words(world, options=options)]
+        done = run(words)
+        assert done.returncode == 0, done.stderr
+        resumed += err is not None and json.loads(done.stdout)["node_zones_kept"] > 0
+        assert content(world) == one, "other nodes than undisturbed"
+        assert not (world / "nodes.part").exists()
+        shutil.rmtree(world)
+    assert resumed > 0, f"{resumed} of 3 bakes were killed amid their nodes and gone on with"
+
+
 def test_refusals(folder):
     world = folder / "refused.throng"
 
@@ -207,6 +263,7 @@ def main():
         test_death(folder, reference)
         test_air(folder)
         test_graph(folder, reference)
+        test_nodes(folder)
         test_refusals(folder)
         print("equal bytes by 1, 2 and 3 ranks, and after each death")
 

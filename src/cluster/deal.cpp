@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "cluster/deal.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <thread>
+
+#include "core/parallel.h"
+#include "throng/cluster.h"
+
+// Rank 0 hands out jobs and enters what comes back, so that the next bake can go on where a rank
+// has died. It works too, on a thread beside the one that listens. All of them poll: MPI waits by
+// spinning, which would take a core from those that work.
+namespace throng {
+namespace {
+
+enum Tag : int32_t {
+  kFree,   // a rank wants work; empty
+  kDone,   // uint64_t: the job, and what there is to tell
+  kFail,   // the code of an error as a byte, and its message
+  kWork,   // uint64_t: the job, and what is said of it
+  kNoMore  // nothing is left, or the bake has failed elsewhere; empty
+};
+
+struct Numbered {
+  uint64_t job = 0;
+  RankBytes bytes;
+};
+
+void nap() { std::this_thread::sleep_for(std::chrono::microseconds(300)); }
+
+RankBytes packed(const Error& error) {
+  const std::string text = static_cast<char>(error.code) + error.message;
+  return {text.begin(), text.end()};
+}
+
+Error unpacked(const RankMessage& message) {
+  if (message.bytes.empty()) return {Errc::kIo, "an error without a name"};
+  return {static_cast<Errc>(message.bytes[0]),
+          "rank " + std::to_string(message.from) + ": " +
+              std::string(message.bytes.begin() + 1, message.bytes.end())};
+}
+
+RankBytes packed(uint64_t job, std::span<const uint8_t> rest) {
+  RankBytes bytes(sizeof job + rest.size());
+  std::memcpy(bytes.data(), &job, sizeof job);
+  std::copy(rest.begin(), rest.end(), bytes.begin() + sizeof job);
+  return bytes;
+}
+
+Numbered numbered(const RankMessage& message) {
+  constexpr size_t kNumber = sizeof(uint64_t);
+  Numbered found{value_of<uint64_t>(message.bytes), {}};
+  if (message.bytes.size() > kNumber) {
+    found.bytes.assign(message.bytes.begin() + kNumber, message.bytes.end());
+  }
+  return found;
+}
+
+// What does not fit in memory is an error like any other: ranks would wait for ever for one that
+// has only stopped.
+Result<RankBytes> work_on(const RankJobs& what, std::span<const uint8_t> job,
+                          Context& context) try {
+  return what.work(job, context);
+} catch (const std::bad_alloc&) {
+  return Error{Errc::kLimit, std::string(what.stage) +
+                                 ": out of memory; use smaller zones or fewer ranks a machine"};
+}
+
+class Dealer {
+ public:
+  Dealer(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Context& context)
+      : ranks_(ranks), what_(what), dealt_(std::move(dealt)), context_(context) {}
+
+  Result<void> run();
+
+ private:
+  void work_beside();
+  std::optional<uint64_t> next_job();
+  void enter(const Numbered& done);
+  void take(const RankMessage& message);
+  void fail(Error error);
+
+  Ranks& ranks_;
+  const RankJobs& what_;
+  DealtJobs dealt_;
+  Context& context_;
+  size_t done_ = 0;     // jobs
+  int32_t parted_ = 1;  // ranks that ask for nothing any more: this one never did
+  std::optional<Error> error_;
+
+  std::mutex mutex_;  // of what the working thread shares
+  std::deque<uint64_t> queue_;
+  std::vector<Numbered> own_;
+  std::optional<Error> own_error_;
+  Context own_context_;  // cancelled when a job fails elsewhere
+};
+
+std::optional<uint64_t> Dealer::next_job() {
+  const std::lock_guard lock(mutex_);
+  if (queue_.empty()) return std::nullopt;
+  const uint64_t job = queue_.front();
+  queue_.pop_front();
+  return job;
+}
+
+void Dealer::work_beside() {
+  while (!own_context_.cancel) {
+    const auto job = next_job();
+    if (!job) return;
+    auto told = work_on(what_, dealt_.jobs[static_cast<size_t>(*job)], own_context_);
+    const std::lock_guard lock(mutex_);
+    if (!told) {
+      own_error_ = told.error();
+      return;
+    }
+    own_.push_back({*job, *std::move(told)});
+  }
+}
+
+void Dealer::fail(Error error) {
+  if (!error_) error_ = std::move(error);
+  own_context_.cancel = true;
+  const std::lock_guard lock(mutex_);
+  queue_.clear();
+}
+
+void Dealer::enter(const Numbered& done) {
+  ++done_;
+  if (auto ok = dealt_.enter(static_cast<size_t>(done.job), done.bytes); !ok) fail(ok.error());
+}
+
+void Dealer::take(const RankMessage& message) {
+  if (message.tag == kFail) {
+    ++parted_;
+    fail(unpacked(message));
+    return;
+  }
+  if (message.tag == kDone) enter(numbered(message));
+  if (const auto job = next_job()) {
+    ranks_.send(message.from, kWork, packed(*job, dealt_.jobs[static_cast<size_t>(*job)]));
+  } else {
+    ranks_.send(message.from, kNoMore, {});
+    ++parted_;
+  }
+}
+
+Result<void> Dealer::run() {
+  for (uint64_t job = 0; job < dealt_.jobs.size(); ++job) queue_.push_back(job);
+  SideThread beside([&] { work_beside(); });
+  size_t shown = SIZE_MAX;
+  while ((done_ < dealt_.jobs.size() && !error_) || parted_ < ranks_.size()) {
+    if (context_.cancel) {
+      own_context_.cancel = true;
+      ranks_.abandon();
+      dealt_.on_cancel();
+      return told_to_stop(ranks_, what_);
+    }
+    const auto message = ranks_.poll();
+    if (message) take(*message);
+    std::vector<Numbered> own;
+    std::optional<Error> own_error;
+    {
+      const std::lock_guard lock(mutex_);
+      own.swap(own_);
+      own_error.swap(own_error_);
+    }
+    for (const Numbered& done : own) enter(done);
+    if (own_error && own_error->code != Errc::kCancelled) fail(*std::move(own_error));
+    if (shown != done_) {
+      dealt_.on_progress(done_);
+      shown = done_;
+    }
+    if (!message && own.empty()) nap();
+  }
+  beside.join();
+  if (error_) return *error_;
+  return {};
+}
+
+}  // namespace
+
+Error told_to_stop(const Ranks& ranks, const RankJobs& what) {
+  return {Errc::kCancelled,
+          std::string(what.stage) + ": rank " + std::to_string(ranks.rank()) + " of " +
+              std::to_string(ranks.size()) +
+              " was told to stop, because another rank has died or mpirun was interrupted; " +
+              what.finished(ranks.rank() == 0)};
+}
+
+Result<void> deal_jobs(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Context& context) {
+  return Dealer(ranks, what, std::move(dealt), context).run();
+}
+
+Result<void> do_dealt_jobs(Ranks& ranks, const RankJobs& what, Context& context) {
+  ranks.send(0, kFree, {});
+  while (true) {
+    const auto message = ranks.poll();
+    if (context.cancel) {
+      ranks.abandon();
+      return told_to_stop(ranks, what);
+    }
+    if (!message) {
+      nap();
+      continue;
+    }
+    if (message->tag == kNoMore) return {};
+    const Numbered job = numbered(*message);
+    const auto told = work_on(what, job.bytes, context);
+    if (told) {
+      ranks.send(0, kDone, packed(job.job, *told));
+    } else if (!context.cancel) {
+      ranks.send(0, kFail, packed(told.error()));
+      return told.error();
+    }
+  }
+}
+
+int32_t workers_of_rank(int32_t asked, const Ranks& ranks) {
+  // Unless mpirun has dealt the cores already.
+  if (asked > 0) return asked;
+  const auto cores = static_cast<int32_t>(sysconf(_SC_NPROCESSORS_ONLN));
+  return std::clamp(cores / ranks.local_size(), 1, worker_count(0));
+}
+
+Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context) {
+  constexpr auto kMeetings = Ranks::Channel::kMeetings;
+  const RankJobs what{.stage = "bake", .work = {}, .finished = [](bool) {
+                        return "what was finished is kept, and the next bake goes on from there";
+                      }};
+  // Waits without taking a core from those that still work.
+  const auto wait = [&]() -> Result<RankMessage> {
+    while (true) {
+      if (context.cancel) {
+        ranks.abandon();
+        return told_to_stop(ranks, what);
+      }
+      if (auto message = ranks.poll(kMeetings)) return *std::move(message);
+      nap();
+    }
+  };
+  const auto say = [&](int32_t to, const Result<void>& what_is) {
+    ranks.send(to, what_is ? kDone : kFail, what_is ? RankBytes() : packed(what_is.error()),
+               kMeetings);
+  };
+  if (ranks.rank() != 0) {
+    say(0, mine);
+    const auto verdict = wait();
+    if (!verdict) return verdict.error();
+    if (verdict->tag == kDone) return {};
+    return Error{Errc::kCancelled, ""};  // Rank 0 says it.
+  }
+  Result<void> all = mine;
+  for (int32_t others = 1; others < ranks.size(); ++others) {
+    const auto message = wait();
+    if (!message) return message.error();
+    if (message->tag == kFail && all) all = unpacked(*message);
+  }
+  for (int32_t rank = 1; rank < ranks.size(); ++rank) say(rank, all);
+  return all;
+}
+
+Result<void> meet_over_ranks(const Result<void>& mine, Context& context) {
+  if (rank_info().size == 1) return mine;
+  auto joined = Ranks::join();
+  if (!joined) return joined.error();
+  return meet(**joined, mine, context);
+}
+
+Result<void> agree_over_ranks(const Result<void>& mine) {
+  if (rank_info().size == 1) return mine;
+  auto joined = Ranks::join();
+  if (!joined) return joined.error();
+  Ranks& ranks = **joined;
+  const auto all = ranks.gather(mine ? 0 : 1);
+  const auto failed = std::find(all.begin(), all.end(), uint64_t{1});
+  if (failed == all.end()) return {};
+  const auto first = static_cast<int32_t>(failed - all.begin());
+  if (ranks.rank() == 0) {
+    if (first == 0) return mine;
+    while (true) {
+      if (const auto message = ranks.poll()) return unpacked(*message);
+      nap();
+    }
+  }
+  if (ranks.rank() == first) ranks.send(0, kFail, packed(mine.error()));
+  return Error{Errc::kCancelled, ""};  // Rank 0 says it.
+}
+
+}  // namespace throng

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cluster/ranks.h"
+#include "throng/context.h"
+#include "throng/result.h"
+
+/// Jobs handed out one by one to whichever rank is free.
+namespace throng {
+
+using RankBytes = std::vector<uint8_t>;
+
+/// What all ranks were started for.
+struct RankJobs {
+  const char* stage = "";  ///< As progress and errors name it.
+  /// Does a job, given by what rank 0 has said of it, and tells what rank 0 wants to know. On any
+  /// rank, one call at a time.
+  std::function<Result<RankBytes>(std::span<const uint8_t> job, Context& context)> work;
+  /// What is finished, and that the next bake goes on from there, as a part of a sentence.
+  std::function<std::string(bool is_rank_0)> finished;
+};
+
+/// What rank 0 has to hand out, in this order, and what it does with what comes back, on its own
+/// thread.
+struct DealtJobs {
+  std::vector<RankBytes> jobs;
+  std::function<Result<void>(size_t job, std::span<const uint8_t> told)> enter;
+  std::function<void(size_t jobs_done)> on_progress;
+  std::function<void()> on_cancel;
+};
+
+/// Rank 0: hands out all jobs, does some itself, and waits for the others. Fails with the first
+/// error of any rank, or with kCancelled; no job is begun after that.
+Result<void> deal_jobs(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Context& context);
+
+/// The others: does what rank 0 says, until it says no more. Fails with its own error, which rank 0
+/// knows then, or with kCancelled.
+Result<void> do_dealt_jobs(Ranks& ranks, const RankJobs& what, Context& context);
+
+/// meet_over_ranks, for several ranks.
+Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context);
+
+/// Threads of a rank: the cores of its machine, shared among its ranks, unless some are asked for.
+int32_t workers_of_rank(int32_t asked, const Ranks& ranks);
+
+/// What a rank says when its context is cancelled.
+Error told_to_stop(const Ranks& ranks, const RankJobs& what);
+
+/// A value as the bytes of a message, and back.
+template <class T>
+RankBytes bytes_of(const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  RankBytes bytes(sizeof value);
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+template <class T>
+RankBytes bytes_of(const std::vector<T>& values) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  RankBytes bytes(values.size() * sizeof(T));
+  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+template <class T>
+T value_of(std::span<const uint8_t> bytes) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  T value{};
+  std::memcpy(&value, bytes.data(), std::min(sizeof value, bytes.size()));
+  return value;
+}
+template <class T>
+std::vector<T> values_of(std::span<const uint8_t> bytes) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+}  // namespace throng

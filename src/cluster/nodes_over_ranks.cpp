@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "bake/node_bake.h"
+#include "cluster/deal.h"
+#include "core/stopwatch.h"
+#include "throng/cluster.h"
+
+// Rank 0 keeps what need not be made and deals out batches of zones; whoever has made one writes
+// its files and tells what the index wants to know of them. The bytes of a zone do not depend on
+// what it is made together with, so they do not depend on the ranks either.
+namespace throng {
+namespace {
+
+constexpr uint64_t kBatchesARank = 3;  // at least, so that none waits long for the last one
+
+RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
+  return {.stage = "nodes",
+          .work = [&](std::span<const uint8_t> job, Context& context) -> Result<RankBytes> {
+            const auto zones = values_of<uint32_t>(job);
+            auto slots = baker.make(zones, false, context);
+            if (!slots) return slots.error();
+            const auto made = baker.write(zones, *slots);
+            if (!made) return made.error();
+            return bytes_of(*made);
+          },
+          .finished =
+              [&](bool knows) {
+                return (knows ? std::to_string(baker.zones_done()) + " of " +
+                                    std::to_string(baker.zones()) + " zones are finished"
+                              : std::string("finished zones are")) +
+                       " in " + path + "/" + kPartNodeFolder + ", and the next bake of " + path +
+                       " goes on from there";
+              }};
+}
+
+Result<NodeSummary> deal_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
+                               const std::string& path, NodeFolder& folder, Context& context) {
+  const uint64_t many = kBatchesARank * static_cast<uint64_t>(ranks.size());
+  const auto batches =
+      baker.batches(std::min(config.working_bytes, baker.working_bytes() / many + 1));
+  DealtJobs dealt;
+  for (const auto& zones : batches) dealt.jobs.push_back(bytes_of(zones));
+  dealt.enter = [&](size_t, std::span<const uint8_t> told) {
+    baker.enter(values_of<NodeBaker::Made>(told));
+    return baker.list();
+  };
+  dealt.on_progress = [&](size_t) {
+    if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
+  };
+  dealt.on_cancel = [&] { folder.leave(); };
+  if (auto ok = baker.list(); !ok) return ok.error();
+  if (auto ok = deal_jobs(ranks, jobs_of(baker, path), std::move(dealt), context); !ok) {
+    return ok.error();
+  }
+  const auto nodes = baker.finish();
+  if (!nodes) return nodes.error();
+  if (auto ok = folder.finish(**nodes); !ok) return ok.error();
+  (*nodes)->path = path + "/" + kNodeFolder;
+  return Nodes(*nodes).summary();
+}
+
+}  // namespace
+
+Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
+                                     const NodeConfig& config, Context& context) {
+  if (rank_info().size == 1) {
+    const auto nodes = Nodes::make_in_folder(world, scene, config, context);
+    if (!nodes) return nodes.error();
+    return nodes->summary();
+  }
+  const auto start = Clock::now();
+  auto joined = Ranks::join();
+  if (!joined) return joined.error();
+  Ranks& ranks = **joined;
+  if (auto ok = agree_over_ranks(NodeBaker::check(world, scene, config)); !ok) return ok.error();
+  const std::string& path = world.data()->path;
+  NodeConfig own = config;
+  own.workers = workers_of_rank(config.workers, ranks);
+  Result<void> begun;
+  auto folder =
+      ranks.rank() == 0 ? NodeFolder::begin(path) : Result<NodeFolder>(NodeFolder::join(path));
+  if (!folder) begun = folder.error();
+  if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
+  NodeBaker baker(world, scene, own, &*folder);
+  baker.plan();
+  const auto inputs = ranks.gather(baker.input());
+  const auto other = std::find_if(inputs.begin(), inputs.end(),
+                                  [&](uint64_t input) { return input != inputs[0]; });
+  if (other != inputs.end()) {
+    return Error{Errc::kBadInput, "nodes: rank " + std::to_string(other - inputs.begin()) +
+                                      " has another world, or other options, than rank 0; all "
+                                      "ranks must see the same files"};
+  }
+  // Rank 0 looks through what is there.
+  const Result<void> kept = ranks.rank() == 0 ? baker.keep_zones() : Result<void>();
+  if (auto ok = meet(ranks, kept, context); !ok) return ok.error();
+  if (ranks.rank() != 0) {
+    if (auto ok = do_dealt_jobs(ranks, jobs_of(baker, path), context); !ok) return ok.error();
+    return NodeSummary{};
+  }
+  auto made = deal_nodes(ranks, baker, config, path, *folder, context);
+  if (made) made->seconds = seconds_since(start);
+  return made;
+}
+
+}  // namespace throng

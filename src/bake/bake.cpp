@@ -3,6 +3,9 @@
 #include "throng/bake.h"
 
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "bake/graph_bake.h"
@@ -16,8 +19,98 @@
 namespace throng {
 namespace {
 
-// Zones go into the folder, which may have some of them already, or, if it is null, in order of z,
-// then x, into `in_memory`.
+// Bakes zones, several at a time where there are many workers: within one of them more than a few
+// wait for each other. They go into the folder, which may have some of them already, or, if it is
+// null, into memory.
+class ZoneBaker {
+ public:
+  ZoneBaker(const WorldBake& bake, const BakeConfig& config, Context& context, WorldFolder* folder)
+      : bake_(bake),
+        context_(context),
+        folder_(folder),
+        groups_(deal_workers(bake.zones().size(), config.workers)),
+        scratch_(static_cast<size_t>(groups_.groups)),
+        facts_(bake.zones().size()),
+        zones_(folder == nullptr ? facts_.size() : 0) {}
+
+  Result<void> run() {
+    parallel_groups(facts_.size(), groups_.groups, [&](size_t i, int32_t group) {
+      if (is_stopped(i)) return;
+      auto& scratch = scratch_[static_cast<size_t>(group)];
+      if (!scratch) scratch = std::make_unique<ZoneScratch>(groups_.workers);
+      if (auto ok = bake(i, *scratch); !ok) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = ok.error();
+      }
+    });
+    if (failure_) return *failure_;
+    if (context_.cancel) return cancelled();
+    return {};
+  }
+
+  [[nodiscard]] const std::vector<ZoneFacts>& facts() const { return facts_; }
+  // In memory: in order of z, then x.
+  [[nodiscard]] std::vector<std::unique_ptr<Zone>> take_zones() {
+    std::erase(zones_, nullptr);
+    return std::move(zones_);
+  }
+
+ private:
+  static Error cancelled() { return {Errc::kCancelled, "bake: cancelled; nothing was written"}; }
+
+  bool is_stopped(size_t i) {
+    const std::lock_guard lock(mutex_);
+    if (failure_ || context_.cancel) return true;
+    if (context_.on_progress) {
+      context_.on_progress({"bake", bake_.place(i), bake_.place_count()});
+    }
+    return false;
+  }
+
+  Result<void> bake(size_t i, ZoneScratch& scratch) {
+    const format::ZoneInput& input = bake_.zones()[i];
+    if (folder_ != nullptr) {
+      if (const auto kept = folder_->keep(input.x(), input.z(), input.hash())) {
+        facts_[i] = bake_.facts_of(*kept);
+        return {};
+      }
+    }
+    flatbuffers::DetachedBuffer bytes;
+    if (!bake_.bake(i, scratch, context_, facts_[i], bytes)) return cancelled();
+    const auto start = Clock::now();
+    if (auto ok = put(i, std::move(bytes)); !ok) return ok;
+    facts_[i].seconds_write = seconds_since(start);
+    return {};
+  }
+
+  Result<void> put(size_t i, flatbuffers::DetachedBuffer bytes) {
+    const format::ZoneEntry& entry = facts_[i].entry;
+    if (folder_ != nullptr) {
+      if (auto ok = WorldFolder::write_zone(folder_->path(), entry, {bytes.data(), bytes.size()});
+          !ok) {
+        return ok;
+      }
+      const std::lock_guard lock(mutex_);
+      return folder_->add(entry, bake_.zones()[i].hash());
+    }
+    if (entry.levels() == 0) return {};
+    auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(entry.x(), entry.z()));
+    if (!zone) return zone.error();
+    zones_[i] = std::move(*zone);
+    return {};
+  }
+
+  const WorldBake& bake_;
+  Context& context_;
+  WorldFolder* folder_;
+  WorkerGroups groups_;
+  std::vector<std::unique_ptr<ZoneScratch>> scratch_;  // by group
+  std::vector<ZoneFacts> facts_;
+  std::vector<std::unique_ptr<Zone>> zones_;
+  std::mutex mutex_;
+  std::optional<Error> failure_;
+};
+
 Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,
                                               Context& context, BakeReport& report,
                                               WorldFolder* folder,
@@ -27,35 +120,10 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
   const auto begun = WorldBake::begin(scene, config, old_world, folder != nullptr);
   if (!begun) return begun.error();
   const WorldBake& bake = *begun;
-  ZoneScratch scratch(worker_count(config.workers));
-  std::vector<ZoneFacts> facts(bake.zones().size());
-  const Error cancelled{Errc::kCancelled, "bake: cancelled; nothing was written"};
-  for (size_t i = 0; i < facts.size(); ++i) {
-    const format::ZoneInput& input = bake.zones()[i];
-    if (context.on_progress) {
-      context.on_progress({"bake", bake.place(i), bake.place_count()});
-    }
-    if (context.cancel) return cancelled;
-    if (folder != nullptr) {
-      if (const auto kept = folder->keep(input.x(), input.z(), input.hash())) {
-        facts[i] = bake.facts_of(*kept);
-        continue;
-      }
-    }
-    flatbuffers::DetachedBuffer bytes;
-    if (!bake.bake(i, scratch, context, facts[i], bytes)) return cancelled;
-    const auto write_start = Clock::now();
-    const format::ZoneEntry& entry = facts[i].entry;
-    if (folder != nullptr) {
-      if (auto ok = folder->write(entry, input.hash(), {bytes.data(), bytes.size()}); !ok)
-        return ok.error();
-    } else if (entry.levels() > 0) {
-      auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(entry.x(), entry.z()));
-      if (!zone) return zone.error();
-      in_memory.push_back(std::move(*zone));
-    }
-    facts[i].seconds_write = seconds_since(write_start);
-  }
+  ZoneBaker zones(bake, config, context, folder);
+  if (auto ok = zones.run(); !ok) return ok.error();
+  in_memory = zones.take_zones();
+  const std::vector<ZoneFacts>& facts = zones.facts();
   auto world = bake.world(facts, report);
   if (!world) return world.error();
   if (auto ok = bake.add_air(folder, **world, context, report); !ok) return ok.error();

@@ -15,6 +15,7 @@
 #include "bake/zone_input.h"
 #include "core/corner_box.h"
 #include "core/hash.h"
+#include "core/parallel.h"
 #include "world/zone_data.h"
 
 namespace throng {
@@ -130,9 +131,14 @@ ZoneInputs find_inputs(const BakePlan& plan, bool hashed) {
     for (int32_t x = 0; x < plan.zones_x; ++x) {
       const auto items = found.triangles(static_cast<size_t>(z * plan.zones_x + x));
       if (items.empty()) continue;
-      found.inputs.emplace_back(x, z, hashed ? zone_input(plan, x, z, items) : 0);
+      found.inputs.emplace_back(x, z, 0);
     }
   }
+  parallel_for(hashed ? found.inputs.size() : 0, plan.config->workers, [&](size_t i) {
+    format::ZoneInput& input = found.inputs[i];
+    const auto items = found.triangles(static_cast<size_t>(input.z() * plan.zones_x + input.x()));
+    input = {input.x(), input.z(), zone_input(plan, input.x(), input.z(), items)};
+  });
   return found;
 }
 

@@ -152,7 +152,7 @@ Result<void> WorldFolder::read_part() {
       name, {reinterpret_cast<const uint8_t*>(records.data()), records.size() * sizeof(Done)});
 }
 
-std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_t input) {
+std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_t input) const {
   const auto [first, last] = sources_.equal_range({z, x});
   for (auto source = last; source != first;) {
     --source;
@@ -177,12 +177,6 @@ std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_
     return Kept{std::move(*zone), entry};
   }
   return std::nullopt;
-}
-
-Result<void> WorldFolder::write(const format::ZoneEntry& entry, uint64_t input,
-                                std::span<const uint8_t> bytes) {
-  if (auto ok = write_zone(path_, entry, bytes); !ok) return ok.error();
-  return add(entry, input);
 }
 
 Result<void> WorldFolder::write_zone(const std::string& path, const format::ZoneEntry& entry,
@@ -212,7 +206,7 @@ Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
 }
 
 template <class File>
-std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t input) {
+std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t input) const {
   for (const bool is_part : {true, false}) {
     if (!is_part && old_ == nullptr) continue;  // Nothing of it is to be kept.
     const fs::path from = (is_part ? part_ : fs::path(path_)) / name;
@@ -231,20 +225,20 @@ std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t i
   return nullptr;
 }
 
-std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) {
+std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) const {
   return keep_file<AirZone>(air_file_name(x, z), input);
 }
 
-std::unique_ptr<RegionZone> WorldFolder::keep_regions(int32_t x, int32_t z, uint64_t input) {
+std::unique_ptr<RegionZone> WorldFolder::keep_regions(int32_t x, int32_t z, uint64_t input) const {
   return keep_file<RegionZone>(region_file_name(x, z), input);
 }
 
-std::unique_ptr<LinkZone> WorldFolder::keep_links(int32_t x, int32_t z, uint64_t input) {
+std::unique_ptr<LinkZone> WorldFolder::keep_links(int32_t x, int32_t z, uint64_t input) const {
   return keep_file<LinkZone>(link_file_name(x, z), input);
 }
 
 Result<void> WorldFolder::write_file_of_zone(const std::string& name,
-                                             std::span<const uint8_t> bytes) {
+                                             std::span<const uint8_t> bytes) const {
   return write_file((part_ / name).string(), bytes);
 }
 

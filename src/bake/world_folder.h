@@ -37,7 +37,7 @@ class WorldFolder {
   /// Writes the file of a baked zone, if anybody stands there; `add` makes it count.
   static Result<void> write_zone(const std::string& path, const format::ZoneEntry& entry,
                                  std::span<const uint8_t> bytes);
-  /// Adds a zone whose file is written. Fails with kIo.
+  /// Adds a zone whose file is written. From one thread at a time. Fails with kIo.
   Result<void> add(const format::ZoneEntry& entry, uint64_t input);
   /// Leaves what was begun to the next bake.
   void leave() { part_.clear(); }
@@ -45,28 +45,27 @@ class WorldFolder {
   /// The world that is there, without its zones; null if there is none that can be read.
   [[nodiscard]] const WorldData* old_world() const { return old_.get(); }
 
+  // What is kept and files of zones: from several threads, of different zones.
+
   /// A zone that need not be baked; it is then in the new world. `zone` is null where nobody
   /// stands.
   struct Kept {
     std::unique_ptr<Zone> zone;
     format::ZoneEntry entry;
   };
-  std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input);
-
-  /// Adds a baked zone, or, with `bytes` empty, one in which nobody stands. Fails with kIo.
-  Result<void> write(const format::ZoneEntry& entry, uint64_t input,
-                     std::span<const uint8_t> bytes);
+  std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input) const;
 
   /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake
   /// or the old world; it is then in the new world. These files carry their input and a sum, so no
   /// journal tells of them. Null if there is none with this input.
-  std::unique_ptr<AirZone> keep_air(int32_t x, int32_t z, uint64_t input);
-  std::unique_ptr<RegionZone> keep_regions(int32_t x, int32_t z, uint64_t input);
-  std::unique_ptr<LinkZone> keep_links(int32_t x, int32_t z, uint64_t input);
+  std::unique_ptr<AirZone> keep_air(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<RegionZone> keep_regions(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<LinkZone> keep_links(int32_t x, int32_t z, uint64_t input) const;
   /// Adds such a file. Fails with kIo.
-  Result<void> write_file_of_zone(const std::string& name, std::span<const uint8_t> bytes);
+  Result<void> write_file_of_zone(const std::string& name, std::span<const uint8_t> bytes) const;
   /// The folder of the world in the making: the files of all zones added are there.
   [[nodiscard]] std::string part() const { return part_.string(); }
+  [[nodiscard]] const std::string& path() const { return path_; }
 
   /// Writes the manifest, and that of the air if there is any, and the index of the graph, and
   /// puts the world in its place. `carry_nodes`: see BakeConfig. Fails with kIo.
@@ -84,7 +83,7 @@ class WorldFolder {
   void read_old();
   Result<void> read_part();
   template <class File>
-  std::unique_ptr<File> keep_file(const std::string& name, uint64_t input);
+  std::unique_ptr<File> keep_file(const std::string& name, uint64_t input) const;
 
   std::string path_;
   std::filesystem::path part_;  // empty: finished or moved from

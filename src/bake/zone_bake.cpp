@@ -42,6 +42,7 @@ class ZoneJob {
   ZoneJob(const BakePlan& plan, int32_t zone_x, int32_t zone_z, ZoneScratch& scratch)
       : plan_(plan),
         scratch_(scratch),
+        workers_(static_cast<int32_t>(scratch.workers.size())),
         first_x_(zone_x * plan.tiles_per_zone - 1),
         first_z_(zone_z * plan.tiles_per_zone - 1),
         side_(plan.tiles_per_zone + 2),
@@ -80,6 +81,7 @@ class ZoneJob {
 
   const BakePlan& plan_;
   ZoneScratch& scratch_;
+  int32_t workers_;
   int32_t first_x_, first_z_;  // of the ring, in tiles of the world
   int32_t side_;
   std::vector<TileState> tiles_;
@@ -125,7 +127,7 @@ void ZoneJob::for_tiles(int32_t row0, int32_t row1, Body body) {
   row0 = std::max(row0, 0);
   row1 = std::min(row1, side_);
   if (row0 >= row1) return;
-  parallel_for_worker(static_cast<size_t>((row1 - row0) * side_), plan_.config->workers,
+  parallel_for_worker(static_cast<size_t>((row1 - row0) * side_), workers_,
                       [&](size_t i, int32_t worker) {
                         const int32_t column = static_cast<int32_t>(i) % side_;
                         const int32_t row = row0 + static_cast<int32_t>(i) / side_;
@@ -415,7 +417,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
   }
   const auto start = Clock::now();
   scratch_.triangles.resize(triangles.size());
-  parallel_ranges(triangles.size(), 4096, plan_.config->workers, [&](size_t begin, size_t end) {
+  parallel_ranges(triangles.size(), 4096, workers_, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       scratch_.triangles[i] =
           to_cell_triangle(*plan_.scene, triangles[i], plan_.grid, plan_.coder->code(triangles[i]));
@@ -464,7 +466,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
                                .z = zone_z,
                                .tiles_per_side = static_cast<uint32_t>(plan_.tiles_per_zone),
                                .class_count = static_cast<uint32_t>(plan_.bodies.size())},
-                              packs_, plan_.config->workers);
+                              packs_, workers_);
   }
   return true;
 }

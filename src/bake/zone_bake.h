@@ -48,7 +48,7 @@ struct ZoneResult {
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
 };
 
-/// Memory of a zone bake, kept from zone to zone.
+/// Memory of a zone bake, kept from zone to zone, and how many threads it has.
 class ZoneScratch;
 
 /// `triangles` are those of the scene that may touch the zone or its apron, in order.

@@ -35,6 +35,20 @@ void parallel_for(size_t count, int32_t workers, Body&& body) {
 void parallel_for_worker(size_t count, int32_t workers,
                          const std::function<void(size_t index, int32_t worker)>& body);
 
+/// How workers are dealt to tasks of which each could use some: where there are many, each task has
+/// one, and as many are done side by side, with the memory of as many. Few do one after the other.
+struct WorkerGroups {
+  int32_t groups = 1;
+  int32_t workers = 1;  ///< Of each.
+};
+WorkerGroups deal_workers(size_t tasks, int32_t workers);
+
+/// Calls body(index, group) for every index in [0, count), begun in order, from a thread of each of
+/// `groups`. What is called in it with several workers runs on threads of that group's own. Throws
+/// what a body threw, once the others have ended.
+void parallel_groups(size_t count, int32_t groups,
+                     const std::function<void(size_t index, int32_t group)>& body);
+
 /// A thread for work that must not hold up its owner, who waits for it with join(), at the latest
 /// when it goes.
 class SideThread {

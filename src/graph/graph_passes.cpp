@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <map>
+#include <mutex>
 #include <vector>
 
 #include "core/disjoint_sets.h"
 #include "core/hash.h"
+#include "core/parallel.h"
 #include "graph/zone_regions.h"
 #include "world/graph_index.h"
 #include "world/place.h"
@@ -25,11 +28,30 @@ constexpr uint64_t kMostZoneBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuf
 
 Error cancelled() { return {Errc::kCancelled, "graph: cancelled"}; }
 
+// What an entry tells once its links are known.
+struct LinksOfZone {
+  uint64_t count = 0;  // within the zone too
+  uint64_t bytes = 0, hash = 0;
+};
+
+format::GraphZone with(const format::GraphZone& entry, uint32_t first_component,
+                       const LinksOfZone& links) {
+  const auto count = links.bytes == 0 ? entry.links() : static_cast<uint32_t>(links.count);
+  return {entry.x(),          entry.z(),       entry.regions(),      count,
+          entry.components(), first_component, entry.region_bytes(), entry.region_hash(),
+          links.bytes,        links.hash};
+}
+
 class Passes {
  public:
   Passes(const WorldData& world, GraphFiles* files, int32_t workers, Context& context)
-      : world_(world), files_(files), workers_(workers), context_(context) {
+      : world_(world),
+        files_(files),
+        groups_(deal_workers(world.slots.size(), workers)),
+        context_(context) {
     made_.graph = std::make_shared<GraphData>();
+    made_.graph->slots.resize(world.slots.size());
+    inputs_.resize(world.slots.size());
   }
 
   Result<GraphMade> run();
@@ -44,7 +66,10 @@ class Passes {
     Side own, east, south;
   };
 
+  template <class Pass>
+  Result<void> over_zones(const char* stage, Pass pass);
   Result<void> find_regions(size_t slot);
+  Result<void> number_parts();
   Result<void> find_links(size_t slot, DisjointSets& sets);
   Result<flatbuffers::DetachedBuffer> make_links(size_t slot, uint64_t input, const Around& around);
   [[nodiscard]] GraphComponent place_of(size_t slot, const ZoneComponent& part,
@@ -54,19 +79,37 @@ class Passes {
   [[nodiscard]] Result<Side> side(int32_t slot) const;
   [[nodiscard]] uint64_t link_input(const Around& around) const;
   [[nodiscard]] Result<void> usable(int32_t slot) const;
-  void tell(const char* stage, size_t done) const;
 
   const WorldData& world_;
   GraphFiles* files_;
-  int32_t workers_;
+  WorkerGroups groups_;
   Context& context_;
+  std::mutex mutex_;
   GraphMade made_;
-  std::vector<uint64_t> inputs_;  // of the slots' regions
-  uint32_t components_ = 0;       // of zones
+  std::vector<uint64_t> inputs_;    // of the slots' regions
+  std::vector<LinksOfZone> links_;  // of the slots, while others still look at their entries
+  uint32_t components_ = 0;         // of zones
 };
 
-void Passes::tell(const char* stage, size_t done) const {
-  if (context_.on_progress) context_.on_progress({stage, done, world_.slots.size()});
+// Zone by zone, or several side by side. Stops at the first failure in the order of zones that have
+// one by then.
+template <class Pass>
+Result<void> Passes::over_zones(const char* stage, Pass pass) {
+  std::map<size_t, Error> failed;
+  parallel_groups(world_.slots.size(), groups_.groups, [&](size_t slot, int32_t) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!failed.empty() || context_.cancel) return;
+      if (context_.on_progress) context_.on_progress({stage, slot, world_.slots.size()});
+    }
+    if (auto ok = pass(slot); !ok) {
+      const std::lock_guard lock(mutex_);
+      failed.emplace(slot, ok.error());
+    }
+  });
+  if (!failed.empty()) return failed.begin()->second;
+  if (context_.cancel) return cancelled();
+  return {};
 }
 
 // All that regions are made from: the zone's bytes and what they leave out, the steps of classes.
@@ -101,7 +144,7 @@ Result<Passes::Side> Passes::side(int32_t slot) const {
 Result<void> Passes::find_regions(size_t slot) {
   const format::ZoneEntry& entry = world_.slots[slot]->entry;
   const uint64_t input = region_input(slot);
-  inputs_.push_back(input);
+  inputs_[slot] = input;
   std::unique_ptr<RegionZone> zone;
   if (files_ != nullptr) {
     zone = files_->keep_regions(entry.x(), entry.z(), input);
@@ -109,7 +152,7 @@ Result<void> Passes::find_regions(size_t slot) {
   }
   if (zone == nullptr) {
     if (auto ok = usable(static_cast<int32_t>(slot)); !ok) return ok.error();
-    const auto tables = find_zone_regions(world_, slot, workers_, context_);
+    const auto tables = find_zone_regions(world_, slot, groups_.workers, context_);
     if (!tables) return cancelled();
     const std::string name = region_file_name(entry.x(), entry.z());
     const uint64_t bytes =
@@ -127,24 +170,33 @@ Result<void> Passes::find_regions(size_t slot) {
       if (auto ok = files_->write(name, zone->bytes()); !ok) return ok.error();
     }
   }
-  if (uint64_t{components_} + zone->component_count() >= UINT32_MAX) {
-    return Error{Errc::kLimit, "graph: more than 2^32 parts; use a larger cell"};
-  }
   auto own = std::make_unique<GraphData::Slot>();
   own->entry = {entry.x(),
                 entry.z(),
                 static_cast<uint32_t>(zone->regions().size()),
                 static_cast<uint32_t>(zone->links().size()),
                 zone->component_count(),
-                components_,
+                0,
                 zone->bytes().size(),
                 hash_bytes(zone->bytes().data(), zone->bytes().size()),
                 0,
                 0};
-  components_ += own->entry.components();
   // Those in a folder are mapped again when pass 2 comes to them.
   if (files_ == nullptr) own->zone = std::move(zone);
-  made_.graph->slots.push_back(std::move(own));
+  made_.graph->slots[slot] = std::move(own);
+  return {};
+}
+
+// Where the components of each zone come among those of all.
+Result<void> Passes::number_parts() {
+  for (const auto& slot : made_.graph->slots) {
+    format::GraphZone& entry = slot->entry;
+    if (uint64_t{components_} + entry.components() >= UINT32_MAX) {
+      return Error{Errc::kLimit, "graph: more than 2^32 parts; use a larger cell"};
+    }
+    entry = with(entry, components_, {});
+    components_ += entry.components();
+  }
   return {};
 }
 
@@ -159,14 +211,17 @@ Result<flatbuffers::DetachedBuffer> Passes::make_links(size_t slot, uint64_t inp
       if (auto ok = usable(zone.slot); !ok) return ok.error();
     }
     links[i] = find_zone_links(world_, {slot, around.own.zone},
-                               {static_cast<size_t>(next.slot), next.zone}, workers_);
+                               {static_cast<size_t>(next.slot), next.zone}, groups_.workers);
   }
-  ++made_.zones_relinked;
+  {
+    const std::lock_guard lock(mutex_);
+    ++made_.zones_relinked;
+  }
   return link_zone_bytes(entry.x(), entry.z(), input, links[0], links[1]);
 }
 
 Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
-  format::GraphZone& entry = made_.graph->slots[slot]->entry;
+  const format::GraphZone& entry = made_.graph->slots[slot]->entry;
   const auto own = side(static_cast<int32_t>(slot)),
              east = side(slot_at(world_, entry.x() + 1, entry.z())),
              south = side(slot_at(world_, entry.x(), entry.z() + 1));
@@ -210,20 +265,14 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
       }
     }
   };
-  join(links->east(), *east);
-  join(links->south(), *south);
-  const uint64_t count = entry.links() + links->east().size() + links->south().size();
-  entry = {entry.x(),
-           entry.z(),
-           entry.regions(),
-           static_cast<uint32_t>(count),
-           entry.components(),
-           entry.first_component(),
-           entry.region_bytes(),
-           entry.region_hash(),
-           links->bytes().size(),
-           hash_bytes(links->bytes().data(), links->bytes().size())};
-  own->zone->give_back();  // Those before it in the order have had their links with it.
+  {
+    const std::lock_guard lock(mutex_);
+    join(links->east(), *east);
+    join(links->south(), *south);
+  }
+  links_[slot] = {entry.links() + links->east().size() + links->south().size(),
+                  links->bytes().size(), hash_bytes(links->bytes().data(), links->bytes().size())};
+  own->zone->give_back();  // Most of those around it have had their links with it.
   return {};
 }
 
@@ -278,18 +327,17 @@ void Passes::number_components(DisjointSets& sets) {
 
 Result<GraphMade> Passes::run() {
   GraphData& graph = *made_.graph;
-  const size_t zones = world_.slots.size();
-  for (size_t s = 0; s < zones; ++s) {
-    tell("regions", s);
-    if (context_.cancel) return cancelled();
-    if (auto ok = find_regions(s); !ok) return ok.error();
-  }
+  auto ok = over_zones("regions", [&](size_t slot) { return find_regions(slot); });
+  if (ok) ok = number_parts();
+  if (!ok) return ok.error();
   if (files_ != nullptr) graph.path = world_.path;
   DisjointSets sets(components_);
-  for (size_t s = 0; s < zones; ++s) {
-    tell("links", s);
-    if (context_.cancel) return cancelled();
-    if (auto ok = find_links(s, sets); !ok) return ok.error();
+  links_.resize(graph.slots.size());
+  ok = over_zones("links", [&](size_t slot) { return find_links(slot, sets); });
+  if (!ok) return ok.error();
+  for (size_t s = 0; s < links_.size(); ++s) {
+    format::GraphZone& entry = graph.slots[s]->entry;
+    entry = with(entry, entry.first_component(), links_[s]);
   }
   number_components(sets);
   graph.show(world_);

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <stdexcept>
 #include <vector>
 
 namespace throng {
@@ -49,6 +51,57 @@ TEST(Parallel, WorkersMayWorkInsideAWorker) {
     for (const int value : inner) sums[outer] += value;
   });
   EXPECT_EQ(sums, std::vector<int>(16, 4950));
+}
+
+TEST(Parallel, GroupsVisitEveryIndexOnceAndWorkOnThreadsOfTheirOwn) {
+  for (const int32_t groups : {1, 2, 5}) {
+    std::vector<std::atomic<int>> inside(static_cast<size_t>(groups));
+    std::atomic<int> clashes{0};
+    std::vector<int> sums(200, 0);
+    parallel_groups(sums.size(), groups, [&](size_t index, int32_t group) {
+      if (inside[static_cast<size_t>(group)]++ != 0) ++clashes;
+      // Scratch memory of a group's workers: nobody else may be in it.
+      std::vector<std::atomic<int>> used(2);
+      std::atomic<int> sum{0};
+      parallel_for_worker(100, 2, [&](size_t i, int32_t worker) {
+        if (used[static_cast<size_t>(worker)]++ != 0) ++clashes;
+        sum += static_cast<int>(i);
+        --used[static_cast<size_t>(worker)];
+      });
+      sums[index] += sum;
+      --inside[static_cast<size_t>(group)];
+    });
+    EXPECT_EQ(clashes, 0);
+    EXPECT_EQ(sums, std::vector<int>(200, 4950)) << groups << " groups";
+  }
+}
+
+TEST(Parallel, WhatAGroupThrowsIsThrownOnceTheOthersHaveEnded) {
+  for (const int32_t groups : {1, 3}) {
+    std::atomic<int> running{0};
+    const auto run = [&] {
+      parallel_groups(1000, groups, [&](size_t index, int32_t) {
+        ++running;
+        const bool fails = index == 20;
+        --running;
+        if (fails) throw std::runtime_error("the twentieth");
+      });
+    };
+    EXPECT_THROW(run(), std::runtime_error);
+    EXPECT_EQ(running, 0);
+  }
+}
+
+TEST(Parallel, WorkersAreDealtSoThatNoneIsLeft) {
+  for (int32_t workers = 1; workers <= 33; ++workers) {
+    for (const size_t tasks : {size_t{0}, size_t{1}, size_t{3}, size_t{10}, size_t{5000}}) {
+      const WorkerGroups dealt = deal_workers(tasks, workers);
+      EXPECT_GE(dealt.groups * dealt.workers, workers);
+      EXPECT_LT((dealt.groups - 1) * dealt.workers, 2 * workers);
+      EXPECT_LE(dealt.groups, std::max<size_t>(tasks, 1));
+      EXPECT_TRUE(workers >= 4 || dealt.groups == 1);
+    }
+  }
 }
 
 }  // namespace

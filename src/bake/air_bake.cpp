@@ -88,6 +88,18 @@ AirShape air_shape(const BakePlan& plan, const Box3d& bounds) {
   return shape;
 }
 
+namespace {
+
+std::unique_ptr<AirData::Slot> slot_of(int32_t x, int32_t z, std::span<const uint8_t> bytes,
+                                       std::unique_ptr<AirZone> zone) {
+  auto slot = std::make_unique<AirData::Slot>();
+  slot->entry = format::AirEntry(x, z, bytes.size(), hash_bytes(bytes.data(), bytes.size()));
+  slot->zone = std::move(zone);
+  return slot;
+}
+
+}  // namespace
+
 struct AirBaker::Worker {
   TileColumns columns;
   TileSpans spans;
@@ -100,13 +112,13 @@ struct AirBaker::TileAir {
   std::vector<Layers> layers;
 };
 
-AirBaker::AirBaker(const BakePlan& plan, const AirShape& shape, WorldFolder* folder)
+AirBaker::AirBaker(const BakePlan& plan, const AirShape& shape, const WorldFolder* folder,
+                   int32_t workers)
     : plan_(plan), shape_(shape), folder_(folder) {
-  for (int32_t i = 0; i < worker_count(plan.config->workers); ++i) {
-    workers_.push_back(std::make_unique<Worker>());
-  }
+  for (int32_t i = 0; i < workers; ++i) workers_.push_back(std::make_unique<Worker>());
 }
 
+AirBaker::AirBaker(AirBaker&&) noexcept = default;
 AirBaker::~AirBaker() = default;
 
 // One tile of the zone and its ring, whose rows and columns are 0 and n + 1.
@@ -143,8 +155,10 @@ void AirBaker::rasterise(int32_t tile_x, int32_t tile_z, const TileRect& rect,
   }
 }
 
-Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint32_t> triangles,
-                            uint64_t input, Context& context) {
+Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zone_z,
+                                                      std::span<const uint32_t> triangles,
+                                                      uint64_t input, Context& context) {
+  const auto workers = static_cast<int32_t>(workers_.size());
   if (shape_.floor <= -kMostAirLayers || shape_.ceiling >= kMostAirLayers) {
     return Error{Errc::kLimit,
                  "bake: the air reaches over 2 million air cells above or below height 0; use a "
@@ -172,20 +186,19 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
   const uint64_t key = hash_span(std::span<const uint64_t>(words));
   if (folder_ != nullptr) {
     if (auto kept = folder_->keep_air(zone_x, zone_z, key)) {
-      add(zone_x, zone_z, kept->bytes(), nullptr);
-      return {};
+      return slot_of(zone_x, zone_z, kept->bytes(), nullptr);
     }
   }
   const int32_t first_x = zone_x * tiles - 1, first_z = zone_z * tiles - 1;
   triangles_.resize(triangles.size());
-  parallel_for(triangles.size(), plan_.config->workers, [&](size_t i) {
+  parallel_for(triangles.size(), workers, [&](size_t i) {
     triangles_[i] =
         to_cell_triangle(*plan_.scene, triangles[i], plan_.grid, plan_.coder->code(triangles[i]));
   });
   const TriangleBins bins =
       bin_triangles(triangles_, first_x * kTileSide, first_z * kTileSide, ring, ring, kTileSide, 0);
   std::vector<TileAir> air(static_cast<size_t>(ring) * static_cast<size_t>(ring));
-  parallel_for_worker(air.size(), plan_.config->workers, [&](size_t i, int32_t worker) {
+  parallel_for_worker(air.size(), workers, [&](size_t i, int32_t worker) {
     const auto items = bins.square(i);
     if (items.empty() || context.cancel) return;
     const int32_t column = static_cast<int32_t>(i) % ring, row = static_cast<int32_t>(i) / ring;
@@ -210,7 +223,7 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
       own = own || !beside;
     }
   }
-  if (!own) return {};  // nothing but air
+  if (!own) return std::unique_ptr<AirData::Slot>();  // nothing but air
   // The highest layer stays free of matter: it stands for all that is higher or lower.
   const int32_t base = low & -4, height = ((high - base + 2) + 3) & -4;
   if (static_cast<double>(height) * across * across / 8 > static_cast<double>(kMostBytes)) {
@@ -219,7 +232,7 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
                                    "baked; use a larger air cell or smaller zones"};
   }
   AirRows rows(across, height, across, true);
-  parallel_for(static_cast<size_t>(across), plan_.config->workers, [&](size_t i) {
+  parallel_for(static_cast<size_t>(across), workers, [&](size_t i) {
     const auto z = static_cast<int32_t>(i);
     const int32_t cell_z = zone_z * side + z - apron, first_cell = zone_x * side - apron;
     const int32_t row = (z - apron + per_tile) / per_tile,
@@ -254,42 +267,33 @@ Result<void> AirBaker::bake(int32_t zone_x, int32_t zone_z, std::span<const uint
                              .largest = AirTree::kMostSide,
                              .free_beyond = true};
   AirTreeData tree = build_air_tree(source);
-  measure_room(source, apron, plan_.config->workers, tree);
+  measure_room(source, apron, workers, tree);
   auto bytes = air_zone_bytes(zone_x, zone_z, key, tree);
   const std::span<const uint8_t> view(bytes.data(), bytes.size());
   if (folder_ != nullptr) {
     if (auto ok = folder_->write_file_of_zone(air_file_name(zone_x, zone_z), view); !ok)
       return ok.error();
-    add(zone_x, zone_z, view, nullptr);
-    return {};
+    return slot_of(zone_x, zone_z, view, nullptr);
   }
   auto zone = AirZone::from_bytes(std::move(bytes), air_file_name(zone_x, zone_z));
   if (!zone) return zone.error();
   const auto kept = (*zone)->bytes();
-  add(zone_x, zone_z, kept, std::move(*zone));
-  return {};
+  return slot_of(zone_x, zone_z, kept, std::move(*zone));
 }
 
-void AirBaker::add(int32_t x, int32_t z, std::span<const uint8_t> bytes,
-                   std::unique_ptr<AirZone> zone) {
-  auto slot = std::make_unique<AirData::Slot>();
-  slot->entry = format::AirEntry(x, z, bytes.size(), hash_bytes(bytes.data(), bytes.size()));
-  slot->zone = std::move(zone);
-  slots_.push_back(std::move(slot));
-}
-
-std::shared_ptr<AirData> AirBaker::finish(const WorldData& world) {
+std::shared_ptr<AirData> gather_air(const AirShape& shape, const WorldData& world,
+                                    std::vector<std::unique_ptr<AirData::Slot>> zones) {
   auto air = std::make_shared<AirData>();
-  air->shape = shape_;
+  air->shape = shape;
   air->fit(world);
-  for (auto& slot : slots_) {
+  for (auto& slot : zones) {
+    if (slot == nullptr) continue;
     const format::AirEntry& entry = slot->entry;
     air->slot_of_zone[static_cast<size_t>(entry.z() * air->zones_x + entry.x())] =
         static_cast<int32_t>(air->slots.size());
     air->bytes += entry.bytes();
     air->slots.push_back(std::move(slot));
   }
-  slots_.clear();
   return air;
 }
 

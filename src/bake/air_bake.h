@@ -24,34 +24,37 @@ Result<void> check_air(const BakeConfig& config);
 /// True if the config asks for air: a cell for it, or a class that flies.
 bool wants_air(const BakeConfig& config);
 
-/// Bakes air files one zone after the other.
+/// Bakes air files one zone after the other. Several may bake different zones of one plan at a
+/// time.
 class AirBaker {
  public:
   /// `folder` may be null: then the air stays in memory.
-  AirBaker(const BakePlan& plan, const AirShape& shape, WorldFolder* folder);
+  AirBaker(const BakePlan& plan, const AirShape& shape, const WorldFolder* folder, int32_t workers);
+  AirBaker(AirBaker&&) noexcept;
+  AirBaker& operator=(AirBaker&&) = delete;
   ~AirBaker();
 
-  /// One zone, from the triangles that may touch it or its apron, in order. `input` tells what its
-  /// ground was baked from. Fails with kIo, kLimit or kCancelled.
-  Result<void> bake(int32_t zone_x, int32_t zone_z, std::span<const uint32_t> triangles,
-                    uint64_t input, Context& context);
-
-  /// What came of it, for a world whose zones are all baked.
-  std::shared_ptr<AirData> finish(const WorldData& world);
+  /// One zone, from the triangles that may touch it or its apron, in order; null: there is nothing
+  /// but air. `input` tells what its ground was baked from. Fails with kIo, kLimit or kCancelled.
+  Result<std::unique_ptr<AirData::Slot>> bake(int32_t zone_x, int32_t zone_z,
+                                              std::span<const uint32_t> triangles, uint64_t input,
+                                              Context& context);
 
  private:
   struct Worker;
   struct TileAir;
-  void add(int32_t x, int32_t z, std::span<const uint8_t> bytes, std::unique_ptr<AirZone> zone);
   void rasterise(int32_t tile_x, int32_t tile_z, const TileRect& rect,
                  std::span<const uint32_t> items, Worker& worker, TileAir& tile) const;
 
   const BakePlan& plan_;
   AirShape shape_;
-  WorldFolder* folder_;
-  std::vector<std::unique_ptr<AirData::Slot>> slots_;
+  const WorldFolder* folder_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<CellTriangle> triangles_;
 };
+
+/// What came of all zones of a world, in their order; null ones are passed over.
+std::shared_ptr<AirData> gather_air(const AirShape& shape, const WorldData& world,
+                                    std::vector<std::unique_ptr<AirData::Slot>> zones);
 
 }  // namespace throng

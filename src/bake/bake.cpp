@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "bake/world_folder.h"
 #include "bake/zone_bake.h"
 #include "core/parallel.h"
+#include "core/side_by_side.h"
 #include "core/stopwatch.h"
 #include "world/zone_data.h"
 
@@ -34,16 +34,19 @@ class ZoneBaker {
         zones_(folder == nullptr ? facts_.size() : 0) {}
 
   Result<void> run() {
-    parallel_groups(facts_.size(), groups_.groups, [&](size_t i, int32_t group) {
-      if (is_stopped(i)) return;
-      auto& scratch = scratch_[static_cast<size_t>(group)];
-      if (!scratch) scratch = std::make_unique<ZoneScratch>(groups_.workers);
-      if (auto ok = bake(i, *scratch); !ok) {
-        const std::lock_guard lock(mutex_);
-        if (!failure_) failure_ = ok.error();
-      }
-    });
-    if (failure_) return *failure_;
+    const auto baked = side_by_side(
+        facts_.size(), groups_, context_,
+        [&](size_t i) {
+          if (context_.on_progress) {
+            context_.on_progress({"bake", bake_.place(i), bake_.place_count()});
+          }
+        },
+        [&](size_t i, int32_t group) {
+          auto& scratch = scratch_[static_cast<size_t>(group)];
+          if (!scratch) scratch = std::make_unique<ZoneScratch>(groups_.workers);
+          return bake(i, *scratch);
+        });
+    if (!baked) return baked.error();
     if (context_.cancel) return cancelled();
     return {};
   }
@@ -57,15 +60,6 @@ class ZoneBaker {
 
  private:
   static Error cancelled() { return {Errc::kCancelled, "bake: cancelled; nothing was written"}; }
-
-  bool is_stopped(size_t i) {
-    const std::lock_guard lock(mutex_);
-    if (failure_ || context_.cancel) return true;
-    if (context_.on_progress) {
-      context_.on_progress({"bake", bake_.place(i), bake_.place_count()});
-    }
-    return false;
-  }
 
   Result<void> bake(size_t i, ZoneScratch& scratch) {
     const format::ZoneInput& input = bake_.zones()[i];
@@ -107,8 +101,7 @@ class ZoneBaker {
   std::vector<std::unique_ptr<ZoneScratch>> scratch_;  // by group
   std::vector<ZoneFacts> facts_;
   std::vector<std::unique_ptr<Zone>> zones_;
-  std::mutex mutex_;
-  std::optional<Error> failure_;
+  std::mutex mutex_;  // of the folder's journal
 };
 
 Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,

@@ -16,6 +16,7 @@
 #include "core/corner_box.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "core/side_by_side.h"
 #include "world/zone_data.h"
 
 namespace throng {
@@ -342,20 +343,29 @@ Result<void> WorldBake::add_air(WorldFolder* folder, WorldData& world, Context& 
   const BakePlan& plan = plan_->plan;
   if (!wants_air(*plan.config)) return {};
   const auto start = std::chrono::steady_clock::now();
-  AirBaker air(plan, air_shape(plan, plan_->bounds), folder);
-  for (size_t zone = 0; zone < zones().size(); ++zone) {
-    const format::ZoneInput& input = zones()[zone];
-    if (context.on_progress) context.on_progress({"air", zone, zones().size()});
-    if (context.cancel) {
-      return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
-    }
-    if (auto ok = air.bake(input.x(), input.z(), plan_->zones.triangles(place(zone)), input.hash(),
-                           context);
-        !ok) {
-      return ok.error();
-    }
+  const AirShape shape = air_shape(plan, plan_->bounds);
+  const WorkerGroups dealt = deal_workers(zones().size(), plan.config->workers);
+  std::vector<AirBaker> air;
+  for (int32_t group = 0; group < dealt.groups; ++group) {
+    air.emplace_back(plan, shape, folder, dealt.workers);
   }
-  world.air = air.finish(world);
+  std::vector<std::unique_ptr<AirData::Slot>> slots(zones().size());
+  const auto baked = side_by_side(
+      zones().size(), dealt, context,
+      [&](size_t zone) {
+        if (context.on_progress) context.on_progress({"air", zone, zones().size()});
+      },
+      [&](size_t zone, int32_t group) -> Result<void> {
+        const format::ZoneInput& input = zones()[zone];
+        auto made = air[static_cast<size_t>(group)].bake(
+            input.x(), input.z(), plan_->zones.triangles(place(zone)), input.hash(), context);
+        if (!made) return made.error();
+        slots[zone] = *std::move(made);
+        return {};
+      });
+  if (!baked) return baked.error();
+  if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
+  world.air = gather_air(shape, world, std::move(slots));
   report.air_zones = world.air->slots.size();
   report.air_bytes = world.air->bytes;
   report.seconds_air =

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <map>
 #include <mutex>
 #include <vector>
 
 #include "core/disjoint_sets.h"
 #include "core/hash.h"
-#include "core/parallel.h"
+#include "core/side_by_side.h"
 #include "graph/zone_regions.h"
 #include "world/graph_index.h"
 #include "world/place.h"
@@ -91,25 +90,17 @@ class Passes {
   uint32_t components_ = 0;         // of zones
 };
 
-// Zone by zone, or several side by side. Stops at the first failure in the order of zones that have
-// one by then.
 template <class Pass>
 Result<void> Passes::over_zones(const char* stage, Pass pass) {
-  std::map<size_t, Error> failed;
-  parallel_groups(world_.slots.size(), groups_.groups, [&](size_t slot, int32_t) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!failed.empty() || context_.cancel) return;
-      if (context_.on_progress) context_.on_progress({stage, slot, world_.slots.size()});
-    }
-    if (auto ok = pass(slot); !ok) {
-      const std::lock_guard lock(mutex_);
-      failed.emplace(slot, ok.error());
-    }
-  });
-  if (!failed.empty()) return failed.begin()->second;
-  if (context_.cancel) return cancelled();
-  return {};
+  const size_t zones = world_.slots.size();
+  auto ok = side_by_side(
+      zones, groups_, context_,
+      [&](size_t slot) {
+        if (context_.on_progress) context_.on_progress({stage, slot, zones});
+      },
+      [&](size_t slot, int32_t) { return pass(slot); });
+  if (ok && context_.cancel) return cancelled();
+  return ok;
 }
 
 // All that regions are made from: the zone's bytes and what they leave out, the steps of classes.

@@ -350,6 +350,9 @@ bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
 // legal, whose tilt comes from there (world/surface.h).
 void forget_feet(const CellRows& legal, Sheet& sheet) {
   if (sheet.all_useful) return;
+  // Nor is anything forgotten where a class may stand everywhere; those around such a tile look at
+  // its heights meanwhile (is_open).
+  if (std::all_of(legal.begin(), legal.end(), [](uint64_t row) { return ~row == 0; })) return;
   CellRows kept = sheet.useful;
   const auto keep = [&](size_t z, uint64_t row) {
     const uint64_t rims = (row & 1) << 2 | (row & uint64_t{1} << 63) >> 2;

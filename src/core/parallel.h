@@ -49,6 +49,9 @@ WorkerGroups deal_workers(size_t tasks, int32_t workers);
 void parallel_groups(size_t count, int32_t groups,
                      const std::function<void(size_t index, int32_t group)>& body);
 
+/// The group of parallel_groups that this thread belongs to, from 1; 0: none.
+int32_t worker_group();
+
 /// A thread for work that must not hold up its owner, who waits for it with join(), at the latest
 /// when it goes.
 class SideThread {

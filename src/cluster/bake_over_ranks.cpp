@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 #include "bake/graph_bake.h"
@@ -134,13 +133,8 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
   Result<void> planned;
   if (!bake) planned = bake.error();
   if (auto ok = agree_over_ranks(planned); !ok) return ok.error();
-  const auto inputs = ranks.gather(bake->input_hash());
-  const auto other = std::find_if(inputs.begin(), inputs.end(),
-                                  [&](uint64_t input) { return input != inputs[0]; });
-  if (other != inputs.end()) {
-    return Error{Errc::kBadInput, "bake: rank " + std::to_string(other - inputs.begin()) +
-                                      " has read another scene, or other options, than rank 0; "
-                                      "all ranks must see the same files"};
+  if (auto ok = same_over_ranks(ranks, bake->input_hash(), "bake", "read another scene"); !ok) {
+    return ok.error();
   }
 
   BakeReport report;

@@ -230,6 +230,17 @@ int32_t workers_of_rank(int32_t asked, const Ranks& ranks) {
   return std::clamp(cores / ranks.local_size(), 1, worker_count(0));
 }
 
+Result<void> same_over_ranks(Ranks& ranks, uint64_t input, const char* stage, const char* other) {
+  const auto inputs = ranks.gather(input);
+  const auto found =
+      std::find_if(inputs.begin(), inputs.end(), [&](uint64_t one) { return one != inputs[0]; });
+  if (found == inputs.end()) return {};
+  return Error{Errc::kBadInput, std::string(stage) + ": rank " +
+                                    std::to_string(found - inputs.begin()) + " has " + other +
+                                    ", or other options, than rank 0; all ranks must see the same "
+                                    "files"};
+}
+
 Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context) {
   constexpr auto kMeetings = Ranks::Channel::kMeetings;
   const RankJobs what{.stage = "bake", .work = {}, .finished = [](bool) {

@@ -48,6 +48,10 @@ Result<void> deal_jobs(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Cont
 /// knows then, or with kCancelled.
 Result<void> do_dealt_jobs(Ranks& ranks, const RankJobs& what, Context& context);
 
+/// Fails with kBadInput on every rank if a rank has another input than rank 0: it "has <read
+/// another scene>, or other options".
+Result<void> same_over_ranks(Ranks& ranks, uint64_t input, const char* stage, const char* other);
+
 /// meet_over_ranks, for several ranks.
 Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context);
 

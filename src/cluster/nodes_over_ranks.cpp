@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 #include "bake/node_bake.h"
@@ -87,13 +86,8 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
   if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
   NodeBaker baker(world, scene, own, &*folder);
   baker.plan();
-  const auto inputs = ranks.gather(baker.input());
-  const auto other = std::find_if(inputs.begin(), inputs.end(),
-                                  [&](uint64_t input) { return input != inputs[0]; });
-  if (other != inputs.end()) {
-    return Error{Errc::kBadInput, "nodes: rank " + std::to_string(other - inputs.begin()) +
-                                      " has another world, or other options, than rank 0; all "
-                                      "ranks must see the same files"};
+  if (auto ok = same_over_ranks(ranks, baker.input(), "nodes", "opened another world"); !ok) {
+    return ok.error();
   }
   // Rank 0 looks through what is there.
   const Result<void> kept = ranks.rank() == 0 ? baker.keep_zones() : Result<void>();

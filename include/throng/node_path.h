@@ -60,7 +60,7 @@ struct NodePath {
   /// If the goal is unreachable, `points` lead to the place that comes nearest to it, in all three
   /// dimensions, of those where the way crosses from block to block; and what is in the way there.
   Obstacle obstacle = Obstacle::kNone;
-  uint64_t nodes = 0;  ///< Crossings that the search looked at.
+  uint64_t nodes = 0;  ///< Crossings, and gates of districts, that the search looked at.
 };
 
 struct NodePathSummary {
@@ -97,8 +97,9 @@ class THRONG_API NodePathFinder {
   [[nodiscard]] std::optional<NodeSquare> square(uint32_t node, double from_s, double from_t,
                                                  double to_s, double to_t) const;
 
-  /// A way of little cost: A* over the middles of the lines along which nodes touch, then pulled
-  /// taut within the nodes that it leads over. `spacing` is how far its points on curved ground
+  /// A way of little cost: A* over the middles of the lines along which nodes touch, where it is
+  /// long and the finder has districts put together over these, then pulled taut within the nodes
+  /// that it leads over. `spacing` is how far its points on curved ground
   /// are apart at most. [m, > 0] `path` is reused: its memory stays. Gives up when the
   /// budget is spent.
   void find(const NodePlace& from, const NodePlace& to, NodePath& path, double spacing = 0.25,

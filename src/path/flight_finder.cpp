@@ -119,6 +119,7 @@ struct FlightFinder::Scratch {
   std::vector<AirPoint> way;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
+  FlightSpace::ZoneOrder zone_order;
   FlightPorts::Scratch parts;
   std::vector<FlightPorts::Part> route;
 };
@@ -462,19 +463,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
     return;
   }
   const AirPoint goal = ends.to_air(query.to);
-  AirPoint nearest;
-  double least = std::numeric_limits<double>::infinity();
-  for (size_t b = 0; b < space.boxes.size(); ++b) {
-    const AirCube& box = space.boxes[b];
-    const auto into = [&](double at, int32_t low) {
-      return std::clamp(at, low + kAirSkin, low + box.side - kAirSkin);
-    };
-    const AirPoint p{into(goal.x, box.x), into(goal.y, box.y), into(goal.z, box.z)};
-    const double far = air_distance(p, goal);
-    if (far >= least || !std::binary_search(airs.begin(), airs.end(), space.component[b])) continue;
-    least = far;
-    nearest = p;
-  }
+  const AirPoint nearest = space.nearest_in(airs, goal, scratch.zone_order);
   FlightQuery nearer = query;
   nearer.to = ends.to_metres(off_faces(nearest));
   find_flight(nearer, path);

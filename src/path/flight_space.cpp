@@ -69,6 +69,42 @@ bool FlightSpace::sees(AirPoint from, AirPoint to) const {
   }
 }
 
+AirPoint FlightSpace::nearest_in(std::span<const uint32_t> components, AirPoint goal,
+                                 ZoneOrder& order) const {
+  order.clear();
+  for (uint32_t zone = 0; zone + 1 < first_box.size(); ++zone) {
+    if (first_box[zone] == first_box[zone + 1]) continue;
+    const auto beside = [&](double at, int32_t place) {
+      const double low = static_cast<double>(place) * zone_side;
+      return std::max({low - at, at - (low + zone_side), 0.0});
+    };
+    const double x = beside(goal.x, static_cast<int32_t>(zone) % zones_x);
+    const double z = beside(goal.z, static_cast<int32_t>(zone) / zones_x);
+    order.emplace_back(std::sqrt(x * x + z * z), zone);
+  }
+  std::sort(order.begin(), order.end());
+  AirPoint nearest;
+  double least = std::numeric_limits<double>::infinity();
+  uint32_t best = kNoBox;
+  for (const auto& [away, zone] : order) {
+    if (away > least) break;
+    for (uint32_t b = first_box[zone]; b < first_box[zone + 1]; ++b) {
+      const AirCube& box = boxes[b];
+      const auto into = [&](double at, int32_t low) {
+        return std::clamp(at, low + kAirSkin, low + box.side - kAirSkin);
+      };
+      const AirPoint p{into(goal.x, box.x), into(goal.y, box.y), into(goal.z, box.z)};
+      const double far = air_distance(p, goal);
+      if (far > least || (far == least && b > best)) continue;
+      if (!std::binary_search(components.begin(), components.end(), component[b])) continue;
+      least = far;
+      nearest = p;
+      best = b;
+    }
+  }
+  return nearest;
+}
+
 uint64_t FlightSpace::bytes() const {
   uint64_t sum = boxes.size() * (sizeof(AirCube) + sizeof(uint32_t));
   for (const AirTreeData& tree : zones) sum += tree.nodes.size() * 4 + tree.leaves.size() * 8;
@@ -288,6 +324,7 @@ Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, 
     const auto zx = static_cast<int32_t>(i) % air.zones_x,
                zz = static_cast<int32_t>(i) / air.zones_x;
     const auto first = static_cast<uint32_t>(space.boxes.size());
+    space.first_box.push_back(first);
     for (uint32_t& word : space.zones[i].nodes) {
       if (air_kind(word) == AirKind::kFree)
         word = air_word(AirKind::kFree, air_number(word) + first);
@@ -300,6 +337,7 @@ Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, 
     }
     boxes[i] = {};
   }
+  space.first_box.push_back(static_cast<uint32_t>(space.boxes.size()));
   find_components(space);
   return space;
 }

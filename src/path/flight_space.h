@@ -4,6 +4,8 @@
 
 #include <bit>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "throng/context.h"
@@ -48,7 +50,8 @@ struct FlightSpace {
     uint32_t first_box = 0;  // boxes follow in the order of these
   };
   std::vector<std::vector<Leaf>> leaves;  // per zone
-  std::vector<AirCube> boxes;
+  std::vector<AirCube> boxes;             // zone by zone
+  std::vector<uint32_t> first_box;        // by zone, and the end
   std::vector<uint32_t> component;  // per box: the first box of all that hold together with it
 
   /// The box that a cell belongs to, or none if the body may not be there.
@@ -65,6 +68,12 @@ struct FlightSpace {
   /// a face with this one.
   template <class Visit>
   void for_neighbours(const AirCube& box, Visit&& visit, int32_t least = 1) const;
+  /// The point nearest to a goal in boxes of some components, rising, a skin off their faces; of
+  /// boxes as near as each other in the first. Zones are looked at in the order of how near they
+  /// may come, in `order`, whose memory stays. There must be such a box.
+  using ZoneOrder = std::vector<std::pair<double, uint32_t>>;
+  [[nodiscard]] AirPoint nearest_in(std::span<const uint32_t> components, AirPoint goal,
+                                    ZoneOrder& order) const;
   [[nodiscard]] uint64_t bytes() const;
 
  private:

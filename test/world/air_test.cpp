@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "core/hash.h"
 #include "core/random.h"
@@ -200,6 +202,54 @@ TEST(Air, NoCubePromisesMoreRoomThanThereIs) {
     });
   }
   EXPECT_GT(wide, 20u);
+}
+
+// All boxes are asked; goals lie in the world and far beside it.
+TEST(Air, TheNearestPointOfSomeComponentsIsFoundZoneByZone) {
+  uint64_t asked = 0;
+  for (uint64_t seed = 0; seed < 4; ++seed) {
+    const World world = bake(litter(seed), 0.2, 6.4);
+    const AirData& air = *world.data()->air;
+    ASSERT_GT(air.zones_x, 1);
+    Context context;
+    const auto space =
+        build_flight_space(air, air_body(flyers().front(), air.shape), 32, 2, context);
+    ASSERT_TRUE(space) << space.error().message;
+    std::vector<uint32_t> all(space->component);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    FlightSpace::ZoneOrder order;
+    for (uint64_t n = 0; n < 300; ++n) {
+      const auto real = [&](uint64_t i, double low, double high) {
+        return low + (high - low) * random_unit(seed, n, i);
+      };
+      const AirPoint goal{real(0, -100, 150), real(1, -30, 40), real(2, -100, 150)};
+      std::vector<uint32_t> some{all[random_below(seed, n, 3, all.size())]};
+      for (const uint32_t component : all) {
+        if (random_below(seed, n, 4 + component, 3) == 0) some.push_back(component);
+      }
+      std::sort(some.begin(), some.end());
+      double least = std::numeric_limits<double>::infinity();
+      AirPoint nearest;
+      for (size_t b = 0; b < space->boxes.size(); ++b) {
+        if (!std::binary_search(some.begin(), some.end(), space->component[b])) continue;
+        const AirCube& box = space->boxes[b];
+        const auto into = [&](double at, int32_t low) {
+          return std::clamp(at, low + kAirSkin, low + box.side - kAirSkin);
+        };
+        const AirPoint p{into(goal.x, box.x), into(goal.y, box.y), into(goal.z, box.z)};
+        if (air_distance(p, goal) >= least) continue;
+        least = air_distance(p, goal);
+        nearest = p;
+      }
+      const AirPoint found = space->nearest_in(some, goal, order);
+      EXPECT_EQ(found.x, nearest.x);
+      EXPECT_EQ(found.y, nearest.y);
+      EXPECT_EQ(found.z, nearest.z);
+      ++asked;
+    }
+  }
+  EXPECT_EQ(asked, 1200u);
 }
 
 TEST(Air, SameBytesForAnyNumberOfWorkers) {

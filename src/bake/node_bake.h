@@ -40,8 +40,11 @@ class NodeBaker {
   Result<void> keep_zones();
   /// Those that are left, in batches of at most about so much memory each. [bytes] At least one.
   [[nodiscard]] std::vector<std::vector<uint32_t>> batches(uint64_t most_bytes) const;
-  /// What all of them would take at once, about. [bytes]
+  /// What all of them would take at once, about, and a batch with what lies near it. [bytes]
   [[nodiscard]] uint64_t working_bytes() const { return all_working_bytes(scene_, config_, plan_); }
+  [[nodiscard]] uint64_t working_bytes(std::span<const uint32_t> batch) const {
+    return batch_working_bytes(scene_, config_, plan_, batch);
+  }
   [[nodiscard]] uint64_t zones() const { return plan_.zones.size(); }
   [[nodiscard]] uint64_t zones_done() const;
 

@@ -399,4 +399,20 @@ uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config, const N
   return sum;
 }
 
+uint64_t batch_working_bytes(const Scene& scene, const NodeConfig& config, const NodePlan& plan,
+                             std::span<const uint32_t> batch) {
+  std::vector<uint8_t> is_seen(plan.zones.size(), 0);
+  uint64_t sum = 0;
+  const auto see = [&](uint32_t zone) {
+    if (is_seen[zone] != 0) return;
+    is_seen[zone] = 1;
+    sum += working_bytes(scene, config, plan, plan.zones[zone]);
+  };
+  for (const uint32_t zone : batch) {
+    see(zone);
+    for (const uint32_t near : plan.zones[zone].near) see(near);
+  }
+  return sum;
+}
+
 }  // namespace throng

@@ -67,5 +67,8 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
 /// What the nodes of all zones would take while they are made, about. [bytes]
 [[nodiscard]] uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config,
                                          const NodePlan& plan);
+/// The same of a batch, with what lies near its zones and is made for it too.
+[[nodiscard]] uint64_t batch_working_bytes(const Scene& scene, const NodeConfig& config,
+                                           const NodePlan& plan, std::span<const uint32_t> batch);
 
 }  // namespace throng

@@ -14,7 +14,29 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kBatchesARank = 3;  // at least, so that none waits long for the last one
+// Small batches keep all ranks busy to the end, but what lies near each is made for it too: of a
+// few sizes the one that is done first, if all ranks are as fast.
+std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const NodeConfig& config,
+                                                  int32_t ranks) {
+  std::vector<std::vector<uint32_t>> best;
+  uint64_t least = UINT64_MAX;
+  for (const uint64_t a_rank : {4, 2, 1, 0}) {
+    const uint64_t parts = std::max<uint64_t>(a_rank * static_cast<uint64_t>(ranks), 1);
+    auto batches = baker.batches(std::min(config.working_bytes, baker.working_bytes() / parts + 1));
+    uint64_t sum = 0, most = 0;
+    for (const auto& batch : batches) {
+      const uint64_t bytes = baker.working_bytes(batch);
+      sum += bytes;
+      most = std::max(most, bytes);
+    }
+    const uint64_t at_once = std::min<uint64_t>(static_cast<uint64_t>(ranks), batches.size());
+    const uint64_t time = std::max(most, sum / std::max<uint64_t>(at_once, 1));
+    if (time >= least) continue;
+    least = time;
+    best = std::move(batches);
+  }
+  return best;
+}
 
 RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
   return {.stage = "nodes",
@@ -38,9 +60,7 @@ RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
 
 Result<NodeSummary> deal_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
                                const std::string& path, NodeFolder& folder, Context& context) {
-  const uint64_t many = kBatchesARank * static_cast<uint64_t>(ranks.size());
-  const auto batches =
-      baker.batches(std::min(config.working_bytes, baker.working_bytes() / many + 1));
+  const auto batches = choose_batches(baker, config, ranks.size());
   DealtJobs dealt;
   for (const auto& zones : batches) dealt.jobs.push_back(bytes_of(zones));
   dealt.enter = [&](size_t, std::span<const uint8_t> told) {

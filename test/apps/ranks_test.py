@@ -180,7 +180,7 @@ def kill_amid_nodes(world, rank, ranks, options):
 
 def test_nodes(folder):
     """Batches of zones are dealt to all ranks."""
-    options = ["--nodes"]
+    options = ["--nodes", "--node-memory", "1"]  # MiB: many batches even of so small a world
     world = folder / "nodes.throng"
     done = run(bake_words(world, options=options))
     assert done.returncode == 0, done.stderr

@@ -93,7 +93,7 @@ Result<std::vector<ZoneFacts>> ZoneJobs::deal(Ranks& ranks, WorldFolder& folder,
     ++done_;
     return folder.add(facts_[zone].entry, zones[zone].hash());
   };
-  dealt.on_progress = [&](size_t) {
+  dealt.on_progress = [&] {
     if (context.on_progress) context.on_progress({"bake", done_, facts_.size()});
   };
   dealt.on_cancel = [&] { folder.leave(); };

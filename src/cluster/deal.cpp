@@ -175,7 +175,7 @@ Result<void> Dealer::run() {
     for (const Numbered& done : own) enter(done);
     if (own_error && own_error->code != Errc::kCancelled) fail(*std::move(own_error));
     if (shown != done_) {
-      dealt_.on_progress(done_);
+      dealt_.on_progress();
       shown = done_;
     }
     if (!message && own.empty()) nap();

@@ -36,7 +36,7 @@ struct RankJobs {
 struct DealtJobs {
   std::vector<RankBytes> jobs;
   std::function<Result<void>(size_t job, std::span<const uint8_t> told)> enter;
-  std::function<void(size_t jobs_done)> on_progress;
+  std::function<void()> on_progress;  ///< After one or more were entered.
   std::function<void()> on_cancel;
 };
 

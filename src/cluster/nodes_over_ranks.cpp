@@ -67,7 +67,7 @@ Result<NodeSummary> deal_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig&
     baker.enter(values_of<NodeBaker::Made>(told));
     return baker.list();
   };
-  dealt.on_progress = [&](size_t) {
+  dealt.on_progress = [&] {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
   };
   dealt.on_cancel = [&] { folder.leave(); };

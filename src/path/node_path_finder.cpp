@@ -76,13 +76,12 @@ PathEnd NodePathFinder::Scratch::find(const Shared& shared, const BlockPoint& fr
   };
   if (!shared.districts.empty()) {
     const double far = length(position(shared.mesh, to) - position(shared.mesh, from));
-    const bool small = left.max_nodes <= kNearCrossings;
-    if (small || far <= kNearSides * shared.districts.tiers().front().side) {
+    if (far <= kNearSides * shared.districts.tiers().front().side) {
       SearchBudget near = left;
       near.max_nodes = std::min(near.max_nodes, kNearCrossings);
       const PathEnd end = look(search, search.find(from, to, near, way));
       const bool stopped = budget.cancel != nullptr && *budget.cancel;
-      if (end != PathEnd::kGaveUp || small || stopped) return end;
+      if (end != PathEnd::kGaveUp || stopped) return end;
     }
     const PathEnd end = look(far_search, far_search.find(from, to, left, search, way));
     if (end != PathEnd::kUnreachable) return end;

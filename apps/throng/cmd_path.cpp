@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "boxes.h"
 #include "command.h"
 #include "throng/flight.h"
 #include "throng/live_ground.h"
@@ -339,6 +340,11 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
                             .workers = options.threads},
                            session.context);
   if (!finder) return fail(finder.error());
+  const auto boxes = boxes_of(options.blocks);
+  if (!boxes) return fail(boxes.error());
+  for (const Prism& box : *boxes) {
+    if (auto added = finder->add_obstacle(box); !added) return fail(added.error());
+  }
   const NodePlace from = finder->find_place(*from_position, options.reach);
   const NodePlace to = finder->find_place(*to_position, options.reach);
   for (const auto& [place, position, option] :
@@ -359,30 +365,16 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
 }
 
-Vec3d point_of(const std::vector<double>& numbers, size_t first) {
-  return {numbers[first], numbers[first + 1], numbers[first + 2]};
-}
-
 // The ground as the options say that it is now.
 Result<LiveGround> live_ground(const World& world, const PathOptions& options,
                                int32_t avatar_class) {
   auto ground =
       LiveGround::make(world, {.avatar_class = avatar_class, .slope_cost = options.slope_cost});
   if (!ground) return ground.error();
-  for (size_t i = 0; i < options.blocks.size(); i += 6) {
-    const Vec3d a = point_of(options.blocks, i), b = point_of(options.blocks, i + 3);
-    if (a.x == b.x || a.y == b.y || a.z == b.z) {
-      return Error{
-          Errc::kBadInput,
-          fmt::format("--block: ({}) and ({}) are no opposite corners of a box, which differ "
-                      "in x, y and z",
-                      where(a), where(b))};
-    }
-    const Prism box = Prism::box({std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                                 {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)});
-    if (auto added = ground->add_obstacle(box); !added) {
-      return Error{Errc::kBadInput, "--block: " + added.error().message};
-    }
+  const auto boxes = boxes_of(options.blocks);
+  if (!boxes) return boxes.error();
+  for (const Prism& box : *boxes) {
+    if (auto added = ground->add_obstacle(box); !added) return added.error();
   }
   for (size_t i = 0; i < options.area_costs.size(); i += 2) {
     const double kind = options.area_costs[i];
@@ -430,10 +422,10 @@ int path(Session& session, const PathOptions& options) {
     return fly(session, options, *world, *avatar_class);
   }
   if (options.nodes || goes_over_nodes(avatar)) {
-    if (!options.blocks.empty() || !options.jumps.empty() || !options.area_costs.empty()) {
+    if (!options.jumps.empty() || !options.area_costs.empty()) {
       return fail({Errc::kBadConfig,
-                   "--block, --jump and --area-cost change the ground of level tiles; ways over "
-                   "nodes take jumps from `throng bake --jumps`"});
+                   "--jump and --area-cost change the ground of level tiles; ways over nodes take "
+                   "jumps from `throng bake --jumps`"});
     }
     return go_over_nodes(session, options, *world, *avatar_class);
   }
@@ -518,8 +510,7 @@ void add_path(CLI::App& parser, Session& session) {
         ->expected(1, 1 << 16)
         ->type_name(type);
   };
-  add_list("--block", options->blocks, "A box that stands there now, from corner to corner [m]",
-           ',', 6, "X,Y,Z,X,Y,Z");
+  add_blocks(command, options->blocks);
   add_list("--jump", options->jumps, "A way from one place to another and back, given by hand [m]",
            ',', 6, "X,Y,Z,X,Y,Z");
   add_list("--area-cost", options->area_costs,

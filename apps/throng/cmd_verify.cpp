@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "boxes.h"
 #include "command.h"
 #include "sources.h"
 #include "throng/verify.h"
@@ -25,6 +26,7 @@ struct VerifyOptions {
   SourceOptions sources;
   std::string class_name = "all";
   bool nodes = false, paths = false;
+  std::vector<double> blocks;  // six numbers a box
   VerifyConfig config;
 };
 
@@ -355,6 +357,13 @@ int verify_ways(Session& session, VerifyOptions& options, const World& world,
       return told(avatar.name, *report);
     };
     const bool on_nodes = options.nodes || avatar.climb_slope > 0 || avatar.max_drop > 0;
+    if (!on_nodes && !options.blocks.empty()) {
+      return fail(
+          {Errc::kBadConfig,
+           fmt::format("--block is for ways over nodes: say --nodes, or a --class that goes "
+                       "over them; {} does not",
+                       avatar.name)});
+    }
     auto report = on_nodes ? over_nodes() : over_tiles();
     if (!report) return fail(report.error());
     list.push_back(std::move(report->json));
@@ -372,6 +381,12 @@ int verify(Session& session, VerifyOptions& options) {
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
   note_if_elsewhere(*scene, world->summary().bounds);
+  if (!options.paths && !options.blocks.empty()) {
+    return fail({Errc::kBadConfig, "--block is put up for ways: say --paths"});
+  }
+  const auto boxes = boxes_of(options.blocks);
+  if (!boxes) return fail(boxes.error());
+  options.config.obstacles = *boxes;
   if (options.paths) return verify_ways(session, options, *world, *picked, *scene);
   if (options.nodes) return verify_all_nodes(session, options, *picked, *scene);
 
@@ -422,6 +437,7 @@ void add_verify(CLI::App& parser, Session& session) {
       "--paths", options->paths,
       "Go the ways between as many pairs of places, over nodes for who climbs or drops "
       "or with --nodes");
+  add_blocks(command, options->blocks);
   command->add_option("--threads", options->config.workers, "Threads, 0 for all cores");
   command->callback([&session, options] { session.exit_code = verify(session, *options); });
 }

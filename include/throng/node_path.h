@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "throng/base.h"
 #include "throng/context.h"
+#include "throng/live_ground.h"
 #include "throng/nodes.h"
 #include "throng/path.h"
 #include "throng/result.h"
@@ -88,7 +91,8 @@ class THRONG_API NodePathFinder {
   NodePathFinder& operator=(NodePathFinder&&) noexcept;
   ~NodePathFinder();
 
-  /// The place of the class that is nearest to a position, or nowhere within `reach`. [m, m]
+  /// The place of the class that is nearest to a position, or nowhere within `reach`. Queries of
+  /// one finder are for one thread at a time. [m, m]
   [[nodiscard]] NodePlace find_place(Vec3d position, double reach) const;
 
   /// A square of a node's patch that holds two of its places, a leg of a way, and on which the
@@ -104,6 +108,20 @@ class THRONG_API NodePathFinder {
   /// budget is spent.
   void find(const NodePlace& from, const NodePlace& to, NodePath& path, double spacing = 0.25,
             const SearchBudget& budget = {});
+
+  /// Nobody of the class is led to where his body could touch the prism, whichever way he stands:
+  /// blocks are cut there, by cells of level tiles and by squares of about a quarter of a metre of
+  /// curved ground. Ways around it are found over what is left, and long ones are put together as
+  /// before, but for the districts that it touches. Of this finder and of copies made later. Fails
+  /// with kBadInput. Time: what lies within a body of it, here; all that is up, at the next query.
+  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
+  /// The same for triangles, and only for those: a closed shell is hollow.
+  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
+                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Takes an obstacle back, for good or, as a door, until it is set again: ways are then what they
+  /// are without it. False if there is none.
+  bool remove(ChangeId change);
+  bool set_active(ChangeId change, bool active);
 
   [[nodiscard]] NodePathSummary summary() const;
 

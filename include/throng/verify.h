@@ -10,6 +10,7 @@
 #include "throng/base.h"
 #include "throng/context.h"
 #include "throng/nodes.h"
+#include "throng/prism.h"
 #include "throng/result.h"
 #include "throng/scene.h"
 #include "throng/world.h"
@@ -23,6 +24,8 @@ struct VerifyConfig {
   uint64_t seed = 1;
   int32_t avatar_class = 0;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  /// Of verify_node_paths: put up before ways are looked for, and then matter like any other.
+  std::vector<Prism> obstacles{};
 };
 
 /// A place where a claim failed, to look at.
@@ -88,10 +91,12 @@ struct NodePathReport {
   uint64_t poses = 0;        ///< Of bodies on them, at most a quarter of a radius apart.
   uint64_t entered = 0;      ///< Legs whose body meets a triangle. Must be 0.
   uint64_t unsupported = 0;  ///< Legs with no surface at the feet, but for leaps. Must be 0.
-  uint64_t torn = 0;      ///< Legs that leave their node, or do not begin where the last ended. 0.
-  uint64_t disagree = 0;  ///< Pairs that have a way though no arcs lead there, or the reverse. 0.
-  double length = 0;      ///< Of all ways. [m]
-  double straight = 0;    ///< Of the straight lines between their ends. [m]
+  uint64_t torn = 0;  ///< Legs that leave their node, or do not begin where the last ended. 0.
+  /// Pairs that have a way though no arcs lead there, or the reverse, if nothing was put up. 0.
+  uint64_t disagree = 0;
+  uint64_t blocked = 0;       ///< Pairs without a way, though arcs lead there: by what was put up.
+  double length = 0;          ///< Of all ways. [m]
+  double straight = 0;        ///< Of the straight lines between their ends. [m]
   double search_seconds = 0;  ///< Of all queries, one thread each.
   double make_seconds = 0;    ///< Of the finder.
   uint64_t finder_bytes = 0;

@@ -60,10 +60,14 @@ void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt
             static_cast<int32_t>(near_metres_ * 1000) + 4);
 }
 
-bool ClimberEngine::is_blocked(const ClimbHold& hold) const {
-  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
-    return obstacle.holds(hold.low, hold.radius * double{config_.units.unit}, hold.height);
-  });
+bool ClimberEngine::is_blocked(const ClimberGround& ground, const ClimbHold& hold,
+                               const ClimbPose& pose, double radius) const {
+  const double held = hold.radius * double{config_.units.unit};
+  for (size_t i = 0; i < obstacles_.size(); ++i) {
+    if (!obstacles_[i].holds(hold.low, held, hold.height)) continue;
+    if (may_touch(ground.room_of(pose, radius), solids_[i])) return true;
+  }
+  return false;
 }
 
 void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
@@ -203,7 +207,8 @@ void ClimberEngine::find_ways(const Body& body, const Climb& climb,
   const auto add = [&](const std::optional<ClimberGround::Step>& step, bool on_way) {
     if (!step || contest.ways == kWays) return;
     const auto hold = ground.hold_of(step->pose, climb.radius);
-    if (!hold || (!obstacles_.empty() && is_blocked(*hold))) return;
+    if (!hold) return;
+    if (is_blocked(ground, *hold, step->pose, climb.radius)) return;
     contest.way[contest.ways++] = {*step, *hold, on_way};
   };
   const bool goes = climb.count > 0 && steer::size_of(situation.wish) > 0;

@@ -44,8 +44,15 @@ class ClimberEngine {
   }
   /// As FlyerEngine::fit, of the cylinders that hold bodies.
   void fit(int32_t widest, float fastest, int32_t tallest, float dt);
-  void set_obstacles(std::vector<AirObstacle> obstacles) { obstacles_ = std::move(obstacles); }
-  [[nodiscard]] bool is_blocked(const ClimbHold& hold) const;
+  /// What is up: as flyers know it, and as it is.
+  void set_obstacles(std::vector<AirObstacle> obstacles, std::vector<Solid> solids) {
+    obstacles_ = std::move(obstacles);
+    solids_ = std::move(solids);
+  }
+  /// Does something that is up meet the body? What does not meet the cylinder that holds it is not
+  /// looked at.
+  [[nodiscard]] bool is_blocked(const ClimberGround& ground, const ClimbHold& hold,
+                                const ClimbPose& pose, double radius) const;
 
   /// Called for each of them first, on any worker: he finds and follows his way.
   using Before = std::function<void(Body&, Climb&, int32_t worker)>;
@@ -90,6 +97,7 @@ class ClimberEngine {
   ClimberConfig config_;
   std::vector<const ClimberGround*> grounds_;  // by class
   std::vector<AirObstacle> obstacles_;
+  std::vector<Solid> solids_;  // the same
   float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;
   int32_t widest_ = 0, tallest_ = 0;
   std::span<Body> bodies_;

@@ -34,7 +34,9 @@ ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const NodeP
   depth_ = units(data.depth);
   tile_ = 64 * data.summary.cell;
   height_ = avatar.height;
-  reach_ = std::sqrt(avatar.height * avatar.height + avatar.radius * avatar.radius);
+  reach_ = reach_of(avatar);
+  bottom_ = body_bottom(avatar);
+  leaning_bottom_ = avatar.climb_slope > 0 ? avatar.step : bottom_;
 }
 
 std::optional<ClimbPose> ClimberGround::pose(uint32_t node1, double s, double t) const {
@@ -104,6 +106,17 @@ int32_t ClimberGround::tallest(double radius) const {
 
 double ClimberGround::travel(const ClimbPose& from, const ClimbPose& to) const {
   return length(to.feet - from.feet) + reach_ * length(to.axis - from.axis);
+}
+
+BodyRoom ClimberGround::room_of(const ClimbPose& pose, double radius) const {
+  BodyRoom room;
+  room.feet = pose.feet;
+  room.axis = pose.axis;
+  room.bottom = pose.axis.y > 1 - 1e-12 ? bottom_ : leaning_bottom_;
+  room.top = height_;
+  room.radius = radius;
+  room.margin = 0;  // Ways may lead along what finders took with a margin.
+  return room;
 }
 
 ClimberGround::Square ClimberGround::square_of(uint32_t node1) const {

@@ -7,6 +7,7 @@
 
 #include "crowd/climb.h"
 #include "crowd/flight.h"
+#include "path/solid.h"
 #include "throng/node_path.h"
 #include "throng/nodes.h"
 #include "throng/world.h"
@@ -42,6 +43,9 @@ class ClimberGround {
   [[nodiscard]] int32_t tallest(double radius) const;
   /// No point of a body moves farther from one pose to the other. [m]
   [[nodiscard]] double travel(const ClimbPose& from, const ClimbPose& to) const;
+
+  /// What a body takes in a pose. [m]
+  [[nodiscard]] BodyRoom room_of(const ClimbPose& pose, double radius) const;
 
   struct Step {
     ClimbStance at;
@@ -93,10 +97,11 @@ class ClimberGround {
   const NodePathFinder* finder_;
   int32_t avatar_class_;
   Vec3d origin_;
-  double unit_ = 0;                // [m]
-  int32_t width_ = 0, depth_ = 0;  // [units]
-  double tile_ = 0;                // [m]
-  double height_ = 0, reach_ = 0;  // of the class; of its farthest point from its feet [m]
+  double unit_ = 0;                         // [m]
+  int32_t width_ = 0, depth_ = 0;           // [units]
+  double tile_ = 0;                         // [m]
+  double height_ = 0, reach_ = 0;           // of the class; of its farthest point from its feet [m]
+  double bottom_ = 0, leaning_bottom_ = 0;  // of its body above its feet, upright and not [m]
 };
 
 }  // namespace throng

@@ -572,7 +572,10 @@ CrowdCheck Crowd::check() const {
         {b.x, b.z, b.y, b.level, b.avatar_class, b.radius * s.unit, height, b.flies(), b.climbs});
   }
   CrowdCheck found = check_bodies(s.world, bodies, obstacles(), s.config.workers);
-  if (!s.climbs.empty()) found.wall_entries += s.count_off_nodes();
+  if (!s.climbs.empty()) {
+    found.wall_entries += s.count_off_nodes();
+    found.obstacle_entries += s.count_climbers_inside();
+  }
   return found;
 }
 

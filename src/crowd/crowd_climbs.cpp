@@ -53,15 +53,17 @@ void set_way(Climb& climb, const NodePath& path) {
   climb.at.in_air = count > 1 && climb.points[1].on_surface == 0 ? 1 : 0;
 }
 
-// Where the rest of a way leads through that there is no room for.
+// Where the rest of a way leads through that there is no room for: not its end, which is the goal.
 void set_stations(Climb& climb, const NodePath& path) {
   climb.station = climb.station_count = 0;
   const size_t first = climb.count, all = path.points.size();
-  if (first >= all) return;
+  size_t next = first;
   for (size_t k = 0; k < Climb::kStations; ++k) {
-    size_t i = first + (all - 1 - first) * k / Climb::kStations;
+    size_t i = std::max(next, first + (all - 1 - std::min(first, all - 1)) * k / Climb::kStations);
     while (i < all && !path.points[i].place) ++i;
+    if (i + 1 >= all) return;
     climb.stations[climb.station_count++] = point_of(path.points[i], false);
+    next = i + 1;
   }
 }
 
@@ -99,7 +101,7 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
   const ClimberGround& ground = *classes[body.avatar_class]->nodes;
   const auto pose = ground.pose(place.node1, place.s, place.t);
   const auto hold = pose ? ground.hold_of(*pose, radius) : std::nullopt;
-  if (!hold || climbers.is_blocked(*hold)) return false;
+  if (!hold || climbers.is_blocked(ground, *hold, *pose, radius)) return false;
   climb = {};
   climb.at.node1 = place.node1;
   climb.at.s = place.s;
@@ -116,6 +118,56 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
   body.flags = Body::kFlying;
   body.climbs = true;
   return true;
+}
+
+// What finders know of an obstacle.
+void Crowd::State::tell_nodes(uint32_t slot, size_t number) {
+  CrowdObstacle& obstacle = obstacles.at(slot);
+  if (obstacle.kind != ObstacleKind::kStanding || !obstacle.exists || !classes[number]) return;
+  CrowdObstacle::OfClass& of_class = obstacle.of_class[number];
+  const bool is_new =
+      obstacle.is_up && (of_class.node_change == 0 || of_class.node_version != obstacle.version);
+  ChangeId change = of_class.node_change;
+  for (NodePathFinder& finder : classes[number]->node_finders) {
+    if (!is_new) {
+      finder.set_active(of_class.node_change, obstacle.is_up);
+      continue;
+    }
+    finder.remove(of_class.node_change);
+    const auto added = finder.add_obstacle(obstacle.place);
+    THRONG_ASSERT(added);  // The prism was checked, and copies number alike.
+    change = *added;
+  }
+  of_class.node_change = change;
+  if (is_new) of_class.node_version = obstacle.version;
+}
+
+// Whose way leads past what has come up asks for another.
+void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
+  for (Body& body : engine.bodies()) {
+    if (!body.climbs || !body.has(Body::kHasGoal) || body.has(Body::kLost)) continue;
+    const Climb& climb = climbs[body.slot];
+    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    BodyRoom around;  // all that it takes, whichever way it stands
+    around.turns_far = true;
+    around.top = body_class(body.avatar_class).height;
+    around.radius = climb.radius;
+    bool is_cut = false;
+    Vec3d last = climb.feet;
+    for (size_t i = climb.at.next; i < climb.count && !is_cut; ++i) {
+      const ClimbPoint& point = climb.points[i];
+      const auto pose = ground.pose(point.node1, point.s, point.t);
+      if (!pose) continue;  // in the air: between two that are not
+      around.feet = (last + pose->feet) * 0.5;
+      around.spread = length(pose->feet - last) / 2;
+      last = pose->feet;
+      is_cut = std::any_of(slots.begin(), slots.end(), [&](uint32_t slot) {
+        const CrowdObstacle& obstacle = obstacles.all()[slot];
+        return obstacle.kind == ObstacleKind::kStanding && may_touch(around, {obstacle.place, {}});
+      });
+    }
+    if (is_cut) body.flags |= Body::kLost;
+  }
 }
 
 NodePlace Crowd::State::place_on_nodes(int32_t number, const Place& place) const {
@@ -207,6 +259,27 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   climb.whole = 0;
 }
 
+// What has come up beside him takes the whole of a square of his node for his finder: on to the
+// nearest that is left of it.
+bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker) {
+  constexpr double kBeside = 1;  // [m] more than a square
+  ClassParts& parts = *classes[body.avatar_class];
+  const auto w = static_cast<size_t>(worker);
+  const NodePlace from =
+      config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
+  if (obstacles.all().empty() || !from) return false;
+  const NodePlace to = parts.node_finders[w].find_place(climb.feet, kBeside);
+  if (to.node1 != from.node1 || to.feet == from.feet) return false;
+  NodePath& path = parts.node_paths[w];
+  path.points.clear();
+  path.points.push_back({.place = from, .on_surface = true});
+  path.points.push_back({.place = to, .on_surface = true});
+  set_way(climb, path);
+  climb.whole = 0;
+  body.clear(Body::kLost);
+  return true;
+}
+
 // Who is driven goes to where he would be soon, by a way as any other.
 void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker) {
   climb.detour -= static_cast<float>(config.dt / sub_steps);
@@ -272,6 +345,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     parts.node_finders[w].find(from, to, path, kNoSpacing);
   }
   if (!is_found()) {
+    if (path.end == PathEnd::kNoPlace && step_off(body, climb, worker)) return;
     clear_way(climb);
     return strand(body);
   }
@@ -342,6 +416,19 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
   return hold && hold->low == AirSpot{body.x, body.z, body.y} && hold->radius == body.radius &&
          hold->height == body.height && at.node1 != 0 &&
          parts->nodes->pose(at.node1, at.s, at.t).has_value();
+}
+
+// Of those who go over nodes, who is in an obstacle.
+uint64_t Crowd::State::count_climbers_inside() const {
+  uint64_t found = 0;
+  for (const Body& body : engine.bodies()) {
+    if (!body.climbs) continue;
+    const Climb& climb = climbs[body.slot];
+    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    const ClimbHold hold{{body.x, body.z, body.y}, body.radius, body.height};
+    found += climbers.is_blocked(ground, hold, {climb.feet, climb.axis}, climb.radius) ? 1 : 0;
+  }
+  return found;
 }
 
 // Whose class may not be where he is, or whom the cylinder that is kept for him does not hold.

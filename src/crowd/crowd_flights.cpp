@@ -399,11 +399,14 @@ void Crowd::State::add_flyers_in_the_way(std::span<const uint32_t> slots,
 
 void Crowd::State::tell_flyers_of_obstacles() {
   std::vector<AirObstacle> all;
+  std::vector<Solid> solids;
   const Vec3d& origin = world.data()->summary.origin;
   for (const CrowdObstacle& obstacle : obstacles.all()) {
-    if (obstacle.exists && obstacle.is_up) all.emplace_back(obstacle.place, origin, unit);
+    if (!obstacle.exists || !obstacle.is_up) continue;
+    all.emplace_back(obstacle.place, origin, unit);
+    solids.push_back({obstacle.place, {}});
   }
-  climbers.set_obstacles(all);
+  climbers.set_obstacles(all, std::move(solids));
   flyers.set_obstacles(std::move(all));
 }
 

@@ -59,6 +59,9 @@ bool Crowd::remove_obstacle(ObstacleId id) {
     for (LiveGround& live : s.classes[c]->lives) {
       live.remove(s.obstacles.at(slot).of_class[c].change);
     }
+    for (NodePathFinder& finder : s.classes[c]->node_finders) {
+      finder.remove(s.obstacles.at(slot).of_class[c].node_change);
+    }
   }
   s.obstacles.remove(slot);
   return true;
@@ -129,6 +132,7 @@ void Crowd::State::tell_ways(uint32_t slot) {
 }
 
 void Crowd::State::tell_ways(uint32_t slot, size_t number) {
+  tell_nodes(slot, number);
   CrowdObstacle& obstacle = obstacles.at(slot);
   if (config.ways != CrowdWays::kPaths || obstacle.kind != ObstacleKind::kStanding) return;
   if (!obstacle.exists || !classes[number]) return;
@@ -154,6 +158,7 @@ void Crowd::State::tell_ways(uint32_t slot, size_t number) {
 
 // Whose way leads over what some obstacles have just taken asks for another.
 void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
+  if (!climbs.empty()) cut_climbs(slots);
   if (config.ways != CrowdWays::kPaths) return;
   const WorldData& data = *world.data();
   double widest_class = 0;

@@ -188,6 +188,10 @@ struct Crowd::State {
   /// Would a step with what was saved of it read what is not there?
   [[nodiscard]] bool is_sound_climb(const Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
+  [[nodiscard]] uint64_t count_climbers_inside() const;
+  bool step_off(Body& body, Climb& climb, int32_t worker);
+  void tell_nodes(uint32_t slot, size_t number);
+  void cut_climbs(std::span<const uint32_t> slots);
 };
 
 }  // namespace throng

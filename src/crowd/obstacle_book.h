@@ -38,6 +38,8 @@ struct CrowdObstacle {
     std::vector<LevelCells> swept;  // that must be clear before it may come up or move on
     ChangeId change = 0;            // of the class's live grounds, made for `change_version`
     uint32_t change_version = 0;
+    ChangeId node_change = 0;  // of its finders over nodes, made for `node_version`
+    uint32_t node_version = 0;
   };
   std::vector<OfClass> of_class;
 

@@ -23,15 +23,6 @@
 namespace throng {
 namespace {
 
-constexpr double kInset = 1e-5;  // into a tile's cell, whose far border is the next cell's
-
-// Where a cell of a patch comes in the order of a quadtree.
-uint32_t quad_order(uint32_t s, uint32_t t, int32_t level) {
-  uint32_t order = 0;
-  for (int32_t k = level; k-- > 0;) order = order << 2 | (t >> k & 1) << 1 | (s >> k & 1);
-  return order;
-}
-
 // Each list is given back once it is copied: of a large world all of them take gigabytes.
 template <class T>
 void append_all(std::vector<std::vector<T>>& lists, std::vector<T>& all) {
@@ -142,7 +133,7 @@ class BlockCutter {
     const Vec3d middle = surface_.at(s + side / 2, t + side / 2);
     double longest = 0;
     for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-      const double inset = surface_.points == nullptr ? kInset : 0;
+      const double inset = surface_.points == nullptr ? kTileInset : 0;
       longest = std::max(
           longest, length(surface_.at(s + i * (side - inset), t + j * (side - inset)) - middle));
     }
@@ -338,7 +329,7 @@ std::vector<NodePortal> NodeMesh::inside_patch(uint32_t patch) const {
     cells =
         tile_cells(nodes_.data()->world, surface.source, UINT16_MAX, nodes_.data()->summary.bins);
   }
-  const double unit = 1.0 / side, inset = tile ? kInset : 0;
+  const double unit = 1.0 / side, inset = tile ? kTileInset : 0;
   // Along `t` if the cells lie beside each other along s.
   const auto visit = [&](bool by_s, const std::vector<uint16_t>& cuts) {
     for (int32_t i = 0; i + 1 < side; ++i) {
@@ -468,8 +459,8 @@ std::vector<NodePortal> NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) cons
            touches[j].k == touches[j - 1].k + 1) {
       ++j;
     }
-    const double from = t.k / 64.0 + kInset, to = (touches[j - 1].k + 1) / 64.0 - kInset;
-    const double on_a = t.at / 64.0 - kInset, on_b = t.at % 64 / 64.0;
+    const double from = t.k / 64.0 + kTileInset, to = (touches[j - 1].k + 1) / 64.0 - kTileInset;
+    const double on_a = t.at / 64.0 - kTileInset, on_b = t.at % 64 / 64.0;
     NodePortal portal{.a = t.a, .b = t.b, .on_a = {}, .on_b = {}, .kind = t.kind};
     if (t.side == 2) {
       portal.on_a = {on_a, from, on_a, to};

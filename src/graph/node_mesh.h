@@ -30,6 +30,8 @@ struct NodeBlock {
 };
 
 inline constexpr double kLargestBlock = 4;  // [m]
+/// Lines on level tiles keep that far inside cells, whose far border is the next cell's. [s and t]
+inline constexpr double kTileInset = 1e-5;
 
 /// Where the class gets from block a to block b: along a line that they share, by the parameters of
 /// each one's patch; of a leap both ends are the same.
@@ -45,6 +47,13 @@ struct NodePortal {
 /// How far a body goes from one end of a portal to the other: straight, or, where it drops, level
 /// out and then down. [m]
 [[nodiscard]] double portal_length(const NodePortal& portal, Vec3d out, Vec3d in);
+
+/// Where a square of a patch comes among those of its level, in the order of a quadtree.
+constexpr uint32_t quad_order(uint32_t s, uint32_t t, int32_t level) {
+  uint32_t order = 0;
+  for (int32_t k = level; k-- > 0;) order = order << 2 | (t >> k & 1) << 1 | (s >> k & 1);
+  return order;
+}
 
 class NodeMesh {
  public:

@@ -18,16 +18,25 @@ uint32_t DistrictGraph::place_of(uint32_t block) const {
   return static_cast<uint32_t>(at - blocks_.begin());
 }
 
+uint32_t DistrictGraph::way_of(const Crossing& crossing) const {
+  const uint32_t from = place_of(ends_of(*view_, crossing).out.block);
+  if (from == kNoNode) return kNoNode;
+  for (uint32_t w = first_way_[from]; w < first_way_[from + 1]; ++w) {
+    if (ways_[w].crossing == crossing) return w;
+  }
+  return kNoNode;
+}
+
 void DistrictGraph::set(std::span<const uint32_t> blocks, bool keep) {
   blocks_ = blocks;
   looked_at_ = 0;
   first_way_.assign(1, 0);
   ways_.clear();
   for (const uint32_t block : blocks_) {
-    for_each_way_out(*mesh_, block, [&](const Crossing& crossing) {
-      const auto [out, in] = ends_of(*mesh_, crossing);
-      Way way{crossing, out, in, position(*mesh_, out), position(*mesh_, in)};
-      way.through = portal_length(mesh_->portals()[crossing.portal], way.out_at, way.in_at);
+    for_each_way_out(*view_, block, [&](const Crossing& crossing) {
+      const auto [out, in] = ends_of(*view_, crossing);
+      Way way{crossing, out, in, position(*view_, out), position(*view_, in)};
+      way.through = portal_length(view_->portal(crossing.portal), way.out_at, way.in_at);
       way.into = place_of(in.block);
       ways_.push_back(way);
     });
@@ -83,7 +92,7 @@ const std::vector<double>& DistrictGraph::run(const BlockPoint& from) {
   cost_.assign(ways_.size(), kNoWay);
   open_.clear();
   const uint32_t start = place_of(from.block);
-  const Vec3d at = position(*mesh_, from);
+  const Vec3d at = position(*view_, from);
   for (uint32_t w = first_way_[start]; w < first_way_[start + 1]; ++w) {
     reach(w, piece(from, at, ways_[w].out, ways_[w].out_at) + ways_[w].through);
   }
@@ -105,7 +114,7 @@ const std::vector<double>& DistrictGraph::run_back(const BlockPoint& to) {
   cost_.assign(ways_.size(), kNoWay);
   open_.clear();
   goal_ = to;
-  goal_at_ = position(*mesh_, to);
+  goal_at_ = position(*view_, to);
   const uint32_t goal = place_of(to.block);
   for (uint32_t k = first_in_[goal]; k < first_in_[goal + 1]; ++k) {
     const Way& way = ways_[in_of_[k]];
@@ -125,7 +134,7 @@ const std::vector<double>& DistrictGraph::run_back(const BlockPoint& to) {
 }
 
 double DistrictGraph::rest(const BlockPoint& from) const {
-  const Vec3d at = position(*mesh_, from);
+  const Vec3d at = position(*view_, from);
   double least = from.block == goal_.block ? piece(from, at, goal_, goal_at_) : kNoWay;
   const uint32_t start = place_of(from.block);
   for (uint32_t w = first_way_[start]; w < first_way_[start + 1]; ++w) {

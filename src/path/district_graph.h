@@ -13,7 +13,7 @@ namespace throng {
 
 class DistrictGraph {
  public:
-  DistrictGraph(const NodeMesh& mesh, const PieceCost& cost) : mesh_(&mesh), piece_(&cost) {}
+  DistrictGraph(const NodeView& view, const PieceCost& cost) : view_(&view), piece_(&cost) {}
 
   /// A way out of a block of the district: into another one, or out of the district.
   struct Way {
@@ -28,6 +28,8 @@ class DistrictGraph {
   void set(std::span<const uint32_t> blocks, bool keep);
   /// In the order of the blocks that they leave.
   [[nodiscard]] const std::vector<Way>& ways() const { return ways_; }
+  /// The place of a crossing among them, or kNoNode.
+  [[nodiscard]] uint32_t way_of(const Crossing& crossing) const;
   /// What each way costs at least from a point of the district until it has been gone; infinite if
   /// none leads there. Dijkstra's algorithm.
   const std::vector<double>& run(const BlockPoint& from);
@@ -55,7 +57,7 @@ class DistrictGraph {
   void reach(uint32_t way, double cost);
   bool next(Open& top);
 
-  const NodeMesh* mesh_;
+  const NodeView* view_;
   const PieceCost* piece_;
   std::span<const uint32_t> blocks_;
   std::vector<uint32_t> first_way_;  // by place of the block that is left, and the end

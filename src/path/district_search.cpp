@@ -24,8 +24,9 @@ void DistrictSearch::begin() {
 void DistrictSearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t tier, Vec3d goal) {
   State& state = states_[entry];
   if (!(cost < kNoWay) || (state.query == query_ && state.cost <= cost)) return;
+  if (now_.is_closed(entry)) return;
   state = {query_, parent, cost, tier, false};
-  open_.push_back({cost + length(goal - districts_->at(entry)), entry});
+  open_.push_back({cost + length(goal - now_.at(entry)), entry});
   std::push_heap(open_.begin(), open_.end());
 }
 
@@ -49,7 +50,8 @@ PathEnd DistrictSearch::find(const BlockPoint& from, const BlockPoint& to,
   cost_ = 0;
   if (const PathEnd end = over_gates(from, to, budget); end != PathEnd::kReached) return end;
   const std::vector<uint32_t>& of_block = districts_->of_block();
-  if (first_ == kNoEntry) return within(of_block[from.block], from, to, budget, blocks, way);
+  if (first_ == kNoEntry)
+    return within(of_block[view_->base_of(from.block)], from, to, budget, blocks, way);
   for (size_t tier = districts_->tiers().size(); --tier > 0;) {
     finer_.clear();
     for (const Stretch& stretch : stretches_) {
@@ -64,14 +66,13 @@ PathEnd DistrictSearch::find(const BlockPoint& from, const BlockPoint& to,
   BlockPoint at = from;
   joints_.clear();
   const auto go_to = [&](uint32_t entry) {
-    const Crossing crossing = districts_->crossing(entry);
-    const auto [out, in] = ends_of(*mesh_, crossing);
-    const PathEnd end = within(of_block[at.block], at, out, budget, blocks, way);
+    const Crossing crossing = now_.crossing(entry);
+    const auto [out, in] = ends_of(*view_, crossing);
+    const PathEnd end = within(of_block[view_->base_of(at.block)], at, out, budget, blocks, way);
     if (end != PathEnd::kReached) return end;
     joints_.push_back(way.size());
     way.push_back(crossing);
-    cost_ += portal_length(mesh_->portals()[crossing.portal], position(*mesh_, out),
-                           districts_->at(entry));
+    cost_ += portal_length(view_->portal(crossing.portal), position(*view_, out), now_.at(entry));
     at = in;
     return end;
   };
@@ -79,7 +80,8 @@ PathEnd DistrictSearch::find(const BlockPoint& from, const BlockPoint& to,
   for (size_t i = 0; i < stretches_.size() && end == PathEnd::kReached; ++i) {
     end = go_to(stretches_[i].to);
   }
-  if (end == PathEnd::kReached) end = within(of_block[to.block], at, to, budget, blocks, way);
+  if (end == PathEnd::kReached)
+    end = within(of_block[view_->base_of(to.block)], at, to, budget, blocks, way);
   if (end == PathEnd::kReached) straighten(from, to, budget, blocks, way);
   return end;
 }
@@ -97,7 +99,7 @@ void DistrictSearch::straighten(const BlockPoint& from, const BlockPoint& to,
     const bool ends = i + 1 == joints_.size();
     const size_t last = ends ? way.size() : (joints_[i] + joints_[i + 1]) / 2;
     if (!ends && last == joints_[i]) continue;  // No middle: over both gates at once.
-    const BlockPoint end = ends ? to : ends_of(*mesh_, way[last]).out;
+    const BlockPoint end = ends ? to : ends_of(*view_, way[last]).out;
     const double known = cost_of(begin, end, way.data() + first, way.data() + last);
     constexpr double kGain = 1e-6;  // Anything less is rounding.
     SearchBudget left = budget;
@@ -115,9 +117,9 @@ void DistrictSearch::straighten(const BlockPoint& from, const BlockPoint& to,
     }
     if (ends) break;
     led_.push_back(way[last]);
-    const auto [out, in] = ends_of(*mesh_, way[last]);
-    cost_ += portal_length(mesh_->portals()[way[last].portal], position(*mesh_, out),
-                           position(*mesh_, in));
+    const auto [out, in] = ends_of(*view_, way[last]);
+    cost_ +=
+        portal_length(view_->portal(way[last].portal), position(*view_, out), position(*view_, in));
     begin = in;
     first = last + 1;
   }
@@ -128,17 +130,17 @@ double DistrictSearch::cost_of(const BlockPoint& from, const BlockPoint& to, con
                                const Crossing* last) const {
   double cost = 0;
   BlockPoint at = from;
-  Vec3d here = position(*mesh_, at);
+  Vec3d here = position(*view_, at);
   const auto go = [&](const BlockPoint& next) {
-    const Vec3d there = position(*mesh_, next);
+    const Vec3d there = position(*view_, next);
     cost += (*piece_cost_)(at.block, at.s, at.t, here, next.s, next.t, there).cost;
     here = there;
   };
   for (; first != last; ++first) {
-    const auto [out, in] = ends_of(*mesh_, *first);
+    const auto [out, in] = ends_of(*view_, *first);
     go(out);
-    const Vec3d beyond = position(*mesh_, in);
-    cost += portal_length(mesh_->portals()[first->portal], here, beyond);
+    const Vec3d beyond = position(*view_, in);
+    cost += portal_length(view_->portal(first->portal), here, beyond);
     at = in;
     here = beyond;
   }
@@ -152,32 +154,37 @@ PathEnd DistrictSearch::over_gates(const BlockPoint& from, const BlockPoint& to,
                                    const SearchBudget& budget) {
   const auto& tiers = districts_->tiers();
   const std::vector<uint32_t>& of_block = districts_->of_block();
-  const uint32_t start_district = of_block[from.block], goal_district = of_block[to.block];
-  const Vec3d goal = position(*mesh_, to);
+  const uint32_t start_district = of_block[view_->base_of(from.block)],
+                 goal_district = of_block[view_->base_of(to.block)];
+  const Vec3d goal = position(*view_, to);
   stretches_.clear();
   // What is left from the goal's district's entries, and from the start if it is there too.
-  graph_.set(districts_->blocks_of(goal_district), false);
+  graph_.set(now_.blocks_of(goal_district), false);
   graph_.run_back(to);
   const auto goal_entries = tiers.front().entries_of(goal_district);
   rest_.clear();
   for (const uint32_t entry : goal_entries) {
-    const Crossing crossing = districts_->crossing(entry);
-    const bool closed = crossing.backward && mesh_->portals()[crossing.portal].one_way;
-    rest_.push_back(closed ? kNoWay : graph_.rest(ends_of(*mesh_, crossing).in));
+    if (now_.is_closed(entry)) {
+      rest_.push_back(kNoWay);
+      continue;
+    }
+    const Crossing crossing = now_.crossing(entry);
+    const bool closed = crossing.backward && view_->portal(crossing.portal).one_way;
+    rest_.push_back(closed ? kNoWay : graph_.rest(ends_of(*view_, crossing).in));
   }
   double found = start_district == goal_district ? graph_.rest(from) : kNoWay;
   first_ = last_ = kNoEntry;
   looked_at_ += graph_.looked_at();
-  graph_.set(districts_->blocks_of(start_district), false);
+  graph_.set(now_.blocks_of(start_district), false);
   const std::vector<double>& costs = graph_.run(from);
   looked_at_ += graph_.looked_at();
   if (budget.is_spent(looked_at_)) return PathEnd::kGaveUp;
   begin();
-  for (uint32_t w = 0; w < costs.size(); ++w) {
-    const DistrictGraph::Way& way = graph_.ways()[w];
-    if (way.into != kNoNode) continue;
-    const uint32_t entry = districts_->entry_of(way.crossing);
-    if (entry != kNoNode) reach(entry, kNoEntry, costs[w], 0, goal);
+  for (const uint32_t entry : tiers.front().entries_of(start_district)) {
+    const uint32_t out = entry ^ 1;
+    if (now_.is_closed(out)) continue;
+    const uint32_t way = graph_.way_of(now_.crossing(out));
+    if (way != kNoNode) reach(out, kNoEntry, costs[way], 0, goal);
   }
   // By tier: the goal's district.
   std::array<uint32_t, 32> holds_goal{};
@@ -199,8 +206,13 @@ PathEnd DistrictSearch::over_gates(const BlockPoint& from, const BlockPoint& to,
       }
     }
     uint8_t tier = districts_->gates()[entry / 2].tier;
-    while (tier > 0 && tiers[tier].of_entry[entry] == holds_goal[tier]) --tier;
-    const auto through = tiers[tier].costs_from(entry);
+    const auto is_opened = [&] {
+      const uint32_t through = tiers[tier].of_entry[entry];
+      return through == holds_goal[tier] || now_.is_stale(tier, through);
+    };
+    while (tier > 0 && is_opened()) --tier;
+    const bool is_stale = now_.is_stale(tier, tiers[tier].of_entry[entry]);
+    const auto through = is_stale ? now_.costs_from(entry) : tiers[tier].costs_from(entry);
     const auto others = tiers[tier].entries_of(tiers[tier].of_entry[entry]);
     for (size_t j = 0; j < others.size(); ++j) {
       reach(others[j] ^ 1, entry, cost + double{through[j]}, tier, goal);
@@ -222,7 +234,7 @@ bool DistrictSearch::refine(const Stretch& stretch) {
   const Districts::Tier& below = districts_->tiers()[stretch.tier - size_t{1}];
   const auto finer = static_cast<uint8_t>(stretch.tier - 1);
   const uint32_t district = tier.of_entry[stretch.from];
-  const Vec3d goal = districts_->at(stretch.to);
+  const Vec3d goal = now_.at(stretch.to);
   begin();
   reach(stretch.from, kNoEntry, 0, 0, goal);
   for (Open top; next(top);) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "path/district_changes.h"
 #include "path/district_graph.h"
 #include "path/districts.h"
 #include "path/node_search.h"
@@ -15,8 +16,15 @@ namespace throng {
 
 class DistrictSearch {
  public:
-  DistrictSearch(const NodeMesh& mesh, const PieceCost& cost, const Districts& districts)
-      : mesh_(&mesh), piece_cost_(&cost), districts_(&districts), graph_(mesh, cost) {}
+  DistrictSearch(const NodeView& view, const PieceCost& cost, const Districts& districts)
+      : view_(&view),
+        piece_cost_(&cost),
+        districts_(&districts),
+        now_(view, cost, districts),
+        graph_(view, cost) {}
+
+  /// After the view has changed.
+  void update() { now_.update(); }
 
   /// Fills `way` with the crossings from one place to another: of those over gates the cheapest,
   /// and so seldom much dearer than the best. kUnreachable if none leads there, and then `way` is
@@ -62,9 +70,10 @@ class DistrictSearch {
   PathEnd within(uint32_t district, const BlockPoint& from, const BlockPoint& to,
                  const SearchBudget& budget, NodeSearch& blocks, std::vector<Crossing>& way);
 
-  const NodeMesh* mesh_;
+  const NodeView* view_;
   const PieceCost* piece_cost_;
   const Districts* districts_;
+  DistrictChanges now_;
   DistrictGraph graph_;
   std::vector<State> states_;  // by entry
   std::vector<Open> open_;

@@ -52,8 +52,9 @@ Districts::Districts(const NodeMesh& mesh, const PieceCost& cost, int32_t worker
   if (tiers_.empty()) return;
   choose_gates(mesh, workers);
   at_.resize(2 * gates_.size());
+  const NodeView view(mesh);
   for (uint32_t entry = 0; entry < at_.size(); ++entry) {
-    at_[entry] = position(mesh, ends_of(mesh, crossing(entry)).in);
+    at_[entry] = position(view, ends_of(view, crossing(entry)).in);
   }
   for (size_t k = 0; k < tiers_.size(); ++k) {
     list_entries(mesh, tiers_[k], static_cast<uint8_t>(k));
@@ -145,6 +146,7 @@ void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
     return std::tuple_cat(a.group(), std::tie(a.portal)) <
            std::tuple_cat(b.group(), std::tie(b.portal));
   });
+  const NodeView view(mesh);
   std::vector<Vec3d> chosen;
   for (size_t i = 0; i < candidates.size(); ++i) {
     if (i == 0 || candidates[i].group() != candidates[i - 1].group()) chosen.clear();
@@ -158,7 +160,7 @@ void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
       ++top;
     }
     const double apart = tiers_[top].side * kGatesApart;
-    const Vec3d at = position(mesh, ends_of(mesh, {candidates[i].portal}).out);
+    const Vec3d at = position(view, ends_of(view, {candidates[i].portal}).out);
     if (std::any_of(chosen.begin(), chosen.end(),
                     [&](Vec3d other) { return length(other - at) < apart; })) {
       continue;
@@ -174,9 +176,10 @@ void Districts::list_entries(const NodeMesh& mesh, Tier& tier, uint8_t k) {
   tier.of_entry.assign(2 * gates_.size(), kNoNode);
   tier.place.assign(2 * gates_.size(), 0);
   const size_t districts = tier.first.size() - 1;
+  const NodeView view(mesh);
   for (uint32_t entry = 0; entry < tier.of_entry.size(); ++entry) {
     if (gates_[entry / 2].tier < k) continue;
-    uint32_t district = of_block_[ends_of(mesh, crossing(entry)).in.block];
+    uint32_t district = of_block_[ends_of(view, crossing(entry)).in.block];
     for (uint8_t below = 0; below < k; ++below) district = tiers_[below].above[district];
     tier.of_entry[entry] = district;
     ++tier.first[district + 1];
@@ -202,7 +205,8 @@ void Districts::list_entries(const NodeMesh& mesh, Tier& tier, uint8_t k) {
 // An entry of a one-way portal that cannot be gone backward leads nowhere: no way comes to it.
 void Districts::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
   Tier& tier = tiers_.front();
-  std::vector<DistrictGraph> graphs(static_cast<size_t>(worker_count(workers)), {mesh, cost});
+  const NodeView view(mesh);
+  std::vector<DistrictGraph> graphs(static_cast<size_t>(worker_count(workers)), {view, cost});
   parallel_for_worker(tier.first.size() - 1, workers, [&](size_t d, int32_t worker) {
     const auto district = static_cast<uint32_t>(d);
     const auto entries = tier.entries_of(district);
@@ -220,7 +224,7 @@ void Districts::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_
     for (size_t i = 0; i < entries.size(); ++i) {
       const Crossing in = crossing(entries[i]);
       if (in.backward && mesh.portals()[in.portal].one_way) continue;
-      const std::vector<double>& costs = graph.run(ends_of(mesh, in).in);
+      const std::vector<double>& costs = graph.run(ends_of(view, in).in);
       float* row = tier.costs.data() + tier.first_cost[d] + i * entries.size();
       for (const auto& [way, column] : columns) {
         if (column != i) row[column] = static_cast<float>(costs[way]);

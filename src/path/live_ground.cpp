@@ -76,35 +76,19 @@ Result<LiveGround> LiveGround::make(const World& world, const LiveConfig& config
 }
 
 Result<ChangeId> LiveGround::add_obstacle(const Prism& prism) {
-  if (auto ok = check_prism(prism); !ok) return ok.error();
+  auto solid = make_solid(prism);
+  if (!solid) return solid.error();
   LiveMesh::Change change;
-  change.prism = prism;
+  change.solid = std::move(*solid);
   return state_->mesh.add(std::move(change));
 }
 
 Result<ChangeId> LiveGround::add_obstacle(std::span<const Vec3d> corners,
                                           std::span<const std::array<uint32_t, 3>> triangles) {
-  const auto bad = [](const std::string& what) {
-    return Error{Errc::kBadInput, "obstacle: " + what};
-  };
-  if (triangles.empty()) return bad("it has no triangles");
+  auto solid = make_solid(corners, triangles);
+  if (!solid) return solid.error();
   LiveMesh::Change change;
-  Box3d box;
-  for (size_t t = 0; t < triangles.size(); ++t) {
-    std::array<Vec3d, 3>& triangle = change.triangles.emplace_back();
-    for (size_t k = 0; k < 3; ++k) {
-      if (triangles[t][k] >= corners.size()) {
-        return bad("triangle " + std::to_string(t) + " uses corner " +
-                   std::to_string(triangles[t][k]) + " of " + std::to_string(corners.size()));
-      }
-      triangle[k] = corners[triangles[t][k]];
-      const Vec3d& p = triangle[k];
-      if (!(std::fabs(p.x) < 1e9 && std::fabs(p.y) < 1e9 && std::fabs(p.z) < 1e9))
-        return bad("triangle " + std::to_string(t) + " is not on Earth");
-      box.add(p);
-    }
-  }
-  change.prism = Prism::box(box.min, box.max);
+  change.solid = std::move(*solid);
   return state_->mesh.add(std::move(change));
 }
 
@@ -114,7 +98,7 @@ Result<ChangeId> LiveGround::add_area(const Prism& prism, uint8_t kind) {
   }
   if (auto ok = check_prism(prism); !ok) return ok.error();
   LiveMesh::Change change;
-  change.prism = prism;
+  change.solid.prism = prism;
   change.is_area = true;
   change.kind = kind;
   return state_->mesh.add(std::move(change));

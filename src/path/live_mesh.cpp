@@ -64,7 +64,8 @@ void LiveMesh::set_area_cost(uint8_t kind, double cost) {
 ChangeId LiveMesh::add(Change change) {
   const WorldSummary& summary = world().summary;
   const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
-  const SquareRange near = tiles_near(world(), change.prism.corners, avatar.radius + summary.cell);
+  const SquareRange near =
+      tiles_near(world(), change.solid.prism.corners, avatar.radius + summary.cell);
   const auto id = static_cast<ChangeId>(changes_.size() + 1);
   for (int32_t z = near.first_z; z <= near.last_z; ++z) {
     for (int32_t x = near.first_x; x <= near.last_x; ++x) {
@@ -198,7 +199,7 @@ void LiveMesh::take_obstacles(LiveLevel& level) const {
     const Change& change = changes_[id - 1];
     if (!change.active || change.is_area) continue;
     const CellRows taken =
-        taken_cells(floor, avatar, change.prism, change.triangles, level.legal.data());
+        taken_cells(floor, avatar, change.solid.prism, change.solid.triangles, level.legal.data());
     for (size_t z = 0; z < taken.size(); ++z) level.legal[z] &= ~taken[z];
   }
 }
@@ -220,15 +221,15 @@ std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || !change.is_area) continue;
-    const SquareRange cells = cells_near(floor, change.prism.corners, kHeightRounding);
+    const SquareRange cells = cells_near(floor, change.solid.prism.corners, kHeightRounding);
     for (int32_t z = cells.first_z; z <= cells.last_z; ++z) {
       for (int32_t x = cells.first_x; x <= cells.last_x; ++x) {
         if (!level.is_legal(x, z)) continue;
         const double feet = level.ground.view.sample(x, z) * 1e-3;
-        if (feet < change.prism.low || feet > change.prism.high) continue;
+        if (feet < change.solid.prism.low || feet > change.solid.prism.high) continue;
         const double mx = summary.origin.x + (level.tile_x * kTileCells + x + 0.5) * summary.cell;
         const double mz = summary.origin.z + (level.tile_z * kTileCells + z + 0.5) * summary.cell;
-        if (is_nearer({mx, mz, mx, mz}, change.prism.corners, 1e-9))
+        if (is_nearer({mx, mz, mx, mz}, change.solid.prism.corners, 1e-9))
           kinds[static_cast<size_t>(z * 64 + x)] = change.kind;
       }
     }

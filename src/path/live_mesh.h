@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graph/ground_parts.h"
+#include "path/solid.h"
 #include "throng/live_ground.h"
 #include "world/ground.h"
 
@@ -74,8 +75,7 @@ class LiveMesh {
     bool active = true, removed = false;
     bool is_area = false;
     uint8_t kind = 0;
-    Prism prism;  // of a mesh: its box
-    std::vector<std::array<Vec3d, 3>> triangles;
+    Solid solid;                   // of an area: its prism
     std::vector<int64_t> tiles;    // that it touches
     std::vector<uint32_t> levels;  // from which a jump leads
   };

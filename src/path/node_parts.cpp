@@ -8,18 +8,6 @@
 #include "core/strong_parts.h"
 
 namespace throng {
-namespace {
-
-double distance(const Box3d& box, Vec3d at) {
-  const auto along = [](double low, double high, double x) {
-    return std::max({low - x, x - high, 0.0});
-  };
-  return length(Vec3d{along(box.min.x, box.max.x, at.x), along(box.min.y, box.max.y, at.y),
-                      along(box.min.z, box.max.z, at.z)});
-}
-
-}  // namespace
-
 NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patches().size()) {
   StrongParts parts = strong_parts(
       static_cast<uint32_t>(mesh.blocks().size()),
@@ -42,12 +30,13 @@ NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patche
   for (const auto& [from, to] : arcs) ++first_[from + 1];
   for (uint32_t p = 0; p < count_; ++p) first_[p + 1] += first_[p];
   for (const auto& [from, to] : arcs) leads_to_.push_back(to);
+  const NodeView view(mesh);
   parallel_for(boxes_.size(), workers, [&](size_t p) {
     const auto patch = static_cast<uint32_t>(p);
     const auto blocks = static_cast<uint32_t>(mesh.blocks_of(patch).size());
     for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + blocks; ++b) {
-      for_each_way_in(mesh, b, [&](const Crossing& crossing) {
-        boxes_[p].add(position(mesh, ends_of(mesh, crossing).in));
+      for_each_way_in(view, b, [&](const Crossing& crossing) {
+        boxes_[p].add(position(view, ends_of(view, crossing).in));
       });
     }
   });
@@ -73,36 +62,13 @@ void NodeParts::reach(uint32_t block, Reached& reached) const {
   }
 }
 
-BlockPoint NodeParts::nearest(const NodeMesh& mesh, const BlockPoint& from, Vec3d goal,
-                              Reached& reached) const {
-  BlockPoint best = from;
-  double least = length(goal - position(mesh, from));
-  auto& near = reached.near_;
-  near.clear();
-  for (uint32_t p = 0; p < boxes_.size(); ++p) {
-    if (boxes_[p].empty()) continue;
-    const double far = distance(boxes_[p], goal);
-    if (far < least) near.push_back({far, p});
-  }
-  std::make_heap(near.begin(), near.end());
-  while (!near.empty() && near.front().far < least) {
-    const uint32_t patch = near.front().patch;
-    std::pop_heap(near.begin(), near.end());
-    near.pop_back();
-    const auto blocks = static_cast<uint32_t>(mesh.blocks_of(patch).size());
-    for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + blocks; ++b) {
-      if (!reached.holds(part_of_[b])) continue;
-      for_each_way_in(mesh, b, [&](const Crossing& crossing) {
-        const auto [out, in] = ends_of(mesh, crossing);
-        if (!reached.holds(part_of_[out.block])) return;
-        const double away = length(goal - position(mesh, in));
-        if (away >= least) return;
-        least = away;
-        best = in;
-      });
-    }
-  }
-  return best;
+double NodeParts::distance_to(uint32_t patch, Vec3d at) const {
+  const Box3d& box = boxes_[patch];
+  const auto along = [](double low, double high, double x) {
+    return std::max({low - x, x - high, 0.0});
+  };
+  return length(Vec3d{along(box.min.x, box.max.x, at.x), along(box.min.y, box.max.y, at.y),
+                      along(box.min.z, box.max.z, at.z)});
 }
 
 uint64_t NodeParts::bytes() const {

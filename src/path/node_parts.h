@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "path/crossing.h"
+#include "path/node_view.h"
 
 /// What of a mesh can be reached from where, without a search over its portals.
 namespace throng {
@@ -40,18 +41,65 @@ class NodeParts {
   /// them.
   void reach(uint32_t block, Reached& reached) const;
   /// Of the ends of portals that are gone through on ways from a place whose parts were marked, and
-  /// of that place itself, the nearest to a goal. Patches are looked at in the order of how near
-  /// they may come.
-  [[nodiscard]] BlockPoint nearest(const NodeMesh& mesh, const BlockPoint& from, Vec3d goal,
-                                   Reached& reached) const;
+  /// of that place itself, the nearest to a goal; none that lies in a block for which
+  /// is_out(block) is true. Patches are looked at in the order of how near they may come.
+  template <class IsOut>
+  [[nodiscard]] BlockPoint nearest(const NodeView& view, const BlockPoint& from, Vec3d goal,
+                                   Reached& reached, IsOut is_out) const;
 
   [[nodiscard]] uint64_t bytes() const;
 
  private:
+  [[nodiscard]] double distance_to(uint32_t patch, Vec3d at) const;
+
   std::vector<uint32_t> part_of_;  // by block
   uint32_t count_ = 0;
   std::vector<uint32_t> first_, leads_to_;  // by part: parts that one-way portals lead to
   std::vector<Box3d> boxes_;                // by patch: all ends of portals in it
 };
+
+template <class IsOut>
+BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3d goal,
+                              Reached& reached, IsOut is_out) const {
+  const NodeMesh& mesh = view.mesh();
+  BlockPoint best = from;
+  double least = length(goal - position(view, from));
+  auto& near = reached.near_;
+  near.clear();
+  for (uint32_t p = 0; p < boxes_.size(); ++p) {
+    if (boxes_[p].empty()) continue;
+    const double far = distance_to(p, goal);
+    if (far < least) near.push_back({far, p});
+  }
+  if (!view.is_as_baked()) {
+    // Ends of what is left of portals lie beside the middles that the boxes hold.
+    for (const uint32_t patch : view.changes()->cut_patches()) near.push_back({0, patch});
+  }
+  std::make_heap(near.begin(), near.end());
+  const auto look_at = [&](uint32_t block) {
+    for_each_way_in(view, block, [&](const Crossing& crossing) {
+      const auto [out, in] = ends_of(view, crossing);
+      if (!reached.holds(part_of_[view.base_of(out.block)]) || is_out(in.block)) return;
+      const double away = length(goal - position(view, in));
+      if (away >= least) return;
+      least = away;
+      best = in;
+    });
+  };
+  while (!near.empty() && near.front().far < least) {
+    const uint32_t patch = near.front().patch;
+    std::pop_heap(near.begin(), near.end());
+    near.pop_back();
+    const auto blocks = static_cast<uint32_t>(mesh.blocks_of(patch).size());
+    for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + blocks; ++b) {
+      if (!reached.holds(part_of_[b])) continue;
+      look_at(b);
+      if (view.is_as_baked()) continue;
+      const auto parts = view.changes()->parts_of(b);
+      for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) look_at(p);
+    }
+  }
+  return best;
+}
 
 }  // namespace throng

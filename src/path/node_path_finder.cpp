@@ -8,10 +8,15 @@
 
 #include "path/block_squares.h"
 #include "path/district_search.h"
+#include "path/node_changes.h"
 #include "path/node_parts.h"
+#include "path/node_pocket.h"
 #include "path/node_pull.h"
 #include "path/node_search.h"
+#include "path/node_view.h"
 #include "path/obstacle.h"
+#include "path/solid.h"
+#include "path/taken_cells.h"
 #include "throng/node_path.h"
 #include "world/place.h"
 
@@ -31,62 +36,134 @@ constexpr uint64_t kNearCrossings = 2048;
 struct NodePathFinder::Shared {
   Shared(NodeMesh made, const NodePathConfig& config)
       : mesh(std::move(made)),
-        cost(mesh, config.slope_cost),
+        slope_cost(config.slope_cost),
         squares(mesh),
         parts(mesh, config.workers) {
+    for (const NodePortal& portal : mesh.portals()) {
+      if (!portal.leaps) continue;
+      const Vec3d a = mesh.surface(portal.a).at(portal.on_a[0], portal.on_a[1]);
+      const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
+      longest_leap = std::max(longest_leap, length(b - a));
+    }
     if (config.districts && mesh.portals().size() >= kManyCrossings) {
-      districts = Districts(mesh, cost, config.workers);
+      const NodeView baked(mesh);
+      districts = Districts(mesh, PieceCost(baked, slope_cost), config.workers);
     }
   }
-  Shared(const Shared&) = delete;  // `cost` points to `mesh`
+  Shared(const Shared&) = delete;  // `squares` may point to `mesh`
   Shared& operator=(const Shared&) = delete;
   NodeMesh mesh;
-  PieceCost cost;
+  double slope_cost;
   BlockSquares squares;
   NodeParts parts;
   Districts districts;
+  double longest_leap = 0;  // [m]
   double seconds = 0;
 };
 
 struct NodePathFinder::Scratch {
-  explicit Scratch(const Shared& shared)
-      : search(shared.mesh, shared.cost),
-        far_search(shared.mesh, shared.cost, shared.districts),
-        pull(shared.mesh, shared.cost) {}
+  Scratch(const Shared& of, NodeChanges made)
+      : shared(of),
+        changes(std::move(made)),
+        view(of.mesh, &changes),
+        cost(view, of.slope_cost),
+        search(view, cost),
+        far_search(view, cost, of.districts),
+        pull(view, cost) {}
+  explicit Scratch(const Shared& of)
+      : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_leap)) {}
+  Scratch(const Scratch&) = delete;  // its parts point to each other
+  Scratch& operator=(const Scratch&) = delete;
+
+  const Shared& shared;
+  NodeChanges changes;
+  uint64_t version = 0;  // of the changes that searches know
+  NodeView view;
+  PieceCost cost;
   NodeSearch search;
   DistrictSearch far_search;
   NodeParts::Reached reached;
+  NodePocket pockets;
   NodePull pull;
   std::vector<Crossing> way;
+  std::optional<BlockPoint> nearest;  // where `way` ends, if not where its last crossing leads to
   std::vector<PulledCrossing> pulled;
 
-  PathEnd find(const Shared& shared, const BlockPoint& from, const BlockPoint& to,
-               const SearchBudget& budget, NodePath& path);
+  void update() {
+    if (version == changes.version()) return;
+    version = changes.version();
+    changes.update();
+    far_search.update();
+  }
+  PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+               NodePath& path);
+  PathEnd find_all(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                   NodePath& path);
+  PathEnd find_nearest(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                       NodePath& path);
 };
 
-PathEnd NodePathFinder::Scratch::find(const Shared& shared, const BlockPoint& from,
-                                      const BlockPoint& to, const SearchBudget& budget,
-                                      NodePath& path) {
+namespace {
+
+SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
   SearchBudget left = budget;
+  left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, path.nodes);
+  return left;
+}
+
+}  // namespace
+
+// To where a way leads, as far as is known before what has been put up is asked.
+PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
+                                      const SearchBudget& budget, NodePath& path) {
   const auto look = [&](auto&& searched, PathEnd end) {
     path.nodes += searched.looked_at();
     path.searched_cost = searched.cost();
-    left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, path.nodes);
     return end;
   };
   if (!shared.districts.empty()) {
-    const double far = length(position(shared.mesh, to) - position(shared.mesh, from));
+    const double far = length(position(view, to) - position(view, from));
     if (far <= kNearSides * shared.districts.tiers().front().side) {
-      SearchBudget near = left;
+      SearchBudget near = what_is_left(budget, path);
       near.max_nodes = std::min(near.max_nodes, kNearCrossings);
       const PathEnd end = look(search, search.find(from, to, near, way));
       const bool stopped = budget.cancel != nullptr && *budget.cancel;
       if (end != PathEnd::kGaveUp || stopped) return end;
     }
+    const SearchBudget left = what_is_left(budget, path);
     const PathEnd end = look(far_search, far_search.find(from, to, left, search, way));
     if (end != PathEnd::kUnreachable) return end;
   }
-  return look(search, search.find(from, to, left, way));
+  return find_all(from, to, budget, path);
+}
+
+// Of all crossings; where none leads there, to the one that comes nearest.
+PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoint& to,
+                                          const SearchBudget& budget, NodePath& path) {
+  const PathEnd end = search.find(from, to, what_is_left(budget, path), way);
+  path.nodes += search.looked_at();
+  path.searched_cost = search.cost();
+  return end;
+}
+
+// To the reachable place that comes nearest to one that is not. What looks near may be cut off,
+// too.
+PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const BlockPoint& to,
+                                              const SearchBudget& budget, NodePath& path) {
+  constexpr int kMostPockets = 16;
+  const Vec3d goal = position(view, to);
+  if (pockets.close(view, from.block, to.block, NodePocket::Way::kOut))
+    return find_all(from, to, budget, path);
+  for (int i = 0; i < kMostPockets; ++i) {
+    const auto is_cut_off = [&](uint32_t block) { return pockets.holds(block); };
+    const BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
+    if (pockets.close(view, last.block, from.block, NodePocket::Way::kIn)) continue;
+    const PathEnd end = find(from, last, budget, path);
+    if (end == PathEnd::kReached) nearest = last;
+    if (end != PathEnd::kUnreachable) return end;
+    break;
+  }
+  return find_all(from, to, budget, path);
 }
 
 namespace {
@@ -94,8 +171,8 @@ namespace {
 // A way as it is told: points along the surface, links, corridor.
 class Teller {
  public:
-  Teller(const NodeMesh& mesh, const PieceCost& cost, double spacing, NodePath& path)
-      : mesh_(mesh), cost_(cost), spacing_(spacing), path_(path) {}
+  Teller(const NodeView& view, const PieceCost& cost, double spacing, NodePath& path)
+      : view_(view), cost_(cost), spacing_(spacing), path_(path) {}
 
   void begin(const BlockPoint& at) {
     add(at, true);
@@ -105,7 +182,7 @@ class Teller {
 
   void go_on(const BlockPoint& to) {
     const Vec3d from_at = path_.points.back().place.feet;
-    const NodeSurface& surface = mesh_.surface(to.block);
+    const NodeSurface& surface = view_.surface(to.block);
     const Vec3d to_at = surface.at(to.s, to.t);
     const auto piece = cost_(last_.block, last_.s, last_.t, from_at, to.s, to.t, to_at);
     path_.cost += piece.cost;
@@ -120,10 +197,10 @@ class Teller {
   }
 
   void cross(const PulledCrossing& crossing) {
-    const NodePortal& portal = mesh_.portals()[crossing.crossing.portal];
+    const NodePortal& portal = view_.portal(crossing.crossing.portal);
     path_.cost += portal_length(portal, crossing.out_at, crossing.in_at);
     const bool same_patch =
-        mesh_.blocks()[crossing.out.block].patch == mesh_.blocks()[crossing.in.block].patch;
+        view_.block(crossing.out.block).patch == view_.block(crossing.in.block).patch;
     if (same_patch && !portal.leaps) {
       // One point of both blocks: it becomes the next one's.
       path_.points.back().place.node1 = node_of(crossing.in) + 1;
@@ -139,9 +216,7 @@ class Teller {
   }
 
  private:
-  [[nodiscard]] uint32_t node_of(const BlockPoint& at) const {
-    return mesh_.blocks()[at.block].node;
-  }
+  [[nodiscard]] uint32_t node_of(const BlockPoint& at) const { return view_.block(at.block).node; }
 
   // Level with the last point, above where the body drops to.
   void add_over(Vec3d to) {
@@ -152,9 +227,9 @@ class Teller {
   }
 
   void add(const BlockPoint& at, bool on_surface) {
-    const NodeSurface& surface = mesh_.surface(at.block);
-    const auto& classes = mesh_.nodes().data()->world.data()->summary.classes;
-    const bool climbs = classes[static_cast<size_t>(mesh_.avatar_class())].climb_slope > 0;
+    const NodeSurface& surface = view_.surface(at.block);
+    const auto& classes = view_.mesh().nodes().data()->world.data()->summary.classes;
+    const bool climbs = classes[static_cast<size_t>(view_.mesh().avatar_class())].climb_slope > 0;
     const Vec3d normal = surface.normal(at.s, at.t), feet = surface.at(at.s, at.t);
     if (!path_.points.empty()) path_.length += length(feet - path_.points.back().place.feet);
     path_.points.push_back(
@@ -162,7 +237,7 @@ class Teller {
          .on_surface = on_surface});
   }
 
-  const NodeMesh& mesh_;
+  const NodeView& view_;
   const PieceCost& cost_;
   double spacing_;
   NodePath& path_;
@@ -185,14 +260,15 @@ uint32_t block_around(const NodeMesh& mesh, uint32_t node, double s, double t, A
 }
 
 // What keeps the class from going on from a block towards a position.
-Obstacle obstacle_towards(const NodeMesh& mesh, const BlockPoint& from, Vec3d goal) {
-  const NodeBlock& block = mesh.blocks()[from.block];
-  const NodeSurface& surface = mesh.surface(from.block);
+Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d goal) {
+  const NodeMesh& mesh = view.mesh();
+  const NodeBlock& block = view.block(from.block);
+  const NodeSurface& surface = view.surface(from.block);
   const auto& classes = mesh.nodes().data()->world.data()->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh.avatar_class())];
   // Just beyond the side of the block that lies nearest to the goal.
   const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
-  const double beyond = 0.5 / (1 << surface.depth);
+  const double beyond = 0.5 / (1 << std::max(surface.depth, block.level));
   const double s1 = s0 + side / 2, t1 = t0 + side / 2;
   double s = s1, t = t1, nearest = std::numeric_limits<double>::infinity();
   bool outside = true;
@@ -205,6 +281,11 @@ Obstacle obstacle_towards(const NodeMesh& mesh, const BlockPoint& from, Vec3d go
     s = edge_s + i * beyond;
     t = edge_t + j * beyond;
     outside = s < 0 || t < 0 || s > 1 || t > 1;
+  }
+  if (!view.is_as_baked() && !outside) {
+    // Whoever could stand there, but for what has been put up.
+    const uint32_t next = mesh.block_at(block.patch, s, t);
+    if (next != kNoNode && view.changes()->part_at(next, s, t) == kNoNode) return Obstacle::kNarrow;
   }
   if (surface.points == nullptr) {
     // What stops a straight walk, as over level tiles without nodes.
@@ -243,13 +324,52 @@ Obstacle obstacle_towards(const NodeMesh& mesh, const BlockPoint& from, Vec3d go
   return found;
 }
 
+// Calls visit(block, s, t) for the parts and blocks of level tiles within `reach`: with the point
+// that lies nearest in the plane.
+template <class Visit>
+void for_each_level_part(const NodeView& view, Vec3d position, double reach, Visit visit) {
+  const NodeMesh& mesh = view.mesh();
+  const WorldData& world = *mesh.nodes().data()->world.data();
+  const std::array<double, 2> plan{position.x, position.z};
+  const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(reach, 1e6));
+  const double tile = world.summary.cell * 64;
+  const auto look = [&](uint32_t block, double s, double t) {
+    const double side = view.block(block).side(), low_s = view.block(block).s * side,
+                 low_t = view.block(block).t * side;
+    const auto inside = [&](double at, double low) {
+      return std::clamp(at, low + kTileInset, low + side - kTileInset);
+    };
+    visit(block, inside(s, low_s), inside(t, low_t));
+  };
+  for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
+    for (int32_t x = tiles.first_x; x <= tiles.last_x; ++x) {
+      const double s = (position.x - world.summary.origin.x) / tile - x;
+      const double t = (position.z - world.summary.origin.z) / tile - z;
+      const auto levels = world.tile_levels(x, z);
+      for (uint32_t level = levels.first; level < levels.last; ++level) {
+        const uint32_t patch = mesh.patch_of_level(level);
+        if (patch == kNoNode) continue;
+        const auto count = static_cast<uint32_t>(mesh.blocks_of(patch).size());
+        for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + count; ++b) {
+          const auto parts = view.changes()->parts_of(b);
+          if (!parts) look(b, s, t);
+          for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p)
+            look(p, s, t);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 NodePathFinder::NodePathFinder(std::shared_ptr<const Shared> shared)
     : shared_(std::move(shared)), scratch_(std::make_unique<Scratch>(*shared_)) {}
-NodePathFinder::NodePathFinder(const NodePathFinder& other) : NodePathFinder(other.shared_) {}
+NodePathFinder::NodePathFinder(const NodePathFinder& other)
+    : shared_(other.shared_),
+      scratch_(std::make_unique<Scratch>(*shared_, other.scratch_->changes)) {}
 NodePathFinder& NodePathFinder::operator=(const NodePathFinder& other) {
-  if (this != &other) *this = NodePathFinder(other.shared_);
+  if (this != &other) *this = NodePathFinder(other);
   return *this;
 }
 NodePathFinder::NodePathFinder(NodePathFinder&&) noexcept = default;
@@ -310,19 +430,25 @@ std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, d
 NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
   const NodeMesh& mesh = shared_->mesh;
   if (!std::isfinite(position.x + position.y + position.z) || !(reach >= 0)) return {};
+  scratch_->update();
+  const NodeChanges& changes = scratch_->changes;
+  const NodeView& view = scratch_->view;
   double nearest = reach;
   uint64_t best_rank = 0;  // Of places as near as each other it is the first: level ground, then
                            // blocks in their order.
   NodePlace best;
   const auto consider = [&](uint32_t block, double s, double t, uint64_t rank) {
-    const NodePlace place =
-        mesh.nodes().place(mesh.avatar_class(), mesh.blocks()[block].node, s, t);
+    const NodePlace place = mesh.nodes().place(mesh.avatar_class(), view.block(block).node, s, t);
     if (!place) return;
     const double far = length(place.feet - position);
     if (far > nearest || (best && far == nearest && rank > best_rank)) return;
     nearest = far;
     best_rank = rank;
     best = place;
+  };
+  const auto consider_curved = [&](uint32_t block) {
+    const auto [s, t] = nearest_in(mesh.surface(block), view.block(block), position);
+    consider(block, s, t, uint64_t{block} + 1);
   };
   const World& world = mesh.nodes().data()->world;
   if (const Place place = world.find_place(mesh.avatar_class(), position, reach)) {
@@ -332,16 +458,46 @@ NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
         return (static_cast<double>(unit & (64 * kUnitsPerCell - 1)) + 0.5) / (64 * kUnitsPerCell);
       };
       const double s = along(at.x), t = along(at.z);
-      if (const uint32_t block = mesh.block_at(patch, s, t); block != kNoNode) {
-        consider(block, s, t, 0);
+      const uint32_t block = mesh.block_at(patch, s, t);
+      const uint32_t part = block == kNoNode ? kNoNode : changes.part_at(block, s, t);
+      if (part != kNoNode) consider(part, s, t, 0);
+      if (part == kNoNode && block != kNoNode) {
+        // What is nearest is taken. No level tile's place is nearer than in one of its parts.
+        for_each_level_part(view, position, nearest, [&](uint32_t other, double u, double v) {
+          consider(other, u, v, uint64_t{other} + 1);
+        });
       }
     }
   }
   shared_->squares.for_each_near(position, nearest, [&](uint32_t block) {
-    const auto [s, t] = nearest_in(mesh.surface(block), mesh.blocks()[block], position);
-    consider(block, s, t, uint64_t{block} + 1);
+    const auto parts = changes.parts_of(block);
+    if (!parts) return consider_curved(block);
+    for (uint32_t p = parts->first; p < parts->second; ++p) {
+      const auto [s, t] = nearest_in(view.surface(p), view.block(p), position);
+      consider(p, s, t, uint64_t{p} + 1);
+    }
   });
   return best;
+}
+
+Result<ChangeId> NodePathFinder::add_obstacle(const Prism& prism) {
+  auto solid = make_solid(prism);
+  if (!solid) return solid.error();
+  return scratch_->changes.add(*solid);
+}
+
+Result<ChangeId> NodePathFinder::add_obstacle(std::span<const Vec3d> corners,
+                                              std::span<const std::array<uint32_t, 3>> triangles) {
+  auto solid = make_solid(corners, triangles);
+  if (!solid) return solid.error();
+  return scratch_->changes.add(*solid);
+}
+
+bool NodePathFinder::remove(ChangeId change) {
+  return scratch_->changes.set_active(change, false, true);
+}
+bool NodePathFinder::set_active(ChangeId change, bool active) {
+  return scratch_->changes.set_active(change, active, false);
 }
 
 void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& path,
@@ -379,21 +535,43 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     }
     return at;
   };
-  const BlockPoint start = block_of(from), goal = block_of(to);
-  if (start.block == kNoNode || goal.block == kNoNode) return;
   Scratch& scratch = *scratch_;
-  BlockPoint last = goal;
-  shared_->parts.reach(start.block, scratch.reached);
-  const bool reachable = scratch.reached.holds(shared_->parts.of_block(goal.block));
-  if (!reachable) last = shared_->parts.nearest(mesh, start, to.feet, scratch.reached);
-  path.end = scratch.find(*shared_, start, last, budget, path);
+  scratch.update();
+  const NodeView& view = scratch.view;
+  const auto part_of = [&](BlockPoint at) {
+    if (at.block != kNoNode) at.block = scratch.changes.part_at(at.block, at.s, at.t);
+    return at;
+  };
+  const BlockPoint start = part_of(block_of(from)), goal = part_of(block_of(to));
+  if (start.block == kNoNode || goal.block == kNoNode) return;
+  shared_->parts.reach(view.base_of(start.block), scratch.reached);
+  bool reachable = scratch.reached.holds(shared_->parts.of_block(view.base_of(goal.block)));
+  scratch.nearest.reset();
+  if (view.is_as_baked()) {
+    if (!reachable) {
+      scratch.nearest = shared_->parts.nearest(view, start, to.feet, scratch.reached,
+                                               [](uint32_t) { return false; });
+    }
+    path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
+  } else {
+    // Parts tell who is reached if nothing is in the way.
+    scratch.pockets.clear();
+    reachable =
+        reachable && !scratch.pockets.close(view, goal.block, start.block, NodePocket::Way::kIn);
+    path.end = reachable ? scratch.find(start, goal, budget, path)
+                         : scratch.find_nearest(start, goal, budget, path);
+    reachable = reachable && path.end == PathEnd::kReached;
+  }
   if (path.end == PathEnd::kGaveUp) return;
+  BlockPoint last = goal;
   if (!reachable) {
+    last = scratch.way.empty() ? start : ends_of(view, scratch.way.back()).in;
+    last = scratch.nearest.value_or(last);
     path.end = PathEnd::kUnreachable;
-    path.obstacle = obstacle_towards(mesh, last, to.feet);
+    path.obstacle = obstacle_towards(view, last, to.feet);
   }
   scratch.pull.pull(start, last, scratch.way, scratch.pulled);
-  Teller teller(mesh, shared_->cost, spacing, path);
+  Teller teller(view, scratch.cost, spacing, path);
   teller.begin(start);
   for (const PulledCrossing& crossing : scratch.pulled) {
     teller.go_on(crossing.out);

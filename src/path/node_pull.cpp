@@ -28,7 +28,7 @@ double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
 }  // namespace
 
 void NodePull::place(PulledCrossing& crossing, double along) const {
-  const NodePortal& portal = mesh_->portals()[crossing.crossing.portal];
+  const NodePortal& portal = view_->portal(crossing.crossing.portal);
   const bool backward = crossing.crossing.backward;
   const auto on = [&](const std::array<double, 4>& line, uint32_t block) {
     return BlockPoint{block, line[0] + along * (line[2] - line[0]),
@@ -38,8 +38,8 @@ void NodePull::place(PulledCrossing& crossing, double along) const {
   crossing.along = along;
   crossing.out = backward ? b : a;
   crossing.in = backward ? a : b;
-  crossing.out_at = mesh_->surface(crossing.out.block).at(crossing.out.s, crossing.out.t);
-  crossing.in_at = mesh_->surface(crossing.in.block).at(crossing.in.s, crossing.in.t);
+  crossing.out_at = view_->surface(crossing.out.block).at(crossing.out.s, crossing.out.t);
+  crossing.in_at = view_->surface(crossing.in.block).at(crossing.in.s, crossing.in.t);
 }
 
 double NodePull::cost_around(const std::vector<PulledCrossing>& way, size_t i,
@@ -50,8 +50,7 @@ double NodePull::cost_around(const std::vector<PulledCrossing>& way, size_t i,
   return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? way[i - 1].in_at : from_at,
                   crossing.out.s, crossing.out.t, crossing.out_at)
              .cost +
-         portal_length(mesh_->portals()[crossing.crossing.portal], crossing.out_at,
-                       crossing.in_at) +
+         portal_length(view_->portal(crossing.crossing.portal), crossing.out_at, crossing.in_at) +
          (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
                   i + 1 < way.size() ? way[i + 1].out_at : to_at)
              .cost;
@@ -69,14 +68,14 @@ void NodePull::pull(const BlockPoint& from, const BlockPoint& to, const std::vec
     place(out.back(), 0.5);
   }
   if (out.empty()) return;
-  const Vec3d from_at = mesh_->surface(from.block).at(from.s, from.t);
-  const Vec3d to_at = mesh_->surface(to.block).at(to.s, to.t);
+  const Vec3d from_at = view_->surface(from.block).at(from.s, from.t);
+  const Vec3d to_at = view_->surface(to.block).at(to.s, to.t);
   for (int round = 0; round < kMostRounds; ++round) {
     double gained = 0, all = 0;
     for (size_t k = 0; k < out.size(); ++k) {
       const size_t i = round % 2 == 0 ? k : out.size() - 1 - k;
       PulledCrossing& here = out[i];
-      const NodePortal& portal = mesh_->portals()[here.crossing.portal];
+      const NodePortal& portal = view_->portal(here.crossing.portal);
       if (portal.leaps) continue;
       if (here.settled) {
         all += here.around;

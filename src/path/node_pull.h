@@ -22,7 +22,7 @@ struct PulledCrossing {
 
 class NodePull {
  public:
-  NodePull(const NodeMesh& mesh, const PieceCost& cost) : mesh_(&mesh), cost_(&cost) {}
+  NodePull(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
 
   /// Moves where the way goes through each portal, as long as that makes it cheaper.
   void pull(const BlockPoint& from, const BlockPoint& to, const std::vector<Crossing>& way,
@@ -34,7 +34,7 @@ class NodePull {
                                    const PulledCrossing& crossing, const BlockPoint& from,
                                    Vec3d from_at, const BlockPoint& to, Vec3d to_at) const;
 
-  const NodeMesh* mesh_;
+  const NodeView* view_;
   const PieceCost* cost_;
 };
 

@@ -18,9 +18,9 @@ constexpr double kShort = 1;  // Pieces up to here are taken for straight. [m]
 
 }  // namespace
 
-PieceCost::PieceCost(const NodeMesh& mesh, double slope_cost)
-    : mesh_(&mesh), slope_cost_(slope_cost) {
-  const NodeBins& bins = mesh.nodes().data()->summary.bins;
+PieceCost::PieceCost(const NodeView& view, double slope_cost)
+    : view_(&view), slope_cost_(slope_cost) {
+  const NodeBins& bins = view.mesh().nodes().data()->summary.bins;
   for (uint8_t code = 0; code < 16; ++code) {
     const double degrees = bins.inclination_of(code);
     // To 9 digits: the last bits of cos() differ between machines' libraries.
@@ -31,10 +31,10 @@ PieceCost::PieceCost(const NodeMesh& mesh, double slope_cost)
 
 PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec3d from, double s1,
                                        double t1, Vec3d to) const {
-  const NodeSurface& surface = mesh_->surface(block);
+  const NodeSurface& surface = view_->surface(block);
   const double straight = length(to - from);
   if (surface.points == nullptr) {
-    return {straight, straight * by_code_[mesh_->blocks()[block].inclination]};
+    return {straight, straight * by_code_[view_->block(block).inclination]};
   }
   const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
   double along = straight;
@@ -54,22 +54,22 @@ void NodeSearch::push(double estimate, uint32_t state) {
 }
 
 void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent) {
-  for_each_way_out(*mesh_, from.block, [&](const Crossing& crossing) {
+  for_each_way_out(*view_, from.block, [&](const Crossing& crossing) {
     const uint32_t id = 2 * crossing.portal + (crossing.backward ? 1 : 0);
     if ((id ^ 1) == parent || id == parent) return;
-    const NodePortal& portal = mesh_->portals()[crossing.portal];
+    const NodePortal& portal = view_->portal(crossing.portal);
     const uint32_t into = crossing.backward ? portal.a : portal.b;
     if (within_.district_of_block != nullptr &&
-        within_.district_of_block[into] != within_.district) {
+        within_.district_of_block[view_->base_of(into)] != within_.district) {
       return;
     }
     State& state = states_[id];
     if (state.query == query_ && state.cost <= cost) return;
-    const auto [out, in] = ends_of(*mesh_, crossing);
-    const Vec3d here = position(*mesh_, out);
+    const auto [out, in] = ends_of(*view_, crossing);
+    const Vec3d here = position(*view_, out);
     double next = cost + (*cost_)(out.block, from.s, from.t, at, out.s, out.t, here).cost;
     if (state.query == query_ && state.cost <= next) return;
-    const Vec3d there = position(*mesh_, in);
+    const Vec3d there = position(*view_, in);
     next += portal_length(portal, here, there);
     if (state.query == query_ && state.cost <= next) return;
     state = {query_, parent, next, there, false};
@@ -82,14 +82,14 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
   way.clear();
   looked_at_ = 0;
   within_ = within;
-  states_.resize(2 * mesh_->portals().size());
+  states_.resize(2 * view_->portal_count());
   if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
     states_.clear();
     query_ = 1;
   }
   open_.clear();
-  goal_ = position(*mesh_, to);
-  const Vec3d start = position(*mesh_, from);
+  goal_ = position(*view_, to);
+  const Vec3d start = position(*view_, from);
   constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
   double found = std::numeric_limits<double>::infinity();
   uint32_t last = kStart;
@@ -121,7 +121,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
     if (state.closed) continue;
     state.closed = true;
     if (budget.is_spent(++looked_at_)) return PathEnd::kGaveUp;
-    const BlockPoint in = ends_of(*mesh_, {top.state / 2, (top.state & 1) != 0}).in;
+    const BlockPoint in = ends_of(*view_, {top.state / 2, (top.state & 1) != 0}).in;
     const Vec3d at = state.at;
     const double cost = state.cost;
     if (const double far = length(goal_ - at); far < nearest) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/paged.h"
-#include "path/crossing.h"
+#include "path/node_view.h"
 #include "throng/path.h"
 #include "throng/search_budget.h"
 
@@ -17,7 +17,7 @@ namespace throng {
 /// What a straight piece within a block costs.
 class PieceCost {
  public:
-  PieceCost(const NodeMesh& mesh, double slope_cost);
+  PieceCost(const NodeView& view, double slope_cost);
 
   /// Metres over the surface, and what they cost. Both ends lie in the patch's block.
   struct Piece {
@@ -27,12 +27,12 @@ class PieceCost {
                                  double t1, Vec3d to) const;
 
  private:
-  const NodeMesh* mesh_;
+  const NodeView* view_;
   double slope_cost_;
   std::vector<double> by_code_;  // cost of a metre on level tiles, by inclination
 };
 
-/// Which district each block lies in, and to which one a search is kept.
+/// Which district each block of the mesh lies in, and to which one a search is kept.
 struct KeepIn {
   const uint32_t* district_of_block = nullptr;  ///< Null: it may go anywhere.
   uint32_t district = 0;
@@ -40,7 +40,7 @@ struct KeepIn {
 
 class NodeSearch {
  public:
-  NodeSearch(const NodeMesh& mesh, const PieceCost& cost) : mesh_(&mesh), cost_(&cost) {}
+  NodeSearch(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
 
   /// Fills `way` with the portals from one to the other, or, if none leads there, to the crossing
   /// that comes nearest. Ways that cost `less_than` and more are not looked for.
@@ -68,7 +68,7 @@ class NodeSearch {
   void push(double estimate, uint32_t state);
   void trace(uint32_t state, std::vector<Crossing>& way);
 
-  const NodeMesh* mesh_;
+  const NodeView* view_;
   const PieceCost* cost_;
   KeepIn within_;
   Paged<State> states_;

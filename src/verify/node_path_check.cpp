@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,12 +43,39 @@ struct Gone {
   uint32_t triangle = 0;
 };
 
+// The triangles of a scene and of prisms.
+Scene with_obstacles(const Scene& source, std::span<const Prism> prisms) {
+  Scene scene;
+  if (prisms.empty()) return scene;
+  scene.positions = source.positions;
+  scene.triangles = source.triangles;
+  scene.area = source.area;
+  for (const Prism& prism : prisms) {
+    const auto first = static_cast<uint32_t>(scene.positions.size());
+    const auto count = static_cast<uint32_t>(prism.corners.size());
+    for (const double y : {prism.low, prism.high}) {
+      for (const auto& [x, z] : prism.corners) scene.positions.push_back({x, y, z});
+    }
+    for (uint32_t k = 0; k < count; ++k) {
+      const uint32_t a = first + k, b = first + (k + 1) % count;
+      scene.triangles.push_back({a, b, b + count});
+      scene.triangles.push_back({a, b + count, a + count});
+      if (k + 2 >= count) continue;
+      scene.triangles.push_back({first, first + k + 1, first + k + 2});
+      scene.triangles.push_back({first + count, first + count + k + 1, first + count + k + 2});
+    }
+  }
+  scene.area.resize(scene.triangles.size(), kAreaBlocked);
+  return scene;
+}
+
 class Follower {
  public:
   Follower(const Nodes& nodes, const Scene& scene, const VerifyConfig& config)
       : nodes_(nodes),
         config_(config),
-        tree_(scene, config.workers),
+        built_(with_obstacles(scene, config.obstacles)),
+        tree_(config.obstacles.empty() ? scene : built_, config.workers),
         avatar_(nodes.summary().classes[static_cast<size_t>(config.avatar_class)]) {
     (void)nodes.reach(config.avatar_class, &part_);
     // What leads one way joins no parts, but leads from one into another.
@@ -73,6 +101,11 @@ class Follower {
     const auto start = Clock::now();
     finder.find(from, to, path);
     gone.seconds = seconds_since(start);
+    // Who would stand in what was put up is nowhere.
+    if (!config_.obstacles.empty() && path.end == PathEnd::kNoPlace) {
+      gone.exists = false;
+      return gone;
+    }
     gone.reached = path.end == PathEnd::kReached;
     // Where there is none, the way to where it stops must be one, too.
     gone.length = gone.reached ? path.length : 0;
@@ -186,6 +219,7 @@ class Follower {
 
   const Nodes& nodes_;
   const VerifyConfig& config_;
+  const Scene built_;  // with what was put up, if anything was
   const verify::TriangleTree tree_;
   AvatarClass avatar_;
   std::vector<uint32_t> part_;
@@ -201,6 +235,9 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
   auto finder = NodePathFinder::make(
       nodes, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
   if (!finder) return finder.error();
+  for (const Prism& prism : config.obstacles) {
+    if (auto added = finder->add_obstacle(prism); !added) return added.error();
+  }
   const Follower follower(nodes, source, config);
   NodePathReport report;
   report.make_seconds = finder->summary().seconds;
@@ -226,7 +263,9 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
       ++report.pairs;
       report.reached += g.reached ? 1 : 0;
       report.parted += !g.reached && !g.together ? 1 : 0;
-      count(g.reached != g.together ? 1 : 0, report.disagree, "disagree", g.at);
+      const bool is_blocked = g.together && !g.reached && !config.obstacles.empty();
+      report.blocked += is_blocked ? 1 : 0;
+      count(g.reached != g.together && !is_blocked ? 1 : 0, report.disagree, "disagree", g.at);
       count(g.entered, report.entered, "entered", g.entered_at);
       count(g.unsupported, report.unsupported, "unsupported", g.unsupported_at);
       count(g.torn, report.torn, "torn", g.torn_at);

@@ -397,6 +397,90 @@ TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_FALSE(added_on(crowd, here));
 }
 
+Scene shell_of(const std::vector<Prism>& prisms) {
+  Scene shell;
+  for (const Prism& prism : prisms) {
+    const auto first = static_cast<uint32_t>(shell.positions.size());
+    for (const double y : {prism.low, prism.high}) {
+      for (const auto& [x, z] : prism.corners) shell.positions.push_back({x, y, z});
+    }
+    for (uint32_t k = 0; k < 4; ++k) {
+      const uint32_t a = first + k, b = first + (k + 1) % 4;
+      shell.triangles.push_back({a, b, b + 4});
+      shell.triangles.push_back({a, b + 4, a + 4});
+    }
+    for (const uint32_t f : {first, first + 4}) {
+      shell.triangles.push_back({f, f + 1, f + 2});
+      shell.triangles.push_back({f, f + 2, f + 3});
+    }
+  }
+  shell.area.resize(shell.triangles.size());
+  return shell;
+}
+
+// Walls across everybody's way, put up before they begin or when they are under way, with a gap at
+// one end.
+TEST(Climbers, GoAroundWhatIsPutUpOnTheirWay) {
+  Stage stage(net());
+  std::vector<Prism> walls;
+  for (int i = 0; i < 2; ++i) {
+    const double x = 8.0 + 8 * i;
+    const double from = i % 2 == 0 ? -1 : 10, to = i % 2 == 0 ? 14 : 25;
+    walls.push_back(Prism::box({x, -30, from}, {x + 0.2, 30, to}));
+  }
+  const Scene shell = shell_of(walls);
+  const verify::TriangleTree tree(shell, 1);
+  for (const bool ahead : {true, false}) {
+    Crowd crowd = stage.crowd();
+    std::vector<AvatarId> ids;
+    const auto put_up = [&] {
+      for (const Prism& wall : walls) ASSERT_TRUE(crowd.add_obstacle(wall));
+    };
+    if (ahead) put_up();
+    for (uint64_t n = 0; ids.size() < 6 && n < 400; ++n) {
+      const int32_t avatar_class = n % 3 == 2 ? kGecko : kClimber;
+      const NodePlace from = stage.place(avatar_class, 21, n),
+                      to = stage.place(avatar_class, 22, n);
+      // From one end to the other, and not to where a wall will be.
+      const auto clear = [&](Vec3d p) {
+        return std::all_of(walls.begin(), walls.end(), [&](const Prism& wall) {
+          return std::fabs(p.x - wall.corners[0][0]) > 2.2;
+        });
+      };
+      if (std::fabs(from.feet.x - to.feet.x) < 13 || !clear(from.feet) || !clear(to.feet)) continue;
+      const AvatarId id = added_on(crowd, from, avatar_class);
+      if (!id) continue;
+      crowd.set_goals(std::span(&id, 1), std::span(&to, 1));
+      ids.push_back(id);
+    }
+    ASSERT_EQ(ids.size(), 6u);
+    if (!ahead) {
+      for (int step = 0; step < 10; ++step) crowd.step();
+      put_up();
+    }
+    std::set<uint32_t> there;
+    uint64_t inside = 0, bodies = 0;
+    Stage::Faults faults;
+    std::vector<AvatarState> states;
+    for (int step = 0; step < 4000 && there.size() < ids.size(); ++step) {
+      crowd.step();
+      for (const AvatarId id : crowd.arrived()) there.insert(id.slot1);
+      crowd.read(states);
+      for (const AvatarState& s : states) {
+        const AvatarClass avatar = classes()[static_cast<size_t>(s.avatar_class)];
+        ++bodies;
+        inside += verify::turned_intruder(tree, avatar, {s.position, s.up}) ? 1 : 0;
+      }
+      if (step % 5 == 0) stage.look(crowd, faults);
+    }
+    EXPECT_EQ(there.size(), ids.size());
+    EXPECT_EQ(inside, 0u);
+    EXPECT_EQ(faults.overlaps + faults.entered, 0u);
+    EXPECT_GT(bodies, 1000u);
+    EXPECT_EQ(crowd.obstacles().size(), walls.size());
+  }
+}
+
 TEST(Climbers, WhoIsDrivenGoesWhereHeIsDriven) {
   Stage stage(test::net_scene({.side = 2, .cell = 8, .relief = 0, .sideways = 0}));
   Crowd crowd = stage.crowd();

@@ -53,7 +53,7 @@ BlockPoint random_point(const NodeMesh& mesh, uint64_t n) {
 }
 
 // What a way costs from middle to middle; it must hang together.
-double cost_along(const NodeMesh& mesh, const PieceCost& piece, const BlockPoint& from,
+double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint& from,
                   const std::vector<Crossing>& way, const BlockPoint& to) {
   double cost = 0;
   BlockPoint at = from;
@@ -63,7 +63,7 @@ double cost_along(const NodeMesh& mesh, const PieceCost& piece, const BlockPoint
         piece(at.block, at.s, at.t, position(mesh, at), next.s, next.t, position(mesh, next)).cost;
   };
   for (const Crossing& crossing : way) {
-    const NodePortal& portal = mesh.portals()[crossing.portal];
+    const NodePortal& portal = mesh.portal(crossing.portal);
     EXPECT_FALSE(crossing.backward && portal.one_way);
     const auto [out, in] = ends_of(mesh, crossing);
     go(out);
@@ -81,12 +81,13 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
     double sum = 0, most = 0;
     int count = 0;
     for (const size_t crossings : {24, 192}) {
-      const PieceCost piece(mesh, crossings == 24 ? 2 : 0);
+      const NodeView view(mesh);
+      const PieceCost piece(view, crossings == 24 ? 2 : 0);
       const Districts districts(mesh, piece, 2, crossings);
       ASSERT_FALSE(districts.empty());
       tiers = std::max(tiers, districts.tiers().size());
-      DistrictSearch search(mesh, piece, districts);
-      NodeSearch plain(mesh, piece), blocks(mesh, piece);
+      DistrictSearch search(view, piece, districts);
+      NodeSearch plain(view, piece), blocks(view, piece);
       for (uint64_t n = 0; n < 40; ++n) {
         const BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
         ASSERT_TRUE(from.block != kNoNode && to.block != kNoNode);
@@ -101,7 +102,7 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
         ++reached;
         looked_at += search.looked_at();
         plainly += plain.looked_at();
-        const double cost = cost_along(mesh, piece, from, way, to);
+        const double cost = cost_along(view, piece, from, way, to);
         EXPECT_NEAR(search.cost(), cost, 1e-9 * cost);
         EXPECT_GE(cost, plain.cost() * (1 - 1e-9));
         for (const Crossing& crossing : way) {
@@ -137,9 +138,10 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
 TEST(Districts, TellWhatItCostsToGoThrough) {
   uint64_t through = 0, none = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
-    const PieceCost piece(mesh, 1);
+    const NodeView view(mesh);
+    const PieceCost piece(view, 1);
     const Districts districts(mesh, piece, 1, 48);
-    NodeSearch search(mesh, piece);
+    NodeSearch search(view, piece);
     std::vector<uint32_t> of_block = districts.of_block();
     std::vector<Crossing> way;
     double sum = 0;
@@ -158,16 +160,16 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
             const NodePortal& portal = mesh.portals()[out.portal];
             const bool closed = (crossing.backward && mesh.portals()[crossing.portal].one_way) ||
                                 (out.backward && portal.one_way);
-            const auto ends = ends_of(mesh, out);
+            const auto ends = ends_of(view, out);
             const PathEnd end =
-                search.find(ends_of(mesh, crossing).in, ends.out, {}, way, {of_block.data(), d});
+                search.find(ends_of(view, crossing).in, ends.out, {}, way, {of_block.data(), d});
             if (closed || end != PathEnd::kReached) {
               EXPECT_TRUE(std::isinf(costs[j]));
               ++none;
               continue;
             }
-            const double least = search.cost() + portal_length(portal, position(mesh, ends.out),
-                                                               position(mesh, ends.in));
+            const double least = search.cost() + portal_length(portal, position(view, ends.out),
+                                                               position(view, ends.in));
             ASSERT_FALSE(std::isinf(costs[j]));
             EXPECT_GE(costs[j], least * (1 - 1e-6));
             if (&tier == &districts.tiers().front()) {
@@ -190,7 +192,8 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
 
 TEST(Districts, AreTheSameForAnyNumberOfWorkers) {
   for_each_mesh([&](const NodeMesh& mesh) {
-    const PieceCost piece(mesh, 0);
+    const NodeView view(mesh);
+    const PieceCost piece(view, 0);
     const Districts one(mesh, piece, 1), four(mesh, piece, 4);
     EXPECT_EQ(one.bytes(), four.bytes());
     ASSERT_EQ(one.tiers().size(), four.tiers().size());
@@ -204,10 +207,11 @@ TEST(Districts, AreTheSameForAnyNumberOfWorkers) {
 TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
   uint64_t reached = 0, unreachable = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
-    const PieceCost piece(mesh, 0);
+    const NodeView view(mesh);
+    const PieceCost piece(view, 0);
     const NodeParts parts(mesh, 2);
     NodeParts::Reached marks;
-    NodeSearch plain(mesh, piece);
+    NodeSearch plain(view, piece);
     std::vector<Crossing> way;
     for (uint64_t n = 0; n < 60; ++n) {
       const BlockPoint from = random_point(mesh, 3 * n), to = random_point(mesh, 3 * n + 1);
@@ -219,10 +223,11 @@ TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
         continue;
       }
       ++unreachable;
-      const Vec3d goal = position(mesh, to);
-      const BlockPoint searched = way.empty() ? from : ends_of(mesh, way.back()).in;
-      const BlockPoint told = parts.nearest(mesh, from, goal, marks);
-      EXPECT_EQ(length(position(mesh, told) - goal), length(position(mesh, searched) - goal));
+      const Vec3d goal = position(view, to);
+      const BlockPoint searched = way.empty() ? from : ends_of(view, way.back()).in;
+      const BlockPoint told =
+          parts.nearest(view, from, goal, marks, [](uint32_t) { return false; });
+      EXPECT_EQ(length(position(view, told) - goal), length(position(view, searched) - goal));
       EXPECT_EQ(plain.find(from, told, {}, way), PathEnd::kReached);
     }
   });

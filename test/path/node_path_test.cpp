@@ -84,7 +84,8 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
     for (const int32_t c : {0, 4}) {
       const auto mesh = NodeMesh::make(nodes, c, 1, context);
       ASSERT_TRUE(mesh);
-      const PieceCost piece(*mesh, slope_cost);
+      const NodeView view(*mesh);
+      const PieceCost piece(view, slope_cost);
       NodePathFinder found = finder(nodes, c, slope_cost);
       for (uint64_t n = 0; n < 20; ++n) {
         const NodePlace from = nodes.random_place(c, 3, 2 * n),

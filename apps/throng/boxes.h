@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <vector>
+
+#include "throng/prism.h"
+#include "throng/result.h"
+
+namespace throng::app {
+
+/// Adds --block: boxes that are put up, six numbers each.
+void add_blocks(CLI::App* command, std::vector<double>& blocks);
+
+/// Of --block. Fails with kBadInput and a sentence.
+Result<std::vector<Prism>> boxes_of(const std::vector<double>& blocks);
+
+}  // namespace throng::app

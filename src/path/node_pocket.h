@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <unordered_set>
+#include <vector>
+
+#include "path/node_view.h"
+
+/// Blocks that are cut off from the rest by what has been put up.
+namespace throng {
+
+class NodePocket {
+ public:
+  enum class Way { kOut, kIn };
+  static constexpr size_t kMost = 4096;  ///< Blocks that are looked at.
+
+  void clear() { of_block_.clear(); }
+  /// Looks for all blocks that ways lead to from a block, or from which they lead to it. True if
+  /// these are a pocket that does not hold `other`: it is kept. False if it may be reached.
+  bool close(const NodeView& view, uint32_t from, uint32_t other, Way way);
+  /// Is a block in one of the pockets that were found since clear()?
+  [[nodiscard]] bool holds(uint32_t block) const { return of_block_.contains(block); }
+
+ private:
+  std::unordered_set<uint32_t> of_block_;
+  std::vector<uint32_t> found_;
+};
+
+}  // namespace throng

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "graph/node_mesh.h"
+#include "path/node_changes.h"
+
+/// A mesh of nodes as it is now: as it was baked, but for what has been put up since.
+namespace throng {
+
+/// Blocks and portals have the mesh's numbers. Above these are parts of blocks that something
+/// stands on, which no portal leads to any more, and portals between parts.
+class NodeView {
+ public:
+  /// As it was baked, if `changes` are null.
+  explicit NodeView(const NodeMesh& mesh, const NodeChanges* changes = nullptr)
+      : mesh_(&mesh), changes_(changes) {}
+
+  [[nodiscard]] const NodeMesh& mesh() const { return *mesh_; }
+  [[nodiscard]] const NodeChanges* changes() const { return changes_; }
+  [[nodiscard]] bool is_as_baked() const { return changes_ == nullptr || changes_->empty(); }
+
+  [[nodiscard]] const NodeBlock& block(uint32_t b) const {
+    const auto blocks = mesh_->blocks();
+    return b < blocks.size() ? blocks[b] : changes_->parts()[b - blocks.size()];
+  }
+  [[nodiscard]] const NodePortal& portal(uint32_t p) const {
+    const auto portals = mesh_->portals();
+    return p < portals.size() ? portals[p] : changes_->portals()[p - portals.size()];
+  }
+  [[nodiscard]] size_t portal_count() const {
+    return mesh_->portals().size() + (changes_ != nullptr ? changes_->portals().size() : 0);
+  }
+  [[nodiscard]] const NodeSurface& surface(uint32_t b) const {
+    return mesh_->patches()[block(b).patch];
+  }
+  [[nodiscard]] std::span<const uint32_t> portals_of(uint32_t b) const {
+    if (!is_as_baked()) {
+      if (const auto changed = changes_->portals_of(b)) return *changed;
+    }
+    return mesh_->portals_of(b);
+  }
+  /// The block of the mesh that it is, or is a part of.
+  [[nodiscard]] uint32_t base_of(uint32_t b) const {
+    return b < mesh_->blocks().size() ? b : changes_->base_of(b);
+  }
+
+ private:
+  const NodeMesh* mesh_;
+  const NodeChanges* changes_;
+};
+
+/// Somewhere in a block.
+struct BlockPoint {
+  uint32_t block = kNoNode;
+  double s = 0, t = 0;
+};
+
+/// A portal as it is gone through.
+struct Crossing {
+  uint32_t portal = 0;
+  bool backward = false;  ///< From b to a.
+  friend bool operator==(const Crossing&, const Crossing&) = default;
+};
+
+/// The middle of a crossing's portal in the block that it leaves and in the one that it comes to.
+struct CrossingEnds {
+  BlockPoint out, in;
+};
+
+inline CrossingEnds ends_of(const NodeView& view, const Crossing& crossing) {
+  const NodePortal& portal = view.portal(crossing.portal);
+  const auto middle = [](uint32_t block, const std::array<double, 4>& on) {
+    return BlockPoint{block, (on[0] + on[2]) / 2, (on[1] + on[3]) / 2};
+  };
+  const BlockPoint a = middle(portal.a, portal.on_a), b = middle(portal.b, portal.on_b);
+  return crossing.backward ? CrossingEnds{b, a} : CrossingEnds{a, b};
+}
+
+inline Vec3d position(const NodeView& view, const BlockPoint& at) {
+  return view.surface(at.block).at(at.s, at.t);
+}
+
+/// Calls visit(crossing) for each way out of a block.
+template <class Visit>
+void for_each_way_out(const NodeView& view, uint32_t block, Visit visit) {
+  for (const uint32_t p : view.portals_of(block)) {
+    const NodePortal& portal = view.portal(p);
+    const bool backward = portal.a != block;
+    if (!(backward && portal.one_way)) visit(Crossing{p, backward});
+  }
+}
+
+/// Calls visit(crossing) for each way into a block.
+template <class Visit>
+void for_each_way_in(const NodeView& view, uint32_t block, Visit visit) {
+  for (const uint32_t p : view.portals_of(block)) {
+    const NodePortal& portal = view.portal(p);
+    const bool backward = portal.a == block;
+    if (!(backward && portal.one_way)) visit(Crossing{p, backward});
+  }
+}
+
+}  // namespace throng

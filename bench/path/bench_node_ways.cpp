@@ -24,6 +24,7 @@ struct Options {
   std::vector<double> distances{100, 500, 1000, 2000};
   int pairs = 60;
   int judged = 30;  // pairs of each distance that all crossings are searched for, too
+  int crates = 60;  // pairs of each distance whose way a crate is put in
   int threads = 2;  // for making the finders
 };
 
@@ -113,6 +114,61 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
           {"worst_ratio", worst}};
 }
 
+// A crate of a metre in the middle of each way: how long until it is avoided, and how much longer
+// the way around it is than what a search of all crossings finds.
+Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
+                NodePathFinder& search, double apart, const Options& options) {
+  std::vector<double> before_ms, add_ms, find_ms, both_ms, without_ms;
+  double ours = 0, best = 0, worst = 0;
+  int shut = 0, differ = 0;
+  NodePath path, shortest;
+  const auto timed = [](std::vector<double>& list, auto&& call) {
+    const double start = now();
+    call();
+    list.push_back((now() - start) * 1e3);
+  };
+  for (const auto& [from, to] : find_pairs(nodes, avatar_class, apart, 3 * options.crates)) {
+    if (add_ms.size() == static_cast<size_t>(options.crates)) break;
+    double start = now();
+    finder.find(from, to, path);
+    const double before = (now() - start) * 1e3;
+    if (path.end != PathEnd::kReached || path.points.size() < 3) continue;
+    before_ms.push_back(before);
+    const Vec3d at = path.points[path.points.size() / 2].place.feet;
+    const Prism crate =
+        Prism::box({at.x - 0.5, at.y, at.z - 0.5}, {at.x + 0.5, at.y + 1, at.z + 0.5});
+    ChangeId id = 0;
+    timed(add_ms, [&] { id = *finder.add_obstacle(crate); });
+    timed(find_ms, [&] { finder.find(from, to, path); });
+    both_ms.push_back(add_ms.back() + find_ms.back());
+    const ChangeId other = *search.add_obstacle(crate);
+    search.find(from, to, shortest);
+    search.remove(other);
+    differ += shortest.end != path.end;
+    shut += path.end != PathEnd::kReached;
+    if (path.end == PathEnd::kReached && shortest.end == PathEnd::kReached) {
+      ours += path.length;
+      best += shortest.length;
+      worst = std::max(worst, path.length / shortest.length);
+    }
+    finder.remove(id);
+    timed(without_ms, [&] { finder.find(from, to, path); });
+  }
+  std::sort(both_ms.begin(), both_ms.end());
+  return {{"distance", apart},
+          {"crates", add_ms.size()},
+          {"before_median_ms", median(before_ms)},
+          {"add_median_ms", median(add_ms)},
+          {"find_median_ms", median(find_ms)},
+          {"until_median_ms", median(both_ms)},
+          {"until_most_ms", both_ms.empty() ? 0 : both_ms.back()},
+          {"without_median_ms", median(without_ms)},
+          {"shut", shut},
+          {"differ", differ},
+          {"mean_ratio", best > 0 ? ours / best : 0},
+          {"worst_ratio", worst}};
+}
+
 Json run(const Options& options) {
   Context context;
   const Result<Nodes> nodes = Nodes::open(options.world);
@@ -132,14 +188,21 @@ Json run(const Options& options) {
   };
   NodePathFinder finder = make(true), search = make(false);
   const NodePathSummary made = finder.summary(), plain = search.summary();
-  Json ways = Json::array();
+  Json ways = Json::array(), crates = Json::array();
   for (const double apart : options.distances) {
     ways.push_back(measure(*nodes, avatar_class, finder, search, apart, options));
+    if (options.crates == 0) continue;
+    crates.push_back(put_crates(*nodes, avatar_class, finder, search, apart, options));
   }
-  return {{"world", options.world},      {"class", options.avatar_class},
-          {"crossings", made.crossings}, {"seconds", made.seconds},
-          {"bytes", made.bytes},         {"search_seconds", plain.seconds},
-          {"search_bytes", plain.bytes}, {"ways", ways}};
+  return {{"world", options.world},
+          {"class", options.avatar_class},
+          {"crossings", made.crossings},
+          {"seconds", made.seconds},
+          {"bytes", made.bytes},
+          {"search_seconds", plain.seconds},
+          {"search_bytes", plain.bytes},
+          {"ways", ways},
+          {"crates", crates}};
 }
 
 }  // namespace
@@ -155,6 +218,8 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   parser.add_option("--pairs", options.pairs, "Pairs of each distance")->capture_default_str();
   parser.add_option("--judged", options.judged, "Pairs that are searched for plainly, too")
+      ->capture_default_str();
+  parser.add_option("--crates", options.crates, "Pairs whose way a crate is put in")
       ->capture_default_str();
   parser.add_option("--threads", options.threads, "Threads to make the finders")
       ->capture_default_str();

@@ -12,6 +12,7 @@ void DistrictChanges::update() {
   blocks_.clear();
   moved_.clear();
   rows_.clear();
+  in_graph_ = kNoNode;
   const auto& tiers = districts_->tiers();
   if (stale_.empty()) {
     if (view_->is_as_baked()) return;
@@ -100,7 +101,8 @@ std::span<const float> DistrictChanges::costs_from(uint32_t entry) {
   std::vector<float>& row = rows_[entry];
   row.assign(entries.size(), std::numeric_limits<float>::infinity());
   if (is_closed(entry)) return row;
-  graph_.set(blocks_.at(district), false);
+  if (district != in_graph_) graph_.set(blocks_.at(district), true);
+  in_graph_ = district;
   const std::vector<double>& costs = graph_.run(ends_of(*view_, crossing(entry)).in);
   for (size_t j = 0; j < entries.size(); ++j) {
     const uint32_t out = entries[j] ^ 1;

@@ -555,7 +555,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
   } else {
     // Parts tell who is reached if nothing is in the way.
-    scratch.pockets.clear();
+    scratch.pockets.clear(view);
     reachable =
         reachable && !scratch.pockets.close(view, goal.block, start.block, NodePocket::Way::kIn);
     path.end = reachable ? scratch.find(start, goal, budget, path)

@@ -4,29 +4,38 @@
 
 namespace throng {
 
+void NodePocket::clear(const NodeView& view) {
+  marks_.resize(view.block_count());
+  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+    marks_.clear();
+    query_ = 1;
+  }
+}
+
 bool NodePocket::close(const NodeView& view, uint32_t from, uint32_t other, Way way) {
   if (from == other) return false;
+  if (holds(from)) return true;
+  marks_[from] = query_;
   found_.assign(1, from);
-  if (!of_block_.insert(from).second) return true;
-  const auto give_up = [&] {
-    for (const uint32_t block : found_) of_block_.erase(block);
-    return false;
-  };
   for (size_t i = 0; i < found_.size(); ++i) {
+    const uint32_t block = found_[i];
     bool meets = false;
     const auto look = [&](const Crossing& crossing) {
       const NodePortal& portal = view.portal(crossing.portal);
-      const uint32_t next = portal.a == found_[i] ? portal.b : portal.a;
+      const uint32_t next = portal.a == block ? portal.b : portal.a;
       meets |= next == other;
-      if (of_block_.insert(next).second) found_.push_back(next);
+      if (holds(next)) return;
+      marks_[next] = query_;
+      found_.push_back(next);
     };
-    const uint32_t block = found_[i];
     if (way == Way::kOut) {
       for_each_way_out(view, block, look);
     } else {
       for_each_way_in(view, block, look);
     }
-    if (meets || found_.size() > kMost) return give_up();
+    if (!meets && found_.size() <= kMost) continue;
+    for (const uint32_t open : found_) marks_[open] = 0;
+    return false;
   }
   return true;
 }

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_set>
 #include <vector>
 
+#include "core/paged.h"
 #include "path/node_view.h"
 
 /// Blocks that are cut off from the rest by what has been put up.
@@ -16,15 +16,17 @@ class NodePocket {
   enum class Way { kOut, kIn };
   static constexpr size_t kMost = 4096;  ///< Blocks that are looked at.
 
-  void clear() { of_block_.clear(); }
+  /// Before the first of a query.
+  void clear(const NodeView& view);
   /// Looks for all blocks that ways lead to from a block, or from which they lead to it. True if
   /// these are a pocket that does not hold `other`: it is kept. False if it may be reached.
   bool close(const NodeView& view, uint32_t from, uint32_t other, Way way);
   /// Is a block in one of the pockets that were found since clear()?
-  [[nodiscard]] bool holds(uint32_t block) const { return of_block_.contains(block); }
+  [[nodiscard]] bool holds(uint32_t block) { return marks_[block] == query_; }
 
  private:
-  std::unordered_set<uint32_t> of_block_;
+  Paged<uint32_t> marks_;  // by block
+  uint32_t query_ = 0;
   std::vector<uint32_t> found_;
 };
 

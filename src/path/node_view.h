@@ -31,6 +31,9 @@ class NodeView {
     const auto portals = mesh_->portals();
     return p < portals.size() ? portals[p] : changes_->portals()[p - portals.size()];
   }
+  [[nodiscard]] size_t block_count() const {
+    return mesh_->blocks().size() + (changes_ != nullptr ? changes_->parts().size() : 0);
+  }
   [[nodiscard]] size_t portal_count() const {
     return mesh_->portals().size() + (changes_ != nullptr ? changes_->portals().size() : 0);
   }

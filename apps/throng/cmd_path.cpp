@@ -227,6 +227,17 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
   return text;
 }
 
+// Puts the boxes of --block up, over the ground or in the air.
+template <class Finder>
+Result<void> put_up(const PathOptions& options, Finder& finder) {
+  const auto boxes = boxes_of(options.blocks);
+  if (!boxes) return boxes.error();
+  for (const Prism& box : *boxes) {
+    if (auto added = finder.add_obstacle(box); !added) return added.error();
+  }
+  return {};
+}
+
 int fly(Session& session, const PathOptions& options, const World& world, int32_t avatar_class) {
   const auto from = position_of(world, options, options.from, "--from");
   if (!from) return fail(from.error());
@@ -244,12 +255,21 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
                                     "body would touch matter, or it lies above or below the air",
                                     options.avatar_class)));
   }
+  if (auto ok = put_up(options, *finder); !ok) return fail(ok.error());
   FlightPath found;
   const auto start = std::chrono::steady_clock::now();
   finder->find(
       {.from = *from, .to = *to, .reach = options.reach, .cancel = &session.context.cancel}, found);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (found.end == PathEnd::kNoPlace) {
+    // Which end it is: a way from each to itself is told at once.
+    for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
+      finder->find({.from = position, .to = position, .reach = options.reach}, found);
+      if (found.end != PathEnd::kNoPlace) continue;
+      return fail(bad_end(options, position, option, "is no place to be now: a --block is there"));
+    }
+  }
   print_result(session, flight_json(options, found, *to, finder->summary(), seconds),
                flight_text(options, found, *to, seconds));
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
@@ -340,11 +360,7 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
                             .workers = options.threads},
                            session.context);
   if (!finder) return fail(finder.error());
-  const auto boxes = boxes_of(options.blocks);
-  if (!boxes) return fail(boxes.error());
-  for (const Prism& box : *boxes) {
-    if (auto added = finder->add_obstacle(box); !added) return fail(added.error());
-  }
+  if (auto ok = put_up(options, *finder); !ok) return fail(ok.error());
   const NodePlace from = finder->find_place(*from_position, options.reach);
   const NodePlace to = finder->find_place(*to_position, options.reach);
   for (const auto& [place, position, option] :
@@ -371,11 +387,7 @@ Result<LiveGround> live_ground(const World& world, const PathOptions& options,
   auto ground =
       LiveGround::make(world, {.avatar_class = avatar_class, .slope_cost = options.slope_cost});
   if (!ground) return ground.error();
-  const auto boxes = boxes_of(options.blocks);
-  if (!boxes) return boxes.error();
-  for (const Prism& box : *boxes) {
-    if (auto added = ground->add_obstacle(box); !added) return added.error();
-  }
+  if (auto ok = put_up(options, *ground); !ok) return ok.error();
   for (size_t i = 0; i < options.area_costs.size(); i += 2) {
     const double kind = options.area_costs[i];
     if (!(kind >= 0 && kind <= 255 && kind == std::floor(kind))) {
@@ -414,10 +426,10 @@ int path(Session& session, const PathOptions& options) {
     return fail({Errc::kBadConfig, "--fly leads through the air, --nodes over the ground"});
   }
   if (options.fly) {
-    if (options.is_live()) {
+    if (!options.jumps.empty() || !options.area_costs.empty() || options.slope_cost > 0) {
       return fail({Errc::kBadConfig,
-                   "--block, --jump, --area-cost and --slope-cost change the ground; ways through "
-                   "the air (--fly) are of the world as it was baked"});
+                   "--jump, --area-cost and --slope-cost are about the ground; ways through the "
+                   "air (--fly) only mind a --block"});
     }
     return fly(session, options, *world, *avatar_class);
   }

@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "throng/base.h"
 #include "throng/context.h"
+#include "throng/live_ground.h"
 #include "throng/math.h"
 #include "throng/path.h"
+#include "throng/prism.h"
 #include "throng/result.h"
 #include "throng/world.h"
 
@@ -73,8 +77,9 @@ struct FlightSummary {
   double seconds = 0;  ///< To make them.
 };
 
-/// Finds ways for one class that flies. The legal air is shared by all copies; each copy has its
-/// own memory for searching: give every thread one. No allocation once it is warm.
+/// Finds ways for one class that flies. The legal air as it was baked is shared by all copies; each
+/// copy has its own obstacles and its own memory for searching: give every thread one. Queries do
+/// not allocate once they are warm.
 class THRONG_API FlightFinder {
  public:
   /// Reads every zone once. Fails with kNotFound (a world without air), kBadConfig (no such class,
@@ -95,6 +100,18 @@ class THRONG_API FlightFinder {
   /// `path` is reused: its memory stays.
   void find(const FlightQuery& query, FlightPath& path);
 
+  /// Nobody flies, takes off, lands, stands or walks where his body could touch the prism from now
+  /// on; on the ground, as LiveGround has it, its bottom is above his step. Ends there are no
+  /// places. Fails with kBadInput. Time: the boxes of air that it touches, and those of what it
+  /// cuts off, up to 65 536.
+  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
+  /// The same for triangles, and only for those: a closed shell is hollow.
+  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
+                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Takes an obstacle away, for good or, as a door, until it is set again. False if there is none.
+  bool remove(ChangeId change);
+  bool set_active(ChangeId change, bool active);
+
   /// May the feet be there, in the air? Constant time.
   [[nodiscard]] bool is_legal(Vec3d feet) const;
   /// The n-th of a reproducible stream of points, uniform over the legal air. No point only if
@@ -110,7 +127,7 @@ class THRONG_API FlightFinder {
   [[nodiscard]] Place landing(Vec3d feet) const;
 
   [[nodiscard]] FlightSummary summary() const;
-  /// The legal air, for the library itself; as old as the finder and its copies.
+  /// The legal air as it was baked, for the library itself; as old as the finder and its copies.
   [[nodiscard]] const FlightSpace& space() const;
 
  private:
@@ -122,7 +139,9 @@ class THRONG_API FlightFinder {
   bool locate(Vec3d at, double reach, End& end) const;
   void find_flight(const FlightQuery& query, FlightPath& path);
   void find_by_turns(const FlightQuery& query, FlightPath& path);
+  size_t follow_route(const FlightQuery& query, const End& from, const End& to, FlightPath& path);
   void find_nearest(const FlightQuery& query, FlightPath& path);
+  void find_nearest_on_foot(const FlightQuery& query, const Place& from, FlightPath& path);
   PathEnd walk(const FlightQuery& query, const Place& from, const Place& to, Path& path);
 
   std::shared_ptr<const Shared> shared_;

@@ -120,28 +120,6 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
   return true;
 }
 
-// What finders know of an obstacle.
-void Crowd::State::tell_nodes(uint32_t slot, size_t number) {
-  CrowdObstacle& obstacle = obstacles.at(slot);
-  if (obstacle.kind != ObstacleKind::kStanding || !obstacle.exists || !classes[number]) return;
-  CrowdObstacle::OfClass& of_class = obstacle.of_class[number];
-  const bool is_new =
-      obstacle.is_up && (of_class.node_change == 0 || of_class.node_version != obstacle.version);
-  ChangeId change = of_class.node_change;
-  for (NodePathFinder& finder : classes[number]->node_finders) {
-    if (!is_new) {
-      finder.set_active(of_class.node_change, obstacle.is_up);
-      continue;
-    }
-    finder.remove(of_class.node_change);
-    const auto added = finder.add_obstacle(obstacle.place);
-    THRONG_ASSERT(added);  // The prism was checked, and copies number alike.
-    change = *added;
-  }
-  of_class.node_change = change;
-  if (is_new) of_class.node_version = obstacle.version;
-}
-
 // Whose way leads past what has come up asks for another.
 void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
   for (Body& body : engine.bodies()) {

@@ -229,6 +229,37 @@ bool Crowd::State::find_way_over(const Body& body, const AirSpot& from, const Ai
   }
 }
 
+// The nearest spot straight on from one, beside obstacles, that the finder of ways takes for open;
+// itself, if it does.
+std::optional<AirSpot> Crowd::State::open_spot(const Body& body, const AirSpot& at,
+                                               int32_t worker) const {
+  constexpr int32_t kCells = 2;  // off
+  const ClassParts& parts = *classes[body.avatar_class];
+  const FlyerAir& air = *parts.air;
+  const FlightFinder& finder = parts.flight_finders[static_cast<size_t>(worker)];
+  if (finder.is_legal(air.metres(at))) return at;
+  const int32_t high = finder.space().shape.cell;
+  const auto wide = static_cast<int32_t>(high * 1e-3 / unit);
+  std::optional<AirSpot> nearest;
+  int32_t least = INT32_MAX;
+  for (int32_t dy = -kCells; dy <= kCells; ++dy) {
+    for (int32_t dz = -kCells; dz <= kCells; ++dz) {
+      for (int32_t dx = -kCells; dx <= kCells; ++dx) {
+        const int32_t square = dx * dx + dy * dy + dz * dz;
+        const AirSpot there{at.x + dx * wide, at.z + dz * wide, at.y + dy * high};
+        if (square >= least || there.x < 0 || there.z < 0) continue;
+        if (!finder.is_legal(air.metres(there)) || !air.sees(at, there) ||
+            !is_clear_of_obstacles(body, at, there)) {
+          continue;
+        }
+        least = square;
+        nearest = there;
+      }
+    }
+  }
+  return nearest;
+}
+
 // A way from where a flyer is to its goal. False: there is none.
 bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker) const {
   ClassParts& parts = *classes[body.avatar_class];
@@ -248,14 +279,25 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   if (config.ways == CrowdWays::kStraight) return false;
   const auto w = static_cast<size_t>(worker);
   FlightPath& path = parts.flights[w];
-  parts.flight_finders[w].find({.from = air.metres(from),
-                                .to = air.metres(flight.goal),
-                                .reach = kReach,
-                                .max_nodes = kMostBoxes,
-                                .by_turns = false,
-                                .nearest = false},
-                               path);
+  const auto find = [&](const AirSpot& begin, const AirSpot& end) {
+    parts.flight_finders[w].find({.from = air.metres(begin),
+                                  .to = air.metres(end),
+                                  .reach = kReach,
+                                  .max_nodes = kMostBoxes,
+                                  .by_turns = false,
+                                  .nearest = false},
+                                 path);
+  };
+  find(from, flight.goal);
   std::vector<AirSpot> points;
+  std::optional<AirSpot> end;
+  if (path.end == PathEnd::kNoPlace && flyers.has_obstacles()) {
+    // Beside an obstacle one may be where the finder's whole cell is shut.
+    const auto out = open_spot(body, from, worker);
+    end = lands ? flight.goal : open_spot(body, to, worker);
+    if (out && end) find(*out, *end);
+    if (out) points.push_back(*out);
+  }
   if (path.end == PathEnd::kReached) {
     // What is walked after the landing is asked for then.
     bool walks_then = false;
@@ -263,8 +305,9 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
       if (path.legs[i] == LegKind::kFly) points.push_back(air.spot(path.points[i + 1]));
       walks_then = path.legs[i] == LegKind::kLand;
     }
+    if (end && !lands) points.push_back(to);
     if (points.empty()) points.push_back(from);
-    // The finder knows no obstacles. Where one is on its way, there may be one over it.
+    // The finder knows no obstacles that move. Where one is on its way, there may be one over it.
     std::vector<AirSpot> over;
     AirSpot at = from;
     const bool clear = std::all_of(points.begin(), points.end(), [&](const AirSpot& next) {
@@ -275,6 +318,7 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
     set_way(flight, goes_over ? over : points, lands);
     return true;
   }
+  points.clear();
   if (path.end != PathEnd::kGaveUp || !ends_in_air || !find_way_over(body, from, to, points)) {
     return false;
   }
@@ -314,7 +358,8 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
                          std::abs(aim.y - at.y) < kThere;
       if (at_end) {
         if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kLost;
-      } else if (there || air.sees(at, flight.points[flight.next + 1u])) {
+      } else if (there || (air.sees(at, flight.points[flight.next + 1u]) &&
+                           is_clear_of_obstacles(body, at, flight.points[flight.next + 1u]))) {
         ++flight.next;
         turn_to(body, flight);
       }

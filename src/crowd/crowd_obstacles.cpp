@@ -13,6 +13,29 @@
 namespace throng {
 namespace {
 
+// What the finders of a class, one a worker, know of an obstacle: where it is new it is put up,
+// else switched. Copies number alike.
+template <class Finder>
+void tell(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_new,
+          ChangeId& change) {
+  const ChangeId old = change;
+  for (Finder& finder : finders) {
+    if (!is_new) {
+      finder.set_active(old, obstacle.is_up);
+      continue;
+    }
+    finder.remove(old);
+    const auto added = finder.add_obstacle(obstacle.place);
+    THRONG_ASSERT(added);  // The prism was checked.
+    change = *added;
+  }
+}
+
+template <class Finder>
+void take_back(std::vector<Finder>& finders, ChangeId change) {
+  for (Finder& finder : finders) finder.remove(change);
+}
+
 Error gone() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
 
 }  // namespace
@@ -56,12 +79,10 @@ bool Crowd::remove_obstacle(ObstacleId id) {
   s.flows_are_old = true;
   for (size_t c = 0; c < s.classes.size(); ++c) {
     if (!s.classes[c]) continue;
-    for (LiveGround& live : s.classes[c]->lives) {
-      live.remove(s.obstacles.at(slot).of_class[c].change);
-    }
-    for (NodePathFinder& finder : s.classes[c]->node_finders) {
-      finder.remove(s.obstacles.at(slot).of_class[c].node_change);
-    }
+    const CrowdObstacle::OfClass& told = s.obstacles.at(slot).of_class[c];
+    take_back(s.classes[c]->lives, told.change);
+    take_back(s.classes[c]->flight_finders, told.air_change);
+    take_back(s.classes[c]->node_finders, told.node_change);
   }
   s.obstacles.remove(slot);
   return true;
@@ -132,28 +153,21 @@ void Crowd::State::tell_ways(uint32_t slot) {
 }
 
 void Crowd::State::tell_ways(uint32_t slot, size_t number) {
-  tell_nodes(slot, number);
   CrowdObstacle& obstacle = obstacles.at(slot);
-  if (config.ways != CrowdWays::kPaths || obstacle.kind != ObstacleKind::kStanding) return;
-  if (!obstacle.exists || !classes[number]) return;
-  if (obstacle.is_up) make_lives(number);
-  std::vector<LiveGround>& lives = classes[number]->lives;
-  flows_are_old = true;
-  CrowdObstacle::OfClass& of_class = obstacle.of_class[number];
-  ChangeId change = of_class.change;
-  const bool is_new =
-      obstacle.is_up && (change == 0 || of_class.change_version != obstacle.version);
-  for (LiveGround& ground : lives) {
-    if (!is_new) {
-      ground.set_active(change, obstacle.is_up);
-      continue;
-    }
-    ground.remove(change);
-    auto added = ground.add_obstacle(obstacle.place);
-    THRONG_ASSERT(added);  // The prism was checked, and copies number alike.
-    of_class.change = *added;
-    of_class.change_version = obstacle.version;
+  if (obstacle.kind != ObstacleKind::kStanding || !obstacle.exists || !classes[number]) return;
+  ClassParts& parts = *classes[number];
+  CrowdObstacle::OfClass& told = obstacle.of_class[number];
+  const bool is_new = obstacle.is_up && (!told.is_told || told.told_version != obstacle.version);
+  if (is_new) {
+    told.is_told = true;
+    told.told_version = obstacle.version;
   }
+  tell(parts.node_finders, obstacle, is_new, told.node_change);
+  if (config.ways != CrowdWays::kPaths) return;
+  if (obstacle.is_up) make_lives(number);
+  flows_are_old = true;
+  tell(parts.lives, obstacle, is_new, told.change);
+  tell(parts.flight_finders, obstacle, is_new, told.air_change);
 }
 
 // Whose way leads over what some obstacles have just taken asks for another.

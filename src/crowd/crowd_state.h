@@ -159,6 +159,8 @@ struct Crowd::State {
   bool find_way_over(const Body& body, const AirSpot& from, const AirSpot& to,
                      std::vector<AirSpot>& points) const;
   void plan_flight(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
+  [[nodiscard]] std::optional<AirSpot> open_spot(const Body& body, const AirSpot& at,
+                                                 int32_t worker) const;
   [[nodiscard]] bool find_flight(const Body& body, Flight& flight, int32_t worker) const;
   void fly(EngineCounts& counts, CrowdEngine::Times& times, std::atomic<uint64_t>& planned);
   void tell_flyers_of_obstacles();
@@ -190,7 +192,6 @@ struct Crowd::State {
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
   bool step_off(Body& body, Climb& climb, int32_t worker);
-  void tell_nodes(uint32_t slot, size_t number);
   void cut_climbs(std::span<const uint32_t> slots);
 };
 

@@ -36,10 +36,11 @@ struct CrowdObstacle {
   struct OfClass {
     std::vector<uint32_t> levels;   // from which it takes cells, while it is up
     std::vector<LevelCells> swept;  // that must be clear before it may come up or move on
-    ChangeId change = 0;            // of the class's live grounds, made for `change_version`
-    uint32_t change_version = 0;
-    ChangeId node_change = 0;  // of its finders over nodes, made for `node_version`
-    uint32_t node_version = 0;
+    // What the class's live grounds, and its finders through the air and over nodes, call it; told
+    // of it as it was at `told_version`.
+    ChangeId change = 0, air_change = 0, node_change = 0;
+    bool is_told = false;
+    uint32_t told_version = 0;
   };
   std::vector<OfClass> of_class;
 

@@ -23,9 +23,11 @@ class CircleFlood {
   /// Starts anew at a cell that is legal for the ground's class. The circle may shrink on the way.
   void start(const GroundLevel& level, int32_t x, int32_t z);
   /// Calls visit(cell) for every cell, then blocked(cell, toward_x, toward_z) for each side of it
-  /// over which no step leads. within(x, z): is that cell of the grid still wanted?
-  template <class Within, class Visit, class Blocked>
-  void run(const WorldGround& ground, int32_t step, Within within, Visit visit, Blocked blocked) {
+  /// over which no step leads. within(x, z): is that cell of the grid still wanted? open(level, x,
+  /// z): may this legal one be stood on?
+  template <class Within, class Visit, class Blocked, class Open>
+  void run(const WorldGround& ground, int32_t step, Within within, Visit visit, Blocked blocked,
+           Open open) {
     constexpr int32_t kSides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (size_t i = 0; i < cells_.size(); ++i) {
       const Cell cell = cells_[i];
@@ -36,11 +38,17 @@ class CircleFlood {
         const auto next = step_to(ground, cell.level, cell.x, cell.z, x, z, step);
         if (!next) {
           blocked(cell, side[0], side[1]);
-        } else if (within(x, z) && add_once(next->world_level, x, z)) {
+        } else if (within(x, z) && open(*next, x, z) && add_once(next->world_level, x, z)) {
           cells_.push_back({*next, x, z});
         }
       }
     }
+  }
+
+  template <class Within, class Visit, class Blocked>
+  void run(const WorldGround& ground, int32_t step, Within within, Visit visit, Blocked blocked) {
+    run(ground, step, within, visit, blocked,
+        [](const GroundLevel&, int32_t, int32_t) { return true; });
   }
 
  private:

@@ -69,7 +69,7 @@ class DistrictChanges {
   const NodeView* view_;
   const Districts* districts_;
   DistrictGraph graph_;
-  uint32_t in_graph_ = kNoNode;  // a stale district, of which rows are told
+  uint32_t in_graph_ = kNoNode;              // a stale district, of which rows are told
   std::vector<std::vector<uint8_t>> stale_;  // by tier and district; empty: nothing has changed yet
   std::vector<std::vector<uint32_t>> stale_of_tier_;
   std::unordered_map<uint32_t, std::vector<uint32_t>> blocks_;  // by stale district; looked up only

@@ -41,14 +41,15 @@ int32_t free_layers(const AirData& air, const AirBody& body, int32_t x, int32_t 
 
 }  // namespace
 
-Obstacle air_obstacle(const AirData& air, const AirBody& body, const FlightSpace& space,
-                      AirPoint from, AirPoint to) {
+Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view, AirPoint from,
+                      AirPoint to) {
   constexpr double kStep = 0.25;  // [air cells]
   const AirPoint way = to - from;
   const double far = air_distance(from, to);
   for (double at = 0; at < far; at += kStep) {
     const AirPoint p = from + (at / far) * way;
-    if (space.box_at(p) != kNoBox) continue;
+    if (view.box_at(p) != kNoBox) continue;
+    if (view.space().box_at(p) != kNoBox) return Obstacle::kNarrow;  // put up since
     const int32_t layers =
         free_layers(air, body, static_cast<int32_t>(std::floor(p.x)),
                     static_cast<int32_t>(std::floor(p.y)), static_cast<int32_t>(std::floor(p.z)));
@@ -57,52 +58,60 @@ Obstacle air_obstacle(const AirData& air, const AirBody& body, const FlightSpace
   return Obstacle::kNone;
 }
 
-FlightEnds::FlightEnds(const WorldData& world, const FlightSpace& space, int32_t avatar_class)
+FlightEnds::FlightEnds(const WorldData& world, const AirView& air, int32_t avatar_class)
     : world_(world),
-      space_(space),
+      air_(air),
       ground_{world, avatar_class},
       avatar_(world.summary.classes[static_cast<size_t>(avatar_class)]),
-      cell_(space.shape.cell * 1e-3) {}
+      cell_(air.space().shape.cell * 1e-3) {}
 
 AirPoint FlightEnds::to_air(Vec3d p) const {
   return {(p.x - world_.summary.origin.x) / cell_,
-          (p.y * 1000 - space_.shape.origin_y) / space_.shape.cell,
+          (p.y * 1000 - air_.space().shape.origin_y) / air_.space().shape.cell,
           (p.z - world_.summary.origin.z) / cell_};
 }
 
 Vec3d FlightEnds::to_metres(AirPoint p) const {
   return {world_.summary.origin.x + p.x * cell_,
-          (p.y * space_.shape.cell + space_.shape.origin_y) * 1e-3,
+          (p.y * air_.space().shape.cell + air_.space().shape.origin_y) * 1e-3,
           world_.summary.origin.z + p.z * cell_};
 }
 
 std::optional<AirPoint> FlightEnds::in_air(Vec3d feet) const {
   if (!std::isfinite(feet.x + feet.y + feet.z)) return {};
   const AirPoint p = to_air(feet);
-  if (space_.box_at(p) == kNoBox) return {};
+  if (air_.box_at(p) == kNoBox) return {};
   return off_faces(p);
 }
 
 std::optional<AirPoint> FlightEnds::take_off(const Place& place) const {
   if (!place || !std::isfinite(place.position.x + place.position.y + place.position.z)) return {};
+  if (!may_stand(place)) return {};
   const AirPoint feet = to_air(place.position);
   const double head = feet.y + avatar_.height / cell_;
   const AirPoint column{off_faces(feet.x), 0, off_faces(feet.z)};
   for (double y = std::floor(feet.y); y <= head; y += 1) {
     const AirPoint p{column.x, std::max(y + kAirSkin, off_faces(feet.y)), column.z};
     if (p.y > head) break;
-    if (space_.box_at(AirPoint{p.x, y + 0.5, p.z}) != kNoBox) return p;
+    if (air_.box_at(AirPoint{p.x, y + 0.5, p.z}) != kNoBox) return p;
   }
   return {};
 }
 
+bool FlightEnds::may_stand(const Place& place) const {
+  if (air_.changes() == nullptr) return true;
+  const auto at = ground_point(world_, place);
+  return at && air_.changes()->may_stand(place.level1 - 1, at->cell_x(), at->cell_z());
+}
+
 template <class Visit>
-bool FlightEnds::for_take_offs(const Place& from, uint64_t most, CircleFlood& flood,
-                               Visit visit) const {
+bool FlightEnds::for_places(const Place& from, uint64_t most, CircleFlood& flood,
+                            Visit visit) const {
   const auto start = ground_point(world_, from);
   if (!start) return false;
   const GroundLevel level = ground_level(world_, from.level1 - 1, ground_.avatar_class);
   if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return false;
+  const AirChanges* changes = air_.changes();
   uint64_t seen = 0;
   bool more = true, gave_up = false;
   flood.start(level, start->cell_x(), start->cell_z());
@@ -114,14 +123,39 @@ bool FlightEnds::for_take_offs(const Place& from, uint64_t most, CircleFlood& fl
       },
       [&](const CircleFlood::Cell& cell) {
         ++seen;
-        const Place place = place_at(world_, cell.level,
-                                     {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
-                                      (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2});
-        const auto up = take_off(place);
-        if (up) more = visit(place, space_.component[space_.box_at(*up)]);
+        more = visit(place_at(world_, cell.level,
+                              {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
+                               (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2}));
       },
-      [](const CircleFlood::Cell&, int32_t, int32_t) {});
+      [](const CircleFlood::Cell&, int32_t, int32_t) {},
+      [&](const GroundLevel& to, int32_t x, int32_t z) {
+        return changes == nullptr || changes->may_stand(to.world_level, x, z);
+      });
   return gave_up;
+}
+
+template <class Visit>
+bool FlightEnds::for_take_offs(const Place& from, uint64_t most, CircleFlood& flood,
+                               Visit visit) const {
+  return for_places(from, most, flood, [&](const Place& place) {
+    const auto up = take_off(place);
+    return !up || visit(place, air_.component(air_.box_at(*up)));
+  });
+}
+
+Place FlightEnds::nearest_place(const Place& from, uint64_t most, Vec3d goal,
+                                CircleFlood& flood) const {
+  Place nearest;
+  double least = HUGE_VAL;
+  const bool gave_up = for_places(from, most, flood, [&](const Place& place) {
+    const double far = length(place.position - goal);
+    if (far < least) {
+      least = far;
+      nearest = place;
+    }
+    return true;
+  });
+  return gave_up ? Place{} : nearest;
 }
 
 FlightEnds::TakeOff FlightEnds::nearest_take_off(const Place& from, uint64_t most,
@@ -146,11 +180,11 @@ bool FlightEnds::components_over(const Place& from, uint64_t most, CircleFlood& 
 }
 
 uint32_t FlightEnds::lowest_box(AirPoint p) const {
-  uint32_t box = space_.box_at(p);
+  uint32_t box = air_.box_at(p);
   while (box != kNoBox) {
-    const AirCube& cube = space_.boxes[box];
-    const uint32_t below = space_.box_at(static_cast<int32_t>(std::floor(p.x)), cube.y - 1,
-                                         static_cast<int32_t>(std::floor(p.z)));
+    const AirCube& cube = air_.cube(box);
+    const uint32_t below = air_.box_at(static_cast<int32_t>(std::floor(p.x)), cube.y - 1,
+                                       static_cast<int32_t>(std::floor(p.z)));
     if (below == kNoBox) return box;
     box = below;
   }
@@ -159,8 +193,8 @@ uint32_t FlightEnds::lowest_box(AirPoint p) const {
 
 // Most accessible first, most aligned with the box's axis next. Source: [PACS00] 1.2.3.7.
 Place FlightEnds::best_landing(uint32_t box) const {
-  const AirCube& cube = space_.boxes[box];
-  const int32_t multiple = space_.shape.multiple;
+  const AirCube& cube = air_.cube(box);
+  const int32_t multiple = air_.space().shape.multiple;
   Place best;
   int32_t best_margin = -1;
   double best_off = 0;
@@ -185,7 +219,7 @@ Place FlightEnds::best_landing(uint32_t box) const {
                                   (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
     if (place.position.y > bottom) return;
     const auto up = take_off(place);
-    if (!up || space_.box_at(*up) != box) return;
+    if (!up || air_.box_at(*up) != box) return;
     best = place;
     best_margin = margin;
     best_off = off;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "path/air_view.h"
 #include "path/circle_flood.h"
-#include "path/flight_space.h"
 #include "throng/ground_query.h"
 #include "throng/world.h"
 
@@ -14,13 +14,14 @@
 namespace throng {
 
 /// What a body meets first on the straight line from where it may be: kLow where it would fit if it
-/// were less tall, else kNarrow; kNone if it meets nothing. Time: the line's cells.
-[[nodiscard]] Obstacle air_obstacle(const AirData& air, const AirBody& body,
-                                    const FlightSpace& space, AirPoint from, AirPoint to);
+/// were less tall, else kNarrow, as where an obstacle was put up; kNone if it meets nothing. Time:
+/// the line's cells.
+[[nodiscard]] Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view,
+                                    AirPoint from, AirPoint to);
 
 class FlightEnds {
  public:
-  FlightEnds(const WorldData& world, const FlightSpace& space, int32_t avatar_class);
+  FlightEnds(const WorldData& world, const AirView& air, int32_t avatar_class);
 
   [[nodiscard]] AirPoint to_air(Vec3d p) const;
   [[nodiscard]] Vec3d to_metres(AirPoint p) const;
@@ -28,12 +29,14 @@ class FlightEnds {
   /// Nothing where the body may not fly.
   [[nodiscard]] std::optional<AirPoint> in_air(Vec3d feet) const;
 
+  /// May a body stand at a place of the class, as far as obstacles go that were put up?
+  [[nodiscard]] bool may_stand(const Place& place) const;
   /// Straight up from feet on the ground. The body on the ground is clear from its bottom to its
   /// height, the body in the air from its feet to its height: where the one's feet are not above
   /// the other's head, so is all that is passed between them.
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
   /// The nearest place, in steps, from which feet come into the air; `most` cells are looked at.
-  /// Only into air of this component (see FlightSpace), unless it is kNoBox.
+  /// Only into air of this component (see AirView), unless it is kNoBox.
   struct TakeOff {
     Place place;           ///< Null if there is none among them.
     bool gave_up = false;  ///< There were more cells.
@@ -44,19 +47,25 @@ class FlightEnds {
   /// were more than `most` cells.
   bool components_over(const Place& from, uint64_t most, CircleFlood& flood,
                        std::vector<uint32_t>& components) const;
+  /// Of the places that steps join to one, the nearest to a goal; null if there were more than
+  /// `most` cells, or that one is no place.
+  [[nodiscard]] Place nearest_place(const Place& from, uint64_t most, Vec3d goal,
+                                    CircleFlood& flood) const;
   /// The best place to land on under a box that holds no air below it.
   [[nodiscard]] Place best_landing(uint32_t box) const;
   /// The lowest box straight under a point of the air.
   [[nodiscard]] uint32_t lowest_box(AirPoint p) const;
 
  private:
-  /// Calls visit(place, component of the air over it) for every cell that steps join to a place,
-  /// until it says false or there are too many cells: then it is true.
+  /// Calls visit(place), or visit(place, component of the air over it), for every cell that steps
+  /// join to a place, until it says false or there are too many cells: then it is true.
+  template <class Visit>
+  bool for_places(const Place& from, uint64_t most, CircleFlood& flood, Visit visit) const;
   template <class Visit>
   bool for_take_offs(const Place& from, uint64_t most, CircleFlood& flood, Visit visit) const;
 
   const WorldData& world_;
-  const FlightSpace& space_;
+  AirView air_;
   WorldGround ground_;
   const AvatarClass& avatar_;
   double cell_;  // of the air [m]

@@ -9,12 +9,14 @@
 
 #include "core/check_class.h"
 #include "core/random.h"
+#include "path/air_view.h"
 #include "path/flight_ends.h"
 #include "path/flight_ports.h"
 #include "path/flight_pull.h"
 #include "path/flight_search.h"
 #include "path/mesh.h"
 #include "path/reset_path.h"
+#include "path/solid.h"
 #include "throng/flight.h"
 #include "world/place.h"
 
@@ -25,6 +27,8 @@ constexpr int32_t kLargestBox = 32;            // air cells: larger ones hide go
 constexpr uint64_t kMostFloodCells = 1 << 18;  // on foot to where one can take off
 // The same where the nearest take-off leads into a pocket and there are several others.
 constexpr uint64_t kMostPocketCells = 1 << 15;
+// Ways over other ground, or to what is less near, where obstacles are in the way of the first.
+constexpr int32_t kMostTries = 4;
 
 double distance(Vec3d a, Vec3d b) {
   const Vec3d d = a - b;
@@ -71,7 +75,9 @@ struct FlightFinder::Shared {
   FlightPorts ports;
   FlightSummary summary;
 
-  [[nodiscard]] FlightEnds ends() const { return {*world.data(), space, avatar_class}; }
+  [[nodiscard]] FlightEnds ends(const AirView& air) const {
+    return {*world.data(), air, avatar_class};
+  }
   // The component of the ground at a place.
   [[nodiscard]] uint32_t ground_of(const Place& place) const {
     const auto at = ground_point(*world.data(), place);
@@ -112,6 +118,29 @@ struct FlightFinder::Shared {
 struct FlightFinder::Scratch {
   explicit Scratch(const Shared& shared) : walker(shared.walker) {}
 
+  [[nodiscard]] bool is_changed() const { return changes && changes->any(); }
+  [[nodiscard]] AirView air(const Shared& shared) const {
+    return {shared.space, is_changed() ? &*changes : nullptr};
+  }
+  AirChanges& changes_of(const Shared& shared) {
+    if (!changes) changes.emplace(*shared.world.data(), shared.space, shared.avatar_class);
+    return *changes;
+  }
+  ChangeId add(const Shared& shared, Solid solid) {
+    if (live) live_ids.push_back(AirChanges::tell_of(*live, solid));
+    return changes_of(shared).add(std::move(solid));
+  }
+  // The ground with all changes; made when it is first walked on.
+  LiveGround& ground(const Shared& shared) {
+    if (!live) {
+      auto made = LiveGround::make(shared.world, {.avatar_class = shared.avatar_class});
+      THRONG_ASSERT(made);  // The class was checked.
+      changes->tell(*made, live_ids);
+      live = std::move(*made);
+    }
+    return *live;
+  }
+
   FlightSearch search;
   FlightPull pull;
   CircleFlood flood;
@@ -119,17 +148,26 @@ struct FlightFinder::Scratch {
   std::vector<AirPoint> way;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
-  FlightSpace::ZoneOrder zone_order;
+  AirView::ZoneOrder zone_order;
   FlightPorts::Scratch parts;
   std::vector<FlightPorts::Part> route;
+  std::vector<FlightPorts::Pair> banned;
+  // Put up since the finder was made; none before the first one.
+  std::optional<AirChanges> changes;
+  std::optional<LiveGround> live;
+  std::vector<ChangeId> live_ids;  // by id of a change - 1
+  // Of a search that found no way between ends that could hold together: the point of the air that
+  // it came to that is nearest to where the query wanted to go.
+  std::optional<AirPoint> reached;
 };
 
 FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
     : shared_(std::move(shared)), scratch_(std::make_unique<Scratch>(*shared_)) {}
-FlightFinder::FlightFinder(const FlightFinder& other) : FlightFinder(other.shared_) {}
+FlightFinder::FlightFinder(const FlightFinder& other) : FlightFinder(other.shared_) {
+  scratch_->changes = other.scratch_->changes;
+}
 FlightFinder& FlightFinder::operator=(const FlightFinder& other) {
-  shared_ = other.shared_;
-  scratch_ = std::make_unique<Scratch>(*shared_);
+  if (this != &other) *this = FlightFinder(other);
   return *this;
 }
 FlightFinder::FlightFinder(FlightFinder&&) noexcept = default;
@@ -187,30 +225,78 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
 FlightSummary FlightFinder::summary() const { return shared_->summary; }
 const FlightSpace& FlightFinder::space() const { return shared_->space; }
 
-bool FlightFinder::is_legal(Vec3d feet) const { return shared_->ends().in_air(feet).has_value(); }
+Result<ChangeId> FlightFinder::add_obstacle(const Prism& prism) {
+  auto solid = make_solid(prism);
+  if (!solid) return solid.error();
+  return scratch_->add(*shared_, std::move(*solid));
+}
+
+Result<ChangeId> FlightFinder::add_obstacle(std::span<const Vec3d> corners,
+                                            std::span<const std::array<uint32_t, 3>> triangles) {
+  auto solid = make_solid(corners, triangles);
+  if (!solid) return solid.error();
+  return scratch_->add(*shared_, std::move(*solid));
+}
+
+bool FlightFinder::set_active(ChangeId change, bool active) {
+  Scratch& scratch = *scratch_;
+  if (!scratch.changes || !scratch.changes->set_active(change, active)) return false;
+  if (scratch.live) scratch.live->set_active(scratch.live_ids[change - 1], active);
+  return true;
+}
+
+bool FlightFinder::remove(ChangeId change) {
+  Scratch& scratch = *scratch_;
+  if (!scratch.changes || !scratch.changes->remove(change)) return false;
+  if (scratch.live) scratch.live->remove(scratch.live_ids[change - 1]);
+  return true;
+}
+
+bool FlightFinder::is_legal(Vec3d feet) const {
+  return shared_->ends(scratch_->air(*shared_)).in_air(feet).has_value();
+}
 
 std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
   const std::vector<uint64_t>& before = shared_->cells_before;
   if (before.back() == 0) return {};
-  const uint64_t pick = random_below(seed, n, 0, before.back());
-  const auto box = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), pick) -
-                                       before.begin() - 1);
-  const AirCube& cube = shared_->space.boxes[box];
-  const auto part = [&](uint64_t i) {
-    return kAirSkin + random_unit(seed, n, i) * (cube.side - 2 * kAirSkin);
+  const AirView air = scratch_->air(*shared_);
+  const FlightEnds ends = shared_->ends(air);
+  const auto draw = [&](const AirCube& cube, uint64_t first) {
+    const auto part = [&](uint64_t i) {
+      return kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * kAirSkin);
+    };
+    return AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
   };
-  return shared_->ends().to_metres({cube.x + part(1), cube.y + part(2), cube.z + part(3)});
+  // What obstacles have taken is drawn anew. Where hardly anything is left, it is looked for.
+  constexpr uint64_t kDraws = 256;
+  size_t box = 0;
+  for (uint64_t i = 0; i < kDraws; ++i) {
+    const uint64_t pick = random_below(seed, n, 4 * i, before.back());
+    box = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), pick) -
+                              before.begin() - 1);
+    const AirPoint p = draw(shared_->space.boxes[box], 4 * i);
+    if (air.changes() == nullptr || air.box_at(p) != kNoBox) return ends.to_metres(p);
+  }
+  std::optional<AirPoint> found;
+  for (size_t i = 0; i < shared_->space.boxes.size() && !found; ++i) {
+    air.for_pieces(static_cast<uint32_t>((box + i) % shared_->space.boxes.size()),
+                   [&](uint32_t piece) {
+                     if (!found) found = draw(air.cube(piece), 4 * kDraws);
+                   });
+  }
+  if (!found) return {};
+  return ends.to_metres(*found);
 }
 
 std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
-  const FlightEnds ends = shared_->ends();
+  const FlightEnds ends = shared_->ends(scratch_->air(*shared_));
   const auto up = ends.take_off(place);
   if (!up) return {};
   return ends.to_metres(*up);
 }
 
 Place FlightFinder::landing(Vec3d feet) const {
-  const FlightEnds ends = shared_->ends();
+  const FlightEnds ends = shared_->ends(scratch_->air(*shared_));
   const auto point = ends.in_air(feet);
   if (!point) return {};
   return ends.best_landing(ends.lowest_box(*point));
@@ -223,29 +309,39 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
 }
 
 bool FlightFinder::locate(Vec3d at, double reach, End& end) const {
-  end.air = shared_->ends().in_air(at);
+  const FlightEnds ends = shared_->ends(scratch_->air(*shared_));
+  end.air = ends.in_air(at);
   if (end.air) return true;
   end.ground = shared_->world.find_place(shared_->avatar_class, at, reach);
-  return static_cast<bool>(end.ground);
+  return end.ground && ends.may_stand(end.ground);
 }
 
 PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
                            Path& path) {
   reset(path);
   if (query.cancel != nullptr && *query.cancel) return PathEnd::kGaveUp;
-  scratch_->walker->find(from, to, path, query.max_nodes);
+  if (!scratch_->is_changed()) {
+    scratch_->walker->find(from, to, path, query.max_nodes);
+    return path.end;
+  }
+  if (shared_->ground_of(from) != shared_->ground_of(to)) {
+    path.end = PathEnd::kUnreachable;
+  } else {
+    scratch_->ground(*shared_).find(from, to, path, {query.max_nodes, query.cancel});
+  }
   return path.end;
 }
 
 // One flight, or a walk.
 void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
-  const FlightEnds ends = shared_->ends();
   Scratch& scratch = *scratch_;
+  const AirView air = scratch.air(*shared_);
+  const FlightEnds ends = shared_->ends(air);
   clear(path);
   path.nodes = 0;
+  scratch.reached.reset();
   bool gave_up = false;  // somewhere: then what was not found may be there all the same
-  const FlightSpace& space = shared_->space;
-  const auto component_of = [&](AirPoint p) { return space.component[space.box_at(p)]; };
+  const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
   // From the ground into the air: into this component of it, or any (kNoBox).
   const auto to_port = [&](End& end, uint32_t component) {
     if (!end.ground) return end.air.has_value();
@@ -255,7 +351,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     end.air.reset();
     const uint32_t ground = shared_->ground_of(end.ground);
     const bool leads = component == kNoBox ? !shared_->ports.air_over(ground).empty()
-                                           : shared_->ports.joins(ground, component);
+                                           : shared_->ports.joins(ground, air.baked(component));
     if (!leads) return false;
     const auto nearest =
         ends.nearest_take_off(end.ground, kMostFloodCells, component, scratch.flood);
@@ -272,7 +368,8 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     scratch.common.clear();
     std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
                           std::back_inserter(scratch.common));
-    if (scratch.common.size() < 2) return scratch.common.empty() ? kNoBox : scratch.common[0];
+    if (scratch.common.empty()) return kNoBox;
+    if (scratch.common.size() < 2 && !scratch.is_changed()) return scratch.common[0];
     for (const auto& [end, over] :
          {std::pair{&a, &scratch.over_from}, std::pair{&b, &scratch.over_to}}) {
       if (query.cancel != nullptr && *query.cancel) {
@@ -300,7 +397,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     if (!a.ground) return to_port(b, component_of(*a.air));
     if (!b.ground) return to_port(a, component_of(*b.air));
     if (!to_port(a, kNoBox) || !to_port(b, kNoBox)) return false;
-    if (space.hold_together(*a.air, *b.air)) return true;
+    if (air.hold_together(*a.air, *b.air)) return true;
     const uint32_t common = common_air(a, b);
     return common != kNoBox && to_port(a, common) && to_port(b, common);
   };
@@ -323,14 +420,17 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   }
   const bool ports = to_ports(from, to);
   SearchResult result = SearchResult::kNone;
-  if (ports && shared_->space.hold_together(*from.air, *to.air)) {
-    result = scratch.search.find(shared_->space, *from.air, *to.air, query.max_nodes, query.cancel,
-                                 scratch.way);
+  if (ports && air.hold_together(*from.air, *to.air)) {
+    result =
+        scratch.search.find(air, *from.air, *to.air, query.max_nodes, query.cancel, scratch.way);
     path.nodes = scratch.search.expanded();
     gave_up = gave_up || result == SearchResult::kBudget;
+    if (result == SearchResult::kNone) {
+      scratch.reached = scratch.search.nearest_reached(ends.to_air(query.to));
+    }
   }
   if (result == SearchResult::kFound) {
-    scratch.pull.pull(shared_->space, scratch.way);
+    scratch.pull.pull(air, scratch.way);
     bool walked = true;
     if (from.ground) {
       if (from.port.position.x != from.ground.position.x ||
@@ -366,23 +466,46 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
 
 // From part to part of the ground and the air. Where it takes off and lands between two of them is
 // the nearest place to where it stands, or to the goal, else the one that is known of the two.
+// Parts are those of the world as it was baked: where an obstacle is in the way from one to the
+// next, another way is looked for that does without that pair.
 void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
-  const FlightEnds ends = shared_->ends();
-  const FlightSpace& space = shared_->space;
   Scratch& scratch = *scratch_;
   End from, to;
   if (!locate(query.from, query.reach, from) || !locate(query.to, query.reach, to)) return;
-  const FlightPorts::Part goal = shared_->part_of(to);
-  shared_->ports.search(shared_->part_of(from), goal, scratch.parts);
-  const auto& steps = scratch.parts.steps;
-  if (steps.size() < 2 || steps.back().part != goal) return;
-  scratch.route.clear();
-  for (uint32_t i = static_cast<uint32_t>(steps.size()) - 1;; i = steps[i].before) {
-    scratch.route.push_back(steps[i].part);
-    if (i == 0) break;
+  const FlightPorts::Part start = shared_->part_of(from), goal = shared_->part_of(to);
+  scratch.banned.clear();
+  for (int32_t tries = 0; tries < (scratch.is_changed() ? kMostTries : 1); ++tries) {
+    // Air that an obstacle has cut in two is one part: then over some ground under it.
+    const bool returns = start == goal && scratch.is_changed() && goal.is_air;
+    const FlightPorts::Part last = returns ? FlightPorts::Part{kNoBox, true} : goal;
+    shared_->ports.search(start, last, scratch.banned, scratch.parts);
+    const auto& steps = scratch.parts.steps;
+    if (steps.size() < 2 || (!returns && steps.back().part != goal)) return;
+    scratch.route.clear();
+    if (returns) {
+      scratch.route.assign({start, steps[1].part, goal});
+    } else {
+      for (uint32_t i = static_cast<uint32_t>(steps.size()) - 1;; i = steps[i].before) {
+        scratch.route.push_back(steps[i].part);
+        if (i == 0) break;
+      }
+      std::reverse(scratch.route.begin(), scratch.route.end());
+    }
+    const size_t stuck = follow_route(query, from, to, path);
+    if (path.end != PathEnd::kUnreachable) return;
+    const FlightPorts::Part& a = scratch.route[stuck - 1];
+    const FlightPorts::Part& b = scratch.route[stuck];
+    scratch.banned.emplace_back(a.is_air ? b.component : a.component,
+                                a.is_air ? a.component : b.component);
   }
-  std::reverse(scratch.route.begin(), scratch.route.end());
+}
 
+// Where it does not lead on, the place in the route of the part that it did not come to.
+size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
+                                  FlightPath& path) {
+  Scratch& scratch = *scratch_;
+  const AirView view = scratch.air(*shared_);
+  const FlightEnds ends = shared_->ends(view);
   PathEnd end = PathEnd::kReached;
   Place feet = from.ground;  // where it is by now, or
   AirPoint air = from.air.value_or(AirPoint{});
@@ -394,37 +517,61 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   };
   const auto fly = [&](AirPoint there) {
     if (end != PathEnd::kReached) return;
+    if (view.changes() != nullptr && !view.hold_together(air, there)) {
+      end = PathEnd::kUnreachable;
+      return;
+    }
     const SearchResult result =
-        scratch.search.find(space, air, there, query.max_nodes, query.cancel, scratch.way);
+        scratch.search.find(view, air, there, query.max_nodes, query.cancel, scratch.way);
     path.nodes += scratch.search.expanded();
     end = result == SearchResult::kFound    ? PathEnd::kReached
           : result == SearchResult::kBudget ? PathEnd::kGaveUp
                                             : PathEnd::kUnreachable;
-    scratch.pull.pull(space, scratch.way);
+    scratch.pull.pull(view, scratch.way);
     for (size_t i = 1; i < scratch.way.size(); ++i) {
       add(ends.to_metres(scratch.way[i]), LegKind::kFly, path);
     }
     air = there;
   };
-  const auto port_near = [&](const Place& at, FlightPorts::Part ground, FlightPorts::Part over) {
+  // A place of some ground under some air: it leads into this component of that.
+  const auto port_near = [&](const Place& at, FlightPorts::Part ground, FlightPorts::Part over,
+                             uint32_t component) {
     const Place near =
-        at ? ends.nearest_take_off(at, kMostFloodCells, over.component, scratch.flood).place
-           : Place{};
-    return near ? near : shared_->place_of(shared_->ports.cell(ground.component, over.component));
+        at ? ends.nearest_take_off(at, kMostFloodCells, component, scratch.flood).place : Place{};
+    if (near) return near;
+    const Place known = shared_->place_of(shared_->ports.cell(ground.component, over.component));
+    if (view.changes() == nullptr) return known;
+    return ends.nearest_take_off(known, kMostFloodCells, component, scratch.flood).place;
   };
   clear(path);
   add(from.air ? ends.to_metres(air) : feet.position, LegKind::kWalk, path);
-  for (size_t k = 1; k < scratch.route.size() && end == PathEnd::kReached; ++k) {
+  const size_t count = scratch.route.size();
+  size_t k = 1;
+  for (; k < count && end == PathEnd::kReached; ++k) {
     const FlightPorts::Part here = scratch.route[k - 1], next = scratch.route[k];
+    const bool last = k + 1 == count;
     if (next.is_air) {
-      const Place port = port_near(feet, here, next);
+      const bool known = last && to.air;
+      const Place port = port_near(feet, here, next,
+                                   known ? view.component(view.box_at(*to.air)) : next.component);
+      const auto up = ends.take_off(port);
+      if (!up) {
+        end = PathEnd::kUnreachable;
+        continue;
+      }
       go(port);
-      air = ends.take_off(port).value_or(AirPoint{});
+      air = *up;
       add(ends.to_metres(air), LegKind::kTakeOff, path);
     } else {
-      const bool last = k + 1 == scratch.route.size();
-      feet = port_near(last ? to.ground : Place{}, next, here);
-      fly(ends.take_off(feet).value_or(AirPoint{}));
+      const Place port =
+          port_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
+      const auto up = ends.take_off(port);
+      if (!up) {
+        end = PathEnd::kUnreachable;
+        continue;
+      }
+      feet = port;
+      fly(*up);
       add(feet.position, LegKind::kLand, path);
     }
   }
@@ -435,47 +582,82 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   }
   if (end != PathEnd::kReached) clear(path);
   path.end = end;
+  return k - 1;
 }
 
 // To the point of all air that can be reached that is nearest to the goal; of the ground, if nobody
 // can take off from it: there of each rectangle the cell that is nearest in the plane.
 void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
-  const FlightEnds ends = shared_->ends();
-  const FlightSpace& space = shared_->space;
   Scratch& scratch = *scratch_;
+  const AirView air = scratch.air(*shared_);
+  const FlightEnds ends = shared_->ends(air);
+  const std::optional<AirPoint> reached = scratch.reached;
+  const bool is_changed = scratch.is_changed();
   End from;
   if (!locate(query.from, query.reach, from)) return;
   const FlightPorts::Part start = shared_->part_of(from);
-  shared_->ports.search(start, {kNoBox, true}, scratch.parts);
+  shared_->ports.search(start, {kNoBox, true}, {}, scratch.parts);
   std::vector<uint32_t>& airs = scratch.common;
   airs.clear();
   for (const auto& step : scratch.parts.steps) {
     if (step.part.is_air) airs.push_back(step.part.component);
   }
+  // Obstacles may have cut off where it is from what the ground leads to otherwise.
+  if (is_changed && from.air) {
+    airs.push_back(air.component(air.box_at(*from.air)));
+  } else if (is_changed) {
+    ends.components_over(from.ground, kMostPocketCells, scratch.flood, scratch.over_from);
+    airs.insert(airs.end(), scratch.over_from.begin(), scratch.over_from.end());
+  }
   std::sort(airs.begin(), airs.end());
-  if (airs.empty()) {
-    const Place nearest = shared_->nearest_ground(start.component, query.to);
-    if (!nearest || walk(query, from.ground, nearest, scratch.walk_all) != PathEnd::kReached) {
-      return;
-    }
-    add_walk(scratch.walk_all, 0, path);
-    path.obstacle = Obstacle::kLow;
+  airs.erase(std::unique(airs.begin(), airs.end()), airs.end());
+  const AirPoint goal = ends.to_air(query.to);
+  std::optional<AirPoint> nearest;
+  for (int32_t tries = 0; tries < kMostTries; ++tries) {
+    nearest = reached && tries == 0 ? reached : air.nearest_in(airs, goal, scratch.zone_order);
+    if (!nearest) break;
+    const AirPoint at = off_faces(*nearest);
+    FlightQuery nearer = query;
+    nearer.to = ends.to_metres(at);
+    find_flight(nearer, path);
+    if (path.end == PathEnd::kUnreachable) find_by_turns(nearer, path);
+    if (path.end != PathEnd::kUnreachable || !is_changed) break;
+    const uint32_t component = air.component(air.box_at(at));
+    std::erase(airs, component);
+  }
+  if (!nearest || (is_changed && path.end == PathEnd::kUnreachable && from.ground)) {
+    find_nearest_on_foot(query, from.ground, path);
     return;
   }
-  const AirPoint goal = ends.to_air(query.to);
-  const AirPoint nearest = space.nearest_in(airs, goal, scratch.zone_order);
-  FlightQuery nearer = query;
-  nearer.to = ends.to_metres(off_faces(nearest));
-  find_flight(nearer, path);
-  if (path.end == PathEnd::kUnreachable) find_by_turns(nearer, path);
   if (path.end != PathEnd::kReached) clear(path);
   path.end = PathEnd::kUnreachable;
   path.obstacle = Obstacle::kNone;
   if (path.points.empty()) return;
   path.obstacle =
-      air_obstacle(*shared_->world.data()->air, shared_->body, space, off_faces(nearest), goal);
+      air_obstacle(*shared_->world.data()->air, shared_->body, air, off_faces(*nearest), goal);
   // Air that begins right there and leads nowhere else: only a corner is between.
   if (path.obstacle == Obstacle::kNone) path.obstacle = Obstacle::kNarrow;
+}
+
+// Over the ground, where nobody can take off.
+void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& from,
+                                        FlightPath& path) {
+  Scratch& scratch = *scratch_;
+  clear(path);
+  path.end = PathEnd::kUnreachable;
+  const uint32_t ground = shared_->ground_of(from);
+  Place nearest;
+  if (scratch.is_changed()) {
+    nearest = shared_->ends(scratch.air(*shared_))
+                  .nearest_place(from, kMostFloodCells, query.to, scratch.flood);
+  }
+  if (!nearest) nearest = shared_->nearest_ground(ground, query.to);
+  if (!nearest) return;
+  const PathEnd end = walk(query, from, nearest, scratch.walk_all);
+  // To what comes nearest, if the finder of ways on foot knows it.
+  if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
+  add_walk(scratch.walk_all, 0, path);
+  path.obstacle = shared_->ports.air_over(ground).empty() ? Obstacle::kLow : Obstacle::kNarrow;
 }
 
 Result<AirSummary> air_summary(const World& world) {

@@ -13,7 +13,7 @@ namespace throng {
 namespace {
 
 // Ground, air, and where the one leads into the other.
-struct Pair {
+struct Junction {
   uint32_t ground = 0, air = 0;
   FlightPorts::Cell cell;
 
@@ -22,11 +22,11 @@ struct Pair {
 };
 
 // One of each, with the first of its cells.
-void sort_once(std::vector<Pair>& pairs) {
+void sort_once(std::vector<Junction>& pairs) {
   std::sort(pairs.begin(), pairs.end(),
-            [](const Pair& a, const Pair& b) { return a.order() < b.order(); });
+            [](const Junction& a, const Junction& b) { return a.order() < b.order(); });
   pairs.erase(std::unique(pairs.begin(), pairs.end(),
-                          [](const Pair& a, const Pair& b) { return a.key() == b.key(); }),
+                          [](const Junction& a, const Junction& b) { return a.key() == b.key(); }),
               pairs.end());
 }
 
@@ -35,9 +35,9 @@ void sort_once(std::vector<Pair>& pairs) {
 FlightPorts::FlightPorts(const WorldData& world, const PathMesh& mesh, const FlightSpace& space,
                          int32_t workers) {
   const FlightEnds ends(world, space, mesh.avatar_class);
-  std::vector<std::vector<Pair>> of_level(mesh.first.size() - 1);
+  std::vector<std::vector<Junction>> of_level(mesh.first.size() - 1);
   parallel_for(of_level.size(), workers, [&](size_t l) {
-    std::vector<Pair>& pairs = of_level[l];
+    std::vector<Junction>& pairs = of_level[l];
     const auto level = static_cast<uint32_t>(l);
     if (mesh.first[l] == mesh.first[l + 1]) return;
     const GroundLevel ground = ground_level(world, level, mesh.avatar_class);
@@ -50,17 +50,17 @@ FlightPorts::FlightPorts(const WorldData& world, const PathMesh& mesh, const Fli
                                         (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
           const auto up = ends.take_off(place);
           if (!up) continue;
-          const Pair pair{rect.component, space.component[space.box_at(*up)], {level, x, z}};
+          const Junction pair{rect.component, space.component[space.box_at(*up)], {level, x, z}};
           if (pairs.empty() || pairs.back().key() != pair.key()) pairs.push_back(pair);
         }
       }
     }
     sort_once(pairs);
   });
-  std::vector<Pair> all;
+  std::vector<Junction> all;
   for (const auto& pairs : of_level) all.insert(all.end(), pairs.begin(), pairs.end());
   sort_once(all);
-  for (const Pair& pair : all) {
+  for (const Junction& pair : all) {
     if (ground_.empty() || ground_.back() != pair.ground) {
       ground_.push_back(pair.ground);
       first_.push_back(static_cast<uint32_t>(air_.size()));
@@ -107,7 +107,8 @@ FlightPorts::Cell FlightPorts::cell(uint32_t ground, uint32_t air) const {
   return cell_[pair(ground, air)];
 }
 
-void FlightPorts::search(Part from, Part goal, Scratch& scratch) const {
+void FlightPorts::search(Part from, Part goal, std::span<const Pair> banned,
+                         Scratch& scratch) const {
   scratch.known_ground.assign(ground_.size(), 0);
   scratch.known_air.assign(airs_.size(), 0);
   scratch.steps.assign(1, {from, 0});
@@ -128,6 +129,11 @@ void FlightPorts::search(Part from, Part goal, Scratch& scratch) const {
               : scratch.known_air[static_cast<size_t>(
                     std::lower_bound(airs_.begin(), airs_.end(), next.component) - airs_.begin())];
       if (known != 0) continue;
+      if (!banned.empty()) {
+        const Pair pair = part.is_air ? Pair{next.component, part.component}
+                                      : Pair{part.component, next.component};
+        if (std::find(banned.begin(), banned.end(), pair) != banned.end()) continue;
+      }
       known = 1;
       scratch.steps.push_back({next, i});
       if (next == goal) return;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "path/flight_ends.h"
@@ -54,8 +55,10 @@ class FlightPorts {
     std::vector<uint8_t> known_ground, known_air;
   };
   /// All parts that taking off and landing lead to from one, itself first, the fewest turns first;
-  /// stops at `goal`, if that is among them: then it is the last.
-  void search(Part from, Part goal, Scratch& scratch) const;
+  /// stops at `goal`, if that is among them: then it is the last. Not between the ground and the
+  /// air of a banned pair.
+  using Pair = std::pair<uint32_t, uint32_t>;
+  void search(Part from, Part goal, std::span<const Pair> banned, Scratch& scratch) const;
 
  private:
   [[nodiscard]] size_t pair(uint32_t ground, uint32_t air) const;

@@ -24,8 +24,8 @@ double length_of(const std::vector<AirPoint>& way) {
 
 }  // namespace
 
-void FlightPull::pull(const FlightSpace& space, std::vector<AirPoint>& way) {
-  space_ = &space;
+void FlightPull::pull(const AirView& air, std::vector<AirPoint>& way) {
+  air_ = air;
   way_ = &way;
   if (way.size() <= 2) return;
   shortcut();
@@ -48,7 +48,7 @@ void FlightPull::shortcut() {
   for (size_t at = 0; at + 1 < way.size();) {
     size_t to = at + 1;
     for (size_t far = way.size() - 1; far > at + 1; --far) {
-      if (space_->sees(way[at], way[far])) {
+      if (air_->sees(way[at], way[far])) {
         to = far;
         break;
       }
@@ -73,7 +73,7 @@ void FlightPull::cut_corners() {
     for (int32_t h = 0; h < kHalvings; ++h) {
       const double part = (low + high) / 2;
       const AirPoint a = toward(before, part), b = toward(after, part);
-      const bool legal = space_->sees(before, a) && space_->sees(a, b) && space_->sees(b, after);
+      const bool legal = air_->sees(before, a) && air_->sees(a, b) && air_->sees(b, after);
       (legal ? low : high) = part;
     }
     if (low == 0) {
@@ -111,7 +111,7 @@ void FlightPull::slide(size_t bend) {
     for (int32_t h = 0; h <= kHalvings; ++h) {
       const double part = h == 0 ? 1.0 : (low + high) / 2;
       axis_of(to, axis) = off_faces(from + part * (best - from));
-      const bool legal = space_->sees(before, to) && space_->sees(to, after);
+      const bool legal = air_->sees(before, to) && air_->sees(to, after);
       (legal ? low : high) = part;
       if (h == 0 && legal) break;
     }

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "path/flight_space.h"
+#include "path/air_view.h"
 
 /// Pulls a way through the air taut.
 namespace throng {
@@ -13,14 +14,14 @@ namespace throng {
 /// as the lines to their neighbours stay legal. Never makes a way longer. Owns its memory.
 class FlightPull {
  public:
-  void pull(const FlightSpace& space, std::vector<AirPoint>& way);
+  void pull(const AirView& air, std::vector<AirPoint>& way);
 
  private:
   void shortcut();
   void cut_corners();
   void slide(size_t bend);
 
-  const FlightSpace* space_ = nullptr;
+  std::optional<AirView> air_;
   std::vector<AirPoint>* way_ = nullptr;
   std::vector<AirPoint> next_;
 };

@@ -80,18 +80,17 @@ void FlightSearch::push(uint32_t node) {
   std::push_heap(open_.begin(), open_.end());
 }
 
-SearchResult FlightSearch::find(const FlightSpace& space, AirPoint from, AirPoint to,
-                                uint64_t max_nodes, const std::atomic<bool>* cancel,
-                                std::vector<AirPoint>& way) {
-  space_ = &space;
+SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to, uint64_t max_nodes,
+                                const std::atomic<bool>* cancel, std::vector<AirPoint>& way) {
+  air_ = air;
   start_ = from;
   goal_ = to;
   expanded_ = 0;
   way.clear();
-  const uint32_t start = space.box_at(from);
-  goal_box_ = space.box_at(to);
+  const uint32_t start = air.box_at(from);
+  goal_box_ = air.box_at(to);
   if (start == kNoBox || goal_box_ == kNoBox) return SearchResult::kNone;
-  if (space.sees(from, to)) {
+  if (air.sees(from, to)) {
     way = {from, to};
     return SearchResult::kFound;
   }
@@ -131,16 +130,21 @@ int32_t FlightSearch::least_around(const AirCube& box) const {
 
 SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_nodes,
                                   const std::atomic<bool>* cancel, std::vector<AirPoint>& way) {
-  if (marks_.size() != space_->boxes.size()) marks_.assign(space_->boxes.size(), {});
+  const size_t whole = air_->space().boxes.size();
+  if (marks_.size() != whole) marks_.assign(whole, {});
+  if (const size_t parts = air_->end() - whole; part_marks_.size() < parts) {
+    part_marks_.resize(parts);
+  }
   if (++search_ == 0) {
-    marks_.assign(space_->boxes.size(), {});
+    marks_.assign(whole, {});
+    part_marks_.assign(part_marks_.size(), {});
     search_ = 1;
   }
   way.clear();
   nodes_.clear();
   open_.clear();
   nodes_.push_back({from, 0, air_distance(from, goal_), start, 0, 0, false});
-  marks_[start] = {search_, 0};
+  mark_of(start) = {search_, 0};
   push(0);
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end());
@@ -151,7 +155,7 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_no
     if (++expanded_ > max_nodes) return SearchResult::kBudget;
     if (cancel != nullptr && (expanded_ & 255) == 0 && *cancel) return SearchResult::kBudget;
     // Seen from the bend after all? Else the way bends where it entered the box before.
-    if (node.parent != node.via && !space_->sees(nodes_[node.parent].point, node.point)) {
+    if (node.parent != node.via && !air_->sees(nodes_[node.parent].point, node.point)) {
       node.parent = node.via;
       const Node& via = nodes_[node.via];
       const double longer = via.length + air_distance(via.point, node.point) - node.length;
@@ -172,6 +176,19 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_no
   return SearchResult::kNone;
 }
 
+AirPoint FlightSearch::nearest_reached(AirPoint goal) const {
+  AirPoint nearest = start_;
+  double least = air_distance(start_, goal);
+  for (const Node& node : nodes_) {
+    const AirPoint p = nearest_of(air_->cube(node.box), goal);
+    const double far = air_distance(p, goal);
+    if (far >= least) continue;
+    least = far;
+    nearest = p;
+  }
+  return nearest;
+}
+
 // From the goal back. A leg from box to box leaves the first through the face that they share, but
 // a skin before its end: where it runs so flat that this matters, it goes straight up to the face.
 void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& way) const {
@@ -181,8 +198,8 @@ void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& way) const {
     way.push_back(at.point);
     if (n == 0) break;
     const Node& via = nodes_[at.via];
-    if (at.parent != at.via || space_->sees(via.point, at.point)) continue;
-    const Door door = door_between(space_->boxes[via.box], space_->boxes[at.box]);
+    if (at.parent != at.via || air_->sees(via.point, at.point)) continue;
+    const Door door = door_between(air_->cube(via.box), air_->cube(at.box));
     double before[3] = {at.point.x, at.point.y, at.point.z};
     before[door.axis] = door.plane - door.skin;
     way.push_back({before[0], before[1], before[2]});
@@ -191,19 +208,19 @@ void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& way) const {
 }
 
 void FlightSearch::open(uint32_t node) {
-  const AirCube& box = space_->boxes[nodes_[node].box];
-  space_->for_neighbours(
+  const AirCube& box = air_->cube(nodes_[node].box);
+  air_->for_neighbours(
       box, [&](uint32_t next) { reach(node, next); }, least_around(box));
 }
 
 void FlightSearch::reach(uint32_t from, uint32_t box) {
-  Mark& mark = marks_[box];
+  Mark& mark = mark_of(box);
   const bool known = mark.search == search_;
   if (known && nodes_[mark.node].opened) return;
   const uint32_t parent = nodes_[from].parent;
   const Node& bend = nodes_[parent];
   Node next;
-  next.point = pass(space_->boxes[nodes_[from].box], space_->boxes[box], bend.point, goal_);
+  next.point = pass(air_->cube(nodes_[from].box), air_->cube(box), bend.point, goal_);
   next.length = bend.length + air_distance(bend.point, next.point);
   next.estimate = next.length + (large_ ? kLargeHaste : kHaste) * air_distance(next.point, goal_);
   next.box = box;

@@ -4,9 +4,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "path/flight_space.h"
+#include "path/air_view.h"
 #include "path/search.h"
 
 /// A short way through the air, over boxes.
@@ -20,9 +21,11 @@ class FlightSearch {
   /// Bends of a way from `from` to `to`, ends included. Gives up after `max_nodes` boxes, or where
   /// `cancel` (may be null) is set. Far ends are looked for
   /// through large boxes first.
-  SearchResult find(const FlightSpace& space, AirPoint from, AirPoint to, uint64_t max_nodes,
+  SearchResult find(const AirView& air, AirPoint from, AirPoint to, uint64_t max_nodes,
                     const std::atomic<bool>* cancel, std::vector<AirPoint>& way);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
+  /// After a search that found none: of all that is reached, the point nearest to another.
+  [[nodiscard]] AirPoint nearest_reached(AirPoint goal) const;
 
  private:
   SearchResult search(AirPoint from, uint32_t start, uint64_t max_nodes,
@@ -54,7 +57,7 @@ class FlightSearch {
   void reach(uint32_t from, uint32_t box);
   void push(uint32_t node);
 
-  const FlightSpace* space_ = nullptr;
+  std::optional<AirView> air_;
   AirPoint start_, goal_;
   bool large_ = false;  // only through boxes that are the larger the farther from both ends
   uint32_t goal_box_ = kNoBox;
@@ -62,7 +65,13 @@ class FlightSearch {
   uint64_t expanded_ = 0;
   std::vector<Node> nodes_;
   std::vector<Entry> open_;
-  std::vector<Mark> marks_;          // per box
+  Mark& mark_of(uint32_t box) {
+    const size_t whole = marks_.size();
+    return box < whole ? marks_[box] : part_marks_[box - whole];
+  }
+
+  std::vector<Mark> marks_;          // per box of the space
+  std::vector<Mark> part_marks_;     // per part of those that are split
   std::vector<AirPoint> large_way_;  // through large boxes
 };
 

@@ -4,16 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/parallel.h"
 
 namespace throng {
-
-double air_distance(AirPoint a, AirPoint b) {
-  const AirPoint d = a - b;
-  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-}
 
 double off_faces(double v) {
   const double low = std::floor(v);
@@ -29,80 +23,52 @@ uint32_t FlightSpace::box_at(AirPoint p) const {
                 static_cast<int32_t>(std::floor(p.z)));
 }
 
-// From box to box: the line leaves one by the face that it meets first. At an edge or a corner it
-// takes one face after the other, and must be free to pass what lies between.
-bool FlightSpace::sees(AirPoint from, AirPoint to) const {
-  const double begin[3] = {from.x, from.y, from.z};
-  const double way[3] = {to.x - from.x, to.y - from.y, to.z - from.z};
-  int32_t cell[3], last[3];
-  const double end[3] = {to.x, to.y, to.z};
-  for (int a = 0; a < 3; ++a) {
-    cell[a] = static_cast<int32_t>(std::floor(begin[a]));
-    last[a] = static_cast<int32_t>(std::floor(end[a]));
-  }
-  for (;;) {
-    const uint32_t index = box_at(cell[0], cell[1], cell[2]);
-    if (index == kNoBox) return false;
-    const AirCube& box = boxes[index];
-    const int32_t low[3] = {box.x, box.y, box.z};
-    double leave = std::numeric_limits<double>::infinity();
-    int axis = -1;
-    for (int a = 0; a < 3; ++a) {
-      if (last[a] >= low[a] && last[a] < low[a] + box.side)
-        continue;  // it ends between these faces
-      const double face = way[a] > 0 ? low[a] + box.side : low[a];
-      const double t = (face - begin[a]) / way[a];
-      if (t < leave) {
-        leave = t;
-        axis = a;
-      }
-    }
-    if (axis < 0) return true;
-    for (int a = 0; a < 3; ++a) {
-      if (a == axis) {
-        cell[a] = way[a] > 0 ? low[a] + box.side : low[a] - 1;
-      } else {
-        const auto at = static_cast<int32_t>(std::floor(begin[a] + leave * way[a]));
-        cell[a] = std::clamp(at, low[a], low[a] + box.side - 1);
-      }
-    }
-  }
-}
+bool FlightSpace::sees(AirPoint from, AirPoint to) const { return air_sees(*this, from, to); }
 
-AirPoint FlightSpace::nearest_in(std::span<const uint32_t> components, AirPoint goal,
-                                 ZoneOrder& order) const {
-  order.clear();
-  for (uint32_t zone = 0; zone + 1 < first_box.size(); ++zone) {
-    if (first_box[zone] == first_box[zone + 1]) continue;
-    const auto beside = [&](double at, int32_t place) {
-      const double low = static_cast<double>(place) * zone_side;
-      return std::max({low - at, at - (low + zone_side), 0.0});
-    };
-    const double x = beside(goal.x, static_cast<int32_t>(zone) % zones_x);
-    const double z = beside(goal.z, static_cast<int32_t>(zone) / zones_x);
-    order.emplace_back(std::sqrt(x * x + z * z), zone);
-  }
-  std::sort(order.begin(), order.end());
-  AirPoint nearest;
-  double least = std::numeric_limits<double>::infinity();
-  uint32_t best = kNoBox;
-  for (const auto& [away, zone] : order) {
-    if (away > least) break;
-    for (uint32_t b = first_box[zone]; b < first_box[zone + 1]; ++b) {
-      const AirCube& box = boxes[b];
-      const auto into = [&](double at, int32_t low) {
-        return std::clamp(at, low + kAirSkin, low + box.side - kAirSkin);
+void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) const {
+  found.clear();
+  const auto is_in = [&](const AirCube& cube) {
+    const int32_t low[3] = {cube.x, cube.y, cube.z};
+    for (int a = 0; a < 3; ++a) {
+      if (low[a] > range.last[a] || low[a] + cube.side <= range.first[a]) return false;
+    }
+    return true;
+  };
+  for (int32_t zz = std::max(range.first[2], 0) / zone_side;
+       zz <= std::min(range.last[2] / zone_side, zones_z - 1); ++zz) {
+    for (int32_t zx = std::max(range.first[0], 0) / zone_side;
+         zx <= std::min(range.last[0] / zone_side, zones_x - 1); ++zx) {
+      const auto zone = static_cast<size_t>(zz * zones_x + zx);
+      const AirTreeData& tree = zones[zone];
+      // Cubes are told in cells of the world.
+      const auto look = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
+        if (air_kind(word) == AirKind::kFull || !is_in(cube)) return;
+        if (air_kind(word) == AirKind::kFree) {
+          found.push_back(air_number(word));
+        } else if (air_kind(word) == AirKind::kLeaf) {
+          const Leaf& leaf = leaves[zone][air_number(word)];
+          for (int32_t i = 0; i < std::popcount(leaf.starts); ++i) {
+            const uint32_t box = leaf.first_box + static_cast<uint32_t>(i);
+            if (is_in(boxes[box])) found.push_back(box);
+          }
+        } else {
+          const int32_t half = cube.side / 2;
+          for (int32_t c = 0; c < 8; ++c) {
+            self(self,
+                 {cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half,
+                  half},
+                 tree.nodes[air_number(word) + static_cast<uint32_t>(c)]);
+          }
+        }
       };
-      const AirPoint p{into(goal.x, box.x), into(goal.y, box.y), into(goal.z, box.z)};
-      const double far = air_distance(p, goal);
-      if (far > least || (far == least && b > best)) continue;
-      if (!std::binary_search(components.begin(), components.end(), component[b])) continue;
-      least = far;
-      nearest = p;
-      best = b;
+      for (uint32_t r = 0; r < tree.roots; ++r) {
+        look(look,
+             {zx * zone_side, tree.base + static_cast<int32_t>(r) * tree.side, zz * zone_side,
+              tree.side},
+             tree.nodes[r]);
+      }
     }
   }
-  return nearest;
 }
 
 uint64_t FlightSpace::bytes() const {

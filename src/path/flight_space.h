@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
-#include <span>
-#include <utility>
+#include <limits>
 #include <vector>
 
 #include "throng/context.h"
@@ -26,11 +27,19 @@ struct AirPoint {
   friend AirPoint operator-(AirPoint a, AirPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend AirPoint operator*(double s, AirPoint a) { return {s * a.x, s * a.y, s * a.z}; }
 };
-double air_distance(AirPoint a, AirPoint b);
+inline double air_distance(AirPoint a, AirPoint b) {
+  const AirPoint d = a - b;
+  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+}
 inline double& axis_of(AirPoint& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 inline double axis_of(const AirPoint& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
+
+/// Cells of the air, the last ones too. None: a first above its last.
+struct AirRange {
+  int32_t first[3] = {0, 0, 0}, last[3] = {-1, -1, -1};  // x, y, z
+};
 
 /// Points keep that far off the faces of boxes, so that a line between two never runs along one.
 /// [air cells]
@@ -64,25 +73,24 @@ struct FlightSpace {
   }
   /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
+  [[nodiscard]] const AirCube& cube(uint32_t box) const { return boxes[box]; }
+  /// The boxes with cells in a range, rising zone by zone.
+  void boxes_in(const AirRange& range, std::vector<uint32_t>& found) const;
   /// Calls visit(box) for each box of at least `least` cells a side (1 or 4) that shares a part of
   /// a face with this one.
   template <class Visit>
   void for_neighbours(const AirCube& box, Visit&& visit, int32_t least = 1) const;
-  /// The point nearest to a goal in boxes of some components, rising, a skin off their faces; of
-  /// boxes as near as each other in the first. Zones are looked at in the order of how near they
-  /// may come, in `order`, whose memory stays. There must be such a box.
-  using ZoneOrder = std::vector<std::pair<double, uint32_t>>;
-  [[nodiscard]] AirPoint nearest_in(std::span<const uint32_t> components, AirPoint goal,
-                                    ZoneOrder& order) const;
+  /// The same of a square of cells of a plane of them: at `plane` along the axis, from u and v on
+  /// along the other two, the one of y first, else that of x.
+  template <class Visit>
+  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t least,
+                  Visit& visit) const;
   [[nodiscard]] uint64_t bytes() const;
 
  private:
   /// Of a cell of a zone, and of the node of the zone's tree that holds it.
   [[nodiscard]] uint32_t box_in(size_t zone, const AirTree& tree, const AirTree::Place& place,
                                 int32_t x, int32_t y, int32_t z) const;
-  template <class Visit>
-  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t least,
-                  Visit& visit) const;
 };
 
 /// The cells where the body may be, from what is free around. Boxes have at most `largest` cells a
@@ -169,6 +177,48 @@ void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t leas
   visit_face(1, box.y - 1, box.x, box.z, box.side, least, visit);
   visit_face(2, box.z + box.side, box.x, box.y, box.side, least, visit);
   visit_face(2, box.z - 1, box.x, box.y, box.side, least, visit);
+}
+
+// FlightSpace::sees over any air that knows box_at(x, y, z) and cube(box).
+// From box to box: the line leaves one by the face that it meets first. At an edge or a corner it
+// takes one face after the other, and must be free to pass what lies between.
+template <class Air>
+bool air_sees(const Air& air, AirPoint from, AirPoint to) {
+  const double begin[3] = {from.x, from.y, from.z};
+  const double way[3] = {to.x - from.x, to.y - from.y, to.z - from.z};
+  int32_t cell[3], last[3];
+  const double end[3] = {to.x, to.y, to.z};
+  for (int a = 0; a < 3; ++a) {
+    cell[a] = static_cast<int32_t>(std::floor(begin[a]));
+    last[a] = static_cast<int32_t>(std::floor(end[a]));
+  }
+  for (;;) {
+    const uint32_t index = air.box_at(cell[0], cell[1], cell[2]);
+    if (index == kNoBox) return false;
+    const AirCube& box = air.cube(index);
+    const int32_t low[3] = {box.x, box.y, box.z};
+    double leave = std::numeric_limits<double>::infinity();
+    int axis = -1;
+    for (int a = 0; a < 3; ++a) {
+      if (last[a] >= low[a] && last[a] < low[a] + box.side)
+        continue;  // it ends between these faces
+      const double face = way[a] > 0 ? low[a] + box.side : low[a];
+      const double t = (face - begin[a]) / way[a];
+      if (t < leave) {
+        leave = t;
+        axis = a;
+      }
+    }
+    if (axis < 0) return true;
+    for (int a = 0; a < 3; ++a) {
+      if (a == axis) {
+        cell[a] = way[a] > 0 ? low[a] + box.side : low[a] - 1;
+      } else {
+        const auto at = static_cast<int32_t>(std::floor(begin[a] + leave * way[a]));
+        cell[a] = std::clamp(at, low[a], low[a] + box.side - 1);
+      }
+    }
+  }
 }
 
 }  // namespace throng

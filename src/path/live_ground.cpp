@@ -14,6 +14,7 @@
 #include "path/obstacle.h"
 #include "path/plan_shapes.h"
 #include "path/reset_path.h"
+#include "path/solid.h"
 #include "world/place.h"
 
 namespace throng {

@@ -30,7 +30,13 @@ class ProgramWays(ProgramCase):
         self.assert_refused(fly("0.05,3,2", "4,3,4"), "--from", "neither in the air nor on the ground")
         self.assert_refused(self.run_throng("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "adult", "--fly"),
                             "does not fly")
-        self.assert_refused(fly("2,3,2", "4,3,4", "--block", "2,2,2,4,4,4"), "--block", "air")
+        self.assert_refused(fly("2,3,2", "4,3,4", "--block", "2,2,2,4,4,4"), "--from", "--block")
+        self.assert_refused(fly("2,3,2", "4,3,4", "--block", "3.8,2,3.8,4,4,4"), "--to", "--block")
+        self.assert_refused(fly("2,3,2", "4,3,4", "--block", "2,2,2,4,2,4"), "--block", "opposite corners")
+        self.assert_refused(fly("2,3,2", "4,3,4", "--slope-cost", "1"), "--slope-cost", "ground")
+        around = json.loads(fly("2,3,2", "4,3,4", "--block", "2.9,2,2.9,3.1,9,3.1", "--json").stdout)
+        self.assertEqual(around["end"], "reached")
+        self.assertGreater(around["length"], found["length"] + 0.05)
 
     def test_a_flight_into_a_closed_room_tells_how_near_it_comes(self):
         lines, sides = [], ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))

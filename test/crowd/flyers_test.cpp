@@ -415,6 +415,53 @@ TEST(Flyers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_FALSE(crowd.remove_obstacle({}));
 }
 
+// From wall to wall and higher than the air, but for a gap at one end; and a room around somebody.
+TEST(Flyers, GoAroundAWallThatIsPutUpAndAreToldWhereThereIsNoWay) {
+  Stage stage(open_air(40, 12));
+  Crowd crowd = made(stage.world());
+  std::vector<AvatarSpawn> spawns;
+  std::vector<Place> goals;
+  for (int i = 0; i < 12; ++i) {
+    spawns.push_back(flyer_at({6, 1.0 + 2.5 * (i % 3), 4.0 + 2 * (i / 3)}));
+    goals.push_back(i % 4 == 3 ? stage.ground({34, 0, 6.0 + i})
+                               : air_place({34, 1.0 + 2.5 * (i % 3), 4.0 + 2 * (i / 3)}));
+  }
+  const std::vector<AvatarId> ids = added(crowd, spawns);
+  crowd.set_goals(ids, goals);
+  for (int i = 0; i < 20; ++i) crowd.step();  // They are on their ways.
+  const auto wall = crowd.add_obstacle(Prism::box({19, -1, -5}, {19.5, 40, 33}));
+  ASSERT_TRUE(wall);
+  ASSERT_FALSE(crowd.obstacle(*wall)->waits);
+  expect_all(go(crowd, stage, 12, 1200), 12);
+
+  const auto rest = crowd.add_obstacle(Prism::box({19, -1, 32}, {19.5, 40, 45}));
+  ASSERT_TRUE(rest);
+  const Place back = air_place({6, 5, 20});
+  crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
+  crowd.step();
+  ASSERT_EQ(crowd.stranded().size(), 1u);
+  EXPECT_EQ(crowd.stranded()[0], ids[0]);
+  ASSERT_TRUE(crowd.remove_obstacle(*rest));
+  crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
+  expect_all(go(crowd, stage, 1, 1200), 1);
+}
+
+// Some hover nearer to a wall than the cells that ways take it to be clear of.
+TEST(Flyers, FindTheirWaysFromAndToWhereTheyTouchAWall) {
+  Stage stage(open_air(40, 12));
+  Crowd crowd = made(stage.world());
+  std::vector<AvatarSpawn> spawns;
+  std::vector<Place> goals;
+  for (int i = 0; i < 6; ++i) {
+    spawns.push_back(flyer_at({18.59 - 0.05 * i, 2, 6.0 + 3 * i}));
+    goals.push_back(air_place({19.92 + 0.05 * i, 2, 6.0 + 3 * i}));
+  }
+  const auto wall = crowd.add_obstacle(Prism::box({19, -1, -5}, {19.5, 40, 33}));
+  ASSERT_TRUE(wall);
+  crowd.set_goals(added(crowd, spawns), goals);
+  expect_all(go(crowd, stage, 6, 1200), 6);
+}
+
 TEST(Flyers, GoStraightWhereWaysAreNotAskedFor) {
   Stage stage(open_air(30, 15));
   Crowd crowd = made(stage.world(), {.ways = CrowdWays::kStraight});

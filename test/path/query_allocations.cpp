@@ -92,6 +92,15 @@ int run() {
     flight.find({.from = from(n).position, .to = to(n).position}, flown);
     reached += flown.end == PathEnd::kReached;
   });
+  // A wall through the garage, and crates.
+  for (uint64_t n = 0; n < 12; ++n) {
+    const Vec3d at = from(n).position, high{at.x + 1, at.y + 2, n == 0 ? 1000 : at.z + 1};
+    need(flight.add_obstacle(Prism::box({at.x, at.y + 0.1, at.z}, high)));
+  }
+  sum += late("flight around obstacles", [&](uint64_t n) {
+    flight.find({.from = from(n).position, .to = to(n).position}, flown);
+    reached += flown.end == PathEnd::kReached;
+  });
   std::printf("%llu ways found\n", static_cast<unsigned long long>(reached));
   return sum == 0 && reached > 5 * kPairs ? 0 : 1;
 }

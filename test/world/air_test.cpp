@@ -12,6 +12,7 @@
 
 #include "core/hash.h"
 #include "core/random.h"
+#include "path/air_view.h"
 #include "path/flight_space.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
@@ -218,7 +219,7 @@ TEST(Air, TheNearestPointOfSomeComponentsIsFoundZoneByZone) {
     std::vector<uint32_t> all(space->component);
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
-    FlightSpace::ZoneOrder order;
+    AirView::ZoneOrder order;
     for (uint64_t n = 0; n < 300; ++n) {
       const auto real = [&](uint64_t i, double low, double high) {
         return low + (high - low) * random_unit(seed, n, i);
@@ -242,7 +243,7 @@ TEST(Air, TheNearestPointOfSomeComponentsIsFoundZoneByZone) {
         least = air_distance(p, goal);
         nearest = p;
       }
-      const AirPoint found = space->nearest_in(some, goal, order);
+      const AirPoint found = AirView(*space).nearest_in(some, goal, order).value();
       EXPECT_EQ(found.x, nearest.x);
       EXPECT_EQ(found.y, nearest.y);
       EXPECT_EQ(found.z, nearest.z);

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "throng/flight.h"
+
+// How soon ways through the air avoid a crate that is put in the way of one, on a world of any
+// size; with `--standing`, among others that stand there.
+namespace throng::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+[[noreturn]] void stop(const std::string& message) {
+  fmt::print(stderr, "bench_air_changes: {}\n", message);
+  std::exit(2);
+}
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+Json spread(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double part) {
+    return values[static_cast<size_t>(part * static_cast<double>(values.size() - 1))];
+  };
+  return {{"median", at(0.5)}, {"p99", at(0.99)}, {"max", at(1)}};
+}
+
+Prism crate_around(Vec3d p, double side) {
+  const Vec3d half{side / 2, side / 2, side / 2};
+  return Prism::box(p - half, p + half);
+}
+
+Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away, double side) {
+  for (int64_t n = 0; n < standing; ++n) {
+    const auto at = finder.random_point(7, static_cast<uint64_t>(n));
+    if (at && !finder.add_obstacle(crate_around(*at, side))) stop("a crate was refused");
+  }
+  std::vector<double> before, added, after, removed;
+  int64_t longer = 0, shut = 0;
+  FlightPath path;
+  for (uint64_t n = 0; added.size() < static_cast<size_t>(trials) && n < 100000; ++n) {
+    const auto from = finder.random_point(41, n);
+    if (!from) stop("there is no air");
+    const double angle = static_cast<double>(n % 360) * 0.0174533;
+    const Vec3d to{from->x + away * std::cos(angle), from->y, from->z + away * std::sin(angle)};
+    if (!finder.is_legal(to)) continue;
+    const FlightQuery query{.from = *from, .to = to, .max_nodes = 20000, .nearest = false};
+    auto start = Clock::now();
+    finder.find(query, path);
+    const double first = milliseconds_since(start);
+    if (path.end != PathEnd::kReached || path.length > 2 * away) continue;
+    before.push_back(first);
+    Vec3d middle = path.points[0];
+    double left = path.length / 2;
+    for (size_t i = 1; i < path.points.size(); ++i) {
+      const Vec3d leg = path.points[i] - path.points[i - 1];
+      if (left <= length(leg)) {
+        middle = path.points[i - 1] + leg * (left / length(leg));
+        break;
+      }
+      left -= length(leg);
+    }
+    const double straight = path.length;
+    start = Clock::now();
+    const auto crate = finder.add_obstacle(crate_around(middle, side));
+    added.push_back(milliseconds_since(start));
+    start = Clock::now();
+    finder.find(query, path);
+    after.push_back(milliseconds_since(start));
+    if (path.end != PathEnd::kReached) ++shut;
+    if (path.end == PathEnd::kReached && path.length > straight) ++longer;
+    start = Clock::now();
+    finder.remove(*crate);
+    removed.push_back(milliseconds_since(start));
+  }
+  if (added.empty()) stop("no way was found to put a crate in");
+  return {{"trials", added.size()},
+          {"standing", standing},
+          {"away_m", away},
+          {"way_before_ms", spread(before)},
+          {"add_ms", spread(added)},
+          {"way_after_ms", spread(after)},
+          {"remove_ms", spread(removed)},
+          {"ways_made_longer", longer},
+          {"ways_that_crates_shut", shut}};
+}
+
+}  // namespace
+}  // namespace throng::bench
+
+int main(int argc, char** argv) {
+  using namespace throng::bench;
+  CLI::App app{"Crates in the air of a baked world, as JSON"};
+  std::string folder, name = "flyer";
+  int64_t trials = 1000, standing = 0;
+  double away = 20, side = 1;
+  app.add_option("world", folder, "World folder")->required();
+  app.add_option("--class", name, "Avatar class that flies");
+  app.add_option("--trials", trials, "Crates");
+  app.add_option("--standing", standing, "Other crates, all over the air");
+  app.add_option("--away", away, "Length of the ways [m]");
+  app.add_option("--side", side, "Of a crate [m]");
+  CLI11_PARSE(app, argc, argv);
+  const auto world = throng::World::open(folder);
+  if (!world) stop(world.error().message);
+  const auto& classes = world->summary().classes;
+  const auto found = std::find_if(classes.begin(), classes.end(),
+                                  [&](const auto& avatar) { return avatar.name == name; });
+  if (found == classes.end()) stop("there is no class " + name);
+  throng::Context context;
+  auto finder = throng::FlightFinder::make(
+      *world, {.avatar_class = static_cast<int32_t>(found - classes.begin())}, context);
+  if (!finder) stop(finder.error().message);
+  const Json report = {{"world", folder},
+                       {"boxes", finder->summary().boxes},
+                       {"crates", crates(*finder, trials, standing, away, side)}};
+  fmt::print("{}\n", report.dump(2));
+}

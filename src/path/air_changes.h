@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "path/air_pockets.h"
+#include "path/solid.h"
+#include "path/split_boxes.h"
+#include "path/taken_air.h"
+#include "throng/live_ground.h"
+#include "world/cell_blocks.h"
+#include "world/ground.h"
+
+/// Obstacles put up in the air of a class since it was made.
+namespace throng {
+
+/// The space itself stays as it is. An AirView shows both. A change undoes and makes again only the
+/// boxes that it touches.
+class AirChanges {
+ public:
+  /// The world and the space outlive it.
+  AirChanges(const WorldData& world, const FlightSpace& space, int32_t avatar_class);
+
+  ChangeId add(Solid solid);
+  /// False if there is none of that id.
+  bool set_active(ChangeId change, bool active);
+  bool remove(ChangeId change);
+
+  [[nodiscard]] bool any() const { return active_ > 0; }
+  [[nodiscard]] const SplitBoxes& splits() const { return splits_; }
+  [[nodiscard]] const AirPockets& pockets() const { return pockets_; }
+  /// May the class stand on a legal cell of the grid, as far as obstacles go?
+  [[nodiscard]] bool may_stand(uint32_t level, int32_t x, int32_t z) const {
+    const auto found = taken_.find(level);
+    return found == taken_.end() ||
+           (found->second[static_cast<size_t>(z & 63)] >> (x & 63) & 1) == 0;
+  }
+  /// Tells a ground of one; what it calls it.
+  static ChangeId tell_of(LiveGround& ground, const Solid& solid);
+  /// Tells a ground of the class that knows none of them yet; `ids`: what it calls them, by id - 1.
+  void tell(LiveGround& ground, std::vector<ChangeId>& ids) const;
+
+ private:
+  struct Change {
+    Solid solid;
+    AirRange near;
+    bool active = true, removed = false;
+    std::vector<int64_t> tiles;  // of the ground
+  };
+  void touch(ChangeId id);
+  void label_pieces(uint32_t box);
+  void take_ground(int64_t tile, std::span<const ChangeId> here);
+
+  const WorldData* world_;
+  const FlightSpace* space_;
+  int32_t class_;
+  const AvatarClass* avatar_;
+  AirGrid grid_;
+  SplitBoxes splits_;
+  AirPockets pockets_;
+  std::vector<Change> changes_;
+  size_t active_ = 0;
+  // Active ones, by box of the space and by tile of the ground; looked up only.
+  std::unordered_map<uint32_t, std::vector<ChangeId>> of_box_;
+  std::unordered_map<int64_t, std::vector<ChangeId>> of_tile_;
+  std::unordered_map<uint32_t, CellRows> taken_;  // by level of the world that has such cells
+  std::vector<uint32_t> near_, touched_;          // boxes
+  struct Old {
+    AirCube cube;
+    uint32_t label;
+  };
+  std::vector<Old> old_;  // pieces of a box before a change
+};
+
+}  // namespace throng

@@ -286,25 +286,27 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
       kinds[word_for(static_cast<LinkKind>(k))] = report.links_of_kind[k];
     }
   }
-  return {with_sums({{"class", name},
-                     {"over", "nodes"},
-                     {"pairs", report.pairs},
-                     {"reached", report.reached},
-                     {"parted", report.parted},
-                     {"legs", report.legs},
-                     {"links", kinds},
-                     {"leaps", report.leaps},
-                     {"poses", report.poses}},
-                    report),
-          fmt::format(
-              "{}, over nodes: {} pairs, {} reached, {} in different parts; {} legs, {} leaps, {} "
-              "bodies on them in {:.1f} s\n"
-              "  entered {}, unsupported {}, torn {}, against the parts {}\n",
-              name, report.pairs, report.reached, report.parted, report.legs, report.leaps,
-              report.poses, report.seconds, report.entered, report.unsupported, report.torn,
-              report.disagree) +
-              told_faults(report.faults),
-          passes(report)};
+  return {
+      with_sums({{"class", name},
+                 {"over", "nodes"},
+                 {"pairs", report.pairs},
+                 {"reached", report.reached},
+                 {"parted", report.parted},
+                 {"blocked", report.blocked},
+                 {"legs", report.legs},
+                 {"links", kinds},
+                 {"leaps", report.leaps},
+                 {"poses", report.poses}},
+                report),
+      fmt::format(
+          "{}, over nodes: {} pairs, {} reached, {} in different parts, {} shut off by what was "
+          "put up; {} legs, {} leaps, {} bodies on them in {:.1f} s\n"
+          "  entered {}, unsupported {}, torn {}, against the parts {}\n",
+          name, report.pairs, report.reached, report.parted, report.blocked, report.legs,
+          report.leaps, report.poses, report.seconds, report.entered, report.unsupported,
+          report.torn, report.disagree) +
+          told_faults(report.faults),
+      passes(report)};
 }
 
 WaysReport told(const std::string& name, const PathReport& report) {

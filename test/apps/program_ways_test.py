@@ -85,6 +85,29 @@ class ProgramWays(ProgramCase):
         self.assert_refused(self.run_throng(*ends, "--area-cost", "1.5=2"), "--area-cost", "whole numbers")
         self.assert_refused(self.run_throng(*ends, "--jump", "14,0,8,19,0,99"), "--jump", "outside")
 
+    def test_boxes_are_in_the_way_over_nodes_too(self):
+        done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--nodes", "-o", "n.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ends = ("path", "n.throng", "--nodes", "--from", "14,0,8", "--to", "20,0,8")
+
+        def way(*options):
+            done = self.run_throng(*ends, *options, "--json")
+            return done.returncode, json.loads(done.stdout)["length"]
+
+        code, straight = way()
+        self.assertEqual(code, 0)
+        code, around = way("--block", "17,2,9,16,0,0")
+        self.assertEqual(code, 0)
+        self.assertGreater(around, straight + 0.3)
+        self.assertEqual(way("--block", "16,0,0,17,2,40")[0], 1)
+        self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9", "--reach", "0.1"), "--from")
+        verify = ("verify", "n.throng", "--source", "builtin:garage", "--samples", "40")
+        box = ("--block", "16,0,0,17,2,9")
+        done = self.run_throng(*verify, "--paths", "--nodes", *box, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_refused(self.run_throng(*verify, *box), "--block", "--paths")
+        self.assert_refused(self.run_throng(*verify, "--paths", *box), "--block", "--nodes")
+
     def test_what_nodes_are_asked_for_is_looked_at_before_the_old_world_goes(self):
         done = self.run_throng("bake", "builtin:stairs", "--cell", "0.2", "--nodes", "-o", "w.throng")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -12,6 +12,8 @@
 #include "path/node_view.h"
 #include "throng/node_path.h"
 #include "throng/verify.h"
+#include "verify/triangle_tree.h"
+#include "verify/turned_body.h"
 
 namespace throng {
 namespace {
@@ -341,6 +343,65 @@ TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
   EXPECT_GT(open, 30000u);
   EXPECT_GT(taken, 1000u);
   EXPECT_EQ(taken_near, taken);
+}
+
+// A shell of triangles takes what its faces touch: no more than the whole prism does, and all along
+// its ways no body meets one of them.
+TEST(NodeObstacles, MeshesTakeWhatTheirTrianglesTouch) {
+  const TestWorld world = make({.name = "landscape", .size = 64, .seed = 6}, 0.5, 1);
+  Context context;
+  uint64_t around = 0, bodies = 0;
+  for (int32_t c = 0; c < 4; ++c) {
+    auto made = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
+    ASSERT_TRUE(made);
+    NodePathFinder fresh = *made, solid = *made, shells = *made;
+    Scene scene;
+    for (const Prism& prism : random_prisms(world.nodes, 31, 40)) {
+      const auto first = static_cast<uint32_t>(scene.positions.size());
+      const auto count = static_cast<uint32_t>(prism.corners.size());
+      std::vector<Vec3d> corners;
+      for (const double y : {prism.low, prism.high}) {
+        for (const auto& [x, z] : prism.corners) corners.push_back({x, y, z});
+      }
+      std::vector<std::array<uint32_t, 3>> triangles;
+      for (uint32_t k = 0; k < count; ++k) {
+        const uint32_t next = (k + 1) % count;
+        triangles.push_back({k, next, next + count});
+        triangles.push_back({k, next + count, k + count});
+        if (k == 0 || k + 1 == count) continue;
+        triangles.push_back({0, k, k + 1});
+        triangles.push_back({count, count + k, count + k + 1});
+      }
+      ASSERT_TRUE(solid.add_obstacle(prism));
+      ASSERT_TRUE(shells.add_obstacle(corners, triangles));
+      scene.positions.insert(scene.positions.end(), corners.begin(), corners.end());
+      for (const auto& t : triangles) {
+        scene.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      }
+    }
+    scene.area.resize(scene.triangles.size());
+    const verify::TriangleTree tree(scene, 1);
+    const AvatarClass avatar = classes()[static_cast<size_t>(c)];
+    NodePath path, other;
+    for (uint64_t n = 0; n < 40; ++n) {
+      const NodePlace from = world.nodes.random_place(c, 8, 2 * n),
+                      to = world.nodes.random_place(c, 8, 2 * n + 1);
+      shells.find(from, to, path);
+      solid.find(from, to, other);
+      // Whoever is in a closed shell of triangles is not in one.
+      if (other.end != PathEnd::kNoPlace) EXPECT_NE(path.end, PathEnd::kNoPlace);
+      if (other.end == PathEnd::kReached) EXPECT_EQ(path.end, PathEnd::kReached);
+      for (const NodePathPoint& point : path.points) {
+        if (!point.place) continue;
+        ++bodies;
+        EXPECT_FALSE(verify::turned_intruder(tree, avatar, {point.place.feet, point.place.axis}));
+      }
+      fresh.find(from, to, other);
+      around += !is_same(path, other) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(bodies, 10000u);
+  EXPECT_GT(around, 30u);
 }
 
 TEST(NodeObstacles, BadOnesAreRefusedAndNamed) {

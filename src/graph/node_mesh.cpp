@@ -54,11 +54,11 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
   }
   mesh.walking_ = data.summary.bins.inclination_code(steepest);
   mesh.list_blocks(workers);
-  std::vector<std::vector<NodePortal>> lists(mesh.patches_.size());
+  std::vector<PortalList> lists(mesh.patches_.size());
   parallel_for(lists.size(), workers, [&](size_t p) {
     if (!context.cancel) lists[p] = mesh.inside_patch(static_cast<uint32_t>(p));
   });
-  append_all(lists, mesh.portals_);
+  mesh.portals_.add_all(lists);
   mesh.open_doors();
   const WorldData& world = *data.world.data();
   const bool tiles = std::any_of(mesh.patches_.begin(), mesh.patches_.end(),
@@ -69,7 +69,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
     const auto tile = static_cast<int32_t>(i);
     if (!context.cancel) lists[i] = mesh.over_tile(tile % tiles_x, tile / tiles_x);
   });
-  append_all(lists, mesh.portals_);
+  mesh.portals_.add_all(lists);
   mesh.add_leaps();
   if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
   mesh.index_portals();
@@ -305,10 +305,10 @@ LinkKind NodeMesh::kind_between(uint32_t a, uint32_t b) const {
 }
 
 // Cells beside each other of different blocks, runs of them together.
-std::vector<NodePortal> NodeMesh::inside_patch(uint32_t patch) const {
+PortalList NodeMesh::inside_patch(uint32_t patch) const {
   std::vector<NodePortal> found;
   const uint32_t first = first_block_[patch], last = first_block_[patch + 1];
-  if (last - first < 2) return found;
+  if (last - first < 2) return {};
   const NodeSurface& surface = patches_[patch];
   const int32_t side = 1 << surface.depth;
   const auto index = [&](int32_t s, int32_t t) {
@@ -370,7 +370,7 @@ std::vector<NodePortal> NodeMesh::inside_patch(uint32_t patch) const {
   };
   visit(true, cells.cut_s);
   visit(false, cells.cut_t);
-  return found;
+  return PortalList(found);
 }
 
 // A door is cut where the blocks on either side end.
@@ -391,39 +391,42 @@ void NodeMesh::open_doors() {
         return edge_parameters(door.to_edge(),
                                (door.to_first() + (at - door.first()) * scale) / kEdgeUnits);
       };
-      uint32_t last_a = kNoNode, last_b = kNoNode;
+      NodePortal open{.a = kNoNode, .b = kNoNode, .on_a = {}, .on_b = {}};
+      const auto close = [&] {
+        if (open.a != kNoNode) portals_.add(open);
+        open.a = open.b = kNoNode;
+      };
       for (int32_t k = door.first(); k < door.last(); ++k) {
         const auto in_a = on_a(k + 0.5), in_b = on_b(k + 0.5);
         const uint32_t a = block_at(a_patch, in_a[0], in_a[1]);
         const uint32_t b = block_at(b_patch, in_b[0], in_b[1]);
         if (a == kNoNode || b == kNoNode) {
-          last_a = last_b = kNoNode;
+          close();
           continue;
         }
         const auto end_a = on_a(k + 1), end_b = on_b(k + 1);
-        if (a != last_a || b != last_b) {
+        if (a != open.a || b != open.b) {
+          close();
           const auto from_a = on_a(k), from_b = on_b(k);
-          portals_.push_back({.a = a,
-                              .b = b,
-                              .on_a = {from_a[0], from_a[1], 0, 0},
-                              .on_b = {from_b[0], from_b[1], 0, 0},
-                              .kind = kind_between(a, b)});
-          last_a = a;
-          last_b = b;
+          open.a = a;
+          open.b = b;
+          open.on_a = {from_a[0], from_a[1], 0, 0};
+          open.on_b = {from_b[0], from_b[1], 0, 0};
+          open.kind = kind_between(a, b);
         }
-        NodePortal& portal = portals_.back();
-        portal.on_a[2] = end_a[0];
-        portal.on_a[3] = end_a[1];
-        portal.on_b[2] = end_b[0];
-        portal.on_b[3] = end_b[1];
+        open.on_a[2] = end_a[0];
+        open.on_a[3] = end_a[1];
+        open.on_b[2] = end_b[0];
+        open.on_b[3] = end_b[1];
       }
+      close();
     }
     first_patch += static_cast<uint32_t>(zone.patches().size());
   }
 }
 
 // Borders and seams of the levels of a tile, towards greater x and z.
-std::vector<NodePortal> NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
+PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
   struct Touch {
     uint32_t a, b;
     uint8_t side;   // 2: the cells lie beside each other along s, 1: along t
@@ -450,7 +453,7 @@ std::vector<NodePortal> NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) cons
   std::sort(touches.begin(), touches.end(), [](const Touch& p, const Touch& q) {
     return std::tie(p.a, p.b, p.side, p.at, p.k) < std::tie(q.a, q.b, q.side, q.at, q.k);
   });
-  std::vector<NodePortal> found;
+  PortalList found;
   for (size_t i = 0; i < touches.size();) {
     const Touch& t = touches[i];
     size_t j = i + 1;
@@ -469,7 +472,7 @@ std::vector<NodePortal> NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) cons
       portal.on_a = {from, on_a, to, on_a};
       portal.on_b = {from, on_b, to, on_b};
     }
-    found.push_back(portal);
+    found.add(portal);
     i = j;
   }
   return found;
@@ -500,13 +503,13 @@ void NodeMesh::add_leaps() {
         if (a == kNoNode || b == kNoNode || a == b) continue;
         const Key key{a, b, leap->from_s(), leap->from_t(), leap->to_s(), leap->to_t()};
         if (!known.try_emplace(key, portals_.size()).second) continue;
-        portals_.push_back({.a = a,
-                            .b = b,
-                            .on_a = {from[0], from[1], from[0], from[1]},
-                            .on_b = {to[0], to[1], to[0], to[1]},
-                            .kind = static_cast<LinkKind>(arc.kind()),
-                            .leaps = true,
-                            .one_way = true});
+        portals_.add({.a = a,
+                      .b = b,
+                      .on_a = {from[0], from[1], from[0], from[1]},
+                      .on_b = {to[0], to[1], to[0], to[1]},
+                      .kind = static_cast<LinkKind>(arc.kind()),
+                      .leaps = true,
+                      .one_way = true});
       }
     }
   }
@@ -514,22 +517,24 @@ void NodeMesh::add_leaps() {
 
 void NodeMesh::index_portals() {
   first_portal_.assign(blocks_.size() + 1, 0);
-  for (const NodePortal& p : portals_) {
-    ++first_portal_[p.a + 1];
-    ++first_portal_[p.b + 1];
+  for (size_t p = 0; p < portals_.size(); ++p) {
+    const PortalSides sides = portals_.sides(p);
+    ++first_portal_[sides.a + 1];
+    ++first_portal_[sides.b + 1];
   }
   for (size_t b = 0; b < blocks_.size(); ++b) first_portal_[b + 1] += first_portal_[b];
   portal_of_.resize(first_portal_.back());
   std::vector<uint32_t> next(first_portal_.begin(), first_portal_.end() - 1);
   for (uint32_t i = 0; i < portals_.size(); ++i) {
-    portal_of_[next[portals_[i].a]++] = i;
-    portal_of_[next[portals_[i].b]++] = i;
+    const PortalSides sides = portals_.sides(i);
+    portal_of_[next[sides.a]++] = i;
+    portal_of_[next[sides.b]++] = i;
   }
 }
 
 uint64_t NodeMesh::bytes() const {
   return patches_.size() * sizeof(NodeSurface) + blocks_.size() * sizeof(NodeBlock) +
-         portals_.size() * sizeof(NodePortal) +
+         portals_.bytes() +
          (first_node_.size() + of_level_.size() + first_block_.size() + first_portal_.size() +
           portal_of_.size()) *
              sizeof(uint32_t);

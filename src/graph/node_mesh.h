@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graph/node_surface.h"
+#include "graph/portal_list.h"
 #include "graph/quadtree.h"
 #include "throng/context.h"
 #include "throng/nodes.h"
@@ -30,19 +31,6 @@ struct NodeBlock {
 };
 
 inline constexpr double kLargestBlock = 4;  // [m]
-/// Lines on level tiles keep that far inside cells, whose far border is the next cell's. [s and t]
-inline constexpr double kTileInset = 1e-5;
-
-/// Where the class gets from block a to block b: along a line that they share, by the parameters of
-/// each one's patch; of a leap both ends are the same.
-struct NodePortal {
-  uint32_t a = 0, b = 0;
-  std::array<double, 4> on_a{}, on_b{};  ///< (s, t) where it begins and where it ends.
-  LinkKind kind = LinkKind::kWalk;
-  bool leaps = false;    ///< A body goes straight from a's point to b's, which do not touch.
-  bool one_way = false;  ///< From a to b only.
-  bool inside = false;   ///< Within one node: no link.
-};
 
 /// How far a body goes from one end of a portal to the other: straight, or, where it drops, level
 /// out and then down. [m]
@@ -64,7 +52,7 @@ class NodeMesh {
   [[nodiscard]] const Nodes& nodes() const { return nodes_; }
   [[nodiscard]] int32_t avatar_class() const { return avatar_class_; }
   [[nodiscard]] std::span<const NodeBlock> blocks() const { return blocks_; }
-  [[nodiscard]] std::span<const NodePortal> portals() const { return portals_; }
+  [[nodiscard]] const PortalList& portals() const { return portals_; }
   [[nodiscard]] std::span<const NodeSurface> patches() const { return patches_; }
   [[nodiscard]] const NodeSurface& surface(uint32_t block) const {
     return patches_[blocks_[block].patch];
@@ -92,9 +80,9 @@ class NodeMesh {
   NodeMesh(Nodes nodes, int32_t avatar_class) : nodes_(nodes), avatar_class_(avatar_class) {}
 
   void list_blocks(int32_t workers);
-  [[nodiscard]] std::vector<NodePortal> inside_patch(uint32_t patch) const;
+  [[nodiscard]] PortalList inside_patch(uint32_t patch) const;
   void open_doors();
-  [[nodiscard]] std::vector<NodePortal> over_tile(int32_t tile_x, int32_t tile_z) const;
+  [[nodiscard]] PortalList over_tile(int32_t tile_x, int32_t tile_z) const;
   void add_leaps();
   void index_portals();
   [[nodiscard]] LinkKind kind_between(uint32_t a, uint32_t b) const;
@@ -107,7 +95,7 @@ class NodeMesh {
   std::vector<uint32_t> of_level_;     // patch, by level of the world
   std::vector<uint32_t> first_block_;  // by patch, and the end
   std::vector<NodeBlock> blocks_;      // of a patch in the order of its quadtree
-  std::vector<NodePortal> portals_;
+  PortalList portals_;
   std::vector<uint32_t> first_portal_, portal_of_;
 };
 

@@ -50,7 +50,7 @@ void DistrictChanges::update() {
 }
 
 void DistrictChanges::move_gate(uint32_t gate, uint32_t first, uint32_t last) {
-  const NodePortal& old = view_->mesh().portals()[districts_->gates()[gate].portal];
+  const NodePortal old = view_->mesh().portals()[districts_->gates()[gate].portal];
   Gate moved;
   const auto size = [&](const NodePortal& portal) {
     const NodeSurface& surface = view_->surface(portal.a);
@@ -71,7 +71,7 @@ void DistrictChanges::move_gate(uint32_t gate, uint32_t first, uint32_t last) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const uint32_t block : blocks_.at(from)) {
       for (const uint32_t p : view_->portals_of(block)) {
-        const NodePortal& portal = view_->portal(p);
+        const PortalSides portal = view_->sides(p);
         const bool turned = portal.a != block;
         if (portal.one_way != old.one_way || (portal.one_way && turned)) continue;
         if (of_block[view_->base_of(turned ? portal.a : portal.b)] != to) continue;

@@ -34,9 +34,10 @@ void DistrictGraph::set(std::span<const uint32_t> blocks, bool keep) {
   ways_.clear();
   for (const uint32_t block : blocks_) {
     for_each_way_out(*view_, block, [&](const Crossing& crossing) {
-      const auto [out, in] = ends_of(*view_, crossing);
+      const NodePortal portal = view_->portal(crossing.portal);
+      const auto [out, in] = ends_of(portal, crossing.backward);
       Way way{crossing, out, in, position(*view_, out), position(*view_, in)};
-      way.through = portal_length(view_->portal(crossing.portal), way.out_at, way.in_at);
+      way.through = portal_length(portal, way.out_at, way.in_at);
       way.into = place_of(in.block);
       ways_.push_back(way);
     });

@@ -116,7 +116,7 @@ void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
         static_cast<uint32_t>(blocks.size()),
         [&](uint32_t b) { return static_cast<uint32_t>(mesh.portals_of(blocks[b]).size()); },
         [&](uint32_t b, uint32_t k) {
-          const NodePortal& portal = mesh.portals()[mesh.portals_of(blocks[b])[k]];
+          const PortalSides portal = mesh.portals().sides(mesh.portals_of(blocks[b])[k]);
           if (portal.one_way && portal.b == blocks[b]) return UINT32_MAX;
           const uint32_t to = portal.a == blocks[b] ? portal.b : portal.a;
           if (of_block_[to] != d) return UINT32_MAX;
@@ -135,7 +135,7 @@ void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
   };
   std::vector<Candidate> candidates;
   for (uint32_t p = 0; p < mesh.portals().size(); ++p) {
-    const NodePortal& portal = mesh.portals()[p];
+    const PortalSides portal = mesh.portals().sides(p);
     const uint32_t a = of_block_[portal.a], b = of_block_[portal.b];
     if (a == b) continue;
     uint32_t from = counts[a] + part_of[portal.a], to = counts[b] + part_of[portal.b];
@@ -150,7 +150,7 @@ void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
   std::vector<Vec3d> chosen;
   for (size_t i = 0; i < candidates.size(); ++i) {
     if (i == 0 || candidates[i].group() != candidates[i - 1].group()) chosen.clear();
-    const NodePortal& portal = mesh.portals()[candidates[i].portal];
+    const PortalSides portal = mesh.portals().sides(candidates[i].portal);
     uint32_t a = of_block_[portal.a], b = of_block_[portal.b];
     uint8_t top = 0;
     while (top + size_t{1} < tiers_.size()) {
@@ -223,7 +223,7 @@ void Districts::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_
     }
     for (size_t i = 0; i < entries.size(); ++i) {
       const Crossing in = crossing(entries[i]);
-      if (in.backward && mesh.portals()[in.portal].one_way) continue;
+      if (in.backward && mesh.portals().sides(in.portal).one_way) continue;
       const std::vector<double>& costs = graph.run(ends_of(view, in).in);
       float* row = tier.costs.data() + tier.first_cost[d] + i * entries.size();
       for (const auto& [way, column] : columns) {

@@ -201,7 +201,7 @@ void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near
                               Change& change) const {
   for (const uint32_t block : near) {
     for (const uint32_t p : mesh_->portals_of(block)) {
-      const NodePortal& portal = mesh_->portals()[p];
+      const NodePortal portal = mesh_->portals()[p];
       if (portal.a != block) continue;
       const bool curved = mesh_->surface(portal.a).points != nullptr;
       const bool doors =
@@ -522,7 +522,7 @@ void NodeChanges::list_portals() {
   const auto base = static_cast<uint32_t>(mesh_->blocks().size());
   touched_ = cut_blocks_;
   for (const Replaced& r : replaced_) {
-    const NodePortal& portal = mesh_->portals()[r.portal];
+    const PortalSides portal = mesh_->portals().sides(r.portal);
     touched_.push_back(portal.a);
     touched_.push_back(portal.b);
   }

@@ -13,14 +13,15 @@ NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patche
       static_cast<uint32_t>(mesh.blocks().size()),
       [&](uint32_t block) { return static_cast<uint32_t>(mesh.portals_of(block).size()); },
       [&](uint32_t block, uint32_t k) {
-        const NodePortal& portal = mesh.portals()[mesh.portals_of(block)[k]];
+        const PortalSides portal = mesh.portals().sides(mesh.portals_of(block)[k]);
         if (portal.a == block) return portal.b;
         return portal.one_way ? UINT32_MAX : portal.a;
       });
   part_of_ = std::move(parts.of);
   count_ = parts.count;
   std::vector<std::pair<uint32_t, uint32_t>> arcs;
-  for (const NodePortal& portal : mesh.portals()) {
+  for (size_t p = 0; p < mesh.portals().size(); ++p) {
+    const PortalSides portal = mesh.portals().sides(p);
     const uint32_t from = part_of_[portal.a], to = part_of_[portal.b];
     if (from != to) arcs.emplace_back(from, to);
   }

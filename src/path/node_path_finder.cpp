@@ -39,7 +39,8 @@ struct NodePathFinder::Shared {
         slope_cost(config.slope_cost),
         squares(mesh),
         parts(mesh, config.workers) {
-    for (const NodePortal& portal : mesh.portals()) {
+    for (size_t p = 0; p < mesh.portals().size(); ++p) {
+      const NodePortal portal = mesh.portals()[p];
       if (!portal.leaps) continue;
       const Vec3d a = mesh.surface(portal.a).at(portal.on_a[0], portal.on_a[1]);
       const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
@@ -197,7 +198,7 @@ class Teller {
   }
 
   void cross(const PulledCrossing& crossing) {
-    const NodePortal& portal = view_.portal(crossing.crossing.portal);
+    const NodePortal portal = view_.portal(crossing.crossing.portal);
     path_.cost += portal_length(portal, crossing.out_at, crossing.in_at);
     const bool same_patch =
         view_.block(crossing.out.block).patch == view_.block(crossing.in.block).patch;

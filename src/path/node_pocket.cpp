@@ -21,7 +21,7 @@ bool NodePocket::close(const NodeView& view, uint32_t from, uint32_t other, Way 
     const uint32_t block = found_[i];
     bool meets = false;
     const auto look = [&](const Crossing& crossing) {
-      const NodePortal& portal = view.portal(crossing.portal);
+      const PortalSides portal = view.sides(crossing.portal);
       const uint32_t next = portal.a == block ? portal.b : portal.a;
       meets |= next == other;
       if (holds(next)) return;

@@ -28,7 +28,7 @@ double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
 }  // namespace
 
 void NodePull::place(PulledCrossing& crossing, double along) const {
-  const NodePortal& portal = view_->portal(crossing.crossing.portal);
+  const NodePortal portal = view_->portal(crossing.crossing.portal);
   const bool backward = crossing.crossing.backward;
   const auto on = [&](const std::array<double, 4>& line, uint32_t block) {
     return BlockPoint{block, line[0] + along * (line[2] - line[0]),
@@ -75,7 +75,7 @@ void NodePull::pull(const BlockPoint& from, const BlockPoint& to, const std::vec
     for (size_t k = 0; k < out.size(); ++k) {
       const size_t i = round % 2 == 0 ? k : out.size() - 1 - k;
       PulledCrossing& here = out[i];
-      const NodePortal& portal = view_->portal(here.crossing.portal);
+      const NodePortal portal = view_->portal(here.crossing.portal);
       if (portal.leaps) continue;
       if (here.settled) {
         all += here.around;

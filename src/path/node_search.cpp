@@ -57,15 +57,16 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
   for_each_way_out(*view_, from.block, [&](const Crossing& crossing) {
     const uint32_t id = 2 * crossing.portal + (crossing.backward ? 1 : 0);
     if ((id ^ 1) == parent || id == parent) return;
-    const NodePortal& portal = view_->portal(crossing.portal);
-    const uint32_t into = crossing.backward ? portal.a : portal.b;
+    const PortalSides sides = view_->sides(crossing.portal);
+    const uint32_t into = crossing.backward ? sides.a : sides.b;
     if (within_.district_of_block != nullptr &&
         within_.district_of_block[view_->base_of(into)] != within_.district) {
       return;
     }
     State& state = states_[id];
     if (state.query == query_ && state.cost <= cost) return;
-    const auto [out, in] = ends_of(*view_, crossing);
+    const NodePortal portal = view_->portal(crossing.portal);
+    const auto [out, in] = ends_of(portal, crossing.backward);
     const Vec3d here = position(*view_, out);
     double next = cost + (*cost_)(out.block, from.s, from.t, at, out.s, out.t, here).cost;
     if (state.query == query_ && state.cost <= next) return;

@@ -27,9 +27,15 @@ class NodeView {
     const auto blocks = mesh_->blocks();
     return b < blocks.size() ? blocks[b] : changes_->parts()[b - blocks.size()];
   }
-  [[nodiscard]] const NodePortal& portal(uint32_t p) const {
-    const auto portals = mesh_->portals();
+  [[nodiscard]] NodePortal portal(uint32_t p) const {
+    const PortalList& portals = mesh_->portals();
     return p < portals.size() ? portals[p] : changes_->portals()[p - portals.size()];
+  }
+  [[nodiscard]] PortalSides sides(uint32_t p) const {
+    const PortalList& portals = mesh_->portals();
+    if (p < portals.size()) return portals.sides(p);
+    const NodePortal& portal = changes_->portals()[p - portals.size()];
+    return {portal.a, portal.b, portal.one_way};
   }
   [[nodiscard]] size_t block_count() const {
     return mesh_->blocks().size() + (changes_ != nullptr ? changes_->parts().size() : 0);
@@ -74,13 +80,16 @@ struct CrossingEnds {
   BlockPoint out, in;
 };
 
-inline CrossingEnds ends_of(const NodeView& view, const Crossing& crossing) {
-  const NodePortal& portal = view.portal(crossing.portal);
+inline CrossingEnds ends_of(const NodePortal& portal, bool backward) {
   const auto middle = [](uint32_t block, const std::array<double, 4>& on) {
     return BlockPoint{block, (on[0] + on[2]) / 2, (on[1] + on[3]) / 2};
   };
   const BlockPoint a = middle(portal.a, portal.on_a), b = middle(portal.b, portal.on_b);
-  return crossing.backward ? CrossingEnds{b, a} : CrossingEnds{a, b};
+  return backward ? CrossingEnds{b, a} : CrossingEnds{a, b};
+}
+
+inline CrossingEnds ends_of(const NodeView& view, const Crossing& crossing) {
+  return ends_of(view.portal(crossing.portal), crossing.backward);
 }
 
 inline Vec3d position(const NodeView& view, const BlockPoint& at) {
@@ -91,7 +100,7 @@ inline Vec3d position(const NodeView& view, const BlockPoint& at) {
 template <class Visit>
 void for_each_way_out(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {
-    const NodePortal& portal = view.portal(p);
+    const PortalSides portal = view.sides(p);
     const bool backward = portal.a != block;
     if (!(backward && portal.one_way)) visit(Crossing{p, backward});
   }
@@ -101,7 +110,7 @@ void for_each_way_out(const NodeView& view, uint32_t block, Visit visit) {
 template <class Visit>
 void for_each_way_in(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {
-    const NodePortal& portal = view.portal(p);
+    const PortalSides portal = view.sides(p);
     const bool backward = portal.a == block;
     if (!(backward && portal.one_way)) visit(Crossing{p, backward});
   }

@@ -63,7 +63,7 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
         piece(at.block, at.s, at.t, position(mesh, at), next.s, next.t, position(mesh, next)).cost;
   };
   for (const Crossing& crossing : way) {
-    const NodePortal& portal = mesh.portal(crossing.portal);
+    const NodePortal portal = mesh.portal(crossing.portal);
     EXPECT_FALSE(crossing.backward && portal.one_way);
     const auto [out, in] = ends_of(mesh, crossing);
     go(out);
@@ -157,7 +157,7 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
           for (size_t j = 0; j < entries.size(); ++j) {
             if (entries[j] == entry || looked++ % stride != 0) continue;
             const Crossing out = districts.crossing(entries[j] ^ 1);
-            const NodePortal& portal = mesh.portals()[out.portal];
+            const NodePortal portal = mesh.portals()[out.portal];
             const bool closed = (crossing.backward && mesh.portals()[crossing.portal].one_way) ||
                                 (out.backward && portal.one_way);
             const auto ends = ends_of(view, out);

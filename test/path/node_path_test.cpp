@@ -110,7 +110,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
           uint32_t block = first;
           double s = from.s, t = from.t;
           if (state + 1 < states) {
-            const NodePortal& portal = mesh->portals()[state / 2];
+            const NodePortal portal = mesh->portals()[state / 2];
             const auto& in = state % 2 != 0 ? portal.on_a : portal.on_b;
             block = state % 2 != 0 ? portal.a : portal.b;
             s = (in[0] + in[2]) / 2;
@@ -121,7 +121,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
             best = std::min(best, so_far + piece(block, s, t, at, to.s, to.t, to.feet).cost);
           }
           for (const uint32_t p : mesh->portals_of(block)) {
-            const NodePortal& portal = mesh->portals()[p];
+            const NodePortal portal = mesh->portals()[p];
             const bool backward = portal.a != block;
             if (backward && portal.one_way) continue;
             const auto& out = backward ? portal.on_b : portal.on_a;

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "crate_times.h"
 #include "throng/flight.h"
 
 // How soon ways through the air avoid a crate that is put in the way of one, on a world of any
@@ -18,23 +17,10 @@ namespace throng::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 [[noreturn]] void stop(const std::string& message) {
   fmt::print(stderr, "bench_air_changes: {}\n", message);
   std::exit(2);
-}
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-Json spread(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double part) {
-    return values[static_cast<size_t>(part * static_cast<double>(values.size() - 1))];
-  };
-  return {{"median", at(0.5)}, {"p99", at(0.99)}, {"max", at(1)}};
 }
 
 Prism crate_around(Vec3d p, double side) {
@@ -47,7 +33,7 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
     const auto at = finder.random_point(7, static_cast<uint64_t>(n));
     if (at && !finder.add_obstacle(crate_around(*at, side))) stop("a crate was refused");
   }
-  std::vector<double> before, added, after, removed;
+  std::vector<double> before, added, after, both, removed;
   int64_t longer = 0, shut = 0;
   FlightPath path;
   for (uint64_t n = 0; added.size() < static_cast<size_t>(trials) && n < 100000; ++n) {
@@ -79,6 +65,7 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
     start = Clock::now();
     finder.find(query, path);
     after.push_back(milliseconds_since(start));
+    both.push_back(added.back() + after.back());
     if (path.end != PathEnd::kReached) ++shut;
     if (path.end == PathEnd::kReached && path.length > straight) ++longer;
     start = Clock::now();
@@ -92,6 +79,7 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
           {"way_before_ms", spread(before)},
           {"add_ms", spread(added)},
           {"way_after_ms", spread(after)},
+          {"until_avoided_ms", spread(both)},
           {"remove_ms", spread(removed)},
           {"ways_made_longer", longer},
           {"ways_that_crates_shut", shut}};

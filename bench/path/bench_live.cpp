@@ -4,12 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "crate_times.h"
 #include "throng/flow_field.h"
 #include "throng/live_ground.h"
 #include "throng/world.h"
@@ -20,23 +20,10 @@ namespace throng::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 [[noreturn]] void stop(const std::string& message) {
   fmt::print(stderr, "bench_live: {}\n", message);
   std::exit(2);
-}
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-Json spread(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double part) {
-    return values[static_cast<size_t>(part * static_cast<double>(values.size() - 1))];
-  };
-  return {{"median", at(0.5)}, {"p99", at(0.99)}, {"max", at(1)}};
 }
 
 // Is a point of the way inside the crate grown by the body?

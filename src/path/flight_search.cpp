@@ -130,21 +130,16 @@ int32_t FlightSearch::least_around(const AirCube& box) const {
 
 SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_nodes,
                                   const std::atomic<bool>* cancel, std::vector<AirPoint>& way) {
-  const size_t whole = air_->space().boxes.size();
-  if (marks_.size() != whole) marks_.assign(whole, {});
-  if (const size_t parts = air_->end() - whole; part_marks_.size() < parts) {
-    part_marks_.resize(parts);
-  }
-  if (++search_ == 0) {
-    marks_.assign(whole, {});
-    part_marks_.assign(part_marks_.size(), {});
+  marks_.resize(air_->end());
+  if (++search_ == 0) {  // After 2^32 searches the marks begin anew.
+    marks_.clear();
     search_ = 1;
   }
   way.clear();
   nodes_.clear();
   open_.clear();
   nodes_.push_back({from, 0, air_distance(from, goal_), start, 0, 0, false});
-  mark_of(start) = {search_, 0};
+  marks_[start] = {search_, 0};
   push(0);
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end());
@@ -214,7 +209,7 @@ void FlightSearch::open(uint32_t node) {
 }
 
 void FlightSearch::reach(uint32_t from, uint32_t box) {
-  Mark& mark = mark_of(box);
+  Mark& mark = marks_[box];
   const bool known = mark.search == search_;
   if (known && nodes_[mark.node].opened) return;
   const uint32_t parent = nodes_[from].parent;

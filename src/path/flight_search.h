@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/paged.h"
 #include "path/air_view.h"
 #include "path/search.h"
 
@@ -65,13 +66,7 @@ class FlightSearch {
   uint64_t expanded_ = 0;
   std::vector<Node> nodes_;
   std::vector<Entry> open_;
-  Mark& mark_of(uint32_t box) {
-    const size_t whole = marks_.size();
-    return box < whole ? marks_[box] : part_marks_[box - whole];
-  }
-
-  std::vector<Mark> marks_;          // per box of the space
-  std::vector<Mark> part_marks_;     // per part of those that are split
+  Paged<Mark> marks_;                // per box, parts of those that are split among them
   std::vector<AirPoint> large_way_;  // through large boxes
 };
 

@@ -66,11 +66,6 @@ struct FlightSpace {
   /// The box that a cell belongs to, or none if the body may not be there.
   [[nodiscard]] uint32_t box_at(int32_t x, int32_t y, int32_t z) const;
   [[nodiscard]] uint32_t box_at(AirPoint p) const;
-  /// Is there any way from one to the other?
-  [[nodiscard]] bool hold_together(AirPoint a, AirPoint b) const {
-    const uint32_t from = box_at(a), to = box_at(b);
-    return from != kNoBox && to != kNoBox && component[from] == component[to];
-  }
   /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
   [[nodiscard]] const AirCube& cube(uint32_t box) const { return boxes[box]; }

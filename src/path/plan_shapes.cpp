@@ -8,15 +8,6 @@
 namespace throng {
 namespace {
 
-double squared_to_segment(PlanPoint p, PlanPoint a, PlanPoint b) {
-  const double ux = b[0] - a[0], uz = b[1] - a[1];
-  const double size = ux * ux + uz * uz;
-  const double t =
-      size > 0 ? std::clamp(((p[0] - a[0]) * ux + (p[1] - a[1]) * uz) / size, 0.0, 1.0) : 0;
-  const double dx = a[0] + t * ux - p[0], dz = a[1] + t * uz - p[1];
-  return dx * dx + dz * dz;
-}
-
 // Convex, of either order.
 bool holds(std::span<const PlanPoint> polygon, PlanPoint p) {
   bool left = false, right = false;
@@ -32,6 +23,15 @@ bool cross(PlanPoint a, PlanPoint b, PlanPoint c, PlanPoint d) {
 }
 
 }  // namespace
+
+double squared_to_segment(PlanPoint p, PlanPoint a, PlanPoint b) {
+  const double ux = b[0] - a[0], uz = b[1] - a[1];
+  const double size = ux * ux + uz * uz;
+  const double t =
+      size > 0 ? std::clamp(((p[0] - a[0]) * ux + (p[1] - a[1]) * uz) / size, 0.0, 1.0) : 0;
+  const double dx = a[0] + t * ux - p[0], dz = a[1] + t * uz - p[1];
+  return dx * dx + dz * dz;
+}
 
 bool is_nearer(const PlanSquare& square, std::span<const PlanPoint> polygon, double distance) {
   const std::array<PlanPoint, 4> corners{

@@ -18,6 +18,9 @@ struct PlanSquare {
   double x0 = 0, z0 = 0, x1 = 0, z1 = 0;
 };
 
+/// Of the distance of a point to the line from a to b. [m2]
+double squared_to_segment(PlanPoint p, PlanPoint a, PlanPoint b);
+
 /// Are a square and a convex polygon (of a single point or edge too) nearer than `distance`?
 bool is_nearer(const PlanSquare& square, std::span<const PlanPoint> polygon, double distance);
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "core/plan_point.h"
+#include "path/plan_shapes.h"
 
 // A cylinder lies in the capsule around its axis and in the slab between its ends. A solid that
 // stays clear of either stays clear of the cylinder. How far a convex solid is from a point of the
@@ -19,23 +19,15 @@ constexpr int kThirds = 24;  // of an axis: what is left of it is below a ten th
 
 double between(double low, double high, double at) { return std::max({low - at, at - high, 0.0}); }
 
-double to_segment(PlanPoint p, PlanPoint a, PlanPoint b) {
-  const double ux = b[0] - a[0], uz = b[1] - a[1], size = ux * ux + uz * uz;
-  const double t =
-      size > 0 ? std::clamp(((p[0] - a[0]) * ux + (p[1] - a[1]) * uz) / size, 0.0, 1.0) : 0;
-  const double dx = a[0] + t * ux - p[0], dz = a[1] + t * uz - p[1];
-  return std::sqrt(dx * dx + dz * dz);
-}
-
 double distance(const Prism& prism, Vec3d p) {
   const double up = between(prism.low, prism.high, p.y);
   if (prism.covers(p.x, p.z)) return up;
-  double plan = std::numeric_limits<double>::infinity();
+  double plan2 = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < prism.corners.size(); ++i) {
-    plan = std::min(plan, to_segment({p.x, p.z}, prism.corners[i],
-                                     prism.corners[(i + 1) % prism.corners.size()]));
+    plan2 = std::min(plan2, squared_to_segment({p.x, p.z}, prism.corners[i],
+                                               prism.corners[(i + 1) % prism.corners.size()]));
   }
-  return std::sqrt(plan * plan + up * up);
+  return std::sqrt(plan2 + up * up);
 }
 
 double to_segment(Vec3d p, Vec3d a, Vec3d b) {

@@ -38,12 +38,12 @@ void SplitBoxes::cut(uint32_t box, const CubeCells& taken) {
     for (int32_t z = 0; z < side; ++z) any |= taken.row(y, z);
   }
   if (any == 0) return;
-  nodes[0] = build(nodes, {0, 0, 0, side}, cube, box, taken);
+  nodes[0] = build(nodes, {0, 0, 0, side}, cube, taken);
   split_[box / 64] |= uint64_t{1} << (box % 64);
   nodes_.emplace(box, std::move(nodes));
 }
 
-uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box, uint32_t number,
+uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box,
                            const CubeCells& taken) {
   const uint32_t columns = (~uint32_t{0} >> (32 - cube.side)) << cube.x;
   uint32_t any = 0, all = columns;
@@ -58,13 +58,11 @@ uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box
     uint32_t part = static_cast<uint32_t>(cubes_.size());
     if (spare_.empty()) {
       cubes_.emplace_back();
-      box_of_.emplace_back();
     } else {
       part = spare_.back();
       spare_.pop_back();
     }
     cubes_[part] = {box.x + cube.x, box.y + cube.y, box.z + cube.z, cube.side};
-    box_of_[part] = number;
     return air_word(AirKind::kFree, part);
   }
   const size_t first = nodes.size();
@@ -74,7 +72,7 @@ uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box
     const uint32_t word = build(
         nodes,
         {cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half, half},
-        box, number, taken);
+        box, taken);
     nodes[first + static_cast<size_t>(c)] = word;
   }
   return air_word(AirKind::kInner, static_cast<uint32_t>(first));

@@ -23,8 +23,6 @@ class SplitBoxes {
   /// Of a split box: the part that holds one of its cells, or kNoBox.
   [[nodiscard]] uint32_t part_at(uint32_t box, int32_t x, int32_t y, int32_t z) const;
   [[nodiscard]] const AirCube& cube(uint32_t part) const { return cubes_[part - first_]; }
-  /// The box that it is of.
-  [[nodiscard]] uint32_t box_of(uint32_t part) const { return box_of_[part - first_]; }
   /// Every part's number is lower than that.
   [[nodiscard]] uint32_t end() const { return first_ + static_cast<uint32_t>(cubes_.size()); }
   /// Takes cells from a box, instead of those taken before; with none it is whole again.
@@ -45,8 +43,7 @@ class SplitBoxes {
 
  private:
   using Nodes = std::vector<uint32_t>;  // words of an octree; the first is its root
-  uint32_t build(Nodes& nodes, const AirCube& cube, const AirCube& box, uint32_t number,
-                 const CubeCells& taken);
+  uint32_t build(Nodes& nodes, const AirCube& cube, const AirCube& box, const CubeCells& taken);
   template <class Visit>
   void visit_parts(const Nodes& nodes, size_t node, const AirCube& cube, const AirRange& range,
                    int32_t least, Visit& visit) const;
@@ -56,7 +53,6 @@ class SplitBoxes {
   std::vector<uint64_t> split_;                // bits, by box
   std::unordered_map<uint32_t, Nodes> nodes_;  // by split box; looked up only
   std::vector<AirCube> cubes_;                 // by part
-  std::vector<uint32_t> box_of_;               // by part
   std::vector<uint32_t> spare_;                // parts that are no more
 };
 

@@ -10,6 +10,7 @@
 #include "baked.h"
 #include "crowds.h"
 #include "patch_nets.h"
+#include "prism_shell.h"
 #include "simd_targets.h"
 #include "throng/crowd.h"
 #include "throng/flight.h"
@@ -397,27 +398,6 @@ TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_FALSE(added_on(crowd, here));
 }
 
-Scene shell_of(const std::vector<Prism>& prisms) {
-  Scene shell;
-  for (const Prism& prism : prisms) {
-    const auto first = static_cast<uint32_t>(shell.positions.size());
-    for (const double y : {prism.low, prism.high}) {
-      for (const auto& [x, z] : prism.corners) shell.positions.push_back({x, y, z});
-    }
-    for (uint32_t k = 0; k < 4; ++k) {
-      const uint32_t a = first + k, b = first + (k + 1) % 4;
-      shell.triangles.push_back({a, b, b + 4});
-      shell.triangles.push_back({a, b + 4, a + 4});
-    }
-    for (const uint32_t f : {first, first + 4}) {
-      shell.triangles.push_back({f, f + 1, f + 2});
-      shell.triangles.push_back({f, f + 2, f + 3});
-    }
-  }
-  shell.area.resize(shell.triangles.size());
-  return shell;
-}
-
 // Walls across everybody's way, put up before they begin or when they are under way, with a gap at
 // one end.
 TEST(Climbers, GoAroundWhatIsPutUpOnTheirWay) {
@@ -428,7 +408,8 @@ TEST(Climbers, GoAroundWhatIsPutUpOnTheirWay) {
     const double from = i % 2 == 0 ? -1 : 10, to = i % 2 == 0 ? 14 : 25;
     walls.push_back(Prism::box({x, -30, from}, {x + 0.2, 30, to}));
   }
-  const Scene shell = shell_of(walls);
+  Scene shell;
+  for (const Prism& wall : walls) test::add_to(shell, test::shell_of(wall));
   const verify::TriangleTree tree(shell, 1);
   for (const bool ahead : {true, false}) {
     Crowd crowd = stage.crowd();

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "path/air_view.h"
 #include "path/circle_flood.h"
 #include "path/flight_ends.h"
 #include "path/flight_space.h"
@@ -222,7 +223,7 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   const Vec3d here{3, 2, 4}, there{16, 3, 3};
   const FlightEnds ends(*world.data(), flight.space(), 0);
   ASSERT_TRUE(ends.in_air(here) && ends.in_air(there));
-  ASSERT_FALSE(flight.space().hold_together(*ends.in_air(here), *ends.in_air(there)));
+  ASSERT_FALSE(AirView(flight.space()).hold_together(*ends.in_air(here), *ends.in_air(there)));
   FlightPath path;
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);

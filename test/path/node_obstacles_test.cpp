@@ -10,6 +10,7 @@
 #include "path/district_search.h"
 #include "path/node_changes.h"
 #include "path/node_view.h"
+#include "prism_shell.h"
 #include "throng/node_path.h"
 #include "throng/verify.h"
 #include "verify/triangle_tree.h"
@@ -357,29 +358,11 @@ TEST(NodeObstacles, MeshesTakeWhatTheirTrianglesTouch) {
     NodePathFinder fresh = *made, solid = *made, shells = *made;
     Scene scene;
     for (const Prism& prism : random_prisms(world.nodes, 31, 40)) {
-      const auto first = static_cast<uint32_t>(scene.positions.size());
-      const auto count = static_cast<uint32_t>(prism.corners.size());
-      std::vector<Vec3d> corners;
-      for (const double y : {prism.low, prism.high}) {
-        for (const auto& [x, z] : prism.corners) corners.push_back({x, y, z});
-      }
-      std::vector<std::array<uint32_t, 3>> triangles;
-      for (uint32_t k = 0; k < count; ++k) {
-        const uint32_t next = (k + 1) % count;
-        triangles.push_back({k, next, next + count});
-        triangles.push_back({k, next + count, k + count});
-        if (k == 0 || k + 1 == count) continue;
-        triangles.push_back({0, k, k + 1});
-        triangles.push_back({count, count + k, count + k + 1});
-      }
+      const test::PrismShell shell = test::shell_of(prism);
       ASSERT_TRUE(solid.add_obstacle(prism));
-      ASSERT_TRUE(shells.add_obstacle(corners, triangles));
-      scene.positions.insert(scene.positions.end(), corners.begin(), corners.end());
-      for (const auto& t : triangles) {
-        scene.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-      }
+      ASSERT_TRUE(shells.add_obstacle(shell.corners, shell.triangles));
+      test::add_to(scene, shell);
     }
-    scene.area.resize(scene.triangles.size());
     const verify::TriangleTree tree(scene, 1);
     const AvatarClass avatar = classes()[static_cast<size_t>(c)];
     NodePath path, other;

@@ -117,18 +117,19 @@ class NodeBatch {
     });
   }
 
-  [[nodiscard]] PatchCells cells_of(const PatchSource& source) const {
-    if (source.kind == PatchKind::kBezier) return cells_[source.source].promise;
-    return tile_cells(world_, source.source, config_.classes, bins_);
-  }
-
   // And links within each patch, while its cells are at hand: all of them would fill the memory.
   void grow_trees() {
     std::vector<PatchTree> trees(sources_.size());
     inside_.resize(sources_.size());
     parallel_for(sources_.size(), config_.workers, [&](size_t p) {
       if (context_.cancel) return;
-      const PatchCells cells = cells_of(sources_[p]);
+      const PatchSource& source = sources_[p];
+      PatchCells of_tile;
+      if (source.kind != PatchKind::kBezier) {
+        of_tile = tile_cells(world_, source.source, config_.classes, bins_);
+      }
+      const PatchCells& cells =
+          source.kind == PatchKind::kBezier ? cells_[source.source].promise : of_tile;
       NodeForest alone;
       alone.add(build_tree(cells));
       NodeLinker linker(alone);

@@ -79,23 +79,27 @@ Bend bend_of(const BezierPatch& piece, double span_s, double span_t) {
   const auto& c = piece.points;
   const Vec3d up = piece.normal(0.5, 0.5);
   const double slope = steepest(piece, up);
-  const auto opens = [&](Vec3d v) {
+  // Raises a bound by what v opens: at most its length, so most vectors raise nothing. (Of doubles
+  // whose squares are normal numbers, the root of the square is the number again.)
+  const auto raise = [&](double& most, Vec3d v) {
+    if (most > 1e-150 && most < 1e150 && dot(v, v) <= most * most) return;
     const double height = dot(v, up);
-    return std::min(length(v), std::fabs(height) + slope * length(v - up * height));
+    const double rest = length(v - up * height);
+    most = std::max(most, std::min(length(v), std::fabs(height) + slope * rest));
   };
   Bend bend;
   for (size_t k = 0; k < 4; ++k) {
     for (size_t i = 0; i < 2; ++i) {
       const size_t row = 4 * k + i;
       const size_t column = 4 * i + k;
-      bend.ss = std::max(bend.ss, opens(c[row] - c[row + 1] * 2 + c[row + 2]));
-      bend.tt = std::max(bend.tt, opens(c[column] - c[column + 4] * 2 + c[column + 8]));
+      raise(bend.ss, c[row] - c[row + 1] * 2 + c[row + 2]);
+      raise(bend.tt, c[column] - c[column + 4] * 2 + c[column + 8]);
     }
   }
   for (size_t j = 0; j < 3; ++j) {
     for (size_t i = 0; i < 3; ++i) {
       const size_t a = 4 * j + i;
-      bend.st = std::max(bend.st, opens(c[a] - c[a + 1] - c[a + 4] + c[a + 5]));
+      raise(bend.st, c[a] - c[a + 1] - c[a + 4] + c[a + 5]);
     }
   }
   bend.ss *= 6 / (span_s * span_s);

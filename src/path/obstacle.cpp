@@ -48,91 +48,216 @@ double slope_at(const GroundLevel& level, int32_t x, int32_t z) {
   return std::sqrt(static_cast<double>(gx) * gx + static_cast<double>(gz) * gz);
 }
 
-// What a body may meet beside the cell that it stands on.
+// What a body may meet around the cell that it stands on.
 struct Around {
-  bool low = false, steep = false, step = false, wall = false, edge = false;
+  bool low = false, steep = false, step = false, wall = false, raised = false, edge = false;
+  bool unknown = false;
 };
 
+// Levels keep floors where somebody can stand, and those beside; of matter they know nothing. So
+// what keeps a body off is told by what is seen where its own floor ends.
 class Surroundings {
  public:
-  Surroundings(const WorldGround& ground, int32_t feet)
+  Surroundings(const WorldGround& ground, int32_t x, int32_t z, int32_t feet)
       : ground_(ground),
-        avatar_(ground.world.summary.classes[static_cast<size_t>(ground.avatar_class)]),
+        x_(x),
+        z_(z),
         feet_(feet),
-        step_(step_mm(avatar_)),
-        height_(static_cast<int32_t>(std::ceil(avatar_.height * 1000))),
-        steepest_(std::tan(avatar_.max_slope * std::numbers::pi / 180) * ground.world.summary.cell *
-                  1000) {}
+        step_(step_mm(avatar())),
+        height_(static_cast<int32_t>(std::ceil(avatar().height * 1000))),
+        cell_(ground.world.summary.cell * 1000),
+        steepest_(std::tan(avatar().max_slope * std::numbers::pi / 180) * cell_) {}
 
-  void add(int32_t x, int32_t z, Around& around) const {
-    const auto floor = nearest_floor(ground_, x, z, feet_);
-    const int32_t rise = floor ? ground_.sample(*floor, x & 63, z & 63) - feet_ : INT32_MIN;
-    if (rise > step_ && rise <= height_) {
-      (2 * rise <= height_ ? around.step : around.wall) = true;
-    } else if (std::abs(int64_t{rise}) > step_) {
-      // The matter of a thin wall leaves no floor either, but there is one on both its sides.
-      (is_between_floors(x, z) ? around.wall : around.edge) = true;
-    } else {
-      const int32_t ceiling = ceiling_at(*floor, x & 63, z & 63);
-      if (ceiling != kOpenSky && int64_t{ceiling} - feet_ < height_) around.low = true;
-      if (slope_at(*floor, x & 63, z & 63) > steepest_) around.steep = true;
+  // Where the body would be in the cell ahead, and a cell more: matter in the middle of a cell
+  // shows in the floor of the next.
+  [[nodiscard]] Around look_ahead(int32_t ahead_x, int32_t ahead_z) const {
+    const auto reach = static_cast<int32_t>(std::ceil(avatar().radius * 1000 / cell_)) + 2;
+    Around around;
+    for (int32_t i = -reach; i <= reach; ++i) {
+      for (const auto& [dx, dz] : {std::pair{i, -reach}, {i, reach}, {-reach, i}, {reach, i}}) {
+        if (dx * ahead_x + dz * ahead_z > 0) look_along(dx, dz, reach, around);
+      }
     }
+    return around;
   }
 
  private:
-  [[nodiscard]] bool is_floor(int32_t x, int32_t z) const {
-    const auto floor = nearest_floor(ground_, x, z, feet_);
-    return floor && std::abs(ground_.sample(*floor, x & 63, z & 63) - feet_) <= step_;
-  }
-  [[nodiscard]] bool is_between_floors(int32_t x, int32_t z) const {
-    constexpr int32_t kThin = 3;  // cells
-    const auto toward = [&](int32_t dx, int32_t dz) {
-      for (int32_t i = 1; i <= kThin; ++i) {
-        if (is_floor(x + i * dx, z + i * dz)) return true;
-      }
-      return false;
-    };
-    return (toward(1, 0) && toward(-1, 0)) || (toward(0, 1) && toward(0, -1));
+  enum class Sight : uint8_t { kUnknown, kFloor, kStep, kWall, kRaised, kEdge };
+  struct Column {
+    Sight sight = Sight::kUnknown;
+    int32_t feet = 0;  // of the floor that tells it
+  };
+
+  [[nodiscard]] const AvatarClass& avatar() const {
+    return ground_.world.summary.classes[static_cast<size_t>(ground_.avatar_class)];
   }
 
+  // What is over a cell for a body whose feet are at a height beside it.
+  [[nodiscard]] Column column_at(int32_t x, int32_t z, int32_t feet) const {
+    if (x < 0 || z < 0 || x >= ground_.world.width || z >= ground_.world.depth) {
+      return {Sight::kEdge, feet - 2 * height_};
+    }
+    Column found;
+    const auto take = [&](Sight sight, int32_t floor) {
+      const bool is_nearer = std::abs(floor - feet) < std::abs(found.feet - feet);
+      if (rank(sight) > rank(found.sight) || (sight == found.sight && is_nearer)) {
+        found = {sight, floor};
+      }
+    };
+    ground_.for_tile(x >> 6, z >> 6, feet, feet, [&](const GroundLevel& level) {
+      if (!level.view.has(x & 63, z & 63)) return;
+      const int32_t floor = ground_.sample(level, x & 63, z & 63);
+      const int32_t rise = floor - feet;
+      if (std::abs(rise) <= step_) {
+        take(Sight::kFloor, floor);
+      } else if (rise > 0) {
+        take(rise > height_        ? Sight::kRaised
+             : 2 * rise <= height_ ? Sight::kStep
+                                   : Sight::kWall,
+             floor);
+      } else {
+        const int32_t ceiling = ceiling_at(level, x & 63, z & 63);
+        const bool is_open = ceiling == kOpenSky || int64_t{ceiling} - feet >= height_;
+        if (is_open) {
+          take(-2 * rise <= height_ ? Sight::kStep : Sight::kEdge, floor);
+        } else if (ceiling - feet > step_) {
+          take(Sight::kWall, ceiling);
+        }
+      }
+    });
+    return found;
+  }
+
+  // Which of several floors of a column tells.
+  static int32_t rank(Sight sight) {
+    switch (sight) {
+      case Sight::kUnknown:
+        return 0;
+      case Sight::kRaised:
+        return 1;
+      case Sight::kEdge:
+        return 2;
+      case Sight::kWall:
+        return 3;
+      case Sight::kStep:
+        return 4;
+      case Sight::kFloor:
+        return 5;
+    }
+    return 0;
+  }
+
+  // Over the floor as far as it goes, and where it ends to what is seen first.
+  void look_along(int32_t dx, int32_t dz, int32_t reach, Around& around) const {
+    const auto beyond = static_cast<int32_t>(std::ceil(kThickWall / cell_));
+    int32_t x = x_, z = z_, feet = feet_;
+    bool is_known = true;
+    for (int32_t i = 1; i <= (is_known ? reach : reach + beyond); ++i) {
+      const int32_t next_x = x_ + rounded(i * dx, reach), next_z = z_ + rounded(i * dz, reach);
+      const Column column = column_at(next_x, next_z, feet);
+      if (column.sight == Sight::kUnknown) {
+        is_known = false;
+        continue;
+      }
+      if (is_known && column.sight <= Sight::kStep) {
+        if (is_slope(next_x, next_z, next_x - x, next_z - z, feet, column.feet)) {
+          around.steep = true;
+          return;
+        }
+      }
+      if (is_known && column.sight == Sight::kFloor) {
+        if (is_low_at(next_x, next_z, feet)) around.low = true;
+        if (is_too_steep(next_x, next_z, feet)) around.steep = true;
+        x = next_x;
+        z = next_z;
+        feet = column.feet;
+        continue;
+      }
+      tell(column.sight, around);
+      return;
+    }
+    if (!is_known) around.unknown = true;
+  }
+
+  static void tell(Sight sight, Around& around) {
+    switch (sight) {
+      case Sight::kFloor:
+        around.wall = true;
+        break;  // The same floor behind something thin.
+      case Sight::kStep:
+        around.step = true;
+        break;
+      case Sight::kWall:
+        around.wall = true;
+        break;
+      case Sight::kRaised:
+        around.raised = true;
+        break;
+      case Sight::kEdge:
+        around.edge = true;
+        break;
+      case Sight::kUnknown:
+        break;
+    }
+  }
+
+  [[nodiscard]] bool is_low_at(int32_t x, int32_t z, int32_t feet) const {
+    const auto floor = nearest_floor(ground_, x, z, feet);
+    if (!floor) return false;
+    const int32_t ceiling = ceiling_at(*floor, x & 63, z & 63);
+    return ceiling != kOpenSky && int64_t{ceiling} - feet < height_;
+  }
+  [[nodiscard]] bool is_too_steep(int32_t x, int32_t z, int32_t feet) const {
+    const auto floor = nearest_floor(ground_, x, z, feet);
+    return floor && slope_at(*floor, x & 63, z & 63) > steepest_;
+  }
+
+  // Is the rise to a cell, too steep for the class, that of a slope, and not of a step, after which
+  // the floor is flat? Where nobody walks a slope no more of it is known than its first cell.
+  [[nodiscard]] bool is_slope(int32_t x, int32_t z, int32_t dx, int32_t dz, int32_t from,
+                              int32_t to) const {
+    constexpr double kSteepest = 4;  // A floor that rises more is a wall, about 76 degrees.
+    const double way = std::sqrt(static_cast<double>(dx * dx + dz * dz));
+    const int32_t rise = to - from;
+    if (std::abs(rise) <= steepest_ * way || std::abs(rise) > kSteepest * cell_ * way) return false;
+    const auto next = nearest_floor(ground_, x + dx, z + dz, to + rise);
+    if (!next) return true;
+    const int32_t goes_on = ground_.sample(*next, (x + dx) & 63, (z + dz) & 63) - to;
+    return std::abs(goes_on - rise) <= std::abs(rise) / 2;
+  }
+
+  static int32_t rounded(int32_t a, int32_t b) { return (2 * a + (a < 0 ? -b : b)) / (2 * b); }
+
+  static constexpr double kThickWall = 600;  // [mm]
+
   const WorldGround& ground_;
-  const AvatarClass& avatar_;
-  int32_t feet_, step_, height_;
-  double steepest_;  // [mm per cell]
+  int32_t x_, z_, feet_, step_, height_;
+  double cell_, steepest_;  // [mm; mm per cell]
 };
 
 }  // namespace
 
-Obstacle obstacle_at(const WorldGround& ground, int32_t x, int32_t z, int32_t feet) {
-  const WorldSummary& summary = ground.world.summary;
-  const AvatarClass& avatar = summary.classes[static_cast<size_t>(ground.avatar_class)];
-  const std::optional<GroundLevel> floor = nearest_floor(ground, x, z, feet);
-  if (!floor) return Obstacle::kGap;
-  const int32_t here = ground.sample(*floor, x & 63, z & 63);
-  if (std::abs(here - feet) > avatar.height * 1000) return Obstacle::kGap;
-  if (std::abs(here - feet) > step_mm(avatar)) return Obstacle::kStep;
-  if (floor->is_legal(x & 63, z & 63)) return Obstacle::kNone;
-  Around around;
-  const Surroundings surroundings(ground, here);
-  // One cell more: matter in the middle of a cell shows in the floor of the next.
-  const auto reach = static_cast<int32_t>(std::ceil(avatar.radius / summary.cell)) + 1;
-  for (int32_t dz = -reach; dz <= reach; ++dz) {
-    for (int32_t dx = -reach; dx <= reach; ++dx) {
-      if (dx * dx + dz * dz <= reach * reach) surroundings.add(x + dx, z + dz, around);
-    }
-  }
-  if (around.low) return Obstacle::kLow;
-  if (around.steep) return Obstacle::kSteep;
-  if (around.step && !around.wall) return Obstacle::kStep;
-  return around.edge && !around.wall ? Obstacle::kGap : Obstacle::kNarrow;
-}
-
 Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level,
                          const WalkStop& stop) {
   const int32_t feet = ground.sample(level, stop.x & 63, stop.z & 63);
+  const AvatarClass& avatar =
+      ground.world.summary.classes[static_cast<size_t>(ground.avatar_class)];
   const auto toward = [&](int32_t dx, int32_t dz) {
-    return dx == 0 && dz == 0 ? Obstacle::kNone
-                              : obstacle_at(ground, stop.x + dx, stop.z + dz, feet);
+    if (dx == 0 && dz == 0) return Obstacle::kNone;
+    const auto floor = nearest_floor(ground, stop.x + dx, stop.z + dz, feet);
+    if (floor && floor->is_legal((stop.x + dx) & 63, (stop.z + dz) & 63)) {
+      const int32_t there = ground.sample(*floor, (stop.x + dx) & 63, (stop.z + dz) & 63);
+      if (std::abs(there - feet) <= step_mm(avatar)) return Obstacle::kNone;
+    }
+    const Around around = Surroundings(ground, stop.x, stop.z, feet).look_ahead(dx, dz);
+    if (around.low) return Obstacle::kLow;
+    if (around.steep) return Obstacle::kSteep;
+    if (around.step && !around.wall) return Obstacle::kStep;
+    if (around.wall) return Obstacle::kNarrow;
+    if (around.edge) return Obstacle::kGap;
+    // Under a floor higher up is most likely what bears it; and where the floor just goes on, what
+    // stands on it.
+    return around.raised || !around.unknown ? Obstacle::kNarrow : Obstacle::kGap;
   };
   Obstacle found = toward(stop.toward_x, 0);
   if (found == Obstacle::kNone) found = toward(0, stop.toward_z);

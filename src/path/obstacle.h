@@ -8,10 +8,6 @@
 /// Why a class cannot go on.
 namespace throng {
 
-/// What keeps the ground's class from cell (x, z) of the grid, coming from a level with feet at
-/// `feet` [mm].
-Obstacle obstacle_at(const WorldGround& ground, int32_t x, int32_t z, int32_t feet);
-
 /// What stopped a straight walk on `level`.
 Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level, const WalkStop& stop);
 

@@ -277,15 +277,36 @@ TEST(GroundQuery, SaysWhatIsInTheWay) {
   };
   EXPECT_EQ(toward(bake(worlds::low_ceiling(1.5), 0.1), {2, 0, 2}, 4, 0), Obstacle::kLow);
   EXPECT_EQ(toward(bake(worlds::doorway(0.2), 0.1), {2, 0, 3}, 4, 0), Obstacle::kNarrow);
-  // A world knows only slopes that some class of it can climb.
-  const std::vector<AvatarClass> classes = {{.name = "adult"},
-                                            {.name = "climber", .max_slope = 70}};
+  // Of a slope that no class of a world climbs, the world knows no more than its first cell.
+  EXPECT_EQ(toward(bake(worlds::ramp(50, 2), 0.1), {1, 0, 1.5}, 4, 0), Obstacle::kSteep);
+  const std::vector<AvatarClass> classes = {
+      {.name = "adult"},
+      {.name = "climber", .max_slope = 70},
+      {.name = "wheelchair", .height = 1.35, .radius = 0.4, .step = 0.02, .max_slope = 3.44}};
+  const World ramp = bake(worlds::ramp(30, 2), 0.1, classes);
+  EXPECT_EQ(toward(ramp, {1, 0, 1.5}, 4, 0, 2), Obstacle::kSteep);
+  EXPECT_EQ(toward(ramp, {6, 1.155, 1.5}, -4, 0, 2), Obstacle::kSteep);
+  EXPECT_EQ(toward(ramp, {1, 0, 1.5}, 4, 0), Obstacle::kNone);
   EXPECT_EQ(toward(bake(worlds::ramp(60, 2), 0.1, classes), {1, 0, 1.5}, 4, 0), Obstacle::kSteep);
   EXPECT_EQ(toward(bake(worlds::flat(6), 0.1), {3, 0, 3}, 10, 0), Obstacle::kGap);
   EXPECT_EQ(toward(bake(worlds::steps(0.5, 1.5, 3), 0.1), {1, 0, 1.5}, 4, 0), Obstacle::kStep);
   EXPECT_EQ(toward(bake(worlds::two_floors(), 0.1), {9, 3, 4}, -4, 0), Obstacle::kGap);
   EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 1}, 4, 0), Obstacle::kNarrow);
   EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 3}, 4, 0), Obstacle::kNone);
+  // A block is a step or a wall from below, however high it is, and a step or a gap from above. (It
+  // is hollow: one a bit lower than a body is a low room to whoever sees no cell of its side.)
+  for (const double cell : {0.1, 0.2, 0.25}) {
+    for (const double height : {0.5, 0.8, 2.0, 3.0, 5.0}) {
+      Scene scene = worlds::flat(8);
+      scene.add_box({3.05, 0, 0}, {5.95, height, 8});
+      const World block = bake(scene, cell);
+      const bool is_step = height < 0.9;
+      EXPECT_EQ(toward(block, {1, 0, 4}, 4, 0), is_step ? Obstacle::kStep : Obstacle::kNarrow)
+          << cell << ' ' << height;
+      EXPECT_EQ(toward(block, {4.5, height, 4}, 4, 0), is_step ? Obstacle::kStep : Obstacle::kGap)
+          << cell << ' ' << height;
+    }
+  }
 }
 
 // However far it is meant to go, and in whichever direction.

@@ -344,6 +344,8 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
   return text;
 }
 
+constexpr double kBeside = 0.01;  // What an end may be off in the plane without a word. [m]
+
 int go_over_nodes(Session& session, const PathOptions& options, const World& world,
                   int32_t avatar_class) {
   const auto from_position = position_of(world, options, options.from, "--from");
@@ -361,8 +363,14 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
                            session.context);
   if (!finder) return fail(finder.error());
   if (auto ok = put_up(options, *finder); !ok) return fail(ok.error());
-  const NodePlace from = finder->find_place(*from_position, options.reach);
-  const NodePlace to = finder->find_place(*to_position, options.reach);
+  // Who only walks is on the ground up or down from there; else it is the nearest place.
+  const bool climbs = goes_over_nodes(world.summary().classes[static_cast<size_t>(avatar_class)]);
+  const auto place_at = [&](const Vec3d& position) {
+    const Place ground = climbs ? Place{} : world.find_place(avatar_class, position, options.reach);
+    return finder->find_place(ground ? ground.position : position, options.reach);
+  };
+  const NodePlace from = place_at(*from_position);
+  const NodePlace to = place_at(*to_position);
   for (const auto& [place, position, option] :
        {std::tuple{from, *from_position, "--from"}, std::tuple{to, *to_position, "--to"}}) {
     if (place) continue;
@@ -376,8 +384,16 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
   finder->find(from, to, found);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  print_result(session, node_path_json(options, found, to, finder->summary(), seconds),
-               node_path_text(options, found, to, seconds));
+  Json json = node_path_json(options, found, to, finder->summary(), seconds);
+  std::string text = node_path_text(options, found, to, seconds);
+  for (const auto& [place, asked, end] :
+       {std::tuple{from, *from_position, "from"}, std::tuple{to, *to_position, "to"}}) {
+    const double beside = plan_distance(place.feet, asked);
+    json["beside"][end] = beside;
+    if (beside < kBeside) continue;
+    text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", end, beside, where(place.feet));
+  }
+  print_result(session, json, text);
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
 }
 
@@ -507,7 +523,11 @@ void add_path(CLI::App& parser, Session& session) {
   add_place("--to", options->to, "Where it ends [m]");
   command->add_option("--class", options->avatar_class, "Avatar class by name")
       ->capture_default_str();
-  command->add_option("--reach", options->reach, "How far up or down the feet may be [m]")
+  command
+      ->add_option(
+          "--reach", options->reach,
+          "How far up or down the feet may be; for climbers, and over nodes where there is no "
+          "ground up or down, how far off at all [m]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--fly", options->fly,

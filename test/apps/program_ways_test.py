@@ -108,6 +108,16 @@ class ProgramWays(ProgramCase):
         self.assert_refused(self.run_throng(*verify, *box), "--block", "--paths")
         self.assert_refused(self.run_throng(*verify, "--paths", *box), "--block", "--nodes")
 
+    def test_ends_over_nodes_are_up_or_down_from_where_they_were_asked(self):
+        done = self.run_throng("bake", "builtin:landscape,size=160", "--cell", "0.5", "--nodes", "-o", "h.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ends = ("path", "h.throng", "--nodes", "--reach", "20", "--from", "20,5,20", "--to", "120,5,90")
+        way = json.loads(self.run_throng(*ends, "--json").stdout)
+        self.assertLess(max(way["beside"].values()), 0.001)
+        for point, asked in ((way["points"][0], (20, 20)), (way["points"][-1], (120, 90))):
+            self.assertLess(abs(point[0] - asked[0]) + abs(point[2] - asked[1]), 0.001)
+        self.assertNotIn("beside", self.run_throng(*ends).stdout)
+
     def test_what_nodes_are_asked_for_is_looked_at_before_the_old_world_goes(self):
         done = self.run_throng("bake", "builtin:stairs", "--cell", "0.2", "--nodes", "-o", "w.throng")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -10,6 +10,7 @@
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
 #include "throng/flight.h"
+#include "throng/ground_query.h"
 #include "throng/live_ground.h"
 #include "throng/node_path.h"
 #include "throng/path.h"
@@ -92,11 +93,31 @@ int run() {
     flight.find({.from = from(n).position, .to = to(n).position}, flown);
     reached += flown.end == PathEnd::kReached;
   });
+  GroundQuery query = need(GroundQuery::make(world, 0));
+  sum += late("the ground around", [&](uint64_t n) {
+    const Place place = from(n);
+    reached += query.ray(place, 5, 3).arrived;
+    reached += query.nearest_wall(query.slide(place, 2, -3), 4).found;
+    reached += static_cast<bool>(query.nearest_place(to(n).position, 2));
+    reached += static_cast<bool>(query.random_place_near(place, 3, 1, n));
+  });
   // A wall through the garage, and crates.
   for (uint64_t n = 0; n < 12; ++n) {
     const Vec3d at = from(n).position, high{at.x + 1, at.y + 2, n == 0 ? 1000 : at.z + 1};
-    need(flight.add_obstacle(Prism::box({at.x, at.y + 0.1, at.z}, high)));
+    const Prism box = Prism::box({at.x, at.y + 0.1, at.z}, high);
+    need(live.add_obstacle(box));
+    need(over_nodes.add_obstacle(box));
+    need(flight.add_obstacle(box));
   }
+  sum += late("live ground around obstacles", [&](uint64_t n) {
+    live.find(from(n), to(n), path);
+    reached += path.end == PathEnd::kReached;
+  });
+  sum += late("nodes around obstacles", [&](uint64_t n) {
+    over_nodes.find(over_nodes.find_place(from(n).position, 1),
+                    over_nodes.find_place(to(n).position, 1), node_path);
+    reached += node_path.end == PathEnd::kReached;
+  });
   sum += late("flight around obstacles", [&](uint64_t n) {
     flight.find({.from = from(n).position, .to = to(n).position}, flown);
     reached += flown.end == PathEnd::kReached;

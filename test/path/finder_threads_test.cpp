@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+#include "baked.h"
+#include "throng/flight.h"
+#include "throng/ground_query.h"
+#include "throng/live_ground.h"
+#include "throng/node_path.h"
+#include "throng/path.h"
+
+namespace throng {
+namespace {
+
+using Answers = std::vector<double>;
+
+constexpr uint64_t kPairs = 12;
+
+void add(Answers& answers, const Vec3d& p) {
+  for (const double value : {p.x, p.y, p.z}) answers.push_back(value);
+}
+
+void add(Answers& answers, const Path& path) {
+  answers.push_back(path.length);
+  for (const Place& p : path.points) add(answers, p.position);
+}
+
+template <class T>
+T need(Result<T> made) {
+  EXPECT_TRUE(made) << made.error().message;
+  return *std::move(made);
+}
+
+// Each thread asks its own copy; all share the world, its zones, and what the finders have in
+// common.
+TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
+  Context context;
+  const Scene scene = test::builtin({.name = "garage", .size = 45, .levels = 2});
+  std::vector<AvatarClass> classes = {{.name = "adult"}, flyer_class()};
+  const World world = test::bake(scene, 0.25, classes);
+  const Nodes nodes = need(Nodes::make(world, scene, {}, context));
+  PathFinder search = need(PathFinder::make(world, {}, context));
+  PathFinder labels = need(PathFinder::make(world, {.labels = true}, context));
+  LiveGround live = need(LiveGround::make(world, {}));
+  NodePathFinder over_nodes = need(NodePathFinder::make(nodes, {}, context));
+  FlightFinder flight = need(FlightFinder::make(world, {.avatar_class = 1}, context));
+  const auto from = [&](uint64_t n) { return world.random_place(0, 7, 2 * n); };
+  const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
+  // Whoever is first puts a crate up in its own copy: the others must not see it.
+  const auto ask_all = [&](PathFinder by_search, PathFinder by_labels, LiveGround on_live,
+                           NodePathFinder on_nodes, FlightFinder in_air, bool crate) {
+    GroundQuery query = need(GroundQuery::make(world, 0));
+    Answers answers;
+    Path path;
+    NodePath node_path;
+    FlightPath flown;
+    if (crate) {
+      const Vec3d at = from(0).position;
+      const Prism box = Prism::box({at.x, at.y + 0.1, at.z}, {at.x + 2, at.y + 2, at.z + 2});
+      need(on_live.add_obstacle(box));
+      need(on_nodes.add_obstacle(box));
+      need(in_air.add_obstacle(box));
+    }
+    for (uint64_t n = 0; n < kPairs; ++n) {
+      by_search.find(from(n), to(n), path);
+      add(answers, path);
+      by_labels.find(from(n), to(n), path);
+      add(answers, path);
+      on_live.find(from(n), to(n), path);
+      add(answers, path);
+      on_nodes.find(on_nodes.find_place(from(n).position, 1),
+                    on_nodes.find_place(to(n).position, 1), node_path);
+      answers.push_back(node_path.cost);
+      for (const NodePathPoint& p : node_path.points) add(answers, p.place.feet);
+      in_air.find({.from = from(n).position, .to = to(n).position}, flown);
+      answers.push_back(flown.length);
+      for (const Vec3d& p : flown.points) add(answers, p);
+      add(answers, query.ray(from(n), 3, 2).place.position);
+      add(answers, query.slide(from(n), 3, 2).position);
+      answers.push_back(query.nearest_wall(from(n), 3).distance);
+      add(answers, query.random_place_near(from(n), 4, 5, n).position);
+    }
+    return answers;
+  };
+  const Answers alone = ask_all(search, labels, live, over_nodes, flight, false);
+  const Answers crated = ask_all(search, labels, live, over_nodes, flight, true);
+  EXPECT_NE(alone, crated);
+  EXPECT_GT(alone.size(), kPairs * 30);
+  constexpr size_t kThreads = 4;
+  std::vector<Answers> found(kThreads);
+  std::vector<std::thread> threads;
+  for (size_t t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&, t, by_search = search, by_labels = labels, on_live = live,
+                          on_nodes = over_nodes, in_air = flight]() mutable {
+      found[t] = ask_all(std::move(by_search), std::move(by_labels), std::move(on_live),
+                         std::move(on_nodes), std::move(in_air), t == 0);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (size_t t = 0; t < kThreads; ++t) EXPECT_EQ(found[t], t == 0 ? crated : alone) << t;
+}
+
+}  // namespace
+}  // namespace throng

@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+#include "world/zone_data.h"
+
 namespace throng {
 namespace {
 
@@ -30,6 +32,14 @@ std::pair<double, double> longest_derivatives(const NodeSurface& surface) {
 std::pair<double, double> nearest_in(const NodeSurface& surface, const NodeBlock& block,
                                      Vec3d position) {
   const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
+  if (surface.points == nullptr) {
+    const Vec3d corner = surface.at(0, 0);
+    const double tile = surface.world->summary.cell * 64;
+    const auto inside = [&](double at, double low) {
+      return std::clamp(at, low + kTileInset, low + side - kTileInset);
+    };
+    return {inside((position.x - corner.x) / tile, s0), inside((position.z - corner.z) / tile, t0)};
+  }
   double s = s0 + side / 2, t = t0 + side / 2;
   for (int k = 0; k < kNewtonSteps; ++k) {
     const Vec3d at = surface.at(s, t);

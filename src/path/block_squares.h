@@ -15,7 +15,7 @@
 namespace throng {
 
 /// The parameters of a block's point nearest to a position: from its middle by Gauss and Newton's
-/// steps, kept inside.
+/// steps, kept inside; on a level tile the nearest in the plane.
 [[nodiscard]] std::pair<double, double> nearest_in(const NodeSurface& surface,
                                                    const NodeBlock& block, Vec3d position);
 

@@ -354,12 +354,44 @@ void for_each_level_part(const NodeView& view, Vec3d position, double reach, Vis
         for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + count; ++b) {
           const auto parts = view.changes()->parts_of(b);
           if (!parts) look(b, s, t);
-          for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p)
+          for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) {
             look(p, s, t);
+          }
         }
       }
     }
   }
+}
+
+// The nearest place to a goal, of a crossing into a block and all places of that block; and if that
+// is near, of all blocks that are reached.
+template <class IsReached>
+BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
+                         const BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
+  constexpr double kNear = 25;  // There are too many blocks around a far goal. [m]
+  BlockPoint best = crossing;
+  double least = length(goal - position(view, best));
+  const auto consider = [&](uint32_t block, double s, double t) {
+    const BlockPoint at{block, s, t};
+    const double far = length(goal - position(view, at));
+    if (far < least) {
+      least = far;
+      best = at;
+    }
+  };
+  const auto consider_nearest = [&](uint32_t block) {
+    const auto [s, t] = nearest_in(view.surface(block), view.block(block), goal);
+    consider(block, s, t);
+  };
+  consider_nearest(crossing.block);
+  if (least > kNear) return best;
+  for_each_level_part(view, goal, least, [&](uint32_t block, double s, double t) {
+    if (is_reached(block)) consider(block, s, t);
+  });
+  squares.for_each_near(goal, least, [&](uint32_t block) {
+    if (is_reached(block)) consider_nearest(block);
+  });
+  return best;
 }
 
 }  // namespace
@@ -550,8 +582,11 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   scratch.nearest.reset();
   if (view.is_as_baked()) {
     if (!reachable) {
-      scratch.nearest = shared_->parts.nearest(view, start, to.feet, scratch.reached,
-                                               [](uint32_t) { return false; });
+      const BlockPoint crossing = shared_->parts.nearest(view, start, to.feet, scratch.reached,
+                                                         [](uint32_t) { return false; });
+      scratch.nearest = nearest_place(
+          view, shared_->squares, crossing, to.feet,
+          [&](uint32_t block) { return scratch.reached.holds(shared_->parts.of_block(block)); });
     }
     path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
   } else {
@@ -567,7 +602,8 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   BlockPoint last = goal;
   if (!reachable) {
     last = scratch.way.empty() ? start : ends_of(view, scratch.way.back()).in;
-    last = scratch.nearest.value_or(last);
+    last = scratch.nearest.value_or(
+        nearest_place(view, shared_->squares, last, to.feet, [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
     path.obstacle = obstacle_towards(view, last, to.feet);
   }

@@ -14,6 +14,7 @@
 #include "graph/node_mesh.h"
 #include "patch_nets.h"
 #include "path/block_squares.h"
+#include "path/node_parts.h"
 #include "path/node_search.h"
 #include "throng/path.h"
 #include "throng/verify.h"
@@ -202,8 +203,9 @@ TEST(NodePath, WhereItEndsIsSaid) {
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_EQ(path.obstacle, Obstacle::kGap);
   ASSERT_FALSE(path.points.empty());
-  EXPECT_GT(path.points.back().place.feet.x, 4);
+  EXPECT_GT(path.points.back().place.feet.x, 5.5);
   EXPECT_LT(path.points.back().place.feet.x, 6);
+  EXPECT_NEAR(path.points.back().place.feet.z, 3, 1e-3);
   // Right over it, and to the side: nothing stops it, and yet it does not get there.
   for (const double x : {1.0, 4.0}) {
     found.find(from, found.find_place({x, 3, 3}, 0.5), path);
@@ -217,6 +219,46 @@ TEST(NodePath, WhereItEndsIsSaid) {
   EXPECT_EQ(path.length, 0);
   EXPECT_FALSE(found.find_place({7, 0, 3}, 0.1));
   EXPECT_FALSE(found.find_place({std::nan(""), 0, 3}, 1));
+}
+
+TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
+  Context context;
+  Scene floors;  // Two that nothing joins, the other as wide as a body can look over.
+  floors.add_quad({0, 0, 0}, {0, 0, 20}, {12, 0, 20}, {12, 0, 0});
+  floors.add_quad({14, 0, 0}, {14, 0, 20}, {30, 0, 20}, {30, 0, 0});
+  size_t unreachable = 0;
+  for (const auto& [nodes, avatar_class] :
+       {std::pair{make(floors, 0.2, 1), 0},
+        {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 0},
+        {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 5}}) {
+    NodePathFinder found = finder(nodes, avatar_class);
+    const auto mesh = NodeMesh::make(nodes, avatar_class, 1, context);
+    ASSERT_TRUE(mesh);
+    const NodeView view(*mesh);
+    const NodeParts parts(*mesh, 1);
+    NodeParts::Reached reached;
+    NodePath path;
+    for (uint64_t n = 0; n < 150; ++n) {
+      const NodePlace from = nodes.random_place(avatar_class, 5, 2 * n);
+      const NodePlace to = nodes.random_place(avatar_class, 5, 2 * n + 1);
+      found.find(from, to, path);
+      if (path.end != PathEnd::kUnreachable) continue;
+      const uint32_t block = mesh->block_at(mesh->patch_of_node(from.node1 - 1), from.s, from.t);
+      parts.reach(block, reached);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (uint32_t b = 0; b < mesh->blocks().size(); ++b) {
+        if (!reached.holds(parts.of_block(b))) continue;
+        const auto [s, t] = nearest_in(view.surface(b), view.block(b), to.feet);
+        nearest = std::min(nearest, length(view.surface(b).at(s, t) - to.feet));
+      }
+      const double ends = length(path.points.back().place.feet - to.feet);
+      EXPECT_GE(ends, nearest - 1e-6) << n;
+      if (ends > 25) continue;  // Farther off it may be the nearest crossing.
+      ++unreachable;
+      EXPECT_LE(ends, nearest + 1e-6) << n;
+    }
+  }
+  EXPECT_GT(unreachable, 50u);
 }
 
 TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {

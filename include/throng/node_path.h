@@ -60,8 +60,9 @@ struct NodePath {
   double cost = 0;                  ///< Metres times what they cost.
   /// Of the crossings by which the search came, before the way was pulled taut.
   double searched_cost = 0;
-  /// If the goal is unreachable, `points` lead to the place that comes nearest to it, in all three
-  /// dimensions, of those where the way crosses from block to block; and what is in the way there.
+  /// If the goal is unreachable, `points` lead to the nearest place that is reached, in all three
+  /// dimensions; more than 25 m from the goal, or with obstacles put up, to the nearest in the block
+  /// whose border comes nearest. And what is in the way there.
   Obstacle obstacle = Obstacle::kNone;
   uint64_t nodes = 0;  ///< Crossings, and gates of districts, that the search looked at.
 };

@@ -64,11 +64,7 @@ Result<Image> draw_all_nodes(PictureOptions& options) {
     config.area.add({options.area[0], 0, options.area[1]});
     config.area.add({options.area[2], 0, options.area[3]});
   }
-  if (!options.path.empty()) {
-    Result<std::vector<Vec3d>> read = read_path(options.path);
-    if (!read) return read.error();
-    config.path = *std::move(read);
-  }
+  config.path = options.config.path;
   return draw_nodes(*nodes, config);
 }
 
@@ -113,9 +109,14 @@ int picture(Session& session, PictureOptions& options) {
     options.config.title = (path.has_filename() ? path : path.parent_path()).stem().string();
   }
   show_progress(session, "draw", 0, 0);
-  if (!options.nodes && (options.node_config.links || options.node_config.air ||
-                         !options.area.empty() || !options.path.empty())) {
-    return fail({Errc::kBadConfig, "--links, --air, --area and --path draw nodes: add --nodes"});
+  if (!options.nodes &&
+      (options.node_config.links || options.node_config.air || !options.area.empty())) {
+    return fail({Errc::kBadConfig, "--links, --air and --area draw nodes: add --nodes"});
+  }
+  if (!options.path.empty()) {
+    Result<std::vector<Vec3d>> read = read_path(options.path);
+    if (!read) return fail(read.error());
+    options.config.path = *std::move(read);
   }
   const Result<Image> image =
       options.nodes ? draw_all_nodes(options) : draw_world(*world, avatars, options.config);
@@ -163,9 +164,7 @@ void add_picture(CLI::App& parser, Session& session) {
       ->expected(4)
       ->delimiter(',')
       ->type_name("X0,Z0,X1,Z1");
-  command
-      ->add_option("--path", options->path,
-                   "With --nodes: a way, as `throng path --json` prints it")
+  command->add_option("--path", options->path, "A way, as `throng path --json` prints it")
       ->type_name("FILE.json");
   command->add_option("--width", options->config.width, "Width of the picture [px]")
       ->capture_default_str();

@@ -28,6 +28,7 @@ struct PictureConfig {
   int32_t storey = -1;       ///< Only this storey, or all (-1).
   int32_t width = 1600;      ///< Of the whole picture. [px, 200 to 16000]
   std::string title;
+  std::vector<Vec3d> path = {};  ///< A way to draw over the floors. [m]
 };
 
 struct NodePictureConfig {

@@ -134,7 +134,7 @@ FanLayout lay_out_fan(std::span<const StoreyRaster> storeys, const RasterGrid& g
 
 void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
               std::span<const StoreyRaster> storeys, const RasterGrid& grid, double text,
-              const HeightScale& scale, std::span<const PlacedAvatar> avatars) {
+              const HeightScale& scale, const PlacedMarks& marks) {
   Canvas large(static_cast<int32_t>(std::ceil(layout.width)) * kSamples,
                static_cast<int32_t>(std::ceil(layout.height)) * kSamples, kPaper);
   const double factor = kSamples;
@@ -145,15 +145,21 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
     draw_sheet(large, sheet, {corner.x * factor, corner.y * factor},
                grid.width_metres() / sheet.width * layout.scale * factor,
                grid.depth_metres() / sheet.height * layout.scale * factor, layout.lift * factor);
-    for (const PlacedAvatar& placed : avatars) {
-      if (placed.storey != s) continue;
-      const Vec3d& p = placed.avatar.position;
+    const auto disc = [&](const Vec3d& p, double radius, Rgb colour) {
       const double ax = (p.x - grid.origin_x) * layout.scale,
                    az = (p.z - grid.origin_z) * layout.scale;
       const Point at{corner.x + (ax - az) * kAcross,
                      corner.y + (ax + az) * kDown - (p.y - storeys[s].low) * layout.lift};
-      const double radius = std::max(placed.avatar.radius * layout.scale, 1.0);
-      large.disc({at.x * factor, at.y * factor}, radius * factor, kAvatar);
+      large.disc({at.x * factor, at.y * factor}, radius * factor, colour);
+    };
+    for (const auto& [radius, colour] : {std::pair{2.2, kPaper}, {1.3, kWay}}) {
+      for (const WayPoint& point : marks.way) {
+        if (point.storey == s) disc(point.position, radius, colour);
+      }
+    }
+    for (const PlacedAvatar& placed : marks.avatars) {
+      if (placed.storey != s) continue;
+      disc(placed.avatar.position, std::max(placed.avatar.radius * layout.scale, 1.0), kAvatar);
     }
   }
   canvas.draw_reduced(large, kSamples, x, y);

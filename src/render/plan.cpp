@@ -79,6 +79,42 @@ void draw_avatars(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre,
   draw(0, dots ? 1.0 : 1.6, kAvatar);
 }
 
+// A light rim, so that it stands out on every floor.
+void draw_way(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre, size_t index,
+              const RasterGrid& grid, std::span<const WayPoint> way) {
+  constexpr double kWidth = 1.6, kRim = 1.2;  // [px]
+  for (const auto& [radius, colour] : {std::pair{kWidth + kRim, kPaper}, {kWidth, kWay}}) {
+    for (const WayPoint& point : way) {
+      if (point.storey != index) continue;
+      canvas.disc({x + (point.position.x - grid.origin_x) * pixels_per_metre,
+                   y + (point.position.z - grid.origin_z) * pixels_per_metre},
+                  radius, colour);
+    }
+  }
+}
+
+// The storey whose floor is nearest to a point over the grid, and how far.
+struct NearStorey {
+  size_t storey = 0;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+NearStorey nearest_storey(Vec3d position, std::span<const StoreyRaster> storeys,
+                          const RasterGrid& grid) {
+  NearStorey nearest;
+  const double x = (position.x - grid.origin_x) / grid.width_metres() * grid.width;
+  const double z = (position.z - grid.origin_z) / grid.depth_metres() * grid.height;
+  if (!(x >= 0 && z >= 0 && x < grid.width && z < grid.height)) return nearest;
+  const auto texel =
+      static_cast<size_t>(z) * static_cast<size_t>(grid.width) + static_cast<size_t>(x);
+  for (size_t s = 0; s < storeys.size(); ++s) {
+    const double distance = std::fabs(storeys[s].floor[texel] - position.y);
+    if (!(distance < nearest.distance)) continue;  // Also where it has no floor: NaN.
+    nearest = {s, distance};
+  }
+  return nearest;
+}
+
 // What a pixel sees along one axis: a part of texel `first` and `share` of texel `second`.
 struct Sample {
   size_t first = 0, second = 0;
@@ -133,27 +169,33 @@ std::vector<PlacedAvatar> place_avatars(std::span<const PictureAvatar> avatars,
                                         const RasterGrid& grid) {
   std::vector<PlacedAvatar> placed;
   for (const PictureAvatar& avatar : avatars) {
-    const double x = (avatar.position.x - grid.origin_x) / grid.width_metres() * grid.width;
-    const double z = (avatar.position.z - grid.origin_z) / grid.depth_metres() * grid.height;
-    if (!(x >= 0 && z >= 0 && x < grid.width && z < grid.height)) continue;
-    const auto texel =
-        static_cast<size_t>(z) * static_cast<size_t>(grid.width) + static_cast<size_t>(x);
-    double nearest = std::numeric_limits<double>::infinity();
-    size_t storey = 0;
-    for (size_t s = 0; s < storeys.size(); ++s) {
-      const double distance = std::fabs(storeys[s].floor[texel] - avatar.position.y);
-      if (!(distance < nearest)) continue;  // Also where this storey has no floor: NaN.
-      nearest = distance;
-      storey = s;
+    const NearStorey nearest = nearest_storey(avatar.position, storeys, grid);
+    if (std::isfinite(nearest.distance)) placed.push_back({avatar, nearest.storey});
+  }
+  return placed;
+}
+
+std::vector<WayPoint> place_way(std::span<const Vec3d> way, std::span<const StoreyRaster> storeys,
+                                const RasterGrid& grid) {
+  constexpr double kOff = 1;  // On its floor, and not that of another storey. [m]
+  constexpr double kMost = 1e6;
+  std::vector<WayPoint> placed;
+  for (size_t i = 1; i < way.size(); ++i) {
+    const Vec3d leg = way[i] - way[i - 1];
+    const double steps = std::ceil(2 * std::hypot(leg.x, leg.z) / grid.texel_metres()) + 1;
+    if (!(steps < kMost)) continue;
+    for (double k = 0; k <= steps; ++k) {
+      const Vec3d at = way[i - 1] + leg * (k / steps);
+      const NearStorey nearest = nearest_storey(at, storeys, grid);
+      if (nearest.distance < kOff) placed.push_back({at, nearest.storey});
     }
-    if (std::isfinite(nearest)) placed.push_back({avatar, storey});
   }
   return placed;
 }
 
 void draw_plan(Canvas& canvas, int32_t x0, int32_t y0, double pixels_per_texel,
                std::span<const StoreyRaster> storeys, size_t index, const RasterGrid& grid,
-               const HeightScale& scale, std::span<const PlacedAvatar> avatars) {
+               const HeightScale& scale, const PlacedMarks& marks) {
   const StoreyRaster& storey = storeys[index];
   const double metres = grid.texel_metres();
   std::vector<TexelColour> colours;
@@ -187,7 +229,8 @@ void draw_plan(Canvas& canvas, int32_t x0, int32_t y0, double pixels_per_texel,
                      mix(at(h.first, v.second), at(h.second, v.second), h.share), v.share));
     }
   }
-  draw_avatars(canvas, x0, y0, pixels_per_texel / metres, index, grid, avatars);
+  draw_way(canvas, x0, y0, pixels_per_texel / metres, index, grid, marks.way);
+  draw_avatars(canvas, x0, y0, pixels_per_texel / metres, index, grid, marks.avatars);
 }
 
 }  // namespace throng

@@ -111,7 +111,7 @@ std::string storey_text(const StoreyRaster& storey, const std::string& class_nam
 
 void draw_plans(Canvas& canvas, const Sheet& sheet, const PictureWorld& world,
                 std::span<const StoreyRaster> storeys, std::span<const size_t> plans,
-                const HeightScale& scale, std::span<const PlacedAvatar> avatars) {
+                const HeightScale& scale, const PlacedMarks& marks) {
   const double step = (sheet.inner + 36 * sheet.unit) / static_cast<double>(sheet.columns);
   for (size_t p = 0; p < plans.size(); ++p) {
     const StoreyRaster& storey = storeys[plans[p]];
@@ -129,7 +129,7 @@ void draw_plans(Canvas& canvas, const Sheet& sheet, const PictureWorld& world,
 
     const double top = std::floor(y + sheet.caption);
     draw_plan(canvas, static_cast<int32_t>(x), static_cast<int32_t>(top), sheet.pixels_per_texel,
-              storeys, plans[p], sheet.grid, scale, avatars);
+              storeys, plans[p], sheet.grid, scale, marks);
     canvas.frame({x - 1, top - 1, sheet.map_width + 2, sheet.map_height + 2}, 1, kRule);
     const double foot = top + sheet.map_height + 16 * sheet.unit;
     const TextStyle small = style(sheet, 9.5);
@@ -192,7 +192,7 @@ void draw_titled_section(Canvas& canvas, const Sheet& sheet, const PictureWorld&
 }
 
 void draw_legend(Canvas& canvas, const Sheet& sheet, Point corner, const HeightScale& scale,
-                 const std::string& class_name, bool with_avatars) {
+                 const std::string& class_name, const PlacedMarks& marks) {
   const double unit = sheet.unit;
   TextStyle name = style(sheet, 12);
   name.bold = true;
@@ -217,12 +217,20 @@ void draw_legend(Canvas& canvas, const Sheet& sheet, Point corner, const HeightS
   swatch([&](const Rect& r) { canvas.fill(r, kSolid); }, "wall, pillar, closed");
   swatch([&](const Rect& r) { canvas.fill(r, kShaft); }, "open to a storey below");
   swatch([&](const Rect& r) { canvas.fill(r, kContext); }, "other storeys only");
-  if (with_avatars) {
+  if (!marks.avatars.empty()) {
     swatch(
         [&](const Rect& r) {
           canvas.disc({r.x + r.width / 2, r.y + r.height / 2}, 6 * unit, kAvatar);
         },
         "avatar");
+  }
+  if (!marks.way.empty()) {
+    swatch(
+        [&](const Rect& r) {
+          canvas.line({r.x, r.y + r.height / 2}, {r.x + r.width, r.y + r.height / 2}, 3.2 * unit,
+                      kWay);
+        },
+        "way");
   }
 }
 
@@ -263,7 +271,8 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
     if (!one || storeys[s].storey == config.storey) plans.push_back(s);
   }
   const HeightScale scale = make_height_scale(storeys);
-  const std::vector<PlacedAvatar> placed = place_avatars(avatars, storeys, sheet.grid);
+  const PlacedMarks marks{place_avatars(avatars, storeys, sheet.grid),
+                          place_way(config.path, storeys, sheet.grid)};
 
   // The lower part: the fan and, beside it, section and legend; without the fan they share the row.
   const double unit = sheet.unit, top = sheet.plans_end() + 44 * unit;
@@ -284,19 +293,19 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
 
   Canvas canvas(config.width, static_cast<int32_t>(std::ceil(bottom + sheet.margin)), kPaper);
   draw_head(canvas, sheet, head);
-  draw_plans(canvas, sheet, world, storeys, plans, scale, placed);
+  draw_plans(canvas, sheet, world, storeys, plans, scale, marks);
   if (!one) {
     TextStyle name = style(sheet, 12);
     name.bold = true;
     draw_fan(canvas, static_cast<int32_t>(sheet.margin + names),
              static_cast<int32_t>(top + 14 * unit), fan, storeys, sheet.grid, style(sheet, 11).size,
-             scale, placed);
+             scale, marks);
     draw_text(canvas, {sheet.margin, top},
               storeys.size() > 1 ? "The storeys pulled apart" : "Seen at a slant", name);
   }
   draw_titled_section(canvas, sheet, world, section,
                       index.section_row(sheet.grid.cell_z, sheet.grid.cells_z), scale);
-  draw_legend(canvas, sheet, legend, scale, world.class_name, !placed.empty());
+  draw_legend(canvas, sheet, legend, scale, world.class_name, marks);
   return std::move(canvas).take();
 }
 

@@ -38,11 +38,28 @@ struct PlacedAvatar {
                                                       std::span<const StoreyRaster> storeys,
                                                       const RasterGrid& grid);
 
+/// A point of a way and the storey whose floor it is on.
+struct WayPoint {
+  Vec3d position;
+  size_t storey = 0;
+};
+
+/// Points along a way, two a texel, where it is within a metre of the floor of a storey.
+[[nodiscard]] std::vector<WayPoint> place_way(std::span<const Vec3d> way,
+                                              std::span<const StoreyRaster> storeys,
+                                              const RasterGrid& grid);
+
+/// What is drawn over the floors.
+struct PlacedMarks {
+  std::vector<PlacedAvatar> avatars;
+  std::vector<WayPoint> way;
+};
+
 /// Storey `index` seen from above, x to the right, z down; a texel is a square of `block` pixels.
 /// The corner is at (x, y); other storeys lie under it as a faint ground.
 void draw_plan(Canvas& canvas, int32_t x, int32_t y, double pixels_per_texel,
                std::span<const StoreyRaster> storeys, size_t index, const RasterGrid& grid,
-               const HeightScale& scale, std::span<const PlacedAvatar> avatars);
+               const HeightScale& scale, const PlacedMarks& marks);
 
 /// Free space over one cell of the section. [m]
 struct SectionGap {
@@ -83,6 +100,6 @@ struct FanLayout {
 /// All storeys from above at a slant, pulled apart, the highest on top.
 void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
               std::span<const StoreyRaster> storeys, const RasterGrid& grid, double text,
-              const HeightScale& scale, std::span<const PlacedAvatar> avatars);
+              const HeightScale& scale, const PlacedMarks& marks);
 
 }  // namespace throng

@@ -206,6 +206,24 @@ TEST(Poster, ShowsFloorsWallsAndAvatars) {
   EXPECT_EQ(again->rgb, image->rgb) << "the same bytes each time";
 }
 
+TEST(Poster, DrawsAWayOnTheStoreyWhoseFloorItIsOn) {
+  const HandMade house(1, 1, 2, house_floor, house_ceiling);
+  const auto count_on = [&](int32_t storey, double height) {
+    PictureConfig config;
+    config.storey = storey;
+    config.width = 900;
+    config.path = {{4, height, 4}, {20, height, 4}, {20, height, 12}};
+    const auto image = draw_poster(house.world, {}, {}, config);
+    EXPECT_TRUE(image);
+    return image ? count_colour(*image, kWay) : 0;
+  };
+  constexpr size_t kInLegend = 200;
+  EXPECT_GT(count_on(0, 0), 5 * kInLegend);
+  EXPECT_GT(count_on(1, 3), 5 * kInLegend);
+  EXPECT_LT(count_on(0, 3), kInLegend);
+  EXPECT_EQ(count_on(1, 4.5), 0u) << "it is on no floor";
+}
+
 TEST(Poster, OneStoreyIsDrawnLargerAndAlone) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
   const auto one =

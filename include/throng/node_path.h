@@ -61,8 +61,8 @@ struct NodePath {
   /// Of the crossings by which the search came, before the way was pulled taut.
   double searched_cost = 0;
   /// If the goal is unreachable, `points` lead to the nearest place that is reached, in all three
-  /// dimensions; more than 25 m from the goal, or with obstacles put up, to the nearest in the block
-  /// whose border comes nearest. And what is in the way there.
+  /// dimensions; more than 25 m from the goal, or with obstacles put up, to the nearest in the
+  /// block whose border comes nearest. And what is in the way there.
   Obstacle obstacle = Obstacle::kNone;
   uint64_t nodes = 0;  ///< Crossings, and gates of districts, that the search looked at.
 };

@@ -153,7 +153,7 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
       large.disc({at.x * factor, at.y * factor}, radius * factor, colour);
     };
     for (const auto& [radius, colour] : {std::pair{2.2, kPaper}, {1.3, kWay}}) {
-      for (const WayPoint& point : marks.way) {
+      for (const DrawnPoint& point : marks.way) {
         if (point.storey == s) disc(point.position, radius, colour);
       }
     }

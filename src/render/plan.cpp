@@ -81,10 +81,10 @@ void draw_avatars(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre,
 
 // A light rim, so that it stands out on every floor.
 void draw_way(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre, size_t index,
-              const RasterGrid& grid, std::span<const WayPoint> way) {
+              const RasterGrid& grid, std::span<const DrawnPoint> way) {
   constexpr double kWidth = 1.6, kRim = 1.2;  // [px]
   for (const auto& [radius, colour] : {std::pair{kWidth + kRim, kPaper}, {kWidth, kWay}}) {
-    for (const WayPoint& point : way) {
+    for (const DrawnPoint& point : way) {
       if (point.storey != index) continue;
       canvas.disc({x + (point.position.x - grid.origin_x) * pixels_per_metre,
                    y + (point.position.z - grid.origin_z) * pixels_per_metre},
@@ -175,11 +175,11 @@ std::vector<PlacedAvatar> place_avatars(std::span<const PictureAvatar> avatars,
   return placed;
 }
 
-std::vector<WayPoint> place_way(std::span<const Vec3d> way, std::span<const StoreyRaster> storeys,
-                                const RasterGrid& grid) {
+std::vector<DrawnPoint> place_way(std::span<const Vec3d> way, std::span<const StoreyRaster> storeys,
+                                  const RasterGrid& grid) {
   constexpr double kOff = 1;  // On its floor, and not that of another storey. [m]
   constexpr double kMost = 1e6;
-  std::vector<WayPoint> placed;
+  std::vector<DrawnPoint> placed;
   for (size_t i = 1; i < way.size(); ++i) {
     const Vec3d leg = way[i] - way[i - 1];
     const double steps = std::ceil(2 * std::hypot(leg.x, leg.z) / grid.texel_metres()) + 1;

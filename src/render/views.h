@@ -39,20 +39,20 @@ struct PlacedAvatar {
                                                       const RasterGrid& grid);
 
 /// A point of a way and the storey whose floor it is on.
-struct WayPoint {
+struct DrawnPoint {
   Vec3d position;
   size_t storey = 0;
 };
 
 /// Points along a way, two a texel, where it is within a metre of the floor of a storey.
-[[nodiscard]] std::vector<WayPoint> place_way(std::span<const Vec3d> way,
-                                              std::span<const StoreyRaster> storeys,
-                                              const RasterGrid& grid);
+[[nodiscard]] std::vector<DrawnPoint> place_way(std::span<const Vec3d> way,
+                                                std::span<const StoreyRaster> storeys,
+                                                const RasterGrid& grid);
 
 /// What is drawn over the floors.
 struct PlacedMarks {
   std::vector<PlacedAvatar> avatars;
-  std::vector<WayPoint> way;
+  std::vector<DrawnPoint> way;
 };
 
 /// Storey `index` seen from above, x to the right, z down; a texel is a square of `block` pixels.

@@ -13,6 +13,7 @@
 #include "render/air_lines.h"
 #include "render/canvas.h"
 #include "render/text.h"
+#include "render/tile_slopes.h"
 #include "throng/nodes.h"
 #include "throng/picture.h"
 #include "throng/ragged_runs.h"
@@ -26,9 +27,10 @@ namespace throng {
 namespace {
 
 constexpr int32_t kSamples = 3;
-constexpr double kTurn = 0.45;   // of the view around the vertical [radians]
-constexpr double kTilt = 0.82;   // of the view above the horizon [radians]
-constexpr double kInset = 1e-5;  // into a tile's cell: its far border is the next cell's
+constexpr double kTurn = 0.45;      // of the view around the vertical [radians]
+constexpr double kTilt = 0.82;      // of the view above the horizon [radians]
+constexpr double kCell = 1.0 / 64;  // of a tile
+constexpr double kInset = 1e-5;     // into a tile's cell: its far border is the next cell's
 constexpr double kHeader = 64, kFooter = 58, kMargin = 24;  // [px]
 
 struct InclinationColour {
@@ -125,6 +127,10 @@ class DepthCanvas {
   }
 
   [[nodiscard]] const Canvas& canvas() const { return canvas_; }
+  /// How near what is drawn so far is; to draw over what was drawn since.
+  using Depths = std::vector<float>;
+  [[nodiscard]] const Depths& depths() const { return depth_; }
+  void set_depths(const Depths& depths) { depth_ = depths; }
 
  private:
   // Cuts a line to the picture and a rim around it; false if nothing is left. Ends far off it would
@@ -162,13 +168,16 @@ class DepthCanvas {
   }
 
   Canvas canvas_;
-  std::vector<float> depth_;
+  Depths depth_;
 };
 
 class NodePicture {
  public:
   NodePicture(const Nodes& nodes, const NodePictureConfig& config)
-      : nodes_(nodes), config_(config), summary_(nodes.summary()) {
+      : nodes_(nodes),
+        config_(config),
+        summary_(nodes.summary()),
+        slopes_(*nodes.data()->world.data()) {
     if (config.storey >= 0) storeys_ = nodes.data()->world.storeys();
   }
 
@@ -187,18 +196,18 @@ class NodePicture {
       }
     }
     fit();
+    find_links();
     DepthCanvas large(static_cast<int32_t>(width_) * kSamples,
                       static_cast<int32_t>(height_) * kSamples);
     for (const auto& [patch, node] : first_of_patch_) underlay(large, node);
     for (const uint32_t n : shown_) surface(large, n);
-    if (config_.links) {
-      for (const uint32_t n : shown_) links(large, n);
-    }
+    const auto ground = config_.path.empty() ? DepthCanvas::Depths{} : large.depths();
+    for (const Link& link : links_) draw(large, link);
     for (const AirLine& line : air_) {
       large.line(at(line.a), at(line.b, line.to_ground ? 0.3 : 0), line.to_ground ? 4 : 2,
                  line.to_ground ? kGroundAirLink : kAirLink);
     }
-    path(large);
+    if (!config_.path.empty()) path(large, ground);
     Canvas sheet(config_.width, static_cast<int32_t>(kHeader + height_ + kFooter), kPaper);
     sheet.draw_reduced(large.canvas(), kSamples, static_cast<int32_t>(kMargin),
                        static_cast<int32_t>(kHeader));
@@ -219,22 +228,43 @@ class NodePicture {
     return on_storey && is_for(info.classes);
   }
 
+  // Cells of a ragged node on which the class asked for stands, or any.
+  [[nodiscard]] uint64_t cells_of(uint32_t node, const NodeInfo& info) const {
+    return config_.avatar_class < 0 ? info.cells : nodes_.ragged_cells(config_.avatar_class, node);
+  }
+
+  // Calls visit(corner) for corners around a node. A ragged one's block may have no floor there.
+  template <class Visit>
+  void for_corners(uint32_t node, const NodeInfo& info, Visit visit) const {
+    if (info.cells == 0) {
+      for (const Vec3d& c : nodes_.corners(node)) visit(c);
+      return;
+    }
+    for_ragged_runs(cells_of(node, info), [&](int32_t first, int32_t row, int32_t count) {
+      const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
+      for (const double u : {0.0, count * kCell - kInset}) {
+        for (const double v : {0.0, kCell - kInset}) visit(nodes_.point(node, s + u, t + v));
+      }
+    });
+  }
+
   // Nodes to draw, in order; the widest view of them.
   void choose() {
     const bool whole = config_.area.max.x <= config_.area.min.x;
     for (uint32_t n = 0; n < nodes_.node_count(); ++n) {
       const NodeInfo info = nodes_.node(n);
       if (!is_asked(info)) continue;
-      const auto corners = nodes_.corners(n);
       Box3d box;
-      for (const Vec3d& c : corners) box.add(c);
+      for_corners(n, info, [&](Vec3d c) { box.add(c); });
       const Vec3d middle = (box.min + box.max) * 0.5;
       if (!whole && !(middle.x >= config_.area.min.x && middle.x <= config_.area.max.x &&
                       middle.z >= config_.area.min.z && middle.z <= config_.area.max.z)) {
         continue;
       }
       shown_.push_back(n);
-      for (const Vec3d& c : corners) include(view_(c));
+      for_corners(n, info, [&](Vec3d c) { include(view_(c)); });
+      plan_.add(box.min);
+      plan_.add(box.max);
       terminal_ += info.terminal ? 1 : 0;
       if (whole && info.kind == PatchKind::kBezier) first_of_patch_.try_emplace(info.source, n);
     }
@@ -300,19 +330,33 @@ class NodePicture {
     });
   }
 
-  void surface(DepthCanvas& canvas, uint32_t node) const {
+  // Of the steepest ground in a node: of level tiles not more than it promises, for that is a limit
+  // of those who have room there. [code]
+  [[nodiscard]] uint8_t inclination(uint32_t node, const NodeInfo& info) {
+    if (info.kind != PatchKind::kLevelTile) return info.inclination;
+    uint8_t most = info.inclination, code = 0;
+    if (config_.avatar_class >= 0) {
+      const auto c = static_cast<size_t>(config_.avatar_class);
+      most = std::min(most, summary_.bins.inclination_code(summary_.classes[c].max_slope));
+    }
+    const int32_t size = 64 >> info.level;
+    const uint64_t cells = info.cells != 0 ? cells_of(node, info) : 0;
+    for (int32_t i = 0; i < size * size && code < most; ++i) {
+      if (info.cells != 0 && (cells >> i & 1) == 0) continue;
+      const double degrees =
+          slopes_.at(info.source, info.s * size + i % size, info.t * size + i / size);
+      code = std::max(code, summary_.bins.inclination_code(degrees));
+    }
+    return std::min(code, most);
+  }
+
+  void surface(DepthCanvas& canvas, uint32_t node) {
     const NodeInfo info = nodes_.node(node);
     // The far corners of a tile's cells lie in the next cells, which may have no floor.
     const double whole = 1.0 / (1 << info.level);
     const double side = whole - (info.kind == PatchKind::kLevelTile ? kInset : 0);
     const double s0 = info.s * whole, t0 = info.t * whole;
-    uint8_t code = info.inclination;
-    if (info.cells != 0 && config_.avatar_class >= 0) {
-      // It promises the worst for all its classes. Where this one stands is within its own limit.
-      const auto c = static_cast<size_t>(config_.avatar_class);
-      code = std::min(code, summary_.bins.inclination_code(summary_.classes[c].max_slope));
-    }
-    const Rgb colour = inclination_colour(summary_.bins.inclination_of(code));
+    const Rgb colour = inclination_colour(summary_.bins.inclination_of(inclination(node, info)));
     const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.level) : 1;
     const double nearer = 0.01 * info.level;
     const auto paint = [&](const Block& block) {
@@ -322,10 +366,8 @@ class NodePicture {
     };
     const Rgb rim = shade(colour, 0.62);
     if (info.cells != 0) {
-      const uint64_t cells =
-          config_.avatar_class < 0 ? info.cells : nodes_.ragged_cells(config_.avatar_class, node);
+      const uint64_t cells = cells_of(node, info);
       for_ragged_runs(cells, [&](int32_t first, int32_t row, int32_t count) {
-        constexpr double kCell = 1.0 / 64;
         paint({(info.s * 8 + first) * kCell, (info.t * 8 + row) * kCell, count * kCell - kInset,
                kCell - kInset});
       });
@@ -356,7 +398,7 @@ class NodePicture {
   // Sides of cells beyond which the node does not go on.
   void rim_of_cells(DepthCanvas& canvas, const NodeInfo& info, uint32_t node, uint64_t cells,
                     Rgb colour, double nearer) const {
-    constexpr double kCell = 1.0 / 64, kSide = kCell - kInset;
+    constexpr double kSide = kCell - kInset;
     const auto is_in = [&](int32_t s, int32_t t) {
       return s >= 0 && t >= 0 && s < 8 && t < 8 && (cells >> (8 * t + s) & 1) != 0;
     };
@@ -374,46 +416,85 @@ class NodePicture {
     }
   }
 
-  void links(DepthCanvas& canvas, uint32_t node) const {
-    const NodeInfo info = nodes_.node(node);
-    for (const NodeArc& arc : nodes_.arcs(node)) {
-      // Both directions of a link are arcs: one is enough, but for drops.
-      const bool drops = arc.kind == LinkKind::kDrop;
-      if (arc.to < node && !drops) continue;
-      const NodeInfo other = nodes_.node(arc.to);
-      if (!is_asked(other) || !is_for(arc.classes)) continue;
-      // Large nodes that hold smaller ones would only add lines across them.
-      if (!arc.leaps && (!info.terminal || !other.terminal)) continue;
-      const double steepest =
-          summary_.bins.inclination_of(std::max(info.inclination, other.inclination));
-      Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
-      if (arc.leaps) colour = kLeapLink;
-      const Vec3d a = arc.leaps ? nodes_.point(node, arc.from_s, arc.from_t) : nodes_.middle(node);
-      const Vec3d b = arc.leaps ? nodes_.point(arc.to, arc.to_s, arc.to_t) : nodes_.middle(arc.to);
-      if (drops) {
-        const Vec3d over{b.x, a.y, b.z};
-        canvas.line(at(a, 0.6), at(over, 0.6), 3, kDropLink);
-        canvas.line(at(over, 0.6), at(b, 0.6), 3, kDropLink);
-        continue;
+  struct Link {
+    uint32_t from = 0;
+    NodeArc arc;
+  };
+
+  // Links between nodes that are drawn, of the class asked for: as many as there are, and those to
+  // draw. Both directions of a link are arcs: one is enough, but for drops.
+  void find_links() {
+    for (const uint32_t n : shown_) {
+      const NodeInfo info = nodes_.node(n);
+      for (const NodeArc& arc : nodes_.arcs(n)) {
+        const bool drops = arc.kind == LinkKind::kDrop;
+        if (!is_for(arc.classes) || (arc.to < n && !drops)) continue;
+        if (!std::binary_search(shown_.begin(), shown_.end(), arc.to)) continue;
+        ++link_count_;
+        // Large nodes that hold smaller ones would only add lines across them.
+        const bool seen = arc.leaps || (info.terminal && nodes_.node(arc.to).terminal);
+        if (config_.links && seen) links_.push_back({n, arc});
       }
-      canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
     }
   }
 
-  void path(DepthCanvas& canvas) const {
-    for (size_t i = 1; i < config_.path.size(); ++i) {
-      canvas.line(at(config_.path[i - 1], 1.2), at(config_.path[i], 1.2), 9, kPaper);
+  void draw(DepthCanvas& canvas, const Link& link) const {
+    const NodeArc& arc = link.arc;
+    const Vec3d a =
+        arc.leaps ? nodes_.point(link.from, arc.from_s, arc.from_t) : nodes_.middle(link.from);
+    const Vec3d b = arc.leaps ? nodes_.point(arc.to, arc.to_s, arc.to_t) : nodes_.middle(arc.to);
+    if (arc.kind == LinkKind::kDrop) {
+      const Vec3d over{b.x, a.y, b.z};
+      canvas.line(at(a, 0.6), at(over, 0.6), 3, kDropLink);
+      canvas.line(at(over, 0.6), at(b, 0.6), 3, kDropLink);
+      return;
     }
-    for (size_t i = 1; i < config_.path.size(); ++i) {
-      canvas.line(at(config_.path[i - 1], 1.4), at(config_.path[i], 1.4), 5, kPath);
-    }
+    const double steepest = summary_.bins.inclination_of(
+        std::max(nodes_.node(link.from).inclination, nodes_.node(arc.to).inclination));
+    Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
+    if (arc.leaps) colour = kLeapLink;
+    canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
+  }
+
+  // A part of the way over the ground that is drawn; false if none of it is.
+  [[nodiscard]] bool clip_to_map(Vec3d& a, Vec3d& b) const {
+    double first = 0, last = 1;
+    const auto keep_within = [&](double from, double to, double low, double high) {
+      if (from == to) {
+        if (from < low || from > high) last = -1;
+        return;
+      }
+      const double enters = ((from < to ? low : high) - from) / (to - from);
+      const double leaves = ((from < to ? high : low) - from) / (to - from);
+      first = std::max(first, enters);
+      last = std::min(last, leaves);
+    };
+    keep_within(a.x, b.x, plan_.min.x, plan_.max.x);
+    keep_within(a.z, b.z, plan_.min.z, plan_.max.z);
+    if (!(first <= last)) return false;
+    const Vec3d from = a, way = b - a;
+    if (first > 0) a = from + way * first;
+    if (last < 1) b = from + way * last;
+    return true;
+  }
+
+  // Above all links, and its rim behind all of it; only ground hides it.
+  void path(DepthCanvas& canvas, const DepthCanvas::Depths& ground) const {
+    const auto stroke = [&](double thick, Rgb colour) {
+      canvas.set_depths(ground);
+      for (size_t i = 1; i < config_.path.size(); ++i) {
+        Vec3d a = config_.path[i - 1], b = config_.path[i];
+        if (clip_to_map(a, b)) canvas.line(at(a, 1.2), at(b, 1.2), thick, colour);
+      }
+    };
+    stroke(9, kPaper);
+    stroke(5, kPath);
   }
 
   void letter(Canvas& sheet) const {
     draw_text(sheet, {kMargin, 30}, config_.title, {.size = 15, .bold = true});
-    const std::string line =
-        fmt::format("{} nodes ({} of them terminal), {} in all; {} links", shown_.size(), terminal_,
-                    summary_.nodes, summary_.arcs / 2);
+    const std::string line = fmt::format("{} nodes ({} of them terminal), {} in all; {} links",
+                                         shown_.size(), terminal_, summary_.nodes, link_count_);
     draw_text(sheet, {kMargin, 52}, line, {.size = 9, .colour = kFaintInk});
     double y = kHeader + height_ + 20;
     const double right = config_.width - kMargin;
@@ -484,6 +565,10 @@ class NodePicture {
   std::vector<int32_t> storeys_;
   View view_;
   std::vector<uint32_t> shown_;
+  std::vector<Link> links_;  // to draw
+  uint64_t link_count_ = 0;
+  Box3d plan_;  // around what is drawn
+  TileSlopes slopes_;
   std::vector<AirLine> air_;
   std::map<uint32_t, uint32_t> first_of_patch_;  // a node of each Bezier patch
   uint64_t terminal_ = 0;

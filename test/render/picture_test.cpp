@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <climits>
 #include <map>
 
+#include "baked.h"
 #include "throng/bake.h"
 
 namespace throng {
@@ -78,6 +81,109 @@ TEST(NodePicture, DrawsNodesAndAWayFromFarBeyondThem) {
   EXPECT_NE(giants->rgb, all->rgb);
   config.avatar_class = 4;
   EXPECT_EQ(draw_nodes(*nodes, config).error().code, Errc::kBadConfig);
+}
+
+struct Pixels {
+  size_t count = 0;
+  int32_t first_row = INT32_MAX, last_row = -1;
+};
+
+// Below the letters at the top.
+template <class Accept>
+Pixels pixels(const Image& image, Accept accept) {
+  Pixels found;
+  for (int32_t y = 64; y < image.height; ++y) {
+    for (int32_t x = 0; x < image.width; ++x) {
+      const auto at =
+          3 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x));
+      if (!accept(image.rgb[at], image.rgb[at + 1], image.rgb[at + 2])) continue;
+      ++found.count;
+      found.first_row = std::min(found.first_row, y);
+      found.last_row = std::max(found.last_row, y);
+    }
+  }
+  return found;
+}
+
+bool is_blue(int r, int g, int b) { return r < 130 && g < 160 && b > 180; }
+// Of ground, by how much red is in it: the ramp's 9 degrees are greener than 25, level floor more.
+bool is_level(int r, int g, int b) { return g > 100 && r < g / 2 && b < 120; }
+bool is_inclined(int r, int g, int b) {
+  return g > 100 && r > g * 3 / 5 && r < g * 4 / 5 && b < 120;
+}
+bool is_steep(int r, int g, int b) { return r > 130 && r > g * 9 / 10 && b < 120; }
+
+TEST(NodePicture, LevelFloorBesideWallsIsGreen) {
+  Context context;
+  Scene scene = two_storeys_scene();
+  scene.add_quad({20, 0, 3}, {20, 0, 5}, {20, 2, 5}, {20, 2, 3});  // a wall
+  const auto world = bake_world(scene, {}, context);
+  ASSERT_TRUE(world) << world.error().message;
+  const auto nodes = Nodes::make(*world, scene, {}, context);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  for (const int32_t avatar_class : {-1, 0}) {
+    NodePictureConfig config{.width = 600, .area = {}, .path = {}, .title = ""};
+    config.avatar_class = avatar_class;
+    const auto image = draw_nodes(*nodes, config);
+    ASSERT_TRUE(image) << image.error().message;
+    const int32_t legend = image->height - 58;
+    const auto on_map = [&](auto accept) {
+      Image map = *image;
+      map.height = legend;
+      return pixels(map, accept);
+    };
+    EXPECT_EQ(on_map(is_steep).count, 0u);
+    EXPECT_GT(on_map(is_inclined).count, 1000u);  // the ramp
+    EXPECT_GT(on_map(is_level).count, 20000u);
+  }
+}
+
+// At the rim of the ground corners of ragged nodes' blocks have no floor.
+TEST(NodePicture, GroundFillsThePicture) {
+  Context context;
+  const Scene scene = test::builtin({.name = "stairs"});
+  const auto nodes = Nodes::make(test::bake(scene, 0.2), scene, {}, context);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  const auto image = draw_nodes(*nodes, {.width = 600, .area = {}, .path = {}, .title = ""});
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_LT(pixels(*image, is_level).first_row, 64 + 24);
+}
+
+// Where a picture's pixel is metres, the rim of a way that leads away lies nearer than the way.
+TEST(NodePicture, AWayOverAWideMapIsBlueAllAlongAlsoUnderLinks) {
+  Context context;
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, 300}, {300, 0, 300}, {300, 0, 0});
+  const auto world = bake_world(scene, {.cell = 0.5}, context);
+  ASSERT_TRUE(world) << world.error().message;
+  const auto nodes = Nodes::make(*world, scene, {}, context);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  NodePictureConfig config{.width = 200, .area = {}, .path = {}, .title = ""};
+  config.path = {{150, 0, 20}, {150, 0, 100}, {150, 0, 190}, {150, 0, 280}};
+  for (const bool links : {false, true}) {
+    config.links = links;
+    const auto image = draw_nodes(*nodes, config);
+    ASSERT_TRUE(image) << image.error().message;
+    const Pixels blue = pixels(*image, is_blue);
+    EXPECT_GT(blue.count, static_cast<size_t>(blue.last_row - blue.first_row));
+    EXPECT_GT(blue.last_row - blue.first_row, 60);
+  }
+}
+
+TEST(NodePicture, AWayIsDrawnOnTheMapOnly) {
+  Context context;
+  const auto nodes = Nodes::make(two_storeys(), two_storeys_scene(), {}, context);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  NodePictureConfig config{.width = 600, .area = {}, .path = {}, .title = ""};
+  config.area = {{10, -10, 0}, {20, 10, 8}};
+  config.path = {{15, 3, -30}, {15, 3, 50}};
+  config.storey = 1;
+  const auto part = draw_nodes(*nodes, config);
+  ASSERT_TRUE(part) << part.error().message;
+  const Pixels blue = pixels(*part, is_blue), all = pixels(*part, is_level);
+  EXPECT_GT(blue.count, 20u);
+  EXPECT_GE(blue.first_row, all.first_row - 2);
+  EXPECT_LE(blue.last_row, all.last_row + 2);
 }
 
 TEST(Picture, DrawsABakedWorldForEachClass) {

@@ -25,7 +25,7 @@ struct NodeData;  // Internal: zones of nodes.
 /// How a body gets from one node to another.
 enum class LinkKind : uint8_t {
   kWalk = 0,
-  kStep,     ///< Over a rise that some class cannot take.
+  kStep,     ///< Over a step of the floor, not a slope, that some class of the world cannot take.
   kClimb,    ///< One end is steeper than any walker's limit, or a gap between patches lies between.
   kDrop,     ///< One way: out over an edge and down. For classes with a `max_drop`.
   kJump,     ///< Given by hand; may lead one way.

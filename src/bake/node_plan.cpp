@@ -23,7 +23,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kNodeBakeVersion = 1;  // To be raised when equal inputs give other nodes.
+constexpr uint64_t kNodeBakeVersion = 2;  // To be raised when equal inputs give other nodes.
 constexpr double kJumpReach = 1;          // Places are as near to a jump's ends. [m]
 constexpr double kMargin = 1;             // for rounding, and then some [m]
 constexpr double kHighest = 1e7;          // above and below all [m]

@@ -106,16 +106,16 @@ void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, 
 void NodeLinker::link_inside(uint32_t patch, const PatchCells& cells) {
   const PatchTree& tree = forest_->trees[patch];
   if (tree.leaf.empty() || tree.nodes.empty()) return;
-  const auto visit = [&](size_t here, size_t next, const std::vector<uint16_t>& cuts) {
+  const auto visit = [&](size_t here, size_t next, bool along_s) {
     const uint32_t a = tree.leaf_of(here), b = tree.leaf_of(next);
     // (One ragged node may be the first around both, and others around one.)
     if (a == kNoNode || b == kNoNode || (a == b && tree.nodes[a].cells == 0)) return;
+    const std::vector<uint16_t>& cuts = along_s ? cells.cut_s : cells.cut_t;
     const uint16_t together = cells.cells[here].classes & cells.cells[next].classes;
-    const uint16_t cut = cuts.empty() ? uint16_t{0} : cuts[here];
-    const auto classes = static_cast<uint16_t>(together & ~cut);
+    const auto classes = static_cast<uint16_t>(together & ~(cuts.empty() ? 0 : cuts[here]));
     if (classes == 0) return;
     link_chains(patch, here, patch, next, classes,
-                (together & cut) != 0 ? LinkKind::kStep : LinkKind::kWalk);
+                cells.steps(here, along_s) ? LinkKind::kStep : LinkKind::kWalk);
   };
   // Blocks of cells that know their nodes together: all cells, or 8 x 8.
   const int32_t blocks = 1 << tree.leaf_depth, size = cells.side() / blocks;
@@ -134,9 +134,9 @@ void NodeLinker::link_inside(uint32_t patch, const PatchCells& cells) {
       for (int32_t j = 0; j < size; ++j) {
         for (int32_t i = 0; i < size; ++i) {
           const size_t here = cells.index(s * size + i, t * size + j);
-          if (i + 1 < size ? inside : east) visit(here, here + 1, cells.cut_s);
+          if (i + 1 < size ? inside : east) visit(here, here + 1, true);
           if (j + 1 < size ? inside : south) {
-            visit(here, here + static_cast<size_t>(cells.side()), cells.cut_t);
+            visit(here, here + static_cast<size_t>(cells.side()), false);
           }
         }
       }
@@ -184,6 +184,25 @@ void merge_cell_pairs(std::vector<CellPair>& pairs) {
   pairs.resize(kept);
 }
 
+namespace {
+
+// Steps that a walk between the same nodes saves a class. [sorted, each pair and kind once]
+void drop_needless_steps(std::vector<NodeLink>& links) {
+  size_t kept = 0;
+  for (NodeLink& link : links) {
+    const NodeLink* last = kept > 0 ? &links[kept - 1] : nullptr;
+    if (link.kind == LinkKind::kStep && last != nullptr && last->a == link.a && last->b == link.b &&
+        last->kind == LinkKind::kWalk) {
+      link.classes &= static_cast<uint16_t>(~last->classes);
+      if (link.classes == 0) continue;
+    }
+    links[kept++] = link;
+  }
+  links.resize(kept);
+}
+
+}  // namespace
+
 void merge_node_links(std::vector<NodeLink>& links) {
   const auto before = [](const NodeLink& p, const NodeLink& q) {
     return std::tie(p.a, p.b, p.kind, p.leap1) < std::tie(q.a, q.b, q.kind, q.leap1);
@@ -217,6 +236,7 @@ void merge_node_links(std::vector<NodeLink>& links) {
     links[kept++] = link;
   }
   links.resize(kept);
+  drop_needless_steps(links);
 }
 
 }  // namespace throng

@@ -55,6 +55,7 @@ struct NodeLink {
 /// linked for what both allow. What a smaller node could reach by its parents is not linked again:
 /// a parent's classes go in and out of its children. Sorted by (a, b, kind), each pair once, or
 /// as often as its classes need different leaps; drops once for every spot that they lead from.
+/// A class that anywhere gets from one to the other without a step has no link over one.
 class NodeLinker {
  public:
   explicit NodeLinker(const NodeForest& forest) : forest_(&forest) {}

@@ -344,7 +344,7 @@ PortalList NodeMesh::inside_patch(uint32_t patch) const {
           continue;
         }
         LinkKind kind = kind_between(a, b);
-        if (cut != 0 && kind == LinkKind::kWalk) kind = LinkKind::kStep;
+        if (kind == LinkKind::kWalk && cells.steps(here, by_s)) kind = LinkKind::kStep;
         const double to = (k + 1) * unit - inset;
         if (a == last_a && b == last_b && kind == last_kind) {
           NodePortal& portal = found.back();
@@ -448,7 +448,8 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
     const auto s = static_cast<int32_t>(pair.cell_a % 64),
                t = static_cast<int32_t>(pair.cell_a / 64);
     const bool by_s = pair.side_a == 2;
-    touches.push_back({a, b, pair.side_a, (by_s ? s : t) + 1, by_s ? t : s, kind_between(a, b)});
+    const LinkKind kind = std::max(kind_between(a, b), pair.kind);  // climbs before steps
+    touches.push_back({a, b, pair.side_a, (by_s ? s : t) + 1, by_s ? t : s, kind});
   }
   std::sort(touches.begin(), touches.end(), [](const Touch& p, const Touch& q) {
     return std::tie(p.a, p.b, p.side, p.at, p.k) < std::tie(q.a, q.b, q.side, q.at, q.k);
@@ -458,7 +459,7 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
     const Touch& t = touches[i];
     size_t j = i + 1;
     while (j < touches.size() && touches[j].a == t.a && touches[j].b == t.b &&
-           touches[j].side == t.side && touches[j].at == t.at &&
+           touches[j].side == t.side && touches[j].at == t.at && touches[j].kind == t.kind &&
            touches[j].k == touches[j - 1].k + 1) {
       ++j;
     }

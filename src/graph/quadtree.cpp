@@ -38,8 +38,9 @@ class RaggedBlock {
         }
       };
       set(cells.cells[cell].classes, stands_);
-      if (!cells.cut_s.empty()) set(cells.cut_s[cell], cut_s_);
-      if (!cells.cut_t.empty()) set(cells.cut_t[cell], cut_t_);
+      if (!cells.is_cut()) continue;
+      set(cells.parted(cell, true), cut_s_);
+      set(cells.parted(cell, false), cut_t_);
     }
   }
 
@@ -181,13 +182,13 @@ class TreeBuilder {
 
   // Classes cut somewhere along the two lines that divide a block into quarters.
   [[nodiscard]] uint16_t cuts(int32_t level, int32_t s, int32_t t) const {
-    if (cells_.cut_s.empty()) return 0;
+    if (!cells_.is_cut()) return 0;
     const int32_t size = 1 << (cells_.depth - level);  // of the block, in cells
     const int32_t s0 = s * size, t0 = t * size, middle = size / 2 - 1;
     uint32_t cut = 0;
     for (int32_t i = 0; i < size; ++i) {
-      cut |= cells_.cut_s[cells_.index(s0 + middle, t0 + i)];
-      cut |= cells_.cut_t[cells_.index(s0 + i, t0 + middle)];
+      cut |= cells_.parted(cells_.index(s0 + middle, t0 + i), true);
+      cut |= cells_.parted(cells_.index(s0 + i, t0 + middle), false);
     }
     return static_cast<uint16_t>(cut);
   }
@@ -229,10 +230,10 @@ class TreeBuilder {
         block.promise = both(block.promise, cell);
         block.any |= cell.classes;
       }
-      if (cells_.cut_s.empty()) continue;
-      for (size_t i = row; i + 1 < row + kRaggedSide; ++i) cut |= cells_.cut_s[i];
+      if (!cells_.is_cut()) continue;
+      for (size_t i = row; i + 1 < row + kRaggedSide; ++i) cut |= cells_.parted(i, true);
       for (size_t i = row; j + 1 < kRaggedSide && i < row + kRaggedSide; ++i) {
-        cut |= cells_.cut_t[i];
+        cut |= cells_.parted(i, false);
       }
     }
     block.promise.classes = static_cast<uint16_t>(block.promise.classes & ~cut);

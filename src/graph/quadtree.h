@@ -46,10 +46,25 @@ struct PatchCells {
   /// Per cell, classes that may stand on it and on the next cell along s (along t), but cannot step
   /// from one to the other. Empty: none.
   std::vector<uint16_t> cut_s, cut_t;
+  /// Per row of cells, bit s: the ground steps up or down to the next cell along s (along t). No
+  /// node lies on both sides, whoever goes over. Both are empty: nowhere.
+  std::vector<uint64_t> step_s = {}, step_t = {};
 
   [[nodiscard]] int32_t side() const { return 1 << depth; }
   [[nodiscard]] size_t index(int32_t s, int32_t t) const {
     return (static_cast<size_t>(t) << depth) + static_cast<size_t>(s);
+  }
+  /// Does the ground step between a cell and the next along s, or along t?
+  [[nodiscard]] bool steps(size_t cell, bool along_s) const {
+    const std::vector<uint64_t>& rows = along_s ? step_s : step_t;
+    return !rows.empty() && (rows[cell >> depth] >> (cell & ((size_t{1} << depth) - 1)) & 1) != 0;
+  }
+  [[nodiscard]] bool is_cut() const { return !cut_s.empty() || !step_s.empty(); }
+  /// Classes for which no node may lie on both of a cell and the next. [is_cut()]
+  [[nodiscard]] uint16_t parted(size_t cell, bool along_s) const {
+    if (steps(cell, along_s)) return UINT16_MAX;
+    const std::vector<uint16_t>& cuts = along_s ? cut_s : cut_t;
+    return cuts.empty() ? uint16_t{0} : cuts[cell];
   }
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "graph/ground_parts.h"
+#include "graph/tile_steps.h"
 #include "world/place.h"
 
 namespace throng {
@@ -105,6 +106,11 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
     note(cuts->along, patch.cut_t);
   }
 
+  if (const auto steps = tile_steps(ground.view, step_limits(classes, data.summary.cell))) {
+    patch.step_s.assign(steps->across.begin(), steps->across.end());
+    patch.step_t.assign(steps->along.begin(), steps->along.end());
+  }
+
   const format::Level& record = *ground.view.record;
   const auto ceilings = unpack_ceilings(*ground.zone, record);
   const bool is_flat = record.ceiling_kind() == format::HeightKind::Constant;
@@ -177,6 +183,7 @@ class PairFinder {
   PairFinder(const WorldData& world, int32_t tile_x, int32_t tile_z)
       : world_(world), tile_x_(tile_x), tile_z_(tile_z), here_(levels_of(tile_x, tile_z)) {
     for (const AvatarClass& avatar : world.summary.classes) steps_.push_back(step_mm(avatar));
+    limits_ = step_limits(world.summary.classes, world.summary.cell);
   }
 
   std::vector<CellPair> find() {
@@ -328,11 +335,13 @@ class PairFinder {
   void add(const GroundLevel& from, const GroundLevel& to, uint16_t classes, int32_t x, int32_t z,
            bool east) {
     const int32_t nx = x + (east ? 1 : 0), nz = z + (east ? 0 : 1);
+    const bool steps = is_step(from.view, x, z, to.view, nx & 63, nz & 63, limits_);
     pairs_.push_back({.patch_a = from.world_level,
                       .cell_a = static_cast<uint32_t>(z * 64 + x),
                       .patch_b = to.world_level,
                       .cell_b = static_cast<uint32_t>((nz & 63) * 64 + (nx & 63)),
                       .classes = classes,
+                      .kind = steps ? LinkKind::kStep : LinkKind::kWalk,
                       .side_a = static_cast<uint8_t>(east ? 2 : 1),
                       .side_b = static_cast<uint8_t>(east ? 0 : 3)});
   }
@@ -340,7 +349,8 @@ class PairFinder {
   const WorldData& world_;
   int32_t tile_x_, tile_z_;
   std::vector<TileLevel> here_;
-  std::vector<int32_t> steps_;   // per class [mm]
+  std::vector<int32_t> steps_;  // per class [mm]
+  StepLimits limits_;
   std::vector<CellRows> legal_;  // of a class, by level of the tile
   std::vector<uint8_t> safe_;    // likewise: no step on the level is too high
   std::vector<CellPair> pairs_;

@@ -44,7 +44,8 @@ constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
                                                   {90, {246, 190, 52}},
                                                   {91, {232, 106, 66}},
                                                   {180, {176, 34, 46}}}};
-constexpr Rgb kWalkLink{24, 92, 52}, kSteepLink{150, 104, 8}, kOverLink{140, 20, 32};
+constexpr Rgb kWalkLink{24, 92, 52}, kStepLink{196, 74, 8}, kSteepLink{150, 104, 8},
+    kOverLink{140, 20, 32};
 constexpr Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
 constexpr Rgb kLeapLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232},
     kPath{20, 60, 220};
@@ -452,6 +453,7 @@ class NodePicture {
     const double steepest = summary_.bins.inclination_of(
         std::max(nodes_.node(link.from).inclination, nodes_.node(arc.to).inclination));
     Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
+    if (arc.kind == LinkKind::kStep) colour = kStepLink;
     if (arc.leaps) colour = kLeapLink;
     canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
   }
@@ -531,6 +533,7 @@ class NodePicture {
     };
     if (config_.links) {
       key(kWalkLink, "link");
+      key(kStepLink, "step");
       key(kSteepLink, "steep");
       key(kOverLink, "overhanging");
       key(kLeapLink, "over a hole");

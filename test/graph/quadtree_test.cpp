@@ -269,12 +269,27 @@ class Sets {
 // Two patches beside each other, some pairs of their border cells joined for some classes: cells
 // hold together for a class exactly if the nodes that hold them do.
 TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
-  size_t tested = 0;
+  size_t tested = 0, steps = 0;
   for (uint64_t seed = 1; seed <= 160; ++seed) {
     std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
                                        random_cells(3, seed + 1000, seed % 3 == 0)};
     cells[0].ragged = seed % 4 > 1;
     cells[1].ragged = seed % 8 > 3;
+    // Steps divide nodes, but not whoever goes over them.
+    for (uint64_t p = 0; p < 2 && seed % 5 > 1; ++p) {
+      const auto side = static_cast<uint64_t>(cells[p].side());
+      for (uint64_t t = 0; t < side; ++t) {
+        const auto some = [&](uint64_t stream) {
+          uint64_t row = 0;
+          for (uint64_t s = 0; s < side; ++s) {
+            row |= uint64_t{random_below(seed, stream + p, t * side + s, 8) == 0} << s;
+          }
+          return row;
+        };
+        cells[p].step_s.push_back(some(50));
+        cells[p].step_t.push_back(some(60));
+      }
+    }
     NodeForest forest;
     for (const PatchCells& patch : cells) forest.add(build_tree(patch));
     std::vector<CellPair> pairs;
@@ -289,7 +304,12 @@ TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
     for (uint32_t p = 0; p < 2; ++p) linker.link_inside(p, cells[p]);
     for (const CellPair& pair : pairs) linker.link(pair);
     const std::vector<NodeLink> links = linker.take();
-    for (const NodeLink& link : links) EXPECT_LT(link.a, link.b);
+    for (size_t i = 0; i < links.size(); ++i) {
+      EXPECT_LT(links[i].a, links[i].b);
+      steps += links[i].kind == LinkKind::kStep ? 1 : 0;
+      if (i == 0 || links[i - 1].a != links[i].a || links[i - 1].b != links[i].b) continue;
+      EXPECT_EQ(links[i - 1].classes & links[i].classes, 0) << "who walks needs no step";
+    }
 
     for (uint32_t c = 0; c < 4; ++c) {
       const uint16_t bit = static_cast<uint16_t>(1u << c);
@@ -345,6 +365,7 @@ TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
     }
   }
   EXPECT_GT(tested, 80000u);
+  EXPECT_GT(steps, 1000u);
 }
 
 TEST(NodeLinks, PairsOfTheSameCellsAndSidesAreOneInAnyOrder) {

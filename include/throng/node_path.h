@@ -40,7 +40,8 @@ struct NodePathPoint {
   NodePlace place;
   /// On the surface: straight by the parameters of the last point's patch, whose node holds both.
   /// Otherwise the feet go straight through the air, and the axis turns evenly: over the edge of a
-  /// patch, where there is nearly nothing to go, along a leap, or out over an edge and then down.
+  /// patch, where there is nearly nothing to go or nothing at all, for this is the same place by
+  /// the parameters of the next; along a leap; or out over an edge and then down.
   bool on_surface = true;
 };
 

@@ -182,6 +182,11 @@ class Teller {
   }
 
   void go_on(const BlockPoint& to) {
+    // Where a way leads through the corner of a block there is nothing to go, and no point to add.
+    if (to.s == last_.s && to.t == last_.t) {
+      last_ = to;
+      return;
+    }
     const Vec3d from_at = path_.points.back().place.feet;
     const NodeSurface& surface = view_.surface(to.block);
     const Vec3d to_at = surface.at(to.s, to.t);
@@ -195,6 +200,11 @@ class Teller {
       add({to.block, along(last_.s, to.s), along(last_.t, to.t)}, true);
     }
     last_ = to;
+  }
+
+  // A way that goes nowhere has two ends, too.
+  void end() {
+    if (path_.points.size() == 1) path_.points.push_back(path_.points.front());
   }
 
   void cross(const PulledCrossing& crossing) {
@@ -615,6 +625,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     teller.cross(crossing);
   }
   teller.go_on(last);
+  teller.end();
 }
 
 }  // namespace throng

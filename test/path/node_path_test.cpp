@@ -77,6 +77,30 @@ TEST(NodePath, EveryWayCanBeGoneByItsBody) {
   EXPECT_GT(leaps, 0u);
 }
 
+// Ways lead through corners of blocks, where there is nothing to go. (Over the edge of a patch the
+// last point of one and the first of the next may be the same.)
+TEST(NodePath, NoPointOnASurfaceRepeatsTheOneBefore) {
+  for (const char* name : {"bridge", "landscape"}) {
+    const double size = name[0] == 'l' ? 100.0 : 0.0;
+    const Nodes nodes = make(builtin({.name = name, .size = size}), 0.25, 1);
+    size_t points = 0;
+    for (int32_t c = 0; c < 4; ++c) {
+      NodePathFinder ways = finder(nodes, c);
+      NodePath path;
+      for (uint64_t n = 0; n < 60; ++n) {
+        ways.find(nodes.random_place(c, 9, 2 * n), nodes.random_place(c, 9, 2 * n + 1), path);
+        for (size_t i = 1; i < path.points.size() && path.length > 0; ++i) {
+          const NodePathPoint &last = path.points[i - 1], &here = path.points[i];
+          EXPECT_FALSE(here.on_surface && here.place.feet == last.place.feet)
+              << name << ", class " << c << ", way " << n << ", point " << i;
+        }
+        points += path.points.size();
+      }
+    }
+    EXPECT_GT(points, 2000u);
+  }
+}
+
 // Dijkstra's algorithm with a plain queue over the same crossings, without a bound or a goal.
 TEST(NodePath, SearchFindsTheCheapestCrossings) {
   Context context;

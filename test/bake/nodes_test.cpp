@@ -122,33 +122,6 @@ TEST(Nodes, OnLevelTilesPartsAreTheRegionsComponents) {
   }
 }
 
-TEST(Nodes, EveryArcLeadsBack) {
-  for (const char* name : {"garage", "landscape"}) {
-    const Scene scene = builtin({.name = name, .size = name[0] == 'l' ? 160.0 : 0.0});
-    const Nodes nodes = make(bake(scene, 0.4, many_classes()), scene, {.size = 1.5});
-    size_t arcs = 0, leaps = 0;
-    for (uint32_t n = 0; n < nodes.node_count(); ++n) {
-      const NodeInfo here = nodes.node(n);
-      for (const NodeArc& arc : nodes.arcs(n)) {
-        ASSERT_LT(arc.to, nodes.node_count());
-        const NodeInfo there = nodes.node(arc.to);
-        EXPECT_EQ(arc.classes & ~here.classes & 0xffff, 0);
-        EXPECT_EQ(arc.classes & ~there.classes & 0xffff, 0);
-        EXPECT_NE(arc.classes, 0);
-        const auto back = nodes.arcs(arc.to);
-        EXPECT_TRUE(std::any_of(back.begin(), back.end(), [&](const NodeArc& b) {
-          return b.to == n && b.kind == arc.kind && b.classes == arc.classes &&
-                 b.leaps == arc.leaps && b.from_s == arc.to_s && b.to_t == arc.from_t;
-        }));
-        ++arcs;
-        leaps += arc.leaps ? 1 : 0;
-      }
-    }
-    EXPECT_GT(arcs, 1000u);
-    EXPECT_EQ(leaps > 0, name[0] == 'l');
-  }
-}
-
 // Alone: of curved patches, in a world baked for the class alone. Level tiles depend a little on
 // which classes they are baked for together, so there the world is shared and the nodes are not.
 TEST(Nodes, ManyClassesShareOneGraph) {
@@ -231,36 +204,6 @@ TEST(Nodes, ClimbersReachWhatWalkersCannot) {
     EXPECT_GT(nodes.random_place(0, 1, n).normal.y, 0.70);  // 45 degrees
   }
   EXPECT_TRUE(steep);
-}
-
-TEST(Nodes, WidthsAreNeverTooWide) {
-  const Scene scene = builtin({.name = "garage"});
-  const World world = bake(scene, 0.2);
-  const Nodes nodes = make(world, scene);
-  const NodeBins bins = nodes.summary().bins;
-  // Legal cells of each level and class; a node's disc may not hold a cell that lacks a class of
-  // the node, on the node's own level.
-  std::map<uint32_t, LevelTileContent> tiles;
-  size_t tested = 0;
-  for (uint32_t n = 0; n < nodes.node_count(); n += 7) {
-    const NodeInfo info = nodes.node(n);
-    const double width = bins.width_of(info.width);
-    if (width == 0) continue;
-    if (!tiles.contains(info.source)) tiles[info.source] = world.level_tile(info.source);
-    const LevelTileContent& tile = tiles[info.source];
-    const double size = 64 >> info.level, s = (info.s + 0.5) * size, t = (info.t + 0.5) * size;
-    for (int32_t i = 0; i < 4096; ++i) {
-      const double ds = std::max(0.0, std::abs(i % 64 + 0.5 - s) - 0.5);
-      const double dt = std::max(0.0, std::abs(i / 64 + 0.5 - t) - 0.5);
-      if ((ds * ds + dt * dt) * 0.04 >= width * width * (1 - 1e-9)) continue;
-      for (size_t c = 0; c < 4; ++c) {
-        if ((info.classes >> c & 1) == 0) continue;
-        EXPECT_GT(tile.clearance[c][static_cast<size_t>(i)], 0) << "node " << n;
-      }
-    }
-    ++tested;
-  }
-  EXPECT_GT(tested, 100u);
 }
 
 TEST(Nodes, JumpsGivenByHandJoinWhatNothingElseJoins) {

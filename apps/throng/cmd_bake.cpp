@@ -181,7 +181,16 @@ Result<void> prepare(BakeOptions& options) {
     if (!jumps) return jumps.error();
     options.node_config.jumps = *std::move(jumps);
   }
+  options.config.nodes = &options.node_config;
   return check_node_config(options.node_config);
+}
+
+// What is there where nodes have failed.
+std::string after_the_ground(const std::string& path) {
+  const auto world = World::open(path);
+  return world && Nodes::open(*world) ? "; the ground has not changed, and its nodes are those of "
+                                        "before"
+                                      : "; the world is baked, but it has no nodes yet";
 }
 
 int bake(Session& session, BakeOptions& options) {
@@ -204,10 +213,10 @@ int bake(Session& session, BakeOptions& options) {
   if (nodes_follow) {
     const Result<NodeSummary> made = bake_nodes(options, *scene, session.context);
     if (!made) {
-      return fail({made.error().code,
-                   made.error().message.empty()
-                       ? ""
-                       : made.error().message + "; the world is baked, but it has no nodes yet"});
+      return fail(
+          {made.error().code, made.error().message.empty()
+                                  ? ""
+                                  : made.error().message + after_the_ground(options.output)});
     }
     nodes = *made;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@
 
 /// From triangles to a world that one can walk in: columns of spans, level tiles, clearance, zones.
 namespace throng {
+
+struct NodeConfig;
 
 /// What a bake into a folder does with zones that were baked from the same input before.
 enum class OldZones : uint8_t { kKeep, kBakeAgain };
@@ -41,6 +44,9 @@ struct BakeConfig {
   /// Into a folder: the old world's nodes are carried over, so that Nodes::make need not make again
   /// what has not changed. They are of the new world only once it has.
   bool carry_nodes = false;
+  /// Into a folder: nodes that will be made of the world. Its jumps are looked at before the world
+  /// takes the old one's place, and BakeReport::hold keeps other bakes out. Null: none.
+  const NodeConfig* nodes = nullptr;
 };
 
 /// What a bake did. Seconds are summed over threads where several work.
@@ -67,6 +73,8 @@ struct BakeReport {
   double seconds_graph = 0;
   double seconds_write = 0;
   double seconds_total = 0;  ///< Wall clock.
+  /// With BakeConfig::nodes: while it lives the folder takes nodes, but no other bake.
+  std::shared_ptr<const void> hold;
 };
 
 /// Bakes into memory. Fails with kBadConfig, kBadInput (no triangles), kLimit, kCancelled.
@@ -77,7 +85,8 @@ struct BakeReport {
 /// `path` and renamed at the end, so that a failed or cancelled bake leaves what was there before.
 /// Where a world is there, only the zones whose input has changed are baked, on its grid if the
 /// scene still begins on it; where a bake was killed, its zones are taken over. Memory: the scene
-/// and a few zones, whatever the size of the world.
+/// and a few zones, whatever the size of the world. Also fails with kIo, and kBadInput (jumps);
+/// with kIo at once if another bake, of this process or another, is writing the folder.
 [[nodiscard]] THRONG_API Result<BakeReport> bake_world_to(const std::string& path,
                                                           const Scene& scene,
                                                           const BakeConfig& config,

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/finish_bake.h"
 #include "bake/graph_bake.h"
 #include "bake/world_bake.h"
 #include "bake/world_folder.h"
@@ -151,7 +152,9 @@ Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
   if (!world) return world.error();
   const auto graph = bake_graph(*folder, **world, config.workers, context, report);
   if (!graph) return graph.error();
-  if (auto ok = folder->finish(**world, **graph, config.carry_nodes); !ok) return ok.error();
+  if (auto ok = finish_bake(*folder, **world, **graph, scene, config, context, report); !ok) {
+    return ok.error();
+  }
   report.seconds_total = seconds_since(start);
   return report;
 }

@@ -50,6 +50,17 @@ Result<void> NodeBaker::check(const World& world, const Scene& scene, const Node
   return {};
 }
 
+Result<void> NodeBaker::check_jumps(const World& world, const Scene& scene,
+                                    const NodeConfig& config, Context& context) {
+  NodeBaker baker(world, scene, config, nullptr);
+  baker.plan();
+  std::vector<uint32_t> zones;
+  for (uint32_t z = 0; z < baker.plan_.zones.size(); ++z) {
+    if (!baker.plan_.zones[z].jumps.empty()) zones.push_back(z);
+  }
+  return check_batch_jumps(baker.batch_input(true, context), zones);
+}
+
 // A world in memory does not know what it was made from.
 void NodeBaker::plan() {
   plan_ = plan_nodes(data_, scene_, config_);
@@ -97,16 +108,19 @@ std::vector<std::vector<uint32_t>> NodeBaker::batches(uint64_t most_bytes) const
   return node_batches(scene_, config_, plan_, std::move(left), most_bytes);
 }
 
+NodeBatchInput NodeBaker::batch_input(bool is_last, Context& context) {
+  return {.world = world_,
+          .scene = scene_,
+          .config = config_,
+          .bins = bins_,
+          .plan = plan_,
+          .triangles = triangles_,
+          .is_last = is_last,
+          .context = context};
+}
+
 Result<NodeSlots> NodeBaker::make(std::span<const uint32_t> zones, bool is_last, Context& context) {
-  return make_node_batch({.world = world_,
-                          .scene = scene_,
-                          .config = config_,
-                          .bins = bins_,
-                          .plan = plan_,
-                          .triangles = triangles_,
-                          .is_last = is_last,
-                          .context = context},
-                         zones);
+  return make_node_batch(batch_input(is_last, context), zones);
 }
 
 Result<std::vector<NodeBaker::Made>> NodeBaker::write(std::span<const uint32_t> zones,

@@ -32,6 +32,10 @@ class NodeBaker {
   /// Can nodes be made of this at all?
   [[nodiscard]] static Result<void> check(const World& world, const Scene& scene,
                                           const NodeConfig& config);
+  /// Do all jumps given by hand begin and end at places of the world? Looks at the zones around
+  /// them only. Fails with kBadInput, kBadFile or kCancelled.
+  [[nodiscard]] static Result<void> check_jumps(const World& world, const Scene& scene,
+                                                const NodeConfig& config, Context& context);
   /// Finds the zones and what each depends on.
   void plan();
   /// Of all that zones depend on: processes that make nodes together have the same.
@@ -60,6 +64,7 @@ class NodeBaker {
   Result<std::shared_ptr<NodeData>> finish();
 
  private:
+  [[nodiscard]] NodeBatchInput batch_input(bool is_last, Context& context);
   [[nodiscard]] std::shared_ptr<NodeData> gather();
 
   const World& world_;

@@ -50,6 +50,13 @@ class NodeBatch {
     }
   }
 
+  Result<void> check_jumps() {
+    if (auto ok = list_patches(); !ok) return ok.error();
+    judge_patches();
+    if (context_.cancel) return cancelled();
+    return add_jumps();
+  }
+
   Result<NodeSlots> run() {
     if (auto ok = list_patches(); !ok) return ok.error();
     judge_patches();
@@ -583,6 +590,10 @@ Error too_many_nodes() {
 
 Result<NodeSlots> make_node_batch(const NodeBatchInput& input, std::span<const uint32_t> zones) {
   return NodeBatch(input, zones).run();
+}
+
+Result<void> check_batch_jumps(const NodeBatchInput& input, std::span<const uint32_t> zones) {
+  return NodeBatch(input, zones).check_jumps();
 }
 
 }  // namespace throng

@@ -39,6 +39,10 @@ using NodeSlots = std::vector<std::unique_ptr<NodeData::Slot>>;
 [[nodiscard]] Result<NodeSlots> make_node_batch(const NodeBatchInput& input,
                                                 std::span<const uint32_t> zones);
 
+/// Only whether the jumps of these zones begin and end at places; fails as make_node_batch does.
+[[nodiscard]] Result<void> check_batch_jumps(const NodeBatchInput& input,
+                                             std::span<const uint32_t> zones);
+
 /// What is said of a world with more nodes than numbers.
 [[nodiscard]] Error too_many_nodes();
 

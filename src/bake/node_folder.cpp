@@ -72,20 +72,25 @@ NodeFolder::NodeFolder(std::string world_path)
 NodeFolder::NodeFolder(NodeFolder&& other) noexcept
     : world_path_(std::move(other.world_path_)),
       part_(std::exchange(other.part_, {})),
-      is_own_(other.is_own_) {}
+      is_own_(other.is_own_),
+      world_lock_(std::move(other.world_lock_)),
+      part_lock_(std::move(other.part_lock_)) {}
 
 NodeFolder::~NodeFolder() {
   std::error_code error;
   if (is_own_ && !part_.empty()) fs::remove_all(part_, error);
 }
 
+// The world's folder is shared: whoever puts another world in its place wants it alone.
 Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
+  auto world_lock = FolderLock::take(world_path, FolderLock::Kind::kShared, world_path);
+  if (!world_lock) return world_lock.error();
+  const std::string part = (fs::path(world_path) / kPartNodeFolder).string();
+  auto part_lock = FolderLock::make(part, world_path);
+  if (!part_lock) return part_lock.error();
   NodeFolder folder(world_path);
-  std::error_code error;
-  fs::create_directories(folder.part_, error);
-  if (error) {
-    return Error{Errc::kIo, folder.part_.string() + ": cannot be created: " + error.message()};
-  }
+  folder.world_lock_ = *std::move(world_lock);
+  folder.part_lock_ = *std::move(part_lock);
   return folder;
 }
 

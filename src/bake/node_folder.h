@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/folder_lock.h"
 #include "world/node_data.h"
 
 /// Nodes in a world's folder: those of earlier bakes, whole or killed, and those that are made.
@@ -36,7 +37,8 @@ class OldNodes {
 /// lies beside them, and its index tells the next bake what is there. Every call may fail with kIo.
 class NodeFolder {
  public:
-  /// Of a world in its folder. What a killed bake has left there stays for now.
+  /// Of a world in its folder, held against other bakes. What a killed bake has left there stays
+  /// for now.
   static Result<NodeFolder> begin(const std::string& world_path);
   /// One that another process has begun and will finish.
   static NodeFolder join(const std::string& world_path);
@@ -62,6 +64,7 @@ class NodeFolder {
   std::string world_path_;
   std::filesystem::path part_;  // empty: finished, left or moved from
   bool is_own_ = true;
+  FolderLock world_lock_, part_lock_;
 };
 
 /// Carries the nodes of the world in `from` over to `to`, which takes its place, as far as that can

@@ -52,6 +52,13 @@ bool exchange(const fs::path& part, const fs::path& target, const fs::path& old)
   return true;
 }
 
+void empty_folder(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> content;
+  for (const auto& file : fs::directory_iterator(folder, error)) content.push_back(file.path());
+  for (const fs::path& file : content) fs::remove_all(file, error);
+}
+
 std::string without_slash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
   return path;
@@ -76,6 +83,8 @@ WorldFolder::WorldFolder(std::string path) : path_(std::move(path)), part_(path_
 WorldFolder::WorldFolder(WorldFolder&& other) noexcept
     : path_(std::move(other.path_)),
       part_(std::exchange(other.part_, {})),
+      part_lock_(std::move(other.part_lock_)),
+      old_lock_(std::move(other.old_lock_)),
       old_(std::move(other.old_)),
       sources_(std::move(other.sources_)) {}
 
@@ -94,13 +103,25 @@ Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
     if (!ours) {
       return Error{Errc::kIo, path + ": exists and is not a baked world; choose another name"};
     }
-  } else if (fs::exists(old / kManifest, error)) {
+  }
+  WorldFolder folder(path);
+  auto part_lock = FolderLock::make(folder.part(), path);
+  if (!part_lock) {
+    folder.leave();
+    return part_lock.error();
+  }
+  folder.part_lock_ = *std::move(part_lock);
+  if (!fs::exists(target, error) && fs::exists(old / kManifest, error)) {
     fs::rename(old, target, error);  // Killed between two names.
   }
-  if (old_zones == OldZones::kBakeAgain) fs::remove_all(path + ".part", error);
-  fs::create_directories(path + ".part", error);
-  if (error) return Error{Errc::kIo, path + ".part: cannot be created: " + error.message()};
-  WorldFolder folder(path);
+  auto old_lock = FolderLock::take(path, FolderLock::Kind::kAlone, path);
+  if (!old_lock) {
+    fs::remove(folder.part_, error);  // Unless a killed bake has left something in it.
+    folder.leave();
+    return old_lock.error();
+  }
+  folder.old_lock_ = *std::move(old_lock);
+  if (old_zones == OldZones::kBakeAgain) empty_folder(folder.part_);
   if (old_zones == OldZones::kKeep) folder.read_old();
   if (auto ok = folder.read_part(); !ok) return ok.error();
   return folder;
@@ -242,7 +263,8 @@ Result<void> WorldFolder::write_file_of_zone(const std::string& name,
   return write_file((part_ / name).string(), bytes);
 }
 
-Result<void> WorldFolder::finish(const WorldData& world, const GraphData& graph, bool carry_nodes) {
+Result<void> WorldFolder::complete(const WorldData& world, const GraphData& graph,
+                                   bool carry_nodes) {
   std::set<std::string> names;
   if (world.air != nullptr) {
     for (const auto& slot : world.air->slots) {
@@ -280,12 +302,18 @@ Result<void> WorldFolder::finish(const WorldData& world, const GraphData& graph,
     const bool is_same = before && std::ranges::equal(before->bytes(), whole);
     throng::carry_nodes(path_, part_.string(), is_same);
   }
+  return {};
+}
+
+Result<FolderLock> WorldFolder::finish() {
   if (!exchange(part_, path_, path_ + ".old")) {
     return Error{Errc::kIo, path_ + ": cannot be written: " + std::strerror(errno)};
   }
   part_.clear();
+  std::error_code error;
   fs::remove(fs::path(path_) / kJournal, error);
-  return {};
+  part_lock_.share();
+  return std::move(part_lock_);
 }
 
 }  // namespace throng

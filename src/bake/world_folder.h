@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/folder_lock.h"
 #include "throng/bake.h"
 #include "throng/result.h"
 #include "world/air_data.h"
@@ -24,7 +25,8 @@ namespace throng {
 
 class WorldFolder {
  public:
-  /// Begins NAME.part beside the world `path`. Fails with kIo, also if `path` is something else.
+  /// Begins NAME.part beside the world `path`, and holds both against other bakes. Fails with kIo,
+  /// also if `path` is something else or another bake is at work there; then all is as it was.
   static Result<WorldFolder> begin(std::string path, OldZones old_zones);
   WorldFolder(WorldFolder&& other) noexcept;
   WorldFolder& operator=(WorldFolder&&) = delete;
@@ -67,9 +69,12 @@ class WorldFolder {
   [[nodiscard]] std::string part() const { return part_.string(); }
   [[nodiscard]] const std::string& path() const { return path_; }
 
-  /// Writes the manifest, and that of the air if there is any, and the index of the graph, and
-  /// puts the world in its place. `carry_nodes`: see BakeConfig. Fails with kIo.
-  Result<void> finish(const WorldData& world, const GraphData& graph, bool carry_nodes);
+  /// Writes the manifest, and that of the air if there is any, and the index of the graph: then
+  /// part() is a world that can be opened. `carry_nodes`: see BakeConfig. Fails with kIo.
+  Result<void> complete(const WorldData& world, const GraphData& graph, bool carry_nodes);
+  /// Puts the complete world in its place. What it returns keeps other bakes out, but those that
+  /// make nodes of it. Fails with kIo.
+  Result<FolderLock> finish();
 
  private:
   struct Done;
@@ -87,6 +92,7 @@ class WorldFolder {
 
   std::string path_;
   std::filesystem::path part_;  // empty: finished or moved from
+  FolderLock part_lock_, old_lock_;
   std::shared_ptr<WorldData> old_;
   std::multimap<std::pair<int32_t, int32_t>, Source> sources_;  // by zone, the newest last
 };

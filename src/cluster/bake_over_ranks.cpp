@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "bake/finish_bake.h"
 #include "bake/graph_bake.h"
 #include "bake/world_bake.h"
 #include "bake/world_folder.h"
@@ -162,7 +163,9 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     if (!graph) {
       return failed(graph.error(), "all zones and some of their regions and links are finished");
     }
-    if (auto ok = folder->finish(**world, **graph, config.carry_nodes); !ok) return ok.error();
+    if (auto ok = finish_bake(*folder, **world, **graph, scene, own, context, report); !ok) {
+      return failed(ok.error(), "all zones and their graph are finished");
+    }
     report.seconds_total = seconds_since(start);
   }
   return report;

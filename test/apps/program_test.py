@@ -654,6 +654,34 @@ class Program(ProgramCase):
         self.assertEqual(out, "")
         self.assertEqual(list(self.path.iterdir()), [])
 
+    def test_of_two_bakes_into_one_folder_the_second_is_refused(self):
+        command = [PROGRAM, "bake", "builtin:city,size=700", "-o", "city.throng", "--cell", "0.2", "--threads", "1", "--nodes", "--json"]
+        with subprocess.Popen(command, cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as first:
+            refused = {"city.throng.part": 0, "city.throng": 0}  # While the ground is made, and the nodes.
+            while first.poll() is None:
+                there = {file.name for file in self.path.iterdir()}
+                if there and refused[max(there, key=len)] == 0:
+                    second = self.run_throng("bake", "builtin:stairs", "-o", "city.throng")
+                    if first.poll() is not None:
+                        break
+                    self.assert_refused(second, "city.throng: another bake is writing it", "wait", "another folder")
+                    refused[max(there, key=len)] += 1
+                time.sleep(0.005)
+            out, err = first.communicate()
+        self.assertEqual(first.returncode, 0, err)
+        self.assertGreater(json.loads(out)["nodes"], 0)
+        self.assertGreater(refused["city.throng.part"], 0)
+        self.assertGreater(refused["city.throng"], 0)
+        self.assertEqual([file.name for file in self.path.iterdir()], ["city.throng"])
+        self.assertEqual(self.run_throng("info", "city.throng", "--check").returncode, 0)
+        # A bake that is killed holds nothing any more.
+        with subprocess.Popen(command[:-2] + ["--fresh"], cwd=self.path, stderr=subprocess.DEVNULL) as killed:
+            while not (self.path / "city.throng.part").exists():
+                time.sleep(0.005)
+            killed.kill()
+        done = self.run_throng("bake", "builtin:stairs", "-o", "city.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_interrupting_a_run_leaves_no_trajectories(self):
         process = subprocess.Popen([PROGRAM, "run", self.world, "--avatars", "100", "--steps", "100000000",
                                     "--trajectories", "walk.csv", "--every", "100000"],

@@ -129,6 +129,14 @@ class ProgramWays(ProgramCase):
         self.assert_refused(self.run_throng(*again, "--jumps", "jumps.json"), "jump 1", "horse", "adult")
         self.assert_refused(self.run_throng(*again, "--jumps", "list.json"), "no list", '"from"')
         self.assert_refused(self.run_throng(*again, "--jumps", "missing.json"), "missing.json")
+        # Whether a jump has places only the new ground tells.
+        (self.path / "far.json").write_text('[{"from": [0, 0, 0], "to": [900, 0, 0], "class": "adult"}]')
+        for cell in ("0.2", "0.25"):
+            done = self.run_throng("bake", "builtin:stairs", "--cell", cell, "-o", "w.throng", "--nodes", "--jumps", "far.json")
+            self.assert_refused(done, "jump 1", "no place", "nothing was written")
+            self.assertEqual({path.name for path in self.path.iterdir()}, {"w.throng", "jumps.json", "list.json", "far.json"})
+            self.assertEqual({path for path in before} | {self.path / name for name in ("jumps.json", "list.json", "far.json")},
+                             {path for path in self.path.rglob("*") if path.is_file()})
         for path, content in before.items():
             self.assertEqual(path.read_bytes(), content, path)
 

@@ -284,5 +284,60 @@ TEST_F(ChangedNodes, WhatCannotBeMadeLeavesNothingBehind) {
   EXPECT_EQ(nowhere.error().code, Errc::kBadInput);
 }
 
+// What a bake that is told of the nodes to come says of their jumps is what these would say, and
+// the world that is there stays whole.
+TEST_F(ChangedNodes, AJumpWithoutAPlaceIsFoundWhileTheOldWorldIsThere) {
+  Scene hills = test::builtin({.name = "landscape", .size = 64});
+  Scene both = hills;
+  add_crate(both, hills.patches.patches[0].bounds().min + Vec3d{40, 10, 40}, {2, 2, 2});
+  for (const Scene& scene : {field(), hills, both}) {
+    BakeConfig config{.cell = 0.25, .zone = 16, .classes = climbers()};
+    NodeConfig wanted{.size = 2};
+    Context context;
+    bake("w", scene, config, wanted, true);
+    const auto world = World::open(at("w"));
+    const auto nodes = Nodes::open(at("w"));
+    ASSERT_TRUE(world && nodes);
+    const auto content = [&] {
+      return std::pair{World::open(at("w"))->summary().hash, folder_bytes(at("w") + "/nodes")};
+    };
+    const auto before = content();
+    config.cell = 0.3;
+    config.carry_nodes = true;
+    config.nodes = &wanted;
+    Draw draw(7);
+    uint64_t good = 0, bad = 0;
+    for (int i = 0; i < 8; ++i) {
+      const int32_t who = i % 4;
+      const auto near = [&](uint64_t n) {
+        return nodes->random_place(who, 3, n).feet + Vec3d{0, draw(-1.2, 1.2), 0};
+      };
+      wanted.jumps = {{near(2 * i), near(2 * i + 1), who, true}};
+      const auto report = bake_world_to(at("w"), scene, config, context);
+      fs::remove_all(at("other"));
+      BakeConfig other = config;
+      other.nodes = nullptr;
+      ASSERT_TRUE(bake_world_to(at("other"), scene, other, context));
+      const auto made = Nodes::make(*World::open(at("other")), scene, wanted, context);
+      EXPECT_EQ(static_cast<bool>(report), static_cast<bool>(made)) << i;
+      ++(report ? good : bad);
+      if (report) {
+        fs::remove_all(at("w"));
+        BakeConfig first = config;
+        first.cell = 0.25;
+        first.nodes = nullptr;
+        bake("w", scene, first, {.size = 2}, true);
+      } else {
+        EXPECT_EQ(report.error().message, made.error().message + "; nothing was written");
+      }
+      EXPECT_TRUE(content() == before) << i;
+      EXPECT_FALSE(fs::exists(at("w") + ".part"));
+      EXPECT_FALSE(fs::exists(at("w") + "/nodes.old"));
+    }
+    EXPECT_GT(good, 0u);
+    EXPECT_GT(bad, 0u);
+  }
+}
+
 }  // namespace
 }  // namespace throng

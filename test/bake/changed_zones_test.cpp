@@ -11,6 +11,7 @@
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
+#include "throng/nodes.h"
 
 // A bake into the folder of a world: what has changed is baked, the rest is kept, and nobody can
 // tell from the bytes.
@@ -53,6 +54,23 @@ class ChangedZones : public testing::Test {
   }
   [[nodiscard]] std::string at(const std::string& name) const {
     return folder_.path() + "/" + name;
+  }
+
+  // What a bake says that is refused, which touches nothing.
+  std::string refused(const std::string& name, const Scene& scene, const BakeConfig& config) {
+    const auto files = [&] {
+      std::set<std::string> found;
+      for (const auto& file : fs::recursive_directory_iterator(folder_.path())) {
+        found.insert(file.path().string());
+      }
+      return found;
+    };
+    const auto before = files();
+    Context context;
+    const auto report = bake_world_to(at(name), scene, config, context);
+    EXPECT_EQ(files(), before);
+    EXPECT_FALSE(report);
+    return report ? "" : report.error().message;
   }
 
   test::ScratchFolder folder_;
@@ -280,6 +298,63 @@ TEST_F(ChangedZones, AJournalIsBelievedAsFarAsItsFilesAre) {
     EXPECT_EQ(folder_bytes(at("w")), whole);
     fs::remove_all(at("v"));
   }
+}
+
+TEST_F(ChangedZones, ASecondBakeIntoAFolderIsRefusedWhileTheFirstIsAtWork) {
+  const std::string busy = at("w") +
+                           ": another bake is writing it; wait until that has ended, or "
+                           "write into another folder";
+  BakeConfig fresh = kConfig;
+  fresh.old_zones = OldZones::kBakeAgain;
+  for (const bool is_there : {false, true}) {
+    for (const BakeConfig& config : {kConfig, fresh}) {
+      int tried = 0;
+      Context context;
+      context.on_progress = [&](const Progress& progress) {
+        if (progress.done != 1 || tried++ > 0) return;
+        EXPECT_EQ(refused("w", field(), config), busy);
+        EXPECT_EQ(refused("w/", field(), config), busy);
+      };
+      if (!is_there) fs::remove_all(at("w"));
+      const auto report =
+          bake_world_to(at("w"), field(), {.cell = 0.25, .zone = 16, .workers = 1}, context);
+      ASSERT_TRUE(report) << report.error().message;
+      EXPECT_GT(tried, 0);
+      EXPECT_TRUE(World::open(at("w"))->check_all());
+    }
+  }
+}
+
+TEST_F(ChangedZones, WhileNodesAreMadeNobodyTakesTheirWorldAway) {
+  const NodeConfig wanted;
+  BakeConfig config = kConfig;
+  config.nodes = &wanted;
+  const Scene scene = field();
+  Context context;
+  auto report = bake_world_to(at("w"), scene, config, context);
+  ASSERT_TRUE(report) << report.error().message;
+  const std::string busy = ": another bake is writing it";
+  EXPECT_NE(refused("w", scene, kConfig).find(busy), std::string::npos);  // Held for them.
+  const auto world = World::open(at("w"));
+  ASSERT_TRUE(world);
+  for (const bool held : {true, false}) {
+    if (!held) report->hold.reset();
+    int tried = 0;
+    context.on_progress = [&](const Progress&) {
+      if (tried++ > 0) return;
+      EXPECT_NE(refused("w", scene, kConfig).find(busy), std::string::npos);
+      Context inner;
+      const auto nodes = Nodes::make_in_folder(*world, scene, wanted, inner);
+      ASSERT_FALSE(nodes);
+      EXPECT_NE(nodes.error().message.find(busy), std::string::npos) << nodes.error().message;
+    };
+    NodeConfig again = wanted;
+    again.fresh = true;
+    const auto nodes = Nodes::make_in_folder(*world, scene, again, context);
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    EXPECT_GT(tried, 0);
+  }
+  EXPECT_EQ(bake("w", scene).zones_kept, 20u);
 }
 
 }  // namespace

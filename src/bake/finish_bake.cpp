@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/finish_bake.h"
+
+#include <memory>
+#include <utility>
+
+#include "bake/node_bake.h"
+#include "throng/nodes.h"
+#include "throng/world.h"
+
+namespace throng {
+
+Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const GraphData& graph,
+                         const Scene& scene, const BakeConfig& config, Context& context,
+                         BakeReport& report) {
+  if (auto ok = folder.complete(world, graph, config.carry_nodes); !ok) return ok;
+  if (config.nodes != nullptr && !config.nodes->jumps.empty()) {
+    const auto made = World::open(folder.part());
+    if (!made) return made.error();
+    if (auto ok = NodeBaker::check_jumps(*made, scene, *config.nodes, context); !ok) {
+      return Error{ok.error().code, ok.error().message + "; nothing was written"};
+    }
+  }
+  auto lock = folder.finish();
+  if (!lock) return lock.error();
+  if (config.nodes != nullptr) report.hold = std::make_shared<FolderLock>(*std::move(lock));
+  return {};
+}
+
+}  // namespace throng

@@ -112,6 +112,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"zones", report.zones},
           {"zones_baked", report.zones_baked},
           {"zones_kept", report.zones_kept},
+          {"zones_empty", report.zones_empty},
           {"zones_relinked", report.zones_relinked},
           {"tiles", report.tiles},
           {"level_tiles", report.level_tiles},

@@ -51,9 +51,11 @@ struct BakeConfig {
 
 /// What a bake did. Seconds are summed over threads where several work.
 struct BakeReport {
-  uint64_t zones = 0;        ///< In which anybody can stand.
-  uint64_t zones_baked = 0;  ///< Zones with triangles, whether or not anybody can stand there.
-  uint64_t zones_kept = 0;   ///< The rest of them: their input has not changed.
+  // Zones count in which anybody can stand, as in WorldSummary; zones == zones_baked + zones_kept.
+  uint64_t zones = 0;
+  uint64_t zones_baked = 0;
+  uint64_t zones_kept = 0;   ///< Their input has not changed.
+  uint64_t zones_empty = 0;  ///< Besides: triangles come near, but nobody can stand.
   /// Zones whose links over their eastern and southern border were made again: those baked and
   /// those to the west and north of them. Into a folder only, as graph_bytes.
   uint64_t zones_relinked = 0;

@@ -302,14 +302,17 @@ Result<std::shared_ptr<WorldData>> WorldBake::world(std::span<const ZoneFacts> f
   std::vector<uint64_t> legal_cells(config.classes.size(), 0);
   for (size_t zone = 0; zone < facts.size(); ++zone) {
     const ZoneFacts& f = facts[zone];
-    ++(f.kept ? report.zones_kept : report.zones_baked);
     report.spans += f.spans;
     report.seconds_columns += f.seconds_columns;
     report.seconds_levels += f.seconds_levels;
     report.seconds_clearance += f.seconds_clearance;
     report.seconds_write += f.seconds_write;
     const uint32_t levels = f.entry.levels();
-    if (levels == 0) continue;
+    if (levels == 0) {
+      ++report.zones_empty;
+      continue;
+    }
+    ++(f.kept ? report.zones_kept : report.zones_baked);
     for (size_t c = 0; c < legal_cells.size(); ++c) legal_cells[c] += f.legal_cells[c];
     report.tiles += f.entry.tiles();
     report.level_tiles += levels;

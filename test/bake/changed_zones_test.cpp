@@ -94,6 +94,20 @@ TEST_F(ChangedZones, NothingChangedNothingIsBaked) {
   EXPECT_EQ(second.bytes, first.bytes);
 }
 
+TEST_F(ChangedZones, EmptyZonesAreCountedApart) {
+  Scene scene = field();
+  scene.add_triangle({90, 0, 20}, {90, 5, 20}, {95, 5, 20});  // Upright, where no ground is.
+  for (const uint64_t baked : {20, 0}) {
+    const BakeReport report = bake("w", scene);
+    EXPECT_EQ(report.zones, 20u);
+    EXPECT_EQ(report.zones, World::open(at("w"))->summary().zones);
+    EXPECT_EQ(report.zones_baked, baked);
+    EXPECT_EQ(report.zones_kept, 20 - baked);
+    EXPECT_EQ(report.zones_relinked, baked);
+    EXPECT_EQ(report.zones_empty, 6u);  // Two near that one, and four beside the ground's end.
+  }
+}
+
 // Zones whose area, widened by `apron`, meets the box. [m]
 uint64_t zones_near(const Box3d& box, double apron) {
   uint64_t count = 0;

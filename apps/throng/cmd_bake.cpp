@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "number_checks.h"
 #include "sources.h"
 #include "throng/bake.h"
 #include "throng/cluster.h"
@@ -269,8 +270,11 @@ void add_bake(CLI::App& parser, Session& session) {
                     "Trust windings: only what faces up is floor, no upper sides of thin ceilings");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->add_flag("--nodes", options->nodes,
-                    "Also make nodes and links; always done where a class climbs or drops");
-  command->add_option("--jumps", options->jumps, "With nodes: ways given by hand (JSON)")
+                    "Also make nodes and links; always done where a class climbs or drops, "
+                    "and for --jumps");
+  command
+      ->add_option("--jumps", options->jumps,
+                   "Ways given by hand (JSON), which nodes carry: implies --nodes")
       ->type_name("FILE.json");
   command
       ->add_option("--node-size", options->node_config.size,
@@ -280,7 +284,7 @@ void add_bake(CLI::App& parser, Session& session) {
       ->add_option("--node-memory", options->node_memory,
                    "About how much memory nodes in the making may take: less is slower [MiB]")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 20));
+      ->check(between(1, 1 << 20));
   command->callback([&session, options] { session.exit_code = bake(session, *options); });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "number_checks.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"
 #include "throng/wanderers.h"
@@ -182,16 +183,16 @@ void add_bench(CLI::App& parser, Session& session) {
   const auto options = std::make_shared<BenchOptions>();
   command->add_option("--cell", options->cell, "Side of a cell [m]")->capture_default_str();
   command->add_option("--threads", options->threads, "Compare one thread with this many")
-      ->check(CLI::PositiveNumber)
+      ->check(above(0))
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Bakes of each world")
-      ->check(CLI::PositiveNumber)
+      ->check(above(0))
       ->capture_default_str();
   command->add_option("--steps", options->steps, "Steps of each crowd")
-      ->check(CLI::PositiveNumber)
+      ->check(above(0))
       ->capture_default_str();
   command->add_option("--avatars", options->avatars, "Largest crowd (1000, 10000 ... up to this)")
-      ->check(CLI::Range(1000, 100'000'000))
+      ->check(between(1000, 100'000'000))
       ->capture_default_str();
   command->callback([&session, options] { session.exit_code = bench(session, *options); });
 }

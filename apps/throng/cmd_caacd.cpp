@@ -15,6 +15,7 @@
 #include "caacd_figures.h"
 #include "caacd_one_run.h"
 #include "command.h"
+#include "number_checks.h"
 #include "throng/caacd_experiment.h"
 #include "throng/chart.h"
 
@@ -277,7 +278,7 @@ void add_caacd(CLI::App& parser, Session& session) {
   command->add_option("--obstacles", study.space.obstacles, "How many")->capture_default_str();
   command->add_option("--dt", study.dt, "Step of time [frames]")->capture_default_str();
   command->add_option("--threads", study.workers, "Threads, 0 for all cores")
-      ->check(CLI::Range(0, 1024));
+      ->check(between(0, 1024));
   command->add_option("--figure10", options->figure10, "Chart of the paper's bad sets and the mean")
       ->type_name("FILE.png");
   command->add_option("--figure11", options->figure11, "Chart of all other sets")

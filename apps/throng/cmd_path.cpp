@@ -14,6 +14,8 @@
 
 #include "boxes.h"
 #include "command.h"
+#include "in_world.h"
+#include "number_checks.h"
 #include "throng/flight.h"
 #include "throng/live_ground.h"
 #include "throng/node_path.h"
@@ -59,25 +61,13 @@ const char* word_for(PathEnd end) {
 // "WORLD: --from (1, 2, 3) " and what is wrong with that end.
 Error bad_end(const PathOptions& options, const Vec3d& position, const char* option,
               const std::string& what) {
-  return {Errc::kBadInput,
-          fmt::format("{}: {} ({}) {}", options.world, option, where(position), what)};
+  return bad_position(options.world, option, position, what);
 }
 
 // One end of the way as a position; fails with a sentence if it is none of the world's.
 Result<Vec3d> position_of(const World& world, const PathOptions& options,
                           const std::vector<double>& at, const char* option) {
-  const Vec3d position{at[0], at[1], at[2]};
-  if (!std::isfinite(position.x + position.y + position.z)) {
-    return bad_end(options, position, option, "is not a finite position");
-  }
-  const Box3d bounds = world.summary().bounds;
-  if (position.x < bounds.min.x || position.x > bounds.max.x || position.z < bounds.min.z ||
-      position.z > bounds.max.z) {
-    return bad_end(options, position, option,
-                   fmt::format("lies outside the world, which reaches from ({}) to ({})",
-                               where(bounds.min), where(bounds.max)));
-  }
-  return position;
+  return position_in(world, options.world, option, at);
 }
 
 // The same as a place; fails with a sentence if the class cannot stand there.
@@ -528,7 +518,7 @@ void add_path(CLI::App& parser, Session& session) {
           "--reach", options->reach,
           "How far up or down the feet may be; for climbers, and over nodes where there is no "
           "ground up or down, how far off at all [m]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least(0))
       ->capture_default_str();
   command->add_flag("--fly", options->fly,
                     "Through the air, for a class that flies; either end may be on the ground");
@@ -550,10 +540,10 @@ void add_path(CLI::App& parser, Session& session) {
   command
       ->add_option("--slope-cost", options->slope_cost,
                    "What a metre costs more for each metre that the ground rises on it")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(between(0.0, 1000.0))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads for making the mesh, 0 for all cores")
-      ->check(CLI::Range(0, 1024))
+      ->check(between(0, 1024))
       ->capture_default_str();
   command->callback([&session, options] { session.exit_code = path(session, *options); });
 }

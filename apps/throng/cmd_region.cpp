@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "command.h"
+#include "in_world.h"
+#include "number_checks.h"
 #include "throng/graph.h"
 #include "throng/world.h"
 
@@ -88,6 +90,10 @@ int region(Session& session, const RegionOptions& options) {
     if (!named) return fail(named.error());
     only = *named;
   }
+  if (!options.at.empty()) {
+    const Result<Vec3d> at = position_in(*world, options.world, "--at", options.at);
+    if (!at) return fail(at.error());
+  }
   const Result<Graph> graph = Graph::make(*world, {.workers = options.threads}, session.context);
   if (!graph) return fail(graph.error());
   if (!options.at.empty()) {
@@ -131,9 +137,10 @@ void add_region(CLI::App& parser, Session& session) {
       ->expected(3)
       ->type_name("X,Y,Z");
   command->add_option("--limit", options->limit, "Components to list for each class")
+      ->check(at_least(0))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads, 0 for all cores")
-      ->check(CLI::Range(0, 1024))
+      ->check(between(0, 1024))
       ->capture_default_str();
   command->callback([&session, options] { session.exit_code = region(session, *options); });
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.h"
+#include "number_checks.h"
 #include "rerun.h"
 #include "run_crowd.h"
 #include "run_scenario.h"
@@ -248,7 +249,7 @@ void add_run(CLI::App& parser, Session& session) {
       ->type_name("random|FILE");
   command
       ->add_option("--near", options->crowd.near, "Random goals within so many metres, 0: anywhere")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command->add_option("--also", options->also, "So many of another class, too; more than once")
       ->type_name("CLASS:N");
   command->add_option("--radius", options->crowd.radius,
@@ -262,7 +263,7 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--record", options->sinks.record, "Record the run in this file")
       ->type_name("FILE.replay");
   command->add_option("--every", options->sinks.every, "Write each K-th step")
-      ->check(CLI::PositiveNumber)
+      ->check(above(0))
       ->capture_default_str();
   command->add_option("--check-every", options->check_every,
                       "Look for walls entered and overlaps each K-th step, 0 for ten times a run");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "number_checks.h"
 #include "throng/trial.h"
 #include "throng/validation.h"
 #include "trials_folder.h"
@@ -239,7 +240,7 @@ void add_validate(CLI::App& parser, Session& session) {
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");
   command->add_option("--seed", options->config.seed)->capture_default_str();
   command->add_option("--threads", options->config.workers, "0: all cores")
-      ->check(CLI::Range(0, 1024));
+      ->check(between(0, 1024));
   command->callback([options, &session] { session.exit_code = run(*options, session); });
 }
 

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <new>
 
+#include "bad_usage.h"
 #include "command.h"
 #include "throng/cluster.h"
 
@@ -98,16 +99,9 @@ ProgressLine& progress_line() {
   return line;
 }
 
-// CLI11 ends some messages with a full stop or a line of help: one sentence is enough.
-std::string one_sentence(const std::string& message) {
-  const std::string line = message.substr(0, message.find('\n'));
-  const size_t end = line.find_last_not_of(" .");
-  return end == std::string::npos ? "bad usage" : line.substr(0, end + 1);
-}
-
-std::string command_in_use(const CLI::App& parser) {
-  const auto commands = parser.get_subcommands();
-  return commands.empty() ? "throng" : "throng " + commands.front()->get_name();
+std::string name_in_use(const CLI::App& parser) {
+  const CLI::App* command = command_in_use(parser);
+  return command == nullptr ? "throng" : "throng " + command->get_name();
 }
 
 }  // namespace
@@ -132,13 +126,13 @@ int run_program(int argc, const char* const* argv,
     session.exit_code = parser.exit(success);
   } catch (const CLI::ParseError& error) {
     session.exit_code =
-        fail({Errc::kBadConfig, fmt::format("{}; see {} --help", one_sentence(error.what()),
-                                            command_in_use(parser))});
+        fail({Errc::kBadConfig,
+              fmt::format("{}; see {} --help", what_is_wrong(error, parser), name_in_use(parser))});
   } catch (const std::bad_alloc&) {
     session.exit_code = fail(
         {Errc::kLimit, fmt::format("{}: out of memory; use larger cells, a smaller world or fewer "
                                    "avatars",
-                                   command_in_use(parser))});
+                                   name_in_use(parser))});
   }
   progress_line().clear();
   g_cancel = nullptr;

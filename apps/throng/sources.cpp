@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "number_checks.h"
+
 namespace throng::app {
 namespace {
 
@@ -55,8 +57,7 @@ void add_source_options(CLI::App* command, SourceOptions& options, const std::st
   files->type_name("FILE");
   command->add_option("--up", options.up, "Axis that points up in the files")
       ->check(CLI::IsMember({"y", "z"}));
-  command->add_option("--scale", options.scale, "Metres per unit of the files")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--scale", options.scale, "Metres per unit of the files")->check(above(0));
   command->add_option("--scene", options.scene,
                       "Scene file (TOML or JSON): sources and area rules");
 }

@@ -38,9 +38,12 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// A .json file may be patches, a city or a plan; each but the plan says so in one of its keys.
-Reader json_reader(std::string_view bytes) {
-  if (bytes.find("\"throng-patches\"") != std::string_view::npos) return &read_patch_json;
+// A .json file may be patches, a city or a plan; each but the plan says so in one of its keys, or
+// its name does.
+Reader json_reader(const std::string& path, std::string_view bytes) {
+  if (lower_case(path).ends_with(".patches.json") ||
+      bytes.find("\"throng-patches\"") != std::string_view::npos)
+    return &read_patch_json;
   return bytes.find("\"CityJSON\"") != std::string_view::npos ? &read_cityjson : &read_geojson;
 }
 
@@ -71,7 +74,7 @@ Result<RawScene> read_source(const SceneSource& source, const ReadOptions& optio
   else if (extension == ".ply")
     reader = &read_ply;
   else if (extension == ".json")
-    reader = json_reader(*bytes);
+    reader = json_reader(source.path, *bytes);
   else if (extension == ".gml")
     reader = &read_citygml;
   else if (extension == ".bsp")

@@ -178,6 +178,7 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
                                         Context& context) {
   if (world.data() == nullptr) return Error{Errc::kBadInput, "flight: the world is empty"};
   const WorldData& data = *world.data();
+  if (auto ok = check_air_index(data); !ok) return ok.error();
   if (data.air == nullptr) {
     return Error{Errc::kNotFound,
                  "flight: the world was baked without air; bake it with --air or with a class that "
@@ -661,6 +662,9 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
 }
 
 Result<AirSummary> air_summary(const World& world) {
+  if (world.data() != nullptr) {
+    if (auto ok = check_air_index(*world.data()); !ok) return ok.error();
+  }
   if (world.data() == nullptr || world.data()->air == nullptr) {
     return Error{Errc::kNotFound, "the world was baked without air"};
   }

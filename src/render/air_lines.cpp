@@ -116,6 +116,9 @@ class LineFinder {
 }  // namespace
 
 Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area) {
+  if (world.data() != nullptr) {
+    if (auto ok = check_air_index(*world.data()); !ok) return ok.error();
+  }
   if (world.data() == nullptr || world.data()->air == nullptr) {
     return Error{Errc::kNotFound,
                  "picture: the world was baked without air; bake it with --fly or with --air"};

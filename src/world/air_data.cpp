@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "core/hash.h"
 #include "world/zone_data.h"
@@ -197,6 +199,17 @@ Result<std::shared_ptr<AirData>> read_air_manifest(std::span<const uint8_t> byte
     air->bytes += entry.bytes();
   }
   return air;
+}
+
+Result<void> check_air_index(const WorldData& world) {
+  if (world.air != nullptr || world.path.empty()) return {};
+  for (const format::ZoneInput& zone : world.inputs) {
+    const std::string file = air_file_name(zone.x(), zone.z());
+    std::error_code error;
+    if (!std::filesystem::exists(world.path + "/" + file, error)) continue;
+    return bad_file(world.path + "/" + kAirManifest, "is missing, though " + file + " is there");
+  }
+  return {};
 }
 
 std::vector<uint8_t> write_air_manifest(const AirData& air, uint64_t world_hash) {

@@ -108,6 +108,10 @@ AirBody air_body(const AvatarClass& avatar, const AirShape& shape);
 std::string air_file_name(int32_t x, int32_t z);
 inline constexpr const char* kAirManifest = "air.thm";
 
+/// Fails with kBadFile if the world knows of no air though its folder holds some: its index is
+/// gone.
+Result<void> check_air_index(const WorldData& world);
+
 /// Everything but the zones. `world_hash` is that of the world's manifest. Fails with kBadFile.
 Result<std::shared_ptr<AirData>> read_air_manifest(std::span<const uint8_t> bytes,
                                                    const std::string& name, const WorldData& world,

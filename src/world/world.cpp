@@ -86,7 +86,8 @@ Result<void> World::check_ground() const {
 }
 
 Result<void> World::check_all() const {
-  if (auto ok = check_ground(); !ok || data_->air == nullptr) return ok;
+  if (auto ok = check_ground(); !ok) return ok;
+  if (data_->air == nullptr) return check_air_index(*data_);
   for (const auto& slot : data_->air->slots) {
     if (!data_->air->zone(slot->entry.x(), slot->entry.z()).usable) {
       return Error{Errc::kBadFile, slot->error};

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "in_world.h"
+#include "number_checks.h"
 #include "throng/ground_query.h"
 #include "throng/world.h"
 
@@ -64,17 +67,19 @@ int place(Session& session, const PlaceOptions& options) {
   if (!avatar_class) return fail(avatar_class.error());
   Result<GroundQuery> query = GroundQuery::make(*world, *avatar_class);
   if (!query) return fail(query.error());
-  if (auto ok = world->check_ground(); !ok) return fail(ok.error());
   const Vec3d at{options.at[0], options.at[1], options.at[2]};
   if (!std::isfinite(at.x + at.y + at.z)) {
     return fail({Errc::kBadInput, options.world + ": --at is not a finite position"});
   }
+  if (auto ok = query->check_near(at, options.radius); !ok) return fail(ok.error());
   const Place found = query->nearest_place(at, options.radius);
   const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
   Json json = {{"world", options.world},
                {"class", options.avatar_class},
                {"goes_over_nodes", goes_over_nodes(avatar)}};
   if (!found) {
+    const Result<Vec3d> inside = position_in(*world, options.world, "--at", options.at);
+    if (!inside) return fail(inside.error());
     json["place"] = nullptr;
     print_result(session, json,
                  fmt::format("no place for {} within {} m of ({})\n", options.avatar_class,
@@ -82,6 +87,11 @@ int place(Session& session, const PlaceOptions& options) {
                      note_of_nodes(avatar));
     return kAnswerIsNo;
   }
+  double far = options.radius;
+  if (!options.toward.empty()) {
+    far = std::max(far, std::hypot(options.toward[0], options.toward[1]));
+  }
+  if (auto ok = query->check_near(found.position, far); !ok) return fail(ok.error());
   const double area = query->area_near(found, options.radius);
   json["place"] = numbers(found.position);
   json["distance"] = length(found.position - at);
@@ -121,14 +131,14 @@ void add_place(CLI::App& parser, Session& session) {
   command->add_option("--class", options->avatar_class, "Avatar class by name")
       ->capture_default_str();
   command->add_option("--radius", options->radius, "How far around to look [m]")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(between(0.0, 1000.0))
       ->capture_default_str();
   command->add_option("--toward", options->toward, "Also: how far does a straight line go? [m]")
       ->delimiter(',')
       ->expected(2)
       ->type_name("DX,DZ");
   command->add_option("--random", options->random, "Also this many random places around it")
-      ->check(CLI::Range(0, 1000000))
+      ->check(between(0, 1000000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the random places")->capture_default_str();
   command->callback([&session, options] { session.exit_code = place(session, *options); });

@@ -52,6 +52,9 @@ class THRONG_API GroundQuery {
   GroundQuery& operator=(GroundQuery&&) noexcept;
   ~GroundQuery();
 
+  /// Can all zones of the world be used that come as near to a position, seen from above? Look-ups
+  /// take others for empty. Reads these zones. Fails with kBadFile and the first one's name. [m, m]
+  [[nodiscard]] Result<void> check_near(Vec3d position, double radius) const;
   /// The place of the class that is nearest to a position, in all three dimensions, or nowhere
   /// within `radius`. Time: the tiles that the circle touches. [m, m]
   [[nodiscard]] Place nearest_place(Vec3d position, double radius);

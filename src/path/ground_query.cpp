@@ -97,6 +97,21 @@ Result<GroundQuery> GroundQuery::make(const World& world, int32_t avatar_class) 
   return GroundQuery(std::move(state));
 }
 
+Result<void> GroundQuery::check_near(Vec3d position, double radius) const {
+  const WorldData& world = state_->data();
+  const double side = world.tiles_per_zone * kTileCells * world.summary.cell;
+  for (size_t s = 0; s < world.slots.size(); ++s) {
+    const format::ZoneEntry& zone = world.slots[s]->entry;
+    const double x = world.summary.origin.x + zone.x() * side;
+    const double z = world.summary.origin.z + zone.z() * side;
+    const double dx = outside(position.x, x, x + side), dz = outside(position.z, z, z + side);
+    // A place in the next zone's first cell may be a cell nearer.
+    if (std::hypot(dx, dz) > radius + world.summary.cell) continue;
+    if (world.zone(s) == nullptr) return Error{Errc::kBadFile, world.slots[s]->error};
+  }
+  return {};
+}
+
 void GroundQuery::State::nearest_on(const GroundLevel& level, int32_t tile_x, int32_t tile_z,
                                     Vec3d position, GroundPoint at,
                                     std::pair<Place, double>& best) const {

@@ -41,12 +41,37 @@ class Program(ProgramCase):
         self.assert_refused(self.run_throng("run", self.world, "--avatars", "-5"), "--avatars")
         self.assert_refused(self.run_throng("bake", "--json", "-o", "x.throng"), "no model")
 
+    def test_an_option_says_what_it_wants_as_its_help_does(self):
+        ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
+        self.assert_refused(self.run_throng(*ends, "--reach", "-1"), "--reach: -1 is below 0;")
+        self.assert_refused(self.run_throng(*ends, "--slope-cost", "1001"), "--slope-cost: 1001 is above 1000;")
+        self.assert_refused(self.run_throng(*ends, "--block", "1,2,3,4,5"), "--block: wants X,Y,Z,X,Y,Z, and got 1,2,3,4,5;")
+        self.assert_refused(self.run_throng(*ends, "--area-cost", "7=abc"), "--area-cost: wants KIND=COST, not 7=abc;")
+        self.assert_refused(self.run_throng(*ends, "--from", "1,2,3"), "--from: wants X,Y,Z, once, and got 14,0,8,1,2,3;")
+        self.assert_refused(self.run_throng("place", self.world, "--at", "1,2"), "--at: wants X,Y,Z, and got 1,2;")
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x", "--cell", "wide"), "--cell: wants a number, not wide;")
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x", "--scale", "0"), "--scale: 0 is not above 0;")
+        self.assert_refused(self.run_throng("region", self.world, "--threads", "few"), "--threads: few is no number;")
+        self.assert_refused(self.run_throng("region", self.world, "--limit", "-3"), "--limit: -3 is below 0;")
+
+    def test_what_lies_outside_the_world_is_told_by_whoever_is_asked(self):
+        for command in (["region", self.world, "--at", "5000,0,1"], ["place", self.world, "--at", "5000,0,8"],
+                        ["path", self.world, "--from", "5000,0,8", "--to", "20,0,8"]):
+            self.assert_refused(self.run_throng(*command), f"{command[2]} (5000.000", "lies outside the world, which reaches from")
+        inside = self.run_throng("region", self.world, "--at", "14,300,8")
+        self.assertEqual(inside.returncode, 0, inside.stderr)
+        self.assertEqual(self.run_throng("place", self.world, "--at", "14,300,8").returncode, 1)
+        self.assertEqual(self.run_throng("place", self.world, "--at", "-1,0,8").returncode, 0)  # There is one within 5 m.
+
     def test_bad_input_is_one_sentence_and_two(self):
         self.assert_refused(self.run_throng("bake", "missing.obj", "-o", "x.throng", "--json"), "missing.obj")
         self.assert_refused(self.run_throng("bake", "builtin:nosuch", "-o", "x.throng"), "nosuch")
         self.assert_refused(self.run_throng("bake", "builtin:cube,size=wide", "-o", "x.throng"), "size=wide")
         self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x.throng", "--cell", "0"), "cell")
         self.assert_refused(self.run_throng("info", self.path), str(self.path))
+        (self.path / "no.patches.json").write_text('{"patches":[]}')
+        self.assert_refused(self.run_throng("bake", "no.patches.json", "-o", "x.throng"), "no.patches.json", "throng-patches")
+        (self.path / "no.patches.json").unlink()
         self.assert_refused(self.run_throng("run", self.world, "--class", "horse"), "horse", "adult")
         self.assertEqual(list(self.path.iterdir()), [])
 
@@ -85,6 +110,32 @@ class Program(ProgramCase):
         self.assert_refused(self.run_throng("path", "w.throng", *ends, "--block", "16,0,0,17,2,9"), zone.name)
         self.assert_refused(self.run_throng("picture", "w.throng", "-o", "p.png"), zone.name)
         self.assert_refused(self.run_throng("place", "w.throng", "--at", "14,0,8"), zone.name)
+
+    def test_a_place_asks_only_for_the_zones_around_it(self):
+        done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--zone", "12.8", "-o", "w.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        near = ("place", "w.throng", "--at", "14,0,8", "--radius", "2", "--json")
+        before = self.run_throng(*near)
+        self.assertEqual(before.returncode, 0, before.stderr)
+        zones = {tuple(map(int, p.stem.split("_")[1:])): p for p in (self.path / "w.throng").glob("zone_*.thz")}
+        self.assertGreater(len(zones), 6)
+        # A circle of 2 m around (14, 8): of zones 12.8 m wide these two.
+        for place, zone in zones.items():
+            if place not in ((0, 0), (1, 0)):
+                zone.write_bytes(b"?")
+        after = self.run_throng(*near)
+        self.assertEqual((after.returncode, after.stdout), (0, before.stdout), after.stderr)
+        self.assert_refused(self.run_throng(*near[:-3], "--radius", "200"), "checksum")
+        self.assert_refused(self.run_throng(*near, "--toward", "0,40"), "checksum")
+
+    def test_air_without_its_index_is_no_world_without_air(self):
+        done = self.run_throng("bake", "builtin:cube", "--cell", "0.2", "--fly", "-o", "w.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (self.path / "w.throng" / "air.thm").unlink()
+        fly = ("--from", "1,1,1", "--to", "2,1,1", "--fly")
+        for command in (["path", "w.throng", *fly, "--class", "flyer"], ["info", "w.throng", "--check"], ["info", "w.throng"]):
+            self.assert_refused(self.run_throng(*command), "air.thm: is missing, though zone_0_0.tha", "bake")
+        self.assert_refused(self.run_throng("path", self.world, "--from", "14,0,8", "--to", "20,0,8", "--fly"), "baked without air")
 
     def test_landscapes_are_written_curved_read_back_and_refused_when_damaged(self):
         hills = self.path / "hills.patches.json"

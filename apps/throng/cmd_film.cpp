@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "film_pipe.h"
+#include "number_checks.h"
 #include "view_stage.h"
 #include "view_window.h"
 
@@ -121,28 +122,28 @@ void add_film(CLI::App& parser, Session& session) {
       ->type_name("X,Y,Z,TX,TY,TZ");
   command->add_option("--turn", options->turn, "Turn around what is looked at [degrees/s]");
   command->add_option("--from", options->from, "Leave out what comes before [s]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command
       ->add_option("--seconds", options->seconds,
                    "Length of the film, 0: all of a recording, ten of a crowd [s]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command->add_option("--play-speed", options->speed, "Of time")
-      ->check(CLI::Range(0.05, 16.0))
+      ->check(between(0.05, 16.0))
       ->capture_default_str();
   command->add_option("--rate", options->format.rate, "Pictures a second")
-      ->check(CLI::Range(1, 120))
+      ->check(between(1, 120))
       ->capture_default_str();
   command->add_option("--width", options->format.width, "[px]")
-      ->check(CLI::Range(16, 4096))
+      ->check(between(16, 4096))
       ->capture_default_str();
   command->add_option("--height", options->format.height, "[px]")
-      ->check(CLI::Range(16, 4096))
+      ->check(between(16, 4096))
       ->capture_default_str();
   command->add_option("--avatars", target.start.avatars, "How many walk in a world")
       ->capture_default_str();
   command->add_option("--seed", target.start.seed, "Seed of all chance")->capture_default_str();
   command->add_option("--near", target.start.near, "Goals within so many metres, 0: anywhere")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least(0))
       ->capture_default_str();
   add_people_options(command, target);
   command->add_option("--threads", options->workers, "Threads, 0 for all cores");

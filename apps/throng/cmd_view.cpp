@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "command.h"
+#include "number_checks.h"
 #include "throng/picture.h"
 #include "view_stage.h"
 #include "view_window.h"
@@ -110,12 +111,12 @@ void add_view(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--seed", target.start.seed, "Seed of all chance")->capture_default_str();
   command->add_option("--dt", target.start.dt, "Length of a step [s]")
-      ->check(CLI::Range(0.01, 0.5))
+      ->check(between(0.01, 0.5))
       ->capture_default_str();
   command->add_option("--speed", target.start.speed, "Walking speed, 0 for each class's own [m/s]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command->add_option("--near", target.start.near, "Goals within so many metres, 0: anywhere")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least(0))
       ->capture_default_str();
   command->add_flag("--zones", target.start.zones, "Ways by zones: for large worlds");
   add_people_options(command, target);
@@ -129,7 +130,7 @@ void add_view(CLI::App& parser, Session& session) {
   command->add_option("--picture", options->picture, "Open no window, write what it would show")
       ->type_name("FILE.png");
   command->add_option("--after", options->after, "With --picture: let so much time pass [s]")
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(between(0.0, 3600.0))
       ->capture_default_str();
   command->add_option("--overlay", options->overlays, "With --picture: switch on, may be repeated")
       ->check(CLI::IsMember(Viewer::overlay_names(), CLI::ignore_case))
@@ -138,17 +139,17 @@ void add_view(CLI::App& parser, Session& session) {
       ->type_name("ID");
   command->add_flag("--panel", options->panel, "With --picture: the panel, too");
   command->add_option("--width", options->width, "Of the window or picture [px]")
-      ->check(CLI::Range(160, 8192))
+      ->check(between(160, 8192))
       ->capture_default_str();
   command->add_option("--height", options->height, "Of the window or picture [px]")
-      ->check(CLI::Range(120, 8192))
+      ->check(between(120, 8192))
       ->capture_default_str();
   command->add_option("--threads", options->workers, "Threads, 0 for all cores");
   command->add_option("--pictures", options->pictures, "Folder for the pictures that F12 keeps")
       ->type_name("FOLDER");
   command->add_flag("--forget", options->forget, "Neither read nor keep settings");
   command->add_option("--seconds", options->seconds, "Close the window after so long [s]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command->callback([&session, options, command] {
     if (command->count("--seed") > 0) options->target.seed = options->target.start.seed;
     session.exit_code = view(session, *options);

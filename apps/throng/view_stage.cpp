@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "number_checks.h"
 #include "rerun.h"
 #include "throng/bake.h"
 #include "throng/character.h"
@@ -211,7 +212,7 @@ void add_people_options(CLI::App* command, ViewTarget& target) {
   command->add_flag("--only-seen", target.start.only_seen,
                     "For a camera in a street: simulate only who could be seen from it");
   command->add_option("--sight", target.start.sight, "With --only-seen: so far [m]")
-      ->check(CLI::Range(1.0, 2000.0))
+      ->check(between(1.0, 2000.0))
       ->capture_default_str();
   command->add_flag("--coarse-far", target.start.coarse_far,
                     "Simulate who is more than 300 m away in longer steps");

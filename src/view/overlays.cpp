@@ -3,6 +3,7 @@
 #include "view/overlays.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -144,6 +145,18 @@ Marks level_marks(const World& world, Vec3d origin, Context& context) {
   return marks;
 }
 
+namespace {
+
+// Of the ground between four corners, in the order around it. [degrees]
+double inclination_of(const std::array<Vec3d, 4>& c) {
+  const Vec3d normal = cross(c[2] - c[0], c[3] - c[1]);
+  const double size = length(normal);
+  return size > 0 ? std::acos(std::min(1.0, std::fabs(normal.y) / size)) * 180 / std::numbers::pi
+                  : 0;
+}
+
+}  // namespace
+
 Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   Marks marks;
   const NodeBins bins = nodes.summary().bins;
@@ -151,12 +164,18 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     const NodeInfo info = nodes.node(n);
     if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMost) continue;
-    const double steep = bins.inclination_of(info.inclination) / 90;
-    const Rgba colour = ramp(0.5 - 0.5 * std::min(1.0, steep), 110), rim = rgba(255, 255, 255, 150);
+    // What nodes of level tiles promise is a limit of some class: the floor may be less steep.
+    const auto add = [&](const std::array<Vec3d, 4>& c) {
+      double steep = bins.inclination_of(info.inclination);
+      if (info.kind == PatchKind::kLevelTile) steep = std::min(steep, inclination_of(c));
+      const Rgba colour = ramp(0.5 - 0.5 * std::min(1.0, steep / 90), 110);
+      add_quad(marks, c[0], c[1], c[2], c[3], colour);
+    };
     auto c = nodes.corners(n);
     for (Vec3d& p : c) p = p - origin + lift;
     if (info.cells == 0) {
-      add_quad(marks, c[0], c[1], c[2], c[3], colour);
+      add(c);
+      const Rgba rim = rgba(255, 255, 255, 150);
       for (size_t k = 0; k < 4; ++k) add_line(marks, c[k], c[(k + 1) % 4], rim);
       continue;
     }
@@ -166,7 +185,7 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
       const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
       const auto at = [&](double u, double v) { return nodes.point(n, u, v) - origin + lift; };
       const double end = s + (count - 1) * kCell + kSide;
-      add_quad(marks, at(s, t), at(s, t + kSide), at(end, t + kSide), at(end, t), colour);
+      add({at(s, t), at(s, t + kSide), at(end, t + kSide), at(end, t)});
     });
   }
   marks.line_width = 1;

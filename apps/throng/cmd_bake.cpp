@@ -124,6 +124,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"graph_bytes", report.graph_bytes},
           {"seconds_graph", report.seconds_graph},
           {"air_zones", report.air_zones},
+          {"air_zones_kept", report.air_zones_kept},
           {"air_bytes", report.air_bytes},
           {"seconds_air", report.seconds_air},
           {"seconds_columns", report.seconds_columns},
@@ -156,8 +157,9 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
         options.config.one_sided ? ", and whether all is wound the wrong way (--one-sided)" : "");
   }
   if (report.air_zones > 0) {
-    text += fmt::format("  air over {} zones, {}, in {:.2f} s of the above\n", report.air_zones,
-                        human_bytes(report.air_bytes), report.seconds_air);
+    text += fmt::format("  air over {} zones ({} kept), {}, in {:.2f} s of the above\n",
+                        report.air_zones, report.air_zones_kept, human_bytes(report.air_bytes),
+                        report.seconds_air);
   }
   return text;
 }

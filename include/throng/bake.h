@@ -65,6 +65,7 @@ struct BakeReport {
   uint64_t spans = 0;                 ///< Solid spans after merging, of the zones baked.
   uint64_t bytes = 0;                 ///< Of all zone files.
   uint64_t air_zones = 0;             ///< Zones with an air file: those with matter.
+  uint64_t air_zones_kept = 0;        ///< Of these, whose input has not changed.
   uint64_t air_bytes = 0;             ///< Of all air files.
   uint64_t graph_bytes = 0;           ///< Of all files of regions and links.
   std::vector<double> walkable_area;  ///< Per class. [m^2]

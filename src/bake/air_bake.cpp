@@ -186,6 +186,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   const uint64_t key = hash_span(std::span<const uint64_t>(words));
   if (folder_ != nullptr) {
     if (auto kept = folder_->keep_air(zone_x, zone_z, key)) {
+      ++kept_;
       return slot_of(zone_x, zone_z, kept->bytes(), nullptr);
     }
   }

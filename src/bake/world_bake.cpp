@@ -370,6 +370,7 @@ Result<void> WorldBake::add_air(WorldFolder* folder, WorldData& world, Context& 
   if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
   world.air = gather_air(shape, world, std::move(slots));
   report.air_zones = world.air->slots.size();
+  for (const AirBaker& baker : air) report.air_zones_kept += baker.kept();
   report.air_bytes = world.air->bytes;
   report.seconds_air =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -108,6 +108,24 @@ TEST_F(ChangedZones, EmptyZonesAreCountedApart) {
   }
 }
 
+TEST_F(ChangedZones, AirIsBakedAgainWhereItChanged) {
+  BakeConfig config = kConfig;
+  config.air = 0.4;
+  Scene scene = field();
+  const BakeReport first = bake("w", scene, config);
+  EXPECT_EQ(first.air_zones, 20u);
+  EXPECT_EQ(first.air_zones_kept, 0u);
+  EXPECT_EQ(bake("w", scene, config).air_zones_kept, first.air_zones);
+  // A beam in the middle of zone (2, 1), within the heights that the air has.
+  scene.add_box({kCorner + 2.4 * kZone, 1, kCorner + 1.4 * kZone},
+                {kCorner + 2.6 * kZone, 1.5, kCorner + 1.6 * kZone});
+  const BakeReport touched = bake("w", scene, config);
+  EXPECT_EQ(touched.air_zones, first.air_zones);
+  EXPECT_EQ(touched.air_zones_kept, first.air_zones - 1);
+  bake("fresh", scene, config);
+  EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("fresh")));
+}
+
 // Zones whose area, widened by `apron`, meets the box. [m]
 uint64_t zones_near(const Box3d& box, double apron) {
   uint64_t count = 0;

@@ -82,7 +82,8 @@ class Surroundings {
   }
 
  private:
-  enum class Sight : uint8_t { kUnknown, kFloor, kStep, kWall, kRaised, kEdge };
+  // Of several floors over a cell the one tells that comes last here.
+  enum class Sight : uint8_t { kUnknown, kRaised, kEdge, kWall, kStep, kFloor };
   struct Column {
     Sight sight = Sight::kUnknown;
     int32_t feet = 0;  // of the floor that tells it
@@ -100,7 +101,7 @@ class Surroundings {
     Column found;
     const auto take = [&](Sight sight, int32_t floor) {
       const bool is_nearer = std::abs(floor - feet) < std::abs(found.feet - feet);
-      if (rank(sight) > rank(found.sight) || (sight == found.sight && is_nearer)) {
+      if (sight > found.sight || (sight == found.sight && is_nearer)) {
         found = {sight, floor};
       }
     };
@@ -128,25 +129,6 @@ class Surroundings {
     return found;
   }
 
-  // Which of several floors of a column tells.
-  static int32_t rank(Sight sight) {
-    switch (sight) {
-      case Sight::kUnknown:
-        return 0;
-      case Sight::kRaised:
-        return 1;
-      case Sight::kEdge:
-        return 2;
-      case Sight::kWall:
-        return 3;
-      case Sight::kStep:
-        return 4;
-      case Sight::kFloor:
-        return 5;
-    }
-    return 0;
-  }
-
   // Over the floor as far as it goes, and where it ends to what is seen first.
   void look_along(int32_t dx, int32_t dz, int32_t reach, Around& around) const {
     const auto beyond = static_cast<int32_t>(std::ceil(kThickWall / cell_));
@@ -159,7 +141,7 @@ class Surroundings {
         is_known = false;
         continue;
       }
-      if (is_known && column.sight <= Sight::kStep) {
+      if (is_known && column.sight >= Sight::kStep) {
         if (is_slope(next_x, next_z, next_x - x, next_z - z, feet, column.feet)) {
           around.steep = true;
           return;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 namespace throng::app {
@@ -14,7 +15,9 @@ template <class Wrong>
 CLI::Validator validator(const std::string& range, Wrong wrong) {
   return {[wrong](std::string& given) -> std::string {
             double number = 0;
-            if (!CLI::detail::lexical_cast(given, number)) return given + " is no number";
+            if (!CLI::detail::lexical_cast(given, number) || std::isnan(number)) {
+              return given + " is no number";
+            }
             const std::string what = wrong(number);
             return what.empty() ? what : given + " is " + what;
           },

@@ -47,8 +47,7 @@ constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
 constexpr Rgb kWalkLink{24, 92, 52}, kStepLink{196, 74, 8}, kSteepLink{150, 104, 8},
     kOverLink{140, 20, 32};
 constexpr Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
-constexpr Rgb kLeapLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232},
-    kPath{20, 60, 220};
+constexpr Rgb kLeapLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232};
 
 Rgb inclination_colour(double degrees) {
   for (size_t i = 1; i < kRamp.size(); ++i) {
@@ -490,7 +489,7 @@ class NodePicture {
       }
     };
     stroke(9, kPaper);
-    stroke(5, kPath);
+    stroke(5, kWay);
   }
 
   void letter(Canvas& sheet) const {

@@ -15,9 +15,8 @@ template <class Wrong>
 CLI::Validator validator(const std::string& range, Wrong wrong) {
   return {[wrong](std::string& given) -> std::string {
             double number = 0;
-            if (!CLI::detail::lexical_cast(given, number) || std::isnan(number)) {
-              return given + " is no number";
-            }
+            if (!CLI::detail::lexical_cast(given, number)) return given + " is no number";
+            if (!std::isfinite(number)) return given + " is not a finite number";
             const std::string what = wrong(number);
             return what.empty() ? what : given + " is " + what;
           },

@@ -44,7 +44,7 @@ class Program(ProgramCase):
     def test_an_option_says_what_it_wants_as_its_help_does(self):
         ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
         self.assert_refused(self.run_throng(*ends, "--reach", "-1"), "--reach: -1 is below 0;")
-        self.assert_refused(self.run_throng(*ends, "--reach", "nan"), "--reach: nan is no number;")
+        self.assert_refused(self.run_throng(*ends, "--reach", "nan"), "--reach: nan is not a finite number;")
         self.assert_refused(self.run_throng(*ends, "--slope-cost", "1001"), "--slope-cost: 1001 is above 1000;")
         self.assert_refused(self.run_throng(*ends, "--block", "1,2,3,4,5"), "--block: wants X,Y,Z,X,Y,Z, and got 1,2,3,4,5;")
         self.assert_refused(self.run_throng(*ends, "--area-cost", "7=abc"), "--area-cost: wants KIND=COST, not 7=abc;")
@@ -79,6 +79,8 @@ class Program(ProgramCase):
     def test_what_is_no_number_is_refused_wherever_one_is_asked_for(self):
         ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
         self.assert_refused(self.run_throng(*ends, "--reach", "nan"), "--reach", "finite")
+        self.assert_refused(self.run_throng(*ends, "--reach", "inf"), "--reach", "finite")
+        self.assert_refused(self.run_throng(*ends, "--reach", "far"), "--reach", "no number")
         self.assert_refused(self.run_throng(*ends, "--slope-cost", "-NaN"), "--slope-cost", "finite")
         self.assert_refused(self.run_throng("place", self.world, "--at", "14,0,8", "--toward", "nan,0"), "--toward", "finite")
         self.assert_refused(self.run_throng("region", self.world, "--at", "nan,0,8"), "--at", "finite")

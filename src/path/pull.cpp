@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/prefetch.h"
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
@@ -67,6 +68,28 @@ bool see_each_other(const PathMesh& mesh, const WayPoint& a, const WayPoint& b) 
 
 }  // namespace
 
+// Most points at which the way need not bend will be pulled from, between the points beside them:
+// what lies there is asked for before any of it is waited for.
+void Puller::ask_for_bends(const PathMesh& mesh, const std::vector<WayPoint>& way) {
+  asked_.clear();
+  for (size_t i = 1; i + 1 < way.size(); ++i) {
+    if (way[i].corner != kNoCorner) continue;
+    for (const WayPoint& beside : {way[i - 1], way[i + 1]}) {
+      if (beside.corner == kNoCorner) continue;
+      asked_.push_back(beside.corner);
+      prefetch(&mesh.corner_rects[mesh.corners[beside.corner].first_rect]);
+    }
+  }
+  const auto each_rect = [&](auto visit) {
+    for (const uint32_t corner : asked_) {
+      const uint32_t end = mesh.corners[corner + 1].first_rect;
+      for (uint32_t i = mesh.corners[corner].first_rect; i < end; ++i) visit(mesh.corner_rects[i]);
+    }
+  };
+  each_rect([&](uint32_t rect) { prefetch(&mesh.rects[rect]); });
+  each_rect([&](uint32_t rect) { prefetch(&mesh.portals[mesh.rects[rect].first_portal]); });
+}
+
 // What stands in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
 // chain of corners that a string over these two sides is caught by when it is pulled.
 void Puller::wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& over,
@@ -112,6 +135,7 @@ void Puller::wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& ov
 
 bool Puller::pull(const PathMesh& mesh, const std::vector<WayPoint>& way,
                   std::vector<uint32_t>& corners, double& length) {
+  ask_for_bends(mesh, way);
   corners.clear();
   taut_.assign(1, way.front());
   ahead_.assign(way.rbegin(), way.rend() - 1);

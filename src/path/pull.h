@@ -34,11 +34,13 @@ class Puller {
             double& length);
 
  private:
+  void ask_for_bends(const PathMesh& mesh, const std::vector<WayPoint>& way);
   void wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& over, const WayPoint& to);
 
   Sight sight_;
   std::vector<WayPoint> taut_;   // the way so far
   std::vector<WayPoint> ahead_;  // the rest of it, the next one last
+  std::vector<uint32_t> asked_;  // corners that are asked for
   std::vector<WayPoint> chain_;  // what stands between two points
 };
 

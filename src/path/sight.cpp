@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/prefetch.h"
 #include "path/border.h"
 
 // The search of path/search.cpp without its turns: intervals of portals are pushed on as long as
@@ -20,6 +21,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   sees_goal_ = false;
   in_triangle_ = with_blocks_ = false;
   views_.clear();
+  noted_.clear();
   seen_.clear();
   blocks_.clear();
   entered_.clear();
@@ -86,16 +88,23 @@ void Sight::start(uint32_t rect_index) {
     add(rect, mesh_->portals[p], mesh_->portals[p].from, mesh_->portals[p].to);
 }
 
+// Most of what looking takes is the wait for the mesh's bytes: they are asked for as soon as it is
+// known which, and views and corners come again in the order in which they were asked for.
 void Sight::run() {
-  while (!views_.empty()) {
-    const View view = views_.back();
-    views_.pop_back();
-    expand(view);
+  for (size_t i = 0; i < views_.size(); ++i) {
+    if (i + 1 < views_.size())
+      prefetch(&mesh_->portals[mesh_->rects[views_[i + 1].rect].first_portal]);
+    expand(View(views_[i]));
   }
 }
 
 void Sight::note(uint32_t corner) {
   if (corner == kNoCorner || corner == own_) return;
+  prefetch(&mesh_->corners[corner]);
+  noted_.push_back(corner);
+}
+
+void Sight::see(uint32_t corner) {
   const MeshCorner& at = mesh_->corners[corner];
   const double dx = at.x - from_.x, dz = at.z - from_.z;
   const CellPoint point{double(at.x), double(at.z)};
@@ -153,6 +162,7 @@ void Sight::judge_blocks(std::span<const View> views) {
 }
 
 void Sight::finish() {
+  for (const uint32_t corner : noted_) see(corner);
   if (with_blocks_) find_blocks();
   std::sort(seen_.begin(), seen_.end(),
             [](const SeenCorner& a, const SeenCorner& b) { return a.corner < b.corner; });
@@ -181,6 +191,7 @@ void Sight::add(const MeshRect& rect, const MeshPortal& portal, double from, dou
     };
     if (is_across(view.left) && is_across(view.right)) return;
   }
+  prefetch(&mesh_->rects[view.rect]);
   views_.push_back(view);
 }
 

@@ -65,6 +65,7 @@ class Sight {
   void expand(const View& view);
   void add(const MeshRect& rect, const MeshPortal& portal, double from, double to);
   void note(uint32_t corner);
+  void see(uint32_t corner);
   [[nodiscard]] bool is_outside(CellPoint right, CellPoint left) const;
   void finish();
   void find_blocks();
@@ -86,6 +87,7 @@ class Sight {
   CellPoint right_, left_;
   std::vector<uint32_t> around_;
   std::vector<View> views_;
+  std::vector<uint32_t> noted_;  // corners on what is seen
   std::vector<SeenCorner> seen_;
   std::vector<SeenBlock> blocks_;
   std::vector<View> entered_;  // views that have led into a rectangle

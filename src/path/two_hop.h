@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/prefetch.h"
 #include "throng/context.h"
 #include "throng/result.h"
 
@@ -48,6 +49,16 @@ struct TwoHopLabels {
 
   [[nodiscard]] std::span<const Label> of(uint32_t node) const {
     return {labels.data() + first[node], labels.data() + first[node + 1]};
+  }
+  /// Asks memory for what of() of several nodes will read: all of them before any is waited for.
+  template <class Nodes>
+  void ask_for(const Nodes& nodes) const {
+    for (const uint32_t node : nodes) prefetch(&first[node]);
+    for (const uint32_t node : nodes) {
+      const Label* list = labels.data() + first[node];
+      constexpr size_t kLine = 64 / sizeof(Label), kLines = 4;  // what follows comes by itself
+      for (size_t i = 0; i < kLines; ++i) prefetch(list + i * kLine);
+    }
   }
   /// Where in `trails` the way from a node to a hub that it has begins.
   [[nodiscard]] uint32_t place_of(uint32_t node, uint32_t hub) const;

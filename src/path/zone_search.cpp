@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <optional>
 
+#include "core/prefetch.h"
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
@@ -24,31 +26,31 @@ bool touch(const WorldData& world, uint32_t a, uint32_t b) {
   return std::abs(p.x() - q.x()) <= 1 && std::abs(p.z() - q.z()) <= 1;
 }
 
-// The corners of the way to a gate of the zone, the first of which is at `next`.
+// The corners of the way to a gate of the zone, the first of which is at `next`. Where they are is
+// asked for, not waited for: place_corners() tells it.
 void add_corners(const PathMesh& mesh, const ZoneWays& ways, uint16_t next, size_t gate,
                  std::vector<WayPoint>& way) {
   while (next != kStraight) {
-    way.push_back(way_point(mesh, ways.corners[next]));
+    way.push_back({{}, kNoRect, ways.corners[next]});
+    prefetch(&mesh.corners[way.back().corner]);
     next = ways.next[ways.row(next) + gate];
+  }
+}
+
+void place_corners(const PathMesh& mesh, std::vector<WayPoint>& way) {
+  for (WayPoint& point : way) {
+    if (point.corner != kNoCorner) point = way_point(mesh, point.corner);
   }
 }
 
 }  // namespace
 
-void ZoneSearch::Reached::begin(size_t hubs) {
-  if (hubs_.size() < hubs) hubs_.resize(hubs);
-  if (++now_ != 0) return;
-  std::fill(hubs_.begin(), hubs_.end(), Reach{});
-  now_ = 1;
-}
+void ZoneSearch::Reached::begin(size_t hubs) { hubs_.assign(hubs, word(kNever, 0)); }
 
-void ZoneSearch::Reached::add(const TwoHopLabels& labels, uint32_t node, uint32_t from,
+void ZoneSearch::Reached::add(std::span<const TwoHopLabels::Label> labels, uint32_t from,
                               float length) {
-  for (const TwoHopLabels::Label& label : labels.of(node)) {
-    Reach& hub = hubs_[label.hub];
-    const float here = length + label.length;
-    if (hub.now != now_ || here < hub.length) hub = {now_, from, here};
-  }
+  for (const TwoHopLabels::Label& label : labels)
+    hubs_[label.hub] = std::min(hubs_[label.hub], word(length + label.length, from));
 }
 
 // From an end to the gates of its zone, and on to the hubs of its territory.
@@ -60,10 +62,11 @@ void ZoneSearch::look_out(const WorldData& world, const PathMesh& mesh, const Zo
   look_for_gates(mesh, graph.gates, end.zone, ways, stop, sight_, end.length, end.next);
   const Territory& territory = graph.territories[end.territory];
   end.hubs.begin(territory.gates.size());
-  for (size_t g = 0; g < ways.gates.size(); ++g) {
-    if (end.length[g] < kNever)
-      end.hubs.add(territory.labels, territory.place_of_gate(ways.gates[g]),
-                   static_cast<uint32_t>(g), end.length[g]);
+  asked_.clear();
+  for (const uint32_t gate : ways.gates) asked_.push_back(territory.place_of_gate(gate));
+  territory.labels.ask_for(asked_);
+  for (uint32_t g = 0; g < asked_.size(); ++g) {
+    if (end.length[g] < kNever) end.hubs.add(territory.labels.of(asked_[g]), g, end.length[g]);
   }
 }
 
@@ -72,9 +75,8 @@ bool ZoneSearch::join(const ZoneGraph& graph, const Stop& from, const Stop& to, 
   if (start_.territory == goal_.territory) {
     const auto hubs = static_cast<uint32_t>(graph.territories[start_.territory].gates.size());
     for (uint32_t hub = 0; hub < hubs; ++hub) {
-      const Reach *there = start_.hubs.at(hub), *back = goal_.hubs.at(hub);
-      if (there != nullptr && back != nullptr && there->length + back->length < best.length)
-        best = {there->length + back->length, false, hub, 0, 0};
+      const float here = start_.hubs.length(hub) + goal_.hubs.length(hub);
+      if (here < best.length) best = {here, false, hub, 0, 0};
     }
   }
   join_posts(graph, from, to, best);
@@ -86,9 +88,8 @@ void ZoneSearch::reach_post(const ZoneGraph& graph, End& end, size_t place) {
   const Territory& territory = graph.territories[end.territory];
   End::Post& post = end.posts[place];
   for (const TwoHopLabels::Label& label : territory.labels.of(territory.post_gates[place])) {
-    const Reach* hub = end.hubs.at(label.hub);
-    if (hub != nullptr && hub->length + label.length < post.length)
-      post = {hub->length + label.length, label.hub, post.beyond, post.bound};
+    const float here = end.hubs.length(label.hub) + label.length;
+    if (here < post.length) post = {here, label.hub, post.beyond, post.bound};
   }
 }
 
@@ -132,23 +133,34 @@ void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop
   float known = kSlack * std::min(best.length, start_.posts[*first].length + met.length +
                                                    goal_.posts[*last].length);
   const auto each_within = [&](End& end, auto visit) {
-    for (size_t p = 0; p < end.posts.size(); ++p) {
-      if (!(end.posts[p].bound <= known)) continue;
-      reach_post(graph, end, p);
+    const Territory& territory = graph.territories[end.territory];
+    const auto keep = [&](auto is_kept) {
+      std::erase_if(within_, [&](uint32_t p) { return !is_kept(end.posts[p]); });
+    };
+    within_.resize(end.posts.size());
+    std::iota(within_.begin(), within_.end(), 0u);
+    keep([&](const End::Post& post) { return post.bound <= known; });
+    asked_.clear();
+    for (const uint32_t p : within_) asked_.push_back(territory.post_gates[p]);
+    territory.labels.ask_for(asked_);
+    for (const uint32_t p : within_) reach_post(graph, end, p);
+    keep([&](const End::Post& post) { return post.length + post.beyond <= known; });
+    asked_.clear();
+    for (const uint32_t p : within_) asked_.push_back(territory.posts[p]);
+    graph.post_labels.ask_for(asked_);
+    for (const uint32_t p : within_) {
       if (end.posts[p].length + end.posts[p].beyond <= known) visit(p);
     }
   };
   post_hubs_.begin(graph.post_territories.size());
-  each_within(start_, [&](size_t p) {
-    post_hubs_.add(graph.post_labels, start.posts[p], static_cast<uint32_t>(p),
-                   start_.posts[p].length);
+  each_within(start_, [&](uint32_t p) {
+    post_hubs_.add(graph.post_labels.of(start.posts[p]), p, start_.posts[p].length);
   });
-  each_within(goal_, [&](size_t p) {
+  each_within(goal_, [&](uint32_t p) {
     for (const TwoHopLabels::Label& label : graph.post_labels.of(goal.posts[p])) {
-      const Reach* hub = post_hubs_.at(label.hub);
-      if (hub == nullptr) continue;
-      const float here = hub->length + label.length + goal_.posts[p].length;
-      if (here < best.length) best = {here, true, label.hub, hub->from, static_cast<uint32_t>(p)};
+      const float here = post_hubs_.length(label.hub) + label.length + goal_.posts[p].length;
+      if (!(here < best.length)) continue;
+      best = {here, true, label.hub, post_hubs_.from(label.hub), p};
     }
     known = std::min(known, kSlack * best.length);
   });
@@ -167,7 +179,7 @@ void ZoneSearch::list_gates(const ZoneGraph& graph, const Best& best) {
   const Territory& start = graph.territories[start_.territory];
   const Territory& goal = graph.territories[goal_.territory];
   const auto gate_to = [&](const End& end, uint32_t hub) {
-    return graph.zones[end.zone].gates[end.hubs.at(hub)->from];
+    return graph.zones[end.zone].gates[end.hubs.from(hub)];
   };
   if (!best.over_posts) {
     const uint32_t first = gate_to(start_, best.hub), last = gate_to(goal_, best.hub);
@@ -209,27 +221,44 @@ void ZoneSearch::list_gates(const ZoneGraph& graph, const Best& best) {
   add_gates(goal, goal.post_gates[best.last], last_hub, goal.place_of_gate(last));
 }
 
-// From gate to gate of one zone: the first one is there already.
-void ZoneSearch::add_gate_way(const PathMesh& mesh, const ZoneGraph& graph, uint32_t from,
-                              uint32_t to) {
-  float least = kNever;
-  const ZoneWays* best = nullptr;
-  size_t best_to = 0;
-  uint16_t next = kStraight;
-  for (const uint32_t zone : graph.gates[from].zone) {
-    if (zone != graph.gates[to].zone[0] && zone != graph.gates[to].zone[1]) continue;
-    const ZoneWays& ways = graph.zones[zone];
-    const size_t goal = ways.place_of_gate(to);
-    const size_t at = ways.row(ways.corners.size() + ways.place_of_gate(from)) + goal;
-    if (!(ways.length[at] < least)) continue;
-    least = ways.length[at];
-    best = &ways;
-    best_to = goal;
-    next = ways.next[at];
+// Finds where the tables of zones tell of the ways from gate to gate.
+void ZoneSearch::look_up_legs(const ZoneGraph& graph) {
+  for (const uint32_t gate : gates_) prefetch(&graph.gates[gate]);
+  legs_.clear();
+  for (uint32_t i = 1; i < gates_.size(); ++i) {
+    const Gate &from = graph.gates[gates_[i - 1]], &to = graph.gates[gates_[i]];
+    for (const uint32_t zone : from.zone) {
+      if (zone != to.zone[0] && zone != to.zone[1]) continue;
+      legs_.push_back({i, &graph.zones[zone], 0, 0});
+      prefetch(&legs_.back().ways->gates);
+      prefetch(&legs_.back().ways->next);
+    }
   }
-  if (best != nullptr) add_corners(mesh, *best, next, best_to, way_);
-  const Gate& gate = graph.gates[to];
-  way_.push_back({gate.at, gate.rect[0]});
+  for (const Leg& leg : legs_) prefetch(leg.ways->gates.data() + leg.ways->gates.size() / 2);
+  for (Leg& leg : legs_) {
+    const ZoneWays& ways = *leg.ways;
+    leg.goal = ways.place_of_gate(gates_[leg.to]);
+    leg.at = ways.row(ways.corners.size() + ways.place_of_gate(gates_[leg.to - 1])) + leg.goal;
+    prefetch(&ways.length[leg.at]);
+    prefetch(&ways.next[leg.at]);
+  }
+}
+
+// From gate to gate: the first one is there already.
+void ZoneSearch::add_legs(const PathMesh& mesh, const ZoneGraph& graph) {
+  look_up_legs(graph);
+  auto leg = legs_.begin();
+  for (uint32_t i = 1; i < gates_.size(); ++i) {
+    const Leg* best = nullptr;
+    for (; leg != legs_.end() && leg->to == i; ++leg) {
+      const float length = leg->ways->length[leg->at];
+      if (length < (best == nullptr ? kNever : best->ways->length[best->at])) best = &*leg;
+    }
+    if (best != nullptr)
+      add_corners(mesh, *best->ways, best->ways->next[best->at], best->goal, way_);
+    const Gate& gate = graph.gates[gates_[i]];
+    way_.push_back({gate.at, gate.rect[0]});
+  }
 }
 
 // The way that the labels tell, pulled taut.
@@ -243,11 +272,12 @@ bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& 
   way_.assign(1, {in_cells(from.at), from.rect});
   add_corners(mesh, start, start_.next[first], first, way_);
   way_.push_back({graph.gates[gates_.front()].at, graph.gates[gates_.front()].rect[0]});
-  for (size_t i = 1; i < gates_.size(); ++i) add_gate_way(mesh, graph, gates_[i - 1], gates_[i]);
+  add_legs(mesh, graph);
   tail_.clear();
   add_corners(mesh, goal, goal_.next[last], last, tail_);
   way_.insert(way_.end(), tail_.rbegin(), tail_.rend());
   way_.push_back({in_cells(to.at), to.rect});
+  place_corners(mesh, way_);
   return pull_.pull(mesh, way_, corners, length);
 }
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "path/mesh.h"
@@ -28,22 +30,23 @@ class ZoneSearch {
 
  private:
   // How far hubs are, and from which of several nodes.
-  struct Reach {
-    uint32_t now = 0;
-    uint32_t from = 0;
-    float length = 0;
-  };
   class Reached {
    public:
     void begin(size_t hubs);
-    void add(const TwoHopLabels& labels, uint32_t node, uint32_t from, float length);
-    [[nodiscard]] const Reach* at(uint32_t hub) const {
-      return hubs_[hub].now == now_ ? &hubs_[hub] : nullptr;
+    void add(std::span<const TwoHopLabels::Label> labels, uint32_t from, float length);
+    /// Infinite: it is not reached.
+    [[nodiscard]] float length(uint32_t hub) const {
+      return std::bit_cast<float>(static_cast<uint32_t>(hubs_[hub] >> 32));
     }
+    [[nodiscard]] uint32_t from(uint32_t hub) const { return static_cast<uint32_t>(hubs_[hub]); }
 
    private:
-    std::vector<Reach> hubs_;
-    uint32_t now_ = 0;
+    // A word of both, the bits of the length above: of floats from 0 on the smaller one has the
+    // smaller bits, so the least word is the shortest, without a branch that nobody foretells.
+    static uint64_t word(float length, uint32_t from) {
+      return uint64_t{std::bit_cast<uint32_t>(length)} << 32 | from;
+    }
+    std::vector<uint64_t> hubs_;
   };
   struct End {
     uint32_t zone = 0, territory = 0;
@@ -66,6 +69,13 @@ class ZoneSearch {
     uint32_t first = 0, last = 0;  // posts: their places in their territories
   };
 
+  // From a gate of the way to the next, in a zone that both are on the border of.
+  struct Leg {
+    uint32_t to;  // place of that gate in `gates_`
+    const ZoneWays* ways;
+    size_t goal, at;  // its place in them, and that of the way
+  };
+
   void look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                 const Stop& stop, End& end);
   bool join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
@@ -75,14 +85,18 @@ class ZoneSearch {
             const Best& best, std::vector<uint32_t>& corners, double& length);
   void list_gates(const ZoneGraph& graph, const Best& best);
   void add_gates(const Territory& territory, uint32_t from, uint32_t hub, uint32_t to);
-  void add_gate_way(const PathMesh& mesh, const ZoneGraph& graph, uint32_t from, uint32_t to);
+  void look_up_legs(const ZoneGraph& graph);
+  void add_legs(const PathMesh& mesh, const ZoneGraph& graph);
 
   PathSearch search_;
   Sight sight_;
   Puller pull_;
   End start_, goal_;
   Reached post_hubs_;
+  std::vector<uint32_t> within_;  // posts that may lie on the way
+  std::vector<uint32_t> asked_;   // nodes whose labels will be read
   std::vector<uint32_t> gates_;   // of the way
+  std::vector<Leg> legs_;
   std::vector<uint32_t> walked_;  // scratch of a walk over labels
   std::vector<uint32_t> posts_;
   std::vector<WayPoint> way_, tail_;

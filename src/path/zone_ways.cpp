@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/prefetch.h"
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
@@ -263,8 +264,15 @@ void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
   sight.keep_to(ways.first_rect, ways.last_rect);
   const CellPoint here = in_cells(from.at);
   sight.look(mesh, from.rect, here, kNoRect, {});
-  for (const SeenCorner& s : sight.corners()) {
-    const size_t c = ways.place_of_corner(s.corner);
+  const auto each_corner = [&](auto visit) {
+    for (const SeenCorner& s : sight.corners()) visit(s, ways.place_of_corner(s.corner));
+  };
+  // All rows are asked for before the first is waited for.
+  each_corner([&](const SeenCorner&, size_t c) {
+    constexpr size_t kLine = 64 / sizeof(float);
+    for (size_t g = 0; g < count; g += kLine) prefetch(&ways.length[ways.row(c) + g]);
+  });
+  each_corner([&](const SeenCorner& s, size_t c) {
     const float* row = &ways.length[ways.row(c)];
     const auto first = static_cast<float>(s.distance);
     for (size_t g = 0; g < count; ++g) {
@@ -272,7 +280,7 @@ void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
       length[g] = first + row[g];
       next[g] = static_cast<uint16_t>(c);
     }
-  }
+  });
   for (size_t g = 0; g < count; ++g) {
     const Gate& gate = gates[ways.gates[g]];
     const double straight = distance(here, gate.at);

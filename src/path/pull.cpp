@@ -77,7 +77,7 @@ void Puller::ask_for_bends(const PathMesh& mesh, const std::vector<WayPoint>& wa
     for (const WayPoint& beside : {way[i - 1], way[i + 1]}) {
       if (beside.corner == kNoCorner) continue;
       asked_.push_back(beside.corner);
-      prefetch(&mesh.corner_rects[mesh.corners[beside.corner].first_rect]);
+      prefetch(mesh.corner_rects.data() + mesh.corners[beside.corner].first_rect);
     }
   }
   const auto each_rect = [&](auto visit) {
@@ -87,7 +87,7 @@ void Puller::ask_for_bends(const PathMesh& mesh, const std::vector<WayPoint>& wa
     }
   };
   each_rect([&](uint32_t rect) { prefetch(&mesh.rects[rect]); });
-  each_rect([&](uint32_t rect) { prefetch(&mesh.portals[mesh.rects[rect].first_portal]); });
+  each_rect([&](uint32_t rect) { prefetch(mesh.portals.data() + mesh.rects[rect].first_portal); });
 }
 
 // What stands in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex

@@ -93,7 +93,7 @@ void Sight::start(uint32_t rect_index) {
 void Sight::run() {
   for (size_t i = 0; i < views_.size(); ++i) {
     if (i + 1 < views_.size())
-      prefetch(&mesh_->portals[mesh_->rects[views_[i + 1].rect].first_portal]);
+      prefetch(mesh_->portals.data() + mesh_->rects[views_[i + 1].rect].first_portal);
     expand(View(views_[i]));
   }
 }

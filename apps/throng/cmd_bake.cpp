@@ -27,7 +27,7 @@ struct BakeOptions {
   bool coarse = false;
   bool fresh = false;
   bool nodes = false;
-  std::string jumps;
+  std::string off_mesh_links;
   bool fly = false;
   BakeConfig config;
   NodeConfig node_config;
@@ -36,7 +36,7 @@ struct BakeOptions {
 
 // Nodes are made when they are asked for, and whenever a class climbs or drops: only they carry it.
 bool wants_nodes(const BakeOptions& options) {
-  return options.nodes || !options.jumps.empty() ||
+  return options.nodes || !options.off_mesh_links.empty() ||
          std::any_of(options.config.classes.begin(), options.config.classes.end(),
                      [](const AvatarClass& avatar) { return goes_over_nodes(avatar); });
 }
@@ -51,8 +51,8 @@ bool read_point(const Json& entry, const char* key, Vec3d& out) {
 }
 
 // Jumps from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways": false}].
-Result<std::vector<NodeJump>> read_jumps(const std::string& name,
-                                         const std::vector<AvatarClass>& classes) {
+Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name,
+                                                         const std::vector<AvatarClass>& classes) {
   std::ifstream file(name);
   if (!file) return Error{Errc::kBadFile, name + ": cannot be read"};
   const Json json = Json::parse(file, nullptr, false);
@@ -62,13 +62,15 @@ Result<std::vector<NodeJump>> read_jumps(const std::string& name,
                      ": is no list of jumps in JSON, as [{\"from\": [0, 0, 0], \"to\": [3, 0, 0], "
                      "\"class\": \"adult\", \"both_ways\": true}]"};
   }
-  std::vector<NodeJump> jumps;
+  std::vector<NodeOffMeshLink> off_mesh_links;
   for (const Json& entry : json) {
     const auto bad = [&](const std::string& what) {
-      return Error{Errc::kBadFile, fmt::format("{}: jump {}: {}", name, jumps.size() + 1, what)};
+      return Error{Errc::kBadFile,
+                   fmt::format("{}: jump {}: {}", name, off_mesh_links.size() + 1, what)};
     };
-    NodeJump jump;
-    if (!read_point(entry, "from", jump.from) || !read_point(entry, "to", jump.to)) {
+    NodeOffMeshLink off_mesh_link;
+    if (!read_point(entry, "from", off_mesh_link.from) ||
+        !read_point(entry, "to", off_mesh_link.to)) {
       return bad("needs \"from\" and \"to\", three numbers each");
     }
     if (!entry.contains("class") || !entry["class"].is_string()) return bad("needs a \"class\"");
@@ -80,14 +82,14 @@ Result<std::vector<NodeJump>> read_jumps(const std::string& name,
       for (const AvatarClass& avatar : classes) known += (known.empty() ? "" : ", ") + avatar.name;
       return bad(fmt::format("there is no class {}; choose from {}", wanted, known));
     }
-    jump.avatar_class = static_cast<int32_t>(of - classes.begin());
+    off_mesh_link.avatar_class = static_cast<int32_t>(of - classes.begin());
     if (entry.contains("both_ways")) {
       if (!entry["both_ways"].is_boolean()) return bad("both_ways must be true or false");
-      jump.both_ways = entry["both_ways"].get<bool>();
+      off_mesh_link.both_ways = entry["both_ways"].get<bool>();
     }
-    jumps.push_back(jump);
+    off_mesh_links.push_back(off_mesh_link);
   }
-  return jumps;
+  return off_mesh_links;
 }
 
 Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
@@ -112,7 +114,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"resolution", options.config.resolution},
           {"zones", report.zones},
           {"zones_baked", report.zones_baked},
-          {"zones_kept", report.zones_kept},
+          {"zones_kept", report.zones_reused},
           {"zones_empty", report.zones_empty},
           {"zones_relinked", report.zones_relinked},
           {"tiles", report.tiles},
@@ -124,7 +126,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"graph_bytes", report.graph_bytes},
           {"seconds_graph", report.seconds_graph},
           {"air_zones", report.air_zones},
-          {"air_zones_kept", report.air_zones_kept},
+          {"air_zones_kept", report.air_zones_reused},
           {"air_bytes", report.air_bytes},
           {"seconds_air", report.seconds_air},
           {"seconds_columns", report.seconds_columns},
@@ -144,8 +146,9 @@ bool stands_nowhere(const BakeReport& report) {
 std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
   std::string text = fmt::format(
       "{}: {} triangles in {:.2f} s, {} zones ({} kept), {} level tiles ({} of them flat), {}\n",
-      options.output, scene.triangles.size(), report.seconds_total, report.zones, report.zones_kept,
-      report.level_tiles, report.constant_level_tiles, human_bytes(report.bytes));
+      options.output, scene.triangles.size(), report.seconds_total, report.zones,
+      report.zones_reused, report.level_tiles, report.constant_level_tiles,
+      human_bytes(report.bytes));
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
@@ -158,7 +161,7 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
   }
   if (report.air_zones > 0) {
     text += fmt::format("  air over {} zones ({} kept), {}, in {:.2f} s of the above\n",
-                        report.air_zones, report.air_zones_kept, human_bytes(report.air_bytes),
+                        report.air_zones, report.air_zones_reused, human_bytes(report.air_bytes),
                         report.seconds_air);
   }
   return text;
@@ -180,10 +183,11 @@ Result<void> prepare(BakeOptions& options) {
   options.node_config.working_bytes = options.node_memory << 20;
   options.node_config.fresh = options.fresh;
   options.config.carry_nodes = !options.fresh;
-  if (!options.jumps.empty()) {
-    Result<std::vector<NodeJump>> jumps = read_jumps(options.jumps, options.config.classes);
-    if (!jumps) return jumps.error();
-    options.node_config.jumps = *std::move(jumps);
+  if (!options.off_mesh_links.empty()) {
+    Result<std::vector<NodeOffMeshLink>> off_mesh_links =
+        read_off_mesh_links(options.off_mesh_links, options.config.classes);
+    if (!off_mesh_links) return off_mesh_links.error();
+    options.node_config.off_mesh_links = *std::move(off_mesh_links);
   }
   options.config.nodes = &options.node_config;
   return check_node_config(options.node_config);
@@ -229,7 +233,7 @@ int bake(Session& session, BakeOptions& options) {
   std::string text = bake_text(options, *scene, *report);
   if (nodes) {
     json["node_zones_made"] = nodes->zones_made;
-    json["node_zones_kept"] = nodes->zones_kept;
+    json["node_zones_kept"] = nodes->zones_reused;
     json["nodes"] = nodes->nodes;
     json["node_arcs"] = nodes->arcs;
     json["node_bytes"] = nodes->bytes;
@@ -237,7 +241,7 @@ int bake(Session& session, BakeOptions& options) {
     json["peak_bytes"] = peak_memory();
     text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}, over {} zones ({} kept)\n",
                         nodes->nodes, nodes->arcs, nodes->seconds, human_bytes(nodes->bytes),
-                        nodes->zones_made + nodes->zones_kept, nodes->zones_kept);
+                        nodes->zones_made + nodes->zones_reused, nodes->zones_reused);
   }
   print_result(session, json, text);
   return kDone;
@@ -275,7 +279,7 @@ void add_bake(CLI::App& parser, Session& session) {
                     "Also make nodes and links; always done where a class climbs or drops, "
                     "and for --jumps");
   command
-      ->add_option("--jumps", options->jumps,
+      ->add_option("--jumps", options->off_mesh_links,
                    "Ways given by hand (JSON), which nodes carry: implies --nodes")
       ->type_name("FILE.json");
   command

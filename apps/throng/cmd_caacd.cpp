@@ -211,11 +211,11 @@ int caacd(Session& session, CaacdOptions& options) {
       return fail(ok.error());
     }
   }
-  constexpr size_t kMostColumns = 5;
+  constexpr size_t kMaxColumns = 5;
   std::string text = fmt::format(
       "collisions a run over {} seeds, at most {} frames each, {:.1f} s, state {:016x}\n",
       options.study.seeds, options.study.frames, seconds, study->hash);
-  if (study->sets.size() <= kMostColumns) {
+  if (study->sets.size() <= kMaxColumns) {
     text += "mean +- standard deviation (most), and the most that [CAACD] reports\n";
     text += table_by_avatars(*study);
   } else {

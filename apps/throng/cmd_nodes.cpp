@@ -21,7 +21,7 @@ int print_nodes(Session& session, const std::string& path) {
   Json json = {{"world", path},
                {"nodes", summary.nodes},
                {"terminal", summary.terminal},
-               {"ragged", summary.ragged},
+               {"ragged", summary.partial},
                {"arcs", summary.arcs},
                {"patches", summary.patches},
                {"zones", summary.zones},
@@ -30,14 +30,14 @@ int print_nodes(Session& session, const std::string& path) {
   std::string text = fmt::format(
       "{}: {} nodes ({} terminal, {} ragged), {} arcs, {} patches in {} zones, {} ({:.1f} bytes a "
       "node)\n",
-      path, summary.nodes, summary.terminal, summary.ragged, summary.arcs, summary.patches,
+      path, summary.nodes, summary.terminal, summary.partial, summary.arcs, summary.patches,
       summary.zones, human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
   json["classes"] = Json::array();
   for (size_t c = 0; c < summary.classes.size(); ++c) {
     const auto reach = nodes->reach(static_cast<int32_t>(c));
     double area = 0;
     uint64_t stands = 0;
-    for (const NodeReach& part : reach) {
+    for (const NodeComponent& part : reach) {
       area += part.area;
       stands += part.nodes;
     }

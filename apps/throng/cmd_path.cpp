@@ -34,13 +34,13 @@ struct PathOptions {
   int32_t threads = 0;
   bool fly = false;
   bool nodes = false;
-  std::vector<double> blocks;      // six numbers a box
-  std::vector<double> jumps;       // six numbers a jump
-  std::vector<double> area_costs;  // a kind and its cost
+  std::vector<double> blocks;          // six numbers a box
+  std::vector<double> off_mesh_links;  // six numbers a jump
+  std::vector<double> area_costs;      // a kind and its cost
   double slope_cost = 0;
 
   [[nodiscard]] bool is_live() const {
-    return !blocks.empty() || !jumps.empty() || !area_costs.empty() || slope_cost > 0;
+    return !blocks.empty() || !off_mesh_links.empty() || !area_costs.empty() || slope_cost > 0;
   }
 };
 
@@ -52,7 +52,7 @@ const char* word_for(PathEnd end) {
       return "unreachable";
     case PathEnd::kNoPlace:
       return "no place";
-    case PathEnd::kGaveUp:
+    case PathEnd::kBudgetExhausted:
       return "gave up";
   }
   return "";
@@ -103,8 +103,8 @@ std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
 Json path_json(const PathOptions& options, const Path& path, const Place& to, double seconds) {
   Json points = Json::array(), links = Json::array();
   for (const Place& p : path.points) points.push_back(numbers(p.position));
-  for (const uint32_t point : path.jumps) {
-    links.push_back({{"point", point}, {"kind", app::word_for(LinkKind::kJump)}});
+  for (const uint32_t point : path.off_mesh_links) {
+    links.push_back({{"point", point}, {"kind", app::word_for(LinkKind::kOffMesh)}});
   }
   // Where nothing costs more than its length, that is the cost.
   Json json = {{"world", options.world},
@@ -116,7 +116,7 @@ Json path_json(const PathOptions& options, const Path& path, const Place& to, do
                {"links", links},
                {"nodes", path.nodes},
                {"seconds", seconds}};
-  if (options.is_live()) json["jumps"] = path.jumps;
+  if (options.is_live()) json["jumps"] = path.off_mesh_links;
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d& nearest = path.points.back().position;
     json["nearest"] = {{"place", numbers(nearest)},
@@ -149,24 +149,25 @@ std::string path_text(const PathOptions& options, const Path& path, const Place&
     text += fmt::format("  gets to ({}), {}; what is in the way: {}\n", where(nearest),
                         how_near(nearest, to.position), app::word_for(path.obstacle));
   }
-  size_t jump = 0;
+  size_t off_mesh_link = 0;
   for (size_t i = 0; i < path.points.size(); ++i) {
-    const bool jumps = jump < path.jumps.size() && path.jumps[jump] == i;
-    if (jumps) ++jump;
-    text += "  " + where(path.points[i].position) + (jumps ? "  jump\n" : "\n");
+    const bool off_mesh_links =
+        off_mesh_link < path.off_mesh_links.size() && path.off_mesh_links[off_mesh_link] == i;
+    if (off_mesh_links) ++off_mesh_link;
+    text += "  " + where(path.points[i].position) + (off_mesh_links ? "  jump\n" : "\n");
   }
   return text;
 }
 
-const char* word_for(LegKind kind) {
+const char* word_for(SegmentKind kind) {
   switch (kind) {
-    case LegKind::kWalk:
+    case SegmentKind::kWalk:
       return "walk";
-    case LegKind::kTakeOff:
+    case SegmentKind::kTakeOff:
       return "take off";
-    case LegKind::kFly:
+    case SegmentKind::kFly:
       return "fly";
-    case LegKind::kLand:
+    case SegmentKind::kLand:
       return "land";
   }
   return "";
@@ -174,9 +175,9 @@ const char* word_for(LegKind kind) {
 
 Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d& to,
                  const FlightSummary& summary, double seconds) {
-  Json points = Json::array(), legs = Json::array();
+  Json points = Json::array(), segments = Json::array();
   for (const Vec3d& p : path.points) points.push_back(numbers(p));
-  for (const LegKind kind : path.legs) legs.push_back(word_for(kind));
+  for (const SegmentKind kind : path.segments) segments.push_back(word_for(kind));
   Json json = {
       {"world", options.world},
       {"class", options.avatar_class},
@@ -184,7 +185,7 @@ Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d
       {"length", path.length},
       {"cost", path.length},
       {"points", points},
-      {"legs", legs},
+      {"legs", segments},
       {"nodes", path.nodes},
       {"seconds", seconds},
       {"air", {{"boxes", summary.boxes}, {"bytes", summary.bytes}, {"seconds", summary.seconds}}}};
@@ -202,7 +203,7 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
   std::string text;
   if (path.end == PathEnd::kReached) {
     text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
-                       options.avatar_class, path.legs.size(), seconds * 1e3);
+                       options.avatar_class, path.segments.size(), seconds * 1e3);
   } else {
     text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
@@ -212,7 +213,7 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
   }
   for (size_t i = 0; i < path.points.size(); ++i) {
     text += fmt::format("  {}{}\n", where(path.points[i]),
-                        i == 0 ? "" : fmt::format("  {}", word_for(path.legs[i - 1])));
+                        i == 0 ? "" : fmt::format("  {}", word_for(path.segments[i - 1])));
   }
   return text;
 }
@@ -348,7 +349,7 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
       NodePathFinder::make(*nodes,
                            {.avatar_class = avatar_class,
                             .slope_cost = options.slope_cost,
-                            .districts = false,  // For one way they are not worth their time.
+                            .overlay = false,  // For one way they are not worth their time.
                             .workers = options.threads},
                            session.context);
   if (!finder) return fail(finder.error());
@@ -406,16 +407,17 @@ Result<LiveGround> live_ground(const World& world, const PathOptions& options,
       return Error{ok.error().code, "--area-cost: " + ok.error().message};
     }
   }
-  for (size_t i = 0; i < options.jumps.size(); i += 6) {
-    Jump jump;
-    for (Place* end : {&jump.from, &jump.to}) {
-      const auto at = options.jumps.begin() + static_cast<ptrdiff_t>(i + (end == &jump.to ? 3 : 0));
+  for (size_t i = 0; i < options.off_mesh_links.size(); i += 6) {
+    OffMeshLink off_mesh_link;
+    for (Place* end : {&off_mesh_link.from, &off_mesh_link.to}) {
+      const auto at = options.off_mesh_links.begin() +
+                      static_cast<ptrdiff_t>(i + (end == &off_mesh_link.to ? 3 : 0));
       auto place = place_of(world, options, avatar_class, {at, at + 3}, "--jump");
       if (!place) return place.error();
       *end = *place;
     }
-    jump.cost = length(jump.to.position - jump.from.position);
-    if (auto added = ground->add_jump(jump); !added) {
+    off_mesh_link.cost = length(off_mesh_link.to.position - off_mesh_link.from.position);
+    if (auto added = ground->add_off_mesh_link(off_mesh_link); !added) {
       return Error{Errc::kBadInput, "--jump: " + added.error().message};
     }
   }
@@ -432,7 +434,7 @@ int path(Session& session, const PathOptions& options) {
     return fail({Errc::kBadConfig, "--fly leads through the air, --nodes over the ground"});
   }
   if (options.fly) {
-    if (!options.jumps.empty() || !options.area_costs.empty() || options.slope_cost > 0) {
+    if (!options.off_mesh_links.empty() || !options.area_costs.empty() || options.slope_cost > 0) {
       return fail({Errc::kBadConfig,
                    "--jump, --area-cost and --slope-cost are about the ground; ways through the "
                    "air (--fly) only mind a --block"});
@@ -440,7 +442,7 @@ int path(Session& session, const PathOptions& options) {
     return fly(session, options, *world, *avatar_class);
   }
   if (options.nodes || goes_over_nodes(avatar)) {
-    if (!options.jumps.empty() || !options.area_costs.empty()) {
+    if (!options.off_mesh_links.empty() || !options.area_costs.empty()) {
       return fail({Errc::kBadConfig,
                    "--jump and --area-cost change the ground of level tiles; ways over nodes take "
                    "jumps from `throng bake --jumps`"});
@@ -533,8 +535,8 @@ void add_path(CLI::App& parser, Session& session) {
         ->type_name(type);
   };
   add_blocks(command, options->blocks);
-  add_list("--jump", options->jumps, "A way from one place to another and back, given by hand [m]",
-           ',', 6, "X,Y,Z,X,Y,Z");
+  add_list("--jump", options->off_mesh_links,
+           "A way from one place to another and back, given by hand [m]", ',', 6, "X,Y,Z,X,Y,Z");
   add_list("--area-cost", options->area_costs,
            "What a metre on ground of a kind costs; inf closes it", '=', 2, "KIND=COST");
   command

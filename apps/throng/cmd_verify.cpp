@@ -69,7 +69,7 @@ Json flight_json(const ClassReport& entry) {
   if (!entry.flight) return nullptr;
   const FlightReport& flight = *entry.flight;
   return {{"points", flight.points},  {"pairs", flight.pairs},         {"reached", flight.reached},
-          {"legs", flight.legs},      {"positions", flight.positions}, {"entered", flight.entered},
+          {"legs", flight.segments},  {"positions", flight.positions}, {"entered", flight.entered},
           {"seconds", flight.seconds}};
 }
 
@@ -163,8 +163,8 @@ std::string class_text(const ClassReport& entry) {
       "  in the air: {} points, {} of {} pairs reached over {} legs, {} bodies on them in {:.1f} "
       "s; "
       "entered {}\n",
-      flight.points, flight.reached, flight.pairs, flight.legs, flight.positions, flight.seconds,
-      flight.entered);
+      flight.points, flight.reached, flight.pairs, flight.segments, flight.positions,
+      flight.seconds, flight.entered);
   for (const VerifyFault& fault : flight.faults) {
     text += fmt::format("  {} in the air at {:.4f} {:.4f} {:.4f} by triangle {}\n", fault.what,
                         fault.position.x, fault.position.y, fault.position.z, fault.triangle);
@@ -293,7 +293,7 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
                  {"reached", report.reached},
                  {"parted", report.parted},
                  {"blocked", report.blocked},
-                 {"legs", report.legs},
+                 {"legs", report.segments},
                  {"links", kinds},
                  {"leaps", report.leaps},
                  {"poses", report.poses}},
@@ -302,7 +302,7 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
           "{}, over nodes: {} pairs, {} reached, {} in different parts, {} shut off by what was "
           "put up; {} legs, {} leaps, {} bodies on them in {:.1f} s\n"
           "  entered {}, unsupported {}, torn {}, against the parts {}\n",
-          name, report.pairs, report.reached, report.parted, report.blocked, report.legs,
+          name, report.pairs, report.reached, report.parted, report.blocked, report.segments,
           report.leaps, report.poses, report.seconds, report.entered, report.unsupported,
           report.torn, report.disagree) +
           told_faults(report.faults),
@@ -316,7 +316,7 @@ WaysReport told(const std::string& name, const PathReport& report) {
                  {"pairs", report.pairs},
                  {"reached", report.reached},
                  {"parted", report.parted},
-                 {"legs", report.legs},
+                 {"legs", report.segments},
                  {"bodies", report.bodies},
                  {"illegal", report.illegal}},
                 report),
@@ -324,7 +324,7 @@ WaysReport told(const std::string& name, const PathReport& report) {
           "{}: {} pairs, {} reached, {} in different parts; {} legs, {} bodies on them in {:.1f} "
           "s\n"
           "  illegal {}, entered {}, unsupported {}, torn {}, against the parts {}\n",
-          name, report.pairs, report.reached, report.parted, report.legs, report.bodies,
+          name, report.pairs, report.reached, report.parted, report.segments, report.bodies,
           report.seconds, report.illegal, report.entered, report.unsupported, report.torn,
           report.disagree) +
           told_faults(report.faults),

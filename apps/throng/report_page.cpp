@@ -13,14 +13,14 @@
 namespace throng::app {
 namespace {
 
-constexpr size_t kMostPoints = 1000;  // of a line: more than the pixels of a chart
+constexpr size_t kMaxPoints = 1000;  // of a line: more than the pixels of a chart
 
 // A chart over the frames, of every so many of them, and the last.
 class FrameChart {
  public:
   FrameChart(const ReplaySummary& summary, Chart chart) : chart_(std::move(chart)) {
     const size_t frames = summary.time.size();
-    const size_t every = frames / kMostPoints + 1;
+    const size_t every = frames / kMaxPoints + 1;
     for (size_t f = 0; f < frames; f += every) picked_.push_back(f);
     if (picked_.back() != frames - 1) picked_.push_back(frames - 1);
     for (const size_t f : picked_) chart_.x.push_back(summary.time[f]);
@@ -50,7 +50,7 @@ Chart flow_chart(const ReplaySummary& summary, const SummaryConfig& config, size
               .y_title = "persons a second"};
   ChartLine forth{.name = fmt::format("to the right: {} in all", flow.total_forth)};
   ChartLine back{.name = fmt::format("to the left: {} in all", flow.total_back)};
-  const size_t together = flow.forth.size() / kMostPoints + 1;  // bins in one step
+  const size_t together = flow.forth.size() / kMaxPoints + 1;  // bins in one step
   for (size_t b = 0; b < flow.forth.size(); b += together) {
     const size_t end = std::min(b + together, flow.forth.size());
     double counts[2] = {0, 0};

@@ -63,7 +63,7 @@ struct Totals {
     sum.contested += r.contested;
     sum.arrived += r.arrived;
     sum.planned += r.planned;
-    sum.no_way += r.no_way;
+    sum.no_path += r.no_path;
     sum.flying = r.flying;  // at the end
     sum.climbing = r.climbing;
     sum.seconds_plan += r.seconds_plan;
@@ -103,7 +103,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
        {"progress", t.progress / steps},
        {"arrived", t.sum.arrived},
        {"planned", t.sum.planned},
-       {"no_way", t.sum.no_way},
+       {"no_way", t.sum.no_path},
        {"flying", t.sum.flying},
        {"climbing", t.sum.climbing},
        {"blocked", t.sum.stood},
@@ -126,7 +126,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                   "{} checks: {} wall entries, {} overlaps\n"
                   "state {:016x}\n",
                   crowd.size(), run.class_name, t.seconds.size(), run.config.dt, ns, t.sum.arrived,
-                  t.sum.planned, t.sum.no_way, t.progress / steps, t.checks, t.found.wall_entries,
+                  t.sum.planned, t.sum.no_path, t.progress / steps, t.checks, t.found.wall_entries,
                   t.found.overlaps, crowd.state_hash()));
 }
 
@@ -308,7 +308,7 @@ void GoalCrowd::give(std::span<const AvatarId> ids) {
 
 CrowdReport GoalCrowd::step() {
   const CrowdReport report = crowd_.step();
-  give(crowd_.stranded());
+  give(crowd_.goal_unreachable());
   if (run_.goals == "random") give(crowd_.arrived());
   return report;
 }

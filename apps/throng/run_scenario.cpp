@@ -99,7 +99,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
        {"still_here", simulation.crowd().size()},
        {"outside", t.last.outside},
        {"in_links", t.last.in_links},
-       {"stranded", t.last.stranded},
+       {"stranded", t.last.goal_unreachable},
        {"most_at_a_time", t.most},
        {"last_left", outcome.last},
        {"mean_time", outcome.mean_time},
@@ -117,8 +117,8 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                   "{} stranded, {} found no room to come in; {:.0f} ns an avatar a step\n"
                   "{} checks: {} wall entries, {} overlaps, {} in obstacles\nstate {:016x}\n",
                   run.file, t.last.time, t.last.entered, t.last.left, simulation.crowd().size(),
-                  lines, outcome.last, outcome.mean_time, t.last.stranded, t.last.outside, ns,
-                  t.checks, t.found.wall_entries, t.found.overlaps, t.found.obstacle_entries,
+                  lines, outcome.last, outcome.mean_time, t.last.goal_unreachable, t.last.outside,
+                  ns, t.checks, t.found.wall_entries, t.found.overlaps, t.found.obstacle_entries,
                   simulation.state_hash()));
 }
 

@@ -271,7 +271,7 @@ const char* word_for(LinkKind kind) {
       return "climb";
     case LinkKind::kDrop:
       return "drop";
-    case LinkKind::kJump:
+    case LinkKind::kOffMesh:
       return "jump";
     case LinkKind::kLand:
       return "land";

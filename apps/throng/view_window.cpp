@@ -279,18 +279,20 @@ Result<void> run_window(const std::string& name, const LoadStage& load,
     viewer.set_gamepad(read_gamepad());
     if (auto ok = viewer.frame(glfwGetTime(), width, height); !ok) return ok;
     glfwSwapBuffers(w);
-    const ViewerWishes wishes = viewer.take_wishes();
-    if (wishes.close) break;
-    set_fullscreen(w, wishes.fullscreen, place);
-    glfwSetInputMode(w, GLFW_CURSOR, wishes.grab_mouse ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
-    if (wishes.save_picture) {
+    const ViewerRequests requests = viewer.take_requests();
+    if (requests.close) break;
+    set_fullscreen(w, requests.fullscreen, place);
+    glfwSetInputMode(w, GLFW_CURSOR,
+                     requests.grab_mouse ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    if (requests.save_picture) {
       const std::string file = picture_name(config.pictures);
       const Result<Image> image = viewer.picture(glfwGetTime(), width, height);
       const Result<void> done = image ? write_png(*image, file) : image.error();
       note(done ? "kept the picture as " + file : done.error().message);
     }
-    if (!wishes.open.empty() && config.open) {
-      viewer.load(std::filesystem::path(wishes.open).filename().string(), config.open(wishes.open));
+    if (!requests.open.empty() && config.open) {
+      viewer.load(std::filesystem::path(requests.open).filename().string(),
+                  config.open(requests.open));
     }
     const ViewerStatus status = viewer.status();
     const std::string now = fmt::format("throng: {}", status.name);

@@ -195,7 +195,7 @@ EMSCRIPTEN_KEEPALIVE void throng_show_overlay(const char* name) {
 /// What is going on, as an object. Wishes are told once.
 EMSCRIPTEN_KEEPALIVE const char* throng_status() {
   const ViewerStatus s = page().viewer->status();
-  const ViewerWishes wishes = page().viewer->take_wishes();
+  const ViewerRequests requests = page().viewer->take_requests();
   const Json json = {{"name", s.name},
                      {"loading", s.loading},
                      {"error", s.error},
@@ -205,8 +205,8 @@ EMSCRIPTEN_KEEPALIVE const char* throng_status() {
                      {"drawn", s.drawn},
                      {"picked", s.picked},
                      {"driven", s.driven},
-                     {"grab_mouse", wishes.grab_mouse},
-                     {"save_picture", wishes.save_picture},
+                     {"grab_mouse", requests.grab_mouse},
+                     {"save_picture", requests.save_picture},
                      {"camera",
                       {s.camera.eye.x, s.camera.eye.y, s.camera.eye.z, s.camera.target.x,
                        s.camera.target.y, s.camera.target.z}}};

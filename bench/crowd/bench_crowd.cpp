@@ -31,8 +31,8 @@ struct Options {
   double radius = 0.3, speed = 1.3;
   double view = -1;  // radius of a view in the middle [m]; below 0: none
   double dt = 0.1;
-  int32_t far_steps = CrowdConfig().far_steps;
-  double far_reaction = CrowdConfig().far_reaction;
+  int32_t low_detail_steps = CrowdConfig().low_detail_steps;
+  double low_detail_reaction = CrowdConfig().low_detail_reaction;
 };
 
 Json fail(const Error& error) { return {{"error", error.message}}; }
@@ -51,9 +51,9 @@ Json run(const Options& o) {
   auto crowd = Crowd::create(*world, {.dt = o.dt,
                                       .seed = o.seed,
                                       .workers = o.threads,
-                                      .ways = CrowdWays::kStraight,
-                                      .far_steps = o.far_steps,
-                                      .far_reaction = o.far_reaction});
+                                      .ways = Routing::kStraight,
+                                      .low_detail_steps = o.low_detail_steps,
+                                      .low_detail_reaction = o.low_detail_reaction});
   if (!crowd) return fail(crowd.error());
   if (o.view >= 0) {
     const CrowdView view{{side / 2, 0, side / 2}, o.view};
@@ -102,8 +102,8 @@ int main(int argc, char** argv) {
   parser.add_option("--radius", options.radius)->check(CLI::Range(0.05, 10.0));
   parser.add_option("--view", options.view, "One view in the middle of this radius [m]");
   parser.add_option("--dt", options.dt)->check(CLI::Range(0.001, 1.0));
-  parser.add_option("--far-steps", options.far_steps)->check(CLI::Range(1, 16));
-  parser.add_option("--far-reaction", options.far_reaction)->check(CLI::Range(0.0, 10.0));
+  parser.add_option("--far-steps", options.low_detail_steps)->check(CLI::Range(1, 16));
+  parser.add_option("--far-reaction", options.low_detail_reaction)->check(CLI::Range(0.0, 10.0));
   parser.add_option("--check-every", options.timing.check_every, "Steps")
       ->check(CLI::PositiveNumber);
   CLI11_PARSE(parser, argc, argv);

@@ -64,7 +64,7 @@ class Run {
   Json steps(bool with_obstacles) {
     std::vector<double> ns, plan_ns;
     CrowdCheck found;
-    uint64_t moved = 0, waited = 0, stood = 0, stranded = 0, planned = 0, checks = 0;
+    uint64_t moved = 0, waited = 0, stood = 0, goal_unreachable = 0, planned = 0, checks = 0;
     double progress = 0;
     for (uint64_t step = 1; step <= o_.steps; ++step) {
       if (with_obstacles) {
@@ -73,12 +73,12 @@ class Run {
       }
       const CrowdReport r = crowd_.step();
       give_goals(crowd_.arrived());
-      give_goals(crowd_.stranded());
+      give_goals(crowd_.goal_unreachable());
       ns.push_back(r.seconds_total * 1e9 / o_.avatars);
       plan_ns.push_back(r.seconds_plan * 1e9 / o_.avatars);
       waited += r.waiting;
       stood += r.stood;
-      stranded += r.no_way;
+      goal_unreachable += r.no_path;
       planned += r.planned;
       progress += r.progress;
       if (step % o_.check_every != 0) continue;
@@ -94,7 +94,7 @@ class Run {
             {"progress", progress / steps},
             {"stood", static_cast<double>(stood) / steps / o_.avatars},
             {"planned", planned},
-            {"stranded", stranded},
+            {"stranded", goal_unreachable},
             {"carts_moved", moved},
             {"waited", waited},
             {"avatar_steps", o_.steps * o_.avatars},
@@ -110,7 +110,7 @@ class Run {
       Cart cart;
       const Vec3d at = somewhere();
       cart.prism = Prism::circle({at.x, at.y, at.z}, 0.6, 1.5);
-      const auto id = crowd_.add_obstacle(cart.prism, ObstacleKind::kMoving);
+      const auto id = crowd_.add_obstacle(cart.prism, ObstacleKind::kKinematic);
       if (!id) continue;
       cart.id = *id;
       cart.dx = 0.2 * draw() - 0.1;

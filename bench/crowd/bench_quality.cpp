@@ -27,9 +27,9 @@ Json run(const Options& options) {
   test::PlainConfig config = options.config;
   config.seed = options.seed;
   if (config.model != SteeringModel::kSampled) {  // as Crowd has it
-    config.patient = false;
+    config.deadlock_avoidance = false;
     config.reaction = 0;
-    config.steering.neighbours = steer::kMostNear;
+    config.steering.neighbours = steer::kMaxNear;
   }
   const bool circle = options.scene == "circle";
   std::vector<test::PlainBody> bodies =
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   parser.add_option("--right", steering.right)->capture_default_str();
   parser.add_option("--gap", steering.gap)->capture_default_str();
   parser.add_option("--neighbours", steering.neighbours)
-      ->check(CLI::Range(size_t{1}, steer::kMostNear))
+      ->check(CLI::Range(size_t{1}, steer::kMaxNear))
       ->capture_default_str();
   parser
       .add_option("--reaction", options.config.reaction,
@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
                                           options.config.model = *model;
                                         })
       ->type_name("MODEL");
-  parser.add_flag("!--no-patience", options.config.patient);
+  parser.add_flag("!--no-patience", options.config.deadlock_avoidance);
   CLI11_PARSE(parser, argc, argv);
   std::puts(run(options).dump().c_str());
 }

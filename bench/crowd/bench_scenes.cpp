@@ -145,7 +145,7 @@ Json run_world(const Options& o) {
     tally.step(*crowd, o);
     arrived += crowd->arrived().size();
     bound.assign(crowd->arrived().begin(), crowd->arrived().end());
-    bound.insert(bound.end(), crowd->stranded().begin(), crowd->stranded().end());
+    bound.insert(bound.end(), crowd->goal_unreachable().begin(), crowd->goal_unreachable().end());
     give(bound);
   }
   Json json = {{"scene", o.scene},

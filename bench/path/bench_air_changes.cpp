@@ -51,12 +51,12 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
     Vec3d middle = path.points[0];
     double left = path.length / 2;
     for (size_t i = 1; i < path.points.size(); ++i) {
-      const Vec3d leg = path.points[i] - path.points[i - 1];
-      if (left <= length(leg)) {
-        middle = path.points[i - 1] + leg * (left / length(leg));
+      const Vec3d segment = path.points[i] - path.points[i - 1];
+      if (left <= length(segment)) {
+        middle = path.points[i - 1] + segment * (left / length(segment));
         break;
       }
-      left -= length(leg);
+      left -= length(segment);
     }
     const double straight = path.length;
     start = Clock::now();

@@ -64,10 +64,10 @@ Json crates(const World& world, int64_t trials, double away) {
     Vec3d middle = path.points[0].position;
     double left = path.length / 2;
     for (size_t i = 1; i < path.points.size(); ++i) {
-      const Vec3d leg = path.points[i].position - path.points[i - 1].position;
-      const double size = std::hypot(leg.x, leg.z);
+      const Vec3d segment = path.points[i].position - path.points[i - 1].position;
+      const double size = std::hypot(segment.x, segment.z);
       if (left <= size) {
-        middle = path.points[i - 1].position + leg * (left / size);
+        middle = path.points[i - 1].position + segment * (left / size);
         break;
       }
       left -= size;

@@ -120,7 +120,7 @@ Json run(const Options& options) {
           {"open_ms", opened * 1e3},
           {"rectangles", made.rectangles},
           {"corners", made.corners},
-          {"gates", made.gates},
+          {"gates", made.entrances},
           {"labels", made.labels},
           {"bytes", made.bytes},
           {"mesh_bytes", mesh.bytes},

@@ -179,9 +179,9 @@ Json run(const Options& options) {
   });
   if (found == classes.end()) stop("there is no class " + options.avatar_class);
   const auto avatar_class = static_cast<int32_t>(found - classes.begin());
-  const auto make = [&](bool districts) {
+  const auto make = [&](bool overlay) {
     auto made = NodePathFinder::make(
-        *nodes, {.avatar_class = avatar_class, .districts = districts, .workers = options.threads},
+        *nodes, {.avatar_class = avatar_class, .overlay = overlay, .workers = options.threads},
         context);
     if (!made) stop(made.error().message);
     return *std::move(made);

@@ -61,13 +61,13 @@ class Detour {
     Found found;
     int polygons = 0;
     const dtStatus corridor = query_.findPath(from.polygon, to.polygon, from.position, to.position,
-                                              &filter_, path_.data(), &polygons, kMost);
+                                              &filter_, path_.data(), &polygons, kMax);
     if (dtStatusFailed(corridor) || polygons == 0) return found;
     found.reached = path_[static_cast<size_t>(polygons) - 1] == to.polygon &&
                     !dtStatusDetail(corridor, DT_PARTIAL_RESULT);
     int count = 0;
     query_.findStraightPath(from.position, to.position, path_.data(), polygons, points_.data(),
-                            nullptr, nullptr, &count, kMost);
+                            nullptr, nullptr, &count, kMax);
     for (size_t i = 3; i < static_cast<size_t>(count) * 3; i += 3) {
       found.length += std::hypot(points_[i] - points_[i - 3], points_[i + 2] - points_[i - 1]);
     }
@@ -84,11 +84,11 @@ class Detour {
   }
 
  private:
-  static constexpr int kMost = 4096;  // polygons, points
+  static constexpr int kMax = 4096;  // polygons, points
   dtNavMeshQuery query_;
   dtQueryFilter filter_;
-  std::vector<dtPolyRef> path_ = std::vector<dtPolyRef>(kMost);
-  std::vector<float> points_ = std::vector<float>(static_cast<size_t>(kMost) * 3);
+  std::vector<dtPolyRef> path_ = std::vector<dtPolyRef>(kMax);
+  std::vector<float> points_ = std::vector<float>(static_cast<size_t>(kMax) * 3);
   int count_ = 0;
 };
 

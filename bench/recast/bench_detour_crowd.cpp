@@ -31,7 +31,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int kUpdates = 20;  // a second, as Recast's demo makes them
 constexpr double kDt = 1.0 / kUpdates;
-constexpr uint32_t kMostOfDetour = 16000;  // Its grid has room for 65536 / 4, then it hangs.
+constexpr uint32_t kMaxOfDetour = 16000;  // Its grid has room for 65536 / 4, then it hangs.
 
 struct Options {
   std::string file;
@@ -177,7 +177,7 @@ class Ours {
   void update() {
     const CrowdReport report = crowd_.step();
     // All ask in their first step, and whoever asks again later has an answer within it.
-    if (report.step == 1) with_way_ = report.planned - report.no_way;
+    if (report.step == 1) with_way_ = report.planned - report.no_path;
     planned_ += report.planned;
     progress_ = report.progress;
     contested_ += report.contested;
@@ -311,7 +311,7 @@ Json compare(const Scene& scene, const Options& o) {
   Ours ours(*world, trips, o);
   Account our_account, their_account;
   std::unique_ptr<Theirs> theirs;
-  if (o.avatars <= kMostOfDetour) theirs = std::make_unique<Theirs>(*mesh, trips, o);
+  if (o.avatars <= kMaxOfDetour) theirs = std::make_unique<Theirs>(*mesh, trips, o);
   uint64_t wall_entries = 0;
   for (int second = 0; second < o.seconds; ++second) {
     go_on(ours, second, o, our_account);

@@ -51,11 +51,12 @@ struct BakeConfig {
 
 /// What a bake did. Seconds are summed over threads where several work.
 struct BakeReport {
-  // Zones count in which anybody can stand, as in WorldSummary; zones == zones_baked + zones_kept.
+  // Zones count in which anybody can stand, as in WorldSummary; zones == zones_baked +
+  // zones_reused.
   uint64_t zones = 0;
   uint64_t zones_baked = 0;
-  uint64_t zones_kept = 0;   ///< Their input has not changed.
-  uint64_t zones_empty = 0;  ///< Besides: triangles come near, but nobody can stand.
+  uint64_t zones_reused = 0;  ///< Their input has not changed.
+  uint64_t zones_empty = 0;   ///< Besides: triangles come near, but nobody can stand.
   /// Zones whose links over their eastern and southern border were made again: those baked and
   /// those to the west and north of them. Into a folder only, as graph_bytes.
   uint64_t zones_relinked = 0;
@@ -65,7 +66,7 @@ struct BakeReport {
   uint64_t spans = 0;                 ///< Solid spans after merging, of the zones baked.
   uint64_t bytes = 0;                 ///< Of all zone files.
   uint64_t air_zones = 0;             ///< Zones with an air file: those with matter.
-  uint64_t air_zones_kept = 0;        ///< Of these, whose input has not changed.
+  uint64_t air_zones_reused = 0;      ///< Of these, whose input has not changed.
   uint64_t air_bytes = 0;             ///< Of all air files.
   uint64_t graph_bytes = 0;           ///< Of all files of regions and links.
   std::vector<double> walkable_area;  ///< Per class. [m^2]

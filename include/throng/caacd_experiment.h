@@ -24,8 +24,8 @@ struct SpaceConfig {
   double side = 400;             ///< Starts and targets lie in a square of this side. [> 0]
   Fields fields{5, 7.5, 12};     ///< Of every avatar. [> 0, ascending]
   int32_t obstacles = 6;         ///< [0 to 1000]
-  double least_obstacle = 8;     ///< Smallest repulsive radius of an obstacle. [> 0]
-  double largest_obstacle = 24;  ///< [>= least_obstacle]
+  double min_obstacle = 8;       ///< Smallest repulsive radius of an obstacle. [> 0]
+  double largest_obstacle = 24;  ///< [>= min_obstacle]
   double obstacle_precaution =
       5;                       ///< From an obstacle's repulsive to its precaution radius. [>= 0]
   double obstacle_alert = 15;  ///< From an obstacle's repulsive to its alert radius; not less.

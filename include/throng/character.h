@@ -80,7 +80,7 @@ struct Character {
 };
 
 /// Most bones that a character may have.
-inline constexpr size_t kMostBones = 256;
+inline constexpr size_t kMaxBones = 256;
 
 /// Reads glTF, GLB, FBX, DAE and whatever else assimp reads with a skeleton. Fails with kBadFile or
 /// kBadInput (no mesh, no skeleton, no clip, indices out of range), kLimit (bones). Never crashes.

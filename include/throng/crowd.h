@@ -53,7 +53,7 @@ struct AreaEntry {
 };
 
 /// How avatars get from where they are to their goals.
-enum class CrowdWays {
+enum class Routing {
   kPaths,     ///< Shortest ways over the ground, corner by corner.
   kStraight,  ///< Straight on; walls are avoided, not gone around.
 };
@@ -62,9 +62,9 @@ struct CrowdConfig {
   double dt = 0.1;  ///< Length of a step. [s, > 0, <= 1]
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
-  CrowdWays ways = CrowdWays::kPaths;
-  /// How those on foot avoid each other. `reaction` and `patient` are of kSampled alone: others
-  /// decide in each step.
+  Routing ways = Routing::kPaths;
+  /// How those on foot avoid each other. `reaction` and `deadlock_avoidance` are of kSampled alone:
+  /// others decide in each step.
   SteeringModel model = SteeringModel::kSampled;
   bool labels = false;  ///< PathConfig::labels: for small worlds and many long ways.
   bool zones = false;   ///< PathConfig::zones: for large worlds and long ways.
@@ -76,13 +76,13 @@ struct CrowdConfig {
   /// Beyond all views (set_views) everybody takes as many steps at once as the narrowest body's
   /// radius allows, at most so many; if that is more than one, he looks at nobody before he could
   /// touch him. [1 to 16]
-  int32_t far_steps = 4;
-  double far_reaction = 0.4;  ///< `reaction` there. [s, 0 to 10]
-  int32_t rounds = 3;         ///< In which claims are settled, a step. [1 to 100]
-  bool patient = true;        ///< Who does not get on turns aside by and by.
+  int32_t low_detail_steps = 4;
+  double low_detail_reaction = 0.4;  ///< `reaction` there. [s, 0 to 10]
+  int32_t rounds = 3;                ///< In which claims are settled, a step. [1 to 100]
+  bool deadlock_avoidance = true;    ///< Who does not get on turns aside by and by.
   /// Who has a goal, has not arrived, and has not come 0.3 m further between two looks, so many
   /// seconds apart, is told by stuck(). 0: nobody looks. Never changes what happens. [s, >= 0]
-  double stuck_after = 0;
+  double no_progress_after = 0;
   /// Of the same world. Classes that climb or let themselves down over edges, and do not fly, go
   /// over them; without nodes they walk on level tiles as others do.
   Nodes nodes = {};
@@ -124,7 +124,7 @@ struct CrowdReport {
   uint64_t contested = 0;  ///< Could have touched somebody, so went through the rounds.
   uint64_t arrived = 0;  ///< Came within 0.3 m of their goals, or into their targets, in this step.
   uint64_t planned = 0;  ///< Got a way, or another one.
-  uint64_t no_way = 0;   ///< Of these, found that none leads to the goal: it is dropped.
+  uint64_t no_path = 0;  ///< Of these, found that none leads to the goal: it is dropped.
   uint64_t waiting = 0;  ///< Obstacles in whose way somebody stands.
   double progress = 0;   ///< Mean speed towards the next corner by the wished one. [-1 to 1]
   double seconds_plan = 0;
@@ -162,11 +162,11 @@ class THRONG_API Crowd {
 
   /// Puts up an obstacle: nobody stands where a body of his class could touch it, its bottom above
   /// his step, until it is removed. It comes up at once or, as a door that closes, before the first
-  /// step at whose beginning nobody stands there. Ways of kStanding ones lead around them; whose
+  /// step at whose beginning nobody stands there. Ways of kStatic ones lead around them; whose
   /// way is cut asks for another, and whoever has none left is stranded. Fails with kBadInput.
   /// Time: all avatars, and the cells that it touches.
   [[nodiscard]] Result<ObstacleId> add_obstacle(const Prism& prism,
-                                                ObstacleKind kind = ObstacleKind::kStanding);
+                                                ObstacleKind kind = ObstacleKind::kStatic);
   /// Where it is to be: by a small step at a time, as it waits while anybody stands within the
   /// convex hull of here and there. The last order counts. Fails with kBadInput, kNotFound.
   [[nodiscard]] Result<void> move_obstacle(ObstacleId id, const Prism& prism);
@@ -179,7 +179,7 @@ class THRONG_API Crowd {
   /// All that are up, in order of slot.
   [[nodiscard]] std::vector<Prism> obstacles() const;
   /// Who stood in the way of obstacles that wait when the last step began, in order of slot.
-  [[nodiscard]] std::span<const AvatarId> in_the_way() const;
+  [[nodiscard]] std::span<const AvatarId> blockers() const;
 
   /// Where they are bound for, one for each id: places of their class. An avatar keeps to its goal
   /// when it has arrived, and makes way. Nowhere: it stands, or hovers. Who flies takes off and
@@ -189,7 +189,7 @@ class THRONG_API Crowd {
   void set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> goals);
   /// Makes a region, the union of prisms, that many can be bound for: one search outwards from it
   /// serves all ([FlowField]). Whoever's middle is inside has arrived. Fails with kBadInput (a
-  /// prism that is none), kBadConfig (CrowdWays::kStraight), kLimit (65535 targets) or kCancelled.
+  /// prism that is none), kBadConfig (Routing::kStraight), kLimit (65535 targets) or kCancelled.
   /// Time: the ground of all classes that are in use. Targets stay.
   [[nodiscard]] Result<TargetId> add_target(std::span<const Prism> areas, Context& context);
   /// Whom are bound for a target, each for where he is nearest, instead of a goal; who can fly does
@@ -229,7 +229,7 @@ class THRONG_API Crowd {
   /// Who arrived in the last step, in order of slot.
   [[nodiscard]] std::span<const AvatarId> arrived() const;
   /// Whose goals were dropped in the last step, because no way leads there, in order of slot.
-  [[nodiscard]] std::span<const AvatarId> stranded() const;
+  [[nodiscard]] std::span<const AvatarId> goal_unreachable() const;
   /// Tells from now on who comes into the union of some prisms, with his middle; who is inside
   /// already comes in with the next step. Watching never changes what happens, and is not saved.
   /// Fails with kBadInput (a prism that is none) or kLimit (64 areas).
@@ -237,7 +237,7 @@ class THRONG_API Crowd {
   /// Who came into watched areas in the last step, in order of slot and area.
   [[nodiscard]] std::span<const AreaEntry> entered() const;
   /// Who was stuck when somebody last looked, if that was in the last step, in order of slot.
-  [[nodiscard]] std::span<const AvatarId> stuck() const;
+  [[nodiscard]] std::span<const AvatarId> no_progress() const;
   [[nodiscard]] bool is_alive(AvatarId id) const;
   /// Has it nodes, so that some may lean (AvatarState::up)?
   [[nodiscard]] bool may_lean() const;

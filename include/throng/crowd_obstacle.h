@@ -19,8 +19,8 @@ struct ObstacleId {
 
 /// What an obstacle is to those who look for their ways. A wall it is to everybody.
 enum class ObstacleKind : uint8_t {
-  kStanding,  ///< Ways lead around it: a crate, a door.
-  kMoving,    ///< Ways do not know it: a cart, which is elsewhere by the time that one is there.
+  kStatic,     ///< Ways lead around it: a crate, a door.
+  kKinematic,  ///< Ways do not know it: a cart, which is elsewhere by the time that one is there.
 };
 
 /// An obstacle as it is now.
@@ -29,7 +29,7 @@ struct ObstacleState {
   bool is_up = false;  ///< It is in the way of those who walk.
   bool waits =
       false;  ///< It is not yet where, or what, it was asked to be: somebody is in its way.
-  ObstacleKind kind = ObstacleKind::kStanding;
+  ObstacleKind kind = ObstacleKind::kStatic;
 };
 
 }  // namespace throng

@@ -44,7 +44,7 @@ struct FlightConfig {
 };
 
 /// How a leg of a way is gone.
-enum class LegKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
+enum class SegmentKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
 
 struct FlightQuery {
   Vec3d from, to;      ///< Feet. In the air, or on the ground within `reach` above or below. [m]
@@ -63,8 +63,8 @@ struct FlightPath {
   /// Feet, from the start to the goal. If that is unreachable: to the point of the air that comes
   /// nearest to it, or of the ground where nobody can take off. [m]
   std::vector<Vec3d> points;
-  std::vector<LegKind> legs;  ///< One less than the points.
-  double length = 0;          ///< Of all legs. [m]
+  std::vector<SegmentKind> segments;  ///< One less than the points.
+  double length = 0;                  ///< Of all legs. [m]
   /// What is in the straight way on to an unreachable goal: kLow where a body that is less tall
   /// would go on, or where it cannot take off, else kNarrow.
   Obstacle obstacle = Obstacle::kNone;

@@ -29,8 +29,8 @@ struct LiveConfig {
   double slope_cost = 0;
 };
 
-/// See LiveGround::add_jump.
-struct Jump {
+/// See LiveGround::add_off_mesh_link.
+struct OffMeshLink {
   Place from, to;
   double cost = 0;  ///< [m]
   bool both_ways = true;
@@ -62,7 +62,7 @@ class THRONG_API LiveGround {
   /// A way that moves do not know, given by hand: a jump over a ditch, a ladder, a lift. It leads
   /// from one place of the class to another, and back if both_ways; nobody checks what is between.
   /// It costs as many metres, at least as many as it is long in the plane. Fails with kBadInput.
-  [[nodiscard]] Result<ChangeId> add_jump(const Jump& jump);
+  [[nodiscard]] Result<ChangeId> add_off_mesh_link(const OffMeshLink& off_mesh_link);
   /// Takes a change back, for good or, as a door, until it is set again. False if there is none.
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);

@@ -29,7 +29,7 @@ struct NodePathConfig {
   /// Where there are many crossings (2^15), know what it costs to go through squares of ground:
   /// long ways are put together of that, and are seldom much dearer than the best. Takes as long as
   /// some searches over all to make.
-  bool districts = true;
+  bool overlay = true;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
 };
 

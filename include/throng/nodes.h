@@ -28,7 +28,7 @@ enum class LinkKind : uint8_t {
   kStep,     ///< Over a step of the floor, not a slope, that some class of the world cannot take.
   kClimb,    ///< One end is steeper than any walker's limit, or a gap between patches lies between.
   kDrop,     ///< One way: out over an edge and down. For classes with a `max_drop`.
-  kJump,     ///< Given by hand; may lead one way.
+  kOffMesh,  ///< Given by hand; may lead one way.
   kLand,     ///< From the air. (Reserved.)
   kTakeOff,  ///< To the air. (Reserved.)
 };
@@ -37,7 +37,7 @@ inline constexpr uint8_t kLinkKinds = 7;
 enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };
 
 /// A way that no rule finds: a jump, a ladder, a lift. Given by hand; nothing tests the body on it.
-struct NodeJump {
+struct NodeOffMeshLink {
   Vec3d from, to;  ///< Within a metre of places of the class. [m]
   int32_t avatar_class = 0;
   bool both_ways = false;
@@ -46,7 +46,7 @@ struct NodeJump {
 struct NodeConfig {
   double size = 1.0;  ///< Sub-patches of Bezier patches are halved down to this. [m, 0.05 to 100]
   uint16_t classes = 0xffff;  ///< Bit per class: whom to make nodes for.
-  std::vector<NodeJump> jumps = {};
+  std::vector<NodeOffMeshLink> off_mesh_links = {};
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   /// Make all zones, also those whose nodes lie in the world's folder, made of the same.
   bool fresh = false;
@@ -85,7 +85,7 @@ struct THRONG_API NodeBins {
 
 /// A sub-patch and what bodies may rely on everywhere in it. Along walls level tiles have *ragged*
 /// nodes: some of a block's 8 x 8 cells, each of its classes on some of them, which hold together
-/// (Nodes::ragged_cells).
+/// (Nodes::partial_cells).
 struct NodeInfo {
   /// Bit per class: its body may stand anywhere in the sub-patch, or somewhere in a ragged one.
   uint16_t classes = 0;
@@ -122,21 +122,21 @@ struct NodeArc {
 struct NodeSummary {
   uint64_t nodes = 0;
   uint64_t terminal = 0;
-  uint64_t ragged = 0;
+  uint64_t partial = 0;
   uint64_t arcs = 0;  ///< Two a link.
   uint64_t patches = 0;
   uint64_t bezier_patches = 0;
   uint64_t zones = 0;
-  uint64_t zones_made = 0;  ///< Zones with patches, whether or not they got nodes.
-  uint64_t zones_kept = 0;  ///< The rest of them: nothing that they depend on has changed.
-  uint64_t bytes = 0;       ///< Of all zones.
-  double seconds = 0;       ///< To make them; 0 if they were opened.
+  uint64_t zones_made = 0;    ///< Zones with patches, whether or not they got nodes.
+  uint64_t zones_reused = 0;  ///< The rest of them: nothing that they depend on has changed.
+  uint64_t bytes = 0;         ///< Of all zones.
+  double seconds = 0;         ///< To make them; 0 if they were opened.
   NodeBins bins;
   std::vector<AvatarClass> classes;
 };
 
 /// Places that a class can go to from each other.
-struct NodeReach {
+struct NodeComponent {
   double area = 0;  ///< [m^2]
   uint64_t nodes = 0;
   uint32_t node = 0;  ///< One of them, the first.
@@ -190,7 +190,7 @@ class THRONG_API Nodes {
   [[nodiscard]] std::vector<NodeArc> arcs(uint32_t node) const;
   /// Those cells of a ragged node on which a class may stand, bit 8 t + s of its block of 8 x 8; 0
   /// of nodes that are not ragged and of classes that are not the node's.
-  [[nodiscard]] uint64_t ragged_cells(int32_t avatar_class, uint32_t node) const;
+  [[nodiscard]] uint64_t partial_cells(int32_t avatar_class, uint32_t node) const;
   /// Corners of a node's sub-patch, in the order of BezierPatch's vertices, at the ground; of a
   /// ragged node's block, where there may be none. [m]
   [[nodiscard]] std::array<Vec3d, 4> corners(uint32_t node) const;
@@ -209,8 +209,8 @@ class THRONG_API Nodes {
   /// What a class can reach: connected parts of the graph, largest first. `of_node`, if given,
   /// takes the part of each node, UINT32_MAX for nodes that the class cannot stand on. Linear in
   /// nodes and arcs.
-  [[nodiscard]] std::vector<NodeReach> reach(int32_t avatar_class,
-                                             std::vector<uint32_t>* of_node = nullptr) const;
+  [[nodiscard]] std::vector<NodeComponent> reach(int32_t avatar_class,
+                                                 std::vector<uint32_t>* of_node = nullptr) const;
 
   [[nodiscard]] const std::shared_ptr<const NodeData>& data() const { return data_; }
 

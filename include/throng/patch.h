@@ -126,7 +126,7 @@ struct THRONG_API PatchSet {
 struct TessellationConfig {
   double tolerance = 0.02;  ///< Largest gap between a patch and its triangles. [m, > 0]
   int32_t workers = 0;      ///< Threads, 0 for all cores. Never changes the result. [>= 0]
-  uint64_t most_triangles = 100'000'000;  ///< More are refused. [<= 4 thousand million]
+  uint64_t max_triangles = 100'000'000;  ///< More are refused. [<= 4 thousand million]
 };
 
 /// Which part of a patch's parameters a triangle covers, in 256ths rounded outward, with both ends:

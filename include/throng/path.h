@@ -36,17 +36,18 @@ struct PathConfig {
 /// How a search ended.
 enum class PathEnd {
   kReached,
-  kUnreachable,  ///< No way on foot leads there.
-  kNoPlace,      ///< `from` or `to` is no place of the class.
-  kGaveUp,       ///< The budget was spent.
+  kUnreachable,      ///< No way on foot leads there.
+  kNoPlace,          ///< `from` or `to` is no place of the class.
+  kBudgetExhausted,  ///< The budget was spent.
 };
 
 struct Path {
   PathEnd end = PathEnd::kNoPlace;
-  std::vector<Place> points;    ///< From the start to the goal; each leg is a legal move.
-  double length = 0;            ///< Along the ground's plane. [m]
-  std::vector<uint32_t> jumps;  ///< Of LiveGround's: points that a jump leads to, not a move.
-  double cost = 0;              ///< Of LiveGround's ways: metres times what they cost.
+  std::vector<Place> points;  ///< From the start to the goal; each leg is a legal move.
+  double length = 0;          ///< Along the ground's plane. [m]
+  std::vector<uint32_t>
+      off_mesh_links;  ///< Of LiveGround's: points that a jump leads to, not a move.
+  double cost = 0;     ///< Of LiveGround's ways: metres times what they cost.
   Obstacle obstacle =
       Obstacle::kNone;  ///< Of LiveGround's: what is in the way to an unreachable goal.
   uint64_t nodes = 0;   ///< Intervals that the search looked at; 0 with labels.
@@ -56,10 +57,10 @@ struct PathSummary {
   uint64_t rectangles = 0;
   uint64_t portals = 0;
   uint64_t corners = 0;
-  uint64_t gates = 0;   ///< Of zones; 0 without them.
-  uint64_t labels = 0;  ///< 0 without them.
-  uint64_t bytes = 0;   ///< Of all.
-  double seconds = 0;   ///< To make them.
+  uint64_t entrances = 0;  ///< Of zones; 0 without them.
+  uint64_t labels = 0;     ///< 0 without them.
+  uint64_t bytes = 0;      ///< Of all.
+  double seconds = 0;      ///< To make them.
 };
 
 /// Finds paths for one class. The ground is shared by all copies; each copy has its own memory for

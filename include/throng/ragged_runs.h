@@ -8,9 +8,9 @@
 namespace throng {
 
 /// Calls visit(s, t, count) for each run of cells in a row of a ragged node (NodeInfo::cells,
-/// Nodes::ragged_cells): `count` cells along s from (s, t) of its block of 8 x 8 on.
+/// Nodes::partial_cells): `count` cells along s from (s, t) of its block of 8 x 8 on.
 template <class Visit>
-void for_ragged_runs(uint64_t cells, Visit visit) {
+void for_partial_runs(uint64_t cells, Visit visit) {
   for (int32_t t = 0; t < 8; ++t) {
     for (auto row = static_cast<uint32_t>(cells >> (8 * t) & 0xff); row != 0;) {
       const int32_t s = std::countr_zero(row), count = std::countr_one(row >> s);

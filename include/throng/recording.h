@@ -22,7 +22,7 @@ struct Heading {
   float x = 0, z = 1;
 };
 
-inline constexpr size_t kMostAvatars = size_t{1} << 28;  ///< In one frame, fewer than this.
+inline constexpr size_t kMaxAvatars = size_t{1} << 28;  ///< In one frame, fewer than this.
 
 /// One moment, borrowed: avatar i is ids[i], classes[i], ... Fastest in ascending order of id.
 struct FrameView {

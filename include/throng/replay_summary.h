@@ -26,7 +26,7 @@ struct SummaryConfig {
   double cell = 0.5;  ///< Of the maps. [m, >= 0.001]
   double storey = 3;  ///< A map for each so many metres of height. [m, >= 0.001]
   double slow = 0.2;  ///< Who is slower than this waits. [m/s, >= 0.001]
-  uint64_t most_cells = uint64_t{1} << 24;  ///< Of all maps together.
+  uint64_t max_cells = uint64_t{1} << 24;  ///< Of all maps together.
 };
 
 /// Crossings of one line, bin by bin from the first frame on. Forth is to the right of who goes

@@ -22,12 +22,12 @@ namespace throng {
 /// What one step of a simulation did, and how things stand.
 struct SimulationReport {
   CrowdReport crowd;
-  double time = 0;        ///< After the step. [s]
-  uint64_t entered = 0;   ///< So far.
-  uint64_t left = 0;      ///< So far.
-  uint64_t stranded = 0;  ///< Now: no way leads to where they are bound for; they stand.
-  uint64_t outside = 0;   ///< Now: due to come, but there is no room yet.
-  uint64_t in_links = 0;  ///< Now: in lifts and on escalators, so not in the crowd.
+  double time = 0;                ///< After the step. [s]
+  uint64_t entered = 0;           ///< So far.
+  uint64_t left = 0;              ///< So far.
+  uint64_t goal_unreachable = 0;  ///< Now: no way leads to where they are bound for; they stand.
+  uint64_t outside = 0;           ///< Now: due to come, but there is no room yet.
+  uint64_t in_links = 0;          ///< Now: in lifts and on escalators, so not in the crowd.
 };
 
 /// Who came, and what became of him.

@@ -38,11 +38,11 @@ enum class Observed : uint8_t {
 };
 
 /// What is made of many numbers.
-enum class Taken : uint8_t {
+enum class Statistic : uint8_t {
   kMean,
-  kLeast,
-  kMost,
-  kSpread,   ///< kMost - kLeast.
+  kMin,
+  kMax,
+  kRange,    ///< kMax - kMin.
   kOverall,  ///< Of kSpeed: all ways by all times.
   kFit,      ///< Likelihood that they were drawn from what the scenario says [Stephens70].
 };
@@ -50,7 +50,7 @@ enum class Taken : uint8_t {
 struct TrialMeasure {
   std::string name;
   Observed of = Observed::kTime;
-  Taken take = Taken::kMean;
+  Statistic take = Statistic::kMean;
   std::vector<int32_t> sources, profiles, journeys;  ///< Only these; empty: all.
   std::vector<int32_t> exits;                        ///< Only who left by these areas; empty: all.
   int32_t area = -1;                                 ///< kSpeed, kDensity.

@@ -81,11 +81,11 @@ struct NodeVerifyReport {
 
 /// What the oracle found of ways over nodes.
 struct NodePathReport {
-  uint64_t pairs = 0;    ///< Random pairs of places of the class.
-  uint64_t reached = 0;  ///< Of these, with a way.
-  uint64_t parted = 0;   ///< Of these, without one, and no arcs lead there.
-  uint64_t legs = 0;     ///< Of the ways, point to point.
-  uint64_t links = 0;    ///< Used by them.
+  uint64_t pairs = 0;     ///< Random pairs of places of the class.
+  uint64_t reached = 0;   ///< Of these, with a way.
+  uint64_t parted = 0;    ///< Of these, without one, and no arcs lead there.
+  uint64_t segments = 0;  ///< Of the ways, point to point.
+  uint64_t links = 0;     ///< Used by them.
   std::array<uint64_t, kLinkKinds> links_of_kind{};
   uint64_t leaps = 0;        ///< Of these, between places that do not touch.
   uint64_t poses = 0;        ///< Of bodies on them, at most a quarter of a radius apart.
@@ -121,7 +121,7 @@ struct PathReport {
   uint64_t pairs = 0;        ///< Random pairs of places; every second that hold together, if found.
   uint64_t reached = 0;      ///< Of these, with a way.
   uint64_t parted = 0;       ///< Of these, without one, and in different components of the graph.
-  uint64_t legs = 0;         ///< Of the ways, point to point.
+  uint64_t segments = 0;     ///< Of the ways, point to point.
   uint64_t bodies = 0;       ///< On them, at most half a cell and a quarter of a radius apart.
   uint64_t illegal = 0;      ///< Ways with a leg that is no legal move, or of another length. 0.
   uint64_t entered = 0;      ///< Ways on which the body meets a triangle. Must be 0.
@@ -148,7 +148,7 @@ struct FlightReport {
   uint64_t points = 0;              ///< Random points of its legal air.
   uint64_t pairs = 0;               ///< Random pairs of points of the air and places on the ground.
   uint64_t reached = 0;             ///< Of these, with a way.
-  uint64_t legs = 0;                ///< Of the ways, in the air: taking off, flying, landing.
+  uint64_t segments = 0;            ///< Of the ways, in the air: taking off, flying, landing.
   uint64_t positions = 0;           ///< Of bodies on them, at most half a radius apart.
   uint64_t entered = 0;             ///< Points and legs whose body meets a triangle. Must be 0.
   std::vector<VerifyFault> faults;  ///< The first few.

@@ -90,7 +90,7 @@ struct ViewerConfig {
 };
 
 /// What the owner of the window is to do.
-struct ViewerWishes {
+struct ViewerRequests {
   bool close = false;
   bool fullscreen = false;    ///< The window should fill the screen.
   bool grab_mouse = false;    ///< The pointer should be hidden and go on for ever.
@@ -145,7 +145,7 @@ class THRONG_API Viewer {
   /// takes: the same for any machine. For pictures and films. [s]
   void play_for(double seconds);
   /// Wishes since the last call.
-  [[nodiscard]] ViewerWishes take_wishes();
+  [[nodiscard]] ViewerRequests take_requests();
   [[nodiscard]] ViewerStatus status() const;
   [[nodiscard]] std::string settings() const;  ///< To keep for the next time: JSON.
 

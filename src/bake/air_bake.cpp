@@ -20,9 +20,9 @@ namespace {
 
 constexpr int32_t kAirBakeVersion = 1;
 constexpr double kLayerPhase = kGridPhase;
-constexpr int32_t kSkyLayers = 16;              // flown in over the highest matter
-constexpr double kDefaultAirCell = 0.4;         // least for flyers if nothing is asked for [m]
-constexpr size_t kMostBytes = size_t{1} << 31;  // of the rows of one zone
+constexpr int32_t kSkyLayers = 16;             // flown in over the highest matter
+constexpr double kDefaultAirCell = 0.4;        // least for flyers if nothing is asked for [m]
+constexpr size_t kMaxBytes = size_t{1} << 31;  // of the rows of one zone
 
 int32_t floor_div(int64_t a, int64_t b) {
   return static_cast<int32_t>(a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0));
@@ -159,7 +159,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                                                       std::span<const uint32_t> triangles,
                                                       uint64_t input, Context& context) {
   const auto workers = static_cast<int32_t>(workers_.size());
-  if (shape_.floor <= -kMostAirLayers || shape_.ceiling >= kMostAirLayers) {
+  if (shape_.floor <= -kMaxAirLayers || shape_.ceiling >= kMaxAirLayers) {
     return Error{Errc::kLimit,
                  "bake: the air reaches over 2 million air cells above or below height 0; use a "
                  "larger air cell"};
@@ -227,7 +227,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   if (!own) return std::unique_ptr<AirData::Slot>();  // nothing but air
   // The highest layer stays free of matter: it stands for all that is higher or lower.
   const int32_t base = low & -4, height = ((high - base + 2) + 3) & -4;
-  if (static_cast<double>(height) * across * across / 8 > static_cast<double>(kMostBytes)) {
+  if (static_cast<double>(height) * across * across / 8 > static_cast<double>(kMaxBytes)) {
     return Error{Errc::kLimit, "bake: the air of zone " + std::to_string(zone_x) + ", " +
                                    std::to_string(zone_z) + " takes more than 2 GiB while it is " +
                                    "baked; use a larger air cell or smaller zones"};
@@ -265,7 +265,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                              .width = std::min(side, grid_x - zone_x * side),
                              .depth = std::min(side, grid_z - zone_z * side),
                              .base = base,
-                             .largest = AirTree::kMostSide,
+                             .largest = AirTree::kMaxSide,
                              .free_beyond = true};
   AirTreeData tree = build_air_tree(source);
   measure_room(source, apron, workers, tree);

@@ -24,7 +24,7 @@ class Distances {
       : side_(source.side / 4), height_(source.rows->height), base_(source.base) {
     distances_.resize(static_cast<size_t>(side_) * static_cast<size_t>(side_) *
                       static_cast<size_t>(height_));
-    most_ = std::min(apron, kMostAirRoom);
+    most_ = std::min(apron, kMaxAirRoom);
     pad_ = (most_ + 3) & -4;
     words_ = static_cast<size_t>((source.side + 2 * pad_ + 63) / 64);
     rows_ = static_cast<size_t>(source.side + 2 * most_);
@@ -166,12 +166,12 @@ class RoomWriter {
 
  private:
   [[nodiscard]] AirRoom room(const AirCube& cube) const {
-    AirRoom found{.width = kMostAirRoom, .height = 0};
+    AirRoom found{.width = kMaxAirRoom, .height = 0};
     for (int32_t y = cube.y; y < cube.y + cube.side; ++y) {
       found.width = std::min(found.width, distances_.distance(cube, y) - 1);
     }
     const int32_t top = cube.y + cube.side;
-    while (found.height < kMostAirRoom &&
+    while (found.height < kMaxAirRoom &&
            distances_.distance(cube, top + found.height) > found.width) {
       ++found.height;
     }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kGrowth = 0.03;  // How little bodies are grown between poses at the end. [m]
-constexpr int kMostSteps = 256;   // of a walker's way
+constexpr int kMaxSteps = 256;    // of a walker's way
 
 // Height of a triangle on the vertical line through (x, z), if it is there.
 bool carries(const LocalTriangle& t, Vec3d at, double reach) {
@@ -127,7 +127,7 @@ bool MotionJudge::is_carried(Vec3d from, Vec3d to, double reach, double spacing)
   const Scene& scene = triangles_->scene();
   std::erase_if(found_, [&](uint32_t triangle) { return scene.area[triangle] == kAreaBlocked; });
   const int steps = static_cast<int>(std::ceil(length(to - from) / spacing)) + 1;
-  if (steps > kMostSteps) return false;
+  if (steps > kMaxSteps) return false;
   for (int k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) / steps;
     const Vec3d at = from * (1 - t) + to * t;

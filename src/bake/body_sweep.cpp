@@ -251,7 +251,7 @@ void sort_run(std::span<const CubeKey> keys, std::vector<uint32_t>& order) {
 // Runs of triangles that follow each other are sorted by cubes of kCube metres, and what lies in
 // one cube is a cluster. Whatever the order of a soup, clusters hold all its triangles.
 std::vector<TriangleSquares::Cluster> TriangleSquares::make_clusters(int32_t workers) {
-  constexpr uint32_t kMost = 24;  // An item counts them in a byte.
+  constexpr uint32_t kMax = 24;  // An item counts them in a byte.
   const size_t count = scene_->triangles.size();
   order_ = std::make_unique_for_overwrite<uint32_t[]>(count);
   const auto patch_of = [&](size_t t) {
@@ -274,7 +274,7 @@ std::vector<TriangleSquares::Cluster> TriangleSquares::make_clusters(int32_t wor
     }
     for (size_t i = 0; i < keys.size();) {
       size_t j = i + 1;
-      while (j < keys.size() && j - i < kMost && keys[order[j]] == keys[order[i]]) ++j;
+      while (j < keys.size() && j - i < kMax && keys[order[j]] == keys[order[i]]) ++j;
       lists[run].push_back(
           measure(static_cast<uint32_t>(begin + i), static_cast<uint32_t>(begin + j)));
       i = j;

@@ -15,10 +15,10 @@ Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const Grap
                          const Scene& scene, const BakeConfig& config, Context& context,
                          BakeReport& report) {
   if (auto ok = folder.complete(world, graph, config.carry_nodes); !ok) return ok;
-  if (config.nodes != nullptr && !config.nodes->jumps.empty()) {
+  if (config.nodes != nullptr && !config.nodes->off_mesh_links.empty()) {
     const auto made = World::open(folder.part());
     if (!made) return made.error();
-    if (auto ok = NodeBaker::check_jumps(*made, scene, *config.nodes, context); !ok) {
+    if (auto ok = NodeBaker::check_off_mesh_links(*made, scene, *config.nodes, context); !ok) {
       return Error{ok.error().code, ok.error().message + "; nothing was written"};
     }
   }

@@ -115,10 +115,10 @@ HWY_INLINE void emit(TileGaps& gaps, size_t c, MI mask, VI found, int32_t deepes
   }
 }
 
-constexpr size_t kMostBlocks = 4;  // side by side in one vector along a row
+constexpr size_t kMaxBlocks = 4;  // side by side in one vector along a row
 
 // Turns blocks side by side into rows, in place: vector i is row i of them afterwards.
-HWY_INLINE void blocks_to_rows(VI (&v)[kMostBlocks]) {
+HWY_INLINE void blocks_to_rows(VI (&v)[kMaxBlocks]) {
 #if HWY_TARGET != HWY_SCALAR
   const DI di;
   if (hn::Lanes(di) == 16) {
@@ -170,8 +170,8 @@ HWY_INLINE VI list_gaps(const SpanVectors& spans, size_t c, size_t n, int32_t mi
 
 // A row of blocks, one vector of columns wide: cells (x, z) on.
 struct BlockRun {
-  size_t place = 0;                // of its first block in a layer
-  size_t depth[kMostBlocks] = {};  // 0 for blocks too deep for vectors
+  size_t place = 0;               // of its first block in a layer
+  size_t depth[kMaxBlocks] = {};  // 0 for blocks too deep for vectors
   size_t deepest = 0;
   bool any_too_deep = false;
 };
@@ -191,13 +191,13 @@ HWY_INLINE BlockRun run_of_blocks(const TileColumns& columns, int32_t x, int32_t
 
 // The spans of a run of blocks, by rows.
 HWY_INLINE void load_spans(const TileColumns& columns, const BlockRun& run,
-                           SpanVectors (&rows)[kMostBlocks]) {
+                           SpanVectors (&rows)[kMaxBlocks]) {
   const DI di;
   const auto blocks = static_cast<size_t>(block_height());
   const VI none[3] = {hn::Set(di, kNoSpan), hn::Set(di, INT32_MIN), hn::Set(di, kNoSupport)};
   for (size_t k = 0; k < run.deepest; ++k) {
     const SpanLayer& layer = *columns.layers[k];
-    VI low[kMostBlocks], high[kMostBlocks], support[kMostBlocks];
+    VI low[kMaxBlocks], high[kMaxBlocks], support[kMaxBlocks];
     for (size_t b = 0; b < blocks; ++b) {
       const size_t at = run.place + b * hn::Lanes(di);
       const bool has = k < run.depth[b];
@@ -223,7 +223,7 @@ void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
   gaps.max_count = 0;
   gaps.spans = 0;
   std::vector<TileColumns::Spill> scratch;
-  SpanVectors rows[kMostBlocks];
+  SpanVectors rows[kMaxBlocks];
   VI total = hn::Zero(di);
   VI most = hn::Zero(di);
   for (int32_t z = 0; z < kTileSide; z += block_height()) {

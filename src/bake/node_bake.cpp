@@ -50,15 +50,15 @@ Result<void> NodeBaker::check(const World& world, const Scene& scene, const Node
   return {};
 }
 
-Result<void> NodeBaker::check_jumps(const World& world, const Scene& scene,
-                                    const NodeConfig& config, Context& context) {
+Result<void> NodeBaker::check_off_mesh_links(const World& world, const Scene& scene,
+                                             const NodeConfig& config, Context& context) {
   NodeBaker baker(world, scene, config, nullptr);
   baker.plan();
   std::vector<uint32_t> zones;
   for (uint32_t z = 0; z < baker.plan_.zones.size(); ++z) {
-    if (!baker.plan_.zones[z].jumps.empty()) zones.push_back(z);
+    if (!baker.plan_.zones[z].off_mesh_links.empty()) zones.push_back(z);
   }
-  return check_batch_jumps(baker.batch_input(true, context), zones);
+  return check_batch_links(baker.batch_input(true, context), zones);
 }
 
 // A world in memory does not know what it was made from.
@@ -100,12 +100,12 @@ uint64_t NodeBaker::zones_done() const {
   return std::accumulate(is_done_.begin(), is_done_.end(), uint64_t{0});
 }
 
-std::vector<std::vector<uint32_t>> NodeBaker::batches(uint64_t most_bytes) const {
+std::vector<std::vector<uint32_t>> NodeBaker::batches(uint64_t max_bytes) const {
   std::vector<uint32_t> left;
   for (uint32_t z = 0; z < is_done_.size(); ++z) {
     if (is_done_[z] == 0) left.push_back(z);
   }
-  return node_batches(scene_, config_, plan_, std::move(left), most_bytes);
+  return node_batches(scene_, config_, plan_, std::move(left), max_bytes);
 }
 
 NodeBatchInput NodeBaker::batch_input(bool is_last, Context& context) {
@@ -157,7 +157,7 @@ Result<void> NodeBaker::list() {
 Result<std::shared_ptr<NodeData>> NodeBaker::finish() {
   auto nodes = gather();
   if (nodes->node_count >= kFarNode) return too_many_nodes();
-  nodes->summary.zones_kept = kept_;
+  nodes->summary.zones_reused = kept_;
   nodes->summary.zones_made = plan_.zones.size() - kept_;
   return nodes;
 }
@@ -227,9 +227,9 @@ Result<void> check_node_config(const NodeConfig& config) {
     return Error{Errc::kBadConfig, "nodes: the size must be 0.05 to 100 m"};
   }
   if (config.workers < 0) return Error{Errc::kBadConfig, "nodes: workers must be 0 or more"};
-  for (size_t j = 0; j < config.jumps.size(); ++j) {
-    const NodeJump& jump = config.jumps[j];
-    const Vec3d sum = jump.from + jump.to;
+  for (size_t j = 0; j < config.off_mesh_links.size(); ++j) {
+    const NodeOffMeshLink& off_mesh_link = config.off_mesh_links[j];
+    const Vec3d sum = off_mesh_link.from + off_mesh_link.to;
     if (std::isfinite(sum.x + sum.y + sum.z)) continue;
     return Error{Errc::kBadConfig,
                  "nodes: jump " + std::to_string(j + 1) + ": its ends must be finite"};

@@ -34,8 +34,9 @@ class NodeBaker {
                                           const NodeConfig& config);
   /// Do all jumps given by hand begin and end at places of the world? Looks at the zones around
   /// them only. Fails with kBadInput, kBadFile or kCancelled.
-  [[nodiscard]] static Result<void> check_jumps(const World& world, const Scene& scene,
-                                                const NodeConfig& config, Context& context);
+  [[nodiscard]] static Result<void> check_off_mesh_links(const World& world, const Scene& scene,
+                                                         const NodeConfig& config,
+                                                         Context& context);
   /// Finds the zones and what each depends on.
   void plan();
   /// Of all that zones depend on: processes that make nodes together have the same.
@@ -43,7 +44,7 @@ class NodeBaker {
   /// Takes over zones of earlier bakes.
   Result<void> keep_zones();
   /// Those that are left, in batches of at most about so much memory each. [bytes] At least one.
-  [[nodiscard]] std::vector<std::vector<uint32_t>> batches(uint64_t most_bytes) const;
+  [[nodiscard]] std::vector<std::vector<uint32_t>> batches(uint64_t max_bytes) const;
   /// What all of them would take at once, about, and a batch with what lies near it. [bytes]
   [[nodiscard]] uint64_t working_bytes() const { return all_working_bytes(scene_, config_, plan_); }
   [[nodiscard]] uint64_t working_bytes(std::span<const uint32_t> batch) const {

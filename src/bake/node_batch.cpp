@@ -23,7 +23,7 @@
 namespace throng {
 namespace {
 
-static_assert(kRaggedLevel + kRaggedDepth == kTileDepth);
+static_assert(kPartialLevel + kPartialDepth == kTileDepth);
 
 // Cells between which a body goes straight though they do not touch.
 struct Leap {
@@ -50,11 +50,11 @@ class NodeBatch {
     }
   }
 
-  Result<void> check_jumps() {
+  Result<void> check_off_mesh_links() {
     if (auto ok = list_patches(); !ok) return ok.error();
     judge_patches();
     if (context_.cancel) return cancelled();
-    return add_jumps();
+    return add_off_mesh_links();
   }
 
   Result<NodeSlots> run() {
@@ -66,7 +66,7 @@ class NodeBatch {
     find_pairs();
     if (context_.cancel) return cancelled();
     add_drops();
-    if (auto ok = add_jumps(); !ok) return ok.error();
+    if (auto ok = add_off_mesh_links(); !ok) return ok.error();
     if (context_.cancel) return cancelled();
     if (is_last_) triangles_.reset();  // Nobody asks them again, and links need the room.
     link();
@@ -270,32 +270,34 @@ class NodeBatch {
   }
 
   // Does a jump begin and end in or near zones none of which is made here?
-  [[nodiscard]] bool is_elsewhere(uint32_t jump) const {
+  [[nodiscard]] bool is_elsewhere(uint32_t off_mesh_link) const {
     bool is_near = false;
     for (uint32_t z = 0; z < plan_.zones.size(); ++z) {
-      const auto& jumps = plan_.zones[z].jumps;
-      if (!std::binary_search(jumps.begin(), jumps.end(), jump)) continue;
+      const auto& off_mesh_links = plan_.zones[z].off_mesh_links;
+      if (!std::binary_search(off_mesh_links.begin(), off_mesh_links.end(), off_mesh_link))
+        continue;
       if (std::binary_search(made_.begin(), made_.end(), z)) return false;
       is_near = true;
     }
     return is_near;
   }
 
-  Result<void> add_jumps() {
-    for (size_t j = 0; j < config_.jumps.size(); ++j) {
-      const NodeJump& jump = config_.jumps[j];
+  Result<void> add_off_mesh_links() {
+    for (size_t j = 0; j < config_.off_mesh_links.size(); ++j) {
+      const NodeOffMeshLink& off_mesh_link = config_.off_mesh_links[j];
       const auto& classes = data_.summary.classes;
       const auto bad = [&](const std::string& what) {
         return Error{Errc::kBadInput, "nodes: jump " + std::to_string(j + 1) + ": " + what};
       };
-      if (jump.avatar_class < 0 || static_cast<size_t>(jump.avatar_class) >= classes.size()) {
+      if (off_mesh_link.avatar_class < 0 ||
+          static_cast<size_t>(off_mesh_link.avatar_class) >= classes.size()) {
         return bad("the world has no such avatar class");
       }
       if (is_elsewhere(static_cast<uint32_t>(j))) continue;
-      const auto from = cell_near(jump.avatar_class, jump.from);
-      const auto to = cell_near(jump.avatar_class, jump.to);
+      const auto from = cell_near(off_mesh_link.avatar_class, off_mesh_link.from);
+      const auto to = cell_near(off_mesh_link.avatar_class, off_mesh_link.to);
       if (!from || !to) {
-        return bad(classes[static_cast<size_t>(jump.avatar_class)].name +
+        return bad(classes[static_cast<size_t>(off_mesh_link.avatar_class)].name +
                    " has no place within a metre of where it " + (from ? "ends" : "begins"));
       }
       leaps_.push_back({from->first, from->second, to->first, to->second});
@@ -303,10 +305,10 @@ class NodeBatch {
                         .cell_a = from->second,
                         .patch_b = to->first,
                         .cell_b = to->second,
-                        .classes = static_cast<uint16_t>(1u << jump.avatar_class),
-                        .kind = LinkKind::kJump,
+                        .classes = static_cast<uint16_t>(1u << off_mesh_link.avatar_class),
+                        .kind = LinkKind::kOffMesh,
                         .leap1 = static_cast<uint32_t>(leaps_.size()),
-                        .one_way = !jump.both_ways});
+                        .one_way = !off_mesh_link.both_ways});
     }
     return {};
   }
@@ -494,16 +496,16 @@ class NodeBatch {
         const uint32_t id = forest_.first[p] + static_cast<uint32_t>(n);
         const uint8_t width = bins_.width_code(widths_[p][n]);
         if (node.cells != 0) {
-          content.ragged.emplace_back(static_cast<uint32_t>(content.nodes.size()),
-                                      static_cast<uint32_t>(node.cells),
-                                      static_cast<uint32_t>(node.cells >> 32));
+          content.partial.emplace_back(static_cast<uint32_t>(content.nodes.size()),
+                                       static_cast<uint32_t>(node.cells),
+                                       static_cast<uint32_t>(node.cells >> 32));
         }
         content.nodes.emplace_back(
             node.promise.classes, node.level, node.s, node.t,
             static_cast<uint8_t>(node.promise.inclination << 4 | node.promise.height),
             static_cast<uint8_t>(node.promise.headroom << 4 | width),
             static_cast<uint8_t>((node.terminal ? kTerminalFlag : 0) |
-                                 (node.cells != 0 ? kRaggedFlag : 0)),
+                                 (node.cells != 0 ? kPartialFlag : 0)),
             node.parent == kNoNode ? UINT32_MAX : first + node.parent,
             static_cast<float>(area_of(source, tree, node)),
             static_cast<uint32_t>(content.arcs.size()));
@@ -592,8 +594,8 @@ Result<NodeSlots> make_node_batch(const NodeBatchInput& input, std::span<const u
   return NodeBatch(input, zones).run();
 }
 
-Result<void> check_batch_jumps(const NodeBatchInput& input, std::span<const uint32_t> zones) {
-  return NodeBatch(input, zones).check_jumps();
+Result<void> check_batch_links(const NodeBatchInput& input, std::span<const uint32_t> zones) {
+  return NodeBatch(input, zones).check_off_mesh_links();
 }
 
 }  // namespace throng

@@ -40,7 +40,7 @@ using NodeSlots = std::vector<std::unique_ptr<NodeData::Slot>>;
                                                 std::span<const uint32_t> zones);
 
 /// Only whether the jumps of these zones begin and end at places; fails as make_node_batch does.
-[[nodiscard]] Result<void> check_batch_jumps(const NodeBatchInput& input,
+[[nodiscard]] Result<void> check_batch_links(const NodeBatchInput& input,
                                              std::span<const uint32_t> zones);
 
 /// What is said of a world with more nodes than numbers.

@@ -51,7 +51,7 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
       content.nodes.size() * sizeof(format::Node) + content.arcs.size() * sizeof(format::Arc) +
       content.leaps.size() * sizeof(format::Leap) + content.far.size() * sizeof(format::FarNode) +
       content.doors.size() * sizeof(format::Door) + content.points.size() * sizeof(double) +
-      content.ragged.size() * sizeof(format::RaggedCells);
+      content.partial.size() * sizeof(format::PartialCells);
   if (bytes > (uint64_t{1} << 31) - (1 << 20)) {
     return Error{Errc::kLimit, name + ": more than 2 GiB of nodes; use smaller zones"};
   }
@@ -63,9 +63,9 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
   const auto far = builder.CreateVectorOfStructs(content.far);
   const auto doors = builder.CreateVectorOfStructs(content.doors);
   const auto points = builder.CreateVector(content.points);
-  const auto ragged = builder.CreateVectorOfStructs(content.ragged);
+  const auto partial = builder.CreateVectorOfStructs(content.partial);
   builder.Finish(format::CreateNodeZone(builder, kNodeVersion, content.x, content.z, patches, nodes,
-                                        arcs, far, leaps, doors, points, ragged),
+                                        arcs, far, leaps, doors, points, partial),
                  "THNZ");
   auto zone = NodeZone::from_bytes(builder.Release(), name);
   if (!zone) return zone.error();

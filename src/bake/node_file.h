@@ -53,7 +53,7 @@ struct ZoneContent {
   std::vector<format::FarNode> far;
   std::vector<format::Door> doors;
   std::vector<double> points;
-  std::vector<format::RaggedCells> ragged;
+  std::vector<format::PartialCells> partial;
 
   /// What an arc's `to` says for a node of another zone.
   uint32_t far_node(const format::FarNode& node);

@@ -161,11 +161,11 @@ void find_near(double reach, std::vector<NodePlanZone>& zones) {
 }
 
 // A jump makes the zones around both its ends depend on each other.
-void find_jumps(const NodeConfig& config, std::vector<NodePlanZone>& zones) {
-  for (uint32_t j = 0; j < config.jumps.size(); ++j) {
+void find_off_mesh_links(const NodeConfig& config, std::vector<NodePlanZone>& zones) {
+  for (uint32_t j = 0; j < config.off_mesh_links.size(); ++j) {
     std::vector<uint32_t> touched;
     for (uint32_t z = 0; z < zones.size(); ++z) {
-      for (const Vec3d at : {config.jumps[j].from, config.jumps[j].to}) {
+      for (const Vec3d at : {config.off_mesh_links[j].from, config.off_mesh_links[j].to}) {
         if (!holds(zones[z].box, at, kJumpReach + kMargin)) continue;
         touched.push_back(z);
         break;
@@ -173,7 +173,7 @@ void find_jumps(const NodeConfig& config, std::vector<NodePlanZone>& zones) {
     }
     for (const uint32_t z : touched) {
       zones[z].near.insert(zones[z].near.end(), touched.begin(), touched.end());
-      zones[z].jumps.push_back(j);
+      zones[z].off_mesh_links.push_back(j);
     }
   }
   for (NodePlanZone& zone : zones) {
@@ -283,7 +283,7 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
   const NodeReaches reach = reaches(world, scene, config, plan);
   const uint64_t common = common_input(world, scene, config, plan);
   find_near(reach.nodes, plan.zones);
-  find_jumps(config, plan.zones);
+  find_off_mesh_links(config, plan.zones);
   std::vector<uint64_t> own(plan.zones.size());
   parallel_for(own.size(), config.workers, [&](size_t z) {
     const NodePlanZone& zone = plan.zones[z];
@@ -307,11 +307,12 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
   for (NodePlanZone& zone : plan.zones) {
     Words words;
     for (const uint32_t near : zone.near) words.add(own[near]);
-    for (const uint32_t j : zone.jumps) {
-      const NodeJump& jump = config.jumps[j];
-      words.add(jump.from);
-      words.add(jump.to);
-      words.add(uint64_t{static_cast<uint32_t>(jump.avatar_class)} << 1 | uint64_t{jump.both_ways});
+    for (const uint32_t j : zone.off_mesh_links) {
+      const NodeOffMeshLink& off_mesh_link = config.off_mesh_links[j];
+      words.add(off_mesh_link.from);
+      words.add(off_mesh_link.to);
+      words.add(uint64_t{static_cast<uint32_t>(off_mesh_link.avatar_class)} << 1 |
+                uint64_t{off_mesh_link.both_ways});
     }
     zone.input = words.hash();
   }
@@ -383,12 +384,12 @@ class BatchDealer {
 
 std::vector<std::vector<uint32_t>> node_batches(const Scene& scene, const NodeConfig& config,
                                                 const NodePlan& plan, std::vector<uint32_t> zones,
-                                                uint64_t most_bytes) {
+                                                uint64_t max_bytes) {
   std::vector<uint64_t> bytes;
   for (const NodePlanZone& zone : plan.zones) {
     bytes.push_back(working_bytes(scene, config, plan, zone));
   }
-  BatchDealer dealer(plan, std::move(bytes), most_bytes);
+  BatchDealer dealer(plan, std::move(bytes), max_bytes);
   dealer.deal(std::move(zones));
   return dealer.take();
 }

@@ -31,8 +31,8 @@ struct NodePlanZone {
   Box3d box = {};                ///< That holds its patches, heights left out.
   std::vector<uint32_t> near =
       {};  ///< Zones that its nodes depend on, itself among them; ascending.
-  std::vector<uint32_t> jumps = {};  ///< That begin or end in or near it, ascending.
-  uint64_t input = 0;                ///< XXH3 of all that its nodes depend on.
+  std::vector<uint32_t> off_mesh_links = {};  ///< That begin or end in or near it, ascending.
+  uint64_t input = 0;                         ///< XXH3 of all that its nodes depend on.
 };
 
 struct NodePlan {
@@ -57,13 +57,13 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
                       const TriangleSquares* triangles, NodePlan& plan);
 
 /// Deals zones, given in ascending order, to batches whose nodes are made together: squares, as far
-/// as may be, of about `most_bytes` each, as what is near is made for company. At least one, and
+/// as may be, of about `max_bytes` each, as what is near is made for company. At least one, and
 /// none but that is empty.
 [[nodiscard]] std::vector<std::vector<uint32_t>> node_batches(const Scene& scene,
                                                               const NodeConfig& config,
                                                               const NodePlan& plan,
                                                               std::vector<uint32_t> zones,
-                                                              uint64_t most_bytes);
+                                                              uint64_t max_bytes);
 /// What the nodes of all zones would take while they are made, about. [bytes]
 [[nodiscard]] uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config,
                                          const NodePlan& plan);

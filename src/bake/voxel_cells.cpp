@@ -13,15 +13,15 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kMostSide = 4096;
-constexpr double kMostCells = 4e9;
+constexpr int32_t kMaxSide = 4096;
+constexpr double kMaxCells = 4e9;
 
 }  // namespace
 
 Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
-  const auto sound = [](int32_t side) { return side >= 1 && side <= kMostSide; };
+  const auto sound = [](int32_t side) { return side >= 1 && side <= kMaxSide; };
   if (!sound(cells.width) || !sound(cells.height) || !sound(cells.depth) ||
-      static_cast<double>(cells.width) * cells.height * cells.depth > kMostCells) {
+      static_cast<double>(cells.width) * cells.height * cells.depth > kMaxCells) {
     return Error{Errc::kBadInput,
                  "cells: voxels go up to 4096 along a side, and to 4000 million in all"};
   }
@@ -70,7 +70,7 @@ Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
                              .width = cells.width,
                              .depth = cells.depth,
                              .base = 0,
-                             .largest = AirTree::kMostSide,
+                             .largest = AirTree::kMaxSide,
                              .free_beyond = true};
   AirTreeData tree = build_air_tree(source);
   auto zone = AirZone::from_bytes(air_zone_bytes(0, 0, 0, tree), air_file_name(0, 0));

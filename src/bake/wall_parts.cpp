@@ -317,21 +317,21 @@ PlanPart cut_slab(const CellTriangle& t, double cell_x, double cell_z, double lo
     const double slope = b->z > a->z ? (b->x - a->x) / (b->z - a->z) : 0;
     out.edges[out.count++] = {a->z, b->z, a->x, slope};
   };
-  const Point *least_x = from, *most_x = from, *least_z = from, *most_z = from;
+  const Point *min_x = from, *max_x = from, *min_z = from, *max_z = from;
   for (const Point* p = from; p != from + count; ++p) {
-    if (p->x < least_x->x) least_x = p;
-    if (p->x > most_x->x) most_x = p;
-    if (p->z < least_z->z) least_z = p;
-    if (p->z > most_z->z) most_z = p;
+    if (p->x < min_x->x) min_x = p;
+    if (p->x > max_x->x) max_x = p;
+    if (p->z < min_z->z) min_z = p;
+    if (p->z > max_z->z) max_z = p;
   }
-  out.x0 = least_x->x;
-  out.x1 = most_x->x;
-  out.z0 = least_z->z;
-  out.z1 = most_z->z;
+  out.x0 = min_x->x;
+  out.x1 = max_x->x;
+  out.z0 = min_z->z;
+  out.z1 = max_z->z;
   const auto same = [&](size_t i, size_t k) { return t.x[i] == t.x[k] && t.z[i] == t.z[k]; };
   if (same(0, 1) || same(1, 2) || same(2, 0)) {  // Upright: a line from above.
     const bool along_x = out.x1 - out.x0 > out.z1 - out.z0;
-    add_edge(along_x ? least_x : least_z, along_x ? most_x : most_z);
+    add_edge(along_x ? min_x : min_z, along_x ? max_x : max_z);
     return out;
   }
   for (size_t i = 0; i < count; ++i) add_edge(&from[i], &from[i + 1 == count ? 0 : i + 1]);

@@ -312,7 +312,7 @@ Result<std::shared_ptr<WorldData>> WorldBake::world(std::span<const ZoneFacts> f
       ++report.zones_empty;
       continue;
     }
-    ++(f.kept ? report.zones_kept : report.zones_baked);
+    ++(f.kept ? report.zones_reused : report.zones_baked);
     for (size_t c = 0; c < legal_cells.size(); ++c) legal_cells[c] += f.legal_cells[c];
     report.tiles += f.entry.tiles();
     report.level_tiles += levels;
@@ -370,7 +370,7 @@ Result<void> WorldBake::add_air(WorldFolder* folder, WorldData& world, Context& 
   if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
   world.air = gather_air(shape, world, std::move(slots));
   report.air_zones = world.air->slots.size();
-  for (const AirBaker& baker : air) report.air_zones_kept += baker.kept();
+  for (const AirBaker& baker : air) report.air_zones_reused += baker.kept();
   report.air_bytes = world.air->bytes;
   report.seconds_air =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

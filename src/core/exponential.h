@@ -10,9 +10,9 @@ namespace throng {
 
 /// To 1e-15 of the result; 0 below e^-700, and no more than e^700.
 inline double exp_of(double value) {
-  constexpr double kMost = 700;
-  if (!(value >= -kMost)) return 0;
-  value = std::min(value, kMost);
+  constexpr double kMax = 700;
+  if (!(value >= -kMax)) return 0;
+  value = std::min(value, kMax);
   const double twos = std::floor(value * 1.4426950408889634 + 0.5);
   // ln 2 in two parts: what is left is exact to the last bit.
   const double r = value - twos * 0.693147180369123816490 - twos * 1.90821492927058770002e-10;

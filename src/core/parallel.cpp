@@ -24,9 +24,8 @@ namespace {
 tbb::task_arena& arena_for(int32_t threads) {
   static std::mutex mutex;
   static std::map<std::pair<int32_t, int32_t>, std::unique_ptr<tbb::task_arena>> arenas;
-  constexpr size_t kMostThreads = 256;
-  static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                         kMostThreads);
+  constexpr size_t kMaxThreads = 256;
+  static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, kMaxThreads);
   const std::lock_guard lock(mutex);
   auto& arena = arenas[{worker_group(), threads}];
   if (!arena) arena = std::make_unique<tbb::task_arena>(threads);

@@ -22,9 +22,9 @@ struct Stand {
 /// lies in tables by slot.
 struct Body {
   enum Flag : uint8_t {
-    kArrived = 1,  // at its goal, once
-    kLast = 2,     // `aim` is the goal itself
-    kDriven = 4,   // from outside: `wish` is given
+    kArrived = 1,   // at its goal, once
+    kLast = 2,      // `local_target` is the goal itself
+    kExternal = 4,  // from outside: `preferred` is given
     kHasGoal = 8,
     kLost = 16,    // asks for another way
     kFlying = 32,  // Another engine's: to those who walk it stands where it is.
@@ -42,11 +42,12 @@ struct Body {
   int32_t x = 0, z = 0;  // [units]
   int32_t y = 0;         // feet [mm]
   uint32_t level = 0;    // of the world
-  steer::Plane velocity, wish;
-  int32_t aim_x = 0, aim_z = 0;  // where it is bound for in a straight line [units]
-  float turn = 0;                // of steer::Patience
-  float speed = 1;               // wished, and the most [m/s]
-  int32_t radius = 0;            // [units]
+  steer::Plane velocity, preferred;
+  int32_t local_target_x = 0,
+          local_target_z = 0;  // where it is bound for in a straight line [units]
+  float turn = 0;              // of steer::Patience
+  float speed = 1;             // wished, and the most [m/s]
+  int32_t radius = 0;          // [units]
   uint32_t slot = 0;
   uint8_t avatar_class = 0;
   uint8_t flags = 0;
@@ -61,7 +62,7 @@ struct Body {
   uint8_t steps : 7 = 1;       // that it takes at once in this step; 0: not its turn
   // A stream that comes towards it, when it last looked: others look at this while they decide,
   // when what shares a byte with it must not change.
-  bool meets : 1 = false;
+  bool in_counterflow : 1 = false;
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }
   [[nodiscard]] Stand stand() const { return {x, z, y, level}; }

@@ -47,10 +47,10 @@ struct Climb {
   /// a whole again.
   std::array<ClimbPoint, kStations> stations{};
   uint32_t goal_node1 = 0;
-  float rise = 0, wish_up = 0;    ///< Beside Body::velocity and Body::wish. [m/s]
-  std::array<float, 3> driven{};  ///< What a caller wishes. [m/s]
-  float waited = 0;               ///< Without getting on. [s]
-  float detour = 0;               ///< Left of a way that is not to the goal. [s]
+  float rise = 0, preferred_up = 0;  ///< Beside Body::velocity and Body::wish. [m/s]
+  std::array<float, 3> external{};   ///< What a caller wishes. [m/s]
+  float waited = 0;                  ///< Without getting on. [s]
+  float detour = 0;                  ///< Left of a way that is not to the goal. [s]
   uint8_t count = 0;
   uint8_t whole = 0;                       ///< The last point is the goal.
   uint8_t turns_off = 0;                   ///< It has waited long enough.
@@ -62,7 +62,7 @@ struct Climb {
   [[nodiscard]] bool is_on_ground() const {
     return at.in_air == 0 || (at.part == 0 && points[at.next - 1u].node1 != 0);
   }
-  [[nodiscard]] bool is_last_leg() const { return whole != 0 && at.next + 1 >= count; }
+  [[nodiscard]] bool is_last_segment() const { return whole != 0 && at.next + 1 >= count; }
 };
 static_assert(sizeof(Climb) ==
                   32 + 48 + 24 + 24 * (Climb::kPoints + Climb::kStations) + 4 + 8 + 12 + 8 + 8 &&

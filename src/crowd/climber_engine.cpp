@@ -26,7 +26,7 @@ constexpr float kAsks = 0.5f;              // [s] before those who rest are aske
 constexpr float kBeside = 0.3f;            // [m] from who cannot step aside one makes room
 constexpr uint64_t kTempers = 0x74656d70;  // stream of chance
 
-bool clash(const ClimbHold& a, const ClimbHold& b) {
+bool overlaps_with(const ClimbHold& a, const ClimbHold& b) {
   return nearer_than(a.low.x - b.low.x, a.low.z - b.low.z, int64_t{a.radius} + b.radius) &&
          a.low.y < b.low.y + b.height && b.low.y < a.low.y + a.height;
 }
@@ -84,14 +84,14 @@ void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb>
             Body& body = bodies_[rounds_.movers[c]];
             Climb& climb = climbs_[body.slot];
             before(body, climb, worker);
-            wish(body, climb);
+            preferred(body, climb);
           },
       .decide = [&](uint32_t c, Worker& worker) { decide(c, worker); },
       .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
-      .clash =
+      .overlaps_with =
           [&](const Contest& contest, uint32_t other) {
-            return clash(rounds_.moves[contest.mover].way.hold,
-                         rounds_.moves[rounds_.mover_of[other]].way.hold);
+            return overlaps_with(rounds_.moves[contest.mover].displacement.hold,
+                                 rounds_.moves[rounds_.mover_of[other]].displacement.hold);
           },
       .settle = [&](uint32_t c, EngineCounts& here) { settle(c, step, here); }};
   rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
@@ -102,20 +102,22 @@ void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb>
 }
 
 // What it wishes for, as if nobody were there.
-void ClimberEngine::wish(Body& body, Climb& climb) const {
-  Space wished;
-  if ((body.has(Body::kHasGoal) || body.has(Body::kDriven)) && climb.count > 0) {
+void ClimberEngine::preferred(Body& body, Climb& climb) const {
+  Space desired;
+  if ((body.has(Body::kHasGoal) || body.has(Body::kExternal)) && climb.count > 0) {
     float speed = body.speed;
-    if (body.has(Body::kDriven)) {
-      speed = std::min(speed, steer::size_of({climb.driven[0], climb.driven[1], climb.driven[2]}));
+    if (body.has(Body::kExternal)) {
+      speed = std::min(speed,
+                       steer::size_of({climb.external[0], climb.external[1], climb.external[2]}));
     }
-    const Space way = space_of(grounds_[body.avatar_class]->way_ahead(climb));
+    const Space displacement = space_of(grounds_[body.avatar_class]->path_ahead(climb));
     if (speed > 0) {
-      wished = steer::wish_towards(way, speed, config_.units.dt, 0, 0, climb.is_last_leg());
+      desired = steer::preferred_towards(displacement, speed, config_.units.dt, 0, 0,
+                                         climb.is_last_segment());
     }
   }
-  body.wish = {wished.x, wished.z};
-  climb.wish_up = wished.y;
+  body.preferred = {desired.x, desired.z};
+  climb.preferred_up = desired.y;
 }
 
 // Is the other held up where he cannot step aside, on his way over an edge or a gap, or by one who
@@ -160,7 +162,7 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
   };
   nearest.look_around(grid_, body, near_metres_, units.unit, look_at);
   situation.velocity = {body.velocity.x, climb.rise, body.velocity.z};
-  situation.wish = {body.wish.x, climb.wish_up, body.wish.z};
+  situation.preferred = {body.preferred.x, climb.preferred_up, body.preferred.z};
   situation.fastest = body.speed;
   situation.height = static_cast<float>(body.height) * 1e-3f;
   situation.has_walls = false;
@@ -169,17 +171,17 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
   for (size_t n = 0; n < nearest.size(); ++n) {
     const Body& other = bodies_[nearest.body(n)];
     const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
-    float up = 0, wish_up = 0;
+    float up = 0, preferred_up = 0;
     if (other.climbs) {
       up = climbs_[other.slot].rise;
-      wish_up = climbs_[other.slot].wish_up;
+      preferred_up = climbs_[other.slot].preferred_up;
     } else if (other.flies()) {
       up = flights_[other.slot].rise;
     }
     // Who has arrived makes way for those who would pass, were he not there.
-    const bool makes_way = body.has(Body::kArrived) && other.climbs && !other.has(Body::kArrived);
-    const Space velocity = makes_way ? Space{other.wish.x, wish_up, other.wish.z}
-                                     : Space{other.velocity.x, up, other.velocity.z};
+    const bool yields = body.has(Body::kArrived) && other.climbs && !other.has(Body::kArrived);
+    const Space velocity = yields ? Space{other.preferred.x, preferred_up, other.preferred.z}
+                                  : Space{other.velocity.x, up, other.velocity.z};
     situation.near[n] = {{apart.x, static_cast<float>(other.y - body.y) * 1e-3f, apart.z},
                          velocity,
                          static_cast<float>(body.radius + other.radius) * units.unit,
@@ -190,53 +192,54 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
     const float far = steer::size_of(off);
     const float room = static_cast<float>(body.height + other.height) * 1e-3f + kBeside;
     if (far > 0 && far < room) {
-      situation.wish = (-0.5f * body.speed / far) * off;
+      situation.preferred = (-0.5f * body.speed / far) * off;
       yields = true;
     }
   }
 }
 
 // The best first.
-void ClimberEngine::find_ways(const Body& body, const Climb& climb,
-                              const steer::AirSituation& situation, bool yields,
-                              Contest& contest) const {
+void ClimberEngine::find_paths(const Body& body, const Climb& climb,
+                               const steer::AirSituation& situation, bool yields,
+                               Contest& contest) const {
   const ClimberGround& ground = *grounds_[body.avatar_class];
   const float dt = config_.units.dt;
   const double most = double{body.speed} * dt;
   contest.ways = 0;
-  const auto add = [&](const std::optional<ClimberGround::Step>& step, bool on_way) {
+  const auto add = [&](const std::optional<ClimberGround::Step>& step, bool on_path) {
     if (!step || contest.ways == kWays) return;
     const auto hold = ground.hold_of(step->pose, climb.radius);
     if (!hold) return;
     if (is_blocked(ground, *hold, step->pose, climb.radius)) return;
-    contest.way[contest.ways++] = {*step, *hold, on_way};
+    contest.displacement[contest.ways++] = {*step, *hold, on_path};
   };
-  const bool goes = climb.count > 0 && steer::size_of(situation.wish) > 0;
+  const bool goes = climb.count > 0 && steer::size_of(situation.preferred) > 0;
   // Where it stops the wish is slower; else what is left of a step goes on along the way.
-  const double wished = climb.is_last_leg() || body.has(Body::kDriven)
-                            ? double{steer::size_of(situation.wish)} * dt
-                            : most;
+  const double desired = climb.is_last_segment() || body.has(Body::kExternal)
+                             ? double{steer::size_of(situation.preferred)} * dt
+                             : most;
   if (climb.at.in_air != 0) {
     const bool turning = climb.count > 0 && climb.at.next < climb.count;
-    const double along = body.has(Body::kDriven) ? std::max(wished, most / 4) : most;
+    const double along = body.has(Body::kExternal) ? std::max(desired, most / 4) : most;
     for (const double part : {1.0, 0.5, 0.25}) {
       if (turning) add(ground.advance(climb, part * along), true);
     }
     if (climb.waited > kTurnsBack) add(ground.retreat(climb, most), false);
     return;
   }
-  if (!yields && steer::wish_is_open(config_.steering, situation)) {
+  if (!yields && steer::preferred_is_open(config_.steering, situation)) {
     if (!goes) return;
-    for (const double part : {1.0, 0.5, 0.25}) add(ground.advance(climb, part * wished), true);
+    for (const double part : {1.0, 0.5, 0.25}) add(ground.advance(climb, part * desired), true);
     return;
   }
   const Space up = space_of(ground.normal_at(climb));
   for (const Space& v : steer::best_along(config_.steering, situation, up)) {
-    const float speed = steer::size_of(v), wish = steer::size_of(situation.wish);
+    const float speed = steer::size_of(v), preferred = steer::size_of(situation.preferred);
     if (!(speed > 1e-3f)) return;  // nothing is better than to stand
-    const bool ahead = !yields && goes && steer::dot(v, situation.wish) > 0.999f * speed * wish;
+    const bool ahead =
+        !yields && goes && steer::dot(v, situation.preferred) > 0.999f * speed * preferred;
     if (ahead) {
-      add(ground.advance(climb, std::min(most, wished * (speed / wish))), true);
+      add(ground.advance(climb, std::min(most, desired * (speed / preferred))), true);
     } else {
       add(ground.shift(climb, Vec3d{v.x, v.y, v.z} * dt, most), false);
     }
@@ -256,7 +259,7 @@ void ClimberEngine::decide(uint32_t c, Worker& worker) {
   bool yields = false;
   sense(c, worker, situation, yields);
   contest.last = static_cast<uint32_t>(worker.others.size());
-  find_ways(body, climb, situation, yields, contest);
+  find_paths(body, climb, situation, yields, contest);
   move.yields = yields;
   if (contest.first != contest.last && contest.ways > 0) {
     ++worker.counts.contested;
@@ -264,7 +267,7 @@ void ClimberEngine::decide(uint32_t c, Worker& worker) {
     return;
   }
   if (contest.ways > 0) {
-    move.way = contest.way[0];
+    move.displacement = contest.displacement[0];
     move.state = Move::kDecided;
   }
   worker.others.resize(contest.first);
@@ -279,9 +282,9 @@ bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
     ClimbHold there = hold_of(other);
     if (other.climbs) {
       const Move& move = rounds_.moves[rounds_.mover_of[j]];
-      if (move.state == Move::kDecided) there = move.way.hold;
+      if (move.state == Move::kDecided) there = move.displacement.hold;
     }
-    if (clash(hold, there)) return false;
+    if (overlaps_with(hold, there)) return false;
   }
   return true;
 }
@@ -289,8 +292,8 @@ bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
 // The first of his ways that is clear.
 bool ClimberEngine::name(const Contest& contest, const Worker& owner) {
   for (size_t w = 0; w < contest.ways; ++w) {
-    if (!is_clear(contest, owner, contest.way[w].hold)) continue;
-    rounds_.moves[contest.mover].way = contest.way[w];
+    if (!is_clear(contest, owner, contest.displacement[w].hold)) continue;
+    rounds_.moves[contest.mover].displacement = contest.displacement[w];
     return true;
   }
   return false;
@@ -302,37 +305,37 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
   Climb& climb = climbs_[body.slot];
   Move& move = rounds_.moves[c];
   const ClimberGround& ground = *grounds_[body.avatar_class];
-  const Space wished{body.wish.x, climb.wish_up, body.wish.z};
+  const Space desired{body.preferred.x, climb.preferred_up, body.preferred.z};
   const bool moves = move.state == Move::kDecided;
   float gained = 0;  // of its speed
   if (moves) {
-    const auto& [at, pose] = move.way.step;
-    const Space way = space_of(pose.feet - climb.feet);
+    const auto& [at, pose] = move.displacement.step;
+    const Space displacement = space_of(pose.feet - climb.feet);
     const double far = ground.travel({climb.feet, climb.axis}, pose);
-    const float per_step = body.speed * units.dt, wish = steer::size_of(wished);
-    gained = move.way.on_way ? static_cast<float>(far) / per_step
-             : wish > 0      ? steer::dot(way, wished) / (wish * per_step)
-                             : 0;
-    body.velocity = {way.x / units.dt, way.z / units.dt};
-    climb.rise = way.y / units.dt;
+    const float per_step = body.speed * units.dt, preferred = steer::size_of(desired);
+    gained = move.displacement.on_path ? static_cast<float>(far) / per_step
+             : preferred > 0           ? steer::dot(displacement, desired) / (preferred * per_step)
+                                       : 0;
+    body.velocity = {displacement.x / units.dt, displacement.z / units.dt};
+    climb.rise = displacement.y / units.dt;
     climb.at = at;
     climb.feet = pose.feet;
     climb.axis = pose.axis;
-    body.x = move.way.hold.low.x;
-    body.z = move.way.hold.low.z;
-    body.y = move.way.hold.low.y;
-    body.radius = move.way.hold.radius;
-    body.height = static_cast<uint16_t>(move.way.hold.height);
+    body.x = move.displacement.hold.low.x;
+    body.z = move.displacement.hold.low.z;
+    body.y = move.displacement.hold.low.y;
+    body.radius = move.displacement.hold.radius;
+    body.height = static_cast<uint16_t>(move.displacement.hold.height);
     if (!(far > 0)) ++counts.stood;
   } else {
     body.velocity = {};
     climb.rise = 0;
     ++counts.stood;
   }
-  if (!body.has(Body::kHasGoal) || body.has(Body::kDriven)) return;
+  if (!body.has(Body::kHasGoal) || body.has(Body::kExternal)) return;
   counts.progress += std::lrint(gained * 1e6f);
-  const bool at_end = climb.is_last_leg() && climb.at.in_air == 0;
-  const float left = at_end ? steer::size_of(space_of(ground.way_ahead(climb))) : 1;
+  const bool at_end = climb.is_last_segment() && climb.at.in_air == 0;
+  const float left = at_end ? steer::size_of(space_of(ground.path_ahead(climb))) : 1;
   if (at_end && left < kThere && climb.detour <= 0 && !body.has(Body::kArrived)) {
     body.flags |= Body::kArrived;
     move.arrives = true;
@@ -345,7 +348,7 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
   climb.waited += units.dt;
   const auto temper = static_cast<float>(random_below(config_.seed ^ kTempers, body.slot, step, 3));
   const float most = kPatience + temper;
-  if (config_.patient && climb.waited > most && climb.is_on_ground()) {
+  if (config_.deadlock_avoidance && climb.waited > most && climb.is_on_ground()) {
     climb.waited = 0;
     climb.turns_off = 1;
   }

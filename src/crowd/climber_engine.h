@@ -27,7 +27,7 @@ struct ClimberConfig {
   StepUnits units;
   float sight = 5;  // [m]
   int32_t rounds = 3;
-  bool patient = true;
+  bool deadlock_avoidance = true;
   uint64_t seed = 1;
   int32_t workers = 0;
   steer::AirSettings steering;
@@ -67,28 +67,28 @@ class ClimberEngine {
 
  private:
   static constexpr size_t kWays = 6;
-  struct Way {
+  struct Displacement {
     ClimberGround::Step step;
     ClimbHold hold;
-    bool on_way = false;  // not aside
+    bool on_path = false;  // not aside
   };
   struct Contest : MoverContest {
     size_t ways = 0;
-    std::array<Way, kWays> way;
+    std::array<Displacement, kWays> displacement;
   };
   struct Move : MoverState {
-    Way way;
+    Displacement displacement;
     bool yields = false;
   };
   using Rounds = MoverRounds<Contest, Move>;
   using Worker = Rounds::Worker;
 
-  void wish(Body& body, Climb& climb) const;
+  void preferred(Body& body, Climb& climb) const;
   void decide(uint32_t climber, Worker& worker);
   void sense(uint32_t climber, Worker& worker, steer::AirSituation& situation, bool& yields) const;
   [[nodiscard]] bool lets_off(const Body& body, const Climb& climb, const Body& other) const;
-  void find_ways(const Body& body, const Climb& climb, const steer::AirSituation& situation,
-                 bool yields, Contest& contest) const;
+  void find_paths(const Body& body, const Climb& climb, const steer::AirSituation& situation,
+                  bool yields, Contest& contest) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const ClimbHold& hold) const;
   bool name(const Contest& contest, const Worker& owner);

@@ -128,7 +128,7 @@ ClimberGround::Square ClimberGround::square_of(uint32_t node1) const {
 
 ClimberGround::Square ClimberGround::square_of(const ClimbStance& at, double s, double t) const {
   Square square = square_of(at.node1);
-  if (!square.ragged) return square;
+  if (!square.partial) return square;
   const auto known = finder_->square(at.node1 - 1, at.s, at.t, s, t);
   const NodeSquare free = known ? *known : NodeSquare{at.s, at.t, at.s, at.t};
   square.s0 = free.s0;
@@ -141,15 +141,15 @@ ClimberGround::Square ClimberGround::square_of(const ClimbStance& at, double s, 
 ClimberGround::Square ClimberGround::square_here(const Climb& climb) const {
   const ClimbStance& at = climb.at;
   if (climb.count == 0) return square_of(at, at.s, at.t);
-  const ClimbPoint& aim = climb.points[std::min<size_t>(at.next, climb.count - 1u)];
-  return square_of(at, aim.s, aim.t);
+  const ClimbPoint& local_target = climb.points[std::min<size_t>(at.next, climb.count - 1u)];
+  return square_of(at, local_target.s, local_target.t);
 }
 
 double ClimberGround::Square::part_inside(double s, double t, double ds, double dt) const {
   double part = 1;
-  const auto cut = [&](double at, double way, double low, double high) {
-    if (way > 0) part = std::min(part, (high - at) / way);
-    if (way < 0) part = std::min(part, (low - at) / way);
+  const auto cut = [&](double at, double displacement, double low, double high) {
+    if (displacement > 0) part = std::min(part, (high - at) / displacement);
+    if (displacement < 0) part = std::min(part, (low - at) / displacement);
   };
   cut(s, ds, s0, s1);
   cut(t, dt, t0, t1);
@@ -180,37 +180,37 @@ bool ClimberGround::enters_next(const Climb& climb, const Square& here, double d
   return there.holds(at.s + out * ds, at.t + out * dt);
 }
 
-Vec3d ClimberGround::way_ahead(const Climb& climb) const {
+Vec3d ClimberGround::path_ahead(const Climb& climb) const {
   const ClimbStance& at = climb.at;
   if (climb.count == 0) return {};
   if (at.in_air != 0) {
     const auto to = pose_of_point(climb, at.next);
-    const Vec3d way = to ? to->feet - climb.feet : Vec3d{};
-    if (!to || length(way) > 0.05) return way;
+    const Vec3d displacement = to ? to->feet - climb.feet : Vec3d{};
+    if (!to || length(displacement) > 0.05) return displacement;
     // Nearly only turning: as its middle moves.
-    return way + (to->axis - climb.axis) * (height_ / 2);
+    return displacement + (to->axis - climb.axis) * (height_ / 2);
   }
   const Square here = square_here(climb);
-  size_t aim = std::min<size_t>(at.next, climb.count - 1u);
+  size_t local_target = std::min<size_t>(at.next, climb.count - 1u);
   const auto off = [&](size_t point) {
     return std::pair{climb.points[point].s - at.s, climb.points[point].t - at.t};
   };
-  if (aim + 1 < climb.count) {
-    const auto [ds, dt] = off(aim + 1);
-    if (enters_next(climb, here, ds, dt) ||
-        (off(aim) == std::pair{0.0, 0.0} && climb.points[aim + 1].on_surface != 0)) {
-      ++aim;
+  if (local_target + 1 < climb.count) {
+    const auto [ds, dt] = off(local_target + 1);
+    if (enters_next(climb, here, ds, dt) || (off(local_target) == std::pair{0.0, 0.0} &&
+                                             climb.points[local_target + 1].on_surface != 0)) {
+      ++local_target;
     }
   }
-  const auto [ds, dt] = off(aim);
-  const auto to = pose_of_point(climb, aim);
+  const auto [ds, dt] = off(local_target);
+  const auto to = pose_of_point(climb, local_target);
   if (!to) return {};
   const double far = length(to->feet - climb.feet);
   const Slope slope = slope_at(here, at);
-  Vec3d way = slope.along_s * ds + slope.along_t * dt;
-  if (here.kind == PatchKind::kLevelTile) way.y = 0;
-  const double size = length(way);
-  return size > kLittle ? way * (far / size) : to->feet - climb.feet;
+  Vec3d displacement = slope.along_s * ds + slope.along_t * dt;
+  if (here.kind == PatchKind::kLevelTile) displacement.y = 0;
+  const double size = length(displacement);
+  return size > kLittle ? displacement * (far / size) : to->feet - climb.feet;
 }
 
 Vec3d ClimberGround::normal_at(const Climb& climb) const {
@@ -221,18 +221,18 @@ Vec3d ClimberGround::normal_at(const Climb& climb) const {
 // Towards the next point, within the square that holds both. True: it is there.
 bool ClimberGround::go_on_surface(const Climb& climb, Step& step, double& most) const {
   ClimbStance& at = step.at;
-  const ClimbPoint& aim = climb.points[at.next];
-  const auto there = pose(at.node1, aim.s, aim.t);
+  const ClimbPoint& local_target = climb.points[at.next];
+  const auto there = pose(at.node1, local_target.s, local_target.t);
   if (!there) return false;
   const double whole = travel(step.pose, *there);
   if (whole <= most) {
     most -= whole;
     step.pose = *there;
-    at.s = aim.s;
-    at.t = aim.t;
+    at.s = local_target.s;
+    at.t = local_target.t;
     return true;
   }
-  const double ds = aim.s - at.s, dt = aim.t - at.t;
+  const double ds = local_target.s - at.s, dt = local_target.t - at.t;
   double part = most / whole;
   for (int n = 0; n < kShorter; ++n) {
     const auto pose_there = pose(at.node1, at.s + part * ds, at.t + part * dt);
@@ -293,17 +293,17 @@ std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb, do
   }
   // At most all that is left of the way.
   while (most > kLittle && at.next < climb.count) {
-    const ClimbPoint& aim = climb.points[at.next];
+    const ClimbPoint& local_target = climb.points[at.next];
     const bool there =
         at.in_air != 0 ? go_through_air(climb, step, most) : go_on_surface(climb, step, most);
     if (!there) break;
     ++at.next;
     at.part = 0;
     at.in_air = at.next < climb.count && climb.points[at.next].on_surface == 0 ? 1 : 0;
-    if (aim.node1 != 0) {
-      at.node1 = aim.node1;
-      at.s = aim.s;
-      at.t = aim.t;
+    if (local_target.node1 != 0) {
+      at.node1 = local_target.node1;
+      at.s = local_target.s;
+      at.t = local_target.t;
     }
   }
   return step;
@@ -328,7 +328,7 @@ std::optional<ClimberGround::Step> ClimberGround::retreat(const Climb& climb, do
   return std::nullopt;
 }
 
-std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3d way,
+std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3d displacement,
                                                         double most) const {
   const ClimbStance& at = climb.at;
   if (at.in_air != 0) return std::nullopt;
@@ -337,7 +337,7 @@ std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3
   const double a = dot(slope.along_s, slope.along_s), b = dot(slope.along_s, slope.along_t);
   const double c = dot(slope.along_t, slope.along_t), det = a * c - b * b;
   if (!(det > 1e-6 * a * c)) return std::nullopt;
-  const double u = dot(way, slope.along_s), v = dot(way, slope.along_t);
+  const double u = dot(displacement, slope.along_s), v = dot(displacement, slope.along_t);
   const double ds = (c * u - b * v) / det, dt = (a * v - b * u) / det;
   const bool goes_on = enters_next(climb, here, ds, dt);
   const double out = here.part_inside(at.s, at.t, ds, dt);

@@ -55,11 +55,12 @@ class ClimberGround {
   /// the air. [m]
   [[nodiscard]] std::optional<Step> advance(const Climb& climb, double most) const;
   [[nodiscard]] std::optional<Step> retreat(const Climb& climb, double most) const;
-  /// Off the way, on the surface: `way` from here, or as far as is proved.
-  [[nodiscard]] std::optional<Step> shift(const Climb& climb, Vec3d way, double most) const;
+  /// Off the way, on the surface: `displacement` from here, or as far as is proved.
+  [[nodiscard]] std::optional<Step> shift(const Climb& climb, Vec3d displacement,
+                                          double most) const;
   /// What is left to the point that it is bound for: straight by the patch's parameters, so this
   /// begins along the surface, and is as long as the straight line. [m]
-  [[nodiscard]] Vec3d way_ahead(const Climb& climb) const;
+  [[nodiscard]] Vec3d path_ahead(const Climb& climb) const;
   /// Up from the surface; along the body where it is in the air.
   [[nodiscard]] Vec3d normal_at(const Climb& climb) const;
 
@@ -68,7 +69,7 @@ class ClimberGround {
     double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
     PatchKind kind = PatchKind::kLevelTile;
     uint32_t source = 0;
-    bool ragged = false;  ///< Of a ragged node: its block, of which not all need be the node.
+    bool partial = false;  ///< Of a ragged node: its block, of which not all need be the node.
 
     /// (But for what rounding takes.)
     [[nodiscard]] bool holds(double s, double t) const {

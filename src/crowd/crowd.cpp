@@ -21,10 +21,10 @@
 namespace throng {
 namespace {
 
-constexpr double kMostSpeed = 100;   // [m/s]
-constexpr double kMostRadius = 100;  // [m]
-constexpr double kMostHeight = 65;   // [m]
-constexpr int32_t kMostSubSteps = 1000;
+constexpr double kMaxSpeed = 100;   // [m/s]
+constexpr double kMaxRadius = 100;  // [m]
+constexpr double kMaxHeight = 65;   // [m]
+constexpr int32_t kMaxSubSteps = 1000;
 constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
@@ -53,13 +53,13 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
     return bad_config("reaction must be 0 to 1 s");
   }
   if (!(config.rounds >= 1 && config.rounds <= 100)) return bad_config("rounds must be 1 to 100");
-  if (!(config.far_reaction >= 0 && config.far_reaction <= 10)) {
+  if (!(config.low_detail_reaction >= 0 && config.low_detail_reaction <= 10)) {
     return bad_config("far_reaction must be 0 to 10 s");
   }
-  if (!(config.far_steps >= 1 && config.far_steps <= 16)) {
+  if (!(config.low_detail_steps >= 1 && config.low_detail_steps <= 16)) {
     return bad_config("far_steps must be 1 to 16");
   }
-  if (!(config.stuck_after >= 0)) return bad_config("stuck_after must be 0 s or more");
+  if (!(config.no_progress_after >= 0)) return bad_config("stuck_after must be 0 s or more");
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
   if (config.nodes.data() != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
@@ -68,11 +68,11 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   const double unit = data.summary.cell / kUnitsPerCell;
   const bool is_sampled = config.model == SteeringModel::kSampled;
   steer::SampledSettings steering;
-  if (!is_sampled) steering.neighbours = steer::kMostNear;
+  if (!is_sampled) steering.neighbours = steer::kMaxNear;
   CrowdEngine engine({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                       .sight = static_cast<float>(config.sight),
                       .rounds = config.rounds,
-                      .patient = is_sampled && config.patient,
+                      .deadlock_avoidance = is_sampled && config.deadlock_avoidance,
                       .reaction = is_sampled ? static_cast<float>(config.reaction) : 0,
                       .seed = config.seed,
                       .workers = config.workers,
@@ -85,7 +85,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                       .sight = static_cast<float>(config.sight),
                       .rounds = config.rounds,
-                      .patient = config.patient,
+                      .deadlock_avoidance = config.deadlock_avoidance,
                       .seed = config.seed,
                       .workers = config.workers,
                       .steering = {},
@@ -94,7 +94,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                           .sight = static_cast<float>(config.sight),
                           .rounds = config.rounds,
-                          .patient = config.patient,
+                          .deadlock_avoidance = config.deadlock_avoidance,
                           .seed = config.seed,
                           .workers = config.workers,
                           .steering = {}},
@@ -133,7 +133,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   if (!ground) return ground.error();
   made->ground = std::move(*ground);
   const bool over_nodes = goes_over_nodes(number);
-  if (config.ways == CrowdWays::kPaths && !over_nodes) {
+  if (config.ways == Routing::kPaths && !over_nodes) {
     auto finder = PathFinder::make(world,
                                    {.avatar_class = number,
                                     .workers = config.workers,
@@ -143,7 +143,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     if (!finder) return finder.error();
     made->finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
     made->paths.resize(made->finders.size());
-    made->detours.resize(made->finders.size());
+    made->repairs.resize(made->finders.size());
   }
   if (auto ok = open_air(number, *made, context); !ok) return ok;
   if (over_nodes) {
@@ -160,7 +160,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   }
   obstacles.open_class(static_cast<size_t>(number), parts->ground);
   for (uint32_t slot = 0; slot < obstacles.all().size(); ++slot) {
-    tell_ways(slot, static_cast<size_t>(number));
+    report_paths(slot, static_cast<size_t>(number));
   }
   engine.set_ground(static_cast<size_t>(number), StrideGround(parts->ground, step_height));
   if (auto ok = find_flows(number, context); !ok) {
@@ -179,13 +179,13 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   const AvatarClass& avatar = body_class(spawn.avatar_class);
   const double radius = radius_of(spawn);
   const double speed = spawn.speed > 0 ? spawn.speed : avatar.speed;
-  if (!(spawn.radius >= 0 && radius <= std::min(kMostRadius, 4000 * 2048 * unit / 2))) {
+  if (!(spawn.radius >= 0 && radius <= std::min(kMaxRadius, 4000 * 2048 * unit / 2))) {
     return bad_config("radius must be 0 (the class's) to 100 m, and at most 4000 cells");
   }
-  if (!(spawn.speed >= 0 && speed <= kMostSpeed)) {
+  if (!(spawn.speed >= 0 && speed <= kMaxSpeed)) {
     return bad_config("speed must be 0 (the class's) to 100 m/s");
   }
-  if (avatar.height > kMostHeight) {
+  if (avatar.height > kMaxHeight) {
     return bad_config("class " + avatar.name + " is higher than 65 m");
   }
   Body body;
@@ -193,7 +193,7 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   body.radius = static_cast<int32_t>(std::ceil(radius / unit - 1e-9));
   body.height = static_cast<uint16_t>(std::ceil(avatar.height * 1000 - 1e-6));
   body.avatar_class = static_cast<uint8_t>(spawn.avatar_class);
-  if (speed * config.dt > kMostSubSteps * radius) {
+  if (speed * config.dt > kMaxSubSteps * radius) {
     return bad_config("speed times dt is over 1000 radii; take shorter steps");
   }
   return body;
@@ -411,10 +411,10 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
     route = {};
     route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z),
                   goals[i].level1 - 1};
-    body->aim_x = route.goal.x;
-    body->aim_z = route.goal.z;
-    body->flags = s.config.ways == CrowdWays::kPaths ? Body::kHasGoal | Body::kLost
-                                                     : Body::kHasGoal | Body::kLast;
+    body->local_target_x = route.goal.x;
+    body->local_target_z = route.goal.z;
+    body->flags = s.config.ways == Routing::kPaths ? Body::kHasGoal | Body::kLost
+                                                   : Body::kHasGoal | Body::kLast;
   }
 }
 
@@ -445,18 +445,19 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
     double size = std::sqrt(v.x * v.x + up * up + v.z * v.z);
     if (!std::isfinite(size)) size = INFINITY;
     const double part = size > body->speed ? body->speed / size : 1;
-    body->flags = (body->flags & Body::kFlying) | Body::kDriven;
+    body->flags = (body->flags & Body::kFlying) | Body::kExternal;
     body->target = 0;
     body->turn = 0;
-    body->wish = part > 0
-                     ? steer::Plane{static_cast<float>(v.x * part), static_cast<float>(v.z * part)}
-                     : steer::Plane{};
+    body->preferred =
+        part > 0 ? steer::Plane{static_cast<float>(v.x * part), static_cast<float>(v.z * part)}
+                 : steer::Plane{};
     if (may_fly) {
-      state_->flights[body->slot].wish_up = part > 0 ? static_cast<float>(up * part) : 0;
+      state_->flights[body->slot].preferred_up = part > 0 ? static_cast<float>(up * part) : 0;
     }
     if (body->climbs) {
       Climb& climb = state_->climbs[body->slot];
-      climb.driven = {body->wish.x, part > 0 ? static_cast<float>(up * part) : 0, body->wish.z};
+      climb.external = {body->preferred.x, part > 0 ? static_cast<float>(up * part) : 0,
+                        body->preferred.z};
       climb.detour = 0;
     }
   }
@@ -470,12 +471,12 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
   for (Body& body : bodies) {
     if (body.has(Body::kFlying) || body.steps == 0) continue;
     const ClassParts& parts = *classes[body.avatar_class];
-    if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kDriven)) &&
+    if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kExternal)) &&
         plan_on_foot(body, flights[body.slot], worker, planned)) {
       body.clear(Body::kKeeps);
       continue;
     }
-    if (!body.has(Body::kHasGoal) || body.has(Body::kKeeps) || config.ways == CrowdWays::kStraight)
+    if (!body.has(Body::kHasGoal) || body.has(Body::kKeeps) || config.ways == Routing::kStraight)
       continue;
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
@@ -484,7 +485,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     }
     if (!body.has(Body::kLost)) continue;
     ++asked;
-    if (plan_way(body, route, ground, worker)) continue;
+    if (plan_path(body, route, ground, worker)) continue;
     // A region that cannot be walked to may be flown to.
     const bool takes_off = parts.air && body.target != 0 && take_off(body, flights[body.slot]);
     if (!takes_off) strand(body);
@@ -509,8 +510,8 @@ CrowdReport Crowd::step() {
   report.step = ++s.step;
   report.avatars = s.engine.bodies().size();
   s.arrived.clear();
-  s.stranded.clear();
-  report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.in_the_way);
+  s.goal_unreachable.clear();
+  report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.blockers);
   s.renew_flows();
   EngineCounts counts;
   CrowdEngine::Times times;
@@ -519,12 +520,12 @@ CrowdReport Crowd::step() {
     s.plan(bodies, worker, planned);
   };
   s.engine.set_detail({.views = s.views,
-                       .steps = s.config.far_steps,
-                       .reaction = static_cast<float>(s.config.far_reaction),
+                       .steps = s.config.low_detail_steps,
+                       .reaction = static_cast<float>(s.config.low_detail_reaction),
                        .narrowest = s.narrowest});
-  const bool has_ways = s.config.ways == CrowdWays::kPaths || !s.flights.empty();
+  const bool has_paths = s.config.ways == Routing::kPaths || !s.flights.empty();
   for (int32_t i = 0; i < s.sub_steps; ++i) {
-    s.engine.step(s.sub_step++, has_ways ? before : CrowdEngine::Before(), counts, times);
+    s.engine.step(s.sub_step++, has_paths ? before : CrowdEngine::Before(), counts, times);
     for (const uint32_t slot : s.engine.arrived()) {
       // Who only came to where he takes off is not there yet.
       if (s.flights.empty() || s.flights[slot].to_port == 0) s.arrived.push_back(s.id_of(slot));
@@ -541,7 +542,7 @@ CrowdReport Crowd::step() {
   }
   s.arrive_in_targets();
   s.find_events();
-  for (std::vector<AvatarId>* ids : {&s.arrived, &s.stranded}) {
+  for (std::vector<AvatarId>* ids : {&s.arrived, &s.goal_unreachable}) {
     std::sort(ids->begin(), ids->end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
   }
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
@@ -551,7 +552,7 @@ CrowdReport Crowd::step() {
   report.held = counts.held / static_cast<uint64_t>(s.sub_steps);
   report.arrived = s.arrived.size();
   report.planned = planned;
-  report.no_way = s.stranded.size();
+  report.no_path = s.goal_unreachable.size();
   report.progress = static_cast<double>(counts.progress) * 1e-6 / moves;
   report.seconds_plan = times.plan;
   report.seconds_sort = times.sort;
@@ -646,7 +647,7 @@ std::optional<AvatarState> Crowd::read(AvatarId id) const {
 bool Crowd::may_lean() const { return state_->config.nodes.data() != nullptr; }
 
 std::span<const AvatarId> Crowd::arrived() const { return state_->arrived; }
-std::span<const AvatarId> Crowd::stranded() const { return state_->stranded; }
+std::span<const AvatarId> Crowd::goal_unreachable() const { return state_->goal_unreachable; }
 const FlightFinder* Crowd::flight_finder(int32_t avatar_class) const {
   const State& s = *state_;
   if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= s.classes.size()) return nullptr;

@@ -178,7 +178,7 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.column != b.column ? a.column < b.column : a.z < b.z;
   });
-  const auto clash = [&](const Entry& a, const Entry& b) {
+  const auto overlaps_with = [&](const Entry& a, const Entry& b) {
     const double dx = a.x - b.x, dz = a.z - b.z;
     const double reach = a.radius + b.radius - 1e-9;
     // One may be exactly over the other.
@@ -191,7 +191,7 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
       const Entry& a = entries[i];
       for (size_t j = i + 1;
            j < entries.size() && entries[j].column == a.column && entries[j].z - a.z < width; ++j) {
-        found += clash(a, entries[j]);
+        found += overlaps_with(a, entries[j]);
       }
       const Entry key{a.column + 1, 0, a.z - width, 0, 0, 0};
       auto next =
@@ -200,7 +200,7 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
           });
       for (; next != entries.end() && next->column == a.column + 1 && next->z - a.z < width;
            ++next) {
-        found += clash(a, *next);
+        found += overlaps_with(a, *next);
       }
     }
     overlaps += found;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kReach = 0.5;             // [m] from a place to the nodes' place that it means
 constexpr double kNoSpacing = 1e9;         // [m] points of a way only where it bends
-constexpr float kLeast = 1;                // [s] of a way that is not to the goal
-constexpr float kDriven = 0.5f;            // [s] for which one who is driven looks ahead
+constexpr float kMin = 1;                  // [s] of a way that is not to the goal
+constexpr float kExternal = 0.5f;          // [s] for which one who is driven looks ahead
 constexpr uint64_t kDetours = 0x6465746f;  // stream of chance
 constexpr uint64_t kPlaces = 0x706c6163;   // stream of chance
 constexpr double kRoomy = 2;               // [m] of a node in which one can go out of the way
@@ -34,7 +34,7 @@ ClimbPoint point_of(const NodePathPoint& point, bool drops) {
 }
 
 // As much of a way as there is room for: it ends on the ground.
-void set_way(Climb& climb, const NodePath& path) {
+void set_path(Climb& climb, const NodePath& path) {
   const size_t all = path.points.size();
   size_t count = std::min(all, Climb::kPoints);
   while (count > 0 && !path.points[count - 1].place) --count;
@@ -141,7 +141,7 @@ void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
       last = pose->feet;
       is_cut = std::any_of(slots.begin(), slots.end(), [&](uint32_t slot) {
         const CrowdObstacle& obstacle = obstacles.all()[slot];
-        return obstacle.kind == ObstacleKind::kStanding && may_touch(around, {obstacle.place, {}});
+        return obstacle.kind == ObstacleKind::kStatic && may_touch(around, {obstacle.place, {}});
       });
     }
     if (is_cut) body.flags |= Body::kLost;
@@ -178,7 +178,7 @@ void Crowd::State::stop_climber(Body& body) {
 }
 
 // The nearest place of its region, in a straight line.
-void Crowd::State::aim_at_target(const Body& body, Climb& climb) const {
+void Crowd::State::aim_at_flow_target(const Body& body, Climb& climb) const {
   const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
   double least = HUGE_VAL;
   const Place* nearest = nullptr;
@@ -201,7 +201,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   const auto w = static_cast<size_t>(worker);
   const uint64_t stream = uint64_t{body.slot} << 2, seed = config.seed ^ kDetours;
   climb.turns_off = 0;
-  climb.detour = kLeast + static_cast<float>(random_below(seed, stream, sub_step, 40)) * 0.1f;
+  climb.detour = kMin + static_cast<float>(random_below(seed, stream, sub_step, 40)) * 0.1f;
   body.clear(Body::kLost);
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
@@ -233,7 +233,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
     path.points.push_back({.place = from, .on_surface = true});
     if (to) path.points.push_back({.place = to, .on_surface = true});
   }
-  set_way(climb, path);
+  set_path(climb, path);
   climb.whole = 0;
 }
 
@@ -252,7 +252,7 @@ bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker) {
   path.points.clear();
   path.points.push_back({.place = from, .on_surface = true});
   path.points.push_back({.place = to, .on_surface = true});
-  set_way(climb, path);
+  set_path(climb, path);
   climb.whole = 0;
   body.clear(Body::kLost);
   return true;
@@ -264,11 +264,11 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
   if (!climb.is_on_ground() || (climb.detour > 0 && climb.at.next < climb.count)) return;
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
-  const Vec3d way{climb.driven[0], climb.driven[1], climb.driven[2]};
-  climb.detour = kDriven;
-  const double far = length(way) * 2 * kDriven;
+  const Vec3d way{climb.external[0], climb.external[1], climb.external[2]};
+  climb.detour = kExternal;
+  const double far = length(way) * 2 * kExternal;
   if (!(far > 0)) return clear_way(climb);
-  const NodePlace to = parts.node_finders[w].find_place(climb.feet + way * (2 * kDriven), far);
+  const NodePlace to = parts.node_finders[w].find_place(climb.feet + way * (2 * kExternal), far);
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   if (!to || !from) return clear_way(climb);
@@ -276,13 +276,13 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
   parts.node_finders[w].find(from, to, path, kNoSpacing, kFew);
   // A long way around is none to where it is driven.
   if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_way(climb);
-  set_way(climb, path);
+  set_path(climb, path);
   climb.whole = 0;
 }
 
 void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
                               std::atomic<uint64_t>& planned) {
-  if (body.has(Body::kDriven)) return drive_climber(body, climb, worker);
+  if (body.has(Body::kExternal)) return drive_climber(body, climb, worker);
   if (!body.has(Body::kHasGoal)) return;
   if (climb.detour > 0) {
     climb.detour -= static_cast<float>(config.dt / sub_steps);
@@ -299,7 +299,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   if (!body.has(Body::kLost)) return;
   planned.fetch_add(1, std::memory_order_relaxed);
   climb.detour = 0;
-  if (body.target != 0) aim_at_target(body, climb);
+  if (body.target != 0) aim_at_flow_target(body, climb);
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   NodePath& path = parts.node_paths[w];
@@ -312,7 +312,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     const NodePlace to = nodes.place(body.avatar_class, station.node1 - 1, station.s, station.t);
     parts.node_finders[w].find(from, to, path, kNoSpacing);
     if (is_found()) {
-      set_way(climb, path);
+      set_path(climb, path);
       climb.to_station = std::exchange(climb.whole, uint8_t{0});
       return body.clear(Body::kLost);
     }
@@ -327,7 +327,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     clear_way(climb);
     return strand(body);
   }
-  set_way(climb, path);
+  set_path(climb, path);
   set_stations(climb, path);
   body.clear(Body::kLost);
 }
@@ -359,9 +359,9 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
   if (!parts || !parts->nodes || body.slot >= climbs.size()) return false;
   const Climb& climb = climbs[body.slot];
   const ClimbStance& at = climb.at;
-  const bool finite = std::isfinite(climb.rise + climb.wish_up + climb.waited + climb.detour) &&
-                      std::isfinite(climb.driven[0] + climb.driven[1] + climb.driven[2]) &&
-                      climb.radius > 0;
+  const bool finite =
+      std::isfinite(climb.rise + climb.preferred_up + climb.waited + climb.detour) &&
+      std::isfinite(climb.external[0] + climb.external[1] + climb.external[2]) && climb.radius > 0;
   if (!finite || climb.count > Climb::kPoints || at.next > climb.count || at.in_air > 1)
     return false;
   if (at.in_air != 0 && (at.next == 0 || at.next == climb.count)) return false;

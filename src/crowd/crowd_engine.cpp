@@ -35,7 +35,7 @@ constexpr float kEnough = 14;                // bodies, to find the nearest amon
 constexpr size_t kBits = 64;                 // of a word
 
 // Do two bodies clash that stand at these places?
-bool clash(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
+bool overlaps_with(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
          at_a.y < at_b.y + b.height && at_b.y < at_a.y + a.height;
 }
@@ -43,21 +43,21 @@ bool clash(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
 // On its last leg, and not there yet?
 bool is_bound(const Body& body) {
   constexpr uint8_t kAll =
-      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven | Body::kFlying;
+      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kFlying;
   // A region has room for many.
   return body.target == 0 && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
 // Part of a way.
-template <class Way>
-Way shorter(Way way, float part) {
-  return {static_cast<int16_t>(std::lrint(static_cast<float>(way.x) * part)),
-          static_cast<int16_t>(std::lrint(static_cast<float>(way.z) * part))};
+template <class Displacement>
+Displacement shorter(Displacement displacement, float part) {
+  return {static_cast<int16_t>(std::lrint(static_cast<float>(displacement.x) * part)),
+          static_cast<int16_t>(std::lrint(static_cast<float>(displacement.z) * part))};
 }
 
 // Bound for a corner, not for its goal yet?
 bool turns_corner(const Body& body) {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven | Body::kFlying;
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kFlying;
   return (body.flags & kAll) == Body::kHasGoal;
 }
 
@@ -66,27 +66,28 @@ bool is_held_up(const Body& body) {
   return body.turn != 0 && (!body.has(Body::kLast) || body.near_wall);
 }
 
-// Speed towards where it is bound for, `way` from it. [m/s]
-float speed_towards(const Body& body, Plane way) {
-  const float left = size_of(way);
-  return left > 1e-6f ? (body.velocity.x * way.x + body.velocity.z * way.z) / left : 0;
+// Speed towards where it is bound for, `displacement` from it. [m/s]
+float speed_towards(const Body& body, Plane displacement) {
+  const float left = size_of(displacement);
+  return left > 1e-6f ? (body.velocity.x * displacement.x + body.velocity.z * displacement.z) / left
+                      : 0;
 }
 
 // By the wished speed. [millionths]
-int64_t progress_of(const Body& body, Plane way) {
-  return std::lrint(speed_towards(body, way) / body.speed * 1e6f);
+int64_t progress_of(const Body& body, Plane displacement) {
+  return std::lrint(speed_towards(body, displacement) / body.speed * 1e6f);
 }
 
 // Is somebody ahead, and goes one's own way? Within 45 degrees.
-bool leads(Plane apart, Plane wish, Plane others) {
-  const float same = wish.x * others.x + wish.z * others.z;
-  const float both =
-      (wish.x * wish.x + wish.z * wish.z) * (others.x * others.x + others.z * others.z);
-  return apart.x * wish.x + apart.z * wish.z > 0 && same > 0 && 2 * same * same > both;
+bool leads(Plane apart, Plane preferred, Plane others) {
+  const float same = preferred.x * others.x + preferred.z * others.z;
+  const float both = (preferred.x * preferred.x + preferred.z * preferred.z) *
+                     (others.x * others.x + others.z * others.z);
+  return apart.x * preferred.x + apart.z * preferred.z > 0 && same > 0 && 2 * same * same > both;
 }
 
 Bound bound(const Body& body) {
-  return {body.x, body.z, body.aim_x, body.aim_z, body.radius, body.slot};
+  return {body.x, body.z, body.local_target_x, body.local_target_z, body.radius, body.slot};
 }
 
 }  // namespace
@@ -163,7 +164,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
     seconds += seconds_since(start);
     start = Clock::now();
   };
-  wish_all(step, before);
+  prefer_all(step, before);
   lap(times.plan);
   grid_->sort({bodies_.data(), size_}, {spare_.data(), size_}, config_.workers);
   std::swap(bodies_, spare_);
@@ -178,19 +179,20 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
 
 // Does it go on as it did in the last step?
 bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
-  return body.has(Body::kKeeps) && !body.has(Body::kDriven) && !body.has(Body::kLost) &&
+  return body.has(Body::kKeeps) && !body.has(Body::kExternal) && !body.has(Body::kLost) &&
          !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
-         !is_before({body.aim_x - body.x, body.aim_z - body.z}, stride_of(body));
+         !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
 }
 
-void CrowdEngine::wish_all(uint64_t step, const Before& before) {
+void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
   constexpr float kSide = 2;  // [s] that one keeps to a side
   const auto window = step / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
   // To the right, if nothing but others is in the way. Before a wall or a corner that would press a
   // crowd against it: there, to either side by chance.
   const auto turn = [&](const Body& b) {
-    if (b.meets || !is_held_up(b)) return b.turn;
-    if (size_of(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z)) < kClose) return 0.0f;
+    if (b.in_counterflow || !is_held_up(b)) return b.turn;
+    if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) < kClose)
+      return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
     return left ? -b.turn : b.turn;
   };
@@ -204,11 +206,12 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
     }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
-      if (b.has(Body::kDriven) || b.has(Body::kFlying) || b.steps == 0) continue;
-      b.wish = b.has(Body::kHasGoal)
-                   ? steer::wish_towards(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z),
-                                         b.speed, units_of(b).dt, turn(b))
-                   : Plane{};
+      if (b.has(Body::kExternal) || b.has(Body::kFlying) || b.steps == 0) continue;
+      b.preferred = b.has(Body::kHasGoal)
+                        ? steer::preferred_towards(
+                              config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z),
+                              b.speed, units_of(b).dt, turn(b))
+                        : Plane{};
     }
   });
 }
@@ -229,7 +232,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       if (i % kBits == 0) contests = {};
       prefetch_ground(i);
       if (bodies_[i].steps == 0) {
-        claims()[i] = {};
+        proposals()[i] = {};
         bodies_[i].state = Body::kShut;
         continue;
       }
@@ -246,7 +249,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       if (!*contested) continue;
       const uint64_t bit = uint64_t{1} << (i % kBits);
       contests.open |= bit;
-      if (claims()[i].round == 0) contests.unnamed |= bit;
+      if (proposals()[i].round == 0) contests.unnamed |= bit;
       ++workers_[w].counts.contested;
     }
   });
@@ -261,9 +264,9 @@ void CrowdEngine::prefetch_ground(size_t i) const {
   }
   if (i + kAhead < size_) {
     const Body& body = bodies_[i + kAhead];
-    const Way way = way_of(body, body.velocity);
-    grounds_[body.avatar_class].prefetch_cell(body.level,
-                                              {int64_t{body.x} + way.x, int64_t{body.z} + way.z});
+    const Displacement displacement = displacement_of(body, body.velocity);
+    grounds_[body.avatar_class].prefetch_cell(
+        body.level, {int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z});
   }
 }
 
@@ -288,7 +291,7 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
     const Body& other = bodies_[j];
     const int64_t reach = int64_t{body.radius} + other.radius + stride + stride_of(other);
     const int32_t rise = body.y - other.y;
-    const bool near = rise < other.height + 2 * kMostRise && -rise < body.height + 2 * kMostRise;
+    const bool near = rise < other.height + 2 * kMaxRise && -rise < body.height + 2 * kMaxRise;
     if (near && nearer_than(other.x - body.x, other.z - body.z, reach)) worker.others.push_back(j);
   }
 }
@@ -296,7 +299,7 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
 // Takes in what it steers by, and if wanted lists whom it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
-  worker.waits = worker.meets = worker.follows = false;
+  worker.waits = worker.in_counterflow = worker.follows = false;
   const Body& body = bodies_[i];
   fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
@@ -314,7 +317,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
           .most = goes_blind(body) ? 0 : std::min(sight, enough),
           .tall = body.height,
           .touch = lists_others ? touch * touch : 0,
-          .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMostRise};
+          .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMaxRise};
   SeenLists lists;
   const auto look = [&] {
     lists = {worker.squares.data(), worker.entries.data(), worker.touched.data()};
@@ -327,7 +330,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   }
   list_touched(body, lists, worker);
   if (goes_blind(body)) {  // It looks no farther.
-    worker.situation.wish = body.wish;
+    worker.situation.preferred = body.preferred;
     worker.situation.has_walls = false;
     return;
   }
@@ -343,7 +346,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   if (config_.model != SteeringModel::kSampled) return prefer(i, {lists.entries, nearest}, worker);
   steer::Situation& situation = worker.situation;
   situation.velocity = body.velocity;
-  situation.wish = body.wish;
+  situation.preferred = body.preferred;
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
@@ -351,40 +354,43 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     // Those ahead tell those behind, who would else fill the whole width.
-    worker.meets = worker.meets || (other.meets && leads(apart, body.wish, other.wish));
+    worker.in_counterflow = worker.in_counterflow ||
+                            (other.in_counterflow && leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
       worker.waits = true;
-      situation.wish = wish_of_waiting(
-          config_.units.metres(body.aim_x - body.x, body.aim_z - body.z), body.speed, room);
+      situation.preferred = preferred_of_waiting(
+          config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
+          body.speed, room);
     }
     if (turns && turns_corner(other) &&
-        gives_way(bound(other), bound(body), size_of(apart), room,
-                  size_of(other.velocity) / other.speed)) {
+        gives_precedence(bound(other), bound(body), size_of(apart), room,
+                         size_of(other.velocity) / other.speed)) {
       worker.waits = true;
       const float back = -0.5f * body.speed / size_of(apart);
-      situation.wish = {apart.x * back, apart.z * back};
+      situation.preferred = {apart.x * back, apart.z * back};
     }
     // Who has arrived makes way for those who would pass, were he not there: they may stand.
-    const bool makes_way = body.has(Body::kArrived) && !other.has(Body::kArrived);
+    const bool yields = body.has(Body::kArrived) && !other.has(Body::kArrived);
     situation.near.add(config_.steering,
-                       {apart, makes_way ? other.wish : other.velocity, room, other.wish});
+                       {apart, yields ? other.preferred : other.velocity, room, other.preferred});
   }
-  const Plane wish = situation.wish;
-  situation.wish = steer::following_fast(config_.steering, situation);
+  const Plane preferred = situation.preferred;
+  situation.preferred = steer::following_fast(config_.steering, situation);
   // Before a corner one who crawls is turned as one who stands: doors need that.
   worker.follows =
-      !turns && steer::can_but_crawl(config_.patience, wish, situation.wish, body.speed);
+      !turns && steer::can_but_crawl(config_.patience, preferred, situation.preferred, body.speed);
 }
 
 // Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
-bool CrowdEngine::find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+bool CrowdEngine::find_open_preferred(uint32_t i, Worker& worker,
+                                      const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];
   if (!is_sampled(body)) return true;
   if (!worker.waits && go_straight(body, worker.situation)) return true;
   const auto is_open = [&] {
     look_ahead(body, worker.situation);
-    return steer::wish_is_open_fast(config_.steering, worker.situation);
+    return steer::preferred_is_open_fast(config_.steering, worker.situation);
   };
   return is_open() || (!worker.waits && take_lane(i, worker, around) && is_open());
 }
@@ -392,32 +398,34 @@ bool CrowdEngine::find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid
 // Who was turned aside by a jam at a door goes through as soon as he can.
 bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) const {
   if (!is_held_up(body)) return false;
-  const Plane turned = situation.wish;
-  const Plane left = config_.units.metres(body.aim_x - body.x, body.aim_z - body.z);
-  situation.wish = steer::wish_towards(left, body.speed, units_of(body).dt, 0);
+  const Plane turned = situation.preferred;
+  const Plane left =
+      config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
+  situation.preferred = steer::preferred_towards(left, body.speed, units_of(body).dt, 0);
   // Who is a step from his corner stops there: whether he would touch somebody beyond is no matter.
   if (!body.has(Body::kLast) && size_of(left) <= body.speed * units_of(body).dt) {
     look_ahead(body, situation);
     return true;
   }
-  situation.wish = steer::following_fast(config_.steering, situation);
+  situation.preferred = steer::following_fast(config_.steering, situation);
   look_ahead(body, situation);
   steer::SampledSettings at_once = config_.steering;
   at_once.horizon = kAtOnce;
-  if (steer::wish_is_open_fast(at_once, situation)) return true;
-  situation.wish = turned;
+  if (steer::preferred_is_open_fast(at_once, situation)) return true;
+  situation.preferred = turned;
   return false;
 }
 
 // Who can but stand between walls makes room for others.
-Plane CrowdEngine::if_blocked(Plane way, const steer::Situation& situation) const {
-  const bool stands = way.x == 0 && way.z == 0;
-  return stands && situation.has_walls ? steer::making_room(config_.room, situation) : way;
+Plane CrowdEngine::if_blocked(Plane displacement, const steer::Situation& situation) const {
+  const bool stands = displacement.x == 0 && displacement.z == 0;
+  return stands && situation.has_walls ? steer::making_room(config_.room, situation) : displacement;
 }
 
 // A way that is free as far as one looks has no end that would matter.
-float CrowdEngine::metres(float way, float look) const {
-  return way < look ? way * config_.units.unit : std::numeric_limits<float>::infinity();
+float CrowdEngine::metres(float displacement, float look) const {
+  return displacement < look ? displacement * config_.units.unit
+                             : std::numeric_limits<float>::infinity();
 }
 
 // Is there a wall near, and how far is it to one along the wish?
@@ -426,8 +434,9 @@ void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) cons
   const float look = wall_look(body);
   situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(look));
   if (!situation.has_walls) return;
-  const Plane ahead = steer::ahead_of(situation.wish);
-  situation.free_way[0] = metres(ground.free_way(body.level, body.point(), ahead, look), look);
+  const Plane ahead = steer::ahead_of(situation.preferred);
+  situation.free_distance[0] =
+      metres(ground.free_distance(body.level, body.point(), ahead, look), look);
 }
 
 // How far is it in all directions? Only for those whose wish is not open.
@@ -436,61 +445,61 @@ void CrowdEngine::look_around(const Body& body, steer::Situation& situation) con
   const StrideGround& ground = grounds_[body.avatar_class];
   const float look = wall_look(body);
   const auto rise = static_cast<int32_t>(look * config_.units.unit * 1000);  // 45 degrees
-  const steer::Fan fan = steer::fan_around(situation.wish);
+  const steer::Fan fan = steer::fan_around(situation.preferred);
   WallWindow window;
   switch (ground.look_around(body.level, body.y, body.point(), cells_of(look), rise, window)) {
     case StrideGround::Around::kOpen:
       situation.has_walls = false;
       break;
     case StrideGround::Around::kWalls:
-      find_free_ways(window, fan, look, situation.free_way);
-      for (float& way : situation.free_way) way = metres(way, look);
+      find_free_distances(window, fan, look, situation.free_distance);
+      for (float& displacement : situation.free_distance) displacement = metres(displacement, look);
       break;
     case StrideGround::Around::kSteps:
       for (size_t k = 1; k < steer::kDirections; ++k) {
-        situation.free_way[k] =
-            metres(ground.free_way(body.level, body.point(), fan[k], look), look);
+        situation.free_distance[k] =
+            metres(ground.free_distance(body.level, body.point(), fan[k], look), look);
       }
   }
 }
 
-void CrowdEngine::find_ways(const Body& body, const steer::Situation& situation, bool open,
-                            Ways& ways) {
+void CrowdEngine::find_paths(const Body& body, const steer::Situation& situation, bool open,
+                             Displacements& ways) {
   if (!is_sampled(body)) {
-    const steer::Choices choices = steer::ways_about(situation.wish);
+    const steer::Choices choices = steer::ways_about(situation.preferred);
     std::transform(choices.begin(), choices.end(), ways.begin(),
-                   [&](Plane way) { return way_of(body, way); });
+                   [&](Plane displacement) { return displacement_of(body, displacement); });
     return;
   }
   steer::Trials trials;
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
   size_t n = 0;
-  if (open) ways[n++] = way_of(body, if_blocked(situation.wish, situation));
+  if (open) ways[n++] = displacement_of(body, if_blocked(situation.preferred, situation));
   while (n < ways.size()) {
-    ways[n++] = way_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
+    ways[n++] = displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
   }
 }
 
-std::span<const uint32_t> CrowdEngine::others_of(const Claim& claim) const {
-  const uint32_t* const end = claim.words.data() + kWords;
-  if (!claim.is_far) return {end - claim.others, end};
-  const Worker& worker = workers_[claim.words[kWords - 2]];
-  return {worker.others.data() + claim.words[kWords - 1], claim.others};
+std::span<const uint32_t> CrowdEngine::others_of(const Proposal& proposal) const {
+  const uint32_t* const end = proposal.words.data() + kWords;
+  if (!proposal.is_far) return {end - proposal.others, end};
+  const Worker& worker = workers_[proposal.words[kWords - 2]];
+  return {worker.others.data() + proposal.words[kWords - 1], proposal.others};
 }
 
 // Puts whom a worker has listed last into the claim, if there is room.
-void CrowdEngine::keep_others(Claim& claim, uint16_t worker, size_t first) {
+void CrowdEngine::keep_others(Proposal& proposal, uint16_t worker, size_t first) {
   std::vector<uint32_t>& others = workers_[worker].others;
-  claim.others = static_cast<uint32_t>(others.size() - first);
-  claim.is_far = claim.ways + size_t{claim.others} > kWords;
-  if (claim.is_far) {
-    claim.words[kWords - 2] = worker;
-    claim.words[kWords - 1] = static_cast<uint32_t>(first);
+  proposal.others = static_cast<uint32_t>(others.size() - first);
+  proposal.is_far = proposal.ways + size_t{proposal.others} > kWords;
+  if (proposal.is_far) {
+    proposal.words[kWords - 2] = worker;
+    proposal.words[kWords - 1] = static_cast<uint32_t>(first);
     return;
   }
   std::copy(others.begin() + static_cast<std::ptrdiff_t>(first), others.end(),
-            claim.words.end() - claim.others);
+            proposal.words.end() - proposal.others);
   others.resize(first);
 }
 
@@ -499,12 +508,12 @@ void CrowdEngine::keep_others(Claim& claim, uint16_t worker, size_t first) {
 std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square) {
   Worker& worker = workers_[w];
   Body& body = bodies_[i];
-  Claim& claim = claims()[i];
-  claim = {};
-  claim.flags = Body::kKeeps;
-  claim.meets = body.meets;
-  const Way way = way_of(body, body.velocity);
-  if (!try_way(body, way, claim.place)) return std::nullopt;
+  Proposal& proposal = proposals()[i];
+  proposal = {};
+  proposal.flags = Body::kKeeps;
+  proposal.in_counterflow = body.in_counterflow;
+  const Displacement displacement = displacement_of(body, body.velocity);
+  if (!try_displacement(body, displacement, proposal.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);
   fit_lists(around, worker);
@@ -515,7 +524,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
                 .most = 0,
                 .tall = 0,
                 .touch = touch * touch,
-                .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMostRise};
+                .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMaxRise};
   SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
   find_seen({grid_->x(), grid_->z(), grid_->y()}, around.pieces(), eye, lists);
   const size_t first = worker.others.size();
@@ -526,14 +535,14 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
   }
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  if (!is_clear(body, claim.place, others, /*somebody_moved=*/false)) {
+  if (!is_clear(body, proposal.place, others, /*somebody_moved=*/false)) {
     worker.others.resize(first);
     return std::nullopt;
   }
   body.state = Body::kUndecided;
-  claim.round = 1;
-  claim.add_way(way);
-  keep_others(claim, w, first);
+  proposal.round = 1;
+  proposal.add_displacement(displacement);
+  keep_others(proposal, w, first);
   return true;
 }
 
@@ -541,8 +550,8 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
 bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around) {
   Worker& worker = workers_[w];
   Body& body = bodies_[i];
-  Claim& claim = claims()[i];
-  claim = {};
+  Proposal& proposal = proposals()[i];
+  proposal = {};
   if (body.has(Body::kFlying)) {
     body.state = Body::kShut;
     return false;
@@ -554,56 +563,58 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   // Not when ways are found again: who gave way to others then goes where he is bound for, or lanes
   // jam more often.
   if (is_sampled(body)) keep_right(body, worker);
-  const bool open = find_open_wish(i, worker, around);
-  claim.meets = worker.meets;
+  const bool open = find_open_preferred(i, worker, around);
+  proposal.in_counterflow = worker.in_counterflow;
   body.follows = worker.follows;
   // The best of his ways is enough as long as nobody objects to it.
   if (!open) look_around(body, worker.situation);
   const Plane best =
-      open ? worker.situation.wish
+      open ? worker.situation.preferred
            : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
-  Ways ways{way_of(body, best)};
-  bool named = try_way(body, ways[0], claim.place) &&
-               is_clear(body, claim.place, others, /*somebody_moved=*/false);
+  Displacements ways{displacement_of(body, best)};
+  bool named = try_displacement(body, ways[0], proposal.place) &&
+               is_clear(body, proposal.place, others, /*somebody_moved=*/false);
   if (named) {
-    claim.flags = Body::kKeeps;
-    claim.round = others.empty() ? 0 : 1;
+    proposal.flags = Body::kKeeps;
+    proposal.round = others.empty() ? 0 : 1;
   } else {
     if (open) look_around(body, worker.situation);
-    find_ways(body, worker.situation, open, ways);
-    claim.has_all = true;
+    find_paths(body, worker.situation, open, ways);
+    proposal.has_all = true;
   }
   // Known only where one had to look.
   body.near_wall = (!open || !named) && worker.situation.has_walls;
   if (others.empty()) {
-    if (!named) named = try_ways(body, ways, others, claim.place);
+    if (!named) named = try_displacements(body, ways, others, proposal.place);
     body.state = named ? Body::kFree : Body::kShut;
     return false;
   }
   body.state = Body::kUndecided;
-  for (size_t n = 0; n < (named ? 1 : ways.size()); ++n) claim.add_way(ways[n]);
-  keep_others(claim, w, first);
+  for (size_t n = 0; n < (named ? 1 : ways.size()); ++n) proposal.add_displacement(ways[n]);
+  keep_others(proposal, w, first);
   return true;
 }
 
 // Where a body would stand after a step, if the ground lets it.
-bool CrowdEngine::try_way(const Body& body, Way way, Stand& place) const {
-  const GroundPoint to{int64_t{body.x} + way.x, int64_t{body.z} + way.z};
+bool CrowdEngine::try_displacement(const Body& body, Displacement displacement,
+                                   Stand& place) const {
+  const GroundPoint to{int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z};
   StrideGround::Landing landing;
   if (!grounds_[body.avatar_class].move(body.level, body.y, body.point(), to, landing)) {
     return false;
   }
-  if (std::abs(landing.y - body.y) > kMostRise) return false;
+  if (std::abs(landing.y - body.y) > kMaxRise) return false;
   place = {static_cast<int32_t>(to.x), static_cast<int32_t>(to.z), landing.y, landing.level};
   return true;
 }
 
 // The first of the ways that is open and clear, then a shorter one.
-bool CrowdEngine::try_ways(const Body& body, const Ways& ways, std::span<const uint32_t> others,
-                           Stand& place) const {
-  const auto is_free = [&](Way way) {
+bool CrowdEngine::try_displacements(const Body& body, const Displacements& ways,
+                                    std::span<const uint32_t> others, Stand& place) const {
+  const auto is_free = [&](Displacement displacement) {
     Stand to;
-    if (!try_way(body, way, to) || !is_clear(body, to, others, /*somebody_moved=*/true)) {
+    if (!try_displacement(body, displacement, to) ||
+        !is_clear(body, to, others, /*somebody_moved=*/true)) {
       return false;
     }
     place = to;
@@ -647,7 +658,7 @@ void CrowdEngine::commit(uint64_t step) {
       return false;
     });
     for_contests(&Contests::open, [&](uint32_t i, Worker&) {
-      const bool decided = claims()[i].round == round && holds(i, step);
+      const bool decided = proposals()[i].round == round && holds(i, step);
       if (decided) bodies_[i].state = Body::kDecided;
       return decided;
     });
@@ -660,59 +671,60 @@ bool CrowdEngine::is_clear(const Body& body, const Stand& place, std::span<const
   return std::none_of(others.begin(), others.end(), [&](uint32_t j) {
     const Body& other = bodies_[j];
     const bool moved = somebody_moved && other.state == Body::kDecided;
-    return clash(body, place, other, moved ? claims()[j].place : other.stand());
+    return overlaps_with(body, place, other, moved ? proposals()[j].place : other.stand());
   });
 }
 
 // Names the first of his ways that is open and clear, if there is one.
 void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
   const Body& body = bodies_[i];
-  Claim& claim = claims()[i];
-  const std::span<const uint32_t> others = others_of(claim);
+  Proposal& proposal = proposals()[i];
+  const std::span<const uint32_t> others = others_of(proposal);
   Stand place;
   const auto take = [&](bool found) {
     if (!found) return;
-    claim.place = place;
-    claim.round = round;
+    proposal.place = place;
+    proposal.round = round;
   };
-  if (!claim.has_all && !claim.forgets) {
-    const bool found = try_way(body, claim.way(0), place) &&
+  if (!proposal.has_all && !proposal.forgets) {
+    const bool found = try_displacement(body, proposal.displacement(0), place) &&
                        is_clear(body, place, others, /*somebody_moved=*/true);
     if (found) return take(true);
   }
-  claim.flags = 0;  // It comes to do what it did not want first.
-  Ways ways;
-  if (claim.has_all) {
-    for (size_t n = 0; n < ways.size(); ++n) ways[n] = claim.way(static_cast<uint32_t>(n));
-    return take(try_ways(body, ways, others, place));
+  proposal.flags = 0;  // It comes to do what it did not want first.
+  Displacements ways;
+  if (proposal.has_all) {
+    for (size_t n = 0; n < ways.size(); ++n)
+      ways[n] = proposal.displacement(static_cast<uint32_t>(n));
+    return take(try_displacements(body, ways, others, place));
   }
   // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
   const NeighbourGrid::Around around = grid_->around(grid_->square(body));
   sense(i, scratch, around, /*lists_others=*/false);
-  const bool open = find_open_wish(i, scratch, around);
+  const bool open = find_open_preferred(i, scratch, around);
   look_around(body, scratch.situation);
-  find_ways(body, scratch.situation, open, ways);
-  claim.forgets = !claim.has_room(ways.size());
-  if (!claim.forgets) {
-    claim.ways = 0;
-    for (const Way way : ways) claim.add_way(way);
-    claim.has_all = true;
+  find_paths(body, scratch.situation, open, ways);
+  proposal.forgets = !proposal.has_room(ways.size());
+  if (!proposal.forgets) {
+    proposal.ways = 0;
+    for (const Displacement displacement : ways) proposal.add_displacement(displacement);
+    proposal.has_all = true;
   }
-  take(try_ways(body, ways, others, place));
+  take(try_displacements(body, ways, others, place));
 }
 
 bool CrowdEngine::holds(uint32_t i, uint64_t step) const {
   const Body& body = bodies_[i];
-  const Claim& claim = claims()[i];
+  const Proposal& proposal = proposals()[i];
   const auto order = [&](const Body& b) {
     return std::pair(random_u64(config_.seed, b.slot, step), b.slot);
   };
   const auto mine = order(body);
-  const std::span<const uint32_t> others = others_of(claim);
+  const std::span<const uint32_t> others = others_of(proposal);
   return std::none_of(others.begin(), others.end(), [&](uint32_t j) {
-    const Claim& other = claims()[j];
-    return other.round == claim.round && clash(body, claim.place, bodies_[j], other.place) &&
-           order(bodies_[j]) > mine;
+    const Proposal& other = proposals()[j];
+    return other.round == proposal.round &&
+           overlaps_with(body, proposal.place, bodies_[j], other.place) && order(bodies_[j]) > mine;
   });
 }
 
@@ -725,15 +737,16 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       Body& b = bodies_[i];
       if (b.has(Body::kFlying)) continue;
       here.far += b.has(Body::kFar) ? 1 : 0;
-      const Plane way = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
+      const Plane displacement =
+          config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
       if (b.steps == 0) {  // To all others it is as if it had moved evenly.
         ++here.held;
-        if (b.has(Body::kHasGoal)) here.progress += progress_of(b, way);
+        if (b.has(Body::kHasGoal)) here.progress += progress_of(b, displacement);
         continue;
       }
       const StepUnits units = units_of(b);
-      const Claim& claim = claims()[i];
-      const Stand& place = claim.place;
+      const Proposal& proposal = proposals()[i];
+      const Stand& place = proposal.place;
       const bool is_alone = b.state == Body::kFree || b.state == Body::kShut;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
@@ -748,24 +761,24 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         ++here.stood;
       }
       b.clear(Body::kKeeps);
-      b.meets = claim.meets;
-      if (may_move) b.flags = static_cast<uint8_t>(b.flags | claim.flags);
-      if (!b.has(Body::kHasGoal) || b.has(Body::kDriven)) continue;
-      const float left = size_of(way);
-      const float towards = speed_towards(b, way);
-      here.progress += progress_of(b, way);
+      b.in_counterflow = proposal.in_counterflow;
+      if (may_move) b.flags = static_cast<uint8_t>(b.flags | proposal.flags);
+      if (!b.has(Body::kHasGoal) || b.has(Body::kExternal)) continue;
+      const float left = size_of(displacement);
+      const float towards = speed_towards(b, displacement);
+      here.progress += progress_of(b, displacement);
       const bool near_goal = left <= 1 && b.has(Body::kLast);
       // Nobody is in the way of who is alone, so there is nobody to be turned away from.
-      if (config_.patient) {
+      if (config_.deadlock_avoidance) {
         const float content =
             near_goal || is_alone
                 ? 1
                 : steer::progress_felt(config_.patience, towards / b.speed, b.follows);
         const float along =
-            (b.velocity.x * b.wish.x + b.velocity.z * b.wish.z) / (b.speed * b.speed);
+            (b.velocity.x * b.preferred.x + b.velocity.z * b.preferred.z) / (b.speed * b.speed);
         b.turn = steer::next_turn(config_.patience, b.turn, content, along, units.dt);
       }
-      const Plane rest = config_.units.metres(b.aim_x - b.x, b.aim_z - b.z);
+      const Plane rest = config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
       if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kThere) {
         b.flags |= Body::kArrived;
         const std::lock_guard lock(adding);

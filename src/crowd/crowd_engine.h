@@ -49,7 +49,7 @@ struct EngineConfig {
   StepUnits units;
   float sight = 5;  ///< [m]
   int32_t rounds = 3;
-  bool patient = true;
+  bool deadlock_avoidance = true;
   float reaction = 0.2f;  ///< Whoever does as he decided decides again after that. [s]
   uint64_t seed = 1;
   int32_t workers = 0;
@@ -105,38 +105,42 @@ class CrowdEngine {
 
   /// Heights of two bodies' feet between which, and of what they can rise in a step, they could
   /// touch. [mm]
-  static constexpr int32_t kMostRise = 450;
+  static constexpr int32_t kMaxRise = 450;
   /// The longest step. [units]
   static constexpr int32_t kLongestStep = 32000;
 
  private:
-  // Ways of a contest and whom it could touch are words of four bytes; what does not fit into a
-  // claim lies in the list of the worker that decided.
+  // Displacements of a contest and whom it could touch are words of four bytes; what does not fit
+  // into a claim lies in the list of the worker that decided.
   static constexpr size_t kWords = 10;
-  struct Way {
+  struct Displacement {
     int16_t x, z;  // [units]
   };
   // Where a body would go in this step. If it could touch others also whom, and its ways, the best
   // first: those after the first are found when they are needed.
-  struct Claim {
+  struct Proposal {
     Stand place;
     uint8_t round;  // in which it was named, from 1; 0: before
     uint8_t flags;  // Body::kKeeps
     uint8_t ways;
     bool has_all : 1;
-    bool meets : 1;                      // Body::meets, from the next step on
+    bool in_counterflow : 1;             // Body::meets, from the next step on
     bool forgets : 1;                    // There is no room for its ways: they are found again.
     bool is_far : 1;                     // The last words say where in whose list the others lie.
     uint32_t others;                     // how many
     std::array<uint32_t, kWords> words;  // ways from the front, others from the back
 
-    [[nodiscard]] Way way(uint32_t w) const { return std::bit_cast<Way>(words[w]); }
-    void add_way(Way way) { words[ways++] = std::bit_cast<uint32_t>(way); }
+    [[nodiscard]] Displacement displacement(uint32_t w) const {
+      return std::bit_cast<Displacement>(words[w]);
+    }
+    void add_displacement(Displacement displacement) {
+      words[ways++] = std::bit_cast<uint32_t>(displacement);
+    }
     [[nodiscard]] bool has_room(size_t more_ways) const {
       return more_ways + (is_far ? 2 : others) <= kWords;
     }
   };
-  static_assert(sizeof(Claim) == sizeof(Body) && std::is_trivially_copyable_v<Claim>);
+  static_assert(sizeof(Proposal) == sizeof(Body) && std::is_trivially_copyable_v<Proposal>);
   // A bit for each body.
   struct Contests {
     uint64_t open = 0;     // it could touch others, and is undecided
@@ -147,12 +151,12 @@ class CrowdEngine {
     std::vector<uint32_t> entries, touched;
     std::vector<uint32_t> others;
     steer::Situation situation;
-    bool waits = false;    // for another, instead of doing as he wishes
-    bool meets = false;    // a stream that comes towards him
-    bool follows = false;  // Body::follows
+    bool waits = false;           // for another, instead of doing as he wishes
+    bool in_counterflow = false;  // a stream that comes towards him
+    bool follows = false;         // Body::follows
     EngineCounts counts;
   };
-  using Ways = std::array<Way, steer::kChoices>;
+  using Displacements = std::array<Displacement, steer::kChoices>;
 
   void fit_grid();
   void choose_detail(Body& body, uint64_t step) const;
@@ -175,7 +179,7 @@ class CrowdEngine {
     return config_.model == SteeringModel::kSampled && !goes_blind(body);
   }
   [[nodiscard]] bool keeps(const Body& body, uint64_t step) const;
-  void wish_all(uint64_t step, const Before& before);
+  void prefer_all(uint64_t step, const Before& before);
   void decide_all(EngineCounts& counts);
   bool decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around);
   void prefetch_ground(size_t i) const;
@@ -185,49 +189,53 @@ class CrowdEngine {
   [[nodiscard]] float touch_of(const Body& body) const;
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
   void prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const;
-  bool find_open_wish(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  bool find_open_preferred(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   bool go_straight(const Body& body, steer::Situation& situation) const;
   struct Sides {
     float left, right;  // [m]
   };
   // Where it is bound for, from where it is; of who is led, where that leads.
-  [[nodiscard]] steer::Plane way_ahead(const Body& body) const {
-    const bool is_led = body.has(Body::kDriven) || !body.has(Body::kHasGoal);
-    return is_led ? body.wish : config_.units.metres(body.aim_x - body.x, body.aim_z - body.z);
+  [[nodiscard]] steer::Plane path_ahead(const Body& body) const {
+    const bool is_led = body.has(Body::kExternal) || !body.has(Body::kHasGoal);
+    return is_led
+               ? body.preferred
+               : config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   }
   [[nodiscard]] Sides sides_of(const Body& body) const;
   [[nodiscard]] bool is_met(const Body& body, const Worker& worker) const;
   void keep_right(const Body& body, Worker& worker) const;
   bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
-  [[nodiscard]] steer::Plane if_blocked(steer::Plane way, const steer::Situation& situation) const;
-  [[nodiscard]] float metres(float way, float look) const;
+  [[nodiscard]] steer::Plane if_blocked(steer::Plane displacement,
+                                        const steer::Situation& situation) const;
+  [[nodiscard]] float metres(float displacement, float look) const;
   void look_ahead(const Body& body, steer::Situation& situation) const;
   void look_around(const Body& body, steer::Situation& situation) const;
   [[nodiscard]] float wall_look(const Body& body) const {  // [units]
     return body.speed * config_.steering.wall_horizon / config_.units.unit;
   }
-  void find_ways(const Body& body, const steer::Situation& situation, bool open, Ways& ways);
-  [[nodiscard]] Way way_of(const Body& body, steer::Plane velocity) const {
+  void find_paths(const Body& body, const steer::Situation& situation, bool open,
+                  Displacements& ways);
+  [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);
-    return {static_cast<int16_t>(units.way(velocity.x)),
-            static_cast<int16_t>(units.way(velocity.z))};
+    return {static_cast<int16_t>(units.displacement(velocity.x)),
+            static_cast<int16_t>(units.displacement(velocity.z))};
   }
   void commit(uint64_t step);
   void settle_all(EngineCounts& counts);
   void name(uint32_t i, Worker& scratch, uint8_t round);
-  [[nodiscard]] std::span<const uint32_t> others_of(const Claim& claim) const;
-  void keep_others(Claim& claim, uint16_t worker, size_t first);
+  [[nodiscard]] std::span<const uint32_t> others_of(const Proposal& proposal) const;
+  void keep_others(Proposal& proposal, uint16_t worker, size_t first);
   [[nodiscard]] bool is_clear(const Body& body, const Stand& place,
                               std::span<const uint32_t> others, bool somebody_moved) const;
   [[nodiscard]] bool holds(uint32_t i, uint64_t step) const;
   template <class Do>
   void for_contests(uint64_t Contests::*which, Do act);
-  bool try_way(const Body& body, Way way, Stand& place) const;
-  bool try_ways(const Body& body, const Ways& ways, std::span<const uint32_t> others,
-                Stand& place) const;
+  bool try_displacement(const Body& body, Displacement displacement, Stand& place) const;
+  bool try_displacements(const Body& body, const Displacements& ways,
+                         std::span<const uint32_t> others, Stand& place) const;
   /// What bodies claim lies where they were before they were sorted.
-  [[nodiscard]] Claim* claims() const {
-    return static_cast<Claim*>(static_cast<void*>(spare_.data()));
+  [[nodiscard]] Proposal* proposals() const {
+    return static_cast<Proposal*>(static_cast<void*>(spare_.data()));
   }
 
   EngineConfig config_;

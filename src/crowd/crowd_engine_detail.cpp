@@ -24,8 +24,8 @@ bool CrowdEngine::is_near(const Body& body) const {
 // So many that it moves less than the narrowest is wide: nobody jumps through another.
 uint64_t CrowdEngine::steps_of_far(const Body& body) const {
   constexpr float kRounded = 4;  // [units]
-  const float way = body.speed * (config_.units.dt / config_.units.unit);
-  const float most = (static_cast<float>(detail_.narrowest) - kRounded) / way;
+  const float displacement = body.speed * (config_.units.dt / config_.units.unit);
+  const float most = (static_cast<float>(detail_.narrowest) - kRounded) / displacement;
   return static_cast<uint64_t>(std::clamp(most, 1.0f, static_cast<float>(detail_.steps)));
 }
 
@@ -39,7 +39,7 @@ uint64_t CrowdEngine::steps_of_reaction(const Body& body) const {
 // Far, or near? And if far, is it his turn?
 void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
   body.steps = 1;
-  const bool is_far = !detail_.views.empty() && !body.has(Body::kDriven) &&
+  const bool is_far = !detail_.views.empty() && !body.has(Body::kExternal) &&
                       !body.has(Body::kFlying) && !is_near(body);
   if (!is_far) {
     body.clear(Body::kFar);

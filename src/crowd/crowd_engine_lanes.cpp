@@ -14,26 +14,27 @@ using steer::Plane;
 
 // How far it is to walls on both sides of its way, up to where a place is narrow. [m]
 CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
-  Plane ahead = way_ahead(body);
+  Plane ahead = path_ahead(body);
   const float far = size_of(ahead);
   if (far <= 1e-3f) return {config_.lanes.narrow, config_.lanes.narrow};
   ahead = {ahead.x / far, ahead.z / far};
   const StrideGround& ground = grounds_[body.avatar_class];
   const float unit = config_.units.unit, look = config_.lanes.narrow / unit;
   const Plane right{-ahead.z, ahead.x}, left{ahead.z, -ahead.x};
-  return {ground.free_way(body.level, body.point(), left, look) * unit,
-          ground.free_way(body.level, body.point(), right, look) * unit};
+  return {ground.free_distance(body.level, body.point(), left, look) * unit,
+          ground.free_distance(body.level, body.point(), right, look) * unit};
 }
 
 // Does one of those whom it has sensed come towards it? Where he is bound for counts: a jam turns
 // wishes any way.
 bool CrowdEngine::is_met(const Body& body, const Worker& worker) const {
-  const Plane way = way_ahead(body);
+  const Plane displacement = path_ahead(body);
   for (size_t n = 0; n < worker.situation.near.size; ++n) {
     const Body& other = bodies_[worker.entries[n]];
-    if (body.wish.x * other.wish.x + body.wish.z * other.wish.z >= 0) continue;
+    if (body.preferred.x * other.preferred.x + body.preferred.z * other.preferred.z >= 0) continue;
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
-    if (steer::comes_towards(apart, way, way_ahead(other), config_.lanes.narrow_opposed)) {
+    if (steer::comes_towards(apart, displacement, path_ahead(other),
+                             config_.lanes.narrow_opposed)) {
       return true;
     }
   }
@@ -49,17 +50,18 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
   if (ground.is_open_around(body.level, body.point(), cells_of(narrow / config_.units.unit))) {
     return;
   }
-  if (!worker.meets && !is_met(body, worker)) return;
+  if (!worker.in_counterflow && !is_met(body, worker)) return;
   const Sides sides = sides_of(body);
   if (sides.left >= narrow || sides.right >= narrow) return;
-  worker.meets = true;
-  Plane& wish = worker.situation.wish;
-  const float speed = size_of(wish);
+  worker.in_counterflow = true;
+  Plane& preferred = worker.situation.preferred;
+  const float speed = size_of(preferred);
   if (worker.waits || speed <= 1e-3f || sides.right <= sides.left) return;
   const float off = (sides.right - sides.left) / 2;  // from the middle [m]
   const float aside = config_.lanes.to_right * std::min(off, 1.0f);
   const float scale = 1 / std::sqrt(1 + aside * aside);
-  wish = {(wish.x - wish.z * aside) * scale, (wish.z + wish.x * aside) * scale};
+  preferred = {(preferred.x - preferred.z * aside) * scale,
+               (preferred.z + preferred.x * aside) * scale};
 }
 
 // True if the wish is another one now.
@@ -77,13 +79,13 @@ bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Aro
                 .touch_tall = 0};
   SeenLists lists{worker.squares.data(), worker.entries.data(), worker.touched.data()};
   find_seen({grid_->x(), grid_->z(), grid_->y()}, around.pieces(), eye, lists);
-  steer::Lanes lanes(config_.lanes, body.wish);
+  steer::Lanes lanes(config_.lanes, body.preferred);
   for (size_t n = 0; n < lists.seen; ++n) {
     const Body& other = bodies_[lists.entries[n]];
-    lanes.add(config_.units.metres(other.x - body.x, other.z - body.z), way_ahead(other));
+    lanes.add(config_.units.metres(other.x - body.x, other.z - body.z), path_ahead(other));
   }
-  situation.wish = lanes.wish();
-  situation.wish = steer::following_fast(config_.steering, situation);
+  situation.preferred = lanes.preferred();
+  situation.preferred = steer::following_fast(config_.steering, situation);
   return true;
 }
 

@@ -13,7 +13,7 @@ namespace throng {
 
 using steer::Plane;
 
-// What it would do goes into `worker.situation.wish`.
+// What it would do goes into `worker.situation.preferred`.
 void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const {
   const Body& body = bodies_[i];
   const auto key = [&](uint32_t j) {
@@ -21,7 +21,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   };
   std::sort(nearest.begin(), nearest.end(),
             [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-  std::array<steer::Other, steer::kMostNear> others;
+  std::array<steer::Other, steer::kMaxNear> others;
   const size_t count = std::min(nearest.size(), others.size());
   for (size_t n = 0; n < count; ++n) {
     const Body& other = bodies_[nearest[n]];
@@ -31,25 +31,26 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
                  .slot = other.slot};
   }
   steer::View view{.velocity = body.velocity,
-                   .wish = body.wish,
-                   .way = config_.units.metres(body.aim_x - body.x, body.aim_z - body.z),
+                   .preferred = body.preferred,
+                   .displacement = config_.units.metres(body.local_target_x - body.x,
+                                                        body.local_target_z - body.z),
                    .stops = body.has(Body::kLast) && body.target == 0,
                    .fastest = body.speed,
                    .radius = static_cast<float>(body.radius) * config_.units.unit,
                    .slot = body.slot,
                    .others = {others.data(), count}};
   // Whoever has no goal of his own goes on as he is led.
-  if (body.has(Body::kDriven) || !body.has(Body::kHasGoal)) {
-    view.way = body.wish;
+  if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) {
+    view.displacement = body.preferred;
     view.stops = false;
   }
   steer::Situation& situation = worker.situation;
-  situation.wish = body.wish;
+  situation.preferred = body.preferred;
   if (config_.model == SteeringModel::kSocialForce) {
     look_ahead(body, situation);
     look_around(body, situation);
-    const steer::Fan fan = steer::fan_around(situation.wish);
-    const auto& free = situation.free_way;
+    const steer::Fan fan = steer::fan_around(situation.preferred);
+    const auto& free = situation.free_distance;
     const auto nearest_wall =
         static_cast<size_t>(std::min_element(free.begin(), free.end()) - free.begin());
     view.has_wall =
@@ -59,7 +60,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   }
   situation.has_walls = false;
   worker.waits = false;
-  situation.wish = steer::preferred_velocity(config_.model, view, units_of(body).dt);
+  situation.preferred = steer::preferred_velocity(config_.model, view, units_of(body).dt);
 }
 
 }  // namespace throng

@@ -12,9 +12,9 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostAreas = 64;  // bits
-constexpr size_t kGrain = 4096;    // bodies
-constexpr double kStuck = 0.3;     // [m]
+constexpr size_t kMaxAreas = 64;     // bits
+constexpr size_t kGrain = 4096;      // bodies
+constexpr double kNoProgress = 0.3;  // [m]
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
   State& s = *state_;
   auto made = Target::make(*s.world.data(), prisms);
   if (!made) return made.error();
-  if (s.watched.size() >= kMostAreas) {
+  if (s.watched.size() >= kMaxAreas) {
     return Error{Errc::kLimit, "crowd: it watches 64 areas; watch fewer"};
   }
   s.watched.push_back(std::move(*made));
@@ -30,15 +30,15 @@ Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
 }
 
 std::span<const AreaEntry> Crowd::entered() const { return state_->entered; }
-std::span<const AvatarId> Crowd::stuck() const { return state_->stuck; }
+std::span<const AvatarId> Crowd::no_progress() const { return state_->no_progress; }
 
 void Crowd::State::find_events() {
   entered.clear();
-  stuck.clear();
+  no_progress.clear();
   if (!watched.empty()) find_entries();
   const auto every =
-      static_cast<uint64_t>(std::max(1.0, std::round(config.stuck_after / config.dt)));
-  if (config.stuck_after > 0 && step % every == 0) find_stuck();
+      static_cast<uint64_t>(std::max(1.0, std::round(config.no_progress_after / config.dt)));
+  if (config.no_progress_after > 0 && step % every == 0) find_no_progress();
 }
 
 void Crowd::State::find_entries() {
@@ -66,20 +66,22 @@ void Crowd::State::find_entries() {
   });
 }
 
-void Crowd::State::find_stuck() {
+void Crowd::State::find_no_progress() {
   looked_at.resize(generation.size(), kNeverLooked);
-  const double least = kStuck / unit;
+  const double least = kNoProgress / unit;
   for (const Body& body : engine.bodies()) {
     auto& [x, z, y] = looked_at[body.slot];
     const double dx = double{1} * body.x - x, dz = double{1} * body.z - z;
     const double dy = (double{1} * body.y - y) * 1e-3 / unit;
     const bool walks = body.has(Body::kHasGoal) && !body.has(Body::kArrived);
-    if (walks && dx * dx + dy * dy + dz * dz < least * least) stuck.push_back(id_of(body.slot));
+    if (walks && dx * dx + dy * dy + dz * dz < least * least)
+      no_progress.push_back(id_of(body.slot));
     x = body.x;
     z = body.z;
     y = body.y;
   }
-  std::sort(stuck.begin(), stuck.end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
+  std::sort(no_progress.begin(), no_progress.end(),
+            [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
 }
 
 }  // namespace throng

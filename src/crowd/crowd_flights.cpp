@@ -18,28 +18,28 @@
 namespace throng {
 namespace {
 
-constexpr double kLook = 3;               // [m] to a bend, to see whether the next one is open
-constexpr double kAtPort = 0.3;           // [m] from where it wanted to take off
-constexpr float kTries = 10;              // [s] there, before it gives up
-constexpr double kReach = 0.5;            // [m] from feet to the ground that is theirs
-constexpr uint64_t kLookEvery = 16;       // steps
-constexpr float kWaits = 2;               // [s] over its landing place, before it looks for another
-constexpr uint64_t kRooms = 0x726f6f6d;   // stream of chance
-constexpr uint64_t kMostBoxes = 1 << 16;  // that a search may look at; then it goes over all
-constexpr int32_t kThere = 20;            // [units, mm] as near to a bend as matters
+constexpr double kLook = 3;              // [m] to a bend, to see whether the next one is open
+constexpr double kAtPort = 0.3;          // [m] from where it wanted to take off
+constexpr float kTries = 10;             // [s] there, before it gives up
+constexpr double kReach = 0.5;           // [m] from feet to the ground that is theirs
+constexpr uint64_t kLookEvery = 16;      // steps
+constexpr float kWaits = 2;              // [s] over its landing place, before it looks for another
+constexpr uint64_t kRooms = 0x726f6f6d;  // stream of chance
+constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may look at; then it goes over all
+constexpr int32_t kThere = 20;           // [units, mm] as near to a bend as matters
 
 AirSpot here(const Body& body) { return {body.x, body.z, body.y}; }
 
 void turn_to(Body& body, Flight& flight) {
   const AirSpot& point = flight.points[flight.next];
-  body.aim_x = point.x;
-  body.aim_z = point.z;
-  flight.aim_y = point.y;
+  body.local_target_x = point.x;
+  body.local_target_z = point.z;
+  flight.local_target_y = point.y;
   body.flags =
       static_cast<uint8_t>(flight.is_last() ? body.flags | Body::kLast : body.flags & ~Body::kLast);
 }
 
-void set_way(Flight& flight, std::span<const AirSpot> points, bool lands) {
+void set_path(Flight& flight, std::span<const AirSpot> points, bool lands) {
   flight.count = static_cast<uint8_t>(std::min(points.size(), Flight::kPoints));
   flight.next = 0;
   flight.whole = points.size() <= Flight::kPoints ? 1 : 0;
@@ -97,19 +97,19 @@ bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
     routes[body.slot] = {};
     routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
   }
-  body.aim_x = flight.goal.x;
-  body.aim_z = flight.goal.z;
-  flight.aim_y = flight.goal.y;
+  body.local_target_x = flight.goal.x;
+  body.local_target_z = flight.goal.z;
+  flight.local_target_y = flight.goal.y;
   const bool walks = !flies && flight.goal_level != Flight::kInAir;
   body.flags |= Body::kHasGoal;
-  body.flags |= config.ways == CrowdWays::kStraight && walks ? Body::kLast : Body::kLost;
+  body.flags |= config.ways == Routing::kStraight && walks ? Body::kLast : Body::kLost;
   return true;
 }
 
 void Crowd::State::strand(Body& body) {
   body.flags &= Body::kFlying;
   const std::lock_guard lock(stranding);
-  stranded.push_back(id_of(body.slot));
+  goal_unreachable.push_back(id_of(body.slot));
 }
 
 bool Crowd::State::take_off(Body& body, Flight& flight) const {
@@ -126,7 +126,7 @@ bool Crowd::State::take_off(Body& body, Flight& flight) const {
   flight.count = flight.next = 0;
   body.turn = 0;
   const bool has_goal = body.has(Body::kHasGoal);
-  body.flags &= Body::kDriven | Body::kHasGoal;
+  body.flags &= Body::kExternal | Body::kHasGoal;
   body.flags |= Body::kFlying;
   if (has_goal) body.flags |= Body::kLost;
   return true;
@@ -134,13 +134,13 @@ bool Crowd::State::take_off(Body& body, Flight& flight) const {
 
 bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
                                 std::atomic<uint64_t>& planned) {
-  if (body.has(Body::kDriven)) {
-    if (flight.wish_up > 0) take_off(body, flight);
+  if (body.has(Body::kExternal)) {
+    if (flight.preferred_up > 0) take_off(body, flight);
     return true;
   }
   if (flight.to_port != 0 && body.has(Body::kLast)) {
-    const double dx = static_cast<double>(body.aim_x) - body.x;
-    const double dz = static_cast<double>(body.aim_z) - body.z;
+    const double dx = static_cast<double>(body.local_target_x) - body.x;
+    const double dz = static_cast<double>(body.local_target_z) - body.z;
     const double near = kAtPort / unit;
     if (dx * dx + dz * dz < near * near) {
       if (take_off(body, flight)) return true;
@@ -152,7 +152,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
     }
   }
   if (!body.has(Body::kLost) || body.target != 0) return false;
-  const bool is_straight = config.ways == CrowdWays::kStraight;
+  const bool is_straight = config.ways == Routing::kStraight;
   const bool lands = flight.goal_level != Flight::kInAir;
   if (is_straight && lands) return false;
   if (take_off(body, flight)) {
@@ -170,18 +170,18 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   parts.flight_finders[w].find({.from = parts.air->metres(here(body)),
                                 .to = parts.air->metres(flight.goal),
                                 .reach = kReach,
-                                .max_nodes = kMostBoxes,
+                                .max_nodes = kMaxBoxes,
                                 .by_turns = false,
                                 .nearest = false},
                                path);
   flight.to_port = 0;
   if (lands) routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
   if (path.end != PathEnd::kReached) return false;  // as those who only walk
-  const auto walked =
-      static_cast<size_t>(std::find_if(path.legs.begin(), path.legs.end(),
-                                       [](LegKind leg) { return leg != LegKind::kWalk; }) -
-                          path.legs.begin());
-  if (walked == path.legs.size()) return false;
+  const auto walked = static_cast<size_t>(
+      std::find_if(path.segments.begin(), path.segments.end(),
+                   [](SegmentKind segment) { return segment != SegmentKind::kWalk; }) -
+      path.segments.begin());
+  if (walked == path.segments.size()) return false;
   if (walked == 0 && take_off(body, flight)) {
     planned.fetch_add(1, std::memory_order_relaxed);
     return true;
@@ -211,8 +211,8 @@ bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirSpot& from,
 }
 
 // Straight up, across, and straight down: no search, but hardly ever short.
-bool Crowd::State::find_way_over(const Body& body, const AirSpot& from, const AirSpot& to,
-                                 std::vector<AirSpot>& points) const {
+bool Crowd::State::find_path_over(const Body& body, const AirSpot& from, const AirSpot& to,
+                                  std::vector<AirSpot>& points) const {
   constexpr int32_t kRise = 3000;  // [mm] more at a time
   const FlyerAir& air = *air_of(body);
   const auto is_open = [&](const AirSpot& a, const AirSpot& b) {
@@ -270,20 +270,20 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   const auto high = lands ? air.take_off(to) : std::nullopt;
   if (high) to.y = *high;
   const bool ends_in_air = !lands || high;
-  const bool is_straight = config.ways == CrowdWays::kStraight;
+  const bool is_straight = config.ways == Routing::kStraight;
   if (ends_in_air &&
       (is_straight || (air.sees(from, to) && is_clear_of_obstacles(body, from, to)))) {
-    set_way(flight, std::span(&to, 1), lands);
+    set_path(flight, std::span(&to, 1), lands);
     return true;
   }
-  if (config.ways == CrowdWays::kStraight) return false;
+  if (config.ways == Routing::kStraight) return false;
   const auto w = static_cast<size_t>(worker);
   FlightPath& path = parts.flights[w];
   const auto find = [&](const AirSpot& begin, const AirSpot& end) {
     parts.flight_finders[w].find({.from = air.metres(begin),
                                   .to = air.metres(end),
                                   .reach = kReach,
-                                  .max_nodes = kMostBoxes,
+                                  .max_nodes = kMaxBoxes,
                                   .by_turns = false,
                                   .nearest = false},
                                  path);
@@ -301,9 +301,9 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   if (path.end == PathEnd::kReached) {
     // What is walked after the landing is asked for then.
     bool walks_then = false;
-    for (size_t i = 0; i < path.legs.size() && !walks_then; ++i) {
-      if (path.legs[i] == LegKind::kFly) points.push_back(air.spot(path.points[i + 1]));
-      walks_then = path.legs[i] == LegKind::kLand;
+    for (size_t i = 0; i < path.segments.size() && !walks_then; ++i) {
+      if (path.segments[i] == SegmentKind::kFly) points.push_back(air.spot(path.points[i + 1]));
+      walks_then = path.segments[i] == SegmentKind::kLand;
     }
     if (end && !lands) points.push_back(to);
     if (points.empty()) points.push_back(from);
@@ -314,15 +314,16 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
       const AirSpot begin = std::exchange(at, next);
       return is_clear_of_obstacles(body, begin, next);
     });
-    const bool goes_over = !clear && ends_in_air && find_way_over(body, from, to, over);
-    set_way(flight, goes_over ? over : points, lands);
+    const bool goes_over = !clear && ends_in_air && find_path_over(body, from, to, over);
+    set_path(flight, goes_over ? over : points, lands);
     return true;
   }
   points.clear();
-  if (path.end != PathEnd::kGaveUp || !ends_in_air || !find_way_over(body, from, to, points)) {
+  if (path.end != PathEnd::kBudgetExhausted || !ends_in_air ||
+      !find_path_over(body, from, to, points)) {
     return false;
   }
-  set_way(flight, points, lands);
+  set_path(flight, points, lands);
   return true;
 }
 
@@ -337,8 +338,8 @@ void Crowd::State::look_for_room(Body& body, const Flight& flight) const {
   const AirSpot there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
                       over.z + static_cast<int32_t>(far * steer::kEighths[side][1]), over.y};
   const bool sees = there.x >= 0 && there.z >= 0 && air.sees(here(body), there);
-  body.aim_x = sees ? there.x : over.x;
-  body.aim_z = sees ? there.z : over.z;
+  body.local_target_x = sees ? there.x : over.x;
+  body.local_target_z = sees ? there.z : over.z;
 }
 
 void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
@@ -347,15 +348,16 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
   const FlyerAir& air = *air_of(body);
   const AirSpot at = here(body);
   if (!body.has(Body::kLost) && flight.in_port == 0) {
-    const double dx = (static_cast<double>(body.aim_x) - body.x) * unit;
-    const double dz = (static_cast<double>(body.aim_z) - body.z) * unit;
-    const double dy = (static_cast<double>(flight.aim_y) - body.y) * 1e-3;
+    const double dx = (static_cast<double>(body.local_target_x) - body.x) * unit;
+    const double dz = (static_cast<double>(body.local_target_z) - body.z) * unit;
+    const double dy = (static_cast<double>(flight.local_target_y) - body.y) * 1e-3;
     const bool is_near = dx * dx + dy * dy + dz * dz < kLook * kLook;
     if (is_near && !flight.is_last()) {
       const bool at_end = flight.next + 1 == flight.count;
-      const AirSpot& aim = flight.points[flight.next];
-      const bool there = std::abs(aim.x - at.x) < kThere && std::abs(aim.z - at.z) < kThere &&
-                         std::abs(aim.y - at.y) < kThere;
+      const AirSpot& local_target = flight.points[flight.next];
+      const bool there = std::abs(local_target.x - at.x) < kThere &&
+                         std::abs(local_target.z - at.z) < kThere &&
+                         std::abs(local_target.y - at.y) < kThere;
       if (at_end) {
         if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kLost;
       } else if (there || (air.sees(at, flight.points[flight.next + 1u]) &&
@@ -365,9 +367,10 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
       }
     }
     const bool looks = (sub_step + body.slot) % kLookEvery == 0;
-    if (looks && config.ways == CrowdWays::kPaths) {
-      const AirSpot& aim = flight.points[flight.next];
-      if (!air.sees(at, aim) || !is_clear_of_obstacles(body, at, aim)) body.flags |= Body::kLost;
+    if (looks && config.ways == Routing::kPaths) {
+      const AirSpot& local_target = flight.points[flight.next];
+      if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
+        body.flags |= Body::kLost;
     }
     if (flight.lands != 0 && flight.is_last() && flight.waited > kWaits)
       look_for_room(body, flight);
@@ -414,17 +417,17 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
     flight.lands = 0;
     flight.rise = 0;
     const bool has_goal = body.has(Body::kHasGoal);
-    body.flags &= Body::kDriven | Body::kHasGoal;
+    body.flags &= Body::kExternal | Body::kHasGoal;
     if (!has_goal) continue;
-    const bool is_straight = config.ways == CrowdWays::kStraight;
+    const bool is_straight = config.ways == Routing::kStraight;
     body.flags |= is_straight ? Body::kLast : Body::kLost;
-    body.aim_x = flight.goal.x;
-    body.aim_z = flight.goal.z;
+    body.local_target_x = flight.goal.x;
+    body.local_target_z = flight.goal.z;
   }
 }
 
-void Crowd::State::add_flyers_in_the_way(std::span<const uint32_t> slots,
-                                         std::vector<std::pair<uint32_t, uint32_t>>& found) const {
+void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
+                                      std::vector<std::pair<uint32_t, uint32_t>>& found) const {
   const Vec3d& origin = world.data()->summary.origin;
   const std::span<const Body> bodies = engine.bodies();
   for (const uint32_t slot : slots) {

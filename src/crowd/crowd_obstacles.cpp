@@ -67,7 +67,7 @@ bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   if (was_up && !active) {
     s.ground_changed();
-    s.tell_ways(slot);
+    s.report_paths(slot);
   }
   return true;
 }
@@ -102,14 +102,14 @@ std::vector<Prism> Crowd::obstacles() const {
   return prisms;
 }
 
-std::span<const AvatarId> Crowd::in_the_way() const { return state_->in_the_way; }
+std::span<const AvatarId> Crowd::blockers() const { return state_->blockers; }
 
 size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
-                                      std::vector<AvatarId>* in_their_way) {
-  if (in_their_way != nullptr) in_their_way->clear();
+                                      std::vector<AvatarId>* in_their_path) {
+  if (in_their_path != nullptr) in_their_path->clear();
   if (slots.empty()) return 0;
-  auto found = obstacles.in_the_way(slots, engine.bodies(), config.workers);
-  if (!flights.empty() || !climbs.empty()) add_flyers_in_the_way(slots, found);
+  auto found = obstacles.blockers(slots, engine.bodies(), config.workers);
+  if (!flights.empty() || !climbs.empty()) add_flyer_blockers(slots, found);
   size_t waiting = 0;
   std::vector<uint32_t> settled;
   for (const uint32_t slot : slots) {
@@ -122,16 +122,16 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     obstacles.settle(slot);
     settled.push_back(slot);
   }
-  if (in_their_way != nullptr) {
-    for (const auto& [slot, i] : found) in_their_way->push_back(id_of(engine.bodies()[i].slot));
+  if (in_their_path != nullptr) {
+    for (const auto& [slot, i] : found) in_their_path->push_back(id_of(engine.bodies()[i].slot));
     const auto before = [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; };
-    std::sort(in_their_way->begin(), in_their_way->end(), before);
-    in_their_way->erase(std::unique(in_their_way->begin(), in_their_way->end()),
-                        in_their_way->end());
+    std::sort(in_their_path->begin(), in_their_path->end(), before);
+    in_their_path->erase(std::unique(in_their_path->begin(), in_their_path->end()),
+                         in_their_path->end());
   }
   if (settled.empty()) return waiting;
   ground_changed();
-  for (const uint32_t slot : settled) tell_ways(slot);
+  for (const uint32_t slot : settled) report_paths(slot);
   cut_ways(settled);
   return waiting;
 }
@@ -140,7 +140,7 @@ void Crowd::State::ground_changed() {
   obstacles.take_cells();
   cuts_ways = false;
   for (const CrowdObstacle& obstacle : obstacles.all()) {
-    cuts_ways |= obstacle.exists && obstacle.is_up && obstacle.kind == ObstacleKind::kStanding;
+    cuts_ways |= obstacle.exists && obstacle.is_up && obstacle.kind == ObstacleKind::kStatic;
   }
   for (const auto& parts : classes) {
     if (parts) parts->standing.reset();
@@ -148,13 +148,13 @@ void Crowd::State::ground_changed() {
   tell_flyers_of_obstacles();
 }
 
-void Crowd::State::tell_ways(uint32_t slot) {
-  for (size_t c = 0; c < classes.size(); ++c) tell_ways(slot, c);
+void Crowd::State::report_paths(uint32_t slot) {
+  for (size_t c = 0; c < classes.size(); ++c) report_paths(slot, c);
 }
 
-void Crowd::State::tell_ways(uint32_t slot, size_t number) {
+void Crowd::State::report_paths(uint32_t slot, size_t number) {
   CrowdObstacle& obstacle = obstacles.at(slot);
-  if (obstacle.kind != ObstacleKind::kStanding || !obstacle.exists || !classes[number]) return;
+  if (obstacle.kind != ObstacleKind::kStatic || !obstacle.exists || !classes[number]) return;
   ClassParts& parts = *classes[number];
   CrowdObstacle::OfClass& told = obstacle.of_class[number];
   const bool is_new = obstacle.is_up && (!told.is_told || told.told_version != obstacle.version);
@@ -163,7 +163,7 @@ void Crowd::State::tell_ways(uint32_t slot, size_t number) {
     told.told_version = obstacle.version;
   }
   tell(parts.node_finders, obstacle, is_new, told.node_change);
-  if (config.ways != CrowdWays::kPaths) return;
+  if (config.ways != Routing::kPaths) return;
   if (obstacle.is_up) make_lives(number);
   flows_are_old = true;
   tell(parts.lives, obstacle, is_new, told.change);
@@ -173,7 +173,7 @@ void Crowd::State::tell_ways(uint32_t slot, size_t number) {
 // Whose way leads over what some obstacles have just taken asks for another.
 void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
   if (!climbs.empty()) cut_climbs(slots);
-  if (config.ways != CrowdWays::kPaths) return;
+  if (config.ways != Routing::kPaths) return;
   const WorldData& data = *world.data();
   double widest_class = 0;
   for (const AvatarClass& avatar : data.summary.classes) {
@@ -182,7 +182,7 @@ void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
   std::vector<PlanBox> boxes;
   for (const uint32_t slot : slots) {
     const CrowdObstacle& obstacle = obstacles.at(slot);
-    if (obstacle.kind != ObstacleKind::kStanding) continue;
+    if (obstacle.kind != ObstacleKind::kStatic) continue;
     PlanBox box{1e300, 1e300, -1e300, -1e300};
     const double around = widest_class + data.summary.cell;
     for (const auto& [x, z] : obstacle.place.corners) {

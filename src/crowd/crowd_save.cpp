@@ -29,10 +29,10 @@ struct Head {
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
   uint64_t climbs = 0;         // by slot, or none
-  int32_t rounds = 0, ways = 0, patient = 0, flows_are_old = 0;
-  int32_t model = 0, far_steps = 0;
+  int32_t rounds = 0, ways = 0, deadlock_avoidance = 0, flows_are_old = 0;
+  int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
-  double far_reaction = 0;
+  double low_detail_reaction = 0;
 };
 static_assert(sizeof(Head) == 23 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
@@ -132,10 +132,10 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.reaction = config.reaction;
   head.rounds = config.rounds;
   head.ways = static_cast<int32_t>(config.ways);
-  head.patient = config.patient ? 1 : 0;
+  head.deadlock_avoidance = config.deadlock_avoidance ? 1 : 0;
   head.model = static_cast<int32_t>(config.model);
-  head.far_steps = config.far_steps;
-  head.far_reaction = config.far_reaction;
+  head.low_detail_steps = config.low_detail_steps;
+  head.low_detail_reaction = config.low_detail_reaction;
   return head;
 }
 
@@ -158,8 +158,9 @@ bool is_sound(const Route& route, uint32_t levels) {
 }
 
 bool is_sound(const Body& b, const WorldData& data) {
-  const bool finite = std::isfinite(b.velocity.x + b.velocity.z + b.wish.x + b.wish.z + b.turn) &&
-                      std::isfinite(b.speed);
+  const bool finite =
+      std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.turn) &&
+      std::isfinite(b.speed);
   if (!finite || !(b.speed > 0) || b.radius <= 0 || b.avatar_class >= data.summary.classes.size()) {
     return false;
   }
@@ -172,13 +173,13 @@ bool is_sound(const Body& b, const WorldData& data) {
 }
 
 bool is_sound(const Flight& flight, const Body& body, uint32_t levels) {
-  const bool finite = std::isfinite(flight.rise + flight.wish_up + flight.waited);
+  const bool finite = std::isfinite(flight.rise + flight.preferred_up + flight.waited);
   const bool counts = flight.count <= Flight::kPoints && flight.next <= flight.count &&
                       (flight.count == 0 || flight.next < flight.count);
-  const bool has_way =
+  const bool has_path =
       !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kLost) || flight.count > 0;
   const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
-  return finite && counts && has_way && goal && flight.port_low <= flight.port_high &&
+  return finite && counts && has_path && goal && flight.port_low <= flight.port_high &&
          (flight.in_port == 0 || flight.port_level < levels);
 }
 
@@ -276,15 +277,15 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   if (head.world != expected.world) return bad("is of another world; open that one");
   if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
       head.reaction != expected.reaction || head.rounds != expected.rounds ||
-      head.ways != expected.ways || head.patient != expected.patient ||
-      head.model != expected.model || head.far_steps != expected.far_steps ||
-      head.far_reaction != expected.far_reaction) {
+      head.ways != expected.ways || head.deadlock_avoidance != expected.deadlock_avoidance ||
+      head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
+      head.low_detail_reaction != expected.low_detail_reaction) {
     return bad("has other settings; give those that it was made with");
   }
-  constexpr uint64_t kMost = uint64_t{1} << 32;
-  if (head.bodies >= kMost || head.slots >= kMost || head.free_slots >= kMost ||
-      head.obstacles >= kMost || head.corners >= kMost || head.free_obstacles >= kMost ||
-      head.target_values >= kMost || head.views >= kMost ||
+  constexpr uint64_t kMax = uint64_t{1} << 32;
+  if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
+      head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
+      head.target_values >= kMax || head.views >= kMax ||
       (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");

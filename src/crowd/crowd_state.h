@@ -43,7 +43,7 @@ struct ClassParts {
   std::vector<PathFinder> finders;       // one a worker
   std::vector<LiveGround> lives;         // one a worker, once ways mind obstacles or targets
   std::vector<Path> paths;
-  std::vector<DetourScratch> detours;
+  std::vector<RepairScratch> repairs;
   std::vector<FlowPoints> flows;  // by target
   // Of a class that flies, in a world with air.
   std::optional<FlyerAir> air;
@@ -70,7 +70,7 @@ struct Crowd::State {
   int32_t sub_steps = 1;
   uint64_t step = 0, sub_step = 0;
   uint64_t scattered = 0;  // draws of `scatter`
-  ObstacleBook obstacles;
+  ObstacleSet obstacles;
   bool cuts_ways = false;  // an obstacle that ways lead around is up
 
   // By slot.
@@ -87,10 +87,10 @@ struct Crowd::State {
   std::vector<std::array<int32_t, 3>> looked_at;  // [units, mm]
   std::vector<EngineDetail::View> views;
   std::vector<AreaEntry> entered;
-  std::vector<AvatarId> stuck;
+  std::vector<AvatarId> no_progress;
   std::vector<Target> targets;  // TargetId less one
   bool flows_are_old = false;   // the ground has changed since
-  std::vector<AvatarId> arrived, stranded, in_the_way;
+  std::vector<AvatarId> arrived, goal_unreachable, blockers;
   std::mutex stranding;
 
   State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine,
@@ -118,10 +118,10 @@ struct Crowd::State {
   AvatarId add(Body body, const Climb& climb = {});
   /// Those obstacles that wait and in whose way nobody stands come up or move on. Returns how many
   /// still wait.
-  size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_way);
+  size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_path);
   /// Tells the ways of a class, or of all, what an obstacle is to them by now.
-  void tell_ways(uint32_t slot, size_t number);
-  void tell_ways(uint32_t slot);
+  void report_paths(uint32_t slot, size_t number);
+  void report_paths(uint32_t slot);
   void cut_ways(std::span<const uint32_t> slots);
   /// The grounds are to be as the obstacles are.
   void ground_changed();
@@ -129,12 +129,12 @@ struct Crowd::State {
   void make_lives(size_t number);
   /// What a class lacks of the targets.
   Result<void> find_flows(int32_t number, Context& context);
-  bool plan_way(Body& body, Route& route, const StrideGround& ground, int32_t worker);
+  bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
   void renew_flows();
   void arrive_in_targets();
   void find_events();
   void find_entries();
-  void find_stuck();
+  void find_no_progress();
   [[nodiscard]] AvatarState state_of(const Body& body) const;
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
   void strand(Body& body);
@@ -156,8 +156,8 @@ struct Crowd::State {
   void look_for_room(Body& body, const Flight& flight) const;
   [[nodiscard]] bool is_clear_of_obstacles(const Body& body, const AirSpot& from,
                                            const AirSpot& to) const;
-  bool find_way_over(const Body& body, const AirSpot& from, const AirSpot& to,
-                     std::vector<AirSpot>& points) const;
+  bool find_path_over(const Body& body, const AirSpot& from, const AirSpot& to,
+                      std::vector<AirSpot>& points) const;
   void plan_flight(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
   [[nodiscard]] std::optional<AirSpot> open_spot(const Body& body, const AirSpot& at,
                                                  int32_t worker) const;
@@ -165,8 +165,8 @@ struct Crowd::State {
   void fly(EngineCounts& counts, CrowdEngine::Times& times, std::atomic<uint64_t>& planned);
   void tell_flyers_of_obstacles();
   /// Who flies where some obstacles would come or pass, beside those who stand there, in order.
-  void add_flyers_in_the_way(std::span<const uint32_t> slots,
-                             std::vector<std::pair<uint32_t, uint32_t>>& found) const;
+  void add_flyer_blockers(std::span<const uint32_t> slots,
+                          std::vector<std::pair<uint32_t, uint32_t>>& found) const;
 
   // crowd_climbs.cpp
   [[nodiscard]] bool goes_over_nodes(int32_t number) const;
@@ -180,7 +180,7 @@ struct Crowd::State {
   [[nodiscard]] NodePlace draw_on_nodes(int32_t number, uint64_t n) const;
   void set_goal_of_climber(Body& body, const NodePlace& goal);
   void stop_climber(Body& body);
-  void aim_at_target(const Body& body, Climb& climb) const;
+  void aim_at_flow_target(const Body& body, Climb& climb) const;
   void turn_off(Body& body, Climb& climb, int32_t worker);
   void drive_climber(const Body& body, Climb& climb, int32_t worker);
   void plan_climb(Body& body, Climb& climb, int32_t worker, std::atomic<uint64_t>& planned);

@@ -12,7 +12,7 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostTargets = UINT16_MAX;
+constexpr size_t kMaxTargets = UINT16_MAX;
 constexpr size_t kGoals = 4096;  // places of a region that ways lead to, about
 constexpr size_t kGrain = 4096;  // bodies
 
@@ -20,12 +20,12 @@ constexpr size_t kGrain = 4096;  // bodies
 
 Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& context) {
   State& s = *state_;
-  if (s.config.ways != CrowdWays::kPaths) {
+  if (s.config.ways != Routing::kPaths) {
     return Error{Errc::kBadConfig, "crowd: who goes straight on knows no targets; give goals"};
   }
   auto made = Target::make(*s.world.data(), areas);
   if (!made) return made.error();
-  if (s.targets.size() >= kMostTargets) {
+  if (s.targets.size() >= kMaxTargets) {
     return Error{Errc::kLimit, "crowd: it has 65535 targets; use those that it has again"};
   }
   s.targets.push_back(std::move(*made));
@@ -75,8 +75,8 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
     s.routes[body->slot] = {};
     body->turn = 0;
     body->target = target;
-    body->aim_x = body->x;
-    body->aim_z = body->z;
+    body->local_target_x = body->x;
+    body->local_target_z = body->z;
     if (s.air_of(*body) != nullptr) s.set_goal_of_flyer(*body, {});
     if (body->climbs) s.set_goal_of_climber(*body, {});
     body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kLost;
@@ -118,7 +118,7 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
 }
 
 // A way from where the body is to its target or goal. False: there is none.
-bool Crowd::State::plan_way(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
+bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
   const auto w = static_cast<size_t>(worker);
   const WorldData& data = *world.data();
   ClassParts& parts = *classes[body.avatar_class];
@@ -132,7 +132,7 @@ bool Crowd::State::plan_way(Body& body, Route& route, const StrideGround& ground
     const Place to = place_of(data, body, route.goal);
     parts.finders[w].find(from, to, path);
     if (cuts_ways && path.end == PathEnd::kReached) {
-      lead_around(data, parts.lives[w], ground, path, parts.detours[w]);
+      lead_around(data, parts.lives[w], ground, path, parts.repairs[w]);
     }
   }
   return take_way(data, path, ground, body, route);

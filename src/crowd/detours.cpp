@@ -9,11 +9,11 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMostNodes = 1000;  // of a detour's search
+constexpr uint64_t kMaxNodes = 1000;  // of a detour's search
 
-class Mender {
+class PathRepair {
  public:
-  Mender(const WorldData& world, LiveGround& live, const StrideGround& ground)
+  PathRepair(const WorldData& world, LiveGround& live, const StrideGround& ground)
       : world_(world), live_(live), ground_(ground) {}
 
   [[nodiscard]] bool is_open(const Place& from, const Place& to) const {
@@ -29,7 +29,7 @@ class Mender {
   }
 
   // Replaces what is covered of the points by detours. False: they would be too long.
-  bool mend(std::vector<Place>& points, double& length, DetourScratch& scratch) const {
+  bool mend(std::vector<Place>& points, double& length, RepairScratch& scratch) const {
     const std::vector<Place>& old = points;
     std::vector<Place>& mended = scratch.points;
     Path& detour = scratch.detour;
@@ -48,7 +48,7 @@ class Mender {
       }
       // A covered corner is left out: the way goes around it to the next.
       if (!live_.is_free(to)) continue;
-      live_.find(from, to, detour, kMostNodes);
+      live_.find(from, to, detour, kMaxNodes);
       if (detour.end != PathEnd::kReached || detour.length > covered + kLongestDetour) return false;
       mended.insert(mended.end(), detour.points.begin() + 1, detour.points.end());
       length += detour.length;
@@ -76,12 +76,12 @@ class Mender {
 }  // namespace
 
 void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground, Path& path,
-                 DetourScratch& scratch) {
+                 RepairScratch& scratch) {
   if (path.points.size() < 2) return;
-  const Mender mender(world, live, ground);
-  if (mender.is_whole(path.points)) return;
+  const PathRepair repair(world, live, ground);
+  if (repair.is_whole(path.points)) return;
   const Place from = path.points.front(), to = path.points.back();
-  if (mender.mend(path.points, path.length, scratch)) return;
+  if (repair.mend(path.points, path.length, scratch)) return;
   live.find(from, to, path);
 }
 

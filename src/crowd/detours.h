@@ -13,7 +13,7 @@
 namespace throng {
 
 /// Memory for it: kept, so that nothing is allocated once it is warm.
-struct DetourScratch {
+struct RepairScratch {
   Path detour;
   std::vector<Place> points;
 };
@@ -23,7 +23,7 @@ struct DetourScratch {
 /// are put in, each no more than kLongestDetour longer than what it replaces; if that does not do,
 /// the whole way is searched on the live ground. [path: reached]
 void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground, Path& path,
-                 DetourScratch& scratch);
+                 RepairScratch& scratch);
 
 inline constexpr double kLongestDetour = 10;  // [m]
 

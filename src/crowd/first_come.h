@@ -11,13 +11,13 @@ namespace throng {
 
 /// A body on its last leg, not there yet.
 struct Bound {
-  int32_t x = 0, z = 0;          // [units]
-  int32_t aim_x = 0, aim_z = 0;  // [units]
-  int32_t radius = 0;            // [units]
+  int32_t x = 0, z = 0;                            // [units]
+  int32_t local_target_x = 0, local_target_z = 0;  // [units]
+  int32_t radius = 0;                              // [units]
   uint32_t slot = 0;
 
   [[nodiscard]] int64_t left() const {  // square of the way [units^2]
-    const int64_t dx = int64_t{aim_x} - x, dz = int64_t{aim_z} - z;
+    const int64_t dx = int64_t{local_target_x} - x, dz = int64_t{local_target_z} - z;
     return dx * dx + dz * dz;
   }
 };
@@ -27,7 +27,9 @@ struct Bound {
 inline bool goes_first(const Bound& other, const Bound& self) {
   constexpr int64_t kNear = 6;  // times what both need
   const int64_t room = int64_t{other.radius} + self.radius;
-  if (!nearer_than(other.aim_x - self.aim_x, other.aim_z - self.aim_z, room)) return false;
+  if (!nearer_than(other.local_target_x - self.local_target_x,
+                   other.local_target_z - self.local_target_z, room))
+    return false;
   const int64_t his = other.left(), mine = self.left();
   if (mine > kNear * kNear * room * room) return false;
   return his < mine || (his == mine && other.slot < self.slot);
@@ -35,7 +37,7 @@ inline bool goes_first(const Bound& other, const Bound& self) {
 
 /// The wish of who waits for another: to leave him room, then to stand. `way`: to one's own goal.
 /// `room`: sum of the radii. [m]
-inline steer::Plane wish_of_waiting(steer::Plane way, float speed, float room) {
+inline steer::Plane preferred_of_waiting(steer::Plane way, float speed, float room) {
   const float left = std::sqrt(way.x * way.x + way.z * way.z);
   if (left >= 2 * room || left < 1e-6f) return {};
   const float back = -0.5f * speed / left;
@@ -45,7 +47,8 @@ inline steer::Plane wish_of_waiting(steer::Plane way, float speed, float room) {
 /// Must `self` step back for `other`, who would turn the same corner first, and stands? `far`,
 /// `room`: between their middles, and the sum of the radii. [m] `speed`: the other's, by his
 /// wished.
-inline bool gives_way(const Bound& other, const Bound& self, float far, float room, float speed) {
+inline bool gives_precedence(const Bound& other, const Bound& self, float far, float room,
+                             float speed) {
   constexpr float kClose = 0.1f;   // [m] from touching him
   constexpr float kStands = 0.2f;  // of his wished speed
   return far < room + kClose && far > 1e-6f && speed < kStands && goes_first(other, self);

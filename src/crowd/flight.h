@@ -25,8 +25,8 @@ struct Flight {
   uint32_t goal_level = kInAir;  // of the world, for who wants to land
   /// The next bends of the way; when they are used up, the rest is asked for anew.
   std::array<AirSpot, kPoints> points;
-  int32_t aim_y = 0;            // beside Body::aim_x [mm]
-  float rise = 0, wish_up = 0;  // beside Body::velocity and Body::wish [m/s]
+  int32_t local_target_y = 0;        // beside Body::local_target_x [mm]
+  float rise = 0, preferred_up = 0;  // beside Body::velocity and Body::wish [m/s]
   /// While `in_port`: feet on the ground, and where straight above it the air begins. In between
   /// it moves up and down only (docs/design/005-air.md). [mm]
   int32_t port_low = 0, port_high = 0;

@@ -43,7 +43,7 @@ bool FlyerAir::is_open_around(const AirSpot& spot, float reach) const {
   return inside(p.x, box.x) && inside(p.y, box.y) && inside(p.z, box.z);
 }
 
-// As FlightEnds::take_off has it, in whole millimetres.
+// As FlightEndpoints::take_off has it, in whole millimetres.
 std::optional<int32_t> FlyerAir::take_off(const AirSpot& feet) const {
   const AirPoint p = point(feet);
   const auto x = static_cast<int32_t>(std::floor(p.x)), z = static_cast<int32_t>(std::floor(p.z));

@@ -32,7 +32,7 @@ bool overlap(int32_t y, int32_t height, int32_t other_y, int32_t other_height) {
   return y < other_y + other_height && other_y < y + height;
 }
 
-bool clash(const Body& a, const AirSpot& at_a, const Body& b, const AirSpot& at_b) {
+bool overlaps_with(const Body& a, const AirSpot& at_a, const Body& b, const AirSpot& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
          overlap(at_a.y, a.height, at_b.y, b.height);
 }
@@ -125,14 +125,15 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
             Body& body = bodies_[rounds_.movers[f]];
             Flight& flight = flights_[body.slot];
             before(body, flight, worker);
-            wish(body, flight, step);
+            preferred(body, flight, step);
           },
       .decide = [&](uint32_t f, Worker& worker) { decide(f, worker); },
       .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
-      .clash =
+      .overlaps_with =
           [&](const Contest& contest, uint32_t other) {
-            return clash(bodies_[rounds_.movers[contest.mover]], rounds_.moves[contest.mover].place,
-                         bodies_[other], rounds_.moves[rounds_.mover_of[other]].place);
+            return overlaps_with(bodies_[rounds_.movers[contest.mover]],
+                                 rounds_.moves[contest.mover].place, bodies_[other],
+                                 rounds_.moves[rounds_.mover_of[other]].place);
           },
       .settle = [&](uint32_t f, EngineCounts& here) { settle(f, here); }};
   rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
@@ -149,28 +150,31 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
 }
 
 // What it wishes for, as if nobody were there.
-void FlyerEngine::wish(Body& body, Flight& flight, uint64_t step) const {
-  if (body.has(Body::kDriven)) {
-    flight.descends = flight.wish_up < 0 ? 1 : 0;
+void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
+  if (body.has(Body::kExternal)) {
+    flight.descends = flight.preferred_up < 0 ? 1 : 0;
     return;
   }
   const StepUnits& units = config_.units;
   const auto set = [&](Space v) {
-    body.wish = {v.x, v.z};
-    flight.wish_up = v.y;
+    body.preferred = {v.x, v.z};
+    flight.preferred_up = v.y;
   };
   if (flight.in_port != 0) {
     const int32_t to = flight.descends != 0 ? flight.port_low : flight.port_high;
-    const Space way{0, static_cast<float>(to - body.y) * 1e-3f, 0};
-    return set(steer::wish_towards(way, std::min(body.speed, kSlow), units.dt, 0, 0,
-                                   flight.descends != 0));
+    const Space displacement{0, static_cast<float>(to - body.y) * 1e-3f, 0};
+    return set(steer::preferred_towards(displacement, std::min(body.speed, kSlow), units.dt, 0, 0,
+                                        flight.descends != 0));
   }
   if (!body.has(Body::kHasGoal)) return set({});
-  const steer::Plane level = units.metres(body.aim_x - body.x, body.aim_z - body.z);
-  const Space way{level.x, static_cast<float>(flight.aim_y - body.y) * 1e-3f, level.z};
+  const steer::Plane level =
+      units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
+  const Space displacement{level.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f,
+                           level.z};
   const auto window = step / static_cast<uint64_t>(std::max(1L, std::lround(kRoll / units.dt)));
   const auto roll = static_cast<int32_t>(random_below(config_.seed ^ kRolls, body.slot, window, 3));
-  set(steer::wish_towards(way, body.speed, units.dt, body.turn, roll, body.has(Body::kLast)));
+  set(steer::preferred_towards(displacement, body.speed, units.dt, body.turn, roll,
+                               body.has(Body::kLast)));
 }
 
 float FlyerEngine::landing_reach(const Flight& flight) {
@@ -180,7 +184,7 @@ float FlyerEngine::landing_reach(const Flight& flight) {
 // Would it land, if there is ground below?
 bool FlyerEngine::wants_down(const Body& body, const Flight& flight) const {
   if (flight.in_port != 0) return false;
-  if (body.has(Body::kDriven)) return flight.wish_up < 0;
+  if (body.has(Body::kExternal)) return flight.preferred_up < 0;
   if (!body.has(Body::kHasGoal) || flight.lands == 0 || !flight.is_last()) return false;
   const AirSpot& over = flight.points[flight.next];
   const steer::Plane off = config_.units.metres(over.x - body.x, over.z - body.z);
@@ -233,7 +237,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   nearest.look_around(grid_, body, near_metres_, units.unit, look_at);
   const Flight& flight = flights_[body.slot];
   situation.velocity = {body.velocity.x, flight.rise, body.velocity.z};
-  situation.wish = {body.wish.x, flight.wish_up, body.wish.z};
+  situation.preferred = {body.preferred.x, flight.preferred_up, body.preferred.z};
   situation.fastest = body.speed;
   situation.height = static_cast<float>(body.height) * 1e-3f;
   situation.size = nearest.size();
@@ -244,41 +248,46 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     const Flight* of_other = flies ? &flights_[other.slot] : nullptr;
     Space velocity{other.velocity.x, flies ? of_other->rise : 0, other.velocity.z};
     // Who has arrived makes way for those who would pass, were he not there.
-    const bool makes_way = body.has(Body::kArrived) && flies && other.has(Body::kHasGoal) &&
-                           !other.has(Body::kArrived);
-    if (makes_way) {
-      const steer::Plane left = units.metres(other.aim_x - other.x, other.aim_z - other.z);
-      const Space way{left.x, static_cast<float>(of_other->aim_y - other.y) * 1e-3f, left.z};
-      velocity = steer::wish_towards(way, other.speed, units.dt, 0, 0, false);
+    const bool yields = body.has(Body::kArrived) && flies && other.has(Body::kHasGoal) &&
+                        !other.has(Body::kArrived);
+    if (yields) {
+      const steer::Plane left =
+          units.metres(other.local_target_x - other.x, other.local_target_z - other.z);
+      const Space displacement{
+          left.x, static_cast<float>(of_other->local_target_y - other.y) * 1e-3f, left.z};
+      velocity = steer::preferred_towards(displacement, other.speed, units.dt, 0, 0, false);
     }
     situation.near[n] = {{apart.x, static_cast<float>(other.y - body.y) * 1e-3f, apart.z},
                          velocity,
                          static_cast<float>(body.radius + other.radius) * units.unit,
                          static_cast<float>(other.height) * 1e-3f};
-    if (flies && gives_way(body, flight, other, *of_other)) {
+    if (flies && gives_precedence(body, flight, other, *of_other)) {
       const Space at = situation.near[n].at;
       const float far = steer::size_of(at);
-      if (far > 0) situation.wish = (-0.5f * body.speed / far) * at;
+      if (far > 0) situation.preferred = (-0.5f * body.speed / far) * at;
     }
   }
 }
 
 // Of two who touch before one bend the farther steps back, if the nearer stands.
-bool FlyerEngine::gives_way(const Body& body, const Flight& flight, const Body& other,
-                            const Flight& of_other) const {
+bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const Body& other,
+                                   const Flight& of_other) const {
   constexpr float kOneBend = 1.5f, kTouch = 0.3f, kStands = 0.3f;  // [m], [m], of its speed
   const StepUnits& units = config_.units;
   const auto turns = [](const Body& b) {
-    constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven;
+    constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal;
     return (b.flags & kAll) == Body::kHasGoal;
   };
   if (!turns(body) || !turns(other) || flight.in_port != 0 || of_other.in_port != 0) return false;
   const auto left = [&](const Body& b, const Flight& f) {
-    const steer::Plane level = units.metres(b.aim_x - b.x, b.aim_z - b.z);
-    return steer::size_of(Space{level.x, static_cast<float>(f.aim_y - b.y) * 1e-3f, level.z});
+    const steer::Plane level = units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
+    return steer::size_of(
+        Space{level.x, static_cast<float>(f.local_target_y - b.y) * 1e-3f, level.z});
   };
-  const steer::Plane aims = units.metres(other.aim_x - body.aim_x, other.aim_z - body.aim_z);
-  const Space between{aims.x, static_cast<float>(of_other.aim_y - flight.aim_y) * 1e-3f, aims.z};
+  const steer::Plane aims = units.metres(other.local_target_x - body.local_target_x,
+                                         other.local_target_z - body.local_target_z);
+  const Space between{
+      aims.x, static_cast<float>(of_other.local_target_y - flight.local_target_y) * 1e-3f, aims.z};
   if (steer::size_of(between) > kOneBend) return false;
   const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
   const int32_t up = other.y - body.y;
@@ -296,7 +305,7 @@ bool FlyerEngine::look_around(const Body& body, steer::AirSituation& situation) 
   const FlyerAir& air = *classes_[body.avatar_class].air;
   const AirSpot here = spot_of(body);
   const float look = body.speed * config_.steering.wall_horizon;
-  const auto free_way = [&](Space direction) {
+  const auto free_distance = [&](Space direction) {
     const auto sees = [&](float far) {
       const AirSpot there{here.x + static_cast<int32_t>(direction.x * far / config_.units.unit),
                           here.z + static_cast<int32_t>(direction.z * far / config_.units.unit),
@@ -310,23 +319,24 @@ bool FlyerEngine::look_around(const Body& body, steer::AirSituation& situation) 
     return 0.0f;
   };
   situation.has_walls = !air.is_open_around(here, look);
-  const steer::AirFan fan = steer::air_fan(situation.wish);
-  if (situation.has_walls) situation.free_way[0] = free_way(fan[0]);
-  if (steer::wish_is_open(config_.steering, situation)) return true;
+  const steer::AirFan fan = steer::air_fan(situation.preferred);
+  if (situation.has_walls) situation.free_distance[0] = free_distance(fan[0]);
+  if (steer::preferred_is_open(config_.steering, situation)) return true;
   if (!situation.has_walls) return false;
-  for (size_t d = 1; d < fan.size(); ++d) situation.free_way[d] = free_way(fan[d]);
+  for (size_t d = 1; d < fan.size(); ++d) situation.free_distance[d] = free_distance(fan[d]);
   return false;
 }
 
-void FlyerEngine::find_ways(const steer::AirSituation& situation, bool open,
-                            Contest& contest) const {
+void FlyerEngine::find_paths(const steer::AirSituation& situation, bool open,
+                             Contest& contest) const {
   const StepUnits& units = config_.units;
   contest.ways = 0;
   const auto add = [&](Space v) {
-    contest.way[contest.ways++] = {units.way(v.x), units.way(v.z),
-                                   static_cast<int32_t>(std::lrint(v.y * (units.dt * 1000)))};
+    contest.displacement[contest.ways++] = {
+        units.displacement(v.x), units.displacement(v.z),
+        static_cast<int32_t>(std::lrint(v.y * (units.dt * 1000)))};
   };
-  Space best = situation.wish;
+  Space best = situation.preferred;
   if (open) {
     add(best);
   } else {
@@ -362,19 +372,19 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
     flight.port_level = port->level;
     body.turn = 0;
     const float down = -std::min(body.speed, kSlow);
-    situation.wish = {
+    situation.preferred = {
         0, std::max(down, static_cast<float>(port->low - body.y) * 1e-3f / config_.units.dt), 0};
   }
   if (flight.in_port != 0) {
     // Up and down only: there is nothing to choose from but how fast.
     contest.ways = 0;
     for (const float part : {1.0f, 0.5f, 0.25f}) {
-      const auto up =
-          static_cast<int32_t>(std::lrint(part * situation.wish.y * (config_.units.dt * 1000)));
-      contest.way[contest.ways++] = {0, 0, up};
+      const auto up = static_cast<int32_t>(
+          std::lrint(part * situation.preferred.y * (config_.units.dt * 1000)));
+      contest.displacement[contest.ways++] = {0, 0, up};
     }
   } else {
-    find_ways(situation, look_around(body, situation), contest);
+    find_paths(situation, look_around(body, situation), contest);
   }
   if (contest.first != contest.last) {
     ++worker.counts.contested;
@@ -383,20 +393,20 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
     return;
   }
   for (size_t w = 0; w < contest.ways; ++w) {
-    if (!try_place(body, contest.way[w], move.place)) continue;
+    if (!try_place(body, contest.displacement[w], move.place)) continue;
     move.state = Move::kDecided;
     return;
   }
 }
 
 // Where a body would be after a step, if what is between is air.
-bool FlyerEngine::try_place(const Body& body, const AirSpot& way, AirSpot& place) const {
+bool FlyerEngine::try_place(const Body& body, const AirSpot& displacement, AirSpot& place) const {
   const Flight& flight = flights_[body.slot];
   const FlyerAir& air = *classes_[body.avatar_class].air;
   const AirSpot here = spot_of(body);
-  AirSpot there{here.x + way.x, here.z + way.z, here.y + way.y};
+  AirSpot there{here.x + displacement.x, here.z + displacement.z, here.y + displacement.y};
   if (flight.in_port != 0) {
-    if (way.x != 0 || way.z != 0) return false;
+    if (displacement.x != 0 || displacement.z != 0) return false;
     there.y = std::max(there.y, flight.port_low);
     // An obstacle may have come to where one would stand.
     const bool lands = there.y == flight.port_low && here.y != there.y;
@@ -424,7 +434,7 @@ bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
       const Move& move = rounds_.moves[rounds_.mover_of[j]];
       if (move.state == Move::kDecided) there = move.place;
     }
-    if (clash(body, place, other, there)) return false;
+    if (overlaps_with(body, place, other, there)) return false;
   }
   return true;
 }
@@ -434,7 +444,8 @@ bool FlyerEngine::name(const Contest& contest, const Worker& owner) {
   const Body& body = bodies_[rounds_.movers[contest.mover]];
   AirSpot place;
   for (size_t w = 0; w < contest.ways; ++w) {
-    if (!try_place(body, contest.way[w], place) || !is_clear(contest, owner, place)) continue;
+    if (!try_place(body, contest.displacement[w], place) || !is_clear(contest, owner, place))
+      continue;
     rounds_.moves[contest.mover].place = place;
     return true;
   }
@@ -446,8 +457,10 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   Body& body = bodies_[rounds_.movers[f]];
   Flight& flight = flights_[body.slot];
   Move& move = rounds_.moves[f];
-  const steer::Plane level = units.metres(body.aim_x - body.x, body.aim_z - body.z);
-  const Space way{level.x, static_cast<float>(flight.aim_y - body.y) * 1e-3f, level.z};
+  const steer::Plane level =
+      units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
+  const Space displacement{level.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f,
+                           level.z};
   const bool moves = move.state == Move::kDecided && move.place != spot_of(body);
   if (moves) {
     body.velocity = {units.velocity(move.place.x - body.x), units.velocity(move.place.z - body.z)};
@@ -464,7 +477,7 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
     if (flight.descends != 0) {
       body.turn = moves ? 0 : body.turn + units.dt;
       flight.waited += moves ? 0 : units.dt;
-      if (body.turn > kPressed && !body.has(Body::kDriven)) flight.descends = 0;
+      if (body.turn > kPressed && !body.has(Body::kExternal)) flight.descends = 0;
     }
     if (flight.descends == 0 && body.y >= flight.port_high) {
       flight.in_port = 0;
@@ -472,23 +485,24 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
     }
     return;
   }
-  if (!body.has(Body::kHasGoal) || body.has(Body::kDriven)) return;
+  if (!body.has(Body::kHasGoal) || body.has(Body::kExternal)) return;
   const Space velocity{body.velocity.x, flight.rise, body.velocity.z};
-  const Space wish{body.wish.x, flight.wish_up, body.wish.z};
-  const float left = steer::size_of(way);
-  const float towards = left > 1e-6f ? steer::dot(velocity, way) / left : 0;
+  const Space preferred{body.preferred.x, flight.preferred_up, body.preferred.z};
+  const float left = steer::size_of(displacement);
+  const float towards = left > 1e-6f ? steer::dot(velocity, displacement) / left : 0;
   counts.progress += std::lrint(towards / body.speed * 1e6f);
   const bool near_goal = left <= 1 && body.has(Body::kLast);
-  if (config_.patient) {
+  if (config_.deadlock_avoidance) {
     const float content = near_goal ? 1 : towards / body.speed;
-    const float along = steer::dot(velocity, wish) / (body.speed * body.speed);
+    const float along = steer::dot(velocity, preferred) / (body.speed * body.speed);
     body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
   }
   if (flight.lands != 0 && flight.is_last() && left < kFarthest && towards < 0.3f * body.speed) {
     flight.waited += units.dt;
   }
-  const steer::Plane rest = units.metres(body.aim_x - body.x, body.aim_z - body.z);
-  const Space off{rest.x, static_cast<float>(flight.aim_y - body.y) * 1e-3f, rest.z};
+  const steer::Plane rest =
+      units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
+  const Space off{rest.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f, rest.z};
   if (body.has(Body::kLast) && flight.lands == 0 && !body.has(Body::kArrived) &&
       steer::size_of(off) < kThere) {
     body.flags |= Body::kArrived;

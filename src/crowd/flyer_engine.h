@@ -27,7 +27,7 @@ struct FlyerConfig {
   StepUnits units;
   float sight = 5;  // [m]
   int32_t rounds = 3;
-  bool patient = true;
+  bool deadlock_avoidance = true;
   uint64_t seed = 1;
   int32_t workers = 0;
   steer::AirSettings steering;
@@ -79,7 +79,7 @@ class FlyerEngine {
   static constexpr size_t kShorter = 3;
   struct Contest : MoverContest {
     uint8_t ways = 0;
-    std::array<AirSpot, steer::kAirChoices + kShorter + 1> way;  // of a step
+    std::array<AirSpot, steer::kAirChoices + kShorter + 1> displacement;  // of a step
   };
   struct Move : MoverState {
     AirSpot place;
@@ -87,16 +87,16 @@ class FlyerEngine {
   using Rounds = MoverRounds<Contest, Move>;
   using Worker = Rounds::Worker;
 
-  void wish(Body& body, Flight& flight, uint64_t step) const;
+  void preferred(Body& body, Flight& flight, uint64_t step) const;
   void decide(uint32_t flyer, Worker& worker);
   void sense(uint32_t flyer, Worker& worker, steer::AirSituation& situation, bool& column_is_clear,
              const FlyerAir::Port* port) const;
   bool look_around(const Body& body, steer::AirSituation& situation) const;
-  [[nodiscard]] bool gives_way(const Body& body, const Flight& flight, const Body& other,
-                               const Flight& of_other) const;
-  void find_ways(const steer::AirSituation& situation, bool open, Contest& contest) const;
+  [[nodiscard]] bool gives_precedence(const Body& body, const Flight& flight, const Body& other,
+                                      const Flight& of_other) const;
+  void find_paths(const steer::AirSituation& situation, bool open, Contest& contest) const;
   [[nodiscard]] bool wants_down(const Body& body, const Flight& flight) const;
-  [[nodiscard]] bool try_place(const Body& body, const AirSpot& way, AirSpot& place) const;
+  [[nodiscard]] bool try_place(const Body& body, const AirSpot& displacement, AirSpot& place) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const AirSpot& place) const;
   bool name(const Contest& contest, const Worker& owner);

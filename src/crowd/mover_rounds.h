@@ -65,7 +65,7 @@ class NearestInAir {
       return square != other.square ? square < other.square : slot < other.slot;
     }
   };
-  std::array<Seen, steer::kMostNearInAir> nearest_;
+  std::array<Seen, steer::kMaxNearInAir> nearest_;
   size_t seen_ = 0;
   float most_;
 };
@@ -111,7 +111,7 @@ class MoverRounds {
     /// Names the first of his ways that is free of where everybody is now.
     std::function<bool(const Contest& contest, const Worker& owner)> name;
     /// Do what these two have named, of whom the second moves, too, touch each other?
-    std::function<bool(const Contest& contest, uint32_t other)> clash;
+    std::function<bool(const Contest& contest, uint32_t other)> overlaps_with;
     std::function<void(uint32_t mover, EngineCounts& counts)> settle;
   };
 
@@ -181,7 +181,7 @@ bool MoverRounds<Contest, Move>::holds(std::span<const Body> bodies, const Parts
   const auto others = owner.others_of(contest);
   return std::none_of(others.begin(), others.end(), [&](uint32_t j) {
     return parts.is_mover(bodies[j]) && moves[mover_of[j]].round == round &&
-           parts.clash(contest, j) && order(bodies[j]) > mine;
+           parts.overlaps_with(contest, j) && order(bodies[j]) > mine;
   });
 }
 

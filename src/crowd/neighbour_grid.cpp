@@ -10,9 +10,9 @@
 namespace throng {
 namespace {
 
-constexpr size_t kSpare = 64;     // entries that a vector may read past the end
-constexpr size_t kLeast = 16384;  // squares of a table, however few bodies there are
-constexpr size_t kMostParts = 4;  // of the bodies: each has a table while they are sorted
+constexpr size_t kSpare = 64;    // entries that a vector may read past the end
+constexpr size_t kMin = 16384;   // squares of a table, however few bodies there are
+constexpr size_t kMaxParts = 4;  // of the bodies: each has a table while they are sorted
 
 uint32_t squares_of(int32_t cells, int32_t square) {
   return std::max(8u, std::bit_ceil(static_cast<uint32_t>(cells / square) + 1));
@@ -23,7 +23,7 @@ uint32_t squares_of(int32_t cells, int32_t square) {
 NeighbourGrid::NeighbourGrid(int32_t width, int32_t depth, int64_t sight, size_t bodies)
     : squares_(std::clamp(static_cast<int32_t>(((sight + 1) / kReach >> kUnitBits) + 1), 1, 4096)) {
   uint32_t across = squares_of(width, squares_.cells()), down = squares_of(depth, squares_.cells());
-  const size_t most = std::max(kLeast, std::bit_floor(bodies - bodies / 4));
+  const size_t most = std::max(kMin, std::bit_floor(bodies - bodies / 4));
   while (size_t{across} * down > most && across * down > 64) {
     (across > down ? across : down) /= 2;
   }
@@ -37,7 +37,7 @@ NeighbourGrid::NeighbourGrid(int32_t width, int32_t depth, int64_t sight, size_t
 }
 
 void NeighbourGrid::sort(std::span<const Body> bodies, std::span<Body> sorted, int32_t workers) {
-  const auto parts = std::min(kMostParts, static_cast<size_t>(worker_count(workers)));
+  const auto parts = std::min(kMaxParts, static_cast<size_t>(worker_count(workers)));
   const size_t squares = first_.size() - 1;
   next_.resize(parts);
   const auto begin_of = [&](size_t part) { return bodies.size() * part / parts; };

@@ -42,10 +42,10 @@ Prism hull_of(const Prism& a, const Prism& b) {
   return {convex_hull(std::move(corners)), std::min(a.low, b.low), std::max(a.high, b.high)};
 }
 
-ObstacleBook::ObstacleBook(World world, size_t classes)
+ObstacleSet::ObstacleSet(World world, size_t classes)
     : world_(std::move(world)), classes_(classes) {}
 
-void ObstacleBook::open_class(size_t number, CrowdGround& ground) {
+void ObstacleSet::open_class(size_t number, CrowdGround& ground) {
   classes_[number].ground = &ground;
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
     if (!obstacles_[slot].exists) continue;
@@ -55,14 +55,14 @@ void ObstacleBook::open_class(size_t number, CrowdGround& ground) {
   take_cells();
 }
 
-void ObstacleBook::close_class(size_t number) {
+void ObstacleSet::close_class(size_t number) {
   classes_[number] = {};
   for (CrowdObstacle& obstacle : obstacles_) {
     if (obstacle.exists) obstacle.of_class[number] = {};
   }
 }
 
-uint32_t ObstacleBook::add(const Prism& prism, ObstacleKind kind, bool wanted_up) {
+uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up) {
   uint32_t slot = 0;
   if (free_slots_.empty()) {
     slot = static_cast<uint32_t>(obstacles_.size());
@@ -83,13 +83,13 @@ uint32_t ObstacleBook::add(const Prism& prism, ObstacleKind kind, bool wanted_up
   return slot;
 }
 
-const CrowdObstacle* ObstacleBook::find(ObstacleId id) const {
+const CrowdObstacle* ObstacleSet::find(ObstacleId id) const {
   if (!id || id.slot1 > obstacles_.size()) return nullptr;
   const CrowdObstacle& obstacle = obstacles_[id.slot1 - 1];
   return obstacle.exists && obstacle.generation == id.generation ? &obstacle : nullptr;
 }
 
-void ObstacleBook::ask_to_be_at(uint32_t slot, const Prism& prism) {
+void ObstacleSet::ask_to_be_at(uint32_t slot, const Prism& prism) {
   CrowdObstacle& obstacle = obstacles_[slot];
   obstacle.wanted = prism;
   obstacle.is_elsewhere = obstacle.is_up;
@@ -100,7 +100,7 @@ void ObstacleBook::ask_to_be_at(uint32_t slot, const Prism& prism) {
   find_swept(slot);
 }
 
-void ObstacleBook::ask_to_be_up(uint32_t slot, bool up) {
+void ObstacleSet::ask_to_be_up(uint32_t slot, bool up) {
   CrowdObstacle& obstacle = obstacles_[slot];
   obstacle.wanted_up = up;
   if (up) {
@@ -116,7 +116,7 @@ void ObstacleBook::ask_to_be_up(uint32_t slot, bool up) {
   for (auto& of_class : obstacle.of_class) of_class.swept.clear();
 }
 
-void ObstacleBook::remove(uint32_t slot) {
+void ObstacleSet::remove(uint32_t slot) {
   ask_to_be_up(slot, false);
   CrowdObstacle& obstacle = obstacles_[slot];
   const uint32_t generation = obstacle.generation;
@@ -125,7 +125,7 @@ void ObstacleBook::remove(uint32_t slot) {
   free_slots_.push_back(slot);
 }
 
-std::vector<uint32_t> ObstacleBook::waiting() const {
+std::vector<uint32_t> ObstacleSet::waiting() const {
   std::vector<uint32_t> slots;
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
     if (obstacles_[slot].waits()) slots.push_back(slot);
@@ -133,9 +133,9 @@ std::vector<uint32_t> ObstacleBook::waiting() const {
   return slots;
 }
 
-std::vector<std::pair<uint32_t, uint32_t>> ObstacleBook::in_the_way(std::span<const uint32_t> slots,
-                                                                    std::span<const Body> bodies,
-                                                                    int32_t workers) const {
+std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const uint32_t> slots,
+                                                                 std::span<const Body> bodies,
+                                                                 int32_t workers) const {
   struct Asked {
     uint32_t slot;
     const CellRows* rows;
@@ -176,7 +176,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleBook::in_the_way(std::span<co
   return found;
 }
 
-void ObstacleBook::settle(uint32_t slot) {
+void ObstacleSet::settle(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   if (obstacle.is_up) {
     for (size_t c = 0; c < classes_.size(); ++c) take_down(slot, c);
@@ -191,7 +191,7 @@ void ObstacleBook::settle(uint32_t slot) {
   }
 }
 
-std::vector<LevelCells> ObstacleBook::cells_under(size_t number, const Prism& prism) const {
+std::vector<LevelCells> ObstacleSet::cells_under(size_t number, const Prism& prism) const {
   std::vector<LevelCells> found;
   const CrowdGround* ground = classes_[number].ground;
   if (ground == nullptr) return found;
@@ -204,7 +204,7 @@ std::vector<LevelCells> ObstacleBook::cells_under(size_t number, const Prism& pr
         const CellRows* baked = ground->baked_legal(level);
         const uint64_t* legal = baked != nullptr ? baked->data() : ground->legal(level);
         const TileFloor floor{world.summary, ground->view(level), x, z};
-        const CellRows taken = taken_cells(floor, avatar, prism, {}, legal);
+        const CellRows taken = blocked_cells(floor, avatar, prism, {}, legal);
         const bool any =
             std::any_of(taken.begin(), taken.end(), [](uint64_t row) { return row != 0; });
         if (any) found.push_back({level, taken});
@@ -214,7 +214,7 @@ std::vector<LevelCells> ObstacleBook::cells_under(size_t number, const Prism& pr
   return found;
 }
 
-void ObstacleBook::find_swept(uint32_t slot) {
+void ObstacleSet::find_swept(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   const Prism swept = obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
   for (size_t c = 0; c < classes_.size(); ++c) {
@@ -223,7 +223,7 @@ void ObstacleBook::find_swept(uint32_t slot) {
   }
 }
 
-void ObstacleBook::put_up(uint32_t slot, size_t number) {
+void ObstacleSet::put_up(uint32_t slot, size_t number) {
   CrowdObstacle& obstacle = obstacles_[slot];
   ClassGround& of = classes_[number];
   for (LevelCells& cells : cells_under(number, obstacle.place)) {
@@ -233,7 +233,7 @@ void ObstacleBook::put_up(uint32_t slot, size_t number) {
   }
 }
 
-void ObstacleBook::take_down(uint32_t slot, size_t number) {
+void ObstacleSet::take_down(uint32_t slot, size_t number) {
   CrowdObstacle& obstacle = obstacles_[slot];
   ClassGround& of = classes_[number];
   for (const uint32_t level : obstacle.of_class[number].levels) {
@@ -245,7 +245,7 @@ void ObstacleBook::take_down(uint32_t slot, size_t number) {
   obstacle.of_class[number].levels.clear();
 }
 
-void ObstacleBook::take_cells() {
+void ObstacleSet::take_cells() {
   for (ClassGround& of : classes_) {
     if (of.touched.empty()) continue;
     std::sort(of.touched.begin(), of.touched.end());
@@ -270,7 +270,7 @@ void ObstacleBook::take_cells() {
   }
 }
 
-bool ObstacleBook::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots) {
+bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots) {
   std::vector<bool> is_free(obstacles.size(), false);
   for (const uint32_t slot : free_slots) {
     if (slot >= obstacles.size() || obstacles[slot].exists || is_free[slot]) return false;
@@ -288,7 +288,7 @@ bool ObstacleBook::restore(std::vector<CrowdObstacle> obstacles, std::vector<uin
   return true;
 }
 
-uint64_t ObstacleBook::bytes() const {
+uint64_t ObstacleSet::bytes() const {
   uint64_t bytes = obstacles_.capacity() * sizeof(CrowdObstacle);
   for (const ClassGround& of : classes_) {
     for (const auto& [level, takers] : of.takers) bytes += takers.capacity() * sizeof(Taker);

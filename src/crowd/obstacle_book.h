@@ -26,7 +26,7 @@ struct LevelCells {
 struct CrowdObstacle {
   uint32_t generation = 1;
   bool exists = false;
-  ObstacleKind kind = ObstacleKind::kStanding;
+  ObstacleKind kind = ObstacleKind::kStatic;
   bool is_up = false, wanted_up = false;
   bool is_elsewhere = false;  // it is up, but asked to be at `wanted`
   Prism place, wanted;
@@ -50,9 +50,9 @@ struct CrowdObstacle {
 /// The smallest convex prism around two.
 Prism hull_of(const Prism& a, const Prism& b);
 
-class ObstacleBook {
+class ObstacleSet {
  public:
-  ObstacleBook(World world, size_t classes);
+  ObstacleSet(World world, size_t classes);
 
   /// Of a class that somebody is of from now on; what is up is taken from its ground at once.
   void open_class(size_t number, CrowdGround& ground);
@@ -74,8 +74,9 @@ class ObstacleBook {
   /// Those of some obstacles that wait.
   [[nodiscard]] std::vector<uint32_t> waiting() const;
   /// Who stands where some of them would come or pass: (obstacle, index of the body), in order.
-  [[nodiscard]] std::vector<std::pair<uint32_t, uint32_t>> in_the_way(
-      std::span<const uint32_t> slots, std::span<const Body> bodies, int32_t workers) const;
+  [[nodiscard]] std::vector<std::pair<uint32_t, uint32_t>> blockers(std::span<const uint32_t> slots,
+                                                                    std::span<const Body> bodies,
+                                                                    int32_t workers) const;
   /// It is where it waited to be. Then take_cells.
   void settle(uint32_t slot);
   /// Brings the grounds up to date with all that was settled, asked down or removed.

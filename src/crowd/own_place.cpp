@@ -33,7 +33,7 @@ Plane across(Plane way, Plane ahead) {
 
 }  // namespace
 
-Spot own_place(const Body& body, const Route& route, const StrideGround& ground, float metre) {
+Spot lane_offset(const Body& body, const Route& route, const StrideGround& ground, float metre) {
   const Spot corner = route.corners[route.next];
   if (route.next + 1 >= route.count) return corner;
   const Spot& next = route.corners[route.next + 1u];
@@ -46,17 +46,17 @@ Spot own_place(const Body& body, const Route& route, const StrideGround& ground,
   if (!(size > 1e-3f)) return corner;
   away = {away.x / size, away.z / size};
   const float widest = kWidest * static_cast<float>(body.radius);
-  const float door = ground.free_way(corner.level, at, across(away, out), widest);
+  const float door = ground.free_distance(corner.level, at, across(away, out), widest);
   if (door < kAbreast * static_cast<float>(body.radius)) return corner;
 
   const Plane side = across(away, in);
   const float look = kLookAside * metre;
-  const float outer = ground.free_way(body.level, body.point(), side, look);
-  const float inner = ground.free_way(body.level, body.point(), {-side.x, -side.z}, look);
+  const float outer = ground.free_distance(body.level, body.point(), side, look);
+  const float inner = ground.free_distance(body.level, body.point(), {-side.x, -side.z}, look);
   float part = inner / std::max(inner + outer, 1.0f);
   // People come the other way: theirs is the left half.
   if (body.on_right) part = (part + (away.z * out.x - away.x * out.z > 0 ? 1.0f : 0.0f)) / 2;
-  float off = ground.free_way(corner.level, at, away, widest) * part;
+  float off = ground.free_distance(corner.level, at, away, widest) * part;
   for (int32_t i = 0; i < kTries; ++i, off *= 0.5f) {
     const Spot own{corner.x + static_cast<int32_t>(std::lrint(away.x * off)),
                    corner.z + static_cast<int32_t>(std::lrint(away.z * off)), corner.level};

@@ -14,6 +14,6 @@ namespace throng {
 /// width of where it walks. The corner itself where the way hardly bends, fewer than three find
 /// room abreast, or the place could not be seen from here or would not see the next corner.
 /// `metre`: [units]
-Spot own_place(const Body& body, const Route& route, const StrideGround& ground, float metre);
+Spot lane_offset(const Body& body, const Route& route, const StrideGround& ground, float metre);
 
 }  // namespace throng

@@ -19,7 +19,7 @@ using DI = hn::CappedTag<int32_t, 8>;
 using DU = hn::RebindToUnsigned<DI>;
 using I = hn::Vec<DI>;
 using U = hn::Vec<DU>;
-constexpr size_t kMostLanes = 8;
+constexpr size_t kMaxLanes = 8;
 
 HWY_INLINE uint64_t bits_of(hn::Mask<DI> mask) {
 #if HWY_TARGET == HWY_SCALAR
@@ -86,7 +86,7 @@ PlannedSteps PlanSteps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, 
   for (size_t i = 0; i < size; i += lanes) {
     const size_t count = std::min(lanes, size - i);
     Avatar* a = avatars + i;
-    Avatar rest[kMostLanes];
+    Avatar rest[kMaxLanes];
     if (count < lanes) {
       std::copy_n(a, count, rest);
       a = rest;
@@ -110,7 +110,7 @@ PlannedSteps PlanSteps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, 
         hn::Or(hn::Xor(pixel_of(f.x), pixel_of(x1)), hn::Xor(pixel_of(f.z), pixel_of(z1)));
     const auto same_pixel = hn::Eq(hn::BitCast(d, across), hn::Zero(d));
     const auto goes = hn::And(is_plain, same_pixel);
-    alignas(64) int32_t places[2 * kMostLanes];
+    alignas(64) int32_t places[2 * kMaxLanes];
     hn::StoreInterleaved2(hn::IfThenElse(goes, x1, f.x), hn::IfThenElse(goes, z1, f.z), d, places);
     for (size_t n = 0; n < count; ++n) std::memcpy(&avatars[i + n].x, places + 2 * n, 8);
 

@@ -18,24 +18,24 @@ constexpr float kLook = 3;     // [m] of a leg, to see whether it is open
 constexpr float kSoon = 0.3f;  // [m] before his own place one turns to the next
 
 void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
-  body.on_right = body.meets;
-  const Spot place = own_place(body, route, ground, metre);
-  body.aim_x = place.x;
-  body.aim_z = place.z;
+  body.on_right = body.in_counterflow;
+  const Spot place = lane_offset(body, route, ground, metre);
+  body.local_target_x = place.x;
+  body.local_target_z = place.z;
   const bool last = route.whole && route.next + 1 == route.count;
   body.flags = static_cast<uint8_t>(last ? body.flags | Body::kLast : body.flags & ~Body::kLast);
 }
 
 // Has it come as far as its own place, on the way to the next corner? Who turned as soon as he sees
 // that one would go along the inner wall after all.
-bool is_at_own_place(const Body& body, const Route& route, float metre) {
+bool is_at_lane_offset(const Body& body, const Route& route, float metre) {
   const Spot& corner = route.corners[route.next];
-  if (corner.x == body.aim_x && corner.z == body.aim_z) return true;
+  if (corner.x == body.local_target_x && corner.z == body.local_target_z) return true;
   const Spot& next = route.corners[route.next + 1u];
-  const auto x = static_cast<float>(next.x - body.aim_x);
-  const auto z = static_cast<float>(next.z - body.aim_z);
-  const float along =
-      static_cast<float>(body.x - body.aim_x) * x + static_cast<float>(body.z - body.aim_z) * z;
+  const auto x = static_cast<float>(next.x - body.local_target_x);
+  const auto z = static_cast<float>(next.z - body.local_target_z);
+  const float along = static_cast<float>(body.x - body.local_target_x) * x +
+                      static_cast<float>(body.z - body.local_target_z) * z;
   return along > -kSoon * metre * std::sqrt(x * x + z * z);
 }
 
@@ -46,12 +46,12 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
   const auto sees = [&](const Spot& spot) {
     return ground.sees(body.level, body.point(), {spot.x, spot.z}, spot.level, reach);
   };
-  const float square = near_square(body.aim_x - body.x, body.aim_z - body.z);
+  const float square = near_square(body.local_target_x - body.x, body.local_target_z - body.z);
   if (!body.has(Body::kLast) && square < reach * reach / 4) {
     const bool at_end = route.next + 1 == route.count;
     const bool there = square < 16;  // a few units: as near as steps come
-    if (!at_end &&
-        (there || (is_at_own_place(body, route, metre) && sees(route.corners[route.next + 1u])))) {
+    if (!at_end && (there || (is_at_lane_offset(body, route, metre) &&
+                              sees(route.corners[route.next + 1u])))) {
       ++route.next;
       turn_to(body, route, ground, metre);
       return;
@@ -61,20 +61,21 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
       return;
     }
   }
-  if (body.meets && !body.on_right) turn_to(body, route, ground, metre);
+  if (body.in_counterflow && !body.on_right) turn_to(body, route, ground, metre);
   // Who was pushed back behind a corner sees it no more, and is held up until he looks.
   const bool held = body.turn != 0 && body.near_wall;
   if (nth % (held ? kHeldLooksEvery : kLookEvery) != 0) return;
-  if (!sees({body.aim_x, body.aim_z, route.corners[route.next].level})) body.flags |= Body::kLost;
+  if (!sees({body.local_target_x, body.local_target_z, route.corners[route.next].level}))
+    body.flags |= Body::kLost;
 }
 
 bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
   // Is a part of the leg on the inner side of all four sides? (Liang and Barsky)
   const auto crosses = [&](double ax, double az, double bx, double bz) {
     double from = 0, to = 1;
-    const auto cut = [&](double at, double way, double low, double high) {
-      if (way == 0) return at >= low && at <= high;
-      const double t0 = (low - at) / way, t1 = (high - at) / way;
+    const auto cut = [&](double at, double displacement, double low, double high) {
+      if (displacement == 0) return at >= low && at <= high;
+      const double t0 = (low - at) / displacement, t1 = (high - at) / displacement;
       from = std::max(from, std::min(t0, t1));
       to = std::min(to, std::max(t0, t1));
       return from <= to;
@@ -114,10 +115,10 @@ bool take_way(const WorldData& world, const Path& path, const StrideGround& grou
     turn_to(body, route, ground, metre);
     return true;
   }
-  const size_t legs = path.points.size() - 1;
-  route.count = static_cast<uint8_t>(std::min(legs, Route::kCorners));
+  const size_t segments = path.points.size() - 1;
+  route.count = static_cast<uint8_t>(std::min(segments, Route::kCorners));
   route.next = 0;
-  route.whole = legs <= Route::kCorners;
+  route.whole = segments <= Route::kCorners;
   for (size_t i = 0; i < route.count; ++i) {
     route.corners[i] = spot_of(world, path.points[i + 1]);
   }

@@ -19,10 +19,12 @@ struct StepUnits {
     return {static_cast<float>(x) * unit, static_cast<float>(z) * unit};
   }
   /// Way of a step at a velocity along an axis, to the nearest unit.
-  [[nodiscard]] int32_t way(float velocity) const {
+  [[nodiscard]] int32_t displacement(float velocity) const {
     return static_cast<int32_t>(std::lrint(velocity * (dt / unit)));
   }
-  [[nodiscard]] float velocity(int32_t way) const { return static_cast<float>(way) * (unit / dt); }
+  [[nodiscard]] float velocity(int32_t displacement) const {
+    return static_cast<float>(displacement) * (unit / dt);
+  }
   /// No step at a speed is longer. [units]
   [[nodiscard]] int32_t stride(float speed) const {
     return static_cast<int32_t>(speed * (dt / unit)) + 2;

@@ -271,8 +271,8 @@ bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32
   return arrives && (far > most || level == end);
 }
 
-float StrideGround::free_way(uint32_t level, GroundPoint from, steer::Plane direction,
-                             float most) const {
+float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane direction,
+                                  float most) const {
   const GroundPoint to{from.x + std::lrint(direction.x * most),
                        from.z + std::lrint(direction.z * most)};
   if (walk_open(level, from, to)) return most;

@@ -33,7 +33,7 @@ class StrideGround {
   enum class Around : uint8_t {
     kOpen,   // no walls
     kWalls,  // as the window has them
-    kSteps,  // steps matter, or it is too far for a window: ask `free_way`
+    kSteps,  // steps matter, or it is too far for a window: ask `free_distance`
   };
   /// For steering alone: on tiles beside its own a floor counts that is up to a step and `rise`
   /// higher or lower, whether or not steps lead there. [cells, mm]
@@ -53,8 +53,8 @@ class StrideGround {
                           float most) const;
 
   /// How far it is to a wall along a unit vector, at most `most`. [units]
-  [[nodiscard]] float free_way(uint32_t level, GroundPoint from, steer::Plane direction,
-                               float most) const;
+  [[nodiscard]] float free_distance(uint32_t level, GroundPoint from, steer::Plane direction,
+                                    float most) const;
 
  private:
   WalkStop walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const;

@@ -45,13 +45,14 @@ class Rows {
   const uint32_t* rows_;
 };
 
-void FindFreeWays(const WallWindow& window, const steer::Fan& fan, float look, FreeWays& ways) {
+void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float look,
+                       FreeDistances& ways) {
   const DI d;
   const DF df;
-  constexpr size_t kMost = 32;  // directions, up to a whole vector
-  alignas(64) std::array<steer::Plane, kMost> directions{};
+  constexpr size_t kMax = 32;  // directions, up to a whole vector
+  alignas(64) std::array<steer::Plane, kMax> directions{};
   std::copy(fan.begin(), fan.end(), directions.begin());
-  alignas(64) std::array<float, kMost> found;
+  alignas(64) std::array<float, kMax> found;
   const auto spacing = static_cast<float>(window.spacing());
   const auto steps = static_cast<int32_t>(std::ceil(look / spacing));
   const Rows rows(window);
@@ -85,10 +86,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace throng {
 
-HWY_EXPORT(FindFreeWays);
+HWY_EXPORT(FindFreeDistances);
 
-void find_free_ways(const WallWindow& window, const steer::Fan& fan, float look, FreeWays& ways) {
-  HWY_DYNAMIC_DISPATCH(FindFreeWays)(window, fan, look, ways);
+void find_free_distances(const WallWindow& window, const steer::Fan& fan, float look,
+                         FreeDistances& ways) {
+  HWY_DYNAMIC_DISPATCH(FindFreeDistances)(window, fan, look, ways);
 }
 
 }  // namespace throng

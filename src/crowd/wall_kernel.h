@@ -25,10 +25,11 @@ struct WallWindow {
   [[nodiscard]] float reach() const { return static_cast<float>((kMiddle - 1) << shift); }
 };
 
-using FreeWays = std::array<float, steer::kDirections>;
+using FreeDistances = std::array<float, steer::kDirections>;
 
 /// How many half squares each way leads over free squares, up to `look` [units, <= reach()], in
 /// units. The first point that is looked at lies half a square off.
-void find_free_ways(const WallWindow& window, const steer::Fan& fan, float look, FreeWays& ways);
+void find_free_distances(const WallWindow& window, const steer::Fan& fan, float look,
+                         FreeDistances& ways);
 
 }  // namespace throng

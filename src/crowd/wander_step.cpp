@@ -44,7 +44,7 @@ class List {
 };
 
 // A plain step into another pixel.
-struct Claim {
+struct Proposal {
   uint32_t from;   // pixel
   uint32_t level;  // on which it ends
   uint16_t way;
@@ -61,7 +61,7 @@ class Group {
   // to `readable`, avatars may be read ahead of their turn.
   void start_all(Avatar* avatars, size_t size, const Avatar* readable) {
     avatars_ = avatars;
-    claims_size_ = asked_ = walls_ = 0;
+    proposals_size_ = asked_ = walls_ = 0;
     for (List* list : {&unsure_, &uneven_, &slopes_, &walks_}) list->clear();
     ask_ahead(size, readable - 1);
     plan_all(size);
@@ -80,7 +80,7 @@ class Group {
     ask_for_cells();
   }
   void finish(List& blocked) {
-    claim(blocked);
+    proposal(blocked);
     sort_uneven();
     climb(blocked);
     walk_on(blocked);
@@ -94,20 +94,20 @@ class Group {
   void plan(std::span<const uint16_t> todo);
   void ask_for_levels() const;
   void look_closer();
-  bool go_or_claim(const Pixels& pixels, Avatar& a, bool really, uint32_t level, uint16_t n,
-                   size_t& claimed);
+  bool go_or_propose(const Pixels& pixels, Avatar& a, bool really, uint32_t level, uint16_t n,
+                     size_t& claimed);
   void ask_for_pixels();
   void ask_for_cells() const;
-  void claim(List& blocked);
+  void proposal(List& blocked);
   void sort_uneven();
   void climb(List& blocked);
   void walk_on(List& blocked);
 
   const StepInput& in_;
   Avatar* avatars_ = nullptr;
-  std::array<Claim, kGroup> claims_;
+  std::array<Proposal, kGroup> proposals_;
   std::array<CollisionMap::Slices, kGroup> slices_;  // of the claims
-  size_t claims_size_ = 0;
+  size_t proposals_size_ = 0;
   size_t asked_ = 0;  // claims whose pixels were asked for
   List unsure_;       // not within plain blocks
   List uneven_;       // not plain: these go on one of the next two
@@ -146,15 +146,16 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
 // A plain step that `really` is one: whoever stays in his pixel moves at once, for nobody can
 // object; the others claim. Returns whether he moved. Arithmetic instead of branches: which way an
 // avatar goes is as good as random, and a wrong guess costs 20 cycles.
-[[gnu::always_inline]] inline bool Group::go_or_claim(const Pixels& pixels, Avatar& a, bool really,
-                                                      uint32_t level, uint16_t n, size_t& claimed) {
+[[gnu::always_inline]] inline bool Group::go_or_propose(const Pixels& pixels, Avatar& a,
+                                                        bool really, uint32_t level, uint16_t n,
+                                                        size_t& claimed) {
   const int32_t x = a.x, z = a.z, vx = a.vx, vz = a.vz;
   const int32_t px = pixels.grid.pixel(x >> kUnitBits), pz = pixels.grid.pixel(z >> kUnitBits);
   const int32_t dx = pixels.grid.pixel((x + vx) >> kUnitBits) - px;
   const int32_t dz = pixels.grid.pixel((z + vz) >> kUnitBits) - pz;
   const bool stays = (dx | dz) == 0;
-  claims_[claimed] = {pixels.number(px, pz), level,
-                      static_cast<uint16_t>(CollisionMap::way(dx, dz)), n};
+  proposals_[claimed] = {pixels.number(px, pz), level,
+                         static_cast<uint16_t>(CollisionMap::way(dx, dz)), n};
   claimed += really & !stays;
   const bool goes = really & stays;
   a.x = x + (vx & mask(goes));
@@ -183,9 +184,9 @@ void Group::plan_all(size_t size) {
   size_t claimed = 0;
   for (uint64_t bits = planned.leaves; bits != 0; bits &= bits - 1) {
     const auto n = static_cast<uint16_t>(std::countr_zero(bits));
-    go_or_claim(pixels, avatars_[n], true, avatars_[n].level, n, claimed);
+    go_or_propose(pixels, avatars_[n], true, avatars_[n].level, n, claimed);
   }
-  claims_size_ = claimed;
+  proposals_size_ = claimed;
 }
 
 void Group::plan(std::span<const uint16_t> todo) {
@@ -198,9 +199,9 @@ void Group::plan(std::span<const uint16_t> todo) {
                                              a.x >> kUnitBits, a.z >> kUnitBits,
                                              (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
     unsure_.add_if(!is_plain, n);
-    go_or_claim(pixels, a, is_plain, a.level, n, claimed);
+    go_or_propose(pixels, a, is_plain, a.level, n, claimed);
   }
-  claims_size_ = claimed;
+  proposals_size_ = claimed;
 }
 
 void Group::ask_for_levels() const {
@@ -215,7 +216,7 @@ void Group::ask_for_levels() const {
 // Plain blocks over the edge of the tile, and plain cells that do not fill a block.
 void Group::look_closer() {
   const Pixels pixels = in_.map->pixels();
-  size_t claimed = claims_size_;
+  size_t claimed = proposals_size_;
   for (const uint16_t n : unsure_.span()) {
     Avatar& a = avatars_[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
@@ -226,25 +227,25 @@ void Group::look_closer() {
     const bool is_plain = crosses | box_is_set(in_.ground->plain(a.level), x0, z0, x1, z1);
     uneven_.add_if(!is_plain, n);
     const uint32_t level = crosses ? beyond : a.level;
-    const bool goes = go_or_claim(pixels, a, is_plain, level, n, claimed);
+    const bool goes = go_or_propose(pixels, a, is_plain, level, n, claimed);
     a.level = goes ? level : a.level;
   }
-  claims_size_ = claimed;
+  proposals_size_ = claimed;
 }
 
 void Group::ask_for_pixels() {
   const CollisionMap& map = *in_.map;
-  for (; asked_ < claims_size_; ++asked_) {
-    const Claim& c = claims_[asked_];
+  for (; asked_ < proposals_size_; ++asked_) {
+    const Proposal& c = proposals_[asked_];
     slices_[asked_] = map.slices(avatars_[c.n].y);
     map.prefetch(slices_[asked_], c.from, c.way);
   }
 }
 
-void Group::claim(List& blocked) {
+void Group::proposal(List& blocked) {
   CollisionMap& map = *in_.map;
-  for (size_t i = 0; i < claims_size_; ++i) {
-    const Claim& c = claims_[i];
+  for (size_t i = 0; i < proposals_size_; ++i) {
+    const Proposal& c = proposals_[i];
     Avatar& a = avatars_[c.n];
     const bool moved = map.move_by_one(slices_[i], c.from, c.way);
     a.x += a.vx & mask(moved);

@@ -25,7 +25,7 @@ constexpr int32_t kBlockPixels = 32;
 // Pixels of the map for each avatar above which small pages, taken only around him, save memory: he
 // touches up to three pages of 512.
 constexpr int64_t kSparse = 2048;
-constexpr double kMostPixels =
+constexpr double kMaxPixels =
     1e12;                         // 8 TB of addresses, of which only what is touched takes memory
 constexpr uint64_t kGrain = 512;  // avatars that are worth handing to another thread
 
@@ -98,7 +98,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   const int64_t pixels = int64_t{data.width / pixel_cells + 1} * (data.depth / pixel_cells + 1);
   const Pages pages = pixels / kSparse < config.avatars ? Pages::kHuge : Pages::kSmall;
   const double planes = (static_cast<double>(high) - low) / (64 * CollisionMap::kSlab) + 2;
-  if (static_cast<double>(pixels) * planes > kMostPixels) {
+  if (static_cast<double>(pixels) * planes > kMaxPixels) {
     return Error{Errc::kLimit, "crowd: the world is too large and too high for a crowd of class " +
                                    body.name + "; bake it in parts"};
   }

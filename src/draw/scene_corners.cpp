@@ -14,9 +14,9 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostTriangles = 40'000'000;  // 1.9 GB.
-constexpr double kWeld = 1e4;                  // Per metre.
-constexpr double kSmooth = 0.906;              // Cosine of 25 degrees.
+constexpr size_t kMaxTriangles = 40'000'000;  // 1.9 GB.
+constexpr double kWeld = 1e4;                 // Per metre.
+constexpr double kSmooth = 0.906;             // Cosine of 25 degrees.
 
 using Lattice = std::array<int64_t, 3>;
 
@@ -119,9 +119,9 @@ void set_places(const TextureCorners& places, SurfaceCorner* corners) {
 
 Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin,
                                    std::span<const LayerOf> textures) {
-  if (scene.triangles.size() > kMostTriangles) {
+  if (scene.triangles.size() > kMaxTriangles) {
     return Error{Errc::kLimit, "drawing: " + std::to_string(scene.triangles.size()) +
-                                   " triangles, more than " + std::to_string(kMostTriangles) +
+                                   " triangles, more than " + std::to_string(kMaxTriangles) +
                                    "; draw a part of the model"};
   }
   SceneCorners out;

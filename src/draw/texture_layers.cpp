@@ -98,7 +98,7 @@ TextureLayers make_texture_layers(const Scene& scene, size_t budget) {
   for (size_t i = 0; i < used.size(); ++i) {
     const Texture& texture = scene.textures[i];
     if (!used[i] || !is_whole(texture)) continue;
-    if (static_cast<size_t>(out.layers) < kMostLayers) {
+    if (static_cast<size_t>(out.layers) < kMaxLayers) {
       out.of_texture[i].layer1 = static_cast<uint32_t>(++out.layers);
       largest = std::max({largest, texture.width, texture.height});
     } else {

@@ -14,7 +14,7 @@
 /// textures between its triangles.
 namespace throng {
 
-inline constexpr size_t kMostLayers = 256;  // What any card has.
+inline constexpr size_t kMaxLayers = 256;  // What any card has.
 
 /// What became of a scene's textures, one entry each.
 struct LayerOf {

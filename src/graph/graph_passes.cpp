@@ -23,7 +23,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMostZoneBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuffers' limit
+constexpr uint64_t kMaxZoneBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuffers' limit
 
 Error cancelled() { return {Errc::kCancelled, "graph: cancelled"}; }
 
@@ -150,7 +150,7 @@ Result<void> Passes::find_regions(size_t slot) {
         tables->first.size() * sizeof(uint32_t) + tables->regions.size() * sizeof(format::Region) +
         tables->groups.groups.size() * 5 + tables->groups.names.size() +
         tables->groups.begun.size() + tables->links.size() * sizeof(format::RegionLink);
-    if (bytes > kMostZoneBytes) {
+    if (bytes > kMaxZoneBytes) {
       return Error{Errc::kLimit, name + ": more than 2 GiB of regions; use smaller zones"};
     }
     auto made =

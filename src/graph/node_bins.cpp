@@ -9,7 +9,7 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostEdges = 15;  // a code is 4 bits
+constexpr size_t kMaxEdges = 15;  // a code is 4 bits
 
 // All of `needed` if they fit, then of `wanted` what is left room for. What does not fit is
 // dropped where edges lie closest: classes' verdicts are kept by bits, not by these codes.
@@ -20,10 +20,10 @@ std::vector<double> edges(std::vector<double> needed, std::initializer_list<doub
   };
   tidy();
   for (const double edge : wanted) {
-    if (needed.size() < kMostEdges) needed.push_back(edge);
+    if (needed.size() < kMaxEdges) needed.push_back(edge);
   }
   tidy();
-  while (needed.size() > kMostEdges) {
+  while (needed.size() > kMaxEdges) {
     size_t closest = 1;
     for (size_t i = 2; i < needed.size(); ++i) {
       if (needed[i] - needed[i - 1] < needed[closest] - needed[closest - 1]) closest = i;

@@ -228,7 +228,7 @@ void merge_node_links(std::vector<NodeLink>& links) {
     uint16_t served = 0;
     // (Jumps are given one by one, and some lead one way: all are kept. Of drops one from each spot
     // is: a ledge may be long.)
-    for (size_t k = group; k < kept && link.kind != LinkKind::kJump; ++k) {
+    for (size_t k = group; k < kept && link.kind != LinkKind::kOffMesh; ++k) {
       const bool same = links[k].spot == link.spot && links[k].turned == link.turned;
       if (same || link.kind != LinkKind::kDrop) served |= links[k].classes;
     }

@@ -95,8 +95,8 @@ class BlockCutter {
     const uint32_t end = patch_.first_node() + patch_.nodes();
     for (uint32_t n = patch_.first_node(); n < end; ++n) {
       const format::Node& node = zone_.nodes()[n];
-      if (is_ragged(node)) {
-        n = cut_ragged(n, end) - 1;
+      if (is_partial(node)) {
+        n = cut_partial(n, end) - 1;
         continue;
       }
       const bool inside = node.parent() != UINT32_MAX && stands(zone_.nodes()[node.parent()]);
@@ -106,7 +106,7 @@ class BlockCutter {
   }
 
  private:
-  static bool is_ragged(const format::Node& node) { return (node.flags() & kRaggedFlag) != 0; }
+  static bool is_partial(const format::Node& node) { return (node.flags() & kPartialFlag) != 0; }
 
   [[nodiscard]] bool stands(const format::Node& node) const {
     return (node.classes() >> class_ & 1) != 0;
@@ -152,13 +152,13 @@ class BlockCutter {
   }
 
   // All ragged nodes of one block, which follow each other from `first` on. Returns where they end.
-  uint32_t cut_ragged(uint32_t first, uint32_t end) {
+  uint32_t cut_partial(uint32_t first, uint32_t end) {
     const format::Node& node = zone_.nodes()[first];
     pieces_.clear();
     uint32_t n = first;
     for (; n < end; ++n) {
       const format::Node& other = zone_.nodes()[n];
-      if (!is_ragged(other) || other.s() != node.s() || other.t() != node.t()) break;
+      if (!is_partial(other) || other.s() != node.s() || other.t() != node.t()) break;
       if (!stands(other)) continue;
       const uint64_t cells = zone_.cells_of(n) & legal_in(node.s(), node.t());
       if (cells != 0) pieces_.push_back({cells, n});

@@ -202,11 +202,11 @@ class Flood {
       for (int32_t s = 0; s < blocks; ++s) {
         const uint32_t first = cell_of(tree, s * size, t * size);
         const uint32_t leaf = tree.leaf_of(first);
-        const bool ragged = tree.is_ragged(first);
-        if (!ragged && (leaf == kNoNode || !covers(tree.nodes[leaf].promise, promise_))) continue;
+        const bool partial = tree.is_partial(first);
+        if (!partial && (leaf == kNoNode || !covers(tree.nodes[leaf].promise, promise_))) continue;
         for (int32_t j = 0; j < size; ++j) {
           uint64_t bits = (uint64_t{1} << size) - 1;
-          if (ragged) {
+          if (partial) {
             bits = 0;
             for (int32_t i = 0; i < size; ++i) {
               bits |= uint64_t{covers_here(tree, cell_of(tree, s * size + i, t * size + j))} << i;

@@ -51,7 +51,7 @@ bool touches(uint64_t cells, double s, double t) {
 // Drops lead one way, and jumps may; no two places hold together by one that does.
 bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::Arc& arc) {
   if (arc.kind() == static_cast<uint8_t>(LinkKind::kDrop)) return false;
-  if (arc.kind() != static_cast<uint8_t>(LinkKind::kJump)) return true;
+  if (arc.kind() != static_cast<uint8_t>(LinkKind::kOffMesh)) return true;
   const size_t slot = data.slot_of(to);
   const NodeZone* zone = data.zone(slot);
   if (zone == nullptr) return false;
@@ -121,7 +121,7 @@ NodeSummary Nodes::summary() const {
     if (zone == nullptr) continue;
     for (const format::Node& node : zone->nodes()) {
       summary.terminal += (node.flags() & kTerminalFlag) != 0;
-      summary.ragged += (node.flags() & kRaggedFlag) != 0;
+      summary.partial += (node.flags() & kPartialFlag) != 0;
     }
     for (uint32_t n = 0; n < zone->nodes().size(); ++n) summary.arcs += zone->arcs(n).size();
   }
@@ -169,7 +169,7 @@ std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
   return out;
 }
 
-uint64_t Nodes::ragged_cells(int32_t avatar_class, uint32_t node) const {
+uint64_t Nodes::partial_cells(int32_t avatar_class, uint32_t node) const {
   THRONG_ASSERT(node < node_count());
   const auto [zone, local] = data_->find(node);
   if (zone == nullptr || avatar_class < 0 || avatar_class >= kMaxAvatarClasses) return 0;
@@ -229,7 +229,7 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
   const bool inside = s * blocks >= found.s() && s * blocks <= found.s() + 1 &&
                       t * blocks >= found.t() && t * blocks <= found.t() + 1;
   if (!inside || (found.classes() >> avatar_class & 1) == 0) return {};
-  if ((found.flags() & kRaggedFlag) != 0 &&
+  if ((found.flags() & kPartialFlag) != 0 &&
       !touches(data_->cells_of(*zone, local, avatar_class), s * 64 - found.s() * 8,
                t * 64 - found.t() * 8)) {
     return {};
@@ -252,7 +252,7 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
   if (found == areas.end()) --found;
   const NodeInfo info = node(found->first);
   if (info.cells != 0) {
-    uint64_t cells = ragged_cells(avatar_class, found->first);
+    uint64_t cells = partial_cells(avatar_class, found->first);
     if (cells == 0) return {};
     const auto count = static_cast<uint64_t>(std::popcount(cells));
     for (uint64_t skip = random_below(seed, n, 3, count); skip > 0; --skip) cells &= cells - 1;
@@ -265,7 +265,8 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
                (info.t + random_unit(seed, n, 2)) * side);
 }
 
-std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>* of_node) const {
+std::vector<NodeComponent> Nodes::reach(int32_t avatar_class,
+                                        std::vector<uint32_t>* of_node) const {
   THRONG_ASSERT(data_);
   const uint32_t count = data_->node_count;
   DisjointSets sets(count);
@@ -292,7 +293,7 @@ std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>*
       }
     }
   }
-  std::vector<NodeReach> parts;
+  std::vector<NodeComponent> parts;
   std::vector<uint32_t> part(count, UINT32_MAX);
   for (uint32_t n = 0; n < count; ++n) {
     if (stands[n] == 0) continue;
@@ -309,7 +310,7 @@ std::vector<NodeReach> Nodes::reach(int32_t avatar_class, std::vector<uint32_t>*
   std::iota(order.begin(), order.end(), uint32_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return parts[a].area > parts[b].area; });
-  std::vector<NodeReach> sorted;
+  std::vector<NodeComponent> sorted;
   for (uint32_t i = 0; i < order.size(); ++i) {
     rank[order[i]] = i;
     sorted.push_back(parts[order[i]]);

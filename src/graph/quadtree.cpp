@@ -18,19 +18,19 @@ struct Block {
   bool uniform = false;  // every cell promises the same, and nothing is cut
 };
 
-constexpr int32_t kRaggedSide = 1 << kRaggedDepth;
+constexpr int32_t kPartialSide = 1 << kPartialDepth;
 
 // A block of 8 x 8 cells in bits, 8 t + s.
-class RaggedBlock {
+class PartialBlock {
  public:
   struct Part {
     uint64_t cells = 0;
     Promise promise;
   };
 
-  RaggedBlock(const PatchCells& cells, int32_t s0, int32_t t0, uint16_t classes)
+  PartialBlock(const PatchCells& cells, int32_t s0, int32_t t0, uint16_t classes)
       : cells_(cells), s0_(s0), t0_(t0), classes_(classes) {
-    for (int32_t bit = 0; bit < kRaggedSide * kRaggedSide; ++bit) {
+    for (int32_t bit = 0; bit < kPartialSide * kPartialSide; ++bit) {
       const size_t cell = index(bit);
       const auto set = [&](uint32_t of, std::array<uint64_t, 16>& masks) {
         for (of &= classes_; of != 0; of &= of - 1) {
@@ -47,7 +47,7 @@ class RaggedBlock {
   // Of each cell, all of them.
   [[nodiscard]] std::array<uint16_t, 64> classes() const {
     std::array<uint16_t, 64> all;
-    for (int32_t bit = 0; bit < kRaggedSide * kRaggedSide; ++bit) {
+    for (int32_t bit = 0; bit < kPartialSide * kPartialSide; ++bit) {
       all[static_cast<size_t>(bit)] = cells_.cells[index(bit)].classes;
     }
     return all;
@@ -65,7 +65,7 @@ class RaggedBlock {
 
  private:
   [[nodiscard]] size_t index(int32_t bit) const {
-    return cells_.index(s0_ + bit % kRaggedSide, t0_ + bit / kRaggedSide);
+    return cells_.index(s0_ + bit % kPartialSide, t0_ + bit / kPartialSide);
   }
 
   // Cells of a class beside those given, and these.
@@ -148,14 +148,14 @@ class RaggedBlock {
 class TreeBuilder {
  public:
   explicit TreeBuilder(const PatchCells& cells) : cells_(cells) {
-    last_level_ = cells.ragged ? cells.depth - kRaggedDepth : cells.depth;
+    last_level_ = cells.partial ? cells.depth - kPartialDepth : cells.depth;
     levels_.resize(static_cast<size_t>(last_level_) + 1);
     auto& finest = levels_.back();
-    if (cells.ragged) {
+    if (cells.partial) {
       const int32_t side = 1 << last_level_;
       finest.reserve(static_cast<size_t>(side) * static_cast<size_t>(side));
       for (int32_t t = 0; t < side; ++t) {
-        for (int32_t s = 0; s < side; ++s) finest.push_back(least_block(s, t));
+        for (int32_t s = 0; s < side; ++s) finest.push_back(min_block(s, t));
       }
     } else {
       finest.reserve(cells.cells.size());
@@ -218,21 +218,21 @@ class TreeBuilder {
   }
 
   // Eight cells along a side at once.
-  [[nodiscard]] Block least_block(int32_t s, int32_t t) const {
-    const size_t first = cells_.index(s << kRaggedDepth, t << kRaggedDepth);
+  [[nodiscard]] Block min_block(int32_t s, int32_t t) const {
+    const size_t first = cells_.index(s << kPartialDepth, t << kPartialDepth);
     Block block{cells_.cells[first], 0, true};
     uint32_t cut = 0;
-    for (size_t j = 0; j < kRaggedSide; ++j) {
+    for (size_t j = 0; j < kPartialSide; ++j) {
       const size_t row = first + (j << cells_.depth);
-      for (size_t i = row; i < row + kRaggedSide; ++i) {
+      for (size_t i = row; i < row + kPartialSide; ++i) {
         const Promise& cell = cells_.cells[i];
         block.uniform &= cell == cells_.cells[first];
         block.promise = both(block.promise, cell);
         block.any |= cell.classes;
       }
       if (!cells_.is_cut()) continue;
-      for (size_t i = row; i + 1 < row + kRaggedSide; ++i) cut |= cells_.parted(i, true);
-      for (size_t i = row; j + 1 < kRaggedSide && i < row + kRaggedSide; ++i) {
+      for (size_t i = row; i + 1 < row + kPartialSide; ++i) cut |= cells_.parted(i, true);
+      for (size_t i = row; j + 1 < kPartialSide && i < row + kPartialSide; ++i) {
         cut |= cells_.parted(i, false);
       }
     }
@@ -256,10 +256,10 @@ class TreeBuilder {
     const Block& block = at(level, s, t);
     if (block.any == 0) return;
     const uint16_t above = parent == kNoNode ? uint16_t{0} : tree_.nodes[parent].promise.classes;
-    if (cells_.ragged && level == last_level_ && block.promise.classes != block.any) {
+    if (cells_.partial && level == last_level_ && block.promise.classes != block.any) {
       // Those who stand on all of it go with those who stand on a part.
       fill(level, s, t, parent);
-      add_ragged(level, s, t, parent, static_cast<uint16_t>(block.any & ~above));
+      add_partial(level, s, t, parent, static_cast<uint16_t>(block.any & ~above));
       return;
     }
     uint32_t here = parent;
@@ -277,13 +277,13 @@ class TreeBuilder {
 
   // The classes that stand on a block, of which some do on a part of it only, and that no larger
   // node holds.
-  void add_ragged(int32_t level, int32_t s, int32_t t, uint32_t parent, uint16_t rest) {
-    RaggedBlock block(cells_, s << kRaggedDepth, t << kRaggedDepth, rest);
-    const auto place = static_cast<uint32_t>(tree_.ragged.size());
+  void add_partial(int32_t level, int32_t s, int32_t t, uint32_t parent, uint16_t rest) {
+    PartialBlock block(cells_, s << kPartialDepth, t << kPartialDepth, rest);
+    const auto place = static_cast<uint32_t>(tree_.partial.size());
     tree_.leaf[leaf_index(s, t)] = static_cast<uint32_t>(tree_.nodes.size());
-    tree_.ragged.push_back(block.classes());
+    tree_.partial.push_back(block.classes());
     for (const auto& [mask, promise] : block.divide()) {
-      add_node({.promise = promise, .cells = mask, .ragged = place}, level, s, t, parent);
+      add_node({.promise = promise, .cells = mask, .partial = place}, level, s, t, parent);
     }
   }
 

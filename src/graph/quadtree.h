@@ -33,15 +33,15 @@ inline Promise both(const Promise& a, const Promise& b) {
 /// True if `a` promises all that `b` does: it is no more restrictive.
 inline bool covers(const Promise& a, const Promise& b) { return both(a, b) == b; }
 
-/// The least blocks of patches with ragged nodes have 2^kRaggedDepth cells along a side.
-inline constexpr int32_t kRaggedDepth = 3;
+/// The least blocks of patches with ragged nodes have 2^kPartialDepth cells along a side.
+inline constexpr int32_t kPartialDepth = 3;
 
 /// The finest sub-patches of one patch: 2^depth x 2^depth cells, cell = t * side + s.
 struct PatchCells {
   int32_t depth = 0;
-  /// Blocks of 2^kRaggedDepth cells along a side are divided no further: what is left of them are
-  /// ragged nodes. [depth >= kRaggedDepth]
-  bool ragged = false;
+  /// Blocks of 2^kPartialDepth cells along a side are divided no further: what is left of them are
+  /// ragged nodes. [depth >= kPartialDepth]
+  bool partial = false;
   std::vector<Promise> cells;
   /// Per cell, classes that may stand on it and on the next cell along s (along t), but cannot step
   /// from one to the other. Empty: none.
@@ -75,18 +75,18 @@ inline constexpr uint32_t kNoNode = UINT32_MAX;
 /// hold together by its steps, and the rest of the promise holds on all of them.
 struct PatchNode {
   Promise promise;
-  uint64_t cells = 0;   ///< Ragged: which of the block's, bit 8 t + s. 0: all, for all its classes.
-  uint32_t ragged = 0;  ///< Of such a node: which of the tree's ragged blocks it lies in.
-  uint8_t level = 0;    ///< Halvings from the whole patch: 2^level blocks along a side.
+  uint64_t cells = 0;  ///< Ragged: which of the block's, bit 8 t + s. 0: all, for all its classes.
+  uint32_t partial = 0;       ///< Of such a node: which of the tree's ragged blocks it lies in.
+  uint8_t level = 0;          ///< Halvings from the whole patch: 2^level blocks along a side.
   uint8_t s = 0, t = 0;       ///< Which block of its level.
   bool terminal = true;       ///< No smaller node lies in it.
   uint32_t parent = kNoNode;  ///< The smallest node around it, of this patch.
 };
 
 /// Which bit of a ragged node's mask a cell is. [cell of a patch of that depth]
-inline uint32_t ragged_bit(size_t cell, int32_t depth) {
-  constexpr size_t kIn = (size_t{1} << kRaggedDepth) - 1;
-  return static_cast<uint32_t>(((cell >> depth) & kIn) << kRaggedDepth | (cell & kIn));
+inline uint32_t partial_bit(size_t cell, int32_t depth) {
+  constexpr size_t kIn = (size_t{1} << kPartialDepth) - 1;
+  return static_cast<uint32_t>(((cell >> depth) & kIn) << kPartialDepth | (cell & kIn));
 }
 
 struct PatchTree {
@@ -97,7 +97,7 @@ struct PatchTree {
   std::vector<uint32_t> leaf;
   int32_t leaf_depth = 0;  ///< Of the blocks in `leaf`, as halvings of a side.
   /// Who may stand on each cell of the blocks that have ragged nodes.
-  std::vector<std::array<uint16_t, 64>> ragged;
+  std::vector<std::array<uint16_t, 64>> partial;
 
   /// The smallest node that holds a cell, the first of them if they are ragged; or kNoNode.
   [[nodiscard]] uint32_t leaf_of(size_t cell) const {
@@ -113,7 +113,7 @@ struct PatchTree {
   }
 
   /// Does a cell lie in a block that has ragged nodes?
-  [[nodiscard]] bool is_ragged(size_t cell) const {
+  [[nodiscard]] bool is_partial(size_t cell) const {
     const uint32_t node = nodes.empty() ? kNoNode : first_of(cell);
     return node != kNoNode && nodes[node].cells != 0;
   }
@@ -123,7 +123,7 @@ struct PatchTree {
     const uint32_t node = nodes.empty() ? kNoNode : first_of(cell);
     if (node == kNoNode) return 0;
     const PatchNode& n = nodes[node];
-    return n.cells == 0 ? n.promise.classes : ragged[n.ragged][ragged_bit(cell, depth)];
+    return n.cells == 0 ? n.promise.classes : partial[n.partial][partial_bit(cell, depth)];
   }
 
  private:
@@ -136,14 +136,14 @@ struct PatchTree {
 
   // Is it another ragged node of the same block?
   [[nodiscard]] bool is_beside(uint32_t node, const PatchNode& one) const {
-    return node < nodes.size() && nodes[node].cells != 0 && nodes[node].ragged == one.ragged;
+    return node < nodes.size() && nodes[node].cells != 0 && nodes[node].partial == one.partial;
   }
 
   // Of a block's ragged nodes from one on the first that holds a cell; else the node around them.
   [[nodiscard]] uint32_t first_from(uint32_t node, size_t cell) const {
     const PatchNode& one = nodes[node];
     for (; is_beside(node, one); ++node) {
-      if ((nodes[node].cells >> ragged_bit(cell, depth) & 1) != 0) return node;
+      if ((nodes[node].cells >> partial_bit(cell, depth) & 1) != 0) return node;
     }
     return one.parent;
   }

@@ -74,7 +74,7 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
   const std::vector<AvatarClass>& classes = data.summary.classes;
   PatchCells patch;
   patch.depth = kTileDepth;
-  patch.ragged = true;
+  patch.partial = true;
   patch.cells.assign(kArea, {.classes = 0, .inclination = 15, .height = 0, .headroom = 0});
   GroundLevel ground = ground_level(data, level, 0);
   if (ground.zone == nullptr) return patch;

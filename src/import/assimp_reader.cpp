@@ -47,8 +47,8 @@ struct MaterialMessage {
   uint32_t opacity = 0;
 };
 
-constexpr uint64_t kMostTextures = 1 << 16;
-constexpr uint64_t kMostTextureBytes = uint64_t{1} << 30;  // Of all that a file holds.
+constexpr uint64_t kMaxTextures = 1 << 16;
+constexpr uint64_t kMaxTextureBytes = uint64_t{1} << 30;  // Of all that a file holds.
 constexpr uint32_t kLongestText = 1 << 16;
 constexpr int32_t kNoArea = -1;
 
@@ -198,7 +198,7 @@ class Sender {
     for (size_t i = 0; i < textures_.size(); ++i) {
       if (textures_[i].first == name) return static_cast<uint32_t>(i + 1);
     }
-    if (name.empty() || textures_.size() >= kMostTextures) return 0;
+    if (name.empty() || textures_.size() >= kMaxTextures) return 0;
     const aiTexture* held = scene_.GetEmbeddedTexture(name.c_str());
     textures_.emplace_back(name, held);
     return static_cast<uint32_t>(textures_.size());
@@ -213,7 +213,7 @@ class Sender {
       if (is_texels) message.triangles = uint64_t{held->mHeight} << 32 | held->mWidth;
     }
     texture_bytes_ += message.vertices;
-    if (texture_bytes_ > kMostTextureBytes) message.vertices = message.triangles = 0;
+    if (texture_bytes_ > kMaxTextureBytes) message.vertices = message.triangles = 0;
     pipe_.write(&message, sizeof message);
     pipe_.write(name.data(), name.size());
     if (message.vertices == 0) return;
@@ -449,8 +449,8 @@ class Receiver {
     TextureSource source;
     if (!receive_text(pipe, message.node_size, source.name)) return false;
     texture_bytes_ += message.vertices;
-    if (raw_.textures.size() >= kMostTextures || message.vertices > kMostTextureBytes ||
-        texture_bytes_ > kMostTextureBytes) {
+    if (raw_.textures.size() >= kMaxTextures || message.vertices > kMaxTextureBytes ||
+        texture_bytes_ > kMaxTextureBytes) {
       return false;
     }
     source.bytes.resize(static_cast<size_t>(message.vertices));

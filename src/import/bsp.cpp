@@ -22,8 +22,8 @@ static_assert(std::endian::native == std::endian::little,
 constexpr double kMetresPerUnit = 0.0254;
 constexpr int32_t kVersion = 46;
 // A damaged file can make a thousand faces share the same corners; no level has a million.
-constexpr size_t kMostVertices = 20'000'000;
-constexpr size_t kMostPatches = 500'000;
+constexpr size_t kMaxVertices = 20'000'000;
+constexpr size_t kMaxPatches = 500'000;
 
 enum Lump {
   kEntities = 0,
@@ -96,12 +96,12 @@ class BspReader {
         if (faces_read_[static_cast<size_t>(f)]) continue;  // Models of a sound file share no face.
         faces_read_[static_cast<size_t>(f)] = true;
         read_face(faces_[static_cast<size_t>(f)], node);
-        if (writer_.scene().positions.size() > kMostVertices ||
-            writer_.scene().patches.size() > kMostPatches) {
+        if (writer_.scene().positions.size() > kMaxVertices ||
+            writer_.scene().patches.size() > kMaxPatches) {
           return Error{Errc::kLimit,
                        fmt::format("{}: gives more than {} vertices or {} patches; no level does, "
                                    "so the file is damaged",
-                                   options_.name, kMostVertices, kMostPatches)};
+                                   options_.name, kMaxVertices, kMaxPatches)};
         }
       }
     }

@@ -25,7 +25,7 @@ struct Entry {
   PatchSet (*build_patches)(const BuiltinWorldConfig&) = nullptr;  // Instead of `build`.
 };
 
-constexpr uint64_t kMostTriangles = 100'000'000;  // Corners must stay below 2^32 with room.
+constexpr uint64_t kMaxTriangles = 100'000'000;  // Corners must stay below 2^32 with room.
 
 const std::array<Entry, 9> kWorlds = {{
     {{"cube", "a hollow cube: floor, roof and four walls without thickness", 5.8},
@@ -74,7 +74,7 @@ const std::array<Entry, 9> kWorlds = {{
      22,
      22,
      builtin::powerplant_size,
-     kMostTriangles,
+     kMaxTriangles,
      builtin::build_powerplant},
     {{"city", "streets, kerbs, buildings with storeys inside, a canal, bridges, underpasses", 500},
      100,

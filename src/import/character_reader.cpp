@@ -24,7 +24,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMostItems = 1 << 24;  // Of any one array.
+constexpr uint64_t kMaxItems = 1 << 24;  // Of any one array.
 
 // --- In the child -------------------------------------------------------------------------------
 
@@ -84,7 +84,7 @@ class Extractor {
       }
     }
     ++bones_found;
-    if (character_.bones.size() == kMostBones) return 0;
+    if (character_.bones.size() == kMaxBones) return 0;
     character_.bones.push_back({joint, inverse_bind});
     return static_cast<uint8_t>(character_.bones.size() - 1);
   }
@@ -241,7 +241,7 @@ struct Receiving {
   template <class Array>
   bool array(Array& v) const {
     uint64_t count = 0;
-    if (!value(count) || count > kMostItems) return false;
+    if (!value(count) || count > kMaxItems) return false;
     constexpr uint64_t kPiece = 1 << 16;
     for (uint64_t have = 0; have < count;) {
       const uint64_t more = std::min(kPiece, count - have);
@@ -254,7 +254,7 @@ struct Receiving {
   template <class T, class Pass>
   bool items(std::vector<T>& v, Pass pass) const {
     uint64_t count = 0;
-    if (!value(count) || count > kMostItems) return false;
+    if (!value(count) || count > kMaxItems) return false;
     for (uint64_t i = 0; i < count; ++i) {
       if (!pass(v.emplace_back())) return false;
     }
@@ -286,7 +286,7 @@ void read_and_send(const std::string& path, const PipeWriter& pipe) {
     Character character = extractor.extract();
     const Sending send{pipe};
     Answer answer = Answer::kCharacter;
-    if (extractor.bones_found > kMostBones) answer = Answer::kTooManyBones;
+    if (extractor.bones_found > kMaxBones) answer = Answer::kTooManyBones;
     if (!extractor.has_skeleton) answer = Answer::kNoSkeleton;
     send.value(answer);
     if (answer == Answer::kTooManyBones) {
@@ -351,7 +351,7 @@ std::string fault_of(const Character& c) {
   if (c.triangles.empty()) return "has no mesh";
   const size_t vertices = c.positions.size();
   if (c.normals.size() != vertices || c.influences.size() != vertices ||
-      c.material.size() != c.triangles.size() || c.bones.empty() || c.bones.size() > kMostBones) {
+      c.material.size() != c.triangles.size() || c.bones.empty() || c.bones.size() > kMaxBones) {
     return "has arrays that do not fit together";
   }
   for (size_t v = 0; v < vertices; ++v) {
@@ -449,7 +449,7 @@ Result<Character> load_character(const std::string& path, Context& context) {
   if (answer == Answer::kTooManyBones) {
     return Error{Errc::kLimit, fmt::format("{}: {} bones, more than {}; leave out bones of fingers "
                                            "and of the face",
-                                           path, bones, kMostBones)};
+                                           path, bones, kMaxBones)};
   }
   if (const std::string fault = fault_of(character); !fault.empty()) {
     return Error{Errc::kBadInput, fmt::format("{}: {}; export it again", path, fault)};

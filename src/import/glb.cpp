@@ -357,7 +357,7 @@ class GlbReader {
   }
 
   // Nothing if the file does not hold them.
-  std::optional<Elements> elements(uint64_t number, const char* type, uint64_t least_stride,
+  std::optional<Elements> elements(uint64_t number, const char* type, uint64_t min_stride,
                                    uint64_t parts = 1) const {
     const Json* accessor = element(file_, "accessors", number);
     if (accessor == nullptr || words(*accessor, "type") != type || accessor->contains("sparse")) {
@@ -373,7 +373,7 @@ class GlbReader {
                           : out.component == kInt || out.component == kFloat ? 4
                                                                              : 0;
     if (size == 0) return std::nullopt;
-    const uint64_t whole_size = std::max(size * parts, least_stride);
+    const uint64_t whole_size = std::max(size * parts, min_stride);
     out.count = whole(*accessor, "count").value_or(0);
     out.stride = whole(*view, "byteStride").value_or(whole_size);
     const uint64_t from = whole(*view, "byteOffset").value_or(0);

@@ -8,8 +8,8 @@
 namespace throng {
 namespace {
 
-constexpr long long kMostCells = 16000;  // along a side
-constexpr long long kMostVoxels = 4096;  // along a side
+constexpr long long kMaxCells = 16000;  // along a side
+constexpr long long kMaxVoxels = 4096;  // along a side
 
 Error bad_map(const std::string& name, const std::string& what) {
   return {Errc::kBadFile, name + ": " + what};
@@ -18,7 +18,7 @@ Error bad_map(const std::string& name, const std::string& what) {
 // "NAME N": one line of the head.
 bool take_size(TextCursor& at, std::string_view name, int32_t& size) {
   long long value = 0;
-  if (at.take_word() != name || !at.take(value) || value < 1 || value > kMostCells) return false;
+  if (at.take_word() != name || !at.take(value) || value < 1 || value > kMaxCells) return false;
   size = static_cast<int32_t>(value);
   return true;
 }
@@ -60,7 +60,7 @@ Result<VoxelCells> read_voxel_map(std::string_view text, const std::string& name
     return bad_map(name, "not a voxel map; its first line must be `voxel X Y Z`");
   }
   for (long long& side : size) {
-    if (!at.take(side) || side < 1 || side > kMostVoxels) {
+    if (!at.take(side) || side < 1 || side > kMaxVoxels) {
       return bad_map(name, "line 1 must be `voxel X Y Z`, each from 1 to 4096");
     }
   }

@@ -100,7 +100,7 @@ class Tessellator {
     return {Errc::kLimit,
             fmt::format("patches: {} patches give more than {} triangles at a tolerance of {} m; "
                         "raise curve_tolerance, or check the scale",
-                        set_.size(), config_.most_triangles, config_.tolerance)};
+                        set_.size(), config_.max_triangles, config_.tolerance)};
   }
 
   [[nodiscard]] double rounding() const { return std::sqrt(3.0) / 2 / grid_; }
@@ -275,7 +275,7 @@ class Tessellator {
       seam.first = static_cast<uint32_t>(next);
       if (!seam.collapsed) next += seam.steps - 1;
     }
-    if (next > config_.most_triangles) return false;
+    if (next > config_.max_triangles) return false;
     piece_first_.assign(1, 0);
     for (uint32_t p = 0; p < set_.size(); ++p) {
       const uint32_t n = pieces(p);
@@ -284,7 +284,7 @@ class Tessellator {
         inner_first_.push_back(static_cast<uint32_t>(next));
         next += uint64_t{h.s - 1u} * (h.t - 1u);
       }
-      if (next > config_.most_triangles) return false;  // There are twice as many triangles.
+      if (next > config_.max_triangles) return false;  // There are twice as many triangles.
       piece_first_.push_back(static_cast<uint32_t>(inner_first_.size()));
     }
     vertices_ = next;
@@ -350,7 +350,7 @@ class Tessellator {
     uint64_t sum = 0;
     for (const uint32_t triangles : count) {
       sum += triangles;
-      if (sum > config_.most_triangles) return false;
+      if (sum > config_.max_triangles) return false;
       mesh_.first.push_back(static_cast<uint32_t>(sum));
     }
     return true;
@@ -617,9 +617,9 @@ class Tessellator {
 
 Result<PatchMesh> tessellate_patches(const PatchSet& set, const TessellationConfig& config,
                                      Context& context) {
-  constexpr uint64_t kMost = 4'000'000'000;
+  constexpr uint64_t kMax = 4'000'000'000;
   if (!(config.tolerance > 0 && config.tolerance <= 1e6 && config.workers >= 0 &&
-        config.most_triangles <= kMost)) {
+        config.max_triangles <= kMax)) {
     return Error{Errc::kBadConfig,
                  "patches: need tolerance > 0, workers >= 0, most_triangles <= 4e9"};
   }

@@ -125,8 +125,8 @@ std::vector<BezierPatch> parts_of(const BezierPatch& patch, int32_t halvings) {
 }
 
 // The fewest steps, multiples of what the surface was looked at in.
-Steps fewest_steps(const BezierPatch& patch, double tolerance, int32_t least, int32_t most,
-                   int32_t halvings) {
+Steps min_steps(const BezierPatch& patch, double tolerance, int32_t least, int32_t most,
+                int32_t halvings) {
   const int32_t parts = 1 << halvings;
   std::vector<Bend> bends;
   for (const BezierPatch& part : parts_of(patch, halvings)) {
@@ -150,11 +150,11 @@ Steps fewest_steps(const BezierPatch& patch, double tolerance, int32_t least, in
 }
 
 // Of a few ways to look at it the one that asks for the least.
-Steps fewest_of(const BezierPatch& patch, double tolerance, int32_t least, int32_t most) {
-  constexpr int32_t kMostHalvings = 2;
-  Steps best = fewest_steps(patch, tolerance, least, most, 0);
-  for (int32_t h = 1; h <= kMostHalvings && best.count() > least * least; ++h) {
-    const Steps steps = fewest_steps(patch, tolerance, least, most, h);
+Steps min_of(const BezierPatch& patch, double tolerance, int32_t least, int32_t most) {
+  constexpr int32_t kMaxHalvings = 2;
+  Steps best = min_steps(patch, tolerance, least, most, 0);
+  for (int32_t h = 1; h <= kMaxHalvings && best.count() > least * least; ++h) {
+    const Steps steps = min_steps(patch, tolerance, least, most, h);
     if (steps.count() < best.count()) best = steps;
   }
   return best;
@@ -162,21 +162,21 @@ Steps fewest_of(const BezierPatch& patch, double tolerance, int32_t least, int32
 
 // Pieces are not cut more coarsely, so that no triangle of a patch in pieces covers more than a
 // sixteenth of a side: nodes know the ground around a cell as far as that (bake/own_ground).
-constexpr int32_t kLeastOfPiece = 4;
+constexpr int32_t kMinOfPiece = 4;
 
 }  // namespace
 
 PatchCut cut_within(const BezierPatch& patch, double tolerance) {
-  constexpr int32_t kPieces = PatchCut::kMostPieces;
+  constexpr int32_t kPieces = PatchCut::kMaxPieces;
   PatchCut whole;
-  whole.steps[0] = fewest_of(patch, tolerance, 1, kMostSteps);
-  int32_t count = kPieces * kPieces * kLeastOfPiece * kLeastOfPiece;
+  whole.steps[0] = min_of(patch, tolerance, 1, kMaxSteps);
+  int32_t count = kPieces * kPieces * kMinOfPiece * kMinOfPiece;
   if (whole.steps[0].count() <= count) return whole;
   PatchCut pieces{.pieces = kPieces, .steps = {}};
   const std::vector<BezierPatch> parts = parts_of(patch, 2);
   count = 0;
   for (size_t k = 0; k < parts.size(); ++k) {
-    pieces.steps[k] = fewest_of(parts[k], tolerance, kLeastOfPiece, kMostSteps / kPieces);
+    pieces.steps[k] = min_of(parts[k], tolerance, kMinOfPiece, kMaxSteps / kPieces);
     count += pieces.steps[k].count();
   }
   return whole.steps[0].count() <= count ? whole : pieces;

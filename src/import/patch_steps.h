@@ -21,17 +21,17 @@ struct Steps {
 /// A patch is cut as a whole, or in 4 x 4 pieces of which each has steps of its own: piece
 /// 4 * j + i, i along s and j along t.
 struct PatchCut {
-  static constexpr int32_t kMostPieces = 4;  // along a side
+  static constexpr int32_t kMaxPieces = 4;  // along a side
 
   int32_t pieces = 1;  ///< along a side
-  std::array<Steps, size_t{kMostPieces} * kMostPieces> steps;
+  std::array<Steps, size_t{kMaxPieces} * kMaxPieces> steps;
 
   [[nodiscard]] Steps at(uint32_t i, uint32_t j) const {
     return steps[j * static_cast<uint32_t>(pieces) + i];
   }
 };
 
-inline constexpr int32_t kMostSteps = 128;  ///< Along a side of a whole patch.
+inline constexpr int32_t kMaxSteps = 128;  ///< Along a side of a whole patch.
 
 /// The cut with the fewest triangles of those that are nowhere farther than `tolerance` from the
 /// surface, as far as bounds tell; or the finest allowed.

@@ -16,7 +16,7 @@ namespace throng {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
-constexpr int kMostForced = 8;     // After so many wrong cuts only speed matters.
+constexpr int kMaxForced = 8;      // After so many wrong cuts only speed matters.
 constexpr double kLargest = 1e15;  // Beyond it products of coordinates are meaningless as lengths.
 
 bool is_usable(Vec3d p) {
@@ -360,7 +360,7 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     queue_.push_back(next);
   };
   // Where rings cross, soon only speed matters.
-  const auto careful = [&] { return forced < kMostForced && ear_budget_ > 0; };
+  const auto careful = [&] { return forced < kMaxForced && ear_budget_ > 0; };
   straighten_ = false;
   bool idle_ones = true;
   while (left > 2) {

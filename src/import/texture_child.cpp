@@ -15,7 +15,7 @@ struct Told {
 };
 
 constexpr uint64_t kLongestClause = 1000;
-constexpr size_t kMostEnds = 8;  // Of children, before the rest of a model is left.
+constexpr size_t kMaxEnds = 8;  // Of children, before the rest of a model is left.
 
 bool take(PipeReader& pipe, const TextureSource& source, int32_t most,
           std::vector<Result<Texture>>& all) {
@@ -85,7 +85,7 @@ Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<Texture
     }
     all.emplace_back(
         Error{Errc::kBadFile, "crashes its decoder, or takes it too long or too much memory"});
-    if (++ends == kMostEnds) {
+    if (++ends == kMaxEnds) {
       all.resize(sources.size(), Error{Errc::kBadFile, "is not tried after so many others"});
     }
   }

@@ -33,9 +33,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int64_t kMostTexels = int64_t{1} << 26;   // Decoding takes up to twelve bytes each.
-constexpr uint64_t kMostBytes = uint64_t{1} << 28;  // Of a file.
-constexpr int64_t kBudget = int64_t{256} << 20;     // Of all textures of a model.
+constexpr int64_t kMaxTexels = int64_t{1} << 26;   // Decoding takes up to twelve bytes each.
+constexpr uint64_t kMaxBytes = uint64_t{1} << 28;  // Of a file.
+constexpr int64_t kBudget = int64_t{256} << 20;    // Of all textures of a model.
 constexpr int32_t kLargestSide = 2048;
 
 Error unusable(std::string why) { return {Errc::kBadFile, std::move(why)}; }
@@ -133,7 +133,7 @@ Result<Texture> decode_texture(std::string_view bytes, int32_t most) {
     // Or has more than 2^30 bytes of texels, which the decoder does not tell apart.
     return unusable("is no PNG, JPEG, TGA or BMP that can be read");
   }
-  if (int64_t{width} * height > kMostTexels) {
+  if (int64_t{width} * height > kMaxTexels) {
     return unusable(fmt::format("has {} x {} texels, more than 67 million", width, height));
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
@@ -159,7 +159,7 @@ Result<Texture> read_texture(const TextureSource& source, const std::string& mod
     const std::string path = find_file(model, source.name);
     if (path.empty()) return unusable("is not there");
     std::error_code failure;
-    if (fs::file_size(path, failure) > kMostBytes || failure) return unusable("is too large");
+    if (fs::file_size(path, failure) > kMaxBytes || failure) return unusable("is too large");
     auto bytes = read_file(path);
     if (!bytes) return unusable("cannot be read");
     read = *std::move(bytes);

@@ -27,7 +27,7 @@ constexpr double kCanal = 2.6;       // Depth of the towpath.
 constexpr double kUnderpass = 2.88;  // Depth of the tunnel's floor.
 constexpr double kNotch = 1.6;       // Width of stairs sunk into a pavement.
 constexpr double kPerKm2 = 330e3;    // Triangles of the full detail: measured.
-constexpr double kMostTriangles = 14e6;
+constexpr double kMaxTriangles = 14e6;
 
 struct Plan {
   int32_t n = 4;
@@ -312,7 +312,7 @@ void build_city(WorldBuilder& b, const BuiltinWorldConfig& config) {
   p.pitch = config.size / p.n;
   p.seed = config.seed;
   const double km2 = config.size * config.size / 1e6;
-  p.inside = std::clamp((kMostTriangles / km2 - 75e3) / (kPerKm2 - 75e3), 0.0, 1.0);
+  p.inside = std::clamp((kMaxTriangles / km2 - 75e3) / (kPerKm2 - 75e3), 0.0, 1.0);
   for (int32_t dz = 0; dz < p.n; dz += 4) {
     for (int32_t dx = 0; dx < p.n; dx += 4) {
       b.node(fmt::format("district {} {}", dx / 4, dz / 4));

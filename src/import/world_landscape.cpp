@@ -414,8 +414,8 @@ void scatter(const PatchSet& set, const std::vector<Cell>& cells, const Ground& 
 double landscape_tolerance(double size) {
   constexpr double kUsual = 0.02;
   constexpr double kTriangles = 7;  // On a square metre at that tolerance; nearly inverse to it.
-  constexpr double kMost = 90e6;
-  return std::max(kUsual, kUsual * kTriangles * size * size / kMost);
+  constexpr double kMax = 90e6;
+  return std::max(kUsual, kUsual * kTriangles * size * size / kMax);
 }
 
 PatchSet build_landscape(const BuiltinWorldConfig& config) {

@@ -72,7 +72,7 @@ bool is_sound(const Atlas& atlas) {
                      std::isfinite(s.centre) && std::isfinite(s.height) && s.height > 0;
   const bool pages = atlas.width >= 4 && atlas.width <= kPageWidth && atlas.width % 4 == 0 &&
                      atlas.height >= 4 && atlas.height <= kPageHeight && atlas.height % 4 == 0 &&
-                     atlas.pages >= 1 && atlas.pages <= kMostPages;
+                     atlas.pages >= 1 && atlas.pages <= kMaxPages;
   if (!shape || !pages || atlas.views.size() != s.view(s.frames, 0, 0)) return false;
   for (const AtlasView& v : atlas.views) {
     const bool inside = v.page < atlas.pages && v.x + v.width <= atlas.width &&

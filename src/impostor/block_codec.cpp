@@ -84,8 +84,8 @@ void fit_indices(const Seen& seen, bool three, Fit& fit) {
 }
 
 // The ends that serve the chosen indices best.
-bool least_squares(const Seen& seen, bool three, const Fit& fit, std::array<double, 3>& a,
-                   std::array<double, 3>& b) {
+bool min_squares(const Seen& seen, bool three, const Fit& fit, std::array<double, 3>& a,
+                 std::array<double, 3>& b) {
   const double share_of_a[4] = {1, 0, three ? 0.5 : 2.0 / 3, 1.0 / 3};
   double aa = 0, ab = 0, bb = 0;
   std::array<double, 3> ax{}, bx{};
@@ -154,7 +154,7 @@ Fit fit_colours(const Seen& seen, bool three) {
   fit_indices(seen, three, best);
   for (int round = 0; round < 4 && best.error > 0; ++round) {
     std::array<double, 3> a{}, b{};
-    if (!least_squares(seen, three, best, a, b)) break;
+    if (!min_squares(seen, three, best, a, b)) break;
     Fit next;
     next.a = quantise(a);
     next.b = quantise(b);

@@ -179,9 +179,9 @@ Result<Atlas> build_atlas(const Character& character, const AtlasConfig& config,
   if (context.cancel) return Error{Errc::kCancelled, "atlas: cancelled"};
 
   const PageSize size = pack_views(atlas.views);
-  if (size.pages > kMostPages) {
+  if (size.pages > kMaxPages) {
     return Error{Errc::kLimit, "atlas: " + std::to_string(size.pages) + " pages, more than " +
-                                   std::to_string(kMostPages) +
+                                   std::to_string(kMaxPages) +
                                    "; take fewer frames, directions or pixels"};
   }
   atlas.width = size.width;

@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostPosed = 4'000'000;
+constexpr size_t kMaxPosed = 4'000'000;
 
 // Two bytes on the octahedron |x| + |y| + |z| = 1, its lower half folded over the upper.
 uint16_t fold_normal(Vec3d n) {
@@ -69,11 +69,11 @@ Result<FigureModel> build_figure_model(const Character& character, const AtlasCo
   }
   model.vertices = static_cast<uint32_t>(position_of.size());
   const size_t posed = position_of.size() * frames->frames.size();
-  if (posed > kMostPosed) {
+  if (posed > kMaxPosed) {
     return Error{Errc::kLimit, "figure: " + std::to_string(posed) +
                                    " vertices in all poses, more "
                                    "than " +
-                                   std::to_string(kMostPosed) +
+                                   std::to_string(kMaxPosed) +
                                    "; take fewer frames, or a simpler character"};
   }
   Box3d box;

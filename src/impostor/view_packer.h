@@ -12,7 +12,7 @@ namespace throng {
 
 inline constexpr int32_t kPageWidth = 1024;
 inline constexpr int32_t kPageHeight = 2048;  ///< What every WebGL 2 can hold.
-inline constexpr int32_t kMostPages = 64;
+inline constexpr int32_t kMaxPages = 64;
 
 struct PageSize {
   int32_t width = 0, height = 0, pages = 0;

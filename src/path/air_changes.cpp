@@ -28,7 +28,7 @@ AirChanges::AirChanges(const WorldData& world, const FlightSpace& space, int32_t
       avatar_(&world.summary.classes[static_cast<size_t>(avatar_class)]),
       grid_(world, space.shape, *avatar_),
       splits_(space),
-      pockets_(space) {}
+      islands_(space) {}
 
 ChangeId AirChanges::add(Solid solid) {
   Change& change = changes_.emplace_back();
@@ -102,19 +102,19 @@ void AirChanges::touch(ChangeId id) {
     if (here.empty()) of_box_.erase(box);
     old_.clear();
     air.for_pieces(box, [&](uint32_t piece) {
-      old_.push_back({air.cube(piece), pockets_.label(piece)});
+      old_.push_back({air.cube(piece), islands_.label(piece)});
     });
-    pockets_.set_label(box, space_->component[box]);
+    islands_.set_label(box, space_->component[box]);
     splits_.cut(box, taken);
     label_pieces(box);
     touched_.push_back(box);
   }
   if (change.active) {
-    pockets_.divide(air, touched_);
+    islands_.divide(air, touched_);
   } else {
-    pockets_.join(air, touched_);
+    islands_.join(air, touched_);
   }
-  if (active_ == 0) pockets_ = AirPockets(*space_);  // nothing is cut off; gives memory back
+  if (active_ == 0) islands_ = AirIslands(*space_);  // nothing is cut off; gives memory back
 }
 
 // A piece has the label of the piece that it was of, or that it was made of.
@@ -128,7 +128,7 @@ void AirChanges::label_pieces(uint32_t box) {
       label = old.label;
       break;
     }
-    pockets_.set_label(piece, label);
+    islands_.set_label(piece, label);
   });
 }
 
@@ -144,8 +144,8 @@ void AirChanges::take_ground(int64_t tile, std::span<const ChangeId> here) {
     uint64_t any = 0;
     for (const ChangeId id : here) {
       const Change& change = changes_[id - 1];
-      const CellRows own = taken_cells({world_->summary, level.view, x, z}, *avatar_,
-                                       change.solid.prism, change.solid.triangles, legal.data());
+      const CellRows own = blocked_cells({world_->summary, level.view, x, z}, *avatar_,
+                                         change.solid.prism, change.solid.triangles, legal.data());
       for (size_t row = 0; row < own.size(); ++row) any |= taken[row] |= own[row];
     }
     if (any != 0) {

@@ -35,7 +35,7 @@ class AirChanges {
 
   [[nodiscard]] bool any() const { return active_ > 0; }
   [[nodiscard]] const SplitBoxes& splits() const { return splits_; }
-  [[nodiscard]] const AirPockets& pockets() const { return pockets_; }
+  [[nodiscard]] const AirIslands& islands() const { return islands_; }
   /// May the class stand on a legal cell of the grid, as far as obstacles go?
   [[nodiscard]] bool may_stand(uint32_t level, int32_t x, int32_t z) const {
     const auto found = taken_.find(level);
@@ -64,7 +64,7 @@ class AirChanges {
   const AvatarClass* avatar_;
   AirGrid grid_;
   SplitBoxes splits_;
-  AirPockets pockets_;
+  AirIslands islands_;
   std::vector<Change> changes_;
   size_t active_ = 0;
   // Active ones, by box of the space and by tile of the ground; looked up only.

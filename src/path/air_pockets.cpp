@@ -14,14 +14,14 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostBoxes = 1 << 16;  // that are looked at for one change
+constexpr size_t kMaxBoxes = 1 << 16;  // that are looked at for one change
 
 }  // namespace
 
-AirPockets::AirPockets(const FlightSpace& space)
+AirIslands::AirIslands(const FlightSpace& space)
     : space_(&space), first_(static_cast<uint32_t>(space.boxes.size())) {}
 
-void AirPockets::set_label(uint32_t box, uint32_t label) {
+void AirIslands::set_label(uint32_t box, uint32_t label) {
   if (box >= first_) {
     if (of_part_.size() <= box - first_) of_part_.resize(box - first_ + 1, kNoBox);
     of_part_[box - first_] = label;
@@ -32,26 +32,26 @@ void AirPockets::set_label(uint32_t box, uint32_t label) {
   }
 }
 
-uint32_t AirPockets::new_pocket(uint32_t component) {
+uint32_t AirIslands::new_island(uint32_t component) {
   component_.push_back(component);
   return first_ + static_cast<uint32_t>(component_.size()) - 1;
 }
 
-uint32_t AirPockets::root(uint32_t piece) {
+uint32_t AirIslands::root(uint32_t piece) {
   while (pieces_[piece].parent != piece) {
     piece = pieces_[piece].parent = pieces_[pieces_[piece].parent].parent;
   }
   return piece;
 }
 
-uint32_t& AirPockets::left(uint32_t label) {
+uint32_t& AirIslands::left(uint32_t label) {
   for (auto& [of, count] : left_) {
     if (of == label) return count;
   }
   return left_.emplace_back(label, 0).second;
 }
 
-void AirPockets::see(uint32_t box, uint32_t piece) {
+void AirIslands::see(uint32_t box, uint32_t piece) {
   const auto index = static_cast<uint32_t>(seen_.size());
   seen_of_.emplace(box, index);
   seen_.push_back({box, piece, kNoBox});
@@ -60,7 +60,7 @@ void AirPockets::see(uint32_t box, uint32_t piece) {
   p.tail = index;
 }
 
-void AirPockets::unite(uint32_t a, uint32_t b) {
+void AirIslands::unite(uint32_t a, uint32_t b) {
   Piece &into = pieces_[a], &from = pieces_[b];
   from.parent = a;
   if (from.head != kNoBox) {
@@ -71,7 +71,7 @@ void AirPockets::unite(uint32_t a, uint32_t b) {
 }
 
 // Looks at one box of a piece. False if there is none.
-bool AirPockets::expand(const AirView& air, uint32_t piece) {
+bool AirIslands::expand(const AirView& air, uint32_t piece) {
   const uint32_t index = pieces_[piece].head;
   if (index == kNoBox) return false;
   pieces_[piece].head = seen_[index].next;
@@ -87,7 +87,7 @@ bool AirPockets::expand(const AirView& air, uint32_t piece) {
   return true;
 }
 
-void AirPockets::divide(const AirView& air, std::span<const uint32_t> boxes) {
+void AirIslands::divide(const AirView& air, std::span<const uint32_t> boxes) {
   pieces_.clear();
   seen_.clear();
   seen_of_.clear();
@@ -105,31 +105,31 @@ void AirPockets::divide(const AirView& air, std::span<const uint32_t> boxes) {
   }
   std::vector<uint32_t> going;
   for (uint32_t p = 0; p < pieces_.size(); ++p) going.push_back(p);
-  size_t looked_at = 0, pockets = 0;
-  while (!going.empty() && looked_at < kMostBoxes) {
+  size_t expanded = 0, islands = 0;
+  while (!going.empty() && expanded < kMaxBoxes) {
     size_t kept = 0;
     for (const uint32_t p : going) {
       Piece& piece = pieces_[p];
       if (piece.parent != p || left(piece.label) <= 1) continue;
-      ++looked_at;
+      ++expanded;
       if (expand(air, p)) {
         going[kept++] = p;
         continue;
       }
-      pieces_[p].pocket = new_pocket(component(pieces_[p].label));
+      pieces_[p].island = new_island(component(pieces_[p].label));
       --left(pieces_[p].label);
-      ++pockets;
+      ++islands;
     }
     going.resize(kept);
   }
-  if (pockets == 0) return;
+  if (islands == 0) return;
   for (const Seen& seen : seen_) {
-    const uint32_t pocket = pieces_[root(seen.piece)].pocket;
-    if (pocket != kNoBox) set_label(seen.box, pocket);
+    const uint32_t island = pieces_[root(seen.piece)].island;
+    if (island != kNoBox) set_label(seen.box, island);
   }
 }
 
-void AirPockets::join(const AirView& air, std::span<const uint32_t> boxes) {
+void AirIslands::join(const AirView& air, std::span<const uint32_t> boxes) {
   std::unordered_map<uint32_t, uint32_t> into;  // label: one that it is the same as
   const auto last = [&](uint32_t label) {
     for (auto found = into.find(label); found != into.end(); found = into.find(label)) {
@@ -140,7 +140,7 @@ void AirPockets::join(const AirView& air, std::span<const uint32_t> boxes) {
   const size_t known = component_.size();
   for (const uint32_t box : boxes) {
     air.for_pieces(box, [&](uint32_t piece) {
-      if (label(piece) == kNoBox) set_label(piece, new_pocket(space_->component[box]));
+      if (label(piece) == kNoBox) set_label(piece, new_island(space_->component[box]));
     });
   }
   for (const uint32_t box : boxes) {

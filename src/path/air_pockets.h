@@ -19,9 +19,9 @@ class AirView;
 /// together. The largest piece of a component keeps the component as its label, others are pockets.
 /// Where pieces are so large that it would take long to look around in them, they keep the same
 /// label; a search tells.
-class AirPockets {
+class AirIslands {
  public:
-  explicit AirPockets(const FlightSpace& space);
+  explicit AirIslands(const FlightSpace& space);
 
   [[nodiscard]] uint32_t label(uint32_t box) const {
     if (box >= first_) return of_part_[box - first_];
@@ -46,7 +46,7 @@ class AirPockets {
   struct Piece {
     uint32_t parent = 0, label = 0;
     uint32_t head = kNoBox, tail = kNoBox;  // in seen_
-    uint32_t pocket = kNoBox;               // its label, once it is known to be one
+    uint32_t island = kNoBox;               // its label, once it is known to be one
   };
   struct Seen {
     uint32_t box = 0, piece = 0, next = kNoBox;
@@ -56,7 +56,7 @@ class AirPockets {
   void see(uint32_t box, uint32_t piece);
   void unite(uint32_t a, uint32_t b);
   uint32_t& left(uint32_t label);
-  uint32_t new_pocket(uint32_t component);
+  uint32_t new_island(uint32_t component);
   bool expand(const AirView& air, uint32_t piece);
 
   const FlightSpace* space_;

@@ -48,14 +48,14 @@ class AirView {
   /// What differs for boxes that do not hold together. Of whole boxes of the space it is their
   /// component there, unless obstacles have cut them off.
   [[nodiscard]] uint32_t component(uint32_t box) const {
-    return changes_ == nullptr ? space_->component[box] : changes_->pockets().label(box);
+    return changes_ == nullptr ? space_->component[box] : changes_->islands().label(box);
   }
   /// That of the space that such a component is all of, or a piece of.
   [[nodiscard]] uint32_t baked(uint32_t component) const {
-    return changes_ == nullptr ? component : changes_->pockets().component(component);
+    return changes_ == nullptr ? component : changes_->islands().component(component);
   }
   /// False only if there is no way from one to the other.
-  [[nodiscard]] bool hold_together(AirPoint a, AirPoint b) const {
+  [[nodiscard]] bool same_component(AirPoint a, AirPoint b) const {
     const uint32_t from = box_at(a), to = box_at(b);
     return from != kNoBox && to != kNoBox && component(from) == component(to);
   }

@@ -159,8 +159,8 @@ std::vector<Block> all_blocks(const PathMesh& mesh) {
 // More candidates of a block than an entry's number can tell.
 bool are_too_many(const HubLabels& labels) {
   for (size_t b = 0; b + 1 < labels.first_candidate.size(); ++b) {
-    constexpr uint32_t kMost = std::numeric_limits<uint16_t>::max();
-    if (labels.first_candidate[b + 1] - labels.first_candidate[b] > kMost) return true;
+    constexpr uint32_t kMax = std::numeric_limits<uint16_t>::max();
+    if (labels.first_candidate[b + 1] - labels.first_candidate[b] > kMax) return true;
   }
   return false;
 }

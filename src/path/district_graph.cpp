@@ -8,32 +8,32 @@
 namespace throng {
 namespace {
 
-constexpr double kNoWay = std::numeric_limits<double>::infinity();
+constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-uint32_t DistrictGraph::place_of(uint32_t block) const {
+uint32_t OverlayGraph::place_of(uint32_t block) const {
   const auto at = std::lower_bound(blocks_.begin(), blocks_.end(), block);
   if (at == blocks_.end() || *at != block) return kNoNode;
   return static_cast<uint32_t>(at - blocks_.begin());
 }
 
-uint32_t DistrictGraph::way_of(const Crossing& crossing) const {
+uint32_t OverlayGraph::way_of(const Crossing& crossing) const {
   const uint32_t from = place_of(ends_of(*view_, crossing).out.block);
   if (from == kNoNode) return kNoNode;
-  for (uint32_t w = first_way_[from]; w < first_way_[from + 1]; ++w) {
+  for (uint32_t w = first_path_[from]; w < first_path_[from + 1]; ++w) {
     if (ways_[w].crossing == crossing) return w;
   }
   return kNoNode;
 }
 
-void DistrictGraph::set(std::span<const uint32_t> blocks, bool keep) {
+void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
   blocks_ = blocks;
-  looked_at_ = 0;
-  first_way_.assign(1, 0);
+  expanded_ = 0;
+  first_path_.assign(1, 0);
   ways_.clear();
   for (const uint32_t block : blocks_) {
-    for_each_way_out(*view_, block, [&](const Crossing& crossing) {
+    for_each_arc_out(*view_, block, [&](const Crossing& crossing) {
       const NodePortal portal = view_->portal(crossing.portal);
       const auto [out, in] = ends_of(portal, crossing.backward);
       Way way{crossing, out, in, position(*view_, out), position(*view_, in)};
@@ -41,7 +41,7 @@ void DistrictGraph::set(std::span<const uint32_t> blocks, bool keep) {
       way.into = place_of(in.block);
       ways_.push_back(way);
     });
-    first_way_.push_back(static_cast<uint32_t>(ways_.size()));
+    first_path_.push_back(static_cast<uint32_t>(ways_.size()));
   }
   first_in_.assign(blocks_.size() + 1, 0);
   for (const Way& way : ways_) {
@@ -64,43 +64,43 @@ void DistrictGraph::set(std::span<const uint32_t> blocks, bool keep) {
   for (const Way& way : ways_) {
     first_kept_.push_back(kept_.size());
     if (way.into == kNoNode) continue;
-    for (uint32_t w = first_way_[way.into]; w < first_way_[way.into + 1]; ++w) {
+    for (uint32_t w = first_path_[way.into]; w < first_path_[way.into + 1]; ++w) {
       kept_.push_back(piece(way.in, way.in_at, ways_[w].out, ways_[w].out_at));
     }
   }
 }
 
-void DistrictGraph::reach(uint32_t way, double cost) {
+void OverlayGraph::reach(uint32_t way, double cost) {
   if (cost >= cost_[way]) return;
   cost_[way] = cost;
   open_.push_back({cost, way});
   std::push_heap(open_.begin(), open_.end());
 }
 
-bool DistrictGraph::next(Open& top) {
+bool OverlayGraph::next(Open& top) {
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end());
     top = open_.back();
     open_.pop_back();
     if (top.cost > cost_[top.way]) continue;
-    ++looked_at_;
+    ++expanded_;
     return true;
   }
   return false;
 }
 
-const std::vector<double>& DistrictGraph::run(const BlockPoint& from) {
-  cost_.assign(ways_.size(), kNoWay);
+const std::vector<double>& OverlayGraph::run(const BlockPoint& from) {
+  cost_.assign(ways_.size(), kNoPath);
   open_.clear();
   const uint32_t start = place_of(from.block);
   const Vec3d at = position(*view_, from);
-  for (uint32_t w = first_way_[start]; w < first_way_[start + 1]; ++w) {
+  for (uint32_t w = first_path_[start]; w < first_path_[start + 1]; ++w) {
     reach(w, piece(from, at, ways_[w].out, ways_[w].out_at) + ways_[w].through);
   }
   for (Open top; next(top);) {
     const Way& way = ways_[top.way];
     if (way.into == kNoNode) continue;
-    const uint32_t first = first_way_[way.into], last = first_way_[way.into + 1];
+    const uint32_t first = first_path_[way.into], last = first_path_[way.into + 1];
     for (uint32_t w = first; w < last; ++w) {
       if (cost_[w] <= top.cost) continue;
       const double along = kept_.empty() ? piece(way.in, way.in_at, ways_[w].out, ways_[w].out_at)
@@ -111,8 +111,8 @@ const std::vector<double>& DistrictGraph::run(const BlockPoint& from) {
   return cost_;
 }
 
-const std::vector<double>& DistrictGraph::run_back(const BlockPoint& to) {
-  cost_.assign(ways_.size(), kNoWay);
+const std::vector<double>& OverlayGraph::run_back(const BlockPoint& to) {
+  cost_.assign(ways_.size(), kNoPath);
   open_.clear();
   goal_ = to;
   goal_at_ = position(*view_, to);
@@ -134,11 +134,11 @@ const std::vector<double>& DistrictGraph::run_back(const BlockPoint& to) {
   return cost_;
 }
 
-double DistrictGraph::rest(const BlockPoint& from) const {
+double OverlayGraph::rest(const BlockPoint& from) const {
   const Vec3d at = position(*view_, from);
-  double least = from.block == goal_.block ? piece(from, at, goal_, goal_at_) : kNoWay;
+  double least = from.block == goal_.block ? piece(from, at, goal_, goal_at_) : kNoPath;
   const uint32_t start = place_of(from.block);
-  for (uint32_t w = first_way_[start]; w < first_way_[start + 1]; ++w) {
+  for (uint32_t w = first_path_[start]; w < first_path_[start + 1]; ++w) {
     const Way& way = ways_[w];
     if (way.into == kNoNode || cost_[w] >= least) continue;
     least = std::min(least, piece(from, at, way.out, way.out_at) + way.through + cost_[w]);

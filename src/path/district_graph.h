@@ -11,9 +11,9 @@
 /// The ways within one district of a mesh, all from one point or all to one.
 namespace throng {
 
-class DistrictGraph {
+class OverlayGraph {
  public:
-  DistrictGraph(const NodeView& view, const PieceCost& cost) : view_(&view), piece_(&cost) {}
+  OverlayGraph(const NodeView& view, const PieceCost& cost) : view_(&view), piece_(&cost) {}
 
   /// A way out of a block of the district: into another one, or out of the district.
   struct Way {
@@ -38,7 +38,7 @@ class DistrictGraph {
   /// After run_back(): from a point of the district.
   [[nodiscard]] double rest(const BlockPoint& from) const;
   /// Ways looked at since set().
-  [[nodiscard]] uint64_t looked_at() const { return looked_at_; }
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
   struct Open {
@@ -60,7 +60,7 @@ class DistrictGraph {
   const NodeView* view_;
   const PieceCost* piece_;
   std::span<const uint32_t> blocks_;
-  std::vector<uint32_t> first_way_;  // by place of the block that is left, and the end
+  std::vector<uint32_t> first_path_;  // by place of the block that is left, and the end
   std::vector<Way> ways_;
   std::vector<uint32_t> first_in_, in_of_;  // by place of the block that is come to: ways
   std::vector<size_t> first_kept_;
@@ -69,7 +69,7 @@ class DistrictGraph {
   std::vector<Open> open_;
   BlockPoint goal_;
   Vec3d goal_at_;
-  uint64_t looked_at_ = 0;
+  uint64_t expanded_ = 0;
 };
 
 }  // namespace throng

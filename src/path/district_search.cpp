@@ -8,12 +8,12 @@
 namespace throng {
 namespace {
 
-constexpr double kNoWay = std::numeric_limits<double>::infinity();
+constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void DistrictSearch::begin() {
-  states_.resize(2 * districts_->gates().size());
+void OverlaySearch::begin() {
+  states_.resize(2 * overlay_->entrances().size());
   if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
     std::fill(states_.begin(), states_.end(), State{});
     query_ = 1;
@@ -21,16 +21,17 @@ void DistrictSearch::begin() {
   open_.clear();
 }
 
-void DistrictSearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t tier, Vec3d goal) {
+void OverlaySearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t overlay_level,
+                          Vec3d goal) {
   State& state = states_[entry];
-  if (!(cost < kNoWay) || (state.query == query_ && state.cost <= cost)) return;
+  if (!(cost < kNoPath) || (state.query == query_ && state.cost <= cost)) return;
   if (now_.is_closed(entry)) return;
-  state = {query_, parent, cost, tier, false};
+  state = {query_, parent, cost, overlay_level, false};
   open_.push_back({cost + length(goal - now_.at(entry)), entry});
   std::push_heap(open_.begin(), open_.end());
 }
 
-bool DistrictSearch::next(Open& top) {
+bool OverlaySearch::next(Open& top) {
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end());
     top = open_.back();
@@ -42,20 +43,20 @@ bool DistrictSearch::next(Open& top) {
   return false;
 }
 
-PathEnd DistrictSearch::find(const BlockPoint& from, const BlockPoint& to,
-                             const SearchBudget& budget, NodeSearch& blocks,
-                             std::vector<Crossing>& way) {
+PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
+                            const SearchBudget& budget, NodeSearch& blocks,
+                            std::vector<Crossing>& way) {
   way.clear();
-  looked_at_ = 0;
+  expanded_ = 0;
   cost_ = 0;
-  if (const PathEnd end = over_gates(from, to, budget); end != PathEnd::kReached) return end;
-  const std::vector<uint32_t>& of_block = districts_->of_block();
+  if (const PathEnd end = over_entrances(from, to, budget); end != PathEnd::kReached) return end;
+  const std::vector<uint32_t>& of_block = overlay_->of_block();
   if (first_ == kNoEntry)
     return within(of_block[view_->base_of(from.block)], from, to, budget, blocks, way);
-  for (size_t tier = districts_->tiers().size(); --tier > 0;) {
+  for (size_t overlay_level = overlay_->overlay_levels().size(); --overlay_level > 0;) {
     finer_.clear();
     for (const Stretch& stretch : stretches_) {
-      if (stretch.tier < tier) {
+      if (stretch.overlay_level < overlay_level) {
         finer_.push_back(stretch);
       } else if (!refine(stretch)) {
         return PathEnd::kUnreachable;  // Never: what a tier tells is made of the one below.
@@ -88,9 +89,9 @@ PathEnd DistrictSearch::find(const BlockPoint& from, const BlockPoint& to,
 
 // From the middle of one district to the middle of the next, the way is looked for anew, free of
 // the gate between them.
-void DistrictSearch::straighten(const BlockPoint& from, const BlockPoint& to,
-                                const SearchBudget& budget, NodeSearch& blocks,
-                                std::vector<Crossing>& way) {
+void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
+                               const SearchBudget& budget, NodeSearch& blocks,
+                               std::vector<Crossing>& way) {
   led_.clear();
   cost_ = 0;
   BlockPoint begin = from;
@@ -103,10 +104,10 @@ void DistrictSearch::straighten(const BlockPoint& from, const BlockPoint& to,
     const double known = cost_of(begin, end, way.data() + first, way.data() + last);
     constexpr double kGain = 1e-6;  // Anything less is rounding.
     SearchBudget left = budget;
-    left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, looked_at_);
+    left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, expanded_);
     const bool cheaper =
         blocks.find(begin, end, left, piece_, {}, known * (1 - kGain)) == PathEnd::kReached;
-    looked_at_ += blocks.looked_at();
+    expanded_ += blocks.expanded();
     if (cheaper) {
       led_.insert(led_.end(), piece_.begin(), piece_.end());
       cost_ += blocks.cost();
@@ -126,8 +127,8 @@ void DistrictSearch::straighten(const BlockPoint& from, const BlockPoint& to,
   way.swap(led_);
 }
 
-double DistrictSearch::cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
-                               const Crossing* last) const {
+double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
+                              const Crossing* last) const {
   double cost = 0;
   BlockPoint at = from;
   Vec3d here = position(*view_, at);
@@ -150,37 +151,37 @@ double DistrictSearch::cost_of(const BlockPoint& from, const BlockPoint& to, con
 
 // A* over entries. A district that does not hold the goal is gone through as one of the highest
 // tier over whose border it was come to.
-PathEnd DistrictSearch::over_gates(const BlockPoint& from, const BlockPoint& to,
-                                   const SearchBudget& budget) {
-  const auto& tiers = districts_->tiers();
-  const std::vector<uint32_t>& of_block = districts_->of_block();
-  const uint32_t start_district = of_block[view_->base_of(from.block)],
-                 goal_district = of_block[view_->base_of(to.block)];
+PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& to,
+                                      const SearchBudget& budget) {
+  const auto& overlay_levels = overlay_->overlay_levels();
+  const std::vector<uint32_t>& of_block = overlay_->of_block();
+  const uint32_t start_cell = of_block[view_->base_of(from.block)],
+                 goal_cell = of_block[view_->base_of(to.block)];
   const Vec3d goal = position(*view_, to);
   stretches_.clear();
   // What is left from the goal's district's entries, and from the start if it is there too.
-  graph_.set(now_.blocks_of(goal_district), false);
+  graph_.set(now_.blocks_of(goal_cell), false);
   graph_.run_back(to);
-  const auto goal_entries = tiers.front().entries_of(goal_district);
+  const auto goal_entries = overlay_levels.front().entries_of(goal_cell);
   rest_.clear();
   for (const uint32_t entry : goal_entries) {
     if (now_.is_closed(entry)) {
-      rest_.push_back(kNoWay);
+      rest_.push_back(kNoPath);
       continue;
     }
     const Crossing crossing = now_.crossing(entry);
     const bool closed = crossing.backward && view_->portal(crossing.portal).one_way;
-    rest_.push_back(closed ? kNoWay : graph_.rest(ends_of(*view_, crossing).in));
+    rest_.push_back(closed ? kNoPath : graph_.rest(ends_of(*view_, crossing).in));
   }
-  double found = start_district == goal_district ? graph_.rest(from) : kNoWay;
+  double found = start_cell == goal_cell ? graph_.rest(from) : kNoPath;
   first_ = last_ = kNoEntry;
-  looked_at_ += graph_.looked_at();
-  graph_.set(now_.blocks_of(start_district), false);
+  expanded_ += graph_.expanded();
+  graph_.set(now_.blocks_of(start_cell), false);
   const std::vector<double>& costs = graph_.run(from);
-  looked_at_ += graph_.looked_at();
-  if (budget.is_spent(looked_at_)) return PathEnd::kGaveUp;
+  expanded_ += graph_.expanded();
+  if (budget.is_spent(expanded_)) return PathEnd::kBudgetExhausted;
   begin();
-  for (const uint32_t entry : tiers.front().entries_of(start_district)) {
+  for (const uint32_t entry : overlay_levels.front().entries_of(start_cell)) {
     const uint32_t out = entry ^ 1;
     if (now_.is_closed(out)) continue;
     const uint32_t way = graph_.way_of(now_.crossing(out));
@@ -188,64 +189,68 @@ PathEnd DistrictSearch::over_gates(const BlockPoint& from, const BlockPoint& to,
   }
   // By tier: the goal's district.
   std::array<uint32_t, 32> holds_goal{};
-  uint32_t district = goal_district;
-  for (size_t k = 0; k < tiers.size(); ++k) {
-    holds_goal[k] = district;
-    if (k + 1 < tiers.size()) district = tiers[k].above[district];
+  uint32_t overlay_cell = goal_cell;
+  for (size_t k = 0; k < overlay_levels.size(); ++k) {
+    holds_goal[k] = overlay_cell;
+    if (k + 1 < overlay_levels.size()) overlay_cell = overlay_levels[k].above[overlay_cell];
   }
   for (Open top; next(top);) {
     if (top.estimate >= found) break;
-    if (budget.is_spent(++looked_at_)) return PathEnd::kGaveUp;
+    if (budget.is_spent(++expanded_)) return PathEnd::kBudgetExhausted;
     const uint32_t entry = top.entry;
     const double cost = states_[entry].cost;
-    if (tiers.front().of_entry[entry] == goal_district) {
-      const double all = cost + rest_[tiers.front().place[entry]];
+    if (overlay_levels.front().of_entry[entry] == goal_cell) {
+      const double all = cost + rest_[overlay_levels.front().place[entry]];
       if (all < found) {
         found = all;
         last_ = entry;
       }
     }
-    uint8_t tier = districts_->gates()[entry / 2].tier;
+    uint8_t overlay_level = overlay_->entrances()[entry / 2].overlay_level;
     const auto is_opened = [&] {
-      const uint32_t through = tiers[tier].of_entry[entry];
-      return through == holds_goal[tier] || now_.is_stale(tier, through);
+      const uint32_t through = overlay_levels[overlay_level].of_entry[entry];
+      return through == holds_goal[overlay_level] || now_.is_stale(overlay_level, through);
     };
-    while (tier > 0 && is_opened()) --tier;
-    const bool is_stale = now_.is_stale(tier, tiers[tier].of_entry[entry]);
-    const auto through = is_stale ? now_.costs_from(entry) : tiers[tier].costs_from(entry);
-    const auto others = tiers[tier].entries_of(tiers[tier].of_entry[entry]);
+    while (overlay_level > 0 && is_opened()) --overlay_level;
+    const bool is_stale =
+        now_.is_stale(overlay_level, overlay_levels[overlay_level].of_entry[entry]);
+    const auto through =
+        is_stale ? now_.costs_from(entry) : overlay_levels[overlay_level].costs_from(entry);
+    const auto others =
+        overlay_levels[overlay_level].entries_of(overlay_levels[overlay_level].of_entry[entry]);
     for (size_t j = 0; j < others.size(); ++j) {
-      reach(others[j] ^ 1, entry, cost + double{through[j]}, tier, goal);
+      reach(others[j] ^ 1, entry, cost + double{through[j]}, overlay_level, goal);
     }
   }
-  if (!(found < kNoWay)) return PathEnd::kUnreachable;
+  if (!(found < kNoPath)) return PathEnd::kUnreachable;
   for (uint32_t entry = last_; entry != kNoEntry; entry = states_[entry].parent) {
     const State& state = states_[entry];
     first_ = entry;
-    if (state.parent != kNoEntry) stretches_.push_back({state.parent, entry, state.tier});
+    if (state.parent != kNoEntry) stretches_.push_back({state.parent, entry, state.overlay_level});
   }
   std::reverse(stretches_.begin(), stretches_.end());
   return PathEnd::kReached;
 }
 
 // Adds the same stretch to `finer_`, through districts of the tier below.
-bool DistrictSearch::refine(const Stretch& stretch) {
-  const Districts::Tier& tier = districts_->tiers()[stretch.tier];
-  const Districts::Tier& below = districts_->tiers()[stretch.tier - size_t{1}];
-  const auto finer = static_cast<uint8_t>(stretch.tier - 1);
-  const uint32_t district = tier.of_entry[stretch.from];
+bool OverlaySearch::refine(const Stretch& stretch) {
+  const Overlay::OverlayLevel& overlay_level = overlay_->overlay_levels()[stretch.overlay_level];
+  const Overlay::OverlayLevel& below =
+      overlay_->overlay_levels()[stretch.overlay_level - size_t{1}];
+  const auto finer = static_cast<uint8_t>(stretch.overlay_level - 1);
+  const uint32_t overlay_cell = overlay_level.of_entry[stretch.from];
   const Vec3d goal = now_.at(stretch.to);
   begin();
   reach(stretch.from, kNoEntry, 0, 0, goal);
   for (Open top; next(top);) {
     if (top.entry == stretch.to) break;
-    ++looked_at_;
+    ++expanded_;
     const double cost = states_[top.entry].cost;
     const auto through = below.costs_from(top.entry);
     const auto others = below.entries_of(below.of_entry[top.entry]);
     for (size_t j = 0; j < others.size(); ++j) {
       const uint32_t out = others[j] ^ 1;
-      if (out != stretch.to && below.above[below.of_entry[out]] != district) continue;
+      if (out != stretch.to && below.above[below.of_entry[out]] != overlay_cell) continue;
       reach(out, top.entry, cost + double{through[j]}, finer, goal);
     }
   }
@@ -258,14 +263,14 @@ bool DistrictSearch::refine(const Stretch& stretch) {
   return true;
 }
 
-PathEnd DistrictSearch::within(uint32_t district, const BlockPoint& from, const BlockPoint& to,
-                               const SearchBudget& budget, NodeSearch& blocks,
-                               std::vector<Crossing>& way) {
+PathEnd OverlaySearch::within(uint32_t overlay_cell, const BlockPoint& from, const BlockPoint& to,
+                              const SearchBudget& budget, NodeSearch& blocks,
+                              std::vector<Crossing>& way) {
   SearchBudget left = budget;
-  left.max_nodes = budget.max_nodes > looked_at_ ? budget.max_nodes - looked_at_ : 0;
+  left.max_nodes = budget.max_nodes > expanded_ ? budget.max_nodes - expanded_ : 0;
   const PathEnd end =
-      blocks.find(from, to, left, piece_, {districts_->of_block().data(), district});
-  looked_at_ += blocks.looked_at();
+      blocks.find(from, to, left, piece_, {overlay_->of_block().data(), overlay_cell});
+  expanded_ += blocks.expanded();
   if (end == PathEnd::kReached) {
     way.insert(way.end(), piece_.begin(), piece_.end());
     cost_ += blocks.cost();

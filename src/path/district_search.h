@@ -14,13 +14,13 @@
 /// within one district after the other.
 namespace throng {
 
-class DistrictSearch {
+class OverlaySearch {
  public:
-  DistrictSearch(const NodeView& view, const PieceCost& cost, const Districts& districts)
+  OverlaySearch(const NodeView& view, const PieceCost& cost, const Overlay& overlay)
       : view_(&view),
         piece_cost_(&cost),
-        districts_(&districts),
-        now_(view, cost, districts),
+        overlay_(&overlay),
+        now_(view, cost, overlay),
         graph_(view, cost) {}
 
   /// After the view has changed.
@@ -33,7 +33,7 @@ class DistrictSearch {
                NodeSearch& blocks, std::vector<Crossing>& way);
   [[nodiscard]] double cost() const { return cost_; }
   /// Entries and crossings.
-  [[nodiscard]] uint64_t looked_at() const { return looked_at_; }
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
   static constexpr uint32_t kNoEntry = UINT32_MAX;
@@ -42,7 +42,7 @@ class DistrictSearch {
     uint32_t query = 0;
     uint32_t parent = kNoEntry;
     double cost = 0;
-    uint8_t tier = 0;  // of the district through which it was
+    uint8_t overlay_level = 0;  // of the district through which it was
     bool closed = false;
   };
   struct Open {
@@ -55,26 +55,26 @@ class DistrictSearch {
   // From entry to entry through a district of a tier.
   struct Stretch {
     uint32_t from, to;
-    uint8_t tier;
+    uint8_t overlay_level;
   };
 
   void begin();
-  void reach(uint32_t entry, uint32_t parent, double cost, uint8_t tier, Vec3d goal);
+  void reach(uint32_t entry, uint32_t parent, double cost, uint8_t overlay_level, Vec3d goal);
   bool next(Open& top);
-  PathEnd over_gates(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget);
+  PathEnd over_entrances(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget);
   bool refine(const Stretch& stretch);
   void straighten(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                   NodeSearch& blocks, std::vector<Crossing>& way);
   [[nodiscard]] double cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
                                const Crossing* last) const;
-  PathEnd within(uint32_t district, const BlockPoint& from, const BlockPoint& to,
+  PathEnd within(uint32_t overlay_cell, const BlockPoint& from, const BlockPoint& to,
                  const SearchBudget& budget, NodeSearch& blocks, std::vector<Crossing>& way);
 
   const NodeView* view_;
   const PieceCost* piece_cost_;
-  const Districts* districts_;
-  DistrictChanges now_;
-  DistrictGraph graph_;
+  const Overlay* overlay_;
+  OverlayChanges now_;
+  OverlayGraph graph_;
   std::vector<State> states_;  // by entry
   std::vector<Open> open_;
   std::vector<double> rest_;  // from the entries of the goal's district
@@ -84,7 +84,7 @@ class DistrictSearch {
   uint32_t first_ = kNoEntry, last_ = kNoEntry;  // none: the way does not leave the district
   uint32_t query_ = 0;
   double cost_ = 0;
-  uint64_t looked_at_ = 0;
+  uint64_t expanded_ = 0;
 };
 
 }  // namespace throng

@@ -14,10 +14,10 @@
 namespace throng {
 namespace {
 
-constexpr double kSmallestSide = 5;      // [m]
-constexpr size_t kFewDistricts = 8;      // No tier is made above so few.
-constexpr double kGatesApart = 1.0 / 8;  // of a side
-constexpr double kNoWay = std::numeric_limits<double>::infinity();
+constexpr double kSmallestSide = 5;           // [m]
+constexpr size_t kMinOverlayCells = 8;        // No tier is made above so few.
+constexpr double kEntranceSpacing = 1.0 / 8;  // of a side
+constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
 uint64_t square_key(int64_t x, int64_t z) {
   constexpr int64_t kMiddle = int64_t{1} << 31;
@@ -46,24 +46,23 @@ uint32_t place_in(const std::vector<uint64_t>& keys, uint64_t key) {
 
 }  // namespace
 
-Districts::Districts(const NodeMesh& mesh, const PieceCost& cost, int32_t workers,
-                     size_t crossings) {
+Overlay::Overlay(const NodeMesh& mesh, const PieceCost& cost, int32_t workers, size_t crossings) {
   choose_sides(mesh, workers, crossings);
-  if (tiers_.empty()) return;
-  choose_gates(mesh, workers);
-  at_.resize(2 * gates_.size());
+  if (overlay_levels_.empty()) return;
+  choose_entrances(mesh, workers);
+  at_.resize(2 * entrances_.size());
   const NodeView view(mesh);
   for (uint32_t entry = 0; entry < at_.size(); ++entry) {
     at_[entry] = position(view, ends_of(view, crossing(entry)).in);
   }
-  for (size_t k = 0; k < tiers_.size(); ++k) {
-    list_entries(mesh, tiers_[k], static_cast<uint8_t>(k));
+  for (size_t k = 0; k < overlay_levels_.size(); ++k) {
+    list_entries(mesh, overlay_levels_[k], static_cast<uint8_t>(k));
   }
   look_through(mesh, cost, workers);
-  for (size_t k = 1; k < tiers_.size(); ++k) join_up(k, workers);
+  for (size_t k = 1; k < overlay_levels_.size(); ++k) join_up(k, workers);
 }
 
-void Districts::choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossings) {
+void Overlay::choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossings) {
   std::vector<uint64_t> of_block(mesh.blocks().size());
   parallel_for(of_block.size(), workers, [&](size_t b) {
     const NodeBlock& block = mesh.blocks()[b];
@@ -83,30 +82,31 @@ void Districts::choose_sides(const NodeMesh& mesh, int32_t workers, size_t cross
   parallel_for(of_block.size(), workers,
                [&](size_t b) { of_block_[b] = place_in(keys, key_above(of_block[b], halvings)); });
   first_block_.assign(keys.size() + 1, 0);
-  for (const uint32_t district : of_block_) ++first_block_[district + 1];
+  for (const uint32_t overlay_cell : of_block_) ++first_block_[overlay_cell + 1];
   std::inclusive_scan(first_block_.begin(), first_block_.end(), first_block_.begin());
   blocks_.resize(of_block_.size());
   std::vector<uint32_t> next(first_block_.begin(), first_block_.end() - 1);
   for (uint32_t b = 0; b < of_block_.size(); ++b) blocks_[next[of_block_[b]]++] = b;
   double side = kSmallestSide * std::pow(2, halvings);
   while (true) {
-    Tier tier;
-    tier.side = side;
-    tier.first.assign(keys.size() + 1, 0);
+    OverlayLevel overlay_level;
+    overlay_level.side = side;
+    overlay_level.first.assign(keys.size() + 1, 0);
     static_assert(kTimes == 4);
     const std::vector<uint64_t> above = all_above(keys, 2);
-    if (keys.size() <= kFewDistricts || above.size() == 1) {
-      tiers_.push_back(std::move(tier));
+    if (keys.size() <= kMinOverlayCells || above.size() == 1) {
+      overlay_levels_.push_back(std::move(overlay_level));
       return;
     }
-    for (const uint64_t key : keys) tier.above.push_back(place_in(above, key_above(key, 2)));
-    tiers_.push_back(std::move(tier));
+    for (const uint64_t key : keys)
+      overlay_level.above.push_back(place_in(above, key_above(key, 2)));
+    overlay_levels_.push_back(std::move(overlay_level));
     keys = above;
     side *= kTimes;
   }
 }
 
-void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
+void Overlay::choose_entrances(const NodeMesh& mesh, int32_t workers) {
   // Parts of each district by itself.
   std::vector<uint32_t> part_of(of_block_.size());
   std::vector<uint32_t> counts(first_block_.size() - 1);
@@ -153,79 +153,81 @@ void Districts::choose_gates(const NodeMesh& mesh, int32_t workers) {
     const PortalSides portal = mesh.portals().sides(candidates[i].portal);
     uint32_t a = of_block_[portal.a], b = of_block_[portal.b];
     uint8_t top = 0;
-    while (top + size_t{1} < tiers_.size()) {
-      a = tiers_[top].above[a];
-      b = tiers_[top].above[b];
+    while (top + size_t{1} < overlay_levels_.size()) {
+      a = overlay_levels_[top].above[a];
+      b = overlay_levels_[top].above[b];
       if (a == b) break;
       ++top;
     }
-    const double apart = tiers_[top].side * kGatesApart;
+    const double apart = overlay_levels_[top].side * kEntranceSpacing;
     const Vec3d at = position(view, ends_of(view, {candidates[i].portal}).out);
     if (std::any_of(chosen.begin(), chosen.end(),
                     [&](Vec3d other) { return length(other - at) < apart; })) {
       continue;
     }
     chosen.push_back(at);
-    gates_.push_back({candidates[i].portal, top});
+    entrances_.push_back({candidates[i].portal, top});
   }
-  std::sort(gates_.begin(), gates_.end(),
-            [](const Gate& a, const Gate& b) { return a.portal < b.portal; });
+  std::sort(entrances_.begin(), entrances_.end(),
+            [](const Entrance& a, const Entrance& b) { return a.portal < b.portal; });
 }
 
-void Districts::list_entries(const NodeMesh& mesh, Tier& tier, uint8_t k) {
-  tier.of_entry.assign(2 * gates_.size(), kNoNode);
-  tier.place.assign(2 * gates_.size(), 0);
-  const size_t districts = tier.first.size() - 1;
+void Overlay::list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, uint8_t k) {
+  overlay_level.of_entry.assign(2 * entrances_.size(), kNoNode);
+  overlay_level.place.assign(2 * entrances_.size(), 0);
+  const size_t overlay = overlay_level.first.size() - 1;
   const NodeView view(mesh);
-  for (uint32_t entry = 0; entry < tier.of_entry.size(); ++entry) {
-    if (gates_[entry / 2].tier < k) continue;
-    uint32_t district = of_block_[ends_of(view, crossing(entry)).in.block];
-    for (uint8_t below = 0; below < k; ++below) district = tiers_[below].above[district];
-    tier.of_entry[entry] = district;
-    ++tier.first[district + 1];
+  for (uint32_t entry = 0; entry < overlay_level.of_entry.size(); ++entry) {
+    if (entrances_[entry / 2].overlay_level < k) continue;
+    uint32_t overlay_cell = of_block_[ends_of(view, crossing(entry)).in.block];
+    for (uint8_t below = 0; below < k; ++below)
+      overlay_cell = overlay_levels_[below].above[overlay_cell];
+    overlay_level.of_entry[entry] = overlay_cell;
+    ++overlay_level.first[overlay_cell + 1];
   }
-  std::inclusive_scan(tier.first.begin(), tier.first.end(), tier.first.begin());
-  tier.entries.resize(tier.first.back());
-  std::vector<uint32_t> next(tier.first.begin(), tier.first.end() - 1);
-  for (uint32_t entry = 0; entry < tier.of_entry.size(); ++entry) {
-    const uint32_t district = tier.of_entry[entry];
-    if (district == kNoNode) continue;
-    tier.place[entry] = next[district] - tier.first[district];
-    tier.entries[next[district]++] = entry;
+  std::inclusive_scan(overlay_level.first.begin(), overlay_level.first.end(),
+                      overlay_level.first.begin());
+  overlay_level.entries.resize(overlay_level.first.back());
+  std::vector<uint32_t> next(overlay_level.first.begin(), overlay_level.first.end() - 1);
+  for (uint32_t entry = 0; entry < overlay_level.of_entry.size(); ++entry) {
+    const uint32_t overlay_cell = overlay_level.of_entry[entry];
+    if (overlay_cell == kNoNode) continue;
+    overlay_level.place[entry] = next[overlay_cell] - overlay_level.first[overlay_cell];
+    overlay_level.entries[next[overlay_cell]++] = entry;
   }
   uint64_t costs = 0;
-  for (size_t d = 0; d < districts; ++d) {
-    tier.first_cost.push_back(costs);
-    const uint64_t count = tier.first[d + 1] - tier.first[d];
+  for (size_t d = 0; d < overlay; ++d) {
+    overlay_level.first_cost.push_back(costs);
+    const uint64_t count = overlay_level.first[d + 1] - overlay_level.first[d];
     costs += count * count;
   }
-  tier.costs.assign(costs, std::numeric_limits<float>::infinity());
+  overlay_level.costs.assign(costs, std::numeric_limits<float>::infinity());
 }
 
 // An entry of a one-way portal that cannot be gone backward leads nowhere: no way comes to it.
-void Districts::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
-  Tier& tier = tiers_.front();
+void Overlay::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
+  OverlayLevel& overlay_level = overlay_levels_.front();
   const NodeView view(mesh);
-  std::vector<DistrictGraph> graphs(static_cast<size_t>(worker_count(workers)), {view, cost});
-  parallel_for_worker(tier.first.size() - 1, workers, [&](size_t d, int32_t worker) {
-    const auto district = static_cast<uint32_t>(d);
-    const auto entries = tier.entries_of(district);
+  std::vector<OverlayGraph> graphs(static_cast<size_t>(worker_count(workers)), {view, cost});
+  parallel_for_worker(overlay_level.first.size() - 1, workers, [&](size_t d, int32_t worker) {
+    const auto overlay_cell = static_cast<uint32_t>(d);
+    const auto entries = overlay_level.entries_of(overlay_cell);
     if (entries.empty()) return;
-    DistrictGraph& graph = graphs[static_cast<size_t>(worker)];
-    graph.set(blocks_of(district), true);
+    OverlayGraph& graph = graphs[static_cast<size_t>(worker)];
+    graph.set(blocks_of(overlay_cell), true);
     // Ways out over gates, and in which column they are told.
     std::vector<std::pair<uint32_t, uint32_t>> columns;
     for (uint32_t w = 0; w < graph.ways().size(); ++w) {
-      const DistrictGraph::Way& way = graph.ways()[w];
+      const OverlayGraph::Way& way = graph.ways()[w];
       if (way.into != kNoNode) continue;
       const uint32_t entry = entry_of(way.crossing);
-      if (entry != kNoNode) columns.emplace_back(w, tier.place[entry ^ 1]);
+      if (entry != kNoNode) columns.emplace_back(w, overlay_level.place[entry ^ 1]);
     }
     for (size_t i = 0; i < entries.size(); ++i) {
       const Crossing in = crossing(entries[i]);
       if (in.backward && mesh.portals().sides(in.portal).one_way) continue;
       const std::vector<double>& costs = graph.run(ends_of(view, in).in);
-      float* row = tier.costs.data() + tier.first_cost[d] + i * entries.size();
+      float* row = overlay_level.costs.data() + overlay_level.first_cost[d] + i * entries.size();
       for (const auto& [way, column] : columns) {
         if (column != i) row[column] = static_cast<float>(costs[way]);
       }
@@ -234,10 +236,10 @@ void Districts::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_
 }
 
 // Through a district by way of those of the tier below that it holds.
-void Districts::join_up(size_t k, int32_t workers) {
-  Tier& tier = tiers_[k];
-  const Tier& below = tiers_[k - 1];
-  std::vector<std::vector<uint32_t>> parts(tier.first.size() - 1);
+void Overlay::join_up(size_t k, int32_t workers) {
+  OverlayLevel& overlay_level = overlay_levels_[k];
+  const OverlayLevel& below = overlay_levels_[k - 1];
+  std::vector<std::vector<uint32_t>> parts(overlay_level.first.size() - 1);
   for (uint32_t d = 0; d < below.above.size(); ++d) parts[below.above[d]].push_back(d);
   struct Open {
     double cost;
@@ -247,7 +249,7 @@ void Districts::join_up(size_t k, int32_t workers) {
     }
   };
   parallel_for(parts.size(), workers, [&](size_t d) {
-    const auto entries = tier.entries_of(static_cast<uint32_t>(d));
+    const auto entries = overlay_level.entries_of(static_cast<uint32_t>(d));
     if (entries.empty()) return;
     // Entries into parts lie here part by part.
     std::vector<size_t> first;
@@ -263,8 +265,8 @@ void Districts::join_up(size_t k, int32_t workers) {
     std::vector<double> cost;
     std::vector<Open> open;
     for (size_t i = 0; i < entries.size(); ++i) {
-      cost.assign(count, kNoWay);
-      float* row = tier.costs.data() + tier.first_cost[d] + i * entries.size();
+      cost.assign(count, kNoPath);
+      float* row = overlay_level.costs.data() + overlay_level.first_cost[d] + i * entries.size();
       cost[index(entries[i])] = 0;
       open.assign(1, {0, entries[i]});
       while (!open.empty()) {
@@ -276,11 +278,11 @@ void Districts::join_up(size_t k, int32_t workers) {
         const auto others = below.entries_of(below.of_entry[top.entry]);
         for (size_t j = 0; j < others.size(); ++j) {
           const double next = top.cost + double{through[j]};
-          if (!(next < kNoWay)) continue;
+          if (!(next < kNoPath)) continue;
           const uint32_t out = others[j] ^ 1;  // The gate gone through, out of the part.
           if (below.above[below.of_entry[out]] != d) {
             // Only over the district's own gates is it left.
-            float& known = row[tier.place[others[j]]];
+            float& known = row[overlay_level.place[others[j]]];
             known = std::min(known, static_cast<float>(next));
             continue;
           }
@@ -296,22 +298,23 @@ void Districts::join_up(size_t k, int32_t workers) {
   });
 }
 
-uint32_t Districts::entry_of(const Crossing& crossing) const {
-  const auto at =
-      std::lower_bound(gates_.begin(), gates_.end(), crossing.portal,
-                       [](const Gate& gate, uint32_t portal) { return gate.portal < portal; });
-  if (at == gates_.end() || at->portal != crossing.portal) return kNoNode;
-  return 2 * static_cast<uint32_t>(at - gates_.begin()) + (crossing.backward ? 1 : 0);
+uint32_t Overlay::entry_of(const Crossing& crossing) const {
+  const auto at = std::lower_bound(
+      entrances_.begin(), entrances_.end(), crossing.portal,
+      [](const Entrance& entrance, uint32_t portal) { return entrance.portal < portal; });
+  if (at == entrances_.end() || at->portal != crossing.portal) return kNoNode;
+  return 2 * static_cast<uint32_t>(at - entrances_.begin()) + (crossing.backward ? 1 : 0);
 }
 
-uint64_t Districts::bytes() const {
+uint64_t Overlay::bytes() const {
   uint64_t bytes = (of_block_.size() + first_block_.size() + blocks_.size()) * sizeof(uint32_t) +
-                   gates_.size() * sizeof(Gate) + at_.size() * sizeof(Vec3d);
-  for (const Tier& tier : tiers_) {
-    bytes += (tier.above.size() + tier.of_entry.size() + tier.first.size() + tier.entries.size() +
-              tier.place.size() + tier.costs.size()) *
-                 sizeof(uint32_t) +
-             tier.first_cost.size() * sizeof(uint64_t);
+                   entrances_.size() * sizeof(Entrance) + at_.size() * sizeof(Vec3d);
+  for (const OverlayLevel& overlay_level : overlay_levels_) {
+    bytes +=
+        (overlay_level.above.size() + overlay_level.of_entry.size() + overlay_level.first.size() +
+         overlay_level.entries.size() + overlay_level.place.size() + overlay_level.costs.size()) *
+            sizeof(uint32_t) +
+        overlay_level.first_cost.size() * sizeof(uint64_t);
   }
   return bytes;
 }

@@ -58,33 +58,33 @@ Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& vi
   return Obstacle::kNone;
 }
 
-FlightEnds::FlightEnds(const WorldData& world, const AirView& air, int32_t avatar_class)
+FlightEndpoints::FlightEndpoints(const WorldData& world, const AirView& air, int32_t avatar_class)
     : world_(world),
       air_(air),
       ground_{world, avatar_class},
       avatar_(world.summary.classes[static_cast<size_t>(avatar_class)]),
       cell_(air.space().shape.cell * 1e-3) {}
 
-AirPoint FlightEnds::to_air(Vec3d p) const {
+AirPoint FlightEndpoints::to_air(Vec3d p) const {
   return {(p.x - world_.summary.origin.x) / cell_,
           (p.y * 1000 - air_.space().shape.origin_y) / air_.space().shape.cell,
           (p.z - world_.summary.origin.z) / cell_};
 }
 
-Vec3d FlightEnds::to_metres(AirPoint p) const {
+Vec3d FlightEndpoints::to_metres(AirPoint p) const {
   return {world_.summary.origin.x + p.x * cell_,
           (p.y * air_.space().shape.cell + air_.space().shape.origin_y) * 1e-3,
           world_.summary.origin.z + p.z * cell_};
 }
 
-std::optional<AirPoint> FlightEnds::in_air(Vec3d feet) const {
+std::optional<AirPoint> FlightEndpoints::in_air(Vec3d feet) const {
   if (!std::isfinite(feet.x + feet.y + feet.z)) return {};
   const AirPoint p = to_air(feet);
   if (air_.box_at(p) == kNoBox) return {};
   return off_faces(p);
 }
 
-std::optional<AirPoint> FlightEnds::take_off(const Place& place) const {
+std::optional<AirPoint> FlightEndpoints::take_off(const Place& place) const {
   if (!place || !std::isfinite(place.position.x + place.position.y + place.position.z)) return {};
   if (!may_stand(place)) return {};
   const AirPoint feet = to_air(place.position);
@@ -98,28 +98,28 @@ std::optional<AirPoint> FlightEnds::take_off(const Place& place) const {
   return {};
 }
 
-bool FlightEnds::may_stand(const Place& place) const {
+bool FlightEndpoints::may_stand(const Place& place) const {
   if (air_.changes() == nullptr) return true;
   const auto at = ground_point(world_, place);
   return at && air_.changes()->may_stand(place.level1 - 1, at->cell_x(), at->cell_z());
 }
 
 template <class Visit>
-bool FlightEnds::for_places(const Place& from, uint64_t most, CircleFlood& flood,
-                            Visit visit) const {
+bool FlightEndpoints::for_places(const Place& from, uint64_t most, CircleFlood& flood,
+                                 Visit visit) const {
   const auto start = ground_point(world_, from);
   if (!start) return false;
   const GroundLevel level = ground_level(world_, from.level1 - 1, ground_.avatar_class);
   if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return false;
   const AirChanges* changes = air_.changes();
   uint64_t seen = 0;
-  bool more = true, gave_up = false;
+  bool more = true, budget_exhausted = false;
   flood.start(level, start->cell_x(), start->cell_z());
   flood.run(
       ground_, step_mm(avatar_),
       [&](int32_t, int32_t) {
-        gave_up = more && seen == most;
-        return more && !gave_up;
+        budget_exhausted = more && seen == most;
+        return more && !budget_exhausted;
       },
       [&](const CircleFlood::Cell& cell) {
         ++seen;
@@ -131,23 +131,23 @@ bool FlightEnds::for_places(const Place& from, uint64_t most, CircleFlood& flood
       [&](const GroundLevel& to, int32_t x, int32_t z) {
         return changes == nullptr || changes->may_stand(to.world_level, x, z);
       });
-  return gave_up;
+  return budget_exhausted;
 }
 
 template <class Visit>
-bool FlightEnds::for_take_offs(const Place& from, uint64_t most, CircleFlood& flood,
-                               Visit visit) const {
+bool FlightEndpoints::for_take_offs(const Place& from, uint64_t most, CircleFlood& flood,
+                                    Visit visit) const {
   return for_places(from, most, flood, [&](const Place& place) {
     const auto up = take_off(place);
     return !up || visit(place, air_.component(air_.box_at(*up)));
   });
 }
 
-Place FlightEnds::nearest_place(const Place& from, uint64_t most, Vec3d goal,
-                                CircleFlood& flood) const {
+Place FlightEndpoints::nearest_place(const Place& from, uint64_t most, Vec3d goal,
+                                     CircleFlood& flood) const {
   Place nearest;
   double least = HUGE_VAL;
-  const bool gave_up = for_places(from, most, flood, [&](const Place& place) {
+  const bool budget_exhausted = for_places(from, most, flood, [&](const Place& place) {
     const double far = length(place.position - goal);
     if (far < least) {
       least = far;
@@ -155,21 +155,23 @@ Place FlightEnds::nearest_place(const Place& from, uint64_t most, Vec3d goal,
     }
     return true;
   });
-  return gave_up ? Place{} : nearest;
+  return budget_exhausted ? Place{} : nearest;
 }
 
-FlightEnds::TakeOff FlightEnds::nearest_take_off(const Place& from, uint64_t most,
-                                                 uint32_t component, CircleFlood& flood) const {
+FlightEndpoints::TakeOff FlightEndpoints::nearest_take_off(const Place& from, uint64_t most,
+                                                           uint32_t component,
+                                                           CircleFlood& flood) const {
   Place found;
-  const bool gave_up = for_take_offs(from, most, flood, [&](const Place& place, uint32_t leads_to) {
-    if (component == kNoBox || leads_to == component) found = place;
-    return !found;
-  });
-  return {found, gave_up};
+  const bool budget_exhausted =
+      for_take_offs(from, most, flood, [&](const Place& place, uint32_t leads_to) {
+        if (component == kNoBox || leads_to == component) found = place;
+        return !found;
+      });
+  return {found, budget_exhausted};
 }
 
-bool FlightEnds::components_over(const Place& from, uint64_t most, CircleFlood& flood,
-                                 std::vector<uint32_t>& components) const {
+bool FlightEndpoints::components_over(const Place& from, uint64_t most, CircleFlood& flood,
+                                      std::vector<uint32_t>& components) const {
   components.clear();
   return for_take_offs(from, most, flood, [&](const Place&, uint32_t leads_to) {
     if (std::find(components.begin(), components.end(), leads_to) == components.end()) {
@@ -179,7 +181,7 @@ bool FlightEnds::components_over(const Place& from, uint64_t most, CircleFlood& 
   });
 }
 
-uint32_t FlightEnds::lowest_box(AirPoint p) const {
+uint32_t FlightEndpoints::lowest_box(AirPoint p) const {
   uint32_t box = air_.box_at(p);
   while (box != kNoBox) {
     const AirCube& cube = air_.cube(box);
@@ -192,7 +194,7 @@ uint32_t FlightEnds::lowest_box(AirPoint p) const {
 }
 
 // Most accessible first, most aligned with the box's axis next. Source: [PACS00] 1.2.3.7.
-Place FlightEnds::best_landing(uint32_t box) const {
+Place FlightEndpoints::best_landing(uint32_t box) const {
   const AirCube& cube = air_.cube(box);
   const int32_t multiple = air_.space().shape.multiple;
   Place best;

@@ -19,9 +19,9 @@ namespace throng {
 [[nodiscard]] Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view,
                                     AirPoint from, AirPoint to);
 
-class FlightEnds {
+class FlightEndpoints {
  public:
-  FlightEnds(const WorldData& world, const AirView& air, int32_t avatar_class);
+  FlightEndpoints(const WorldData& world, const AirView& air, int32_t avatar_class);
 
   [[nodiscard]] AirPoint to_air(Vec3d p) const;
   [[nodiscard]] Vec3d to_metres(AirPoint p) const;
@@ -38,8 +38,8 @@ class FlightEnds {
   /// The nearest place, in steps, from which feet come into the air; `most` cells are looked at.
   /// Only into air of this component (see AirView), unless it is kNoBox.
   struct TakeOff {
-    Place place;           ///< Null if there is none among them.
-    bool gave_up = false;  ///< There were more cells.
+    Place place;                    ///< Null if there is none among them.
+    bool budget_exhausted = false;  ///< There were more cells.
   };
   [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t most, uint32_t component,
                                          CircleFlood& flood) const;

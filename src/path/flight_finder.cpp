@@ -23,12 +23,12 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kLargestBox = 32;            // air cells: larger ones hide good ways
-constexpr uint64_t kMostFloodCells = 1 << 18;  // on foot to where one can take off
+constexpr int32_t kLargestBox = 32;           // air cells: larger ones hide good ways
+constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to where one can take off
 // The same where the nearest take-off leads into a pocket and there are several others.
-constexpr uint64_t kMostPocketCells = 1 << 15;
+constexpr uint64_t kMaxPocketCells = 1 << 15;
 // Ways over other ground, or to what is less near, where obstacles are in the way of the first.
-constexpr int32_t kMostTries = 4;
+constexpr int32_t kMaxTries = 4;
 
 double distance(Vec3d a, Vec3d b) {
   const Vec3d d = a - b;
@@ -38,22 +38,22 @@ double distance(Vec3d a, Vec3d b) {
 void clear(FlightPath& path) {
   path.end = PathEnd::kNoPlace;
   path.points.clear();
-  path.legs.clear();
+  path.segments.clear();
   path.length = 0;
   path.obstacle = Obstacle::kNone;
 }
 
-void add(Vec3d point, LegKind kind, FlightPath& path) {
+void add(Vec3d point, SegmentKind kind, FlightPath& path) {
   if (!path.points.empty()) {
     path.length += distance(path.points.back(), point);
-    path.legs.push_back(kind);
+    path.segments.push_back(kind);
   }
   path.points.push_back(point);
 }
 
 void add_walk(const Path& ground, size_t first, FlightPath& path) {
   for (size_t i = first; i < ground.points.size(); ++i) {
-    add(ground.points[i].position, LegKind::kWalk, path);
+    add(ground.points[i].position, SegmentKind::kWalk, path);
   }
 }
 
@@ -62,7 +62,7 @@ void add_walk(const Path& ground, size_t first, FlightPath& path) {
 // A point of the air, or a place with the nearest place to take off or to land.
 struct FlightFinder::End {
   std::optional<AirPoint> air;
-  Place ground, port;
+  Place ground, ground_air_link;
 };
 
 struct FlightFinder::Shared {
@@ -72,10 +72,10 @@ struct FlightFinder::Shared {
   FlightSpace space;
   std::vector<uint64_t> cells_before;  // per box, and of all
   std::optional<PathFinder> walker;    // none where the class has no ground
-  FlightPorts ports;
+  GroundAirLinks ground_air_links;
   FlightSummary summary;
 
-  [[nodiscard]] FlightEnds ends(const AirView& air) const {
+  [[nodiscard]] FlightEndpoints ends(const AirView& air) const {
     return {*world.data(), air, avatar_class};
   }
   // The component of the ground at a place.
@@ -86,12 +86,12 @@ struct FlightFinder::Shared {
     const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
     return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
   }
-  [[nodiscard]] FlightPorts::Part part_of(const End& end) const {
+  [[nodiscard]] GroundAirLinks::Part part_of(const End& end) const {
     if (end.air) return {space.component[space.box_at(*end.air)], true};
     return {ground_of(end.ground), false};
   }
   // The middle of a cell.
-  [[nodiscard]] Place place_of(const FlightPorts::Cell& cell) const {
+  [[nodiscard]] Place place_of(const GroundAirLinks::Cell& cell) const {
     return place_at(*world.data(), ground_level(*world.data(), cell.level, avatar_class),
                     {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
                      (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2});
@@ -142,16 +142,16 @@ struct FlightFinder::Scratch {
   }
 
   FlightSearch search;
-  FlightPull pull;
+  FlightStringPuller pull;
   CircleFlood flood;
   std::optional<PathFinder> walker;
   std::vector<AirPoint> way;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
   AirView::ZoneOrder zone_order;
-  FlightPorts::Scratch parts;
-  std::vector<FlightPorts::Part> route;
-  std::vector<FlightPorts::Pair> banned;
+  GroundAirLinks::Scratch parts;
+  std::vector<GroundAirLinks::Part> route;
+  std::vector<GroundAirLinks::Pair> banned;
   // Put up since the finder was made; none before the first one.
   std::optional<AirChanges> changes;
   std::optional<LiveGround> live;
@@ -212,11 +212,12 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
         world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
     if (!walker) return walker.error();
     shared->walker = std::move(*walker);
-    shared->ports = FlightPorts(data, shared->walker->mesh(), shared->space, config.workers);
+    shared->ground_air_links =
+        GroundAirLinks(data, shared->walker->mesh(), shared->space, config.workers);
   }
   shared->summary.boxes = shared->space.boxes.size();
   shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
-                          shared->ports.bytes() +
+                          shared->ground_air_links.bytes() +
                           (shared->walker ? shared->walker->summary().bytes : 0);
   shared->summary.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -261,7 +262,7 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
   const std::vector<uint64_t>& before = shared_->cells_before;
   if (before.back() == 0) return {};
   const AirView air = scratch_->air(*shared_);
-  const FlightEnds ends = shared_->ends(air);
+  const FlightEndpoints ends = shared_->ends(air);
   const auto draw = [&](const AirCube& cube, uint64_t first) {
     const auto part = [&](uint64_t i) {
       return kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * kAirSkin);
@@ -290,14 +291,14 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
 }
 
 std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
-  const FlightEnds ends = shared_->ends(scratch_->air(*shared_));
+  const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
   const auto up = ends.take_off(place);
   if (!up) return {};
   return ends.to_metres(*up);
 }
 
 Place FlightFinder::landing(Vec3d feet) const {
-  const FlightEnds ends = shared_->ends(scratch_->air(*shared_));
+  const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
   const auto point = ends.in_air(feet);
   if (!point) return {};
   return ends.best_landing(ends.lowest_box(*point));
@@ -310,7 +311,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
 }
 
 bool FlightFinder::locate(Vec3d at, double reach, End& end) const {
-  const FlightEnds ends = shared_->ends(scratch_->air(*shared_));
+  const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
   end.air = ends.in_air(at);
   if (end.air) return true;
   end.ground = shared_->world.find_place(shared_->avatar_class, at, reach);
@@ -320,7 +321,7 @@ bool FlightFinder::locate(Vec3d at, double reach, End& end) const {
 PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
                            Path& path) {
   reset(path);
-  if (query.cancel != nullptr && *query.cancel) return PathEnd::kGaveUp;
+  if (query.cancel != nullptr && *query.cancel) return PathEnd::kBudgetExhausted;
   if (!scratch_->is_changed()) {
     scratch_->walker->find(from, to, path, query.max_nodes);
     return path.end;
@@ -337,35 +338,36 @@ PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Pl
 void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   const AirView air = scratch.air(*shared_);
-  const FlightEnds ends = shared_->ends(air);
+  const FlightEndpoints ends = shared_->ends(air);
   clear(path);
   path.nodes = 0;
   scratch.reached.reset();
-  bool gave_up = false;  // somewhere: then what was not found may be there all the same
+  bool budget_exhausted = false;  // somewhere: then what was not found may be there all the same
   const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
   // From the ground into the air: into this component of it, or any (kNoBox).
   const auto to_port = [&](End& end, uint32_t component) {
     if (!end.ground) return end.air.has_value();
-    end.port = end.ground;
-    end.air = ends.take_off(end.port);
+    end.ground_air_link = end.ground;
+    end.air = ends.take_off(end.ground_air_link);
     if (end.air && (component == kNoBox || component_of(*end.air) == component)) return true;
     end.air.reset();
     const uint32_t ground = shared_->ground_of(end.ground);
-    const bool leads = component == kNoBox ? !shared_->ports.air_over(ground).empty()
-                                           : shared_->ports.joins(ground, air.baked(component));
+    const bool leads = component == kNoBox
+                           ? !shared_->ground_air_links.air_over(ground).empty()
+                           : shared_->ground_air_links.joins(ground, air.baked(component));
     if (!leads) return false;
     const auto nearest =
-        ends.nearest_take_off(end.ground, kMostFloodCells, component, scratch.flood);
-    gave_up = gave_up || nearest.gave_up;
-    end.port = nearest.place;
-    end.air = ends.take_off(end.port);
+        ends.nearest_take_off(end.ground, kMaxFloodCells, component, scratch.flood);
+    budget_exhausted = budget_exhausted || nearest.budget_exhausted;
+    end.ground_air_link = nearest.place;
+    end.air = ends.take_off(end.ground_air_link);
     return end.air.has_value();
   };
   // Air over the ground at both ends: the one that is nearest to both, as far as a look around
   // tells, where there is more than one.
   const auto common_air = [&](const End& a, const End& b) {
-    const auto over_a = shared_->ports.air_over(shared_->ground_of(a.ground));
-    const auto over_b = shared_->ports.air_over(shared_->ground_of(b.ground));
+    const auto over_a = shared_->ground_air_links.air_over(shared_->ground_of(a.ground));
+    const auto over_b = shared_->ground_air_links.air_over(shared_->ground_of(b.ground));
     scratch.common.clear();
     std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
                           std::back_inserter(scratch.common));
@@ -374,10 +376,10 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     for (const auto& [end, over] :
          {std::pair{&a, &scratch.over_from}, std::pair{&b, &scratch.over_to}}) {
       if (query.cancel != nullptr && *query.cancel) {
-        gave_up = true;
+        budget_exhausted = true;
         return kNoBox;
       }
-      ends.components_over(end->ground, kMostPocketCells, scratch.flood, *over);
+      ends.components_over(end->ground, kMaxPocketCells, scratch.flood, *over);
     }
     size_t least = SIZE_MAX;
     uint32_t best = scratch.common[0];
@@ -398,13 +400,13 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     if (!a.ground) return to_port(b, component_of(*a.air));
     if (!b.ground) return to_port(a, component_of(*b.air));
     if (!to_port(a, kNoBox) || !to_port(b, kNoBox)) return false;
-    if (air.hold_together(*a.air, *b.air)) return true;
+    if (air.same_component(*a.air, *b.air)) return true;
     const uint32_t common = common_air(a, b);
     return common != kNoBox && to_port(a, common) && to_port(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
     const PathEnd end = walk(query, a, b, ground);
-    gave_up = gave_up || end == PathEnd::kGaveUp;
+    budget_exhausted = budget_exhausted || end == PathEnd::kBudgetExhausted;
     return end == PathEnd::kReached;
   };
   End from, to;
@@ -419,13 +421,13 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
       on_foot += distance(places[i - 1].position, places[i].position);
     }
   }
-  const bool ports = to_ports(from, to);
+  const bool ground_air_links = to_ports(from, to);
   SearchResult result = SearchResult::kNone;
-  if (ports && air.hold_together(*from.air, *to.air)) {
+  if (ground_air_links && air.same_component(*from.air, *to.air)) {
     result =
         scratch.search.find(air, *from.air, *to.air, query.max_nodes, query.cancel, scratch.way);
     path.nodes = scratch.search.expanded();
-    gave_up = gave_up || result == SearchResult::kBudget;
+    budget_exhausted = budget_exhausted || result == SearchResult::kBudget;
     if (result == SearchResult::kNone) {
       scratch.reached = scratch.search.nearest_reached(ends.to_air(query.to));
     }
@@ -434,22 +436,22 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     scratch.pull.pull(air, scratch.way);
     bool walked = true;
     if (from.ground) {
-      if (from.port.position.x != from.ground.position.x ||
-          from.port.position.z != from.ground.position.z) {
-        walked = find_on_foot(from.ground, from.port, scratch.walk_there);
+      if (from.ground_air_link.position.x != from.ground.position.x ||
+          from.ground_air_link.position.z != from.ground.position.z) {
+        walked = find_on_foot(from.ground, from.ground_air_link, scratch.walk_there);
         add_walk(scratch.walk_there, 0, path);
       } else {
-        add(from.port.position, LegKind::kWalk, path);
+        add(from.ground_air_link.position, SegmentKind::kWalk, path);
       }
     }
     for (size_t i = 0; i < scratch.way.size(); ++i) {
-      add(ends.to_metres(scratch.way[i]), i == 0 ? LegKind::kTakeOff : LegKind::kFly, path);
+      add(ends.to_metres(scratch.way[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly, path);
     }
     if (to.ground) {
-      add(to.port.position, LegKind::kLand, path);
-      if (to.port.position.x != to.ground.position.x ||
-          to.port.position.z != to.ground.position.z) {
-        walked = find_on_foot(to.port, to.ground, scratch.walk_on) && walked;
+      add(to.ground_air_link.position, SegmentKind::kLand, path);
+      if (to.ground_air_link.position.x != to.ground.position.x ||
+          to.ground_air_link.position.z != to.ground.position.z) {
+        walked = find_on_foot(to.ground_air_link, to.ground, scratch.walk_on) && walked;
         add_walk(scratch.walk_on, 1, path);
       }
     }
@@ -459,7 +461,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     }
   }
   clear(path);
-  path.end = gave_up ? PathEnd::kGaveUp : PathEnd::kUnreachable;
+  path.end = budget_exhausted ? PathEnd::kBudgetExhausted : PathEnd::kUnreachable;
   if (on_foot == INFINITY) return;
   add_walk(scratch.walk_all, 0, path);
   path.end = PathEnd::kReached;
@@ -473,13 +475,13 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   End from, to;
   if (!locate(query.from, query.reach, from) || !locate(query.to, query.reach, to)) return;
-  const FlightPorts::Part start = shared_->part_of(from), goal = shared_->part_of(to);
+  const GroundAirLinks::Part start = shared_->part_of(from), goal = shared_->part_of(to);
   scratch.banned.clear();
-  for (int32_t tries = 0; tries < (scratch.is_changed() ? kMostTries : 1); ++tries) {
+  for (int32_t tries = 0; tries < (scratch.is_changed() ? kMaxTries : 1); ++tries) {
     // Air that an obstacle has cut in two is one part: then over some ground under it.
     const bool returns = start == goal && scratch.is_changed() && goal.is_air;
-    const FlightPorts::Part last = returns ? FlightPorts::Part{kNoBox, true} : goal;
-    shared_->ports.search(start, last, scratch.banned, scratch.parts);
+    const GroundAirLinks::Part last = returns ? GroundAirLinks::Part{kNoBox, true} : goal;
+    shared_->ground_air_links.search(start, last, scratch.banned, scratch.parts);
     const auto& steps = scratch.parts.steps;
     if (steps.size() < 2 || (!returns && steps.back().part != goal)) return;
     scratch.route.clear();
@@ -494,8 +496,8 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
     }
     const size_t stuck = follow_route(query, from, to, path);
     if (path.end != PathEnd::kUnreachable) return;
-    const FlightPorts::Part& a = scratch.route[stuck - 1];
-    const FlightPorts::Part& b = scratch.route[stuck];
+    const GroundAirLinks::Part& a = scratch.route[stuck - 1];
+    const GroundAirLinks::Part& b = scratch.route[stuck];
     scratch.banned.emplace_back(a.is_air ? b.component : a.component,
                                 a.is_air ? a.component : b.component);
   }
@@ -506,7 +508,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
                                   FlightPath& path) {
   Scratch& scratch = *scratch_;
   const AirView view = scratch.air(*shared_);
-  const FlightEnds ends = shared_->ends(view);
+  const FlightEndpoints ends = shared_->ends(view);
   PathEnd end = PathEnd::kReached;
   Place feet = from.ground;  // where it is by now, or
   AirPoint air = from.air.value_or(AirPoint{});
@@ -518,7 +520,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
   };
   const auto fly = [&](AirPoint there) {
     if (end != PathEnd::kReached) return;
-    if (view.changes() != nullptr && !view.hold_together(air, there)) {
+    if (view.changes() != nullptr && !view.same_component(air, there)) {
       end = PathEnd::kUnreachable;
       return;
     }
@@ -526,54 +528,55 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
         scratch.search.find(view, air, there, query.max_nodes, query.cancel, scratch.way);
     path.nodes += scratch.search.expanded();
     end = result == SearchResult::kFound    ? PathEnd::kReached
-          : result == SearchResult::kBudget ? PathEnd::kGaveUp
+          : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
                                             : PathEnd::kUnreachable;
     scratch.pull.pull(view, scratch.way);
     for (size_t i = 1; i < scratch.way.size(); ++i) {
-      add(ends.to_metres(scratch.way[i]), LegKind::kFly, path);
+      add(ends.to_metres(scratch.way[i]), SegmentKind::kFly, path);
     }
     air = there;
   };
   // A place of some ground under some air: it leads into this component of that.
-  const auto port_near = [&](const Place& at, FlightPorts::Part ground, FlightPorts::Part over,
-                             uint32_t component) {
+  const auto port_near = [&](const Place& at, GroundAirLinks::Part ground,
+                             GroundAirLinks::Part over, uint32_t component) {
     const Place near =
-        at ? ends.nearest_take_off(at, kMostFloodCells, component, scratch.flood).place : Place{};
+        at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
     if (near) return near;
-    const Place known = shared_->place_of(shared_->ports.cell(ground.component, over.component));
+    const Place known =
+        shared_->place_of(shared_->ground_air_links.cell(ground.component, over.component));
     if (view.changes() == nullptr) return known;
-    return ends.nearest_take_off(known, kMostFloodCells, component, scratch.flood).place;
+    return ends.nearest_take_off(known, kMaxFloodCells, component, scratch.flood).place;
   };
   clear(path);
-  add(from.air ? ends.to_metres(air) : feet.position, LegKind::kWalk, path);
+  add(from.air ? ends.to_metres(air) : feet.position, SegmentKind::kWalk, path);
   const size_t count = scratch.route.size();
   size_t k = 1;
   for (; k < count && end == PathEnd::kReached; ++k) {
-    const FlightPorts::Part here = scratch.route[k - 1], next = scratch.route[k];
+    const GroundAirLinks::Part here = scratch.route[k - 1], next = scratch.route[k];
     const bool last = k + 1 == count;
     if (next.is_air) {
       const bool known = last && to.air;
-      const Place port = port_near(feet, here, next,
-                                   known ? view.component(view.box_at(*to.air)) : next.component);
-      const auto up = ends.take_off(port);
+      const Place ground_air_link = port_near(
+          feet, here, next, known ? view.component(view.box_at(*to.air)) : next.component);
+      const auto up = ends.take_off(ground_air_link);
       if (!up) {
         end = PathEnd::kUnreachable;
         continue;
       }
-      go(port);
+      go(ground_air_link);
       air = *up;
-      add(ends.to_metres(air), LegKind::kTakeOff, path);
+      add(ends.to_metres(air), SegmentKind::kTakeOff, path);
     } else {
-      const Place port =
+      const Place ground_air_link =
           port_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
-      const auto up = ends.take_off(port);
+      const auto up = ends.take_off(ground_air_link);
       if (!up) {
         end = PathEnd::kUnreachable;
         continue;
       }
-      feet = port;
+      feet = ground_air_link;
       fly(*up);
-      add(feet.position, LegKind::kLand, path);
+      add(feet.position, SegmentKind::kLand, path);
     }
   }
   if (to.air) {
@@ -591,13 +594,13 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
 void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   const AirView air = scratch.air(*shared_);
-  const FlightEnds ends = shared_->ends(air);
+  const FlightEndpoints ends = shared_->ends(air);
   const std::optional<AirPoint> reached = scratch.reached;
   const bool is_changed = scratch.is_changed();
   End from;
   if (!locate(query.from, query.reach, from)) return;
-  const FlightPorts::Part start = shared_->part_of(from);
-  shared_->ports.search(start, {kNoBox, true}, {}, scratch.parts);
+  const GroundAirLinks::Part start = shared_->part_of(from);
+  shared_->ground_air_links.search(start, {kNoBox, true}, {}, scratch.parts);
   std::vector<uint32_t>& airs = scratch.common;
   airs.clear();
   for (const auto& step : scratch.parts.steps) {
@@ -607,14 +610,14 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   if (is_changed && from.air) {
     airs.push_back(air.component(air.box_at(*from.air)));
   } else if (is_changed) {
-    ends.components_over(from.ground, kMostPocketCells, scratch.flood, scratch.over_from);
+    ends.components_over(from.ground, kMaxPocketCells, scratch.flood, scratch.over_from);
     airs.insert(airs.end(), scratch.over_from.begin(), scratch.over_from.end());
   }
   std::sort(airs.begin(), airs.end());
   airs.erase(std::unique(airs.begin(), airs.end()), airs.end());
   const AirPoint goal = ends.to_air(query.to);
   std::optional<AirPoint> nearest;
-  for (int32_t tries = 0; tries < kMostTries; ++tries) {
+  for (int32_t tries = 0; tries < kMaxTries; ++tries) {
     nearest = reached && tries == 0 ? reached : air.nearest_in(airs, goal, scratch.zone_order);
     if (!nearest) break;
     const AirPoint at = off_faces(*nearest);
@@ -650,7 +653,7 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   Place nearest;
   if (scratch.is_changed()) {
     nearest = shared_->ends(scratch.air(*shared_))
-                  .nearest_place(from, kMostFloodCells, query.to, scratch.flood);
+                  .nearest_place(from, kMaxFloodCells, query.to, scratch.flood);
   }
   if (!nearest) nearest = shared_->nearest_ground(ground, query.to);
   if (!nearest) return;
@@ -658,7 +661,8 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   // To what comes nearest, if the finder of ways on foot knows it.
   if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
   add_walk(scratch.walk_all, 0, path);
-  path.obstacle = shared_->ports.air_over(ground).empty() ? Obstacle::kLow : Obstacle::kNarrow;
+  path.obstacle =
+      shared_->ground_air_links.air_over(ground).empty() ? Obstacle::kLow : Obstacle::kNarrow;
 }
 
 Result<AirSummary> air_summary(const World& world) {

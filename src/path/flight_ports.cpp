@@ -15,7 +15,7 @@ namespace {
 // Ground, air, and where the one leads into the other.
 struct Junction {
   uint32_t ground = 0, air = 0;
-  FlightPorts::Cell cell;
+  GroundAirLinks::Cell cell;
 
   [[nodiscard]] auto key() const { return std::tuple(ground, air); }
   [[nodiscard]] auto order() const { return std::tuple(ground, air, cell.level, cell.z, cell.x); }
@@ -32,9 +32,9 @@ void sort_once(std::vector<Junction>& pairs) {
 
 }  // namespace
 
-FlightPorts::FlightPorts(const WorldData& world, const PathMesh& mesh, const FlightSpace& space,
-                         int32_t workers) {
-  const FlightEnds ends(world, space, mesh.avatar_class);
+GroundAirLinks::GroundAirLinks(const WorldData& world, const PathMesh& mesh,
+                               const FlightSpace& space, int32_t workers) {
+  const FlightEndpoints ends(world, space, mesh.avatar_class);
   std::vector<std::vector<Junction>> of_level(mesh.first.size() - 1);
   parallel_for(of_level.size(), workers, [&](size_t l) {
     std::vector<Junction>& pairs = of_level[l];
@@ -85,30 +85,30 @@ FlightPorts::FlightPorts(const WorldData& world, const PathMesh& mesh, const Fli
   }
 }
 
-std::span<const uint32_t> FlightPorts::air_over(uint32_t ground) const {
+std::span<const uint32_t> GroundAirLinks::air_over(uint32_t ground) const {
   const auto found = std::lower_bound(ground_.begin(), ground_.end(), ground);
   if (found == ground_.end() || *found != ground) return {};
   const auto i = static_cast<size_t>(found - ground_.begin());
   return {air_.data() + first_[i], first_[i + 1] - first_[i]};
 }
 
-bool FlightPorts::joins(uint32_t ground, uint32_t air) const {
+bool GroundAirLinks::joins(uint32_t ground, uint32_t air) const {
   const auto over = air_over(ground);
   return std::binary_search(over.begin(), over.end(), air);
 }
 
-size_t FlightPorts::pair(uint32_t ground, uint32_t air) const {
+size_t GroundAirLinks::pair(uint32_t ground, uint32_t air) const {
   const auto over = air_over(ground);
   return static_cast<size_t>(std::lower_bound(over.begin(), over.end(), air) - over.begin()) +
          static_cast<size_t>(over.data() - air_.data());
 }
 
-FlightPorts::Cell FlightPorts::cell(uint32_t ground, uint32_t air) const {
+GroundAirLinks::Cell GroundAirLinks::cell(uint32_t ground, uint32_t air) const {
   return cell_[pair(ground, air)];
 }
 
-void FlightPorts::search(Part from, Part goal, std::span<const Pair> banned,
-                         Scratch& scratch) const {
+void GroundAirLinks::search(Part from, Part goal, std::span<const Pair> banned,
+                            Scratch& scratch) const {
   scratch.known_ground.assign(ground_.size(), 0);
   scratch.known_air.assign(airs_.size(), 0);
   scratch.steps.assign(1, {from, 0});

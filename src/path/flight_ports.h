@@ -15,12 +15,12 @@ namespace throng {
 
 /// Pairs of a component of the ground (MeshRect::component) and one of the air
 /// (FlightSpace::component) that a take-off joins.
-class FlightPorts {
+class GroundAirLinks {
  public:
-  FlightPorts() = default;
+  GroundAirLinks() = default;
   /// Tries every legal cell of the class. The same for any number of workers. Linear in the cells.
-  FlightPorts(const WorldData& world, const PathMesh& mesh, const FlightSpace& space,
-              int32_t workers);
+  GroundAirLinks(const WorldData& world, const PathMesh& mesh, const FlightSpace& space,
+                 int32_t workers);
 
   /// The air over some ground, ascending.
   [[nodiscard]] std::span<const uint32_t> air_over(uint32_t ground) const;

@@ -24,7 +24,7 @@ double length_of(const std::vector<AirPoint>& way) {
 
 }  // namespace
 
-void FlightPull::pull(const AirView& air, std::vector<AirPoint>& way) {
+void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& way) {
   air_ = air;
   way_ = &way;
   if (way.size() <= 2) return;
@@ -41,7 +41,7 @@ void FlightPull::pull(const AirView& air, std::vector<AirPoint>& way) {
 }
 
 // From each point on to the last one that it sees.
-void FlightPull::shortcut() {
+void FlightStringPuller::shortcut() {
   std::vector<AirPoint>& way = *way_;
   next_.clear();
   next_.push_back(way[0]);
@@ -60,7 +60,7 @@ void FlightPull::shortcut() {
 }
 
 // Two points on the legs of a bend, as far out as they see each other, instead of it.
-void FlightPull::cut_corners() {
+void FlightStringPuller::cut_corners() {
   std::vector<AirPoint>& way = *way_;
   next_.clear();
   next_.push_back(way[0]);
@@ -87,7 +87,7 @@ void FlightPull::cut_corners() {
   way.swap(next_);
 }
 
-void FlightPull::slide(size_t bend) {
+void FlightStringPuller::slide(size_t bend) {
   AirPoint& here = (*way_)[bend];
   const AirPoint before = (*way_)[bend - 1], after = (*way_)[bend + 1];
   for (int axis = 0; axis < 3; ++axis) {

@@ -12,7 +12,7 @@ namespace throng {
 
 /// Leaves out bends that are not needed and slides the others to where the way is shortest, as far
 /// as the lines to their neighbours stay legal. Never makes a way longer. Owns its memory.
-class FlightPull {
+class FlightStringPuller {
  public:
   void pull(const AirView& air, std::vector<AirPoint>& way);
 

@@ -116,7 +116,7 @@ SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to, 
   return SearchResult::kFound;
 }
 
-int32_t FlightSearch::least_around(const AirCube& box) const {
+int32_t FlightSearch::min_around(const AirCube& box) const {
   if (!large_) return 1;
   const auto off = [&](AirPoint p) {
     return std::max({box.x - p.x, p.x - (box.x + box.side), box.y - p.y, p.y - (box.y + box.side),
@@ -205,7 +205,7 @@ void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& way) const {
 void FlightSearch::open(uint32_t node) {
   const AirCube& box = air_->cube(nodes_[node].box);
   air_->for_neighbours(
-      box, [&](uint32_t next) { reach(node, next); }, least_around(box));
+      box, [&](uint32_t next) { reach(node, next); }, min_around(box));
 }
 
 void FlightSearch::reach(uint32_t from, uint32_t box) {

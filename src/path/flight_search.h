@@ -31,7 +31,7 @@ class FlightSearch {
  private:
   SearchResult search(AirPoint from, uint32_t start, uint64_t max_nodes,
                       const std::atomic<bool>* cancel, std::vector<AirPoint>& way);
-  [[nodiscard]] int32_t least_around(const AirCube& box) const;
+  [[nodiscard]] int32_t min_around(const AirCube& box) const;
   struct Node {
     AirPoint point;       // where the way enters the box
     double length = 0;    // to there

@@ -143,7 +143,7 @@ Place FlowPoints::next(LiveGround& of, const Place& place) const {
   int missed = 0;
   for (const Point* p = best; p->next != kNoPoint && missed < kPatience;) {
     p = &points_[p->next];
-    if (leg_cost(ground.mesh, from, p->stop) <= (total - p->cost) * (1 + 1e-9)) {
+    if (segment_cost(ground.mesh, from, p->stop) <= (total - p->cost) * (1 + 1e-9)) {
       best = p;
       missed = 0;
     } else {

@@ -26,8 +26,8 @@ void list_candidates(const PathMesh& mesh, const std::vector<std::vector<SeenBlo
   }
 }
 
-WayGraph look_around(const PathMesh& mesh, int32_t workers, const Context& context,
-                     HubLabels& out) {
+PathGraph look_around(const PathMesh& mesh, int32_t workers, const Context& context,
+                      HubLabels& out) {
   const size_t count = mesh.corner_count();
   std::vector<std::vector<SeenBlock>> blocks(count);  // of each corner
   std::vector<std::vector<SeenCorner>> seen(count);
@@ -57,7 +57,7 @@ WayGraph look_around(const PathMesh& mesh, int32_t workers, const Context& conte
   std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
     return a.from != b.from ? a.from < b.from : a.to < b.to;
   });
-  WayGraph graph;
+  PathGraph graph;
   graph.first.assign(count + 1, 0);
   for (size_t i = 0; i < pairs.size(); ++i) {
     if (i > 0 && pairs[i].from == pairs[i - 1].from && pairs[i].to == pairs[i - 1].to) continue;
@@ -72,15 +72,15 @@ WayGraph look_around(const PathMesh& mesh, int32_t workers, const Context& conte
 
 Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& context) {
   HubLabels out;
-  const WayGraph graph = look_around(mesh, workers, context, out);
+  const PathGraph graph = look_around(mesh, workers, context, out);
   if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
   constexpr uint64_t kSamples = 256;
   auto labels = label_graph(graph, kSamples, workers, context);
   if (!labels) return labels.error();
   static_cast<TwoHopLabels&>(out) = std::move(*labels);
-  constexpr uint64_t kMostEntries = uint64_t{1} << 25;  // 320 MiB
+  constexpr uint64_t kMaxEntries = uint64_t{1} << 25;  // 320 MiB
   if (mesh.block_side == kSmallBlock)
-    out.by_block = build_block_labels(mesh, out, workers, kMostEntries);
+    out.by_block = build_block_labels(mesh, out, workers, kMaxEntries);
   if (out.by_block.first.empty()) out.by_middle = build_middle_labels(mesh, out, workers);
   return out;
 }

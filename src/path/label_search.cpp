@@ -12,7 +12,7 @@ namespace throng {
 namespace {
 
 constexpr float kFarthest = 3e38f;
-constexpr double kMostLonger = 1.02;  // of ways by middles
+constexpr double kMaxLonger = 1.02;  // of ways by middles
 // Sums of two or three floats of up to 2^20 cells; what is as short within their error stays.
 constexpr float kSlack = 0.25f;  // cells
 
@@ -130,7 +130,7 @@ SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, 
 
 // The way by the middles of the ends' blocks, pulled taut. It is as short as the shortest but where
 // that passes something on another side. False if there is none, or if it cannot be proved to be no
-// longer than `kMostLonger` times the shortest; `length` is then still that of a way.
+// longer than `kMaxLonger` times the shortest; `length` is then still that of a way.
 bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                              const Stop& to, std::vector<uint32_t>& corners, double& length) {
   const MiddleLabels& middles = labels.by_middle;
@@ -138,23 +138,23 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   const uint32_t a = block_of(mesh, from), b = block_of(mesh, to);
   const Meeting best = meet(middles.of(a), middles.of(b));
   if (!(best.length < kFarthest)) return false;
-  const WayPoint from_middle{in_cells(middle_of(mesh, from.rect, a)), from.rect};
-  const WayPoint to_middle{in_cells(middle_of(mesh, to.rect, b)), to.rect};
+  const Waypoint from_middle{in_cells(middle_of(mesh, from.rect, a)), from.rect};
+  const Waypoint to_middle{in_cells(middle_of(mesh, to.rect, b)), to.rect};
   labels.walk(middles.trail[middles.first[a] + best.first],
               middles.trail[middles.first[b] + best.last], corners);
   way_.assign({{start, from.rect}, from_middle});
-  for (const uint32_t c : corners) way_.push_back(way_point(mesh, c));
+  for (const uint32_t c : corners) way_.push_back(waypoint(mesh, c));
   way_.insert(way_.end(), {to_middle, {goal, to.rect}});
   if (!pull_.pull(mesh, way_, corners, length)) return false;
   // No way is shorter than that between two middles less the ends' distances from them.
   const auto is_proved = [&](float between, double off) {
     const double least = between - off;
-    return length <= kMostLonger * std::max(least - kSlack, distance(start, goal));
+    return length <= kMaxLonger * std::max(least - kSlack, distance(start, goal));
   };
   const SeenMiddle own_a{a, distance(start, from_middle.at)};
   const SeenMiddle own_b{b, distance(goal, to_middle.at)};
   if (is_proved(best.length, own_a.distance + own_b.distance)) return true;
-  const auto at = [&](uint32_t corner) { return way_point(mesh, corner).at; };
+  const auto at = [&](uint32_t corner) { return waypoint(mesh, corner).at; };
   const SeenMiddle behind_a =
       middle_behind(mesh, from, corners.empty() ? goal : at(corners.front()), own_a);
   const SeenMiddle behind_b =

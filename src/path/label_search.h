@@ -50,8 +50,8 @@ class LabelSearch {
   void trace(const HubLabels& labels, const Best& best, std::vector<uint32_t>& corners) const;
 
   Sight sight_;
-  Puller pull_;
-  std::vector<WayPoint> way_;
+  StringPuller pull_;
+  std::vector<Waypoint> way_;
   std::vector<Turn> start_, goal_;
   std::vector<Reach> reach_;      // per hub
   std::vector<float> from_, to_;  // to each candidate of the ends' blocks

@@ -12,8 +12,8 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kMostGrazed = 64;  // corners past which one leg is led
-constexpr double kGrazes = 0.02;     // cells
+constexpr int32_t kMaxGrazed = 64;  // corners past which one leg is led
+constexpr double kGrazes = 0.02;    // cells
 
 bool is_same(GroundPoint a, GroundPoint b) { return a.x == b.x && a.z == b.z; }
 
@@ -32,18 +32,18 @@ double distance(const CellCorner& corner, GroundPoint from, GroundPoint to) {
 
 }  // namespace
 
-bool LegWalker::walk(const Stop& from, const std::vector<uint32_t>& corners, GroundPoint to,
-                     std::vector<Stop>& stops) {
+bool SegmentWalker::walk(const Stop& from, const std::vector<uint32_t>& corners, GroundPoint to,
+                         std::vector<Stop>& stops) {
   stops.clear();
   stops.push_back(from);
   for (const uint32_t c : corners) {
-    if (!leg(beside(mesh_->corners[c]), kMostGrazed, stops)) return false;
+    if (!segment(beside(mesh_->corners[c]), kMaxGrazed, stops)) return false;
   }
-  return leg(to, kMostGrazed, stops);
+  return segment(to, kMaxGrazed, stops);
 }
 
 // Adds the stops after the last one up to `to`.
-bool LegWalker::leg(GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
+bool SegmentWalker::segment(GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
   const Stop from = stops.back();
   const uint32_t rect = mesh_ray(*mesh_, from.rect, from.at, to);
   if (rect != kNoRect && rect != kUnsure) {
@@ -61,17 +61,17 @@ bool LegWalker::leg(GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
   if (depth == 0) return false;
   const auto past = grazed(level, from.at, to);
   if (!past || is_same(*past, from.at) || is_same(*past, to)) {
-    return slip_by(level, from.at, to, stops) && leg(to, depth - 1, stops);
+    return slip_by(level, from.at, to, stops) && segment(to, depth - 1, stops);
   }
-  return leg(*past, depth / 2, stops) && leg(to, depth - 1, stops);
+  return segment(*past, depth / 2, stops) && segment(to, depth - 1, stops);
 }
 
 // Adds stops a unit beside the corner at which the leg ends, on whichever sides the body gets on
 // from. Between two cells on which it may stand the ground may rise by more than a step: nothing
 // is missing there, and who comes to the end of such a rise has to go around it, from one side of
 // one point to the other.
-bool LegWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
-                        std::vector<Stop>& stops) {
+bool SegmentWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
+                            std::vector<Stop>& stops) {
   GroundLevel end = level;
   const WalkStop stop = walk_far(ground_, end, from, to, mesh_->step);
   // Both ends of the border that stops it, or the corner that does.
@@ -89,11 +89,11 @@ bool LegWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint 
     const size_t before = stops.size();
     for (size_t a = 0; a < 4; ++a) {
       stops.resize(before);
-      if (!leg(quadrant(corner, a), 0, stops)) continue;
+      if (!segment(quadrant(corner, a), 0, stops)) continue;
       if (gets_past(corner, stops.back(), to)) return true;
       for (const size_t b : {(a + 1) % 4, (a + 3) % 4}) {
         stops.resize(before + 1);
-        if (!leg(quadrant(corner, b), 0, stops)) continue;
+        if (!segment(quadrant(corner, b), 0, stops)) continue;
         if (gets_past(corner, stops.back(), to)) return true;
       }
     }
@@ -103,7 +103,7 @@ bool LegWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint 
 }
 
 // Does a straight way from a stop lead out of the four cells around a corner, or to its end?
-bool LegWalker::gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const {
+bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const {
   GroundLevel level =
       ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
   const WalkStop stop = walk_far(ground_, level, from.at, to, mesh_->step);
@@ -114,8 +114,8 @@ bool LegWalker::gets_past(const CellCorner& corner, const Stop& from, GroundPoin
 }
 
 // The point beside the corner of the first cell in the way, if the leg just grazes it.
-std::optional<GroundPoint> LegWalker::grazed(GroundLevel level, GroundPoint from,
-                                             GroundPoint to) const {
+std::optional<GroundPoint> SegmentWalker::grazed(GroundLevel level, GroundPoint from,
+                                                 GroundPoint to) const {
   const double fx = static_cast<double>(from.x) / kUnitsPerCell;
   const double fz = static_cast<double>(from.z) / kUnitsPerCell;
   const double dx = static_cast<double>(to.x) / kUnitsPerCell - fx;

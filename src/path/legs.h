@@ -18,16 +18,16 @@ struct CellCorner {
 
 /// Walks from `from` by way of the corners to `to`, a unit beside each corner, and past every other
 /// corner that a leg would graze. False if a leg is blocked for another reason.
-class LegWalker {
+class SegmentWalker {
  public:
-  LegWalker(const WorldData& world, const PathMesh& mesh)
+  SegmentWalker(const WorldData& world, const PathMesh& mesh)
       : ground_{world, mesh.avatar_class}, mesh_(&mesh) {}
 
   bool walk(const Stop& from, const std::vector<uint32_t>& corners, GroundPoint to,
             std::vector<Stop>& stops);
 
  private:
-  bool leg(GroundPoint to, int32_t depth, std::vector<Stop>& stops);
+  bool segment(GroundPoint to, int32_t depth, std::vector<Stop>& stops);
   std::optional<GroundPoint> grazed(GroundLevel level, GroundPoint from, GroundPoint to) const;
   bool slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
                std::vector<Stop>& stops);

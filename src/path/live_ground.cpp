@@ -35,13 +35,13 @@ void LiveGround::State::give(Path& path) {
     if (i == 0) continue;
     length += distance_of(way[i - 1].at, way[i].at);
     cost += cost_to(mesh, way[i - 1], way[i]);
-    if (way[i].jump > 0) path.jumps.push_back(static_cast<uint32_t>(i));
+    if (way[i].off_mesh_link > 0) path.off_mesh_links.push_back(static_cast<uint32_t>(i));
   }
   path.length = length * world.summary.cell;
   path.cost = cost * world.summary.cell;
 }
 
-Obstacle LiveGround::State::in_the_way() {
+Obstacle LiveGround::State::blocker() {
   const LiveLevel* level = mesh.level(way.back().level);
   const WalkStop stop = walk_far(mesh.ground(), level, way.back().at, to.at, mesh.step());
   if (stop.arrived) return Obstacle::kGap;  // under or over the goal
@@ -105,22 +105,24 @@ Result<ChangeId> LiveGround::add_area(const Prism& prism, uint8_t kind) {
   return state_->mesh.add(std::move(change));
 }
 
-Result<ChangeId> LiveGround::add_jump(const Jump& jump) {
+Result<ChangeId> LiveGround::add_off_mesh_link(const OffMeshLink& off_mesh_link) {
   State& s = *state_;
   LiveStop from, to;
-  if (!s.locate(jump.from, from) || !s.locate(jump.to, to)) {
+  if (!s.locate(off_mesh_link.from, from) || !s.locate(off_mesh_link.to, to)) {
     return Error{Errc::kBadInput,
                  std::string("jump: it must lead from a place of the class to ") + "another"};
   }
   const double cell = s.mesh.world().summary.cell;
   const double length = distance_of(from.at, to.at);
-  if (!std::isfinite(jump.cost) || !(jump.cost > 0) || jump.cost < length * cell - 1e-6) {
+  if (!std::isfinite(off_mesh_link.cost) || !(off_mesh_link.cost > 0) ||
+      off_mesh_link.cost < length * cell - 1e-6) {
     return Error{Errc::kBadInput, "jump: its cost must be above 0 and at least its length"};
   }
   const ChangeId id = s.mesh.add({});
-  const double cost = std::max(jump.cost / cell, length);
-  s.mesh.add_jump(from.level, {id, from.at, to.at, to.level, cost});
-  if (jump.both_ways) s.mesh.add_jump(to.level, {id, to.at, from.at, from.level, cost});
+  const double cost = std::max(off_mesh_link.cost / cell, length);
+  s.mesh.add_off_mesh_link(from.level, {id, from.at, to.at, to.level, cost});
+  if (off_mesh_link.both_ways)
+    s.mesh.add_off_mesh_link(to.level, {id, to.at, from.at, from.level, cost});
   return id;
 }
 
@@ -161,15 +163,15 @@ bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   reset(path);
   if (!s.searching) return true;
   const LiveSearch::State result = s.search.advance(s.mesh, max_nodes);
-  path.nodes = s.search.looked_at();
-  path.end = PathEnd::kGaveUp;
+  path.nodes = s.search.expanded();
+  path.end = PathEnd::kBudgetExhausted;
   if (result == LiveSearch::State::kSearching) return false;
   s.searching = false;
   path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
   s.search.way(s.mesh, s.way);
   s.straight.draw(s.mesh, s.way);
   s.give(path);
-  if (path.end == PathEnd::kUnreachable) path.obstacle = s.in_the_way();
+  if (path.end == PathEnd::kUnreachable) path.obstacle = s.blocker();
   return true;
 }
 
@@ -181,7 +183,7 @@ void LiveGround::find(const Place& from, const Place& to, Path& path, const Sear
   }
   constexpr uint64_t kSlice = 64;
   reset(path);
-  path.end = PathEnd::kGaveUp;
+  path.end = PathEnd::kBudgetExhausted;
   for (uint64_t left = budget.max_nodes; left > 0 && !*budget.cancel;) {
     const uint64_t slice = std::min(left, kSlice);
     if (advance(slice, path)) return;

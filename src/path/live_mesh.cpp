@@ -45,18 +45,18 @@ LiveMesh::LiveMesh(const LiveMesh& other)
       step_(other.step_),
       area_cost_(other.area_cost_),
       slope_factor_(other.slope_factor_),
-      least_factor_(other.least_factor_),
+      min_factor_(other.min_factor_),
       plain_(other.plain_),
       levels_(other.levels_.size()),  // made again where they are asked for
       changes_(other.changes_),
       changes_of_tile_(other.changes_of_tile_),
-      jumps_(other.jumps_),
-      idle_jumps_(other.idle_jumps_) {}
+      off_mesh_links_(other.off_mesh_links_),
+      idle_links_(other.idle_links_) {}
 
 void LiveMesh::set_area_cost(uint8_t kind, double cost) {
   ++version_;
   area_cost_[kind] = cost;
-  least_factor_ = *std::min_element(area_cost_.begin(), area_cost_.end());
+  min_factor_ = *std::min_element(area_cost_.begin(), area_cost_.end());
   plain_ = config_.slope_cost == 0 &&
            std::all_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c == 1; });
 }
@@ -86,10 +86,11 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
   if (change.active != active) {
     change.active = active;
     for (const int64_t tile : change.tiles) forget(tile);
-    for (const uint32_t level : change.levels) switch_jumps(id, level, active);
+    for (const uint32_t level : change.levels) switch_links(id, level, active);
   }
   if (remove) {
-    std::erase_if(idle_jumps_, [&](const auto& jump) { return jump.second.change == id; });
+    std::erase_if(idle_links_,
+                  [&](const auto& off_mesh_link) { return off_mesh_link.second.change == id; });
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
     change = Change{};  // Its id is never used again, its memory is given back.
     change.active = false;
@@ -98,36 +99,38 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
   return true;
 }
 
-void LiveMesh::add_jump(uint32_t level, const JumpEnd& jump) {
-  changes_[jump.change - 1].levels.push_back(level);
-  jumps_[level].push_back(jump);
+void LiveMesh::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link) {
+  changes_[off_mesh_link.change - 1].levels.push_back(level);
+  off_mesh_links_[level].push_back(off_mesh_link);
   ++version_;
 }
 
-const std::vector<LiveMesh::JumpEnd>& LiveMesh::jumps_from(uint32_t level) const {
-  static const std::vector<JumpEnd> none;
-  const auto found = jumps_.find(level);
-  return found == jumps_.end() ? none : found->second;
+const std::vector<LiveMesh::OffMeshLinkEnd>& LiveMesh::links_from(uint32_t level) const {
+  static const std::vector<OffMeshLinkEnd> none;
+  const auto found = off_mesh_links_.find(level);
+  return found == off_mesh_links_.end() ? none : found->second;
 }
 
-void LiveMesh::switch_jumps(ChangeId change, uint32_t level, bool active) {
+void LiveMesh::switch_links(ChangeId change, uint32_t level, bool active) {
   ++version_;
-  std::vector<JumpEnd>& here = jumps_[level];
+  std::vector<OffMeshLinkEnd>& here = off_mesh_links_[level];
   if (active) {
-    for (const auto& [of_level, jump] : idle_jumps_) {
-      if (of_level == level && jump.change == change) here.push_back(jump);
+    for (const auto& [of_level, off_mesh_link] : idle_links_) {
+      if (of_level == level && off_mesh_link.change == change) here.push_back(off_mesh_link);
     }
-    std::erase_if(idle_jumps_, [&](const auto& idle) {
+    std::erase_if(idle_links_, [&](const auto& idle) {
       return idle.first == level && idle.second.change == change;
     });
     // In the order in which they were made: ways must not tell what was switched when.
-    std::stable_sort(here.begin(), here.end(),
-                     [](const JumpEnd& a, const JumpEnd& b) { return a.change < b.change; });
+    std::stable_sort(
+        here.begin(), here.end(),
+        [](const OffMeshLinkEnd& a, const OffMeshLinkEnd& b) { return a.change < b.change; });
   } else {
-    for (const JumpEnd& jump : here) {
-      if (jump.change == change) idle_jumps_.emplace_back(level, jump);
+    for (const OffMeshLinkEnd& off_mesh_link : here) {
+      if (off_mesh_link.change == change) idle_links_.emplace_back(level, off_mesh_link);
     }
-    std::erase_if(here, [&](const JumpEnd& jump) { return jump.change == change; });
+    std::erase_if(
+        here, [&](const OffMeshLinkEnd& off_mesh_link) { return off_mesh_link.change == change; });
   }
 }
 
@@ -198,8 +201,8 @@ void LiveMesh::take_obstacles(LiveLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || change.is_area) continue;
-    const CellRows taken =
-        taken_cells(floor, avatar, change.solid.prism, change.solid.triangles, level.legal.data());
+    const CellRows taken = blocked_cells(floor, avatar, change.solid.prism, change.solid.triangles,
+                                         level.legal.data());
     for (size_t z = 0; z < taken.size(); ++z) level.legal[z] &= ~taken[z];
   }
 }

@@ -68,7 +68,7 @@ class LiveMesh {
     return area_cost_[rect.area] * slope_factor_[rect.slope];
   }
   [[nodiscard]] bool is_plain() const { return plain_; }  // a metre costs 1 everywhere
-  [[nodiscard]] double least_factor() const { return least_factor_; }
+  [[nodiscard]] double min_factor() const { return min_factor_; }
   void set_area_cost(uint8_t kind, double cost);
 
   struct Change {
@@ -81,16 +81,16 @@ class LiveMesh {
   };
   ChangeId add(Change change);
   /// A jump, one way, as long as the change is active.
-  struct JumpEnd {
+  struct OffMeshLinkEnd {
     ChangeId change = 0;
     GroundPoint from, to;
     uint32_t to_level = 0;
     double cost = 0;  // [cells]
   };
   /// From a level. [jumps of a change are added right after it]
-  void add_jump(uint32_t level, const JumpEnd& jump);
+  void add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link);
   /// Those that are active now.
-  [[nodiscard]] const std::vector<JumpEnd>& jumps_from(uint32_t level) const;
+  [[nodiscard]] const std::vector<OffMeshLinkEnd>& links_from(uint32_t level) const;
   /// Can the class stand at a point of a level now? In which rectangle?
   bool stand(uint32_t level, GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
@@ -121,7 +121,7 @@ class LiveMesh {
   void cut(LiveLevel& level) const;
   void find_portals(LiveLevel& level);
   void forget(int64_t tile);
-  void switch_jumps(ChangeId change, uint32_t level, bool active);
+  void switch_links(ChangeId change, uint32_t level, bool active);
   [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const LiveLevel& level) const;
   [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const LiveLevel& level) const;
 
@@ -130,14 +130,15 @@ class LiveMesh {
   int32_t step_ = 0;  // [mm]
   std::array<double, 64> area_cost_{};
   std::array<double, kSlopeClasses> slope_factor_{};
-  double least_factor_ = 1;
+  double min_factor_ = 1;
   bool plain_ = true;
   uint64_t version_ = 0;
   std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not asked for
   std::vector<Change> changes_;
   std::unordered_map<int64_t, std::vector<ChangeId>> changes_of_tile_;  // in order; looked up only
-  std::unordered_map<uint32_t, std::vector<JumpEnd>> jumps_;            // active ones, by level
-  std::vector<std::pair<uint32_t, JumpEnd>> idle_jumps_;                // of changes switched off
+  std::unordered_map<uint32_t, std::vector<OffMeshLinkEnd>>
+      off_mesh_links_;                                           // active ones, by level
+  std::vector<std::pair<uint32_t, OffMeshLinkEnd>> idle_links_;  // of changes switched off
 };
 
 }  // namespace throng

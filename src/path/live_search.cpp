@@ -65,7 +65,7 @@ void LiveNodes::grow() {
   }
 }
 
-double leg_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
+double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   const LiveLevel* level = mesh.level(from.level);
   const double length = distance_of(from.at, to.at);
   double cost = 0, t = 0;
@@ -101,12 +101,12 @@ void WayStraightener::leave_out(LiveMesh& mesh, std::vector<LiveStop>& way) {
   if (way.size() < 3) return;
   before_.assign(way.size(), 0);
   for (size_t i = 1; i < way.size(); ++i)
-    before_[i] = before_[i - 1] + leg_cost(mesh, way[i - 1], way[i]);
+    before_[i] = before_[i - 1] + segment_cost(mesh, way[i - 1], way[i]);
   size_t kept = 1;
   for (size_t i = 0; i + 1 < before_.size();) {
     const LiveStop from = way[kept - 1];
     const auto reaches = [&](size_t to) {
-      return leg_cost(mesh, from, way[to]) <= (before_[to] - before_[i]) * kSlack;
+      return segment_cost(mesh, from, way[to]) <= (before_[to] - before_[i]) * kSlack;
     };
     size_t good = i + 1, stride = 1;
     while (good + stride < before_.size() && reaches(good + stride)) {
@@ -129,7 +129,7 @@ void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
   for (int sweep = 0; sweep < kSweeps && way.size() > 2; ++sweep) {
     for (size_t i = 1; i + 1 < way.size(); ++i) {
       const LiveStop a = way[i - 1], b = way[i + 1];
-      double best = leg_cost(mesh, a, way[i]) + leg_cost(mesh, way[i], b);
+      double best = segment_cost(mesh, a, way[i]) + segment_cost(mesh, way[i], b);
       const auto ux = static_cast<double>(b.at.x - a.at.x);
       const auto uz = static_cast<double>(b.at.z - a.at.z);
       const double size = ux * ux + uz * uz;
@@ -152,7 +152,7 @@ void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
         if (!walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
         const LiveStop moved{level->ground.world_level,
                              level->rect_at(at.cell_x() & 63, at.cell_z() & 63), at};
-        const double cost = leg_cost(mesh, a, moved) + leg_cost(mesh, moved, b);
+        const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
         if (cost >= best) continue;
         best = cost;
         way[i] = moved;
@@ -164,7 +164,8 @@ void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
 }
 
 void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
-  if (std::none_of(way.begin(), way.end(), [](const LiveStop& stop) { return stop.jump > 0; }))
+  if (std::none_of(way.begin(), way.end(),
+                   [](const LiveStop& stop) { return stop.off_mesh_link > 0; }))
     return draw_walk(mesh, way);
   whole_.clear();
   walk_.clear();
@@ -174,7 +175,7 @@ void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
     walk_.clear();
   };
   for (const LiveStop& stop : way) {
-    if (stop.jump > 0) end_walk();
+    if (stop.off_mesh_link > 0) end_walk();
     walk_.push_back(stop);
   }
   end_walk();
@@ -185,7 +186,7 @@ void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to)
   to_ = to;
   nodes_.clear();
   open_.clear();
-  looked_at_ = 0;
+  expanded_ = 0;
   goal_ = UINT32_MAX;
   nearest_ = 0;
   nearest_distance_ = kNever;
@@ -200,7 +201,7 @@ LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent
   node.cost = cost;
   node.parent = parent;
   const double left = distance_of(stop.at, to_.at);
-  open_.push_back({cost + left * mesh.least_factor(), index});
+  open_.push_back({cost + left * mesh.min_factor(), index});
   // Equal bounds go by number: the same on every machine.
   std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
     return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
@@ -231,12 +232,14 @@ void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t i
   nearest_stop_ = {stop.level, stop.rect, at};
 }
 
-void LiveSearch::push_jumps(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor) {
-  for (const LiveMesh::JumpEnd& jump : mesh.jumps_from(node.stop.level)) {
-    LiveStop from{node.stop.level, 0, jump.from}, to{jump.to_level, 0, jump.to, jump.cost};
+void LiveSearch::push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor) {
+  for (const LiveMesh::OffMeshLinkEnd& off_mesh_link : mesh.links_from(node.stop.level)) {
+    LiveStop from{node.stop.level, 0, off_mesh_link.from},
+        to{off_mesh_link.to_level, 0, off_mesh_link.to, off_mesh_link.cost};
     if (!mesh.stand(from.level, from.at, from.rect) || from.rect != node.stop.rect) continue;
     if (!mesh.stand(to.level, to.at, to.rect)) continue;
-    const double cost = node.cost + distance_of(node.stop.at, from.at) * factor + jump.cost;
+    const double cost =
+        node.cost + distance_of(node.stop.at, from.at) * factor + off_mesh_link.cost;
     if (LiveNode* there = push(mesh, to, index, cost)) there->jumped_from = from.at;
   }
 }
@@ -251,7 +254,7 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most) {
     open_.pop_back();
     if (nodes_.nodes[index].done) continue;
     ++n;
-    ++looked_at_;
+    ++expanded_;
     nodes_.nodes[index].done = true;
     const LiveNode node = nodes_.nodes[index];
     if (same(node.stop, to_)) {
@@ -264,7 +267,7 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most) {
     const double factor = mesh.factor(level.rects[node.stop.rect]);
     if (node.stop.level == to_.level && node.stop.rect == to_.rect)
       push(mesh, to_, index, node.cost + away * factor);
-    push_jumps(mesh, node, index, factor);
+    push_links(mesh, node, index, factor);
     for_portal_points(mesh, node.stop, [&](GroundPoint side, const LiveStop& beyond) {
       const double beyond_factor = mesh.factor(mesh.level(beyond.level)->rects[beyond.rect]);
       if (!std::isfinite(beyond_factor)) return;
@@ -286,7 +289,7 @@ void LiveSearch::way(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
     if (node.parent == UINT32_MAX) break;
     // A stop beyond a portal was reached straight across from its other side.
     const LiveStop& before = nodes_.nodes[node.parent].stop;
-    if (node.stop.jump > 0) {
+    if (node.stop.off_mesh_link > 0) {
       stops.push_back({before.level, before.rect, node.jumped_from});
       continue;
     }

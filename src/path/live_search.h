@@ -15,7 +15,7 @@ struct LiveStop {
   uint32_t level = 0;  // of the world
   uint16_t rect = 0;
   GroundPoint at;
-  double jump = 0;  // cost of the jump that leads there, 0 if a leg does [cells]
+  double off_mesh_link = 0;  // cost of the jump that leads there, 0 if a leg does [cells]
 };
 
 /// A point that the search has reached.
@@ -47,11 +47,11 @@ void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
 
 /// Cost of the straight leg between two stops, in cells; infinite if it is no legal move to that
 /// very level.
-double leg_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
+double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
 
-/// As leg_cost, or the cost of the jump.
+/// As segment_cost, or the cost of the jump.
 inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
-  return to.jump > 0 ? to.jump : leg_cost(mesh, from, to);
+  return to.off_mesh_link > 0 ? to.off_mesh_link : segment_cost(mesh, from, to);
 }
 
 /// Leaves out stops where a straight leg is no dearer, and draws bends straighter; jumps stay. Owns
@@ -78,7 +78,7 @@ class LiveSearch {
   State advance(LiveMesh& mesh, uint64_t most);
   /// The way to the goal, or to the point met that is nearest to it; not yet straight.
   void way(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
-  [[nodiscard]] uint64_t looked_at() const { return looked_at_; }
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
   struct Open {
@@ -87,7 +87,7 @@ class LiveSearch {
   };
   /// The node that now comes from `parent`, or null if what is known is no dearer.
   LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
-  void push_jumps(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
+  void push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
 
   void note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index);
 
@@ -96,7 +96,7 @@ class LiveSearch {
   std::vector<Open> open_;
   uint32_t nearest_ = 0, goal_ = UINT32_MAX;
   double nearest_distance_ = 0;
-  uint64_t looked_at_ = 0;
+  uint64_t expanded_ = 0;
 };
 
 inline double distance_of(GroundPoint a, GroundPoint b) {  // [cells]

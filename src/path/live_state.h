@@ -18,7 +18,7 @@ struct LiveGround::State {
   /// Of `way`.
   void give(Path& path);
   /// What a straight line from its end to the goal meets first.
-  Obstacle in_the_way();
+  Obstacle blocker();
 
   LiveMesh mesh;
   LiveSearch search;

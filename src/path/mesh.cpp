@@ -307,8 +307,8 @@ Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_
   }
   gather_corner_rects(mesh);
   find_components(mesh);
-  constexpr uint32_t kMostBlocks = 1 << 17;
-  if (cut_into_blocks(mesh, kSmallBlock) > kMostBlocks) cut_into_blocks(mesh, kLargeBlock);
+  constexpr uint32_t kMaxBlocks = 1 << 17;
+  if (cut_into_blocks(mesh, kSmallBlock) > kMaxBlocks) cut_into_blocks(mesh, kLargeBlock);
   return mesh;
 }
 

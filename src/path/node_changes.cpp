@@ -137,7 +137,7 @@ void NodeChanges::take_tiles(const Solid& solid, double around, Change& change,
             legal[static_cast<size_t>(k)] |= row;
         }
         const CellRows rows =
-            taken_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
+            blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
         if (std::any_of(rows.begin(), rows.end(), [](uint64_t row) { return row != 0; })) {
           change.tiles.push_back({patch, rows});
         }
@@ -283,22 +283,22 @@ void NodeChanges::update() {
   replaced_.clear();
   touched_.clear();
   place_of_touched_.clear();
-  std::vector<TakenTile> tiles;
-  std::vector<TakenSquare> squares;
+  std::vector<BlockedTile> tiles;
+  std::vector<BlockedSquare> squares;
   std::unordered_map<uint32_t, uint16_t> pieces;
   std::unordered_map<uint32_t, size_t> place;
   for (const Change& change : changes_) {
     if (!change.active) continue;
-    for (const TakenTile& tile : change.tiles) {
+    for (const BlockedTile& tile : change.tiles) {
       const auto [at, is_new] = place.try_emplace(tile.patch, tiles.size());
       if (is_new) tiles.push_back({tile.patch, {}});
       for (size_t k = 0; k < 64; ++k) tiles[at->second].rows[k] |= tile.rows[k];
     }
     squares.insert(squares.end(), change.squares.begin(), change.squares.end());
-    for (const TakenPieces& taken : change.pieces) pieces[taken.portal] |= taken.pieces;
+    for (const BlockedPieces& taken : change.pieces) pieces[taken.portal] |= taken.pieces;
   }
   std::sort(tiles.begin(), tiles.end(),
-            [](const TakenTile& a, const TakenTile& b) { return a.patch < b.patch; });
+            [](const BlockedTile& a, const BlockedTile& b) { return a.patch < b.patch; });
   std::sort(squares.begin(), squares.end());
   squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
   cut_tiles(tiles);
@@ -339,8 +339,8 @@ void NodeChanges::cut(uint32_t block, const Taken& taken) {
   cut_patches_.push_back(whole.patch);
 }
 
-void NodeChanges::cut_tiles(const std::vector<TakenTile>& taken) {
-  for (const TakenTile& tile : taken) {
+void NodeChanges::cut_tiles(const std::vector<BlockedTile>& taken) {
+  for (const BlockedTile& tile : taken) {
     const auto blocks = mesh_->blocks_of(tile.patch);
     const auto some = [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t side = 64u >> level;
@@ -359,7 +359,7 @@ void NodeChanges::cut_tiles(const std::vector<TakenTile>& taken) {
   }
 }
 
-void NodeChanges::cut_squares(const std::vector<TakenSquare>& taken) {
+void NodeChanges::cut_squares(const std::vector<BlockedSquare>& taken) {
   for (size_t i = 0; i < taken.size();) {
     size_t j = i;
     while (j < taken.size() && taken[j].block == taken[i].block) ++j;
@@ -369,7 +369,7 @@ void NodeChanges::cut_squares(const std::vector<TakenSquare>& taken) {
     cut(taken[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t up = 2u * (finest - level);
       const uint32_t first = quad_order(s, t, level) << up, count = 1u << up;
-      const auto before = [](const TakenSquare& square, uint32_t order) {
+      const auto before = [](const BlockedSquare& square, uint32_t order) {
         return square.order < order;
       };
       const auto found = std::lower_bound(begin, end, first, before) -
@@ -595,8 +595,9 @@ uint64_t NodeChanges::bytes() const {
                     portal_of_.size() + cut_blocks_.size()) *
                        sizeof(uint32_t);
   for (const Change& change : changes_) {
-    bytes += change.tiles.size() * sizeof(TakenTile) + change.squares.size() * sizeof(TakenSquare) +
-             change.pieces.size() * sizeof(TakenPieces);
+    bytes += change.tiles.size() * sizeof(BlockedTile) +
+             change.squares.size() * sizeof(BlockedSquare) +
+             change.pieces.size() * sizeof(BlockedPieces);
   }
   return bytes;
 }

@@ -62,26 +62,26 @@ class NodeChanges {
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  struct TakenTile {
+  struct BlockedTile {
     uint32_t patch = 0;
     CellRows rows{};
   };
   // Of a curved block: a square of its finest ones, in the order of a quadtree.
-  struct TakenSquare {
+  struct BlockedSquare {
     uint32_t block = 0, order = 0;
-    friend auto operator<=>(const TakenSquare&, const TakenSquare&) = default;
+    friend auto operator<=>(const BlockedSquare&, const BlockedSquare&) = default;
   };
   // Of a portal that leads through the air: those of its 16 pieces that are not free; a leap has
   // one.
-  struct TakenPieces {
+  struct BlockedPieces {
     uint32_t portal = 0;
     uint16_t pieces = 0;
   };
   struct Change {
     bool active = true, removed = false;
-    std::vector<TakenTile> tiles;
-    std::vector<TakenSquare> squares;
-    std::vector<TakenPieces> pieces;
+    std::vector<BlockedTile> tiles;
+    std::vector<BlockedSquare> squares;
+    std::vector<BlockedPieces> pieces;
   };
 
   void take_tiles(const Solid& solid, double around, Change& change,
@@ -91,8 +91,8 @@ class NodeChanges {
   [[nodiscard]] bool is_taken_over(const Solid& solid, const NodePortal& portal, double from,
                                    double to) const;
   [[nodiscard]] uint8_t finest_level(const NodeBlock& block) const;
-  void cut_tiles(const std::vector<TakenTile>& taken);
-  void cut_squares(const std::vector<TakenSquare>& taken);
+  void cut_tiles(const std::vector<BlockedTile>& taken);
+  void cut_squares(const std::vector<BlockedSquare>& taken);
   template <class Taken>
   void cut(uint32_t block, const Taken& taken);
   void join_parts(uint32_t block);

@@ -36,7 +36,7 @@ NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patche
     const auto patch = static_cast<uint32_t>(p);
     const auto blocks = static_cast<uint32_t>(mesh.blocks_of(patch).size());
     for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + blocks; ++b) {
-      for_each_way_in(view, b, [&](const Crossing& crossing) {
+      for_each_arc_in(view, b, [&](const Crossing& crossing) {
         boxes_[p].add(position(view, ends_of(view, crossing).in));
       });
     }

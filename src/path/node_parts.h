@@ -77,7 +77,7 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
   }
   std::make_heap(near.begin(), near.end());
   const auto look_at = [&](uint32_t block) {
-    for_each_way_in(view, block, [&](const Crossing& crossing) {
+    for_each_arc_in(view, block, [&](const Crossing& crossing) {
       const auto [out, in] = ends_of(view, crossing);
       if (!reached.holds(part_of_[view.base_of(out.block)]) || is_out(in.block)) return;
       const double away = length(goal - position(view, in));

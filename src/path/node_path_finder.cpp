@@ -24,7 +24,7 @@ namespace throng {
 namespace {
 
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
-constexpr size_t kMostPieces = 4096;
+constexpr size_t kMaxPieces = 4096;
 constexpr size_t kManyCrossings = size_t{1} << 15;  // Fewer are looked at in no time.
 // Places no farther apart than so many sides of a district may be joined by a way that looks at so
 // few crossings that it need not be led over gates.
@@ -46,9 +46,9 @@ struct NodePathFinder::Shared {
       const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
       longest_leap = std::max(longest_leap, length(b - a));
     }
-    if (config.districts && mesh.portals().size() >= kManyCrossings) {
+    if (config.overlay && mesh.portals().size() >= kManyCrossings) {
       const NodeView baked(mesh);
-      districts = Districts(mesh, PieceCost(baked, slope_cost), config.workers);
+      overlay = Overlay(mesh, PieceCost(baked, slope_cost), config.workers);
     }
   }
   Shared(const Shared&) = delete;  // `squares` may point to `mesh`
@@ -57,7 +57,7 @@ struct NodePathFinder::Shared {
   double slope_cost;
   BlockSquares squares;
   NodeParts parts;
-  Districts districts;
+  Overlay overlay;
   double longest_leap = 0;  // [m]
   double seconds = 0;
 };
@@ -69,7 +69,7 @@ struct NodePathFinder::Scratch {
         view(of.mesh, &changes),
         cost(view, of.slope_cost),
         search(view, cost),
-        far_search(view, cost, of.districts),
+        far_search(view, cost, of.overlay),
         pull(view, cost) {}
   explicit Scratch(const Shared& of)
       : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_leap)) {}
@@ -82,10 +82,10 @@ struct NodePathFinder::Scratch {
   NodeView view;
   PieceCost cost;
   NodeSearch search;
-  DistrictSearch far_search;
+  OverlaySearch far_search;
   NodeParts::Reached reached;
-  NodePocket pockets;
-  NodePull pull;
+  NodeIsland islands;
+  NodeStringPuller pull;
   std::vector<Crossing> way;
   std::optional<BlockPoint> nearest;  // where `way` ends, if not where its last crossing leads to
   std::vector<PulledCrossing> pulled;
@@ -118,18 +118,18 @@ SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
 PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
                                       const SearchBudget& budget, NodePath& path) {
   const auto look = [&](auto&& searched, PathEnd end) {
-    path.nodes += searched.looked_at();
+    path.nodes += searched.expanded();
     path.searched_cost = searched.cost();
     return end;
   };
-  if (!shared.districts.empty()) {
+  if (!shared.overlay.empty()) {
     const double far = length(position(view, to) - position(view, from));
-    if (far <= kNearSides * shared.districts.tiers().front().side) {
+    if (far <= kNearSides * shared.overlay.overlay_levels().front().side) {
       SearchBudget near = what_is_left(budget, path);
       near.max_nodes = std::min(near.max_nodes, kNearCrossings);
       const PathEnd end = look(search, search.find(from, to, near, way));
       const bool stopped = budget.cancel != nullptr && *budget.cancel;
-      if (end != PathEnd::kGaveUp || stopped) return end;
+      if (end != PathEnd::kBudgetExhausted || stopped) return end;
     }
     const SearchBudget left = what_is_left(budget, path);
     const PathEnd end = look(far_search, far_search.find(from, to, left, search, way));
@@ -142,7 +142,7 @@ PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& 
 PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoint& to,
                                           const SearchBudget& budget, NodePath& path) {
   const PathEnd end = search.find(from, to, what_is_left(budget, path), way);
-  path.nodes += search.looked_at();
+  path.nodes += search.expanded();
   path.searched_cost = search.cost();
   return end;
 }
@@ -151,14 +151,14 @@ PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoi
 // too.
 PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const BlockPoint& to,
                                               const SearchBudget& budget, NodePath& path) {
-  constexpr int kMostPockets = 16;
+  constexpr int kMaxPockets = 16;
   const Vec3d goal = position(view, to);
-  if (pockets.close(view, from.block, to.block, NodePocket::Way::kOut))
+  if (islands.close(view, from.block, to.block, NodeIsland::Way::kOut))
     return find_all(from, to, budget, path);
-  for (int i = 0; i < kMostPockets; ++i) {
-    const auto is_cut_off = [&](uint32_t block) { return pockets.holds(block); };
+  for (int i = 0; i < kMaxPockets; ++i) {
+    const auto is_cut_off = [&](uint32_t block) { return islands.holds(block); };
     const BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
-    if (pockets.close(view, last.block, from.block, NodePocket::Way::kIn)) continue;
+    if (islands.close(view, last.block, from.block, NodeIsland::Way::kIn)) continue;
     const PathEnd end = find(from, last, budget, path);
     if (end == PathEnd::kReached) nearest = last;
     if (end != PathEnd::kUnreachable) return end;
@@ -170,9 +170,9 @@ PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const Bloc
 namespace {
 
 // A way as it is told: points along the surface, links, corridor.
-class Teller {
+class PathBuilder {
  public:
-  Teller(const NodeView& view, const PieceCost& cost, double spacing, NodePath& path)
+  PathBuilder(const NodeView& view, const PieceCost& cost, double spacing, NodePath& path)
       : view_(view), cost_(cost), spacing_(spacing), path_(path) {}
 
   void begin(const BlockPoint& at) {
@@ -193,7 +193,7 @@ class Teller {
     const auto piece = cost_(last_.block, last_.s, last_.t, from_at, to.s, to.t, to_at);
     path_.cost += piece.cost;
     const auto parts = static_cast<size_t>(
-        std::clamp(std::ceil(piece.length / spacing_), 1.0, static_cast<double>(kMostPieces)));
+        std::clamp(std::ceil(piece.length / spacing_), 1.0, static_cast<double>(kMaxPieces)));
     for (size_t k = 1; k <= parts; ++k) {
       const double f = static_cast<double>(k) / static_cast<double>(parts);
       const auto along = [&](double a, double b) { return k == parts ? b : a + (b - a) * f; };
@@ -445,7 +445,7 @@ NodePathSummary NodePathFinder::summary() const {
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
           .bytes = mesh.bytes() + shared_->squares.bytes() + shared_->parts.bytes() +
-                   shared_->districts.bytes(),
+                   shared_->overlay.bytes(),
           .seconds = shared_->seconds};
 }
 
@@ -601,14 +601,14 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
   } else {
     // Parts tell who is reached if nothing is in the way.
-    scratch.pockets.clear(view);
+    scratch.islands.clear(view);
     reachable =
-        reachable && !scratch.pockets.close(view, goal.block, start.block, NodePocket::Way::kIn);
+        reachable && !scratch.islands.close(view, goal.block, start.block, NodeIsland::Way::kIn);
     path.end = reachable ? scratch.find(start, goal, budget, path)
                          : scratch.find_nearest(start, goal, budget, path);
     reachable = reachable && path.end == PathEnd::kReached;
   }
-  if (path.end == PathEnd::kGaveUp) return;
+  if (path.end == PathEnd::kBudgetExhausted) return;
   BlockPoint last = goal;
   if (!reachable) {
     last = scratch.way.empty() ? start : ends_of(view, scratch.way.back()).in;
@@ -618,14 +618,14 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     path.obstacle = obstacle_towards(view, last, to.feet);
   }
   scratch.pull.pull(start, last, scratch.way, scratch.pulled);
-  Teller teller(view, scratch.cost, spacing, path);
-  teller.begin(start);
+  PathBuilder path_builder(view, scratch.cost, spacing, path);
+  path_builder.begin(start);
   for (const PulledCrossing& crossing : scratch.pulled) {
-    teller.go_on(crossing.out);
-    teller.cross(crossing);
+    path_builder.go_on(crossing.out);
+    path_builder.cross(crossing);
   }
-  teller.go_on(last);
-  teller.end();
+  path_builder.go_on(last);
+  path_builder.end();
 }
 
 }  // namespace throng

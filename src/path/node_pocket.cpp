@@ -4,7 +4,7 @@
 
 namespace throng {
 
-void NodePocket::clear(const NodeView& view) {
+void NodeIsland::clear(const NodeView& view) {
   marks_.resize(view.block_count());
   if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
     marks_.clear();
@@ -12,7 +12,7 @@ void NodePocket::clear(const NodeView& view) {
   }
 }
 
-bool NodePocket::close(const NodeView& view, uint32_t from, uint32_t other, Way way) {
+bool NodeIsland::close(const NodeView& view, uint32_t from, uint32_t other, Way way) {
   if (from == other) return false;
   if (holds(from)) return true;
   marks_[from] = query_;
@@ -29,11 +29,11 @@ bool NodePocket::close(const NodeView& view, uint32_t from, uint32_t other, Way 
       found_.push_back(next);
     };
     if (way == Way::kOut) {
-      for_each_way_out(view, block, look);
+      for_each_arc_out(view, block, look);
     } else {
-      for_each_way_in(view, block, look);
+      for_each_arc_in(view, block, look);
     }
-    if (!meets && found_.size() <= kMost) continue;
+    if (!meets && found_.size() <= kMax) continue;
     for (const uint32_t open : found_) marks_[open] = 0;
     return false;
   }

@@ -11,10 +11,10 @@
 /// Blocks that are cut off from the rest by what has been put up.
 namespace throng {
 
-class NodePocket {
+class NodeIsland {
  public:
   enum class Way { kOut, kIn };
-  static constexpr size_t kMost = 4096;  ///< Blocks that are looked at.
+  static constexpr size_t kMax = 4096;  ///< Blocks that are looked at.
 
   /// Before the first of a query.
   void clear(const NodeView& view);

@@ -11,7 +11,7 @@
 namespace throng {
 namespace {
 
-constexpr int kMostRounds = 48;
+constexpr int kMaxRounds = 48;
 constexpr double kLittle = 1e-4;  // Of the whole cost: a round that gains less is the last.
 
 // Where the shortest way from p to q over the line from a to b meets it, 0 at a and 1 at b.
@@ -27,7 +27,7 @@ double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
 
 }  // namespace
 
-void NodePull::place(PulledCrossing& crossing, double along) const {
+void NodeStringPuller::place(PulledCrossing& crossing, double along) const {
   const NodePortal portal = view_->portal(crossing.crossing.portal);
   const bool backward = crossing.crossing.backward;
   const auto on = [&](const std::array<double, 4>& line, uint32_t block) {
@@ -42,9 +42,9 @@ void NodePull::place(PulledCrossing& crossing, double along) const {
   crossing.in_at = view_->surface(crossing.in.block).at(crossing.in.s, crossing.in.t);
 }
 
-double NodePull::cost_around(const std::vector<PulledCrossing>& way, size_t i,
-                             const PulledCrossing& crossing, const BlockPoint& from, Vec3d from_at,
-                             const BlockPoint& to, Vec3d to_at) const {
+double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& way, size_t i,
+                                     const PulledCrossing& crossing, const BlockPoint& from,
+                                     Vec3d from_at, const BlockPoint& to, Vec3d to_at) const {
   const BlockPoint& before = i > 0 ? way[i - 1].in : from;
   const BlockPoint& after = i + 1 < way.size() ? way[i + 1].out : to;
   return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? way[i - 1].in_at : from_at,
@@ -56,8 +56,9 @@ double NodePull::cost_around(const std::vector<PulledCrossing>& way, size_t i,
              .cost;
 }
 
-void NodePull::pull(const BlockPoint& from, const BlockPoint& to, const std::vector<Crossing>& way,
-                    std::vector<PulledCrossing>& out) const {
+void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
+                            const std::vector<Crossing>& way,
+                            std::vector<PulledCrossing>& out) const {
   out.clear();
   for (const Crossing& crossing : way) {
     out.emplace_back().crossing = crossing;
@@ -70,7 +71,7 @@ void NodePull::pull(const BlockPoint& from, const BlockPoint& to, const std::vec
   if (out.empty()) return;
   const Vec3d from_at = view_->surface(from.block).at(from.s, from.t);
   const Vec3d to_at = view_->surface(to.block).at(to.s, to.t);
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     double gained = 0, all = 0;
     for (size_t k = 0; k < out.size(); ++k) {
       const size_t i = round % 2 == 0 ? k : out.size() - 1 - k;

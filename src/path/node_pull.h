@@ -20,9 +20,9 @@ struct PulledCrossing {
   bool settled = false;  ///< It and its neighbours lie where they did when it was last looked at.
 };
 
-class NodePull {
+class NodeStringPuller {
  public:
-  NodePull(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
+  NodeStringPuller(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
 
   /// Moves where the way goes through each portal, as long as that makes it cheaper.
   void pull(const BlockPoint& from, const BlockPoint& to, const std::vector<Crossing>& way,

@@ -54,13 +54,13 @@ void NodeSearch::push(double estimate, uint32_t state) {
 }
 
 void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent) {
-  for_each_way_out(*view_, from.block, [&](const Crossing& crossing) {
+  for_each_arc_out(*view_, from.block, [&](const Crossing& crossing) {
     const uint32_t id = 2 * crossing.portal + (crossing.backward ? 1 : 0);
     if ((id ^ 1) == parent || id == parent) return;
     const PortalSides sides = view_->sides(crossing.portal);
     const uint32_t into = crossing.backward ? sides.a : sides.b;
-    if (within_.district_of_block != nullptr &&
-        within_.district_of_block[view_->base_of(into)] != within_.district) {
+    if (within_.overlay_cell_of_block != nullptr &&
+        within_.overlay_cell_of_block[view_->base_of(into)] != within_.overlay_cell) {
       return;
     }
     State& state = states_[id];
@@ -79,9 +79,9 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
 }
 
 PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                         std::vector<Crossing>& way, const KeepIn& within, double less_than) {
+                         std::vector<Crossing>& way, const SearchBounds& within, double less_than) {
   way.clear();
-  looked_at_ = 0;
+  expanded_ = 0;
   within_ = within;
   states_.resize(2 * view_->portal_count());
   if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
@@ -121,7 +121,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
     State& state = states_[top.state];
     if (state.closed) continue;
     state.closed = true;
-    if (budget.is_spent(++looked_at_)) return PathEnd::kGaveUp;
+    if (budget.is_spent(++expanded_)) return PathEnd::kBudgetExhausted;
     const BlockPoint in = ends_of(*view_, {top.state / 2, (top.state & 1) != 0}).in;
     const Vec3d at = state.at;
     const double cost = state.cost;

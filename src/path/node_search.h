@@ -33,9 +33,9 @@ class PieceCost {
 };
 
 /// Which district each block of the mesh lies in, and to which one a search is kept.
-struct KeepIn {
-  const uint32_t* district_of_block = nullptr;  ///< Null: it may go anywhere.
-  uint32_t district = 0;
+struct SearchBounds {
+  const uint32_t* overlay_cell_of_block = nullptr;  ///< Null: it may go anywhere.
+  uint32_t overlay_cell = 0;
 };
 
 class NodeSearch {
@@ -45,10 +45,10 @@ class NodeSearch {
   /// Fills `way` with the portals from one to the other, or, if none leads there, to the crossing
   /// that comes nearest. Ways that cost `less_than` and more are not looked for.
   PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-               std::vector<Crossing>& way, const KeepIn& within = {},
+               std::vector<Crossing>& way, const SearchBounds& within = {},
                double less_than = std::numeric_limits<double>::infinity());
   [[nodiscard]] double cost() const { return best_cost_; }
-  [[nodiscard]] uint64_t looked_at() const { return looked_at_; }
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
   // A portal has two states: where it leads to b and where it leads to a.
@@ -70,13 +70,13 @@ class NodeSearch {
 
   const NodeView* view_;
   const PieceCost* cost_;
-  KeepIn within_;
+  SearchBounds within_;
   Paged<State> states_;
   std::vector<Open> open_;
   uint32_t query_ = 0;
   Vec3d goal_;
   double best_cost_ = 0;
-  uint64_t looked_at_ = 0;
+  uint64_t expanded_ = 0;
 };
 
 }  // namespace throng

@@ -98,7 +98,7 @@ inline Vec3d position(const NodeView& view, const BlockPoint& at) {
 
 /// Calls visit(crossing) for each way out of a block.
 template <class Visit>
-void for_each_way_out(const NodeView& view, uint32_t block, Visit visit) {
+void for_each_arc_out(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {
     const PortalSides portal = view.sides(p);
     const bool backward = portal.a != block;
@@ -108,7 +108,7 @@ void for_each_way_out(const NodeView& view, uint32_t block, Visit visit) {
 
 /// Calls visit(crossing) for each way into a block.
 template <class Visit>
-void for_each_way_in(const NodeView& view, uint32_t block, Visit visit) {
+void for_each_arc_in(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {
     const PortalSides portal = view.sides(p);
     const bool backward = portal.a == block;

@@ -106,7 +106,7 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
     auto zones = build_zone_graph(*world.data(), shared->mesh, config.workers, context);
     if (!zones) return zones.error();
     shared->zones = std::move(*zones);
-    summary.gates = shared->zones->gates.size();
+    summary.entrances = shared->zones->entrances.size();
     summary.labels = shared->zones->label_count();
     summary.bytes += shared->zones->bytes();
   }
@@ -152,7 +152,7 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
   }
   // Both are of one component: a way there is, even if none can be drawn over corners.
   const auto is_drawn = [&] {
-    LegWalker walker(world, mesh);
+    SegmentWalker walker(world, mesh);
     return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&
            scratch_->stops.back().rect == goal.rect;
   };
@@ -163,7 +163,7 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
     path.nodes += scratch_->portals.expanded();
   }
   if (result != SearchResult::kFound) {
-    path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kGaveUp;
+    path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kBudgetExhausted;
     return;
   }
   path.end = PathEnd::kReached;

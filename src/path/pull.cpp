@@ -18,7 +18,7 @@ double missing_side(const MeshCorner& corner, double dx, double dz) {
 }
 
 // True if the way over `at` goes around what is missing there, or straight on.
-bool holds(const PathMesh& mesh, CellPoint before, const WayPoint& at, CellPoint after) {
+bool holds(const PathMesh& mesh, CellPoint before, const Waypoint& at, CellPoint after) {
   if (at.corner == kNoCorner) return false;
   const double turn = cross(before, at.at, after);
   const double in_x = at.at.x - before.x, in_z = at.at.z - before.z;
@@ -30,7 +30,7 @@ bool holds(const PathMesh& mesh, CellPoint before, const WayPoint& at, CellPoint
 }
 
 // Where a ray may begin or end: the point of a rectangle, or the one beside a corner.
-Stop stop_of(const PathMesh& mesh, const WayPoint& p) {
+Stop stop_of(const PathMesh& mesh, const Waypoint& p) {
   const auto inside = [&](uint32_t rect, GroundPoint at) {
     const MeshRect& r = mesh.rects[rect];
     return Stop{
@@ -52,13 +52,13 @@ Stop stop_of(const PathMesh& mesh, const WayPoint& p) {
 }
 
 // Does a line along (dx, dz) that begins or ends there keep out of the cell missing there, if any?
-bool keeps_out(const PathMesh& mesh, const WayPoint& p, double dx, double dz) {
+bool keeps_out(const PathMesh& mesh, const Waypoint& p, double dx, double dz) {
   return p.corner == kNoCorner || is_taut(mesh.corners[p.corner], dx, dz);
 }
 
 // Rays go from and to points beside corners. Where the line between the corners themselves runs
 // into a cell that is missing at one of them the ray may still pass by, and tells nothing.
-bool see_each_other(const PathMesh& mesh, const WayPoint& a, const WayPoint& b) {
+bool see_each_other(const PathMesh& mesh, const Waypoint& a, const Waypoint& b) {
   const double dx = b.at.x - a.at.x, dz = b.at.z - a.at.z;
   if (!keeps_out(mesh, a, dx, dz) || !keeps_out(mesh, b, dx, dz)) return false;
   const Stop from = stop_of(mesh, a), to = stop_of(mesh, b);
@@ -70,11 +70,11 @@ bool see_each_other(const PathMesh& mesh, const WayPoint& a, const WayPoint& b) 
 
 // Most points at which the way need not bend will be pulled from, between the points beside them:
 // what lies there is asked for before any of it is waited for.
-void Puller::ask_for_bends(const PathMesh& mesh, const std::vector<WayPoint>& way) {
+void StringPuller::ask_for_bends(const PathMesh& mesh, const std::vector<Waypoint>& way) {
   asked_.clear();
   for (size_t i = 1; i + 1 < way.size(); ++i) {
     if (way[i].corner != kNoCorner) continue;
-    for (const WayPoint& beside : {way[i - 1], way[i + 1]}) {
+    for (const Waypoint& beside : {way[i - 1], way[i + 1]}) {
       if (beside.corner == kNoCorner) continue;
       asked_.push_back(beside.corner);
       prefetch(mesh.corner_rects.data() + mesh.corners[beside.corner].first_rect);
@@ -92,17 +92,17 @@ void Puller::ask_for_bends(const PathMesh& mesh, const std::vector<WayPoint>& wa
 
 // What stands in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
 // chain of corners that a string over these two sides is caught by when it is pulled.
-void Puller::wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& over,
-                  const WayPoint& to) {
+void StringPuller::wrap(const PathMesh& mesh, const Waypoint& from, const Waypoint& over,
+                        const Waypoint& to) {
   chain_.clear();
   // A ray is cheaper than looking into the triangle, and most often nothing stands there.
   if (see_each_other(mesh, from, to)) return;
   const double turn = cross(from.at, over.at, to.at);
   if (std::fabs(turn) <= kSame) return;
   const double side = turn > 0 ? 1 : -1;  // of `to`, seen along the first side
-  WayPoint at = from;
-  constexpr size_t kMost = 1000;  // corners: rounding must not wrap for ever
-  while (chain_.size() < kMost) {
+  Waypoint at = from;
+  constexpr size_t kMax = 1000;  // corners: rounding must not wrap for ever
+  while (chain_.size() < kMax) {
     const CellPoint right = side > 0 ? over.at : to.at, left = side > 0 ? to.at : over.at;
     sight_.look_into(mesh, at.corner, at.rect, at.at, right, left);
     // The first one that a line from `at` meets as it swings from `over` to `to`.
@@ -127,14 +127,14 @@ void Puller::wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& ov
       first = &seen;
     }
     if (first == nullptr) return;
-    at = way_point(mesh, first->corner);
+    at = waypoint(mesh, first->corner);
     chain_.push_back(at);
     if (cross(at.at, over.at, to.at) * side <= kSame) return;
   }
 }
 
-bool Puller::pull(const PathMesh& mesh, const std::vector<WayPoint>& way,
-                  std::vector<uint32_t>& corners, double& length) {
+bool StringPuller::pull(const PathMesh& mesh, const std::vector<Waypoint>& way,
+                        std::vector<uint32_t>& corners, double& length) {
   ask_for_bends(mesh, way);
   corners.clear();
   taut_.assign(1, way.front());
@@ -143,13 +143,13 @@ bool Puller::pull(const PathMesh& mesh, const std::vector<WayPoint>& way,
   size_t turns = 1000 + 100 * way.size();
   while (!ahead_.empty()) {
     if (turns-- == 0) return false;
-    const WayPoint next = ahead_.back();
+    const Waypoint next = ahead_.back();
     ahead_.pop_back();
     if (taut_.size() == 1 || holds(mesh, taut_[taut_.size() - 2].at, taut_.back(), next.at)) {
       taut_.push_back(next);
       continue;
     }
-    const WayPoint over = taut_.back();
+    const Waypoint over = taut_.back();
     taut_.pop_back();
     wrap(mesh, taut_.back(), over, next);
     ahead_.push_back(next);

@@ -12,36 +12,36 @@
 namespace throng {
 
 /// A point that a way leads over: a corner, or anywhere in a rectangle.
-struct WayPoint {
+struct Waypoint {
   CellPoint at;
   uint32_t rect = kNoRect;      // of which it is a point, if it is no corner
   uint32_t corner = kNoCorner;  // none: the way need not bend here
 };
 
 /// The way point of a corner.
-inline WayPoint way_point(const PathMesh& mesh, uint32_t corner) {
+inline Waypoint waypoint(const PathMesh& mesh, uint32_t corner) {
   const MeshCorner& at = mesh.corners[corner];
   return {{double(at.x), double(at.z)}, kNoRect, corner};
 }
 
 /// Makes ways that are pieced together the shortest of their kind: those that pass every obstacle
 /// on the same side. Owns its memory: one per thread.
-class Puller {
+class StringPuller {
  public:
   /// Of a way whose points see each other one after the other, the corners that it bends at once it
   /// is taut, ends left out; `length` in cells. False if it does not come to an end.
-  bool pull(const PathMesh& mesh, const std::vector<WayPoint>& way, std::vector<uint32_t>& corners,
+  bool pull(const PathMesh& mesh, const std::vector<Waypoint>& way, std::vector<uint32_t>& corners,
             double& length);
 
  private:
-  void ask_for_bends(const PathMesh& mesh, const std::vector<WayPoint>& way);
-  void wrap(const PathMesh& mesh, const WayPoint& from, const WayPoint& over, const WayPoint& to);
+  void ask_for_bends(const PathMesh& mesh, const std::vector<Waypoint>& way);
+  void wrap(const PathMesh& mesh, const Waypoint& from, const Waypoint& over, const Waypoint& to);
 
   Sight sight_;
-  std::vector<WayPoint> taut_;   // the way so far
-  std::vector<WayPoint> ahead_;  // the rest of it, the next one last
+  std::vector<Waypoint> taut_;   // the way so far
+  std::vector<Waypoint> ahead_;  // the rest of it, the next one last
   std::vector<uint32_t> asked_;  // corners that are asked for
-  std::vector<WayPoint> chain_;  // what stands between two points
+  std::vector<Waypoint> chain_;  // what stands between two points
 };
 
 }  // namespace throng

@@ -11,7 +11,7 @@ namespace throng {
 inline void reset(Path& path) {
   path.end = PathEnd::kNoPlace;
   path.points.clear();
-  path.jumps.clear();
+  path.off_mesh_links.clear();
   path.length = path.cost = 0;
   path.obstacle = Obstacle::kNone;
   path.nodes = 0;

@@ -32,7 +32,7 @@ inline bool is_taut(const MeshCorner& corner, double dx, double dz) {
 class Sight {
  public:
   /// From now on, looks into rectangles [first, last) only.
-  void keep_to(uint32_t first_rect, uint32_t last_rect) {
+  void stay_within(uint32_t first_rect, uint32_t last_rect) {
     first_rect_ = first_rect;
     last_rect_ = last_rect;
   }

@@ -75,8 +75,8 @@ std::pair<int32_t, int32_t> rise_at(const LevelView& view, int32_t x, int32_t z)
               [&](int32_t k) { return view.has(x, k); })};
 }
 
-CellRows taken_cells(const TileFloor& floor, const AvatarClass& avatar, const Prism& prism,
-                     std::span<const std::array<Vec3d, 3>> triangles, const uint64_t* legal) {
+CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const Prism& prism,
+                       std::span<const std::array<Vec3d, 3>> triangles, const uint64_t* legal) {
   CellRows taken{};
   const double reach = taking_reach(avatar);
   const auto [first_x, last_x, first_z, last_z] = cells_near(floor, prism.corners, reach);

@@ -46,7 +46,7 @@ inline double taking_reach(const AvatarClass& avatar) { return avatar.radius + k
 /// Those of the `legal` cells on which a body of the class, wherever it stands on them, could touch
 /// the prism (its polygon convex, of any number of corners), its bottom above the step; with
 /// triangles, one of those that the prism encloses.
-CellRows taken_cells(const TileFloor& floor, const AvatarClass& avatar, const Prism& prism,
-                     std::span<const std::array<Vec3d, 3>> triangles, const uint64_t* legal);
+CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const Prism& prism,
+                       std::span<const std::array<Vec3d, 3>> triangles, const uint64_t* legal);
 
 }  // namespace throng

@@ -17,7 +17,7 @@ namespace throng {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
-using Edges = std::vector<std::vector<WayGraph::Edge>>;
+using Edges = std::vector<std::vector<PathGraph::Edge>>;
 
 // Joins every two of `count` nodes by their ways' lengths, without the ways that lead over another.
 void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_of,
@@ -45,14 +45,14 @@ void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_
 }
 
 // Of edges between the same nodes, the shortest.
-WayGraph to_graph(Edges& edges) {
-  WayGraph graph;
+PathGraph to_graph(Edges& edges) {
+  PathGraph graph;
   graph.first.push_back(0);
   for (auto& of_node : edges) {
     std::sort(of_node.begin(), of_node.end(), [](const auto& a, const auto& b) {
       return a.to != b.to ? a.to < b.to : a.length < b.length;
     });
-    for (const WayGraph::Edge& edge : of_node) {
+    for (const PathGraph::Edge& edge : of_node) {
       if (graph.edges.size() > graph.first.back() && graph.edges.back().to == edge.to) continue;
       graph.edges.push_back(edge);
     }
@@ -61,25 +61,26 @@ WayGraph to_graph(Edges& edges) {
   return graph;
 }
 
-WayGraph gate_graph(const ZoneGraph& graph, const Territory& territory,
-                    const std::vector<uint32_t>& zones) {
-  Edges edges(territory.gates.size());
+PathGraph entrance_graph(const ZoneGraph& graph, const OverlayCell& zone_cell,
+                         const std::vector<uint32_t>& zones) {
+  Edges edges(zone_cell.entrances.size());
   for (const uint32_t zone : zones) {
-    const ZoneWays& ways = graph.zones[zone];
+    const ZonePaths& ways = graph.zones[zone];
     const size_t corners = ways.corners.size();
     add_edges(
-        ways.gates.size(),
+        ways.entrances.size(),
         [&](size_t a, size_t b) {
           return std::min(ways.length[ways.row(corners + a) + b],
                           ways.length[ways.row(corners + b) + a]);
         },
-        [&](size_t gate) { return territory.place_of_gate(ways.gates[gate]); }, edges);
+        [&](size_t entrance) { return zone_cell.place_of_entrance(ways.entrances[entrance]); },
+        edges);
   }
   return to_graph(edges);
 }
 
 // The first node of what holds together with each.
-std::vector<uint32_t> components_of(const WayGraph& graph) {
+std::vector<uint32_t> components_of(const PathGraph& graph) {
   std::vector<uint32_t> of(graph.count(), UINT32_MAX), queue;
   for (uint32_t node = 0; node < of.size(); ++node) {
     if (of[node] != UINT32_MAX) continue;
@@ -88,7 +89,7 @@ std::vector<uint32_t> components_of(const WayGraph& graph) {
     while (!queue.empty()) {
       const uint32_t at = queue.back();
       queue.pop_back();
-      for (const WayGraph::Edge& edge : graph.of(at)) {
+      for (const PathGraph::Edge& edge : graph.of(at)) {
         if (of[edge.to] != UINT32_MAX) continue;
         of[edge.to] = node;
         queue.push_back(edge.to);
@@ -100,42 +101,43 @@ std::vector<uint32_t> components_of(const WayGraph& graph) {
 
 // Of the gates between two territories that join the same parts of them, one every so many cells of
 // the border is a post. `components` has, for each territory, the part of each gate.
-void choose_posts(const WorldData& world, const std::vector<std::vector<uint32_t>>& components,
-                  ZoneGraph& graph) {
+void choose_boundary_nodes(const WorldData& world,
+                           const std::vector<std::vector<uint32_t>>& components, ZoneGraph& graph) {
   struct Candidate {
-    std::array<uint32_t, 2> territories, parts;
+    std::array<uint32_t, 2> zone_cells, parts;
     double along, across;
-    uint32_t gate;
-    [[nodiscard]] auto key() const { return std::tuple{territories, parts, across}; }
+    uint32_t entrance;
+    [[nodiscard]] auto key() const { return std::tuple{zone_cells, parts, across}; }
   };
   std::vector<Candidate> candidates;
-  for (uint32_t g = 0; g < graph.gates.size(); ++g) {
-    const Gate& gate = graph.gates[g];
-    const uint32_t a = graph.territory_of_zone[gate.zone[0]];
-    const uint32_t b = graph.territory_of_zone[gate.zone[1]];
+  for (uint32_t g = 0; g < graph.entrances.size(); ++g) {
+    const Entrance& entrance = graph.entrances[g];
+    const uint32_t a = graph.cell_of_zone[entrance.zone[0]];
+    const uint32_t b = graph.cell_of_zone[entrance.zone[1]];
     if (a == b) continue;
-    const bool is_upright = gate.at.x == std::floor(gate.at.x);
+    const bool is_upright = entrance.at.x == std::floor(entrance.at.x);
     candidates.push_back({{a, b},
-                          {components[a][graph.territories[a].place_of_gate(g)],
-                           components[b][graph.territories[b].place_of_gate(g)]},
-                          is_upright ? gate.at.z : gate.at.x,
-                          is_upright ? gate.at.x : gate.at.z,
+                          {components[a][graph.zone_cells[a].place_of_entrance(g)],
+                           components[b][graph.zone_cells[b].place_of_entrance(g)]},
+                          is_upright ? entrance.at.z : entrance.at.x,
+                          is_upright ? entrance.at.x : entrance.at.z,
                           g});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& p, const Candidate& q) {
-    return std::tuple{p.key(), p.along, p.gate} < std::tuple{q.key(), q.along, q.gate};
+    return std::tuple{p.key(), p.along, p.entrance} < std::tuple{q.key(), q.along, q.entrance};
   });
   const double apart = world.tiles_per_zone * 64 * 0.15;
   const Candidate* last = nullptr;
   for (const Candidate& c : candidates) {
     if (last != nullptr && last->key() == c.key() && c.along - last->along < apart) continue;
     last = &c;
-    const auto post = static_cast<uint32_t>(graph.post_territories.size());
-    graph.post_territories.push_back(c.territories);
-    for (const uint32_t t : c.territories) {
-      graph.territories[t].posts.push_back(post);
-      graph.territories[t].post_gates.push_back(graph.territories[t].place_of_gate(c.gate));
-      graph.territories[t].post_at.push_back(graph.gates[c.gate].at);
+    const auto boundary_node = static_cast<uint32_t>(graph.boundary_cells.size());
+    graph.boundary_cells.push_back(c.zone_cells);
+    for (const uint32_t t : c.zone_cells) {
+      graph.zone_cells[t].boundary_nodes.push_back(boundary_node);
+      graph.zone_cells[t].boundary_entrances.push_back(
+          graph.zone_cells[t].place_of_entrance(c.entrance));
+      graph.zone_cells[t].boundary_node_at.push_back(graph.entrances[c.entrance].at);
     }
   }
 }
@@ -145,13 +147,13 @@ std::vector<std::vector<uint32_t>> group_zones(const WorldData& world, ZoneGraph
   std::map<std::pair<int32_t, int32_t>, std::vector<uint32_t>> groups;
   for (uint32_t slot = 0; slot < world.slots.size(); ++slot) {
     const format::ZoneEntry& entry = world.slots[slot]->entry;
-    groups[{entry.z() / kTerritoryZones, entry.x() / kTerritoryZones}].push_back(slot);
+    groups[{entry.z() / kZonesPerCell, entry.x() / kZonesPerCell}].push_back(slot);
   }
   std::vector<std::vector<uint32_t>> zones;
-  graph.territory_of_zone.resize(world.slots.size());
+  graph.cell_of_zone.resize(world.slots.size());
   for (auto& [place, members] : groups) {
     for (const uint32_t slot : members)
-      graph.territory_of_zone[slot] = static_cast<uint32_t>(zones.size());
+      graph.cell_of_zone[slot] = static_cast<uint32_t>(zones.size());
     zones.push_back(std::move(members));
   }
   return zones;
@@ -159,25 +161,27 @@ std::vector<std::vector<uint32_t>> group_zones(const WorldData& world, ZoneGraph
 
 }  // namespace
 
-uint32_t Territory::place_of_gate(uint32_t gate) const {
-  return static_cast<uint32_t>(std::lower_bound(gates.begin(), gates.end(), gate) - gates.begin());
+uint32_t OverlayCell::place_of_entrance(uint32_t entrance) const {
+  return static_cast<uint32_t>(std::lower_bound(entrances.begin(), entrances.end(), entrance) -
+                               entrances.begin());
 }
 
 uint64_t ZoneGraph::bytes() const {
-  uint64_t bytes = gates.size() * sizeof(Gate) + post_labels.bytes() +
-                   (territory_of_zone.size() + 2 * post_territories.size()) * sizeof(uint32_t);
-  for (const ZoneWays& ways : zones) bytes += sizeof(ZoneWays) + ways.bytes();
-  for (const Territory& t : territories) {
+  uint64_t bytes = entrances.size() * sizeof(Entrance) + boundary_labels.bytes() +
+                   (cell_of_zone.size() + 2 * boundary_cells.size()) * sizeof(uint32_t);
+  for (const ZonePaths& ways : zones) bytes += sizeof(ZonePaths) + ways.bytes();
+  for (const OverlayCell& t : zone_cells) {
     bytes += t.labels.bytes() +
-             (t.gates.size() + t.posts.size() + t.post_gates.size()) * sizeof(uint32_t) +
-             t.post_at.size() * sizeof(CellPoint);
+             (t.entrances.size() + t.boundary_nodes.size() + t.boundary_entrances.size()) *
+                 sizeof(uint32_t) +
+             t.boundary_node_at.size() * sizeof(CellPoint);
   }
   return bytes;
 }
 
 uint64_t ZoneGraph::label_count() const {
-  uint64_t count = post_labels.labels.size();
-  for (const Territory& t : territories) count += t.labels.labels.size();
+  uint64_t count = boundary_labels.labels.size();
+  for (const OverlayCell& t : zone_cells) count += t.labels.labels.size();
   return count;
 }
 
@@ -185,25 +189,25 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
                                    Context& context) {
   const Error cancelled{Errc::kCancelled, "path: cancelled"};
   ZoneGraph graph;
-  graph.gates = find_gates(world, mesh, zones_of_rects(world, mesh));
+  graph.entrances = find_entrances(world, mesh, zones_of_rects(world, mesh));
   graph.zones.resize(world.slots.size());
   for (size_t slot = 0; slot < graph.zones.size(); ++slot) {
     const uint32_t first = world.slots[slot]->first_level;
     graph.zones[slot].first_rect = mesh.first[first];
     graph.zones[slot].last_rect = mesh.first[first + world.slots[slot]->entry.levels()];
   }
-  for (uint32_t g = 0; g < graph.gates.size(); ++g) {
-    for (const uint32_t zone : graph.gates[g].zone) graph.zones[zone].gates.push_back(g);
+  for (uint32_t g = 0; g < graph.entrances.size(); ++g) {
+    for (const uint32_t zone : graph.entrances[g].zone) graph.zones[zone].entrances.push_back(g);
   }
   std::vector<Sight> sights(static_cast<size_t>(worker_count(workers)));
   std::vector<uint8_t> fits(graph.zones.size(), 1);
   parallel_for_worker(graph.zones.size(), workers, [&](size_t zone, int32_t worker) {
     if (context.cancel) return;
     Sight& sight = sights[static_cast<size_t>(worker)];
-    fits[zone] =
-        find_zone_ways(mesh, graph.gates, static_cast<uint32_t>(zone), sight, graph.zones[zone])
-            ? 1
-            : 0;
+    fits[zone] = find_zone_paths(mesh, graph.entrances, static_cast<uint32_t>(zone), sight,
+                                 graph.zones[zone])
+                     ? 1
+                     : 0;
   });
   if (context.cancel) return cancelled;
   if (const auto bad = std::find(fits.begin(), fits.end(), uint8_t{0}); bad != fits.end()) {
@@ -217,24 +221,24 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
   }
 
   const auto zones = group_zones(world, graph);
-  graph.territories.resize(zones.size());
+  graph.zone_cells.resize(zones.size());
   std::vector<std::vector<uint32_t>> components(zones.size());
   std::vector<Error> errors(zones.size());
   constexpr uint64_t kSamples = 128;
   parallel_for(zones.size(), workers, [&](size_t t) {
-    Territory& territory = graph.territories[t];
+    OverlayCell& zone_cell = graph.zone_cells[t];
     for (const uint32_t zone : zones[t]) {
-      const auto& gates = graph.zones[zone].gates;
-      territory.gates.insert(territory.gates.end(), gates.begin(), gates.end());
+      const auto& entrances = graph.zones[zone].entrances;
+      zone_cell.entrances.insert(zone_cell.entrances.end(), entrances.begin(), entrances.end());
     }
-    std::sort(territory.gates.begin(), territory.gates.end());
-    territory.gates.erase(std::unique(territory.gates.begin(), territory.gates.end()),
-                          territory.gates.end());
-    const WayGraph ways = gate_graph(graph, territory, zones[t]);
+    std::sort(zone_cell.entrances.begin(), zone_cell.entrances.end());
+    zone_cell.entrances.erase(std::unique(zone_cell.entrances.begin(), zone_cell.entrances.end()),
+                              zone_cell.entrances.end());
+    const PathGraph ways = entrance_graph(graph, zone_cell, zones[t]);
     components[t] = components_of(ways);
     auto labels = label_graph(ways, kSamples, 1, context);
     if (labels) {
-      territory.labels = std::move(*labels);
+      zone_cell.labels = std::move(*labels);
     } else {
       errors[t] = labels.error();
     }
@@ -244,21 +248,21 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
     if (error.code != Errc::kOk) return error;
   }
 
-  choose_posts(world, components, graph);
-  Edges edges(graph.post_territories.size());
-  for (const Territory& territory : graph.territories) {
+  choose_boundary_nodes(world, components, graph);
+  Edges edges(graph.boundary_cells.size());
+  for (const OverlayCell& zone_cell : graph.zone_cells) {
     add_edges(
-        territory.posts.size(),
+        zone_cell.boundary_nodes.size(),
         [&](size_t a, size_t b) {
-          return meet(territory.labels.of(territory.post_gates[a]),
-                      territory.labels.of(territory.post_gates[b]))
+          return meet(zone_cell.labels.of(zone_cell.boundary_entrances[a]),
+                      zone_cell.labels.of(zone_cell.boundary_entrances[b]))
               .length;
         },
-        [&](size_t post) { return territory.posts[post]; }, edges);
+        [&](size_t boundary_node) { return zone_cell.boundary_nodes[boundary_node]; }, edges);
   }
   auto labels = label_graph(to_graph(edges), kSamples, workers, context);
   if (!labels) return labels.error();
-  graph.post_labels = std::move(*labels);
+  graph.boundary_labels = std::move(*labels);
   return graph;
 }
 

@@ -16,26 +16,27 @@
 /// between them in labels of posts, a few of the gates of their borders.
 namespace throng {
 
-inline constexpr int32_t kTerritoryZones = 8;  // along a side
+inline constexpr int32_t kZonesPerCell = 8;  // along a side
 
-struct Territory {
-  std::vector<uint32_t> gates;       // of its zones, rising
-  TwoHopLabels labels;               // of places in `gates`: ways inside the territory
-  std::vector<uint32_t> posts;       // on its borders, rising
-  std::vector<uint32_t> post_gates;  // their places in `gates`
-  std::vector<CellPoint> post_at;    // where they are, side by side: a query looks at all of them
+struct OverlayCell {
+  std::vector<uint32_t> entrances;           // of its zones, rising
+  TwoHopLabels labels;                       // of places in `entrances`: ways inside the territory
+  std::vector<uint32_t> boundary_nodes;      // on its borders, rising
+  std::vector<uint32_t> boundary_entrances;  // their places in `entrances`
+  std::vector<CellPoint>
+      boundary_node_at;  // where they are, side by side: a query looks at all of them
 
-  [[nodiscard]] uint32_t place_of_gate(uint32_t gate) const;
+  [[nodiscard]] uint32_t place_of_entrance(uint32_t entrance) const;
 };
 
 struct ZoneGraph {
-  std::vector<Gate> gates;
-  std::vector<ZoneWays> zones;              // per slot of the world
-  std::vector<uint32_t> territory_of_zone;  // per slot
-  std::vector<Territory> territories;
+  std::vector<Entrance> entrances;
+  std::vector<ZonePaths> zones;        // per slot of the world
+  std::vector<uint32_t> cell_of_zone;  // per slot
+  std::vector<OverlayCell> zone_cells;
   // Of each post the territories that it lies between.
-  std::vector<std::array<uint32_t, 2>> post_territories;
-  TwoHopLabels post_labels;  // ways between posts over all territories
+  std::vector<std::array<uint32_t, 2>> boundary_cells;
+  TwoHopLabels boundary_labels;  // ways between posts over all territories
   [[nodiscard]] uint64_t bytes() const;
   [[nodiscard]] uint64_t label_count() const;
 };

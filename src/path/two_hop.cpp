@@ -22,7 +22,7 @@ class Spread {
 
   // Calls visit(node, length, before) in order of length; goes on from a node if it says so.
   template <class Visit>
-  void run(const WayGraph& graph, uint32_t from, Visit visit) {
+  void run(const PathGraph& graph, uint32_t from, Visit visit) {
     heap_.clear();
     touched_.clear();
     relax(from, 0, from);
@@ -32,7 +32,7 @@ class Spread {
       heap_.pop_back();
       if (length > best_[node]) continue;
       if (!visit(node, length, before_[node])) continue;
-      for (const WayGraph::Edge& edge : graph.of(node)) relax(edge.to, length + edge.length, node);
+      for (const PathGraph::Edge& edge : graph.of(node)) relax(edge.to, length + edge.length, node);
     }
     for (const uint32_t node : touched_) best_[node] = kFar;
   }
@@ -58,7 +58,7 @@ class Spread {
 
 // Nodes by how many shortest ways from a sample of nodes lead over them: the more, the better a
 // hub.
-std::vector<uint32_t> order_hubs(const WayGraph& graph, uint64_t samples, int32_t workers) {
+std::vector<uint32_t> order_hubs(const PathGraph& graph, uint64_t samples, int32_t workers) {
   const size_t count = graph.count();
   samples = std::min<uint64_t>(samples, count);
   const auto threads = static_cast<size_t>(worker_count(workers));
@@ -188,7 +188,7 @@ Meeting meet(std::span<const TwoHopLabels::Label> from, std::span<const TwoHopLa
   return best;
 }
 
-Result<TwoHopLabels> label_graph(const WayGraph& graph, uint64_t samples, int32_t workers,
+Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32_t workers,
                                  Context& context) {
   const size_t count = graph.count();
   TwoHopLabels out;

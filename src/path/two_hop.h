@@ -15,7 +15,7 @@
 namespace throng {
 
 /// A graph whose edges can be gone both ways.
-struct WayGraph {
+struct PathGraph {
   struct Edge {
     uint32_t to = 0;
     double length = 0;
@@ -80,7 +80,7 @@ Meeting meet(std::span<const TwoHopLabels::Label> from, std::span<const TwoHopLa
 
 /// Hubs are taken in the order of how many shortest ways from `samples` nodes lead over them. Fails
 /// with kCancelled or kLimit (too many labels). The same for any number of workers.
-Result<TwoHopLabels> label_graph(const WayGraph& graph, uint64_t samples, int32_t workers,
+Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32_t workers,
                                  Context& context);
 
 }  // namespace throng

@@ -28,18 +28,18 @@ bool touch(const WorldData& world, uint32_t a, uint32_t b) {
 
 // The corners of the way to a gate of the zone, the first of which is at `next`. Where they are is
 // asked for, not waited for: place_corners() tells it.
-void add_corners(const PathMesh& mesh, const ZoneWays& ways, uint16_t next, size_t gate,
-                 std::vector<WayPoint>& way) {
+void add_corners(const PathMesh& mesh, const ZonePaths& ways, uint16_t next, size_t entrance,
+                 std::vector<Waypoint>& way) {
   while (next != kStraight) {
     way.push_back({{}, kNoRect, ways.corners[next]});
     prefetch(&mesh.corners[way.back().corner]);
-    next = ways.next[ways.row(next) + gate];
+    next = ways.next[ways.row(next) + entrance];
   }
 }
 
-void place_corners(const PathMesh& mesh, std::vector<WayPoint>& way) {
-  for (WayPoint& point : way) {
-    if (point.corner != kNoCorner) point = way_point(mesh, point.corner);
+void place_corners(const PathMesh& mesh, std::vector<Waypoint>& way) {
+  for (Waypoint& point : way) {
+    if (point.corner != kNoCorner) point = waypoint(mesh, point.corner);
   }
 }
 
@@ -57,64 +57,68 @@ void ZoneSearch::Reached::add(std::span<const TwoHopLabels::Label> labels, uint3
 void ZoneSearch::look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                           const Stop& stop, End& end) {
   end.zone = zone_of(world, mesh, stop.rect);
-  end.territory = graph.territory_of_zone[end.zone];
-  const ZoneWays& ways = graph.zones[end.zone];
-  look_for_gates(mesh, graph.gates, end.zone, ways, stop, sight_, end.length, end.next);
-  const Territory& territory = graph.territories[end.territory];
-  end.hubs.begin(territory.gates.size());
+  end.zone_cell = graph.cell_of_zone[end.zone];
+  const ZonePaths& ways = graph.zones[end.zone];
+  find_entrances_around(mesh, graph.entrances, end.zone, ways, stop, sight_, end.length, end.next);
+  const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
+  end.hubs.begin(zone_cell.entrances.size());
   asked_.clear();
-  for (const uint32_t gate : ways.gates) asked_.push_back(territory.place_of_gate(gate));
-  territory.labels.ask_for(asked_);
+  for (const uint32_t entrance : ways.entrances)
+    asked_.push_back(zone_cell.place_of_entrance(entrance));
+  zone_cell.labels.ask_for(asked_);
   for (uint32_t g = 0; g < asked_.size(); ++g) {
-    if (end.length[g] < kNever) end.hubs.add(territory.labels.of(asked_[g]), g, end.length[g]);
+    if (end.length[g] < kNever) end.hubs.add(zone_cell.labels.of(asked_[g]), g, end.length[g]);
   }
 }
 
 bool ZoneSearch::join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best) {
   best.length = kNever;
-  if (start_.territory == goal_.territory) {
-    const auto hubs = static_cast<uint32_t>(graph.territories[start_.territory].gates.size());
+  if (start_.zone_cell == goal_.zone_cell) {
+    const auto hubs = static_cast<uint32_t>(graph.zone_cells[start_.zone_cell].entrances.size());
     for (uint32_t hub = 0; hub < hubs; ++hub) {
       const float here = start_.hubs.length(hub) + goal_.hubs.length(hub);
       if (here < best.length) best = {here, false, hub, 0, 0};
     }
   }
-  join_posts(graph, from, to, best);
+  join_boundary_nodes(graph, from, to, best);
   return best.length < kNever;
 }
 
 // Finds how far a post of an end's territory is.
-void ZoneSearch::reach_post(const ZoneGraph& graph, End& end, size_t place) {
-  const Territory& territory = graph.territories[end.territory];
-  End::Post& post = end.posts[place];
-  for (const TwoHopLabels::Label& label : territory.labels.of(territory.post_gates[place])) {
+void ZoneSearch::reach_boundary_node(const ZoneGraph& graph, End& end, size_t place) {
+  const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
+  End::BoundaryNode& boundary_node = end.boundary_nodes[place];
+  for (const TwoHopLabels::Label& label :
+       zone_cell.labels.of(zone_cell.boundary_entrances[place])) {
     const float here = end.hubs.length(label.hub) + label.length;
-    if (here < post.length) post = {here, label.hub, post.beyond, post.bound};
+    if (here < boundary_node.length)
+      boundary_node = {here, label.hub, boundary_node.beyond, boundary_node.bound};
   }
 }
 
 // Ways that leave the territory. No way over a post is shorter than the straight lines to it and
 // from it, so of all posts only those count that lie in the ellipse of a way that is known.
-void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best) {
+void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, const Stop& to,
+                                     Best& best) {
   const auto list = [&](End& end, CellPoint here, CellPoint there) {
-    const Territory& territory = graph.territories[end.territory];
-    end.posts.resize(territory.posts.size());
-    for (size_t p = 0; p < end.posts.size(); ++p) {
-      const CellPoint at = territory.post_at[p];
+    const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
+    end.boundary_nodes.resize(zone_cell.boundary_nodes.size());
+    for (size_t p = 0; p < end.boundary_nodes.size(); ++p) {
+      const CellPoint at = zone_cell.boundary_node_at[p];
       const auto beyond = static_cast<float>(distance(at, there));
-      end.posts[p] = {kNever, 0, beyond, static_cast<float>(distance(here, at)) + beyond};
+      end.boundary_nodes[p] = {kNever, 0, beyond, static_cast<float>(distance(here, at)) + beyond};
     }
   };
   // The post of the smallest bound that is reached.
   const auto nearest = [&](End& end) -> std::optional<size_t> {
-    std::vector<End::Post>& posts = end.posts;
-    for (size_t tries = 0; tries < posts.size(); ++tries) {
+    std::vector<End::BoundaryNode>& boundary_nodes = end.boundary_nodes;
+    for (size_t tries = 0; tries < boundary_nodes.size(); ++tries) {
       const auto least = std::min_element(
-          posts.begin(), posts.end(),
-          [](const End::Post& a, const End::Post& b) { return a.bound < b.bound; });
+          boundary_nodes.begin(), boundary_nodes.end(),
+          [](const End::BoundaryNode& a, const End::BoundaryNode& b) { return a.bound < b.bound; });
       if (!(least->bound < kNever)) break;
-      const auto place = static_cast<size_t>(least - posts.begin());
-      reach_post(graph, end, place);
+      const auto place = static_cast<size_t>(least - boundary_nodes.begin());
+      reach_boundary_node(graph, end, place);
       if (least->length < kNever) return place;
       least->bound = kNever;
     }
@@ -125,139 +129,151 @@ void ZoneSearch::join_posts(const ZoneGraph& graph, const Stop& from, const Stop
   list(goal_, goal_at, start_at);
   const auto first = nearest(start_), last = nearest(goal_);
   if (!first || !last) return;
-  const Territory& start = graph.territories[start_.territory];
-  const Territory& goal = graph.territories[goal_.territory];
-  const Meeting met =
-      meet(graph.post_labels.of(start.posts[*first]), graph.post_labels.of(goal.posts[*last]));
+  const OverlayCell& start = graph.zone_cells[start_.zone_cell];
+  const OverlayCell& goal = graph.zone_cells[goal_.zone_cell];
+  const Meeting met = meet(graph.boundary_labels.of(start.boundary_nodes[*first]),
+                           graph.boundary_labels.of(goal.boundary_nodes[*last]));
   constexpr float kSlack = 1.00001f;  // floats
-  float known = kSlack * std::min(best.length, start_.posts[*first].length + met.length +
-                                                   goal_.posts[*last].length);
+  float known = kSlack * std::min(best.length, start_.boundary_nodes[*first].length + met.length +
+                                                   goal_.boundary_nodes[*last].length);
   const auto each_within = [&](End& end, auto visit) {
-    const Territory& territory = graph.territories[end.territory];
+    const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
     const auto keep = [&](auto is_kept) {
-      std::erase_if(within_, [&](uint32_t p) { return !is_kept(end.posts[p]); });
+      std::erase_if(within_, [&](uint32_t p) { return !is_kept(end.boundary_nodes[p]); });
     };
-    within_.resize(end.posts.size());
+    within_.resize(end.boundary_nodes.size());
     std::iota(within_.begin(), within_.end(), 0u);
-    keep([&](const End::Post& post) { return post.bound <= known; });
+    keep([&](const End::BoundaryNode& boundary_node) { return boundary_node.bound <= known; });
     asked_.clear();
-    for (const uint32_t p : within_) asked_.push_back(territory.post_gates[p]);
-    territory.labels.ask_for(asked_);
-    for (const uint32_t p : within_) reach_post(graph, end, p);
-    keep([&](const End::Post& post) { return post.length + post.beyond <= known; });
+    for (const uint32_t p : within_) asked_.push_back(zone_cell.boundary_entrances[p]);
+    zone_cell.labels.ask_for(asked_);
+    for (const uint32_t p : within_) reach_boundary_node(graph, end, p);
+    keep([&](const End::BoundaryNode& boundary_node) {
+      return boundary_node.length + boundary_node.beyond <= known;
+    });
     asked_.clear();
-    for (const uint32_t p : within_) asked_.push_back(territory.posts[p]);
-    graph.post_labels.ask_for(asked_);
+    for (const uint32_t p : within_) asked_.push_back(zone_cell.boundary_nodes[p]);
+    graph.boundary_labels.ask_for(asked_);
     for (const uint32_t p : within_) {
-      if (end.posts[p].length + end.posts[p].beyond <= known) visit(p);
+      if (end.boundary_nodes[p].length + end.boundary_nodes[p].beyond <= known) visit(p);
     }
   };
-  post_hubs_.begin(graph.post_territories.size());
+  boundary_hubs_.begin(graph.boundary_cells.size());
   each_within(start_, [&](uint32_t p) {
-    post_hubs_.add(graph.post_labels.of(start.posts[p]), p, start_.posts[p].length);
+    boundary_hubs_.add(graph.boundary_labels.of(start.boundary_nodes[p]), p,
+                       start_.boundary_nodes[p].length);
   });
   each_within(goal_, [&](uint32_t p) {
-    for (const TwoHopLabels::Label& label : graph.post_labels.of(goal.posts[p])) {
-      const float here = post_hubs_.length(label.hub) + label.length + goal_.posts[p].length;
+    for (const TwoHopLabels::Label& label : graph.boundary_labels.of(goal.boundary_nodes[p])) {
+      const float here =
+          boundary_hubs_.length(label.hub) + label.length + goal_.boundary_nodes[p].length;
       if (!(here < best.length)) continue;
-      best = {here, true, label.hub, post_hubs_.from(label.hub), p};
+      best = {here, true, label.hub, boundary_hubs_.from(label.hub), p};
     }
     known = std::min(known, kSlack * best.length);
   });
 }
 
 // Adds the gates from one of a territory to another over a hub, without the first.
-void ZoneSearch::add_gates(const Territory& territory, uint32_t from, uint32_t hub, uint32_t to) {
+void ZoneSearch::add_entrances(const OverlayCell& zone_cell, uint32_t from, uint32_t hub,
+                               uint32_t to) {
   walked_.clear();
-  const TwoHopLabels& labels = territory.labels;
+  const TwoHopLabels& labels = zone_cell.labels;
   labels.walk(labels.place_of(from, hub), labels.place_of(to, hub), walked_);
-  for (size_t i = 1; i < walked_.size(); ++i) gates_.push_back(territory.gates[walked_[i]]);
+  for (size_t i = 1; i < walked_.size(); ++i) entrances_.push_back(zone_cell.entrances[walked_[i]]);
 }
 
 // The gates of the way, from one of the first zone to one of the last.
-void ZoneSearch::list_gates(const ZoneGraph& graph, const Best& best) {
-  const Territory& start = graph.territories[start_.territory];
-  const Territory& goal = graph.territories[goal_.territory];
-  const auto gate_to = [&](const End& end, uint32_t hub) {
-    return graph.zones[end.zone].gates[end.hubs.from(hub)];
+void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
+  const OverlayCell& start = graph.zone_cells[start_.zone_cell];
+  const OverlayCell& goal = graph.zone_cells[goal_.zone_cell];
+  const auto entrance_to = [&](const End& end, uint32_t hub) {
+    return graph.zones[end.zone].entrances[end.hubs.from(hub)];
   };
-  if (!best.over_posts) {
-    const uint32_t first = gate_to(start_, best.hub), last = gate_to(goal_, best.hub);
-    gates_.assign(1, first);
-    add_gates(start, start.place_of_gate(first), best.hub, start.place_of_gate(last));
+  if (!best.over_boundary_nodes) {
+    const uint32_t first = entrance_to(start_, best.hub), last = entrance_to(goal_, best.hub);
+    entrances_.assign(1, first);
+    add_entrances(start, start.place_of_entrance(first), best.hub, start.place_of_entrance(last));
     return;
   }
-  const uint32_t first_hub = start_.posts[best.first].hub, last_hub = goal_.posts[best.last].hub;
-  const uint32_t first = gate_to(start_, first_hub), last = gate_to(goal_, last_hub);
-  gates_.assign(1, first);
-  add_gates(start, start.place_of_gate(first), first_hub, start.post_gates[best.first]);
-  posts_.clear();
-  const TwoHopLabels& labels = graph.post_labels;
-  labels.walk(labels.place_of(start.posts[best.first], best.hub),
-              labels.place_of(goal.posts[best.last], best.hub), posts_);
-  for (size_t i = 1; i < posts_.size(); ++i) {
+  const uint32_t first_hub = start_.boundary_nodes[best.first].hub,
+                 last_hub = goal_.boundary_nodes[best.last].hub;
+  const uint32_t first = entrance_to(start_, first_hub), last = entrance_to(goal_, last_hub);
+  entrances_.assign(1, first);
+  add_entrances(start, start.place_of_entrance(first), first_hub,
+                start.boundary_entrances[best.first]);
+  boundary_nodes_.clear();
+  const TwoHopLabels& labels = graph.boundary_labels;
+  labels.walk(labels.place_of(start.boundary_nodes[best.first], best.hub),
+              labels.place_of(goal.boundary_nodes[best.last], best.hub), boundary_nodes_);
+  for (size_t i = 1; i < boundary_nodes_.size(); ++i) {
     // Two posts of one border are joined in both territories.
     Meeting least;
-    const Territory* over = nullptr;
+    const OverlayCell* over = nullptr;
     uint32_t from = 0, to = 0;
-    for (const uint32_t t : graph.post_territories[posts_[i - 1]]) {
-      const auto& others = graph.post_territories[posts_[i]];
+    for (const uint32_t t : graph.boundary_cells[boundary_nodes_[i - 1]]) {
+      const auto& others = graph.boundary_cells[boundary_nodes_[i]];
       if (t != others[0] && t != others[1]) continue;
-      const Territory& territory = graph.territories[t];
-      const auto place = [&](uint32_t post) {
-        const auto at = std::lower_bound(territory.posts.begin(), territory.posts.end(), post);
-        return territory.post_gates[static_cast<size_t>(at - territory.posts.begin())];
+      const OverlayCell& zone_cell = graph.zone_cells[t];
+      const auto place = [&](uint32_t boundary_node) {
+        const auto at = std::lower_bound(zone_cell.boundary_nodes.begin(),
+                                         zone_cell.boundary_nodes.end(), boundary_node);
+        return zone_cell
+            .boundary_entrances[static_cast<size_t>(at - zone_cell.boundary_nodes.begin())];
       };
-      const uint32_t a = place(posts_[i - 1]), b = place(posts_[i]);
-      const Meeting met = meet(territory.labels.of(a), territory.labels.of(b));
+      const uint32_t a = place(boundary_nodes_[i - 1]), b = place(boundary_nodes_[i]);
+      const Meeting met = meet(zone_cell.labels.of(a), zone_cell.labels.of(b));
       if (!(met.length < least.length)) continue;
       least = met;
-      over = &territory;
+      over = &zone_cell;
       from = a;
       to = b;
     }
-    if (over != nullptr) add_gates(*over, from, least.hub, to);
+    if (over != nullptr) add_entrances(*over, from, least.hub, to);
   }
-  add_gates(goal, goal.post_gates[best.last], last_hub, goal.place_of_gate(last));
+  add_entrances(goal, goal.boundary_entrances[best.last], last_hub, goal.place_of_entrance(last));
 }
 
 // Finds where the tables of zones tell of the ways from gate to gate.
-void ZoneSearch::look_up_legs(const ZoneGraph& graph) {
-  for (const uint32_t gate : gates_) prefetch(&graph.gates[gate]);
-  legs_.clear();
-  for (uint32_t i = 1; i < gates_.size(); ++i) {
-    const Gate &from = graph.gates[gates_[i - 1]], &to = graph.gates[gates_[i]];
+void ZoneSearch::look_up_segments(const ZoneGraph& graph) {
+  for (const uint32_t entrance : entrances_) prefetch(&graph.entrances[entrance]);
+  segments_.clear();
+  for (uint32_t i = 1; i < entrances_.size(); ++i) {
+    const Entrance &from = graph.entrances[entrances_[i - 1]], &to = graph.entrances[entrances_[i]];
     for (const uint32_t zone : from.zone) {
       if (zone != to.zone[0] && zone != to.zone[1]) continue;
-      legs_.push_back({i, &graph.zones[zone], 0, 0});
-      prefetch(&legs_.back().ways->gates);
-      prefetch(&legs_.back().ways->next);
+      segments_.push_back({i, &graph.zones[zone], 0, 0});
+      prefetch(&segments_.back().ways->entrances);
+      prefetch(&segments_.back().ways->next);
     }
   }
-  for (const Leg& leg : legs_) prefetch(leg.ways->gates.data() + leg.ways->gates.size() / 2);
-  for (Leg& leg : legs_) {
-    const ZoneWays& ways = *leg.ways;
-    leg.goal = ways.place_of_gate(gates_[leg.to]);
-    leg.at = ways.row(ways.corners.size() + ways.place_of_gate(gates_[leg.to - 1])) + leg.goal;
-    prefetch(&ways.length[leg.at]);
-    prefetch(&ways.next[leg.at]);
+  for (const Segment& segment : segments_)
+    prefetch(segment.ways->entrances.data() + segment.ways->entrances.size() / 2);
+  for (Segment& segment : segments_) {
+    const ZonePaths& ways = *segment.ways;
+    segment.goal = ways.place_of_entrance(entrances_[segment.to]);
+    segment.at =
+        ways.row(ways.corners.size() + ways.place_of_entrance(entrances_[segment.to - 1])) +
+        segment.goal;
+    prefetch(&ways.length[segment.at]);
+    prefetch(&ways.next[segment.at]);
   }
 }
 
 // From gate to gate: the first one is there already.
-void ZoneSearch::add_legs(const PathMesh& mesh, const ZoneGraph& graph) {
-  look_up_legs(graph);
-  auto leg = legs_.begin();
-  for (uint32_t i = 1; i < gates_.size(); ++i) {
-    const Leg* best = nullptr;
-    for (; leg != legs_.end() && leg->to == i; ++leg) {
-      const float length = leg->ways->length[leg->at];
-      if (length < (best == nullptr ? kNever : best->ways->length[best->at])) best = &*leg;
+void ZoneSearch::add_segments(const PathMesh& mesh, const ZoneGraph& graph) {
+  look_up_segments(graph);
+  auto segment = segments_.begin();
+  for (uint32_t i = 1; i < entrances_.size(); ++i) {
+    const Segment* best = nullptr;
+    for (; segment != segments_.end() && segment->to == i; ++segment) {
+      const float length = segment->ways->length[segment->at];
+      if (length < (best == nullptr ? kNever : best->ways->length[best->at])) best = &*segment;
     }
     if (best != nullptr)
       add_corners(mesh, *best->ways, best->ways->next[best->at], best->goal, way_);
-    const Gate& gate = graph.gates[gates_[i]];
-    way_.push_back({gate.at, gate.rect[0]});
+    const Entrance& entrance = graph.entrances[entrances_[i]];
+    way_.push_back({entrance.at, entrance.rect[0]});
   }
 }
 
@@ -265,14 +281,15 @@ void ZoneSearch::add_legs(const PathMesh& mesh, const ZoneGraph& graph) {
 bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& from,
                       const Stop& to, const Best& best, std::vector<uint32_t>& corners,
                       double& length) {
-  list_gates(graph, best);
-  const ZoneWays &start = graph.zones[start_.zone], &goal = graph.zones[goal_.zone];
-  const size_t first = start.place_of_gate(gates_.front());
-  const size_t last = goal.place_of_gate(gates_.back());
+  list_entrances(graph, best);
+  const ZonePaths &start = graph.zones[start_.zone], &goal = graph.zones[goal_.zone];
+  const size_t first = start.place_of_entrance(entrances_.front());
+  const size_t last = goal.place_of_entrance(entrances_.back());
   way_.assign(1, {in_cells(from.at), from.rect});
   add_corners(mesh, start, start_.next[first], first, way_);
-  way_.push_back({graph.gates[gates_.front()].at, graph.gates[gates_.front()].rect[0]});
-  add_legs(mesh, graph);
+  way_.push_back(
+      {graph.entrances[entrances_.front()].at, graph.entrances[entrances_.front()].rect[0]});
+  add_segments(mesh, graph);
   tail_.clear();
   add_corners(mesh, goal, goal_.next[last], last, tail_);
   way_.insert(way_.end(), tail_.rbegin(), tail_.rend());

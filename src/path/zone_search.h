@@ -49,57 +49,57 @@ class ZoneSearch {
     std::vector<uint64_t> hubs_;
   };
   struct End {
-    uint32_t zone = 0, territory = 0;
+    uint32_t zone = 0, zone_cell = 0;
     std::vector<float> length;   // to each gate of the zone
     std::vector<uint16_t> next;  // as in the zone's tables
     Reached hubs;                // of the territory's gates, from places of the zone's gates
-    struct Post {
+    struct BoundaryNode {
       float length;
       uint32_t hub;  // of the territory's gates, over which it is reached
       float beyond;  // from it in a straight line to the other end
       float bound;   // the same, and in a straight line to it
     };
-    std::vector<Post> posts;  // of the territory
+    std::vector<BoundaryNode> boundary_nodes;  // of the territory
   };
   // Over a hub of one territory that both ends are in, or over posts.
   struct Best {
     float length = 0;
-    bool over_posts = false;
+    bool over_boundary_nodes = false;
     uint32_t hub = 0;
     uint32_t first = 0, last = 0;  // posts: their places in their territories
   };
 
   // From a gate of the way to the next, in a zone that both are on the border of.
-  struct Leg {
-    uint32_t to;  // place of that gate in `gates_`
-    const ZoneWays* ways;
+  struct Segment {
+    uint32_t to;  // place of that gate in `entrances_`
+    const ZonePaths* ways;
     size_t goal, at;  // its place in them, and that of the way
   };
 
   void look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                 const Stop& stop, End& end);
   bool join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
-  void join_posts(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
-  void reach_post(const ZoneGraph& graph, End& end, size_t place);
+  void join_boundary_nodes(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
+  void reach_boundary_node(const ZoneGraph& graph, End& end, size_t place);
   bool lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& from, const Stop& to,
             const Best& best, std::vector<uint32_t>& corners, double& length);
-  void list_gates(const ZoneGraph& graph, const Best& best);
-  void add_gates(const Territory& territory, uint32_t from, uint32_t hub, uint32_t to);
-  void look_up_legs(const ZoneGraph& graph);
-  void add_legs(const PathMesh& mesh, const ZoneGraph& graph);
+  void list_entrances(const ZoneGraph& graph, const Best& best);
+  void add_entrances(const OverlayCell& zone_cell, uint32_t from, uint32_t hub, uint32_t to);
+  void look_up_segments(const ZoneGraph& graph);
+  void add_segments(const PathMesh& mesh, const ZoneGraph& graph);
 
   PathSearch search_;
   Sight sight_;
-  Puller pull_;
+  StringPuller pull_;
   End start_, goal_;
-  Reached post_hubs_;
-  std::vector<uint32_t> within_;  // posts that may lie on the way
-  std::vector<uint32_t> asked_;   // nodes whose labels will be read
-  std::vector<uint32_t> gates_;   // of the way
-  std::vector<Leg> legs_;
+  Reached boundary_hubs_;
+  std::vector<uint32_t> within_;     // posts that may lie on the way
+  std::vector<uint32_t> asked_;      // nodes whose labels will be read
+  std::vector<uint32_t> entrances_;  // of the way
+  std::vector<Segment> segments_;
   std::vector<uint32_t> walked_;  // scratch of a walk over labels
-  std::vector<uint32_t> posts_;
-  std::vector<WayPoint> way_, tail_;
+  std::vector<uint32_t> boundary_nodes_;
+  std::vector<Waypoint> way_, tail_;
   std::vector<uint32_t> near_corners_;
   uint64_t expanded_ = 0;
 };

@@ -69,11 +69,11 @@ std::vector<Crossing> find_crossings(const PathMesh& mesh,
 }
 
 // A unit inside the zone: where rays to the gate end.
-GroundPoint inside(const Gate& gate, const MeshRect& rect) {
+GroundPoint inside(const Entrance& entrance, const MeshRect& rect) {
   const auto units = [](double cells) { return static_cast<int64_t>(cells * kUnitsPerCell); };
-  GroundPoint p{units(gate.at.x), units(gate.at.z)};
-  if (gate.at.x == rect.x + rect.width) --p.x;
-  if (gate.at.z == rect.z + rect.depth) --p.z;
+  GroundPoint p{units(entrance.at.x), units(entrance.at.z)};
+  if (entrance.at.x == rect.x + rect.width) --p.x;
+  if (entrance.at.z == rect.z + rect.depth) --p.z;
   return p;
 }
 
@@ -89,7 +89,7 @@ struct CornerGraph {
 };
 
 // What one sees the other does, even where rounding hid it from one of them.
-CornerGraph see_corners(const PathMesh& mesh, const ZoneWays& ways, Sight& sight) {
+CornerGraph see_corners(const PathMesh& mesh, const ZonePaths& ways, Sight& sight) {
   CornerGraph graph;
   for (size_t c = 0; c < ways.corners.size(); ++c) {
     sight.look_from_corner(mesh, ways.corners[c], false);
@@ -114,20 +114,20 @@ CornerGraph see_corners(const PathMesh& mesh, const ZoneWays& ways, Sight& sight
 }
 
 // A corner that a gate sees, by its place in the zone's corners.
-struct GateView {
+struct EntranceView {
   uint16_t corner = 0;
   double distance = 0;
 };
 
 // How far corners are from a gate, and over which corner.
-class GateSpread {
+class EntranceSearch {
  public:
-  explicit GateSpread(const CornerGraph& graph)
+  explicit EntranceSearch(const CornerGraph& graph)
       : length(graph.first.size() - 1), next(graph.first.size() - 1), graph_(graph) {}
 
-  void run(const std::vector<GateView>& seen) {
+  void run(const std::vector<EntranceView>& seen) {
     std::fill(length.begin(), length.end(), kFar);
-    for (const GateView& s : seen) relax(s.corner, s.distance, kStraight);
+    for (const EntranceView& s : seen) relax(s.corner, s.distance, kStraight);
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
       const auto [reached, corner] = heap_.back();
@@ -163,13 +163,14 @@ void take_shorter(double length, uint16_t next, float& best, uint16_t& best_next
 
 }  // namespace
 
-size_t ZoneWays::place_of_corner(uint32_t corner) const {
+size_t ZonePaths::place_of_corner(uint32_t corner) const {
   return static_cast<size_t>(std::lower_bound(corners.begin(), corners.end(), corner) -
                              corners.begin());
 }
 
-size_t ZoneWays::place_of_gate(uint32_t gate) const {
-  return static_cast<size_t>(std::lower_bound(gates.begin(), gates.end(), gate) - gates.begin());
+size_t ZonePaths::place_of_entrance(uint32_t entrance) const {
+  return static_cast<size_t>(std::lower_bound(entrances.begin(), entrances.end(), entrance) -
+                             entrances.begin());
 }
 
 std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mesh) {
@@ -183,11 +184,11 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
   return zones;
 }
 
-std::vector<Gate> find_gates(const WorldData& world, const PathMesh& mesh,
-                             const std::vector<uint32_t>& zone_of_rect) {
+std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
+                                     const std::vector<uint32_t>& zone_of_rect) {
   const std::vector<Crossing> crossings = find_crossings(mesh, zone_of_rect);
   const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * 64 / 10);
-  std::vector<Gate> gates;
+  std::vector<Entrance> entrances;
   for (size_t i = 0; i < crossings.size();) {
     size_t stop = i + 1;
     while (stop < crossings.size() && crossings[stop - 1].is_continued_by(crossings[stop])) ++stop;
@@ -200,18 +201,18 @@ std::vector<Gate> find_gates(const WorldData& world, const PathMesh& mesh,
       const CellPoint at =
           c.is_east ? CellPoint{double(c.line), cell + 0.5} : CellPoint{cell + 0.5, double(c.line)};
       const size_t low = c.zone[0] < c.zone[1] ? 0 : 1;
-      gates.push_back({at, {c.zone[low], c.zone[1 - low]}, {c.rect[low], c.rect[1 - low]}});
+      entrances.push_back({at, {c.zone[low], c.zone[1 - low]}, {c.rect[low], c.rect[1 - low]}});
     }
     i = stop;
   }
-  return gates;
+  return entrances;
 }
 
-bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
-                    Sight& sight, ZoneWays& ways) {
+bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrances, uint32_t zone,
+                     Sight& sight, ZonePaths& ways) {
   ways.corners.clear();
-  if (ways.gates.empty()) return true;  // no way leads out, nor in
-  sight.keep_to(ways.first_rect, ways.last_rect);
+  if (ways.entrances.empty()) return true;  // no way leads out, nor in
+  sight.stay_within(ways.first_rect, ways.last_rect);
   for (uint32_t p = mesh.rects[ways.first_rect].first_portal;
        p < mesh.rects[ways.last_rect].first_portal; ++p) {
     for (const uint32_t corner : {mesh.portals[p].from_corner, mesh.portals[p].to_corner}) {
@@ -220,33 +221,33 @@ bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
   }
   std::sort(ways.corners.begin(), ways.corners.end());
   ways.corners.erase(std::unique(ways.corners.begin(), ways.corners.end()), ways.corners.end());
-  const size_t corners = ways.corners.size(), count = ways.gates.size();
+  const size_t corners = ways.corners.size(), count = ways.entrances.size();
   if (corners >= kStraight) return false;
   ways.length.assign((corners + count) * count, kNever);
   ways.next.assign(ways.length.size(), kStraight);
   const CornerGraph graph = see_corners(mesh, ways, sight);
-  std::vector<std::vector<GateView>> seen(count);
+  std::vector<std::vector<EntranceView>> seen(count);
   for (size_t g = 0; g < count; ++g) {
-    const Gate& gate = gates[ways.gates[g]];
-    sight.look(mesh, gate.rect_in(zone), gate.at, kNoRect, {});
+    const Entrance& entrance = entrances[ways.entrances[g]];
+    sight.look(mesh, entrance.rect_in(zone), entrance.at, kNoRect, {});
     for (const SeenCorner& s : sight.corners())
       seen[g].push_back({static_cast<uint16_t>(ways.place_of_corner(s.corner)), s.distance});
   }
-  GateSpread spread(graph);
+  EntranceSearch spread(graph);
   for (size_t g = 0; g < count; ++g) {
     spread.run(seen[g]);
     for (size_t c = 0; c < corners; ++c)
       take_shorter(spread.length[c], spread.next[c], ways.length[ways.row(c) + g],
                    ways.next[ways.row(c) + g]);
-    const Gate& to = gates[ways.gates[g]];
+    const Entrance& to = entrances[ways.entrances[g]];
     for (size_t other = 0; other < count; ++other) {
-      const Gate& from = gates[ways.gates[other]];
+      const Entrance& from = entrances[ways.entrances[other]];
       const size_t at = ways.row(corners + other) + g;
       const uint32_t rect = from.rect_in(zone), goal = to.rect_in(zone);
       const GroundPoint begin = inside(from, mesh.rects[rect]), end = inside(to, mesh.rects[goal]);
       if (mesh_ray(mesh, rect, begin, end) == goal)
         take_shorter(distance(from.at, to.at), kStraight, ways.length[at], ways.next[at]);
-      for (const GateView& s : seen[other])
+      for (const EntranceView& s : seen[other])
         take_shorter(s.distance + spread.length[s.corner], s.corner, ways.length[at],
                      ways.next[at]);
     }
@@ -254,14 +255,14 @@ bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
   return true;
 }
 
-void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
-                    const ZoneWays& ways, const Stop& from, Sight& sight,
-                    std::vector<float>& length, std::vector<uint16_t>& next) {
-  const size_t count = ways.gates.size();
+void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& entrances,
+                           uint32_t zone, const ZonePaths& ways, const Stop& from, Sight& sight,
+                           std::vector<float>& length, std::vector<uint16_t>& next) {
+  const size_t count = ways.entrances.size();
   length.assign(count, kNever);
   next.assign(count, kStraight);
   if (count == 0) return;
-  sight.keep_to(ways.first_rect, ways.last_rect);
+  sight.stay_within(ways.first_rect, ways.last_rect);
   const CellPoint here = in_cells(from.at);
   sight.look(mesh, from.rect, here, kNoRect, {});
   const auto each_corner = [&](auto visit) {
@@ -282,11 +283,11 @@ void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32
     }
   });
   for (size_t g = 0; g < count; ++g) {
-    const Gate& gate = gates[ways.gates[g]];
-    const double straight = distance(here, gate.at);
+    const Entrance& entrance = entrances[ways.entrances[g]];
+    const double straight = distance(here, entrance.at);
     if (!(straight < length[g])) continue;
-    const uint32_t rect = gate.rect_in(zone);
-    if (mesh_ray(mesh, from.rect, from.at, inside(gate, mesh.rects[rect])) != rect) continue;
+    const uint32_t rect = entrance.rect_in(zone);
+    if (mesh_ray(mesh, from.rect, from.at, inside(entrance, mesh.rects[rect])) != rect) continue;
     length[g] = static_cast<float>(straight);
     next[g] = kStraight;
   }

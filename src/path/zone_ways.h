@@ -14,7 +14,7 @@
 namespace throng {
 
 /// A point on the border of two zones through which ways between them are led.
-struct Gate {
+struct Entrance {
   CellPoint at;                    // on the border, in the middle of a cell's side
   std::array<uint32_t, 2> zone{};  // slots of the world, the lower one first
   std::array<uint32_t, 2> rect{};  // on either side
@@ -26,20 +26,20 @@ inline constexpr uint16_t kStraight = UINT16_MAX;  // also one more than corners
 /// The shortest ways from each corner and each gate of a zone to each of its gates that do not
 /// leave the zone. Made from the zone's part of the mesh alone, so that it can be made again when
 /// the zone has changed.
-struct ZoneWays {
+struct ZonePaths {
   uint32_t first_rect = 0, last_rect = 0;  // of the mesh, [first, last)
-  std::vector<uint32_t> gates;             // rising
+  std::vector<uint32_t> entrances;         // rising
   std::vector<uint32_t> corners;           // of the mesh, rising
   // For each corner, then for each gate, one a gate.
   std::vector<float> length;   // [cells]; infinite: there is none
   std::vector<uint16_t> next;  // the place in `corners` where the way bends first, or kStraight
 
-  [[nodiscard]] size_t row(size_t node) const { return node * gates.size(); }
-  /// Places in `corners` and `gates` of what is there.
+  [[nodiscard]] size_t row(size_t node) const { return node * entrances.size(); }
+  /// Places in `corners` and `entrances` of what is there.
   [[nodiscard]] size_t place_of_corner(uint32_t corner) const;
-  [[nodiscard]] size_t place_of_gate(uint32_t gate) const;
+  [[nodiscard]] size_t place_of_entrance(uint32_t entrance) const;
   [[nodiscard]] uint64_t bytes() const {
-    return (gates.size() + corners.size()) * sizeof(uint32_t) +
+    return (entrances.size() + corners.size()) * sizeof(uint32_t) +
            length.size() * (sizeof(float) + sizeof(uint16_t));
   }
 };
@@ -49,17 +49,17 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
 
 /// The gates of a world: one in the middle of each run of border over which steps lead, more of
 /// them on long runs, about a tenth of a zone's side apart.
-std::vector<Gate> find_gates(const WorldData& world, const PathMesh& mesh,
-                             const std::vector<uint32_t>& zone_of_rect);
+std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
+                                     const std::vector<uint32_t>& zone_of_rect);
 
 /// `ways` has its rectangles and gates; finds the rest. `sight` is scratch. False if the zone has
 /// too many corners for `next`: then only `ways.corners` is filled.
-[[nodiscard]] bool find_zone_ways(const PathMesh& mesh, const std::vector<Gate>& gates,
-                                  uint32_t zone, Sight& sight, ZoneWays& ways);
+[[nodiscard]] bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrances,
+                                   uint32_t zone, Sight& sight, ZonePaths& ways);
 
 /// From a point of a zone to each of its gates, as a row of the tables.
-void look_for_gates(const PathMesh& mesh, const std::vector<Gate>& gates, uint32_t zone,
-                    const ZoneWays& ways, const Stop& from, Sight& sight,
-                    std::vector<float>& length, std::vector<uint16_t>& next);
+void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& entrances,
+                           uint32_t zone, const ZonePaths& ways, const Stop& from, Sight& sight,
+                           std::vector<float>& length, std::vector<uint16_t>& next);
 
 }  // namespace throng

@@ -18,7 +18,7 @@ constexpr uint32_t zigzag(int32_t v) {
 constexpr int32_t unzigzag(uint32_t u) { return static_cast<int32_t>((u >> 1) ^ (0u - (u & 1))); }
 
 /// Golomb-Rice codes have at most so many ones in front; then a gamma code says how many more.
-inline constexpr uint32_t kMostOnes = 4;
+inline constexpr uint32_t kMaxOnes = 4;
 
 /// Appends to a buffer that keeps its memory.
 class BitWriter {
@@ -54,11 +54,11 @@ class BitWriter {
   /// A number expected to be about 2^k. [k <= 31] Source: [Ric79].
   void put_rice(uint32_t value, uint32_t k) {
     const uint32_t ones = value >> k;
-    if (ones < kMostOnes) {
+    if (ones < kMaxOnes) {
       put((uint64_t{1} << ones) - 1, ones + 1);
     } else {
-      put((uint64_t{1} << kMostOnes) - 1, kMostOnes);
-      put_gamma(ones - kMostOnes);
+      put((uint64_t{1} << kMaxOnes) - 1, kMaxOnes);
+      put_gamma(ones - kMaxOnes);
     }
     put(value & ((uint64_t{1} << k) - 1), k);
   }
@@ -102,11 +102,11 @@ class BitReader {
     return ((uint64_t{1} << bits) | value) - 1;
   }
   uint32_t get_rice(uint32_t k) {
-    auto ones = std::min(static_cast<uint32_t>(std::countr_one(peek())), kMostOnes);
-    if (ones < kMostOnes) {
+    auto ones = std::min(static_cast<uint32_t>(std::countr_one(peek())), kMaxOnes);
+    if (ones < kMaxOnes) {
       at_ += ones + 1;
     } else {
-      at_ += kMostOnes;
+      at_ += kMaxOnes;
       ones += static_cast<uint32_t>(get_gamma());
     }
     return ones << k | static_cast<uint32_t>(get(k));

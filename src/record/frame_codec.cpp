@@ -18,10 +18,10 @@
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 2e6;    // [m]: millimetres fit 32 bits
-constexpr double kWidest = 65.0;     // [m]: millimetres fit 16 bits
-constexpr uint32_t kLeastBits = 13;  // of one who has come
-constexpr size_t kUpMean = 4;        // Where in Track::mean those of its axis are.
+constexpr double kFarthest = 2e6;  // [m]: millimetres fit 32 bits
+constexpr double kWidest = 65.0;   // [m]: millimetres fit 16 bits
+constexpr uint32_t kMinBits = 13;  // of one who has come
+constexpr size_t kUpMean = 4;      // Where in Track::mean those of its axis are.
 
 // Differences wrap, so that no bytes can overflow anything.
 int32_t minus(int32_t a, int32_t b) {
@@ -123,7 +123,7 @@ Vec3d up_of(UpCode code) {
 Result<void> FrameEncoder::quantise(const FrameView& frame) {
   const size_t count = frame.ids.size();
   if (frame.classes.size() != count || frame.positions.size() != count ||
-      frame.radii.size() != count || frame.headings.size() != count || count >= kMostAvatars) {
+      frame.radii.size() != count || frame.headings.size() != count || count >= kMaxAvatars) {
     return Error{Errc::kBadInput,
                  "recording: a frame needs as many classes, positions, radii and headings as ids, "
                  "fewer than 2^28"};
@@ -287,7 +287,7 @@ bool FrameDecoder::decode(std::span<const uint8_t> bytes, uint32_t avatars) {
   kept_.insert(kept_.end(), tracks_.begin() + static_cast<ptrdiff_t>(next), tracks_.end());
 
   const uint64_t come = in.get_gamma();
-  if (!in.ok() || come > in.left() / kLeastBits || kept_.size() + come != avatars) return false;
+  if (!in.ok() || come > in.left() / kMinBits || kept_.size() + come != avatars) return false;
   added_.clear();
   Track last;
   uint64_t next_id = 0;

@@ -118,15 +118,15 @@ Recorder::~Recorder() {
 
 Result<Recorder> Recorder::create(const std::string& path, const RecordingInfo& info,
                                   const RecorderConfig& config) {
-  constexpr uint32_t kMost = 65536;
+  constexpr uint32_t kMax = 65536;
   if (!(info.dt > 0 && info.dt < 1e6)) return bad_config("dt must be above 0");
   if (info.classes.empty() || info.classes.size() > 256) return bad_config("1 to 256 classes");
   for (const RecordedClass& c : info.classes) {
     if (std::isfinite(c.height) && std::isfinite(c.radius)) continue;
     return bad_config("class " + c.name + " has no finite size");
   }
-  if (config.chunk_frames < 1 || config.chunk_frames > kMost || config.key_frames < 1 ||
-      config.key_frames > kMost || config.chunk_bytes < 1) {
+  if (config.chunk_frames < 1 || config.chunk_frames > kMax || config.key_frames < 1 ||
+      config.key_frames > kMax || config.chunk_bytes < 1) {
     return bad_config("chunks and keys of 1 to 65536 frames, more than 0 bytes");
   }
   auto state = std::make_unique<State>();

@@ -19,7 +19,7 @@
 namespace throng {
 namespace {
 
-constexpr uint32_t kMostFrames = 65536;  // in a chunk
+constexpr uint32_t kMaxFrames = 65536;  // in a chunk
 constexpr const char* kBadSettings = "its settings are corrupt; record the run again";
 
 // A chunk of frames, found by its head.
@@ -190,7 +190,7 @@ Result<void> Replay::State::walk() {
                          std::isfinite(head.last_time) &&
                          (frames == 0 || head.frames == 0 || head.first_time > last_time);
       if ((!key && (kind != ChunkKind::kFrames || frames == 0)) || head.first_frame != frames ||
-          head.frames > kMostFrames || table > head.bytes || (head.frames > 0 && !times)) {
+          head.frames > kMaxFrames || table > head.bytes || (head.frames > 0 && !times)) {
         why = "is corrupt";
         break;
       }

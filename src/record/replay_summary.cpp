@@ -91,9 +91,9 @@ class Summary {
     const double width = std::floor(box_.max.x / config_.cell) - x_first_ + 1;
     const double depth = std::floor(box_.max.z / config_.cell) - z_first_ + 1;
     const double all = width * depth * static_cast<double>(storeys_.size());
-    if (!(all <= static_cast<double>(config_.most_cells)) || width > 1e6 || depth > 1e6) {
+    if (!(all <= static_cast<double>(config_.max_cells)) || width > 1e6 || depth > 1e6) {
       return Error{Errc::kLimit, "summary: the maps would have more than " +
-                                     std::to_string(config_.most_cells) +
+                                     std::to_string(config_.max_cells) +
                                      " cells; take larger cells"};
     }
     for (const int64_t storey : storeys_) {

@@ -20,7 +20,7 @@ constexpr double kAcross = 0.80, kDown = 0.40;  // Of a metre along x or z, to t
 constexpr double kUpright = 0.75;               // Of a metre of height.
 constexpr double kSlab = 0.25;                  // Thickness of a floor at its rim. [m]
 constexpr int32_t kSamples = 3;
-constexpr int32_t kMostTexels = 420;  // Along the longer side.
+constexpr int32_t kMaxTexels = 420;  // Along the longer side.
 
 // A storey reduced to few enough texels.
 struct Sheet {
@@ -35,7 +35,7 @@ struct Sheet {
 };
 
 Sheet make_sheet(const StoreyRaster& storey, const RasterGrid& grid, const HeightScale& scale) {
-  const int32_t share = (std::max(storey.width, storey.height) + kMostTexels - 1) / kMostTexels;
+  const int32_t share = (std::max(storey.width, storey.height) + kMaxTexels - 1) / kMaxTexels;
   Sheet sheet;
   sheet.width = (storey.width + share - 1) / share;
   sheet.height = (storey.height + share - 1) / share;

@@ -20,14 +20,14 @@ namespace {
 Rgb heat_colour(double t) { return height_colour(0.98 - 0.93 * std::clamp(t, 0.0, 1.0)); }
 
 Result<void> check_map(const HeatMap& map) {
-  constexpr int32_t kMost = 1'000'000;
+  constexpr int32_t kMax = 1'000'000;
   const auto bad = [](const char* what) {
     return Error{Errc::kBadConfig, std::string("heat map: ") + what};
   };
   if (map.picture_width < 400 || map.picture_width > 8000) {
     return bad("the picture must be from 400 to 8000 px wide");
   }
-  if (map.width < 1 || map.depth < 1 || map.width > kMost || map.depth > kMost ||
+  if (map.width < 1 || map.depth < 1 || map.width > kMax || map.depth > kMax ||
       map.values.size() != static_cast<size_t>(map.width) * static_cast<size_t>(map.depth)) {
     return bad("needs width * depth values");
   }

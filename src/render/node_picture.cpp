@@ -230,7 +230,7 @@ class NodePicture {
 
   // Cells of a ragged node on which the class asked for stands, or any.
   [[nodiscard]] uint64_t cells_of(uint32_t node, const NodeInfo& info) const {
-    return config_.avatar_class < 0 ? info.cells : nodes_.ragged_cells(config_.avatar_class, node);
+    return config_.avatar_class < 0 ? info.cells : nodes_.partial_cells(config_.avatar_class, node);
   }
 
   // Calls visit(corner) for corners around a node. A ragged one's block may have no floor there.
@@ -240,7 +240,7 @@ class NodePicture {
       for (const Vec3d& c : nodes_.corners(node)) visit(c);
       return;
     }
-    for_ragged_runs(cells_of(node, info), [&](int32_t first, int32_t row, int32_t count) {
+    for_partial_runs(cells_of(node, info), [&](int32_t first, int32_t row, int32_t count) {
       const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
       for (const double u : {0.0, count * kCell - kInset}) {
         for (const double v : {0.0, kCell - kInset}) visit(nodes_.point(node, s + u, t + v));
@@ -367,7 +367,7 @@ class NodePicture {
     const Rgb rim = shade(colour, 0.62);
     if (info.cells != 0) {
       const uint64_t cells = cells_of(node, info);
-      for_ragged_runs(cells, [&](int32_t first, int32_t row, int32_t count) {
+      for_partial_runs(cells, [&](int32_t first, int32_t row, int32_t count) {
         paint({(info.s * 8 + first) * kCell, (info.t * 8 + row) * kCell, count * kCell - kInset,
                kCell - kInset});
       });

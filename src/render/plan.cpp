@@ -178,14 +178,14 @@ std::vector<PlacedAvatar> place_avatars(std::span<const PictureAvatar> avatars,
 std::vector<DrawnPoint> place_way(std::span<const Vec3d> way, std::span<const StoreyRaster> storeys,
                                   const RasterGrid& grid) {
   constexpr double kOff = 1;  // On its floor, and not that of another storey. [m]
-  constexpr double kMost = 1e6;
+  constexpr double kMax = 1e6;
   std::vector<DrawnPoint> placed;
   for (size_t i = 1; i < way.size(); ++i) {
-    const Vec3d leg = way[i] - way[i - 1];
-    const double steps = std::ceil(2 * std::hypot(leg.x, leg.z) / grid.texel_metres()) + 1;
-    if (!(steps < kMost)) continue;
+    const Vec3d segment = way[i] - way[i - 1];
+    const double steps = std::ceil(2 * std::hypot(segment.x, segment.z) / grid.texel_metres()) + 1;
+    if (!(steps < kMax)) continue;
     for (double k = 0; k <= steps; ++k) {
-      const Vec3d at = way[i - 1] + leg * (k / steps);
+      const Vec3d at = way[i - 1] + segment * (k / steps);
       const NearStorey nearest = nearest_storey(at, storeys, grid);
       if (nearest.distance < kOff) placed.push_back({at, nearest.storey});
     }

@@ -15,7 +15,7 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostStoreys = 12;
+constexpr size_t kMaxStoreys = 12;
 
 // Where everything goes. [px]
 struct Sheet {
@@ -254,7 +254,7 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
 
   const bool one = config.storey >= 0;
   const StoreyIndex index(world);
-  const StoreyChoice choice = index.choose(config.storey, kMostStoreys);
+  const StoreyChoice choice = index.choose(config.storey, kMaxStoreys);
   PosterText head = text;
   if (choice.left_out > 0) head.lines.emplace_back();  // Written below.
   Sheet sheet = make_sheet(config.width, head.lines.size());

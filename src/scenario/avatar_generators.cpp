@@ -21,7 +21,7 @@ namespace throng {
 namespace {
 
 constexpr int32_t kStride = 4;  // Every fourth cell along X and Z stands for 16.
-constexpr double kAdjust = 0.01, kLeastFull = 0.3, kMostFull = 1.5;  // Of the band, a step.
+constexpr double kAdjust = 0.01, kMinFull = 0.3, kMaxFull = 1.5;  // Of the band, a step.
 constexpr double kLimbs = 0.5;  // A body reaches no further from its middle. [m]
 enum Stream : uint64_t { kWant = 1, kSpawn, kGoal };
 
@@ -336,7 +336,7 @@ Result<GeneratorReport> AvatarGenerators::update(Crowd& crowd, Vec3d eye, const 
   const uint32_t removed = s.take_away(crowd, can_see);
   // Ways cross in the middle, so more walk there than goals alone would bring; slowly, as people
   // take a while to come.
-  s.fullness = std::clamp(s.fullness + kAdjust * s.missing(), kLeastFull, kMostFull);
+  s.fullness = std::clamp(s.fullness + kAdjust * s.missing(), kMinFull, kMaxFull);
   uint32_t added = 0;
   for (const uint32_t i : s.active) {
     if (s.states[i] != CellState::kBand) continue;
@@ -349,7 +349,7 @@ Result<GeneratorReport> AvatarGenerators::update(Crowd& crowd, Vec3d eye, const 
   const auto is_member = [&](AvatarId id) {
     return std::find(s.members.begin(), s.members.end(), id) != s.members.end();
   };
-  for (const auto ids : {crowd.arrived(), crowd.stranded()}) {
+  for (const auto ids : {crowd.arrived(), crowd.goal_unreachable()}) {
     std::copy_if(ids.begin(), ids.end(), std::back_inserter(idle), is_member);
   }
   s.give_goals(crowd, idle);

@@ -19,7 +19,7 @@
 namespace throng {
 namespace {
 
-constexpr int kMostPixels = 16384;  // of a side
+constexpr int kMaxPixels = 16384;  // of a side
 
 }  // namespace
 
@@ -32,7 +32,7 @@ Result<void> read_density_image(const std::string& path, DensityMap& map) {
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
     return Error{Errc::kBadFile, path + ": is no PNG; save the picture as one"};
   }
-  if (width > kMostPixels || height > kMostPixels) {
+  if (width > kMaxPixels || height > kMaxPixels) {
     return Error{Errc::kBadFile, path + ": is larger than 16384 pixels a side; make it smaller"};
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(

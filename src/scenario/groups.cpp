@@ -20,7 +20,7 @@ bool Simulation::State::group_is_ready(const Person& p) {
   return std::all_of(members.begin(), members.end(), [&](uint64_t number) {
     const Person* other = person(number);
     return other == nullptr || other->stage > p.stage || other->doing == Doing::kGathering ||
-           other->doing == Doing::kStranded || other->doing == Doing::kNothing;
+           other->doing == Doing::kGoalUnreachable || other->doing == Doing::kNothing;
   });
 }
 

@@ -65,7 +65,7 @@ void Simulation::State::walk_to(Person& p, const Place& place, Doing doing) {
   p.spot = place;
   p.until = -1;
   crowd.set_goals({&p.id, 1}, {&place, 1});
-  p.doing = place ? doing : Doing::kStranded;
+  p.doing = place ? doing : Doing::kGoalUnreachable;
 }
 
 void Simulation::State::begin_stage(Person& p) {
@@ -261,7 +261,7 @@ void Simulation::State::look_around() {
       choose_area(p);
     }
     // The ground may have changed.
-    if (p.doing == Doing::kStranded && stage_of(p).kind != Stage::Kind::kQueue &&
+    if (p.doing == Doing::kGoalUnreachable && stage_of(p).kind != Stage::Kind::kQueue &&
         (look + p.number) % kRetryEvery == 0) {
       begin_stage(p);
     }

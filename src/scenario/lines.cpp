@@ -21,13 +21,13 @@ double distance(const Vec3d& a, const Vec3d& b) {
 // The point so far behind the head of a line; beyond its end, on along its last leg.
 Vec3d along(const std::vector<Vec3d>& line, double way) {
   for (size_t i = 0; i + 1 < line.size(); ++i) {
-    const double leg = distance(line[i], line[i + 1]);
-    if (way > leg && i + 2 < line.size()) {
-      way -= leg;
+    const double segment = distance(line[i], line[i + 1]);
+    if (way > segment && i + 2 < line.size()) {
+      way -= segment;
       continue;
     }
-    if (leg <= 0) return line[i];
-    const double part = way / leg;
+    if (segment <= 0) return line[i];
+    const double part = way / segment;
     return {line[i].x + (line[i + 1].x - line[i].x) * part,
             line[i].y + (line[i + 1].y - line[i].y) * std::min(part, 1.0),
             line[i].z + (line[i + 1].z - line[i].z) * part};
@@ -80,7 +80,8 @@ void Simulation::State::move_lines() {
     size_t still = 0;
     for (const uint64_t number : line.coming) {
       Person* p = person(number);
-      if (p == nullptr || (p->doing != Doing::kToQueue && p->doing != Doing::kStranded)) continue;
+      if (p == nullptr || (p->doing != Doing::kToQueue && p->doing != Doing::kGoalUnreachable))
+        continue;
       const Place tail = in_line(queue, line.people.size(), class_of(*p));
       const auto state = crowd.read(p->id);
       if (tail && distance(state->position, tail.position) < kAtTail &&

@@ -20,7 +20,7 @@ namespace {
 constexpr double kFar = 1e6;   // [m]
 constexpr double kLong = 1e9;  // [s]
 constexpr int kCircleSides = 32;
-constexpr double kMostStages = 10000;  // of a journey
+constexpr double kMaxStages = 10000;  // of a journey
 
 using Kind = ConfigNode::Kind;
 
@@ -597,7 +597,7 @@ void File::read_journey(Reader& r) {
   }
   if (!r.ok()) return;
   const ConfigNode& stages = *r.find("stages");
-  if (journey.stages.empty() || static_cast<double>(journey.stages.size()) > kMostStages) {
+  if (journey.stages.empty() || static_cast<double>(journey.stages.size()) > kMaxStages) {
     return r.fail(stages, "give it 1 to 10000 stages");
   }
   for (size_t i = 0; i + 1 < journey.stages.size(); ++i) {

@@ -14,9 +14,9 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostPlaces = 16384;  // of an area, to come in or to stand at
-constexpr double kLookEvery = 1;       // [s]
-constexpr double kGroupsEvery = 0.5;   // [s]
+constexpr size_t kMaxPlaces = 16384;  // of an area, to come in or to stand at
+constexpr double kLookEvery = 1;      // [s]
+constexpr double kGroupsEvery = 0.5;  // [s]
 
 }  // namespace
 
@@ -89,7 +89,7 @@ Result<void> Simulation::State::find_places(int32_t area, int32_t avatar_class,
                                             const std::string& who, Context& context) {
   const auto target = target_of({&area, 1}, context);
   if (!target) return target.error();
-  auto found = crowd.places(*target, avatar_class, kMostPlaces, context);
+  auto found = crowd.places(*target, avatar_class, kMaxPlaces, context);
   if (!found) return found.error();
   if (found->empty()) {
     const std::string& name = kinds[static_cast<size_t>(avatar_class)].name;
@@ -220,8 +220,8 @@ Result<SimulationReport> Simulation::step() {
   for (const AvatarId id : s.crowd.arrived()) {
     if (s.is_here(id.slot1 - 1)) s.arrive(s.persons[id.slot1 - 1]);
   }
-  for (const AvatarId id : s.crowd.stranded()) {
-    if (s.is_here(id.slot1 - 1)) s.persons[id.slot1 - 1].doing = Doing::kStranded;
+  for (const AvatarId id : s.crowd.goal_unreachable()) {
+    if (s.is_here(id.slot1 - 1)) s.persons[id.slot1 - 1].doing = Doing::kGoalUnreachable;
   }
   report.time = s.time();
   report.entered = s.entered;
@@ -229,7 +229,7 @@ Result<SimulationReport> Simulation::step() {
   report.outside = s.coming.size();
   report.in_links = s.riding.size();
   for (const Person& p : s.persons) {
-    if (p.id && p.doing == Doing::kStranded) ++report.stranded;
+    if (p.id && p.doing == Doing::kGoalUnreachable) ++report.goal_unreachable;
   }
   return report;
 }

@@ -22,15 +22,15 @@ inline constexpr uint32_t kNoSlot = UINT32_MAX;
 
 // What somebody does at present.
 enum class Doing : uint8_t {
-  kNothing,    // the journey is over, or there is none
-  kWaiting,    // until a time
-  kWalking,    // to a region
-  kToSpot,     // to a place of his own
-  kToQueue,    // to the tail of a line
-  kInQueue,    // in a line
-  kBoarding,   // stands where a link leaves from
-  kGathering,  // for the others of his group
-  kStranded,   // no way
+  kNothing,          // the journey is over, or there is none
+  kWaiting,          // until a time
+  kWalking,          // to a region
+  kToSpot,           // to a place of his own
+  kToQueue,          // to the tail of a line
+  kInQueue,          // in a line
+  kBoarding,         // stands where a link leaves from
+  kGathering,        // for the others of his group
+  kGoalUnreachable,  // no way
 };
 
 struct Person {

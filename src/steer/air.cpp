@@ -28,9 +28,9 @@ constexpr std::array<float, kAirSpeeds> kSpeedParts = {1, 0.6f, 0.25f};
 struct Frame {
   Space ahead, right, up;
 };
-Frame frame_of(Space wish) {
-  const float size = size_of(wish);
-  const Space ahead = size > 1e-6f ? (1 / size) * wish : Space{1, 0, 0};
+Frame frame_of(Space preferred) {
+  const float size = size_of(preferred);
+  const Space ahead = size > 1e-6f ? (1 / size) * preferred : Space{1, 0, 0};
   const float level = std::sqrt(ahead.x * ahead.x + ahead.z * ahead.z);
   const Space right = level > 1e-3f ? Space{-ahead.z / level, 0, ahead.x / level} : Space{0, 0, 1};
   const Space up = {right.y * ahead.z - right.z * ahead.y, right.z * ahead.x - right.x * ahead.z,
@@ -47,8 +47,8 @@ float soonness_of_wall(float way, float speed, float horizon) {
 
 float size_of(Space p) { return std::sqrt(dot(p, p)); }
 
-AirFan air_fan(Space wish) {
-  const Frame frame = frame_of(wish);
+AirFan air_fan(Space preferred) {
+  const Frame frame = frame_of(preferred);
   AirFan fan;
   size_t n = 0;
   fan[n++] = frame.ahead;
@@ -99,21 +99,22 @@ float soonness(const AirSettings& settings, const AirSituation& situation,
   return from > 1e-3f ? 1 / from : 1e3f;
 }
 
-bool wish_is_open(const AirSettings& settings, const AirSituation& situation) {
-  const float speed = size_of(situation.wish);
-  if (situation.has_walls && situation.free_way[0] < speed * settings.wall_horizon) return false;
+bool preferred_is_open(const AirSettings& settings, const AirSituation& situation) {
+  const float speed = size_of(situation.preferred);
+  if (situation.has_walls && situation.free_distance[0] < speed * settings.wall_horizon)
+    return false;
   for (size_t n = 0; n < situation.size; ++n) {
-    if (soonness(settings, situation, situation.near[n], situation.wish) > 0) return false;
+    if (soonness(settings, situation, situation.near[n], situation.preferred) > 0) return false;
   }
   return true;
 }
 
 AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
-  const AirFan fan = air_fan(situation.wish);
-  const Frame frame = frame_of(situation.wish);
-  const float wished = size_of(situation.wish), fastest = situation.fastest;
+  const AirFan fan = air_fan(situation.preferred);
+  const Frame frame = frame_of(situation.preferred);
+  const float desired = size_of(situation.preferred), fastest = situation.fastest;
   // Who is too far away to be met in time need not be asked for each trial.
-  std::array<const AirNeighbour*, kMostNearInAir> met;
+  std::array<const AirNeighbour*, kMaxNearInAir> met;
   size_t count = 0;
   for (size_t n = 0; n < situation.size; ++n) {
     const AirNeighbour& other = situation.near[n];
@@ -132,16 +133,16 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
     const size_t d = t / kAirSpeeds;
     // Along the wish it is parts of the wish; the last of all is to hover.
     const float speed =
-        t == kAirTrials ? 0 : (d == 0 ? wished : fastest) * kSpeedParts[t % kAirSpeeds];
+        t == kAirTrials ? 0 : (d == 0 ? desired : fastest) * kSpeedParts[t % kAirSpeeds];
     const Space v = t == kAirTrials ? Space{} : speed * fan[d];
     const float progress = dot(v, frame.ahead) / fastest;
-    float cost = settings.straightness * (wished / fastest - progress) +
-                 (1 - settings.straightness) * size_of(v - situation.wish) / fastest +
+    float cost = settings.straightness * (desired / fastest - progress) +
+                 (1 - settings.straightness) * size_of(v - situation.preferred) / fastest +
                  settings.keep * size_of(v - situation.velocity) / fastest +
                  settings.right * std::max(0.0f, -dot(v, frame.right)) / fastest;
     if (situation.has_walls && t < kAirTrials) {
       cost += settings.wall *
-              nearness(soonness_of_wall(situation.free_way[d], speed, settings.wall_horizon));
+              nearness(soonness_of_wall(situation.free_distance[d], speed, settings.wall_horizon));
     }
     if (cost >= best.back().cost) continue;
     float soonest = 0;
@@ -159,7 +160,7 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
   return choices;
 }
 
-Space wish_towards(Space way, float speed, float dt, float turn, int32_t roll, bool stops) {
+Space preferred_towards(Space way, float speed, float dt, float turn, int32_t roll, bool stops) {
   constexpr float kStop = 0.5f;   // [s]
   constexpr float kCreep = 0.2f;  // [m/s] Who stops comes to an end.
   const float left = size_of(way);

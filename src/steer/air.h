@@ -46,7 +46,7 @@ struct AirSettings {
   float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
 };
 
-inline constexpr size_t kMostNearInAir = 8;
+inline constexpr size_t kMaxNearInAir = 8;
 inline constexpr size_t kAirDirections = 42;  ///< Ahead, five rings of eight, back.
 inline constexpr size_t kAirSpeeds = 3;
 inline constexpr size_t kAirTrials = kAirDirections * kAirSpeeds;
@@ -61,19 +61,19 @@ struct AirNeighbour {
 /// What a body steers by.
 struct AirSituation {
   Space velocity;
-  Space wish;         ///< The velocity if nobody were there. [at most `fastest`]
+  Space preferred;    ///< The velocity if nobody were there. [at most `fastest`]
   float fastest = 1;  ///< [m/s, > 0]
   float height = 1;   ///< Of the body. [m]
   size_t size = 0;    ///< Of `near`.
-  std::array<AirNeighbour, kMostNearInAir> near;
+  std::array<AirNeighbour, kMaxNearInAir> near;
   /// How far it is to a wall in each direction of the fan around the wish, if `has_walls`. [m]
-  std::array<float, kAirDirections> free_way{};
+  std::array<float, kAirDirections> free_distance{};
   bool has_walls = false;
 };
 
 /// Unit vectors around the wish (around X, if there is none), the first along it.
 using AirFan = std::array<Space, kAirDirections>;
-AirFan air_fan(Space wish);
+AirFan air_fan(Space preferred);
 
 /// How soon two upright cylinders touch if one goes at `velocity` and the other goes on: 1 / the
 /// time until then, 0 if not within the horizon. [1/s]
@@ -81,7 +81,7 @@ float soonness(const AirSettings& settings, const AirSituation& situation,
                const AirNeighbour& other, Space velocity);
 
 /// True if whoever does as he wishes touches nobody and no wall within their horizons.
-bool wish_is_open(const AirSettings& settings, const AirSituation& situation);
+bool preferred_is_open(const AirSettings& settings, const AirSituation& situation);
 
 /// The velocities that cost least, the best first.
 using AirChoices = std::array<Space, kAirChoices>;
@@ -90,6 +90,6 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation);
 /// The wish of a body whose aim is `way` off: at `speed`, turned aside by 2 atan(turn), to the side
 /// `roll` (0 right, 1 over it, 2 under it), and not past the aim within `dt`; where `stops`, slower
 /// the nearer it is: it would be there in half a second.
-Space wish_towards(Space way, float speed, float dt, float turn, int32_t roll, bool stops);
+Space preferred_towards(Space way, float speed, float dt, float turn, int32_t roll, bool stops);
 
 }  // namespace throng::steer

@@ -43,29 +43,29 @@ State state_at(double distance, const Fields& joint) {
 }
 
 Result<void> check_model(const Model& m) {
-  constexpr double kMost = 1e100;
+  constexpr double kMax = 1e100;
   struct Setting {
     const char* name;
     double value, least, most;
     bool above;  // More than `least`, not just as much.
   };
   const std::array<Setting, 8> settings{{
-      {"mass", m.mass, 1e-100, kMost, false},
-      {"max_speed", m.max_speed, 0, kMost, true},
-      {"max_force", m.max_force, 0, kMost, true},
-      {"horizon", m.horizon, 0, kMost, true},
-      {"deceleration", m.deceleration, 0, kMost, true},
-      {"zone_time", m.zone_time, 0, kMost, false},
+      {"mass", m.mass, 1e-100, kMax, false},
+      {"max_speed", m.max_speed, 0, kMax, true},
+      {"max_force", m.max_force, 0, kMax, true},
+      {"horizon", m.horizon, 0, kMax, true},
+      {"deceleration", m.deceleration, 0, kMax, true},
+      {"zone_time", m.zone_time, 0, kMax, false},
       {"lambda1", m.lambda1, 0.5, 1, false},
       {"lambda3", m.lambda3, 0, 1, false},
   }};
   for (const Setting& s : settings) {
     // Written so that a NaN is refused as well.
     if ((s.above ? s.value > s.least : s.value >= s.least) && s.value <= s.most) continue;
-    const std::string range = s.most < kMost ? s.least == 0.5 ? "from 0.5 to 1" : "from 0 to 1"
-                              : s.above      ? "above 0 and finite"
-                              : s.least > 0  ? "1e-100 or more and finite"
-                                             : "0 or more and finite";
+    const std::string range = s.most < kMax ? s.least == 0.5 ? "from 0.5 to 1" : "from 0 to 1"
+                              : s.above     ? "above 0 and finite"
+                              : s.least > 0 ? "1e-100 or more and finite"
+                                            : "0 or more and finite";
     return Error{Errc::kBadConfig, std::string("caacd: ") + s.name + " must be " + range};
   }
   return {};

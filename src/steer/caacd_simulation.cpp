@@ -25,8 +25,8 @@ double distance2(Vec3d a, Vec3d b) {
 }
 
 bool is_finite(Vec3d v) {
-  constexpr double kMost = 1e9;
-  return std::fabs(v.x) < kMost && std::fabs(v.y) < kMost && std::fabs(v.z) < kMost;
+  constexpr double kMax = 1e9;
+  return std::fabs(v.x) < kMax && std::fabs(v.y) < kMax && std::fabs(v.z) < kMax;
 }
 
 bool is_sound(const Fields& f) {

@@ -60,13 +60,13 @@ Error too_full(const char* what, size_t placed) {
 }
 
 bool is_sound(const SpaceConfig& c) {
-  constexpr double kMost = 1e9;
+  constexpr double kMax = 1e9;
   const bool fields = c.fields.repulsive > 0 && c.fields.precaution >= c.fields.repulsive &&
-                      c.fields.alert >= c.fields.precaution && c.fields.alert < kMost;
-  const bool sizes = c.least_obstacle > 0 && c.largest_obstacle >= c.least_obstacle &&
-                     c.largest_obstacle < kMost && c.obstacle_precaution >= 0 &&
-                     c.obstacle_alert >= c.obstacle_precaution && c.obstacle_alert < kMost;
-  return fields && sizes && c.avatars >= 1 && c.avatars <= 2000 && c.side > 0 && c.side < kMost &&
+                      c.fields.alert >= c.fields.precaution && c.fields.alert < kMax;
+  const bool sizes = c.min_obstacle > 0 && c.largest_obstacle >= c.min_obstacle &&
+                     c.largest_obstacle < kMax && c.obstacle_precaution >= 0 &&
+                     c.obstacle_alert >= c.obstacle_precaution && c.obstacle_alert < kMax;
+  return fields && sizes && c.avatars >= 1 && c.avatars <= 2000 && c.side > 0 && c.side < kMax &&
          c.obstacles >= 0 && c.obstacles <= 1000;
 }
 
@@ -83,8 +83,8 @@ Result<Space> random_space(const SpaceConfig& config, const Model& model) {
   Space space;
   for (size_t i = 0; i < static_cast<size_t>(config.obstacles); ++i) {
     const double radius =
-        config.least_obstacle + (config.largest_obstacle - config.least_obstacle) *
-                                    random_unit(seed, stream_of(kObstacleSize, i), 0);
+        config.min_obstacle + (config.largest_obstacle - config.min_obstacle) *
+                                  random_unit(seed, stream_of(kObstacleSize, i), 0);
     const Fields fields{radius, radius + config.obstacle_precaution,
                         radius + config.obstacle_alert};
     // Obstacles leave a way between them for an avatar and its precaution field.

@@ -30,14 +30,14 @@ bool is_opposed(const LaneSettings& settings, const Situation& s) {
   int32_t opposers = 0;
   for (size_t n = 0; n < s.near.size; ++n) {
     const Plane at{s.near.x[n], s.near.z[n]}, his{s.near.wx[n], s.near.wz[n]};
-    opposers += comes_towards(at, s.wish, his, settings.opposed) ? 1 : 0;
+    opposers += comes_towards(at, s.preferred, his, settings.opposed) ? 1 : 0;
   }
   return opposers >= settings.opposers;
 }
 
-Lanes::Lanes(const LaneSettings& settings, Plane wish)
-    : settings_(settings), wished_(size_of(wish)) {
-  ahead_ = {wish.x / wished_, wish.z / wished_};
+Lanes::Lanes(const LaneSettings& settings, Plane preferred)
+    : settings_(settings), desired_(size_of(preferred)) {
+  ahead_ = {preferred.x / desired_, preferred.z / desired_};
 }
 
 void Lanes::add(Plane at, Plane bound) {
@@ -55,7 +55,7 @@ void Lanes::add(Plane at, Plane bound) {
   }
 }
 
-Plane Lanes::wish() const {
+Plane Lanes::preferred() const {
   // One's own first, then the others from there, of equals the first.
   constexpr std::array<int32_t, kLanes> kOrder = {3, 4, 2, 5, 1, 6, 0};
   const auto cost = [&](int32_t lane) {
@@ -65,7 +65,7 @@ Plane Lanes::wish() const {
   const int32_t best = *std::min_element(kOrder.begin(), kOrder.end(),
                                          [&](int32_t a, int32_t b) { return cost(a) < cost(b); });
   const float aside = off(best);
-  const float scale = wished_ / std::sqrt(settings_.ahead * settings_.ahead + aside * aside);
+  const float scale = desired_ / std::sqrt(settings_.ahead * settings_.ahead + aside * aside);
   return {(ahead_.x * settings_.ahead - ahead_.z * aside) * scale,
           (ahead_.z * settings_.ahead + ahead_.x * aside) * scale};
 }

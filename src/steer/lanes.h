@@ -40,14 +40,14 @@ bool is_opposed(const LaneSettings& settings, const Situation& situation);
 
 class Lanes {
  public:
-  /// `wish`: not 0.
-  Lanes(const LaneSettings& settings, Plane wish);
+  /// `preferred`: not 0.
+  Lanes(const LaneSettings& settings, Plane preferred);
 
   /// `at`: from one's own middle. `bound`: which way the other is bound; only its direction counts.
   /// The order of adding does not matter.
   void add(Plane at, Plane bound);
   /// The wish, turned to the best lane.
-  [[nodiscard]] Plane wish() const;
+  [[nodiscard]] Plane preferred() const;
 
  private:
   static constexpr int32_t kLanes = 7;           // one's own in the middle
@@ -57,7 +57,7 @@ class Lanes {
 
   LaneSettings settings_;
   Plane ahead_;
-  float wished_;
+  float desired_;
   std::array<int32_t, kLanes> costs_{};  // in parts of kOne
 };
 

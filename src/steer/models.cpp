@@ -17,8 +17,8 @@ namespace {
 
 // Of [CAACD]'s figures: a body's repulsive, precaution and alert fields, and how fast it is.
 constexpr caacd::Fields kFields = {5, 7.5, 12};
-constexpr double kMostFrames = 2.5;  // of a part of a step
-constexpr double kMostPart = 0.03;   // [s] of a part of a step
+constexpr double kMaxFrames = 2.5;  // of a part of a step
+constexpr double kMaxPart = 0.03;   // [s] of a part of a step
 
 Vec3d flat(Plane p, double scale) { return {p.x * scale, 0, p.z * scale}; }
 
@@ -35,13 +35,13 @@ Plane curvilinear_velocity(const View& view, float dt) {
   const double units = kFields.repulsive / view.radius;          // a metre
   const double frames = view.fastest * units / model.max_speed;  // a second
   const double speed = units / frames;
-  const Plane heading = size_of(view.velocity) > 1e-6f ? view.velocity : view.wish;
+  const Plane heading = size_of(view.velocity) > 1e-6f ? view.velocity : view.preferred;
   caacd::Body self{.position = {},
                    .velocity = flat(view.velocity, speed),
                    .forward = caacd::heading_of(flat(heading, speed), {1, 0, 0}),
                    .fields = kFields,
                    .id = view.slot};
-  std::array<caacd::Body, kMostNear> others;
+  std::array<caacd::Body, kMaxNear> others;
   THRONG_ASSERT(view.others.size() <= others.size());
   for (size_t n = 0; n < view.others.size(); ++n) {
     const Other& other = view.others[n];
@@ -57,7 +57,7 @@ Plane curvilinear_velocity(const View& view, float dt) {
   Vec3d target = flat(view.way, units);
   const double far = length(target);
   if (!view.stops && far > 1e-9) target = target * ((far + 2 * model.deceleration) / far);
-  const int parts = std::max(1, static_cast<int>(std::ceil(dt * frames / kMostFrames)));
+  const int parts = std::max(1, static_cast<int>(std::ceil(dt * frames / kMaxFrames)));
   const double part = dt * frames / parts;
   for (int k = 0; k < parts; ++k) {
     const caacd::Threat threat = caacd::greatest_threat(self, near, {}, model);
@@ -75,16 +75,18 @@ Plane curvilinear_velocity(const View& view, float dt) {
 // Nobody is faster than he wishes: a crowd's steps are no longer than that.
 Plane force_velocity(const View& view, float dt) {
   const SocialForceConfig config;
-  ForceWalker self{
-      .vx = view.velocity.x, .vz = view.velocity.z, .wish_x = view.wish.x, .wish_z = view.wish.z};
-  std::array<ForceWalker, kMostNear> others;
+  ForceWalker self{.vx = view.velocity.x,
+                   .vz = view.velocity.z,
+                   .preferred_x = view.preferred.x,
+                   .preferred_z = view.preferred.z};
+  std::array<ForceWalker, kMaxNear> others;
   THRONG_ASSERT(view.others.size() <= others.size());
   for (size_t n = 0; n < view.others.size(); ++n) {
     const Other& other = view.others[n];
     others[n] = {.x = other.at.x, .z = other.at.z, .vx = other.velocity.x, .vz = other.velocity.z};
   }
   const std::span<ForceWalker> near(others.data(), view.others.size());
-  const int parts = std::max(1, static_cast<int>(std::ceil(dt / kMostPart)));
+  const int parts = std::max(1, static_cast<int>(std::ceil(dt / kMaxPart)));
   const double part = double{dt} / parts;
   for (int k = 0; k < parts; ++k) {
     Force sum = drive(self, config);

@@ -22,13 +22,13 @@ struct Other {
 /// What an avatar sees.
 struct View {
   Plane velocity;
-  Plane wish;         ///< The velocity if nobody were there.
+  Plane preferred;    ///< The velocity if nobody were there.
   Plane way;          ///< To where it is bound in a straight line. [m]
   bool stops = true;  ///< There it is to stand.
   float fastest = 1;  ///< [m/s, > 0]
   float radius = 0;   ///< [m]
   uint32_t slot = 0;
-  std::span<const Other> others;  ///< At most kMostNear, the nearest first.
+  std::span<const Other> others;  ///< At most kMaxNear, the nearest first.
   bool has_wall = false;
   Plane wall = {};  ///< From the middle to the nearest point of a wall.
 };

@@ -15,13 +15,13 @@ constexpr Turns kTurns = turns();
 
 }  // namespace
 
-Plane ahead_of(Plane wish) {
-  const float wished = size_of(wish);
-  return wished > 1e-6f ? Plane{wish.x / wished, wish.z / wished} : Plane{1, 0};
+Plane ahead_of(Plane preferred) {
+  const float desired = size_of(preferred);
+  return desired > 1e-6f ? Plane{preferred.x / desired, preferred.z / desired} : Plane{1, 0};
 }
 
-Fan fan_around(Plane wish) {
-  const Plane ahead = ahead_of(wish);
+Fan fan_around(Plane preferred) {
+  const Plane ahead = ahead_of(preferred);
   Fan fan;
   for (size_t k = 0; k < kDirections; ++k) {
     fan[k] = {ahead.x * kTurns.cosine[k] - ahead.z * kTurns.sine[k],
@@ -31,14 +31,14 @@ Fan fan_around(Plane wish) {
 }
 
 Trials trials_of(const Situation& s) {
-  const Fan fan = fan_around(s.wish);
-  const bool wishes = size_of(s.wish) > 1e-6f;
+  const Fan fan = fan_around(s.preferred);
+  const bool wishes = size_of(s.preferred) > 1e-6f;
   Trials trials;
   for (size_t k = 0; k < kDirections; ++k) {
     for (size_t i = 0; i < kSpeeds; ++i) {
       const float part = part_of_speed(i);
       const Plane full =
-          k == 0 && wishes ? s.wish : Plane{fan[k].x * s.fastest, fan[k].z * s.fastest};
+          k == 0 && wishes ? s.preferred : Plane{fan[k].x * s.fastest, fan[k].z * s.fastest};
       trials.x[k * kSpeeds + i] = full.x * part;
       trials.z[k * kSpeeds + i] = full.z * part;
     }
@@ -62,11 +62,11 @@ float nearness_of_wall(float way, float speed) {
 }
 
 Plane following(const SampledSettings& settings, const Situation& s) {
-  const float wished = size_of(s.wish);
-  if (!(wished > 1e-6f)) return s.wish;
-  const Plane ahead{s.wish.x / wished, s.wish.z / wished};
+  const float desired = size_of(s.preferred);
+  if (!(desired > 1e-6f)) return s.preferred;
+  const Plane ahead{s.preferred.x / desired, s.preferred.z / desired};
   const float per_metre = 1 / (settings.headway * s.fastest);
-  float most = wished;
+  float most = desired;
   for (size_t n = 0; n < s.near.size; ++n) {
     const float x = s.near.x[n], z = s.near.z[n], wx = s.near.wx[n], wz = s.near.wz[n];
     const float along = x * ahead.x + z * ahead.z;
@@ -84,31 +84,31 @@ Plane following(const SampledSettings& settings, const Situation& s) {
     const float leader = s.near.vx[n] * ahead.x + s.near.vz[n] * ahead.z;
     most = std::min(most, limit + settings.foresight * std::max(leader - limit, 0.0f));
   }
-  return most < wished ? Plane{ahead.x * most, ahead.z * most} : s.wish;
+  return most < desired ? Plane{ahead.x * most, ahead.z * most} : s.preferred;
 }
 
-bool wish_is_open(const SampledSettings& settings, const Situation& s) {
+bool preferred_is_open(const SampledSettings& settings, const Situation& s) {
   const float least = 1 / settings.horizon;
   for (size_t n = 0; n < s.near.size; ++n) {
-    const Plane relative{s.near.vx[n] - s.wish.x, s.near.vz[n] - s.wish.z};
+    const Plane relative{s.near.vx[n] - s.preferred.x, s.near.vz[n] - s.preferred.z};
     if (soonness({s.near.x[n], s.near.z[n]}, relative, s.near.apart[n]) > least) return false;
   }
-  return !s.has_walls ||
-         nearness_of_wall(s.free_way[0], size_of(s.wish)) <= 1 / (settings.wall_horizon + kSoonest);
+  return !s.has_walls || nearness_of_wall(s.free_distance[0], size_of(s.preferred)) <=
+                             1 / (settings.wall_horizon + kSoonest);
 }
 
 Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials& trials) {
-  const float wished = size_of(s.wish);
-  const Plane ahead = ahead_of(s.wish);
+  const float desired = size_of(s.preferred);
+  const Plane ahead = ahead_of(s.preferred);
   const float least = 1 / (settings.horizon + kSoonest);
-  const float least_of_wall = 1 / (settings.wall_horizon + kSoonest);
+  const float min_of_wall = 1 / (settings.wall_horizon + kSoonest);
   Costs costs;
   for (size_t t = 0; t < kTrials; ++t) {
     const Plane v{trials.x[t], trials.z[t]};
     const float along = v.x * ahead.x + v.z * ahead.z;
     const float left = ahead.z * v.x - ahead.x * v.z;
-    float cost = (1 - settings.straightness) * size_of({v.x - s.wish.x, v.z - s.wish.z});
-    cost = cost + settings.straightness * std::max(wished - along, 0.0f);
+    float cost = (1 - settings.straightness) * size_of({v.x - s.preferred.x, v.z - s.preferred.z});
+    cost = cost + settings.straightness * std::max(desired - along, 0.0f);
     cost = cost + settings.keep * size_of({v.x - s.velocity.x, v.z - s.velocity.z});
     cost = cost + settings.right * std::max(left, 0.0f);
     cost = cost / s.fastest;
@@ -119,8 +119,8 @@ Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials
     }
     cost = cost + settings.threat * std::max(nearness(soonest) - least, 0.0f);
     if (s.has_walls) {
-      const float near = nearness_of_wall(s.free_way[t / kSpeeds], size_of(v));
-      cost = cost + settings.wall * std::max(near - least_of_wall, 0.0f);
+      const float near = nearness_of_wall(s.free_distance[t / kSpeeds], size_of(v));
+      cost = cost + settings.wall * std::max(near - min_of_wall, 0.0f);
     }
     costs[t] = cost;
   }
@@ -144,7 +144,7 @@ Choices choose_velocity(const SampledSettings& settings, const Situation& situat
   return best_of(costs_of(settings, situation, trials), trials);
 }
 
-Plane wish_towards(Plane way, float speed, float dt, float turn) {
+Plane preferred_towards(Plane way, float speed, float dt, float turn) {
   const float left = size_of(way);
   if (left < 1e-6f) return {};
   const float size = std::min(speed, left / dt) / left;

@@ -34,7 +34,7 @@ struct SampledSettings {
   float gap = 0.02f;          ///< Wished between two bodies. [m]
   float wall = 0.5f;          ///< Cost of walking up to a wall,
   float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
-  int32_t neighbours = 8;     ///< The nearest so many are looked at. [1 to kMostNear]
+  int32_t neighbours = 8;     ///< The nearest so many are looked at. [1 to kMaxNear]
   float headway = 0.43f;      ///< Time between two who walk close behind each other. [s, > 0]
   float body = 0.4f;          ///< Of their distance, what is not room, if they are that wide. [m]
   float lane = 0.75f;         ///< Who is ahead: not further aside than this part of both radii,
@@ -43,7 +43,7 @@ struct SampledSettings {
   float foresight = 0.29f;    ///< Share of a leader's being faster that the room does not limit.
 };
 
-inline constexpr size_t kMostNear = 16;
+inline constexpr size_t kMaxNear = 16;
 inline constexpr size_t kDirections = 24;
 inline constexpr size_t kSpeeds = 4;
 /// Velocities that are tried: a direction's speeds beside each other.
@@ -51,27 +51,26 @@ inline constexpr size_t kTrials = kDirections * kSpeeds;
 inline constexpr float kSoonest = 0.1f;  ///< [s] Nothing is more urgent than a touch within this.
 
 struct Neighbour {
-  Plane at, velocity;  ///< `at` from the body's own middle.
-  float radii = 0;     ///< Sum of both.
-  Plane wish = {};     ///< Its heading: only the direction counts.
+  Plane at, velocity;    ///< `at` from the body's own middle.
+  float radii = 0;       ///< Sum of both.
+  Plane preferred = {};  ///< Its heading: only the direction counts.
 };
 
 /// Those whom a body steers by, as arrays.
 struct NearSet {
   size_t size = 0;
-  alignas(64) std::array<float, kMostNear> x{}, z{}, vx{}, vz{}, wx{}, wz{};
-  alignas(
-      64) std::array<float, kMostNear> apart{};  ///< Squares: distance less radii and gap, >= 0.
+  alignas(64) std::array<float, kMaxNear> x{}, z{}, vx{}, vz{}, wx{}, wz{};
+  alignas(64) std::array<float, kMaxNear> apart{};  ///< Squares: distance less radii and gap, >= 0.
 
   void add(const SampledSettings& settings, const Neighbour& other) {
-    THRONG_ASSERT(size < kMostNear);
+    THRONG_ASSERT(size < kMaxNear);
     const float radii = other.radii + settings.gap;
     x[size] = other.at.x;
     z[size] = other.at.z;
     vx[size] = other.velocity.x;
     vz[size] = other.velocity.z;
-    wx[size] = other.wish.x;
-    wz[size] = other.wish.z;
+    wx[size] = other.preferred.x;
+    wz[size] = other.preferred.z;
     apart[size++] =
         std::max(other.at.x * other.at.x + other.at.z * other.at.z - radii * radii, 0.0f);
   }
@@ -80,20 +79,20 @@ struct NearSet {
 /// What a body steers by.
 struct Situation {
   Plane velocity;
-  Plane wish;         ///< The velocity if nobody were there. [at most `fastest`]
+  Plane preferred;    ///< The velocity if nobody were there. [at most `fastest`]
   float fastest = 1;  ///< [m/s, > 0]
   NearSet near;
   /// How far it is to a wall in each direction of the fan around the wish, if `has_walls`. [m]
-  alignas(64) std::array<float, kDirections> free_way{};
+  alignas(64) std::array<float, kDirections> free_distance{};
   bool has_walls = false;
 };
 
 /// Which way it is to a wish: a unit vector, along X if there is none.
-Plane ahead_of(Plane wish);
+Plane ahead_of(Plane preferred);
 
 /// Unit vectors, 15 degrees apart, the first along the wish (or X, if there is none).
 using Fan = std::array<Plane, kDirections>;
-Fan fan_around(Plane wish);
+Fan fan_around(Plane preferred);
 
 /// The velocities that are tried, in order: direction d at speed s is number d * kSpeeds + s. Along
 /// the wish they are parts of the wish; instead of the slowest way back there is standing.
@@ -118,7 +117,7 @@ float nearness_of_wall(float way, float speed);
 Plane following(const SampledSettings& settings, const Situation& situation);
 
 /// True if whoever does as he wishes touches nobody and no wall within their horizons.
-bool wish_is_open(const SampledSettings& settings, const Situation& situation);
+bool preferred_is_open(const SampledSettings& settings, const Situation& situation);
 
 /// What each trial costs. Whole vectors are stored there, so it is aligned as they are.
 struct alignas(64) Costs : std::array<float, kTrials> {};
@@ -134,7 +133,7 @@ Choices choose_velocity(const SampledSettings& settings, const Situation& situat
 
 /// The wish of a body that is bound for a place `way` from its own: at `speed`, but not past it
 /// within `dt`; turned as by turned_right.
-Plane wish_towards(Plane way, float speed, float dt, float turn);
+Plane preferred_towards(Plane way, float speed, float dt, float turn);
 
 /// Who is not getting on turns to the right, by and by, up to `most`, and back once he is: what a
 /// jam needs to begin to turn as a whole. Who still does not turns on, slowly, up to `farthest`:
@@ -152,10 +151,12 @@ struct Patience {
                          ///< not be content.
 };
 
-/// Do those ahead leave less room than contents him? `followed`: what `following` made of `wish`.
-inline bool can_but_crawl(const Patience& patience, Plane wish, Plane followed, float fastest) {
+/// Do those ahead leave less room than contents him? `followed`: what `following` made of
+/// `preferred`.
+inline bool can_but_crawl(const Patience& patience, Plane preferred, Plane followed,
+                          float fastest) {
   const float size = size_of(followed);
-  return size < patience.content * fastest && size < size_of(wish);
+  return size < patience.content * fastest && size < size_of(preferred);
 }
 /// Progress as next_turn takes it: who can but crawl, and does, gets on as well as he can.
 inline float progress_felt(const Patience& patience, float progress, bool follows) {

@@ -20,9 +20,9 @@ namespace throng::steer {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, kMostNear>;
+using D = hn::CappedTag<float, kMaxNear>;
 using V = hn::Vec<D>;
-static_assert(kTrials % kMostNear == 0);
+static_assert(kTrials % kMaxNear == 0);
 
 HWY_INLINE V times(V a, float b) { return hn::Mul(a, hn::Set(D(), b)); }
 
@@ -58,15 +58,15 @@ HWY_INLINE V share_of(V apart) {
 // Written out by vectors of neighbours: the least of their limits does not depend on the order.
 Plane Following(const SampledSettings& settings, const Situation& s) {
   const D d;
-  const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
-  if (!(wished > 1e-6f)) return s.wish;
-  const Plane ahead{s.wish.x / wished, s.wish.z / wished};
+  const float desired = std::sqrt(s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
+  if (!(desired > 1e-6f)) return s.preferred;
+  const Plane ahead{s.preferred.x / desired, s.preferred.z / desired};
   const V zero = hn::Zero(d), one = hn::Set(d, 1),
           fastest = hn::Set(d, settings.unbound * s.fastest);
   const V ahead_x = hn::Set(d, ahead.x), ahead_z = hn::Set(d, ahead.z);
   const float same = settings.same_way * settings.same_way;
   const float per_metre = 1 / (settings.headway * s.fastest);
-  V most = hn::Set(d, wished);
+  V most = hn::Set(d, desired);
   for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
     const V x = hn::Load(d, &s.near.x[n]), z = hn::Load(d, &s.near.z[n]);
     const V along = hn::Add(hn::Mul(x, ahead_x), hn::Mul(z, ahead_z));
@@ -96,15 +96,15 @@ Plane Following(const SampledSettings& settings, const Situation& s) {
     most = hn::IfThenElse(leads, hn::Min(most, allowed), most);
   }
   const float least = hn::GetLane(hn::MinOfLanes(d, most));
-  return least < wished ? Plane{ahead.x * least, ahead.z * least} : s.wish;
+  return least < desired ? Plane{ahead.x * least, ahead.z * least} : s.preferred;
 }
 
-bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
+bool PreferredIsOpen(const SampledSettings& settings, const Situation& s) {
   const D d;
   const V least = hn::Set(d, 1 / settings.horizon);
   for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
-    const V vx = hn::Sub(hn::Load(d, &s.near.vx[n]), hn::Set(d, s.wish.x));
-    const V vz = hn::Sub(hn::Load(d, &s.near.vz[n]), hn::Set(d, s.wish.z));
+    const V vx = hn::Sub(hn::Load(d, &s.near.vx[n]), hn::Set(d, s.preferred.x));
+    const V vz = hn::Sub(hn::Load(d, &s.near.vz[n]), hn::Set(d, s.preferred.z));
     const V share = share_of(hn::Load(d, &s.near.apart[n]));
     const Touch t = touch(hn::Mul(hn::Load(d, &s.near.x[n]), share),
                           hn::Mul(hn::Load(d, &s.near.z[n]), share), vx, vz, share);
@@ -112,27 +112,27 @@ bool WishIsOpen(const SampledSettings& settings, const Situation& s) {
     if (!hn::AllFalse(d, hn::And(here, hn::Gt(soonness(t), least)))) return false;
   }
   if (!s.has_walls) return true;
-  const float wished = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
-  return nearness_of_wall(s.free_way[0], wished) <= 1 / (settings.wall_horizon + kSoonest);
+  const float desired = std::sqrt(s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
+  return nearness_of_wall(s.free_distance[0], desired) <= 1 / (settings.wall_horizon + kSoonest);
 }
 
 bool IsOpposed(const LaneSettings& settings, const Situation& s) {
   const D d;
   const V zero = hn::Zero(d);
-  const V wish_x = hn::Set(d, s.wish.x), wish_z = hn::Set(d, s.wish.z);
-  const V wished = hn::Set(d, s.wish.x * s.wish.x + s.wish.z * s.wish.z);
+  const V preferred_x = hn::Set(d, s.preferred.x), preferred_z = hn::Set(d, s.preferred.z);
+  const V desired = hn::Set(d, s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
   const V opposed = hn::Set(d, settings.opposed * settings.opposed);
   size_t opposers = 0;
   for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
     const V wx = hn::Load(d, &s.near.wx[n]), wz = hn::Load(d, &s.near.wz[n]);
     const V x = hn::Load(d, &s.near.x[n]), z = hn::Load(d, &s.near.z[n]);
-    const V towards = hn::Neg(hn::Add(hn::Mul(wx, wish_x), hn::Mul(wz, wish_z)));
-    const V along = hn::Add(hn::Mul(x, wish_x), hn::Mul(z, wish_z));
-    const V both = hn::Mul(hn::Add(hn::Mul(wx, wx), hn::Mul(wz, wz)), wished);
-    const auto meets = hn::And(hn::Gt(towards, zero), hn::Gt(along, zero));
+    const V towards = hn::Neg(hn::Add(hn::Mul(wx, preferred_x), hn::Mul(wz, preferred_z)));
+    const V along = hn::Add(hn::Mul(x, preferred_x), hn::Mul(z, preferred_z));
+    const V both = hn::Mul(hn::Add(hn::Mul(wx, wx), hn::Mul(wz, wz)), desired);
+    const auto in_counterflow = hn::And(hn::Gt(towards, zero), hn::Gt(along, zero));
     const auto comes = hn::Gt(hn::Mul(towards, towards), hn::Mul(opposed, both));
     const auto here = hn::FirstN(d, s.near.size - n);
-    opposers += hn::CountTrue(d, hn::And(here, hn::And(meets, comes)));
+    opposers += hn::CountTrue(d, hn::And(here, hn::And(in_counterflow, comes)));
   }
   return opposers >= static_cast<size_t>(std::max(settings.opposers, 0));
 }
@@ -152,7 +152,7 @@ constexpr Shares shares() {
 }
 constexpr Shares kShares = shares();
 
-void FindTrials(const Situation& s, float wished, Plane ahead, Trials& trials) {
+void FindTrials(const Situation& s, float desired, Plane ahead, Trials& trials) {
   const D d;
   const V x = hn::Set(d, ahead.x), z = hn::Set(d, ahead.z), fastest = hn::Set(d, s.fastest);
   for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
@@ -163,9 +163,9 @@ void FindTrials(const Situation& s, float wished, Plane ahead, Trials& trials) {
     hn::Store(hn::Mul(hn::Mul(fan_x, fastest), part), d, &trials.x[t]);
     hn::Store(hn::Mul(hn::Mul(fan_z, fastest), part), d, &trials.z[t]);
   }
-  for (size_t i = 0; wished > 1e-6f && i < kSpeeds; ++i) {
-    trials.x[i] = s.wish.x * part_of_speed(i);
-    trials.z[i] = s.wish.z * part_of_speed(i);
+  for (size_t i = 0; desired > 1e-6f && i < kSpeeds; ++i) {
+    trials.x[i] = s.preferred.x * part_of_speed(i);
+    trials.z[i] = s.preferred.z * part_of_speed(i);
   }
   trials.x[kTrials / 2] = trials.z[kTrials / 2] = 0;
 }
@@ -175,7 +175,7 @@ void FindTrials(const Situation& s, float wished, Plane ahead, Trials& trials) {
 // (speed towards each other) seconds; with some room for rounding.
 struct Relevant {
   // As `touch` takes them, with room for a vector more.
-  alignas(64) std::array<float, 2 * kMostNear> x, z, vx, vz, share;
+  alignas(64) std::array<float, 2 * kMaxNear> x, z, vx, vz, share;
 };
 size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& near) {
   const D d;
@@ -209,9 +209,9 @@ class Pricing {
  public:
   Pricing(const SampledSettings& settings, const Situation& s)
       : settings_(settings), s_(s), count_(CopyNear(settings, s, near_)) {
-    wished_ = std::sqrt(s.wish.x * s.wish.x + s.wish.z * s.wish.z);
-    ahead_ = ahead_of(s.wish);
-    FindTrials(s, wished_, ahead_, trials_);
+    desired_ = std::sqrt(s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
+    ahead_ = ahead_of(s.preferred);
+    FindTrials(s, desired_, ahead_, trials_);
   }
   [[nodiscard]] const Trials& trials() const { return trials_; }
 
@@ -220,7 +220,7 @@ class Pricing {
     const D d;
     const V x = hn::Load(d, &trials_.x[t]), z = hn::Load(d, &trials_.z[t]);
     const V along = hn::Add(hn::Mul(x, hn::Set(d, ahead_.x)), hn::Mul(z, hn::Set(d, ahead_.z)));
-    const V lost = hn::Max(hn::Sub(hn::Set(d, wished_), along), hn::Zero(d));
+    const V lost = hn::Max(hn::Sub(hn::Set(d, desired_), along), hn::Zero(d));
     return hn::Div(hn::Mul(hn::Set(d, settings_.straightness), lost), hn::Set(d, s_.fastest));
   }
 
@@ -231,9 +231,10 @@ class Pricing {
     const V ahead_x = hn::Set(d, ahead_.x), ahead_z = hn::Set(d, ahead_.z);
     const V along = hn::Add(hn::Mul(x, ahead_x), hn::Mul(z, ahead_z));
     const V left = hn::Sub(hn::Mul(ahead_z, x), hn::Mul(ahead_x, z));
-    V cost = hn::Mul(hn::Set(d, 1 - settings_.straightness),
-                     size_of(hn::Sub(x, hn::Set(d, s_.wish.x)), hn::Sub(z, hn::Set(d, s_.wish.z))));
-    const V lost = hn::Max(hn::Sub(hn::Set(d, wished_), along), zero);
+    V cost = hn::Mul(
+        hn::Set(d, 1 - settings_.straightness),
+        size_of(hn::Sub(x, hn::Set(d, s_.preferred.x)), hn::Sub(z, hn::Set(d, s_.preferred.z))));
+    const V lost = hn::Max(hn::Sub(hn::Set(d, desired_), along), zero);
     cost = hn::Add(cost, hn::Mul(hn::Set(d, settings_.straightness), lost));
     const V changed =
         size_of(hn::Sub(x, hn::Set(d, s_.velocity.x)), hn::Sub(z, hn::Set(d, s_.velocity.z)));
@@ -260,14 +261,14 @@ class Pricing {
     const V least = hn::Set(d, 1 / (settings_.horizon + kSoonest));
     cost = hn::Add(cost, times(hn::Max(hn::Sub(near, least), zero), settings_.threat));
     if (!s_.has_walls) return cost;
-    alignas(64) std::array<float, kMostNear> ways;
-    for (size_t n = 0; n < hn::Lanes(d); ++n) ways[n] = s_.free_way[(t + n) / kSpeeds];
+    alignas(64) std::array<float, kMaxNear> ways;
+    for (size_t n = 0; n < hn::Lanes(d); ++n) ways[n] = s_.free_distance[(t + n) / kSpeeds];
     const V speed = size_of(x, z);
     const V close =
         hn::Div(speed, hn::Add(hn::Load(d, ways.data()), hn::Mul(hn::Set(d, kSoonest), speed)));
-    const V least_of_wall = hn::Set(d, 1 / (settings_.wall_horizon + kSoonest));
+    const V min_of_wall = hn::Set(d, 1 / (settings_.wall_horizon + kSoonest));
     const V urgent =
-        hn::Max(hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), close), least_of_wall), zero);
+        hn::Max(hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), close), min_of_wall), zero);
     return hn::Add(cost, times(urgent, settings_.wall));
   }
 
@@ -277,7 +278,7 @@ class Pricing {
   Trials trials_;
   Relevant near_;
   size_t count_;
-  float wished_;
+  float desired_;
   Plane ahead_;
 };
 
@@ -342,7 +343,7 @@ HWY_AFTER_NAMESPACE();
 namespace throng::steer {
 
 HWY_EXPORT(Following);
-HWY_EXPORT(WishIsOpen);
+HWY_EXPORT(PreferredIsOpen);
 HWY_EXPORT(IsOpposed);
 HWY_EXPORT(CostsOf);
 HWY_EXPORT(Best);
@@ -351,8 +352,8 @@ HWY_EXPORT(TakeBest);
 Plane following_fast(const SampledSettings& settings, const Situation& situation) {
   return HWY_DYNAMIC_DISPATCH(Following)(settings, situation);
 }
-bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation) {
-  return HWY_DYNAMIC_DISPATCH(WishIsOpen)(settings, situation);
+bool preferred_is_open_fast(const SampledSettings& settings, const Situation& situation) {
+  return HWY_DYNAMIC_DISPATCH(PreferredIsOpen)(settings, situation);
 }
 bool is_opposed_fast(const LaneSettings& settings, const Situation& situation) {
   return HWY_DYNAMIC_DISPATCH(IsOpposed)(settings, situation);

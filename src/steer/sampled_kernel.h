@@ -10,7 +10,7 @@
 namespace throng::steer {
 
 Plane following_fast(const SampledSettings& settings, const Situation& situation);
-bool wish_is_open_fast(const SampledSettings& settings, const Situation& situation);
+bool preferred_is_open_fast(const SampledSettings& settings, const Situation& situation);
 bool is_opposed_fast(const LaneSettings& settings, const Situation& situation);
 /// The cheapest trial: what take_best_fast gives first. Most trials need not be looked at for that.
 Plane best_fast(const SampledSettings& settings, const Situation& situation);

@@ -32,15 +32,16 @@ Force repulsion(const ForceWalker& a, const ForceWalker& b, const SocialForceCon
 }
 
 Force drive(const ForceWalker& a, const SocialForceConfig& config) {
-  return {(a.wish_x - a.vx) / config.relaxation, (a.wish_z - a.vz) / config.relaxation};
+  return {(a.preferred_x - a.vx) / config.relaxation, (a.preferred_z - a.vz) / config.relaxation};
 }
 
 void add_repulsion(Force& sum, const ForceWalker& a, const ForceWalker& b,
                    const SocialForceConfig& config) {
-  const double wish = size_of(a.wish_x, a.wish_z);
+  const double preferred = size_of(a.preferred_x, a.preferred_z);
   const Force force = repulsion(a, b, config);
   // It pushes away from what is seen: that lies against the force.
-  const double ahead = wish > 0 ? -(force.x * a.wish_x + force.z * a.wish_z) / wish : 0;
+  const double ahead =
+      preferred > 0 ? -(force.x * a.preferred_x + force.z * a.preferred_z) / preferred : 0;
   const bool seen = ahead >= size_of(force.x, force.z) * config.sight_cosine;
   sum.x += (seen ? 1 : config.behind) * force.x;
   sum.z += (seen ? 1 : config.behind) * force.z;
@@ -67,7 +68,7 @@ void step_social_force(std::span<ForceWalker> walkers, double dt, const SocialFo
     ForceWalker& a = walkers[i];
     a.vx += forces[i].x * dt;
     a.vz += forces[i].z * dt;
-    const double most = config.most * size_of(a.wish_x, a.wish_z);
+    const double most = config.most * size_of(a.preferred_x, a.preferred_z);
     const double speed = size_of(a.vx, a.vz);
     if (speed > most) {
       a.vx *= most / speed;

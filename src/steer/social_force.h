@@ -12,7 +12,7 @@ namespace throng::steer {
 struct ForceWalker {
   double x = 0, z = 0;
   double vx = 0, vz = 0;
-  double wish_x = 0, wish_z = 0;  ///< Velocity that he would walk at alone.
+  double preferred_x = 0, preferred_z = 0;  ///< Velocity that he would walk at alone.
 };
 
 /// The numbers of [HM95], section III.

@@ -33,11 +33,11 @@ Space cross(Space a, Space b) {
 }  // namespace
 
 SurfaceChoices best_along(const AirSettings& settings, const AirSituation& situation, Space up) {
-  const float wished = size_of(situation.wish), fastest = situation.fastest;
+  const float desired = size_of(situation.preferred), fastest = situation.fastest;
   const auto along = [&](Space way) { return way - dot(way, up) * up; };
   // Who has no wish tries all sides of some direction.
-  Space ahead = along(wished > 1e-6f ? situation.wish : Space{1, 0, 0});
-  if (size_of(ahead) < 0.1f * std::max(wished, 1.0f)) ahead = along({0, 0, 1});
+  Space ahead = along(desired > 1e-6f ? situation.preferred : Space{1, 0, 0});
+  if (size_of(ahead) < 0.1f * std::max(desired, 1.0f)) ahead = along({0, 0, 1});
   const float size = size_of(ahead);
   ahead = size > 1e-6f ? (1 / size) * ahead : Space{1, 0, 0};
   const Space right = cross(ahead, up);
@@ -47,8 +47,8 @@ SurfaceChoices best_along(const AirSettings& settings, const AirSituation& situa
   };
   std::array<Choice, kSurfaceChoices> best;
   const auto consider = [&](Space v) {
-    float cost = settings.straightness * (wished - dot(v, ahead)) / fastest +
-                 (1 - settings.straightness) * size_of(v - situation.wish) / fastest +
+    float cost = settings.straightness * (desired - dot(v, ahead)) / fastest +
+                 (1 - settings.straightness) * size_of(v - situation.preferred) / fastest +
                  settings.keep * size_of(v - situation.velocity) / fastest +
                  settings.right * std::max(0.0f, -dot(v, right)) / fastest;
     if (cost >= best.back().cost) return;
@@ -65,7 +65,7 @@ SurfaceChoices best_along(const AirSettings& settings, const AirSituation& situa
   for (const auto& [cosine, sine] : kAlongSurface) {
     const Space direction = cosine * ahead + sine * right;
     for (const float part : kAlongSpeeds) {
-      consider((cosine == 1 ? wished : fastest) * part * direction);
+      consider((cosine == 1 ? desired : fastest) * part * direction);
     }
   }
   consider({});

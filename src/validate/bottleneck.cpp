@@ -64,7 +64,7 @@ using Times = std::vector<double>;
 Result<Times> pass(const Door& door, const ValidationConfig& config, ValidationResult& result,
                    Context& context) {
   const AvatarClass body = walker();
-  auto room = Room::build(door_plane(door.width), body, CrowdWays::kPaths, config, context);
+  auto room = Room::build(door_plane(door.width), body, Routing::kPaths, config, context);
   if (!room) return room.error();
   const auto ids = room->stand(waiting(door, body.radius, config.seed), 0, context);
   if (!ids) return ids.error();

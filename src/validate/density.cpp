@@ -84,7 +84,7 @@ Result<Point> walk_around(const Walk& walk, double density, const ValidationConf
   AvatarClass body;
   body.radius = walk.radius;
   body.speed = walk.speed;
-  auto room = Room::build(ring_plane(), body, CrowdWays::kStraight, config, context);
+  auto room = Room::build(ring_plane(), body, Routing::kStraight, config, context);
   if (!room) return room.error();
   const auto ids = room->stand(rows(density, walk.radius, config.seed), 0, context);
   if (!ids) return ids.error();

@@ -173,7 +173,7 @@ Result<std::vector<Way>> walk(const Experiment& e, const std::vector<Way>& filme
   plane.ground = box(e.low.x, e.low.z, e.high.x, e.high.z);
   plane.obstacles = e.walls;
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, CrowdWays::kPaths, config, context);
+  auto room = Room::build(plane, body, Routing::kPaths, config, context);
   if (!room) return room.error();
   std::vector<size_t> outside(filmed.size());
   for (size_t n = 0; n < filmed.size(); ++n) outside[n] = n;

@@ -19,7 +19,7 @@ Polygon box(double x0, double z0, double x1, double z1) {
   return {.outer = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}, .holes = {}};
 }
 
-Result<Room> Room::build(const PlaneConfig& plane, const AvatarClass& body, CrowdWays ways,
+Result<Room> Room::build(const PlaneConfig& plane, const AvatarClass& body, Routing ways,
                          const ValidationConfig& config, Context& context) {
   const auto scene = make_plane_scene(plane);
   if (!scene) return scene.error();

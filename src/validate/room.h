@@ -38,7 +38,7 @@ Polygon box(double x0, double z0, double x1, double z1);
 
 class Room {
  public:
-  static Result<Room> build(const PlaneConfig& plane, const AvatarClass& body, CrowdWays ways,
+  static Result<Room> build(const PlaneConfig& plane, const AvatarClass& body, Routing ways,
                             const ValidationConfig& config, Context& context);
 
   /// Adds avatars at speeds of their own; nobody's id for who does not fit.

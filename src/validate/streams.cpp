@@ -63,7 +63,7 @@ Result<Lanes> walk_lanes(double density, const ValidationConfig& config, Validat
   plane.ground = box(-1, -0.5, kLong + 1, kWide + 0.5);
   plane.obstacles = {box(-1, -0.5, kLong + 1, 0), box(-1, kWide, kLong + 1, kWide + 0.5)};
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, CrowdWays::kStraight, config, context);
+  auto room = Room::build(plane, body, Routing::kStraight, config, context);
   if (!room) return room.error();
   // Everybody begins at a place of a grid, and goes either way by chance.
   std::vector<Spot> spots;
@@ -198,14 +198,14 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
                      box(-1, kArm + kCross, kArm, all + 1),
                      box(kArm + kCross, kArm + kCross, all + 1, all + 1)};
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, CrowdWays::kPaths, config, context);
+  auto room = Room::build(plane, body, Routing::kPaths, config, context);
   if (!room) return room.error();
   const double rate = kEach * body.speed * kCross;  // [p/s] of each stream
   const double time = config.brief ? 40 : 120, from = time / 3;
   std::map<uint32_t, int> stream_of;
   std::array<uint64_t, 2> called{};
   std::vector<std::pair<Spot, int>> coming;
-  uint64_t came = 0, left = 0, most_outside = 0;
+  uint64_t came = 0, left = 0, max_outside = 0;
   double inside = 0, speeds = 0;
   int64_t steps = 0;
   while (room->time() < time - 1e-9) {
@@ -232,7 +232,7 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
       came += counts ? 1 : 0;
       return true;
     });
-    most_outside = std::max<uint64_t>(most_outside, coming.size());
+    max_outside = std::max<uint64_t>(max_outside, coming.size());
     room->step();
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
     std::vector<AvatarId> gone;
@@ -258,7 +258,7 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
       {.name = "left by came",
        .value = static_cast<double>(left) / static_cast<double>(came),
        .low = 0.9},
-      {.name = "most who found no room to come in", .value = static_cast<double>(most_outside)},
+      {.name = "most who found no room to come in", .value = static_cast<double>(max_outside)},
   };
   return result;
 }
@@ -275,7 +275,7 @@ Result<ValidationResult> arch(const ValidationConfig& config, Context& context) 
   plane.obstacles = {box(kHall, -0.5, kHall + 0.5, middle - kDoor / 2),
                      box(kHall, middle + kDoor / 2, kHall + 0.5, kHall + 0.5)};
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, CrowdWays::kPaths, config, context);
+  auto room = Room::build(plane, body, Routing::kPaths, config, context);
   if (!room) return room.error();
   std::vector<Spot> spots;
   for (uint64_t n = 0; n < kCrowd; ++n) {

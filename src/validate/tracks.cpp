@@ -27,8 +27,8 @@ bool numbers_of(const std::string& line, std::vector<double>& out) {
   }
 }
 
-constexpr int64_t kMostFrames = 1000000;  // 17 hours at 16 a second
-constexpr double kMostFps = 1000;
+constexpr int64_t kMaxFrames = 1000000;  // 17 hours at 16 a second
+constexpr double kMaxFps = 1000;
 
 struct Columns {
   size_t person, frame, x, z, least;
@@ -60,7 +60,7 @@ Result<Tracks> load(const std::string& path, const Columns& columns, double unit
     };
     if (line.starts_with('#')) {
       read_comment(line, tracks.fps, unit);
-      if (!(tracks.fps >= 1 && tracks.fps <= kMostFps)) {
+      if (!(tracks.fps >= 1 && tracks.fps <= kMaxFps)) {
         return bad("the frames a second must be within 1 to 1000");
       }
       continue;
@@ -74,8 +74,8 @@ Result<Tracks> load(const std::string& path, const Columns& columns, double unit
     auto& points = people[std::llround(row[columns.person])];
     const TrackPoint point{std::llround(row[columns.frame]), row[columns.x] * unit,
                            row[columns.z] * unit};
-    if (point.frame < 0 || point.frame > kMostFrames) {
-      return bad("a frame must be within 0 to " + std::to_string(kMostFrames));
+    if (point.frame < 0 || point.frame > kMaxFrames) {
+      return bad("a frame must be within 0 to " + std::to_string(kMaxFrames));
     }
     if (!points.empty() && points.back().frame >= point.frame) {
       return bad("frames of a person must ascend");

@@ -38,13 +38,13 @@ constexpr ObservedName kObserved[] = {
     {"rise", Observed::kRise},
 };
 
-struct TakenName {
+struct StatisticName {
   const char* name;
-  Taken take;
+  Statistic take;
 };
-constexpr TakenName kTaken[] = {{"mean", Taken::kMean},       {"least", Taken::kLeast},
-                                {"most", Taken::kMost},       {"spread", Taken::kSpread},
-                                {"overall", Taken::kOverall}, {"fit", Taken::kFit}};
+constexpr StatisticName kStatistics[] = {
+    {"mean", Statistic::kMean},    {"least", Statistic::kMin},       {"most", Statistic::kMax},
+    {"spread", Statistic::kRange}, {"overall", Statistic::kOverall}, {"fit", Statistic::kFit}};
 
 // The index of a text among names; fails with all of them.
 template <class Names>
@@ -130,7 +130,7 @@ void read_measure(ConfigReader& r, Trial& trial) {
   r.require("of");
   r.text("name", m.name);
   m.of = kObserved[pick(r, "of", kObserved)].of;
-  m.take = kTaken[pick(r, "take", kTaken)].take;
+  m.take = kStatistics[pick(r, "take", kStatistics)].take;
   names_of(r, "source", s.sources, m.sources);
   names_of(r, "profile", s.profiles, m.profiles);
   names_of(r, "journey", s.journeys, m.journeys);
@@ -157,16 +157,16 @@ void read_measure(ConfigReader& r, Trial& trial) {
   if (std::ranges::any_of(trial.measures, [&](const auto& o) { return o.name == m.name; })) {
     refuse("name", "the name stands here twice");
   }
-  if (m.take == Taken::kOverall && m.of != Observed::kSpeed) {
+  if (m.take == Statistic::kOverall && m.of != Observed::kSpeed) {
     refuse("take", "only a speed is taken overall");
   }
-  if (m.take == Taken::kFit && m.of != Observed::kPremovement && m.of != Observed::kWish &&
+  if (m.take == Statistic::kFit && m.of != Observed::kPremovement && m.of != Observed::kWish &&
       m.of != Observed::kSpeed) {
     refuse("take", "only what the scenario draws can fit: premovement, wish, speed");
   }
   const bool has_law =
       m.of == Observed::kPremovement ? m.sources.size() == 1 : m.profiles.size() == 1;
-  if (m.take == Taken::kFit && !has_law) {
+  if (m.take == Statistic::kFit && !has_law) {
     refuse("take", "a fit needs one source whose premovement, or one profile whose speed it is of");
   }
   if (!is_per_person(m.of) && m.of != Observed::kDensity) {

@@ -153,7 +153,7 @@ class Observer {
   }
 
   static std::string unit(const TrialMeasure& m) {
-    if (m.take == Taken::kFit) return "p";
+    if (m.take == Statistic::kFit) return "p";
     switch (m.of) {
       case Observed::kTime:
       case Observed::kLeft:
@@ -209,13 +209,13 @@ class Observer {
     double sum = 0;
     for (const double x : numbers) sum += x;
     switch (m.take) {
-      case Taken::kLeast:
+      case Statistic::kMin:
         return least;
-      case Taken::kMost:
+      case Statistic::kMax:
         return most;
-      case Taken::kSpread:
+      case Statistic::kRange:
         return most - least;
-      case Taken::kFit: {
+      case Statistic::kFit: {
         const auto share = [&](double x) { return validate::share_below(law(m), x); };
         return validate::ks_likelihood(validate::ks_distance(numbers, share), numbers.size());
       }
@@ -262,7 +262,7 @@ class Observer {
       default:
         break;
     }
-    if (m.take != Taken::kOverall) return taken(m, of_each(k, visits));
+    if (m.take != Statistic::kOverall) return taken(m, of_each(k, visits));
     double way = 0, time = 0;
     for (const double w : kept_[k].way) way += w;
     for (const double t : kept_[k].time) time += t;

@@ -264,7 +264,7 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   }
   PlaneConfig plane;
   plane.ground = box(low.x - kMargin, low.z - kMargin, high.x + kMargin, high.z + kMargin);
-  auto room = Room::build(plane, walker(), CrowdWays::kStraight, config, context);
+  auto room = Room::build(plane, walker(), Routing::kStraight, config, context);
   if (!room) return room.error();
   std::array<Score, kModels> scores;
   size_t count = 0, no_room = 0;

@@ -127,12 +127,12 @@ class Judge {
         [&](const MoveRecord& r) {
           if (!r.legal) return;
           ++report_.moves;
-          report_.entered += r.leg.entered;
-          report_.unsupported += r.leg.unsupported;
-          report_.torn += r.leg.torn;
-          if (r.leg.entered) fault("entered", r.leg.entered_at, r.leg.intruder);
-          if (r.leg.unsupported) fault("unsupported", r.leg.unsupported_at, 0);
-          if (r.leg.torn) fault("torn", r.leg.torn_at, 0);
+          report_.entered += r.segment.entered;
+          report_.unsupported += r.segment.unsupported;
+          report_.torn += r.segment.torn;
+          if (r.segment.entered) fault("entered", r.segment.entered_at, r.segment.intruder);
+          if (r.segment.unsupported) fault("unsupported", r.segment.unsupported_at, 0);
+          if (r.segment.torn) fault("torn", r.segment.torn_at, 0);
         });
   }
 
@@ -211,8 +211,8 @@ Result<void> check_source(const Scene& scene, const VerifyConfig& config) {
   return {};
 }
 
-Result<VerifyReport> verify_claims(const Claims& claims, const Scene& source,
-                                   const VerifyConfig& config, Context& context) {
+Result<VerifyReport> verify_proposals(const Claims& claims, const Scene& source,
+                                      const VerifyConfig& config, Context& context) {
   const auto start = std::chrono::steady_clock::now();
   if (auto sound = check_source(source, config); !sound) return sound.error();
   if (!(claims.cell > 0) || !(claims.resolution >= 0)) {

@@ -31,7 +31,7 @@ struct Claims {
 
 /// Tests the claims against the triangles. `config.avatar_class` is not used: the claims are about
 /// one class. Fails with kBadConfig, kBadInput (no triangles, bad indices), kCancelled.
-[[nodiscard]] Result<VerifyReport> verify_claims(const Claims& claims, const Scene& source,
-                                                 const VerifyConfig& config, Context& context);
+[[nodiscard]] Result<VerifyReport> verify_proposals(const Claims& claims, const Scene& source,
+                                                    const VerifyConfig& config, Context& context);
 
 }  // namespace throng::verify

@@ -20,14 +20,14 @@ namespace {
 
 using verify::Cylinder;
 
-constexpr uint64_t kMostFaults = 8;
+constexpr uint64_t kMaxFaults = 8;
 constexpr uint64_t kBatch = 4096;
 constexpr uint64_t kPairsSalt = 0x7061697273;
 constexpr double kReach = 0.05;  // of the feet of a place on the ground [m]
 
 struct Record {
   bool reached = false;
-  uint64_t legs = 0, positions = 0, entered = 0;
+  uint64_t segments = 0, positions = 0, entered = 0;
   Vec3d at;
   uint32_t triangle = 0;
 };
@@ -56,12 +56,12 @@ class Judge {
   void judge_path(const FlightPath& path, Record& record) const {
     for (size_t i = 1; i < path.points.size(); ++i) {
       const Vec3d a = path.points[i - 1], b = path.points[i];
-      const LegKind kind = path.legs[i - 1];
-      if (kind == LegKind::kWalk) continue;  // legal moves: verify_world's matter
-      ++record.legs;
-      if (kind != LegKind::kFly) {  // straight up or down: all that it passes at once
-        const Vec3d& ground = kind == LegKind::kTakeOff ? a : b;
-        const Vec3d& air = kind == LegKind::kTakeOff ? b : a;
+      const SegmentKind kind = path.segments[i - 1];
+      if (kind == SegmentKind::kWalk) continue;  // legal moves: verify_world's matter
+      ++record.segments;
+      if (kind != SegmentKind::kFly) {  // straight up or down: all that it passes at once
+        const Vec3d& ground = kind == SegmentKind::kTakeOff ? a : b;
+        const Vec3d& air = kind == SegmentKind::kTakeOff ? b : a;
         ++record.positions;
         const Vec3d low{air.x, std::min(ground.y + body_bottom(avatar_), air.y), air.z};
         if (meets(low, air.y + avatar_.height, record)) ++record.entered;
@@ -144,10 +144,10 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
     for (const Record& record : records) {
       report.reached += record.reached ? 1 : 0;
-      report.legs += record.legs;
+      report.segments += record.segments;
       report.positions += record.positions;
       report.entered += record.entered;
-      if (record.entered > 0 && report.faults.size() < kMostFaults) {
+      if (record.entered > 0 && report.faults.size() < kMaxFaults) {
         report.faults.push_back({"entered", record.at, record.triangle});
       }
     }

@@ -23,7 +23,7 @@ Place place_on_way(const Claims& claims, Vec3d point, double reach) {
   return {};
 }
 
-void look(const BodyCheck& body, Vec3d feet, LegRecord& record) {
+void look(const BodyCheck& body, Vec3d feet, SegmentRecord& record) {
   ++record.bodies;
   if (!record.entered) {
     if (const auto intruder = body.intruder(feet)) {
@@ -38,15 +38,15 @@ void look(const BodyCheck& body, Vec3d feet, LegRecord& record) {
   }
 }
 
-void tear(Vec3d at, LegRecord& record) {
+void tear(Vec3d at, SegmentRecord& record) {
   if (!record.torn) record.torn_at = at;
   record.torn = true;
 }
 
 }  // namespace
 
-void check_leg(const Claims& claims, const BodyCheck& body, const Place& from, const Place& to,
-               double spacing, LegRecord& record) {
+void check_segment(const Claims& claims, const BodyCheck& body, const Place& from, const Place& to,
+                   double spacing, SegmentRecord& record) {
   const Vec3d a = from.position;
   const Vec3d b = to.position;
   const double dx = b.x - a.x;

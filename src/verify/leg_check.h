@@ -10,7 +10,7 @@
 /// A body that goes straight from one claimed place to another.
 namespace throng::verify {
 
-struct LegRecord {
+struct SegmentRecord {
   bool entered = false;                       ///< Somewhere a triangle meets the body.
   bool unsupported = false;                   ///< Somewhere it has nothing to stand on.
   bool torn = false;                          ///< A point of it has no legal place.
@@ -21,7 +21,7 @@ struct LegRecord {
 
 /// Looks at the body after each `spacing` metres and at the end, its feet where the world says that
 /// they are. Adds to `record`; goes no farther where the leg is torn.
-void check_leg(const Claims& claims, const BodyCheck& body, const Place& from, const Place& to,
-               double spacing, LegRecord& record);
+void check_segment(const Claims& claims, const BodyCheck& body, const Place& from, const Place& to,
+                   double spacing, SegmentRecord& record);
 
 }  // namespace throng::verify

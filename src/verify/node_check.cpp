@@ -112,7 +112,7 @@ class NodeJudge {
   void check_arcs(uint32_t node, uint64_t n, Sample& sample) const {
     std::vector<NodeArc> arcs = nodes_.arcs(node);
     std::erase_if(arcs, [&](const NodeArc& a) {
-      return (a.classes >> config_.avatar_class & 1) == 0 || a.kind == LinkKind::kJump;
+      return (a.classes >> config_.avatar_class & 1) == 0 || a.kind == LinkKind::kOffMesh;
     });
     if (arcs.empty()) return;
     const NodeArc& arc = arcs[random_below(config_.seed, n, 9, arcs.size())];

@@ -25,10 +25,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 256;        // pairs between two looks at `cancel`
-constexpr double kSame = 1e-6;        // [m]
-constexpr double kSeam = 0.12;        // between neighbours' edges [m]
-constexpr double kMostPoses = 20000;  // of a leg
+constexpr size_t kBatch = 256;       // pairs between two looks at `cancel`
+constexpr double kSame = 1e-6;       // [m]
+constexpr double kSeam = 0.12;       // between neighbours' edges [m]
+constexpr double kMaxPoses = 20000;  // of a leg
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -36,7 +36,7 @@ double seconds_since(Clock::time_point start) {
 
 struct Gone {
   bool exists = false, reached = false, together = false;
-  uint64_t legs = 0, links = 0, leaps = 0, poses = 0, entered = 0, unsupported = 0, torn = 0;
+  uint64_t segments = 0, links = 0, leaps = 0, poses = 0, entered = 0, unsupported = 0, torn = 0;
   std::array<uint64_t, kLinkKinds> kinds{};
   double length = 0, straight = 0, seconds = 0;
   Vec3d at, entered_at, unsupported_at, torn_at;
@@ -131,8 +131,8 @@ class Follower {
         check_drop(path.points, i, gone);
       }
       // What a jump crosses is the user's own.
-      if (linked && path.links[next].kind == LinkKind::kJump) continue;
-      leg(path.points[i - 1], path.points[i], leaps, gone);
+      if (linked && path.links[next].kind == LinkKind::kOffMesh) continue;
+      segment(path.points[i - 1], path.points[i], leaps, gone);
     }
     return gone;
   }
@@ -168,12 +168,12 @@ class Follower {
     if (gone.torn++ == 0) gone.torn_at = at;
   }
 
-  void leg(const NodePathPoint& from, const NodePathPoint& to, bool leaps, Gone& gone) const {
-    ++gone.legs;
+  void segment(const NodePathPoint& from, const NodePathPoint& to, bool leaps, Gone& gone) const {
+    ++gone.segments;
     const double way = length(to.place.feet - from.place.feet) +
                        avatar_.height * length(to.place.axis - from.place.axis);
     const int parts =
-        1 + static_cast<int>(std::min(kMostPoses, std::ceil(4 * way / avatar_.radius)));
+        1 + static_cast<int>(std::min(kMaxPoses, std::ceil(4 * way / avatar_.radius)));
     // From one level tile to the next there may be a step.
     const Vec3d seam = to.place.feet - from.place.feet;
     if (!to.on_surface && !leaps &&
@@ -269,7 +269,7 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
       count(g.entered, report.entered, "entered", g.entered_at);
       count(g.unsupported, report.unsupported, "unsupported", g.unsupported_at);
       count(g.torn, report.torn, "torn", g.torn_at);
-      report.legs += g.legs;
+      report.segments += g.segments;
       report.links += g.links;
       report.leaps += g.leaps;
       report.poses += g.poses;

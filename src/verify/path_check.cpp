@@ -38,10 +38,10 @@ double plan_distance(Vec3d a, Vec3d b) { return std::hypot(b.x - a.x, b.z - a.z)
 
 struct Gone {
   bool exists = false, reached = false, together = false, illegal = false;
-  uint64_t legs = 0;
+  uint64_t segments = 0;
   double length = 0, straight = 0, seconds = 0;
   Vec3d at, illegal_at;
-  verify::LegRecord body;
+  verify::SegmentRecord body;
 };
 
 class Walker {
@@ -78,12 +78,12 @@ class Walker {
     double along = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
       const Place &a = path.points[i - 1], &b = path.points[i];
-      ++gone.legs;
+      ++gone.segments;
       along += plan_distance(a.position, b.position);
       const MoveResult move =
           claims_.move(a, b.position.x - a.position.x, b.position.z - a.position.z);
       if (move.end != MoveEnd::kArrived || !same(move.place, b)) refuse(gone, a.position);
-      verify::check_leg(claims_, body_, a, b, spacing_, gone.body);
+      verify::check_segment(claims_, body_, a, b, spacing_, gone.body);
     }
     // The length is that of the way, which is no shorter than a straight line.
     if (std::fabs(along - gone.length) > (kSlack - 1) * along + claims_.cell / 100 ||
@@ -140,7 +140,7 @@ void add(const Gone& gone, PathReport& report) {
   count(gone.body.entered, report.entered, "entered", gone.body.entered_at);
   count(gone.body.unsupported, report.unsupported, "unsupported", gone.body.unsupported_at);
   count(gone.body.torn, report.torn, "torn", gone.body.torn_at);
-  report.legs += gone.legs;
+  report.segments += gone.segments;
   report.bodies += gone.body.bodies;
   report.length += gone.length;
   report.straight += gone.straight;

@@ -93,7 +93,7 @@ MoveRecord check_move(const Claims& claims, const BodyCheck& body, uint64_t seed
   if (!end) return record;
   record.legal = true;
 
-  check_leg(claims, body, start, *end, claims.cell / 4, record.leg);
+  check_segment(claims, body, start, *end, claims.cell / 4, record.segment);
   return record;
 }
 

@@ -31,7 +31,7 @@ struct StateRecord {
 
 struct MoveRecord {
   bool legal = false;  ///< The world let the move arrive.
-  LegRecord leg;
+  SegmentRecord segment;
 };
 
 /// Moves from the world's n-th random place, 0.02 to 3 m in a random direction, and looks at the

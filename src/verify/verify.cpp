@@ -35,7 +35,7 @@ Result<VerifyReport> verify_world(const World& world, const Scene& source,
                                   const VerifyConfig& config, Context& context) {
   const auto claims = verify::claims_of(world, config.avatar_class);
   if (!claims) return claims.error();
-  return verify::verify_claims(*claims, source, config, context);
+  return verify::verify_proposals(*claims, source, config, context);
 }
 
 }  // namespace throng

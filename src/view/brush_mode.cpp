@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFarthest = 3000;  // [m] that a pointer reaches
 constexpr double kDab = 6;          // [px] between two dabs of a stroke
-constexpr double kMostDabs = 24;    // of one move of the pointer
+constexpr double kMaxDabs = 24;     // of one move of the pointer
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::optional<Vec3d> Viewer::State::ground_under(double x, double y) const {
 // From where the pointer was: a fast hand leaves no gaps.
 void Viewer::State::paint_to(double x, double y) {
   const double way = std::hypot(x - mouse_x, y - mouse_y);
-  const double dabs = std::clamp(std::ceil(way / kDab), 1.0, kMostDabs);
+  const double dabs = std::clamp(std::ceil(way / kDab), 1.0, kMaxDabs);
   const auto weight = static_cast<uint8_t>(
       panel.tool == Tool::kUnpaint ? 0
                                    : std::clamp(std::lround(panel.brush_weight * 255), 1L, 255L));

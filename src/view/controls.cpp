@@ -39,7 +39,7 @@ void Viewer::handle(const ViewEvent& event) {
       return;
     case ViewEventKind::kMouseDown:
       s.move_pointer(event.x, event.y);
-      if (taken && !s.wishes.grab_mouse) return;
+      if (taken && !s.requests.grab_mouse) return;
       s.buttons[button] = true;
       s.pressed_x = event.x;
       s.pressed_y = event.y;
@@ -77,7 +77,7 @@ void Viewer::handle(const ViewEvent& event) {
       if (std::exchange(s.paints, false)) s.send_painted();
       return;
     case ViewEventKind::kDrop:
-      s.wishes.open = event.path;
+      s.requests.open = event.path;
       return;
     case ViewEventKind::kText:
       return;
@@ -98,10 +98,10 @@ void Viewer::set_gamepad(const GamepadState& state) { state_->gamepad = state; }
 
 void Viewer::State::press(Key key) {
   const auto letter = [key](char upper) { return key == key_of(upper); };
-  if (letter('Q') && held(Key::kControl)) wishes.close = true;
+  if (letter('Q') && held(Key::kControl)) requests.close = true;
   if (key == Key::kF1) panel.help = !panel.help;
-  if (key == Key::kF11) wishes.fullscreen = !wishes.fullscreen;
-  if (key == Key::kF12) wishes.save_picture = true;
+  if (key == Key::kF11) requests.fullscreen = !requests.fullscreen;
+  if (key == Key::kF12) requests.save_picture = true;
   if (key == Key::kTab) panel.settings.panel = !panel.settings.panel;
   if (key == Key::kSpace) {
     panel.playing = !panel.playing;
@@ -158,7 +158,7 @@ void Viewer::State::drag(double dx, double dy) {
   const double height = std::max(1, picture_height);
   const bool left = buttons[0], right = buttons[1], middle = buttons[2];
   if (panel.mode == CameraMode::kWalk) {
-    if (wishes.grab_mouse) {
+    if (requests.grab_mouse) {
       rig.turn_head(-dx, -dy, height);
     } else if (left || right) {
       rig.orbit(dx, dy, height);

@@ -183,7 +183,7 @@ void CrowdPlayer::set_density(const std::vector<DensityMap>& maps) {
   give_goals(elsewhere);
 }
 
-std::shared_ptr<const Moment> CrowdPlayer::next() {
+std::shared_ptr<const TimelineFrame> CrowdPlayer::next() {
   if (seen_only_ && (!place_ || !seen_only_->fault.empty())) return nullptr;
   set_views();
   if (last_) {
@@ -194,14 +194,14 @@ std::shared_ptr<const Moment> CrowdPlayer::next() {
     if (const Result<void> ok = keep_populated(); !ok) seen_only_->fault = ok.error().message;
   }
   if (!last_) return again();
-  give_goals(crowd_.stranded());
+  give_goals(crowd_.goal_unreachable());
   give_goals(crowd_.arrived());
   return again();
 }
 
-std::shared_ptr<const Moment> CrowdPlayer::again() {
+std::shared_ptr<const TimelineFrame> CrowdPlayer::again() {
   crowd_.read(states_);
-  const auto moment = std::make_shared<Moment>();
+  const auto moment = std::make_shared<TimelineFrame>();
   moment->time = time_;
   moment->report = report_;
   put_states(states_, origin_, *moment);
@@ -209,7 +209,7 @@ std::shared_ptr<const Moment> CrowdPlayer::again() {
     moment->fault = seen_only_->fault;
     for (const AvatarState& s : states_) moment->lives.push_back(people_[s.id].id.generation);
   }
-  follow(last_ ? *last_ : Moment{}, *moment);
+  follow(last_ ? *last_ : TimelineFrame{}, *moment);
   last_ = moment;
   return moment;
 }
@@ -297,13 +297,13 @@ Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
 // The eye goes on while what is made now is shown: who is added must be hidden from where it was,
 // is, and may be by then.
 Result<void> CrowdPlayer::keep_populated() {
-  constexpr double kJump = 10;  // [m] a step
-  constexpr double kAhead = 3;  // [steps]
+  constexpr double kOffMesh = 10;  // [m] a step
+  constexpr double kAhead = 3;     // [steps]
   SeenOnly& s = *seen_only_;
   Context quiet;
   const EyePlace now = *place_;
   const bool jumped =
-      !s.looked || length(now.eye - s.looked->eye) > kJump || now.cut != s.looked->cut;
+      !s.looked || length(now.eye - s.looked->eye) > kOffMesh || now.cut != s.looked->cut;
   if (jumped || !(now == *s.looked)) {
     if (!jumped) std::swap(s.sights[0], s.sights[1]);
     s.sights[0].look_from(now, start_.sight + kLookMargin);
@@ -371,8 +371,8 @@ void CrowdPlayer::set_views() {
   crowd_.set_views({&view, 1});
 }
 
-std::optional<uint64_t> CrowdPlayer::add_driven(Vec3d where, int32_t avatar_class, double speed,
-                                                Context& context) {
+std::optional<uint64_t> CrowdPlayer::add_external(Vec3d where, int32_t avatar_class, double speed,
+                                                  Context& context) {
   // The nearest free place of a few around the point.
   for (uint64_t n = 0; n < 64; ++n) {
     const double angle = 2.4 * static_cast<double>(n),

@@ -53,10 +53,12 @@ class CrowdPlayer final : public MomentSource {
       std::shared_ptr<const Occluders> occluders, Context& context);
   /// From where one looks from the next step on.
   void look_from(const EyePlace& place) { place_ = place; }
-  std::shared_ptr<const Moment> next() override;
-  std::shared_ptr<const Moment> seek(double) override { return nullptr; }  // Time only goes on.
+  std::shared_ptr<const TimelineFrame> next() override;
+  std::shared_ptr<const TimelineFrame> seek(double) override {
+    return nullptr;
+  }  // Time only goes on.
 
-  std::shared_ptr<const Moment> again() override;
+  std::shared_ptr<const TimelineFrame> again() override;
   /// Adds or takes away avatars until there are so many, or no more fit.
   void set_count(uint32_t avatars, Context& context);
   /// Adds `count` avatars within `radius` of a point where they fit. Returns how many.
@@ -69,8 +71,8 @@ class CrowdPlayer final : public MomentSource {
   [[nodiscard]] std::optional<AvatarDetail> detail(uint64_t id) const;
 
   /// One that the caller leads: added at a place near `where`, if there is one.
-  std::optional<uint64_t> add_driven(Vec3d where, int32_t avatar_class, double speed,
-                                     Context& context);
+  std::optional<uint64_t> add_external(Vec3d where, int32_t avatar_class, double speed,
+                                       Context& context);
   /// What it wants to do until told otherwise. [m/s along X and Z]
   void drive(uint64_t id, Vec3d velocity);
   void take_away(uint64_t id);
@@ -119,7 +121,7 @@ class CrowdPlayer final : public MomentSource {
   std::optional<EyePlace> place_;
   std::optional<SeenOnly> seen_only_;
   int32_t workers_ = 0;
-  std::shared_ptr<const Moment> last_;
+  std::shared_ptr<const TimelineFrame> last_;
 };
 
 }  // namespace throng

@@ -9,9 +9,9 @@
 namespace throng {
 namespace {
 
-constexpr double kPixel = 0.5;      // [m] of maps made here, if that is not too many
-constexpr double kMostSide = 1024;  // [pixels]
-constexpr double kStorey = 1.25;    // [m] to both sides: a map is for one storey
+constexpr double kPixel = 0.5;     // [m] of maps made here, if that is not too many
+constexpr double kMaxSide = 1024;  // [pixels]
+constexpr double kStorey = 1.25;   // [m] to both sides: a map is for one storey
 
 size_t index_of(const DensityMap& map, int32_t row, int32_t column) {
   return static_cast<size_t>(row) * static_cast<size_t>(map.width) + static_cast<size_t>(column);
@@ -53,7 +53,7 @@ DensityMap& map_at(std::vector<DensityMap>& maps, const Box3d& bounds, double he
   const double wide = std::max(1.0, bounds.max.x - bounds.min.x);
   const double deep = std::max(1.0, bounds.max.z - bounds.min.z);
   map.x1 = map.x0 + wide, map.z1 = map.z0 + deep;
-  const double pixel = std::max(kPixel, std::max(wide, deep) / kMostSide);
+  const double pixel = std::max(kPixel, std::max(wide, deep) / kMaxSide);
   map.width = static_cast<int32_t>(std::ceil(wide / pixel));
   map.height = static_cast<int32_t>(std::ceil(deep / pixel));
   map.low = height - kStorey, map.high = height + kStorey;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kAbove = 0.05;                     // [m]
 constexpr double kPrecaution = 0.25, kAlert = 0.7;  // [m] beyond the body
-constexpr size_t kMost = 300;                       // So many are shown, the nearest.
+constexpr size_t kMax = 300;                        // So many are shown, the nearest.
 constexpr double kAround = 8;                       // [m] from who is picked
 
 caacd::Model model_of_metres() {
@@ -67,7 +67,7 @@ void add_zone(Marks& marks, const caacd::Body& body, const caacd::Model& model, 
   for (const size_t k : {0, 1, 2, 0, 2, 3}) marks.triangles.push_back(vertex(c[k], colour));
 }
 
-caacd::Body body_of(const Moment& crowd, size_t i, const std::vector<double>& radii) {
+caacd::Body body_of(const TimelineFrame& crowd, size_t i, const std::vector<double>& radii) {
   const double radius =
       radii.empty() ? 0.25 : radii[std::min<size_t>(crowd.classes[i], radii.size() - 1)];
   const double angle = 2 * std::numbers::pi * static_cast<double>(crowd.heading[i]);
@@ -96,7 +96,7 @@ caacd::State state_of(const caacd::Body& self, const std::vector<caacd::Body>& a
 
 }  // namespace
 
-Marks field_marks(const Moment& crowd, size_t picked, Vec3d middle,
+Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
                   const std::vector<double>& radii) {
   const bool has_picked = picked < crowd.size();
   if (has_picked) middle = {crowd.x[picked], crowd.y[picked], crowd.z[picked]};
@@ -106,7 +106,7 @@ Marks field_marks(const Moment& crowd, size_t picked, Vec3d middle,
     if (!has_picked || away < kAround) near.emplace_back(away, i);
   }
   std::sort(near.begin(), near.end());
-  if (near.size() > kMost) near.resize(kMost);
+  if (near.size() > kMax) near.resize(kMax);
   std::vector<caacd::Body> bodies;
   for (const auto& [away, i] : near) bodies.push_back(body_of(crowd, i, radii));
   const caacd::Model model = model_of_metres();

@@ -24,7 +24,7 @@ std::optional<Vec3d> ground_on(const World& world, const SightLine& line, double
   return std::nullopt;
 }
 
-size_t avatar_on(const Moment& crowd, const std::vector<double>& class_heights,
+size_t avatar_on(const TimelineFrame& crowd, const std::vector<double>& class_heights,
                  const SightLine& line, double cut, double farthest) {
   constexpr double kReach = 0.35;
   size_t best = crowd.size();

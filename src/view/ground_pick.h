@@ -23,7 +23,7 @@ struct SightLine {
 /// The nearest avatar that a sight line passes within a third of a metre, or `crowd.size()`. Who
 /// stands farther than `farthest` or above `cut` is passed over. All relative to the stage's
 /// origin.
-[[nodiscard]] size_t avatar_on(const Moment& crowd, const std::vector<double>& class_heights,
+[[nodiscard]] size_t avatar_on(const TimelineFrame& crowd, const std::vector<double>& class_heights,
                                const SightLine& line, double cut, double farthest);
 
 }  // namespace throng

@@ -52,8 +52,10 @@ size_t clip_for(const Atlas& atlas, bool moves) {
 
 // Calls each(i, j) for all i of `b`; j is the index of the same one in `a`, or a.size().
 template <class Each>
-void for_each_pair(const Moment& a, const Moment& b, Each each) {
-  const auto life = [](const Moment& m, size_t k) { return m.lives.empty() ? 0 : m.lives[k]; };
+void for_each_pair(const TimelineFrame& a, const TimelineFrame& b, Each each) {
+  const auto life = [](const TimelineFrame& m, size_t k) {
+    return m.lives.empty() ? 0 : m.lives[k];
+  };
   size_t j = 0;
   for (size_t i = 0; i < b.size(); ++i) {
     while (j < a.size() && a.ids[j] < b.ids[i]) ++j;
@@ -64,18 +66,18 @@ void for_each_pair(const Moment& a, const Moment& b, Each each) {
 
 }  // namespace
 
-void Moment::resize(size_t avatars) {
+void TimelineFrame::resize(size_t avatars) {
   ids.resize(avatars);
   classes.resize(avatars);
   for (auto* array : {&x, &y, &z, &heading, &walked, &pace}) array->resize(avatars);
 }
 
-size_t Moment::find(uint64_t id) const {
+size_t TimelineFrame::find(uint64_t id) const {
   const auto at = std::lower_bound(ids.begin(), ids.end(), id);
   return at != ids.end() && *at == id ? static_cast<size_t>(at - ids.begin()) : ids.size();
 }
 
-void put_states(const std::vector<AvatarState>& states, Vec3d origin, Moment& moment) {
+void put_states(const std::vector<AvatarState>& states, Vec3d origin, TimelineFrame& moment) {
   moment.resize(states.size());
   const bool lean = std::any_of(states.begin(), states.end(),
                                 [](const AvatarState& s) { return !(s.up == kUpright); });
@@ -94,7 +96,7 @@ void put_states(const std::vector<AvatarState>& states, Vec3d origin, Moment& mo
   }
 }
 
-void follow(const Moment& before, Moment& now) {
+void follow(const TimelineFrame& before, TimelineFrame& now) {
   const double seconds = now.time - before.time, apart = std::max(1e-6, std::abs(seconds));
   for_each_pair(before, now, [&](size_t i, size_t j) {
     if (j == before.size()) {
@@ -118,8 +120,8 @@ void follow(const Moment& before, Moment& now) {
   });
 }
 
-void BlendedCrowd::blend(const Moment& a, const Moment& b, double share, const Figures& figures,
-                         double cut) {
+void BlendedCrowd::blend(const TimelineFrame& a, const TimelineFrame& b, double share,
+                         const Figures& figures, double cut) {
   for (auto& [key, group] : groups_) {
     for (auto* array : {&group.x, &group.y, &group.z}) array->clear();
     for (auto* array : {&group.heading, &group.phase, &group.look}) array->clear();

@@ -21,11 +21,11 @@ namespace throng {
 /// How many came and left, and who does not get on.
 struct SceneFlow {
   uint64_t entered = 0, left = 0;  ///< So far.
-  uint64_t outside = 0, in_links = 0, stranded = 0;
+  uint64_t outside = 0, in_links = 0, goal_unreachable = 0;
 };
 
 /// One array entry an avatar, ascending ids, positions relative to the stage's origin.
-struct Moment {
+struct TimelineFrame {
   double time = 0;
   std::vector<uint64_t> ids;
   /// Who has an id that was another's tells so by another number; empty: no id is given twice.
@@ -51,11 +51,11 @@ struct Moment {
 };
 
 /// Fills in who is where, relative to an origin.
-void put_states(const std::vector<AvatarState>& states, Vec3d origin, Moment& moment);
+void put_states(const std::vector<AvatarState>& states, Vec3d origin, TimelineFrame& moment);
 
 /// Fills in `walked` and `pace` of `now` from the moment before it and softens its headings: a
 /// figure turns, it does not flip. `before` may be empty, or later: then time runs backwards.
-void follow(const Moment& before, Moment& now);
+void follow(const TimelineFrame& before, TimelineFrame& now);
 
 /// Which pictures serve which class: atlases by number, at least one a class.
 struct Figures {
@@ -68,13 +68,14 @@ class BlendedCrowd {
  public:
   /// Everybody of `b`, where he is at `share` of the way from `a`; who is only in `b` stands there.
   /// Who stands above `cut` is left out.
-  void blend(const Moment& a, const Moment& b, double share, const Figures& figures, double cut);
+  void blend(const TimelineFrame& a, const TimelineFrame& b, double share, const Figures& figures,
+             double cut);
   [[nodiscard]] const std::vector<DrawnCrowd>& crowds() const { return crowds_; }
   /// Leaves out one avatar from the next blend on: through whose eyes one looks. -1: nobody.
   void hide(int64_t id) { hidden_ = id; }
 
   /// All of `b` at that time, also those that are not drawn.
-  [[nodiscard]] const Moment& now() const { return now_; }
+  [[nodiscard]] const TimelineFrame& now() const { return now_; }
 
  private:
   struct Group {
@@ -84,7 +85,7 @@ class BlendedCrowd {
   };
   void put(size_t i, const Figures& figures);
 
-  Moment now_;
+  TimelineFrame now_;
   // By atlas and clip, those who lean apart from the others.
   std::map<std::tuple<size_t, size_t, bool>, Group> groups_;
   std::vector<DrawnCrowd> crowds_;

@@ -38,14 +38,14 @@ void MomentFeed::run() {
       posted_.pop_front();
       lock.unlock();
       posted.work(*source_);
-      std::shared_ptr<const Moment> again = posted.at_once ? source_->again() : nullptr;
+      std::shared_ptr<const TimelineFrame> again = posted.at_once ? source_->again() : nullptr;
       lock.lock();
       if (again) made_.assign(1, std::move(again));
     } else if (seeking_) {
       const double time = seek_to_;
       seeking_ = false;
       lock.unlock();
-      std::shared_ptr<const Moment> first = source_->seek(time);
+      std::shared_ptr<const TimelineFrame> first = source_->seek(time);
       lock.lock();
       if (first && !seeking_) {
         made_.clear();
@@ -54,7 +54,7 @@ void MomentFeed::run() {
       }
     } else {
       lock.unlock();
-      std::shared_ptr<const Moment> next = source_->next();
+      std::shared_ptr<const TimelineFrame> next = source_->next();
       lock.lock();
       if (next) {
         made_.push_back(std::move(next));

@@ -20,17 +20,17 @@ class MomentSource {
  public:
   virtual ~MomentSource() = default;
   /// The moment after the last one; nothing at the end.
-  virtual std::shared_ptr<const Moment> next() = 0;
+  virtual std::shared_ptr<const TimelineFrame> next() = 0;
   /// The last moment at or before a time, after which next() goes on. Nothing if the source cannot
   /// go back.
-  virtual std::shared_ptr<const Moment> seek(double time) = 0;
+  virtual std::shared_ptr<const TimelineFrame> seek(double time) = 0;
   /// The last one again, as it is now that something was changed. Nothing if nothing can be.
-  virtual std::shared_ptr<const Moment> again() { return nullptr; }
+  virtual std::shared_ptr<const TimelineFrame> again() { return nullptr; }
 };
 
 /// The two moments around a time, and where between them it lies.
 struct MomentPair {
-  std::shared_ptr<const Moment> a, b;
+  std::shared_ptr<const TimelineFrame> a, b;
   double share = 0;  ///< [0 to 1]
 };
 
@@ -68,7 +68,7 @@ class MomentFeed {
   std::unique_ptr<MomentSource> source_;
   mutable std::mutex mutex_;
   SideSignal wake_, idle_;
-  std::deque<std::shared_ptr<const Moment>> made_;  // In order of time.
+  std::deque<std::shared_ptr<const TimelineFrame>> made_;  // In order of time.
   struct Posted {
     std::function<void(MomentSource&)> work;
     bool at_once = false;

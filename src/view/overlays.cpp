@@ -16,8 +16,8 @@
 namespace throng {
 namespace {
 
-constexpr double kAbove = 0.04;       // [m] over the ground
-constexpr size_t kMost = 12'000'000;  // Vertices: what is more is left out.
+constexpr double kAbove = 0.04;      // [m] over the ground
+constexpr size_t kMax = 12'000'000;  // Vertices: what is more is left out.
 
 MarkVertex at(Vec3d p, Rgba colour) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), colour};
@@ -117,7 +117,7 @@ Marks clearance_marks(const World& world, int32_t avatar_class, Vec3d origin, Co
   Marks marks;
   const WorldSummary summary = world.summary();
   const uint32_t tiles = world.level_tile_count();
-  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMost; ++t) {
+  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMax; ++t) {
     const LevelTileContent tile = world.level_tile(t);
     const auto& clearance = tile.clearance[static_cast<size_t>(avatar_class)];
     add_tile(marks, tile, summary, origin,
@@ -132,7 +132,7 @@ Marks level_marks(const World& world, Vec3d origin, Context& context) {
   const WorldSummary summary = world.summary();
   const std::vector<int32_t> storeys = world.storeys();
   const uint32_t tiles = world.level_tile_count();
-  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMost; ++t) {
+  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMax; ++t) {
     const LevelTileContent tile = world.level_tile(t);
     const Rgba colour = own_colour(static_cast<uint64_t>(storeys[t]), 150);
     add_tile(marks, tile, summary, origin, [&](size_t i) {
@@ -163,7 +163,7 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   const Vec3d lift{0, kAbove, 0};
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     const NodeInfo info = nodes.node(n);
-    if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMost) continue;
+    if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMax) continue;
     // What nodes of level tiles promise is a limit of some class: the floor may be less steep.
     const auto add = [&](const std::array<Vec3d, 4>& c) {
       double steep = bins.inclination_of(info.inclination);
@@ -181,7 +181,7 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
     }
     // A ragged node row by row: its block's corners need not have a floor.
     constexpr double kCell = 1.0 / 64, kSide = kCell - 1e-5;
-    for_ragged_runs(info.cells, [&](int32_t first, int32_t row, int32_t count) {
+    for_partial_runs(info.cells, [&](int32_t first, int32_t row, int32_t count) {
       const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
       const auto at = [&](double u, double v) { return nodes.point(n, u, v) - origin + lift; };
       const double end = s + (count - 1) * kCell + kSide;
@@ -199,7 +199,7 @@ Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context) {
     for (const NodeArc& arc : nodes.arcs(n)) {
       // Both directions of a link are arcs: one is enough, but for drops.
       const bool drops = arc.kind == LinkKind::kDrop;
-      if ((arc.to < n && !drops) || marks.lines.size() > kMost) continue;
+      if ((arc.to < n && !drops) || marks.lines.size() > kMax) continue;
       if (drops) {
         const Rgba colour = rgba(230, 40, 40, 255);
         const Vec3d from = nodes.point(n, arc.from_s, arc.from_t) + lift;
@@ -211,7 +211,7 @@ Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context) {
       Rgba colour = rgba(255, 255, 255, 170);
       if (arc.kind == LinkKind::kStep) colour = rgba(255, 150, 30, 220);
       if (arc.kind == LinkKind::kClimb) colour = rgba(240, 60, 220, 220);
-      if (arc.kind == LinkKind::kJump) colour = rgba(60, 130, 255, 255);
+      if (arc.kind == LinkKind::kOffMesh) colour = rgba(60, 130, 255, 255);
       add_line(marks, nodes.middle(n) + lift, nodes.middle(arc.to) + lift, colour);
     }
   }
@@ -255,7 +255,7 @@ Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context
   return marks;
 }
 
-Marks density_marks(const Moment& crowd) {
+Marks density_marks(const TimelineFrame& crowd) {
   constexpr double kSide = 2, kStorey = 2.5, kMuch = 4;
   struct Square {
     uint32_t avatars = 0;
@@ -292,7 +292,7 @@ Marks painted_marks(const World& world, const std::vector<DensityMap>& maps, Vec
     const double high = std::min(map.high, world.summary().bounds.max.y + 1);
     const double middle = 0.5 * (low + high), reach = 0.5 * (high - low);
     for (size_t i = 0; i < map.weights.size() && !context.cancel; ++i) {
-      if (map.weights[i] == 0 || marks.triangles.size() > kMost) continue;
+      if (map.weights[i] == 0 || marks.triangles.size() > kMax) continue;
       const auto column = static_cast<double>(i % static_cast<size_t>(map.width));
       const auto row = static_cast<double>(i / static_cast<size_t>(map.width));
       const double x = map.x0 + column * wide, z = map.z0 + row * deep;
@@ -341,7 +341,7 @@ Marks path_marks(const std::vector<Vec3d>& points, Vec3d origin) {
   return marks;
 }
 
-Marks neighbour_marks(const Moment& crowd, size_t picked, double sight) {
+Marks neighbour_marks(const TimelineFrame& crowd, size_t picked, double sight) {
   Marks marks;
   const auto place = [&](size_t i) { return Vec3d{crowd.x[i], crowd.y[i] + 0.08, crowd.z[i]}; };
   const Vec3d me = place(picked);

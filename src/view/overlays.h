@@ -49,11 +49,11 @@ inline constexpr size_t kOverlays = 10;
 [[nodiscard]] Result<Marks> air_marks(const World& world, double height, Vec3d origin,
                                       Context& context);
 /// Avatars a square metre, over squares of two metres: blue few, red four and more.
-[[nodiscard]] Marks density_marks(const Moment& crowd);
+[[nodiscard]] Marks density_marks(const TimelineFrame& crowd);
 /// The protection fields of [CAACD] in metres: three circles and the zone ahead, green tolerable,
 /// yellow alert, orange critical, red collision. Of who is within 8 m of the one picked; if
 /// `picked` is nobody's index, of the 300 nearest to a point. `radii`: of bodies, by class.
-[[nodiscard]] Marks field_marks(const Moment& crowd, size_t picked, Vec3d middle,
+[[nodiscard]] Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
                                 const std::vector<double>& radii);
 /// Where the maps of a brush or scenario have weight: the more, the less clear. A pixel lies on the
 /// ground of the first class that has any under its middle.
@@ -64,6 +64,6 @@ inline constexpr size_t kOverlays = 10;
 /// A way, a little above the ground.
 [[nodiscard]] Marks path_marks(const std::vector<Vec3d>& points, Vec3d origin);
 /// Who is within `sight` of one avatar, on its storey.
-[[nodiscard]] Marks neighbour_marks(const Moment& crowd, size_t picked, double sight);
+[[nodiscard]] Marks neighbour_marks(const TimelineFrame& crowd, size_t picked, double sight);
 
 }  // namespace throng

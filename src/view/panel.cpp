@@ -122,7 +122,7 @@ void draw_scenario(PanelState& s) {
   };
   told("wait outside", flow.outside);
   told("in lifts", flow.in_links);
-  told("find no way", flow.stranded);
+  told("find no way", flow.goal_unreachable);
   if (ImGui::Button("Start again")) s.restart = true;
   tip("From its beginning, with what was painted");
 }

@@ -12,7 +12,7 @@ namespace throng {
 ReplayPlayer::ReplayPlayer(Replay replay, Vec3d origin)
     : replay_(std::move(replay)), origin_(origin) {}
 
-std::shared_ptr<const Moment> ReplayPlayer::next() {
+std::shared_ptr<const TimelineFrame> ReplayPlayer::next() {
   // Frames of a corrupt chunk are passed over: the rest can still be seen.
   while (next_ < replay_.frame_count()) {
     if (auto moment = read(next_++)) return moment;
@@ -20,15 +20,15 @@ std::shared_ptr<const Moment> ReplayPlayer::next() {
   return nullptr;
 }
 
-std::shared_ptr<const Moment> ReplayPlayer::seek(double time) {
+std::shared_ptr<const TimelineFrame> ReplayPlayer::seek(double time) {
   const Result<uint64_t> index = replay_.find(time);
   next_ = index ? *index : 0;
   return next();
 }
 
-std::shared_ptr<const Moment> ReplayPlayer::read(uint64_t index) {
+std::shared_ptr<const TimelineFrame> ReplayPlayer::read(uint64_t index) {
   if (!replay_.read(index, frame_)) return nullptr;
-  const auto moment = std::make_shared<Moment>();
+  const auto moment = std::make_shared<TimelineFrame>();
   moment->time = frame_.time;
   moment->resize(frame_.size());
   moment->ids = frame_.ids;
@@ -46,7 +46,7 @@ std::shared_ptr<const Moment> ReplayPlayer::read(uint64_t index) {
     const double turns = std::atan2(h.x, h.z) / (2 * std::numbers::pi);
     moment->heading[i] = static_cast<float>(turns - std::floor(turns));
   }
-  follow(last_ ? *last_ : Moment{}, *moment);
+  follow(last_ ? *last_ : TimelineFrame{}, *moment);
   last_ = moment;
   return moment;
 }

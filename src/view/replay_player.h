@@ -11,17 +11,17 @@ namespace throng {
 class ReplayPlayer final : public MomentSource {
  public:
   ReplayPlayer(Replay replay, Vec3d origin);
-  std::shared_ptr<const Moment> next() override;
-  std::shared_ptr<const Moment> seek(double time) override;
+  std::shared_ptr<const TimelineFrame> next() override;
+  std::shared_ptr<const TimelineFrame> seek(double time) override;
 
  private:
-  std::shared_ptr<const Moment> read(uint64_t index);
+  std::shared_ptr<const TimelineFrame> read(uint64_t index);
 
   Replay replay_;
   Vec3d origin_;
   uint64_t next_ = 0;
   RecordedFrame frame_;
-  std::shared_ptr<const Moment> last_;
+  std::shared_ptr<const TimelineFrame> last_;
 };
 
 /// First and last time of a recording; equal if it has no or one frame.

@@ -29,7 +29,7 @@ Result<std::unique_ptr<ScenarioPlayer>> ScenarioPlayer::make(const World& world,
       new ScenarioPlayer(*std::move(simulation), scenario.seconds, origin));
 }
 
-std::shared_ptr<const Moment> ScenarioPlayer::next() {
+std::shared_ptr<const TimelineFrame> ScenarioPlayer::next() {
   if (!last_) return again();
   const bool is_over = report_.time >= seconds_ - 1e-9 || simulation_.is_over();
   if (is_over || !fault_.empty()) return nullptr;
@@ -42,9 +42,9 @@ std::shared_ptr<const Moment> ScenarioPlayer::next() {
   return again();
 }
 
-std::shared_ptr<const Moment> ScenarioPlayer::again() {
+std::shared_ptr<const TimelineFrame> ScenarioPlayer::again() {
   simulation_.read(states_);
-  const auto moment = std::make_shared<Moment>();
+  const auto moment = std::make_shared<TimelineFrame>();
   moment->time = report_.time;
   moment->report = report_.crowd;
   moment->fault = fault_;
@@ -52,14 +52,14 @@ std::shared_ptr<const Moment> ScenarioPlayer::again() {
                   .left = report_.left,
                   .outside = report_.outside,
                   .in_links = report_.in_links,
-                  .stranded = report_.stranded};
+                  .goal_unreachable = report_.goal_unreachable};
   std::vector<Prism> obstacles = simulation_.crowd().obstacles();
   if (!obstacles_ || !are_alike(*obstacles_, obstacles)) {
     obstacles_ = std::make_shared<const std::vector<Prism>>(std::move(obstacles));
   }
   moment->obstacles = obstacles_;
   put_states(states_, origin_, *moment);
-  follow(last_ ? *last_ : Moment{}, *moment);
+  follow(last_ ? *last_ : TimelineFrame{}, *moment);
   last_ = moment;
   return moment;
 }

@@ -20,9 +20,11 @@ class ScenarioPlayer final : public MomentSource {
                                                                     const Scenario& scenario,
                                                                     int32_t workers, Vec3d origin,
                                                                     Context& context);
-  std::shared_ptr<const Moment> next() override;
-  std::shared_ptr<const Moment> seek(double) override { return nullptr; }  // Time only goes on.
-  std::shared_ptr<const Moment> again() override;
+  std::shared_ptr<const TimelineFrame> next() override;
+  std::shared_ptr<const TimelineFrame> seek(double) override {
+    return nullptr;
+  }  // Time only goes on.
+  std::shared_ptr<const TimelineFrame> again() override;
   /// As Simulation::set_density.
   [[nodiscard]] Result<void> set_density(const std::string& name,
                                          std::span<const uint8_t> weights) {
@@ -39,7 +41,7 @@ class ScenarioPlayer final : public MomentSource {
   std::shared_ptr<const std::vector<Prism>> obstacles_;
   SimulationReport report_;
   std::string fault_;
-  std::shared_ptr<const Moment> last_;
+  std::shared_ptr<const TimelineFrame> last_;
 };
 
 }  // namespace throng

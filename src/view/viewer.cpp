@@ -286,7 +286,7 @@ void Viewer::State::look_up_crowd() {
   mean(panel.times.blend, seconds_since(start));
 }
 
-void Viewer::State::show_props(const Moment& moment) {
+void Viewer::State::show_props(const TimelineFrame& moment) {
   if (moment.obstacles == props) return;
   props = moment.obstacles;
   Scene scene;
@@ -342,7 +342,7 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
     const std::lock_guard lock(answers->lock);
     if (!answers->fault.empty()) panel.status.error = std::exchange(answers->fault, {});
   }
-  follow_driven(seconds);
+  follow_external(seconds);
   if (feed) tell_place();
   look_up_picked();
   show_overlays();
@@ -489,11 +489,11 @@ void Viewer::play_for(double seconds) {
   }
 }
 
-ViewerWishes Viewer::take_wishes() {
-  ViewerWishes wishes = state_->wishes;
-  state_->wishes.save_picture = false;
-  state_->wishes.open.clear();
-  return wishes;
+ViewerRequests Viewer::take_requests() {
+  ViewerRequests requests = state_->requests;
+  state_->requests.save_picture = false;
+  state_->requests.open.clear();
+  return requests;
 }
 
 ViewerStatus Viewer::status() const {

@@ -42,7 +42,7 @@ struct Viewer::State {
   ViewerConfig config;
   std::unique_ptr<Ui> ui;
   PanelState panel;
-  ViewerWishes wishes;
+  ViewerRequests requests;
 
   // What there is to see.
   Vec3d origin;
@@ -87,7 +87,7 @@ struct Viewer::State {
   bool first_person = false;
   double walk_distance = 4;  // From the eye to who is walked as, if nothing is between. [m]
   std::optional<GroundQuery> ground_query;
-  Vec3d last_wish;
+  Vec3d last_preferred;
   // What the crowd's thread answers.
   struct Answers {
     std::mutex lock;
@@ -103,7 +103,7 @@ struct Viewer::State {
   void retire_job();
   void restart_crowd();
   void change_scenario(std::function<Result<void>(ScenarioPlayer&)> change);
-  void show_props(const Moment& moment);
+  void show_props(const TimelineFrame& moment);
   void send_painted();
   void change_crowd(std::function<void(CrowdPlayer&, Context&)> change);
   void act_on_panel();
@@ -134,7 +134,7 @@ struct Viewer::State {
 
   void begin_walk();
   void leave_walk();
-  void follow_driven(double seconds);
+  void follow_external(double seconds);
   [[nodiscard]] double free_behind(Vec3d feet, int32_t avatar_class);
   [[nodiscard]] bool through_eyes() const {
     return panel.mode == CameraMode::kWalk && first_person && panel.status.driven >= 0;

@@ -17,7 +17,7 @@ constexpr double kWalk = 1.5, kHurry = 3.0;  // [m/s]
 constexpr double kBehind = 4;                // [m] from the eye to who is walked as
 constexpr double kAsk = 0.2;                 // [s] between two looks at who is picked
 
-Vec3d head_of(const Moment& now, size_t i, double share_of_height,
+Vec3d head_of(const TimelineFrame& now, size_t i, double share_of_height,
               const std::vector<double>& class_heights) {
   const size_t c = now.classes[i];
   const double height = c < class_heights.size() ? class_heights[c] : 1.75;
@@ -37,7 +37,7 @@ void Viewer::State::begin_walk() {
   }
   if (!where) where = world.random_place(0, panel.crowd.seed, 0).position;
   change_crowd([answers = answers, at = *where](CrowdPlayer& player, Context& context) {
-    const auto id = player.add_driven(at, 0, kHurry, context);
+    const auto id = player.add_external(at, 0, kHurry, context);
     const std::lock_guard lock(answers->lock);
     if (id) answers->joined = static_cast<int64_t>(*id);
   });
@@ -46,7 +46,7 @@ void Viewer::State::begin_walk() {
 
 void Viewer::State::leave_walk() {
   if (panel.mode == CameraMode::kWalk) panel.mode = CameraMode::kOrbit;
-  wishes.grab_mouse = false;
+  requests.grab_mouse = false;
   const int64_t id = std::exchange(panel.status.driven, -1);
   if (id < 0) return;
   rig.distance = std::max(rig.distance, 8.0);
@@ -54,7 +54,7 @@ void Viewer::State::leave_walk() {
       [id](CrowdPlayer& player, Context&) { player.take_away(static_cast<uint64_t>(id)); });
 }
 
-void Viewer::State::follow_driven(double seconds) {
+void Viewer::State::follow_external(double seconds) {
   {
     const std::lock_guard lock(answers->lock);
     if (const auto id = std::exchange(answers->joined, std::nullopt)) {
@@ -63,10 +63,10 @@ void Viewer::State::follow_driven(double seconds) {
       walk_distance = kBehind;
       ground_query.reset();
       rig.pitch = 0.25;
-      last_wish = {};
+      last_preferred = {};
     }
   }
-  wishes.grab_mouse = through_eyes();
+  requests.grab_mouse = through_eyes();
   if (panel.status.driven < 0) return;
   const auto id = static_cast<uint64_t>(panel.status.driven);
   rig.turn_head(gamepad.look_x * -600 * seconds, gamepad.look_y * -600 * seconds, 600);
@@ -80,11 +80,11 @@ void Viewer::State::follow_driven(double seconds) {
   const double scale = size > 0.1 ? speed * std::min(1.0, size) / size : 0;
   const Vec3d flat{-std::sin(rig.yaw), 0, -std::cos(rig.yaw)};
   const Vec3d wish = (flat * ahead + Vec3d{-flat.z, 0, flat.x} * right) * scale;
-  if (!(wish == last_wish)) {
-    last_wish = wish;
+  if (!(wish == last_preferred)) {
+    last_preferred = wish;
     change_crowd([id, wish](CrowdPlayer& player, Context&) { player.drive(id, wish); });
   }
-  const Moment& now = crowd.now();
+  const TimelineFrame& now = crowd.now();
   const size_t i = now.find(id);
   if (i == now.size()) return;
   if (first_person) {
@@ -99,7 +99,7 @@ void Viewer::State::follow_driven(double seconds) {
 
 // How far the eye may be behind somebody: to the wall that one would meet who walked there.
 double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
-  constexpr double kLeast = 0.6;
+  constexpr double kMin = 0.6;
   const Place place = world.find_place(avatar_class, feet, 0.5);
   if (!ground_query) {
     auto query = GroundQuery::make(world, avatar_class);
@@ -112,14 +112,14 @@ double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
   // Over an edge one sees freely.
   if (ray.arrived || ray.obstacle == Obstacle::kGap) return walk_distance;
   const double gone = std::hypot(ray.place.position.x - feet.x, ray.place.position.z - feet.z);
-  return std::max(kLeast, gone / std::max(0.2, std::cos(rig.pitch)));
+  return std::max(kMin, gone / std::max(0.2, std::cos(rig.pitch)));
 }
 
 void Viewer::State::look_up_picked() {
   panel.picked.reset();
   if (panel.status.picked < 0) return;
   const auto id = static_cast<uint64_t>(panel.status.picked);
-  const Moment& now = crowd.now();
+  const TimelineFrame& now = crowd.now();
   const size_t i = now.find(id);
   if (i == now.size()) {
     panel.status.picked = -1;

@@ -55,8 +55,8 @@ Result<void> AirZone::attach(const std::string& name) {
            root_->roots(),
            {reinterpret_cast<const uint32_t*>(nodes->Data()), nodes->size()},
            {reinterpret_cast<const uint64_t*>(leaves->Data()), leaves->size()}};
-  const bool in_world = tree_.base >= -kMostAirLayers && tree_.base <= kMostAirLayers &&
-                        int64_t{tree_.side} * tree_.roots <= 4 * int64_t{kMostAirLayers};
+  const bool in_world = tree_.base >= -kMaxAirLayers && tree_.base <= kMaxAirLayers &&
+                        int64_t{tree_.side} * tree_.roots <= 4 * int64_t{kMaxAirLayers};
   if (!in_world) {
     return bad_file(name, "its layers lie out of this world");
   }
@@ -172,7 +172,7 @@ Result<std::shared_ptr<AirData>> read_air_manifest(std::span<const uint8_t> byte
                      multiple <= 16 && std::has_single_bit(static_cast<uint32_t>(multiple)) &&
                      root.cell() >= 1 && root.cell() <= 80000 && root.floor() < root.ceiling() &&
                      root.origin_y() >= -root.cell() && root.origin_y() <= root.cell() &&
-                     root.floor() > -kMostAirLayers && root.ceiling() < kMostAirLayers &&
+                     root.floor() > -kMaxAirLayers && root.ceiling() < kMaxAirLayers &&
                      root.flies() >> world.summary.classes.size() == 0;
   if (!sound) return bad_file(name, "its numbers make no sense");
   auto air = std::make_shared<AirData>();

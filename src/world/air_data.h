@@ -23,7 +23,7 @@ namespace throng {
 struct WorldData;
 
 inline constexpr uint32_t kAirVersion = 1;
-inline constexpr int32_t kMostAirLayers = 1 << 21;  // above height 0, and below it
+inline constexpr int32_t kMaxAirLayers = 1 << 21;  // above height 0, and below it
 
 /// One air file, after the verifier and the checks of its tree.
 class AirZone : public ZoneFile<AirZone> {
@@ -54,7 +54,7 @@ constexpr uint32_t air_room_number(AirRoom room) {
 constexpr AirRoom air_room(uint32_t number) {
   return {static_cast<int32_t>(number & 15), static_cast<int32_t>(number >> 4 & 15)};
 }
-inline constexpr int32_t kMostAirRoom = 15;  // cells
+inline constexpr int32_t kMaxAirRoom = 15;  // cells
 
 /// A flyer's body in air cells: what must be free around the cell of its feet, wherever in that
 /// cell they are.

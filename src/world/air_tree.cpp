@@ -9,7 +9,7 @@ namespace throng {
 // Each group is named once and stands before the group that names it, so a walk over the tree ends
 // after as many steps as there are words. The side of a group's cubes is noted when it is named.
 std::string AirTree::fault() const {
-  if (side < 8 || side > kMostSide || !std::has_single_bit(static_cast<uint32_t>(side))) {
+  if (side < 8 || side > kMaxSide || !std::has_single_bit(static_cast<uint32_t>(side))) {
     return "its cubes have an odd side";
   }
   if (roots == 0 || nodes.size() < roots || (nodes.size() - roots) % 8 != 0 ||

@@ -39,7 +39,7 @@ struct AirCube {
 /// cube lies at x + (c & 1) half, y + (c >> 1 & 1) half, z + (c >> 2) half. Borrowed arrays.
 struct AirTree {
   static constexpr int32_t kLeafSide = 4;
-  static constexpr int32_t kMostSide = 1 << 15;  // of a root
+  static constexpr int32_t kMaxSide = 1 << 15;  // of a root
 
   int32_t side = 8;  // power of two, 8 or more
   int32_t base = 0;

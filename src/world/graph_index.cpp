@@ -12,8 +12,8 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMostClasses = kMaxAvatarClasses;
-constexpr uint64_t kMostCells = uint64_t{1} << 50;  // of a component
+constexpr size_t kMaxClasses = kMaxAvatarClasses;
+constexpr uint64_t kMaxCells = uint64_t{1} << 50;  // of a component
 
 // The place of the last component that was told; the next is told by what has changed.
 struct LastPlace {
@@ -105,7 +105,7 @@ std::vector<uint8_t> pack_components(const GraphData& graph) {
   };
   for (size_t i = 0; i < graph.component_of.size(); ++i) {
     const size_t c = graph.class_of[i];
-    if (c >= count.size() || c >= kMostClasses) return {};  // of a graph that is none
+    if (c >= count.size() || c >= kMaxClasses) return {};  // of a graph that is none
     const size_t at = size_t{graph.class_first[c]} + graph.component_of[i];
     if (at >= order.size()) return {};
     const GraphComponent& of = graph.components[at];
@@ -146,7 +146,7 @@ class Unpacker {
         joined_(found_.size(), 0) {}
 
   const char* take_all() {
-    if (found_.size() > kMostClasses) return "it has more classes than a world can have";
+    if (found_.size() > kMaxClasses) return "it has more classes than a world can have";
     while (at_ < bytes_.size()) {
       if (const char* what = take_cluster()) return what;
     }
@@ -190,9 +190,9 @@ class Unpacker {
     int64_t cells = 0;
     for (const size_t c : first_) {
       const auto change = take_number(bytes_, at_);
-      if (!change || *change > 2 * kMostCells) return "a component makes no sense";
+      if (!change || *change > 2 * kMaxCells) return "a component makes no sense";
       cells = cells == 0 ? static_cast<int64_t>(*change) : cells + unfolded(*change);
-      if (cells <= 0 || cells > static_cast<int64_t>(kMostCells)) {
+      if (cells <= 0 || cells > static_cast<int64_t>(kMaxCells)) {
         return "a component makes no sense";
       }
       GraphComponent& of = found_[c].back();

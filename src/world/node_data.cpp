@@ -48,14 +48,14 @@ Result<void> NodeZone::attach(const std::string& name) {
                                ", this program reads " + std::to_string(kNodeVersion));
   }
   if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() || !root_->leaps() ||
-      !root_->doors() || !root_->points() || !root_->ragged() || !is_aligned(*root_->points())) {
+      !root_->doors() || !root_->points() || !root_->partial() || !is_aligned(*root_->points())) {
     return bad_nodes(name, "an array is missing");
   }
   patches_ = structs(*root_->patches());
   nodes_ = structs(*root_->nodes());
   arcs_ = structs(*root_->arcs());
   leaps_ = structs(*root_->leaps());
-  ragged_ = structs(*root_->ragged());
+  partial_ = structs(*root_->partial());
   far_ = structs(*root_->far());
   doors_ = structs(*root_->doors());
   points_ = {root_->points()->data(), root_->points()->size()};
@@ -67,7 +67,7 @@ const char* NodeZone::fault() const {
   for (const double p : points_) {
     if (!(std::fabs(p) <= kFarthest)) return "a control point makes no sense";
   }
-  uint64_t next = 0, ragged = 0;
+  uint64_t next = 0, partial = 0;
   for (const format::NodePatch& patch : patches_) {
     const bool bezier = patch.kind() == static_cast<uint8_t>(PatchKind::kBezier);
     if (patch.kind() > static_cast<uint8_t>(PatchKind::kLevelTile) ||
@@ -84,14 +84,14 @@ const char* NodeZone::fault() const {
           !(node.area() >= 0 && node.area() <= 1e12F)) {
         return "a node makes no sense";
       }
-      const bool is_ragged = (node.flags() & kRaggedFlag) != 0;
-      if (is_ragged) {
-        if (bezier || node.level() != kRaggedLevel || patch.depth() != kDeepestPatch ||
-            ragged >= ragged_.size() || ragged_[ragged].node() != n ||
-            (ragged_[ragged].low() | ragged_[ragged].high()) == 0) {
+      const bool is_partial = (node.flags() & kPartialFlag) != 0;
+      if (is_partial) {
+        if (bezier || node.level() != kPartialLevel || patch.depth() != kDeepestPatch ||
+            partial >= partial_.size() || partial_[partial].node() != n ||
+            (partial_[partial].low() | partial_[partial].high()) == 0) {
           return "the cells of a ragged node make no sense";
         }
-        ++ragged;
+        ++partial;
       }
       if (node.parent() == UINT32_MAX) continue;
       if (node.parent() < patch.first_node() || node.parent() >= n) {
@@ -99,14 +99,14 @@ const char* NodeZone::fault() const {
       }
       const format::Node& parent = nodes_[node.parent()];
       const int32_t up = node.level() - parent.level();
-      if (up <= 0 || (parent.flags() & kRaggedFlag) != 0 || node.s() >> up != parent.s() ||
+      if (up <= 0 || (parent.flags() & kPartialFlag) != 0 || node.s() >> up != parent.s() ||
           node.t() >> up != parent.t()) {
         return "a node does not lie in its parent";
       }
     }
   }
   if (next != nodes_.size()) return "nodes without a patch";
-  if (ragged != ragged_.size()) return "cells of nodes that are not ragged";
+  if (partial != partial_.size()) return "cells of nodes that are not ragged";
   uint32_t last = 0;
   for (const format::Node& node : nodes_) {
     if (node.first_arc() < last || node.first_arc() > arcs_.size()) {
@@ -141,10 +141,10 @@ const char* NodeZone::fault() const {
 }
 
 uint64_t NodeZone::cells_of(uint32_t node) const {
-  if ((nodes_[node].flags() & kRaggedFlag) == 0) return 0;
+  if ((nodes_[node].flags() & kPartialFlag) == 0) return 0;
   const auto found = std::lower_bound(
-      ragged_.begin(), ragged_.end(), node,
-      [](const format::RaggedCells& cells, uint32_t n) { return cells.node() < n; });
+      partial_.begin(), partial_.end(), node,
+      [](const format::PartialCells& cells, uint32_t n) { return cells.node() < n; });
   return uint64_t{found->high()} << 32 | found->low();
 }
 
@@ -260,7 +260,7 @@ uint64_t NodeData::cells_of(const NodeZone& from, uint32_t node, int32_t avatar_
 
 double NodeData::area_of(const NodeZone& from, uint32_t node, int32_t avatar_class) const {
   const format::Node& found = from.nodes()[node];
-  if ((found.flags() & kRaggedFlag) == 0) return static_cast<double>(found.area());
+  if ((found.flags() & kPartialFlag) == 0) return static_cast<double>(found.area());
   const double cell = world.data()->summary.cell;
   return std::popcount(cells_of(from, node, avatar_class)) * cell * cell;
 }

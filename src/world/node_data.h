@@ -28,9 +28,9 @@ inline constexpr const char* kPartNodeFolder = "nodes.part";  // in the making
 inline constexpr const char* kOldNodeFolder = "nodes.old";    // of the world before this one
 inline constexpr uint32_t kFarNode = uint32_t{1} << 31;
 inline constexpr uint8_t kDeepestPatch = 6;
-inline constexpr uint16_t kEdgeUnits = 256;                   // of an edge, as doors count along it
-inline constexpr uint8_t kTerminalFlag = 1, kRaggedFlag = 2;  // of nodes
-inline constexpr uint8_t kRaggedLevel = 3;  // of ragged nodes: blocks of 8 x 8 of a tile's cells
+inline constexpr uint16_t kEdgeUnits = 256;  // of an edge, as doors count along it
+inline constexpr uint8_t kTerminalFlag = 1, kPartialFlag = 2;  // of nodes
+inline constexpr uint8_t kPartialLevel = 3;  // of ragged nodes: blocks of 8 x 8 of a tile's cells
 
 /// A zone's bytes after the verifier and the checks of its numbers.
 class NodeZone : public ZoneFile<NodeZone> {
@@ -63,7 +63,7 @@ class NodeZone : public ZoneFile<NodeZone> {
   std::span<const format::NodePatch> patches_;
   std::span<const format::Node> nodes_;
   std::span<const format::Arc> arcs_;
-  std::span<const format::RaggedCells> ragged_;
+  std::span<const format::PartialCells> partial_;
   std::span<const format::Leap> leaps_;
   std::span<const format::FarNode> far_;
   std::span<const format::Door> doors_;

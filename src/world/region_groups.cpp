@@ -10,8 +10,8 @@
 namespace throng {
 namespace {
 
-constexpr int64_t kMostCells = int64_t{1} << 40;         // of a component: sums fit 64 bits
-constexpr uint64_t kMostFeetChange = uint64_t{1} << 34;  // folded [mm]
+constexpr int64_t kMaxCells = int64_t{1} << 40;         // of a component: sums fit 64 bits
+constexpr uint64_t kMaxFeetChange = uint64_t{1} << 34;  // folded [mm]
 
 uint32_t named_classes(const format::RegionGroup& group) {
   return group.classes() & ~uint32_t{group.begins()};
@@ -23,7 +23,7 @@ uint32_t below(uint32_t avatar_class) { return (uint32_t{1} << avatar_class) - 1
 
 bool BegunReader::next_place() {
   const auto tile_change = take_number(bytes, at), feet_change = take_number(bytes, at);
-  if (!tile_change || !feet_change || *feet_change > kMostFeetChange) return false;
+  if (!tile_change || !feet_change || *feet_change > kMaxFeetChange) return false;
   // Wraps in forged files, into what is refused.
   const uint64_t next = tile + static_cast<uint64_t>(unfolded(*tile_change));
   feet += unfolded(*feet_change);
@@ -34,10 +34,10 @@ bool BegunReader::next_place() {
 
 bool BegunReader::next_cells() {
   const auto change = take_number(bytes, at);
-  if (!change || *change > 2 * kMostCells) return false;
+  if (!change || *change > 2 * kMaxCells) return false;
   // The first as it is, the rest folded: where classes begin together they have about as many.
   cells = cells == 0 ? static_cast<int64_t>(*change) : cells + unfolded(*change);
-  return cells > 0 && cells <= kMostCells;
+  return cells > 0 && cells <= kMaxCells;
 }
 
 void GroupWriter::add(const Group& group) {

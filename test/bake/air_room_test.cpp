@@ -60,15 +60,15 @@ TEST(AirRoom, IsWhatALookAtEveryCellFinds) {
     AirTreeData data = build_air_tree(source);
     measure_room(source, apron, 2, data);
     const AirTree tree = data.view();
-    const int32_t most = std::min(apron, kMostAirRoom);
+    const int32_t most = std::min(apron, kMaxAirRoom);
     tree.for_each([&](const AirCube& cube, uint32_t word) {
       if (air_kind(word) != AirKind::kFree) return;
       const AirRoom room = air_room(air_number(word));
-      int32_t width = kMostAirRoom, free = 0;
+      int32_t width = kMaxAirRoom, free = 0;
       for (int32_t y = cube.y; y < cube.y + cube.side; ++y) {
         width = std::min(width, distance(source, most, cube, y) - 1);
       }
-      while (free < kMostAirRoom &&
+      while (free < kMaxAirRoom &&
              distance(source, most, cube, cube.y + cube.side + free) > width) {
         ++free;
       }

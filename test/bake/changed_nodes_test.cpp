@@ -90,8 +90,8 @@ class ChangedNodes : public testing::Test {
                       const std::string& what) {
     const NodeSummary kept = bake("w", scene, bake_config, config, false);
     const NodeSummary fresh = bake("fresh", scene, bake_config, config, true);
-    EXPECT_EQ(fresh.zones_kept, 0u);
-    EXPECT_EQ(kept.zones_made + kept.zones_kept, fresh.zones_made);
+    EXPECT_EQ(fresh.zones_reused, 0u);
+    EXPECT_EQ(kept.zones_made + kept.zones_reused, fresh.zones_made);
     EXPECT_EQ(kept.nodes, fresh.nodes);
     EXPECT_EQ(kept.arcs, fresh.arcs);
     EXPECT_EQ(kept.bytes, fresh.bytes);
@@ -120,7 +120,7 @@ TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
     add_crate(scene, {corner.x + draw(5, 180), draw(-5, 12), corner.z + draw(5, 180)},
               {draw(0.3, 6), draw(0.3, 6), draw(0.3, 6)});
     const NodeSummary summary = compare(scene, config, {.size = 2}, std::to_string(i));
-    kept += summary.zones_kept;
+    kept += summary.zones_reused;
     made += summary.zones_made;
   }
   EXPECT_GT(kept, made / 4);
@@ -143,7 +143,7 @@ TEST_F(ChangedNodes, PatchesThatMoveAreSeenByThoseAroundThem) {
         draw(-0.4, 0.4);
     const NodeSummary summary =
         compare(test::patch_scene(net), config, {.size = 0.5}, std::to_string(i));
-    kept += summary.zones_kept;
+    kept += summary.zones_reused;
     made += summary.zones_made;
   }
   EXPECT_GT(kept, made / 4);
@@ -175,18 +175,18 @@ TEST_F(ChangedNodes, LevelTilesDropsAndJumpsAreMadeWhereSomethingBearsOnThem) {
     if (i % 5 == 4) scene = bare;
     if (i % 3 == 2) {
       // Between places of the ground that no crate covers, at the rims of far zones.
-      nodes.jumps.push_back({.from = {3.2 * 4 + 1.6, 0.5, 3.2 * 2 + 1.6},
-                             .to = {3.2 * (6 + i % 5) + 2, 0.8, 3.2 * 10 + 1.6},
-                             .avatar_class = i % 2,
-                             .both_ways = i % 4 == 0});
+      nodes.off_mesh_links.push_back({.from = {3.2 * 4 + 1.6, 0.5, 3.2 * 2 + 1.6},
+                                      .to = {3.2 * (6 + i % 5) + 2, 0.8, 3.2 * 10 + 1.6},
+                                      .avatar_class = i % 2,
+                                      .both_ways = i % 4 == 0});
     } else {
       add_crate(scene, {draw(16, 60), draw(0, 2.5), draw(10, 28)},
                 {draw(0.2, 3), draw(0.2, 2), draw(0.2, 3)});
     }
     const NodeSummary summary = compare(scene, config, nodes, std::to_string(i));
-    kept += summary.zones_kept;
+    kept += summary.zones_reused;
     made += summary.zones_made;
-    if (i % 7 == 6) nodes.jumps.erase(nodes.jumps.begin());
+    if (i % 7 == 6) nodes.off_mesh_links.erase(nodes.off_mesh_links.begin());
   }
   EXPECT_GT(kept, made / 4);
   EXPECT_GT(made, 20u);
@@ -196,7 +196,7 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   const BakeConfig config{.cell = 0.2, .zone = 12.8, .classes = walkers()};
   const Scene scene = field();
   const NodeSummary first = compare(scene, config, {}, "first");
-  EXPECT_EQ(first.zones_kept, 0u);
+  EXPECT_EQ(first.zones_reused, 0u);
   EXPECT_EQ(first.zones_made, 20u);
   const Folder before = folder_bytes(at("w") + "/nodes");
   // The same world: its nodes are there at once.
@@ -206,12 +206,12 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   ASSERT_TRUE(bake_world_to(at("w"), scene, carry, context));
   ASSERT_TRUE(Nodes::open(at("w")));
   const NodeSummary second = bake("w", scene, config, {}, false);
-  EXPECT_EQ(second.zones_kept, 20u);
+  EXPECT_EQ(second.zones_reused, 20u);
   EXPECT_EQ(second.zones_made, 0u);
   EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == before);
   // Other classes, sizes of cells, sizes of nodes: nothing can be kept.
-  EXPECT_EQ(bake("w", scene, config, {.classes = 1}, false).zones_kept, 0u);
-  EXPECT_EQ(bake("w", scene, config, {}, false).zones_kept, 0u);
+  EXPECT_EQ(bake("w", scene, config, {.classes = 1}, false).zones_reused, 0u);
+  EXPECT_EQ(bake("w", scene, config, {}, false).zones_reused, 0u);
   // Damaged files are no loss but of time.
   const std::string damaged = at("w") + "/nodes/zone_1_1.thn";
   fs::remove(damaged);
@@ -258,7 +258,7 @@ TEST_F(ChangedNodes, WhatIsMadeBeforeABakeStopsIsNotMadeAgain) {
   const auto world = World::open(at("w"));
   const auto nodes = Nodes::make_in_folder(*world, scene, {}, silent);
   ASSERT_TRUE(nodes);
-  EXPECT_EQ(nodes->summary().zones_kept, 19u);
+  EXPECT_EQ(nodes->summary().zones_reused, 19u);
   EXPECT_EQ(nodes->summary().zones_made, 1u);
   EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == reference);
   EXPECT_FALSE(fs::exists(at("w") + "/nodes.part"));
@@ -269,7 +269,7 @@ TEST_F(ChangedNodes, WhatCannotBeMadeLeavesNothingBehind) {
   const Scene scene = field();
   Context context;
   NodeConfig nodes{.working_bytes = 1};
-  nodes.jumps.push_back({.from = {8, 0.5, 8}, .to = {500, 0, 500}});
+  nodes.off_mesh_links.push_back({.from = {8, 0.5, 8}, .to = {500, 0, 500}});
   ASSERT_TRUE(bake_world_to(at("w"), scene, config, context));
   const Folder before = folder_bytes(at("w"));
   const auto world = World::open(at("w"));
@@ -312,7 +312,7 @@ TEST_F(ChangedNodes, AJumpWithoutAPlaceIsFoundWhileTheOldWorldIsThere) {
       const auto near = [&](uint64_t n) {
         return nodes->random_place(who, 3, n).feet + Vec3d{0, draw(-1.2, 1.2), 0};
       };
-      wanted.jumps = {{near(2 * i), near(2 * i + 1), who, true}};
+      wanted.off_mesh_links = {{near(2 * i), near(2 * i + 1), who, true}};
       const auto report = bake_world_to(at("w"), scene, config, context);
       fs::remove_all(at("other"));
       BakeConfig other = config;

@@ -79,11 +79,11 @@ class ChangedZones : public testing::Test {
 TEST_F(ChangedZones, NothingChangedNothingIsBaked) {
   const BakeReport first = bake("w", field());
   EXPECT_EQ(first.zones_baked, 20u);
-  EXPECT_EQ(first.zones_kept, 0u);
+  EXPECT_EQ(first.zones_reused, 0u);
   const Folder before = folder_bytes(at("w"));
   const BakeReport second = bake("w", field());
   EXPECT_EQ(second.zones_baked, 0u);
-  EXPECT_EQ(second.zones_kept, 20u);
+  EXPECT_EQ(second.zones_reused, 20u);
   EXPECT_EQ(first.zones_relinked, 20u);
   EXPECT_EQ(second.zones_relinked, 0u);
   EXPECT_EQ(second.graph_bytes, first.graph_bytes);
@@ -102,7 +102,7 @@ TEST_F(ChangedZones, EmptyZonesAreCountedApart) {
     EXPECT_EQ(report.zones, 20u);
     EXPECT_EQ(report.zones, World::open(at("w"))->summary().zones);
     EXPECT_EQ(report.zones_baked, baked);
-    EXPECT_EQ(report.zones_kept, 20 - baked);
+    EXPECT_EQ(report.zones_reused, 20 - baked);
     EXPECT_EQ(report.zones_relinked, baked);
     EXPECT_EQ(report.zones_empty, 6u);  // Two near that one, and four beside the ground's end.
   }
@@ -114,14 +114,14 @@ TEST_F(ChangedZones, AirIsBakedAgainWhereItChanged) {
   Scene scene = field();
   const BakeReport first = bake("w", scene, config);
   EXPECT_EQ(first.air_zones, 20u);
-  EXPECT_EQ(first.air_zones_kept, 0u);
-  EXPECT_EQ(bake("w", scene, config).air_zones_kept, first.air_zones);
+  EXPECT_EQ(first.air_zones_reused, 0u);
+  EXPECT_EQ(bake("w", scene, config).air_zones_reused, first.air_zones);
   // A beam in the middle of zone (2, 1), within the heights that the air has.
   scene.add_box({kCorner + 2.4 * kZone, 1, kCorner + 1.4 * kZone},
                 {kCorner + 2.6 * kZone, 1.5, kCorner + 1.6 * kZone});
   const BakeReport touched = bake("w", scene, config);
   EXPECT_EQ(touched.air_zones, first.air_zones);
-  EXPECT_EQ(touched.air_zones_kept, first.air_zones - 1);
+  EXPECT_EQ(touched.air_zones_reused, first.air_zones - 1);
   bake("fresh", scene, config);
   EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("fresh")));
 }
@@ -162,7 +162,7 @@ TEST_F(ChangedZones, ATouchedTriangleIsBakedWhereItIsSeenAndNowhereElse) {
     scene.add_triangle({touch.x, 1, touch.z}, {touch.x, 1, z1}, {x1, 1, touch.z});
     const BakeReport report = bake("w", scene);
     EXPECT_EQ(report.zones_baked, touch.zones) << touch.x << ", " << touch.z;
-    EXPECT_EQ(report.zones_kept, 20 - touch.zones);
+    EXPECT_EQ(report.zones_reused, 20 - touch.zones);
     EXPECT_EQ(report.zones_relinked, touch.links) << touch.x << ", " << touch.z;
     bake("new", scene, {.cell = 0.2, .zone = kZone, .old_zones = OldZones::kBakeAgain});
     EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
@@ -248,9 +248,9 @@ TEST_F(ChangedZones, AnotherClassCellOrResolutionBakesAll) {
   config.resolution = 0.05;
   EXPECT_EQ(bake("w", field(), config).zones_baked, 20u);
   config.cell = 0.25;
-  EXPECT_EQ(bake("w", field(), config).zones_kept, 0u);
+  EXPECT_EQ(bake("w", field(), config).zones_reused, 0u);
   config.old_zones = OldZones::kBakeAgain;
-  EXPECT_EQ(bake("w", field(), config).zones_kept, 0u);
+  EXPECT_EQ(bake("w", field(), config).zones_reused, 0u);
 }
 
 TEST_F(ChangedZones, AnotherAreaKindIsBaked) {
@@ -268,23 +268,23 @@ TEST_F(ChangedZones, TheGridStaysWhereItWasIfTheRimMovesInOrTheFarSideOut) {
   Scene scene = field();
   bake("w", scene);
   scene.add_quad({-20, 0, -20}, {-20, 0, -19}, {-19, 0, -19}, {-19, 0, -20});
-  EXPECT_EQ(bake("w", scene).zones_kept, 0u);  // It begins before the grid: another grid.
+  EXPECT_EQ(bake("w", scene).zones_reused, 0u);  // It begins before the grid: another grid.
   const Folder wide = folder_bytes(at("w"));
   const BakeReport back = bake("w", field());  // The scene still begins on that grid.
-  EXPECT_EQ(back.zones_kept, back.zones_baked + back.zones_kept);
-  EXPECT_GT(back.zones_kept, 20u);
+  EXPECT_EQ(back.zones_reused, back.zones_baked + back.zones_reused);
+  EXPECT_GT(back.zones_reused, 20u);
   EXPECT_LT(folder_bytes(at("w")).size(), wide.size());  // The island's zone is gone.
 
   Scene far = field();
   far.add_quad({90, 0, 6}, {90, 0, 7}, {91, 0, 7}, {91, 0, 6});
   const BakeReport more = bake("w", far);
-  EXPECT_GT(more.zones_kept, 10u);
+  EXPECT_GT(more.zones_reused, 10u);
   EXPECT_GT(more.zones_baked, 0u);
 
   // Grown on the far side only, it is the world of an empty folder.
   bake("v", field());
   far.add_quad({64, 0, 0.5}, {64, 0, 51}, {80, 0, 51}, {80, 0, 0.5});
-  EXPECT_GT(bake("v", far).zones_kept, 10u);
+  EXPECT_GT(bake("v", far).zones_reused, 10u);
   bake("new", far);
   EXPECT_EQ(folder_bytes(at("v")), folder_bytes(at("new")));
   fs::remove_all(at("new"));
@@ -292,7 +292,7 @@ TEST_F(ChangedZones, TheGridStaysWhereItWasIfTheRimMovesInOrTheFarSideOut) {
   // A scene that shares no zone gets the grid that it would get in an empty folder.
   Scene other;
   other.add_quad({1.3, 0, 1.3}, {1.3, 0, 9}, {9, 0, 9}, {9, 0, 1.3});
-  EXPECT_EQ(bake("w", other).zones_kept, 0u);
+  EXPECT_EQ(bake("w", other).zones_reused, 0u);
   bake("new", other);
   EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
 }
@@ -386,7 +386,7 @@ TEST_F(ChangedZones, WhileNodesAreMadeNobodyTakesTheirWorldAway) {
     ASSERT_TRUE(nodes) << nodes.error().message;
     EXPECT_GT(tried, 0);
   }
-  EXPECT_EQ(bake("w", scene).zones_kept, 20u);
+  EXPECT_EQ(bake("w", scene).zones_reused, 20u);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
     const Scene scene = builtin({.name = name});
     const World world = bake(scene, 0.2);
     const Nodes nodes = make(world, scene);
-    uint64_t ragged = 0;
+    uint64_t partial = 0;
     std::vector<std::vector<uint16_t>> covered(world.level_tile_count(),
                                                std::vector<uint16_t>(4096, 0));
     for (uint32_t n = 0; n < nodes.node_count(); ++n) {
@@ -70,7 +70,7 @@ TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
         }
       }
       for (int32_t c = 0; info.cells != 0 && c < 4; ++c) {
-        const uint64_t cells = nodes.ragged_cells(c, n);
+        const uint64_t cells = nodes.partial_cells(c, n);
         EXPECT_EQ(cells != 0, (info.classes >> c & 1) != 0);
         EXPECT_EQ(cells & ~info.cells, 0u);
         double area = 0;
@@ -84,10 +84,10 @@ TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
         EXPECT_LE(area, static_cast<double>(info.area) + 1e-3);
         EXPECT_NEAR(std::popcount(info.cells) * 0.04, info.area, 1e-5);
       }
-      ragged += info.cells != 0 ? 1 : 0;
+      partial += info.cells != 0 ? 1 : 0;
     }
-    EXPECT_GT(ragged, 100u);
-    EXPECT_EQ(ragged, nodes.summary().ragged);
+    EXPECT_GT(partial, 100u);
+    EXPECT_EQ(partial, nodes.summary().partial);
     for (uint32_t l = 0; l < world.level_tile_count(); ++l) {
       const LevelTileContent tile = world.level_tile(l);
       for (size_t i = 0; i < 4096; ++i) {
@@ -112,7 +112,7 @@ TEST(Nodes, OnLevelTilesPartsAreTheRegionsComponents) {
     ASSERT_TRUE(graph);
     for (int32_t c = 0; c < 4; ++c) {
       std::vector<double> by_nodes, by_regions;
-      for (const NodeReach& part : nodes.reach(c)) by_nodes.push_back(part.area);
+      for (const NodeComponent& part : nodes.reach(c)) by_nodes.push_back(part.area);
       for (const Component& part : graph->components(c)) by_regions.push_back(part.area);
       ASSERT_EQ(by_nodes.size(), by_regions.size()) << name << ", class " << c;
       for (size_t i = 0; i < by_nodes.size(); ++i) {
@@ -213,28 +213,29 @@ TEST(Nodes, JumpsGivenByHandJoinWhatNothingElseJoins) {
   const World world = bake(scene, 0.2);
   EXPECT_EQ(make(world, scene).reach(0).size(), 2u);
   NodeConfig config;
-  config.jumps = {{.from = {4, 0, 3}, .to = {10, 0.5, 3}, .avatar_class = 0, .both_ways = true}};
+  config.off_mesh_links = {
+      {.from = {4, 0, 3}, .to = {10, 0.5, 3}, .avatar_class = 0, .both_ways = true}};
   const Nodes joined = make(world, scene, config);
   EXPECT_EQ(joined.reach(0).size(), 1u);
   EXPECT_EQ(joined.reach(1).size(), 2u);  // For its class only.
-  config.jumps[0].both_ways = false;
+  config.off_mesh_links[0].both_ways = false;
   const Nodes one_way = make(world, scene, config);
   EXPECT_EQ(one_way.reach(0).size(), 2u);  // Who jumps cannot come back.
-  size_t jumps = 0, back = 0;
+  size_t off_mesh_links = 0, back = 0;
   for (uint32_t n = 0; n < one_way.node_count(); ++n) {
     for (const NodeArc& arc : one_way.arcs(n)) {
-      if (arc.kind != LinkKind::kJump) continue;
+      if (arc.kind != LinkKind::kOffMesh) continue;
       const Vec3d from = one_way.point(n, arc.from_s, arc.from_t);
       const Vec3d to = one_way.point(arc.to, arc.to_s, arc.to_t);
       EXPECT_NEAR(from.x, 4, 0.21);
       EXPECT_NEAR(to.x, 10, 0.21);
-      ++jumps;
+      ++off_mesh_links;
       back += to.x < from.x ? 1 : 0;
     }
   }
-  EXPECT_GT(jumps, 0u);
+  EXPECT_GT(off_mesh_links, 0u);
   EXPECT_EQ(back, 0u);
-  config.jumps[0].to = {7, 0, 3};
+  config.off_mesh_links[0].to = {7, 0, 3};
   Context context;
   EXPECT_EQ(Nodes::make(world, scene, config, context).error().message,
             "nodes: jump 1: adult has no place within a metre of where it ends");
@@ -296,7 +297,7 @@ TEST(Nodes, OverGroundThatCannotBeReadNobodyStands) {
           static_cast<bool>(nodes->place(c, n, (info.s + 0.5) * side, (info.t + 0.5) * side));
       found += stands ? 1 : 0;
       lost += !stands && info.cells == 0 && (info.classes >> c & 1) != 0 ? 1 : 0;
-      EXPECT_TRUE(info.cells == 0 || (nodes->ragged_cells(c, n) & ~info.cells) == 0);
+      EXPECT_TRUE(info.cells == 0 || (nodes->partial_cells(c, n) & ~info.cells) == 0);
     }
     (void)nodes->corners(n);
     (void)nodes->middle(n);

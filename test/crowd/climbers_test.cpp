@@ -374,9 +374,9 @@ TEST(Climbers, LetThemselvesDownOverEdges) {
   // Nobody climbs back.
   const Place top = stage.world().find_place(0, {8, 2, 8}, 0.5);
   crowd.set_goals(std::span(ids).first(1), std::span(&top, 1));
-  EXPECT_EQ(crowd.step().no_way, 1u);
-  ASSERT_EQ(crowd.stranded().size(), 1u);
-  EXPECT_EQ(crowd.stranded()[0], ids[0]);
+  EXPECT_EQ(crowd.step().no_path, 1u);
+  ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
+  EXPECT_EQ(crowd.goal_unreachable()[0], ids[0]);
 }
 
 TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
@@ -521,11 +521,11 @@ TEST(Climbers, NobodyIsAddedWhereHeCannotClimb) {
   const NodePlace nowhere;
   const AvatarId id = added_on(crowd, stage.place(kClimber, 2, 3));
   crowd.set_goals(std::span(&id, 1), std::span(&nowhere, 1));
-  EXPECT_EQ(crowd.step().no_way, 0u);
+  EXPECT_EQ(crowd.step().no_path, 0u);
   NodePlace lost = stage.place(kClimber, 2, 4);
   lost.node1 = 1u << 30;
   crowd.set_goals(std::span(&id, 1), std::span(&lost, 1));
-  EXPECT_EQ(crowd.step().no_way, 1u);
+  EXPECT_EQ(crowd.step().no_path, 1u);
 }
 
 // What a crowd does with classes that climb where it has no nodes: on level tiles they are as

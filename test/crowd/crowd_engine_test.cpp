@@ -64,7 +64,7 @@ struct LevelGround {
     CrowdEngine engine({.units = config.units,
                         .sight = config.sight,
                         .rounds = config.rounds,
-                        .patient = config.patient,
+                        .deadlock_avoidance = config.deadlock_avoidance,
                         .reaction = config.reaction,
                         .seed = config.seed,
                         .workers = workers,
@@ -85,8 +85,8 @@ struct LevelGround {
       EXPECT_EQ(tile.last, tile.first + 1) << "level ground has one level";
       body.level = tile.first;
       body.y = ground.feet(body.level, body.point());
-      body.aim_x = p.goal.x;
-      body.aim_z = p.goal.z;
+      body.local_target_x = p.goal.x;
+      body.local_target_z = p.goal.z;
       body.speed = p.speed;
       body.radius = p.radius;
       body.slot = static_cast<uint32_t>(i);
@@ -151,9 +151,9 @@ TEST(CrowdEngine, RingsDoWhatThePlainStepDoes) {
 TEST(CrowdEngine, OtherModelsDoWhatThePlainStepDoes) {
   const LevelGround ground(60);
   test::PlainConfig config;
-  config.patient = false;
+  config.deadlock_avoidance = false;
   config.reaction = 0;
-  config.steering.neighbours = steer::kMostNear;
+  config.steering.neighbours = steer::kMaxNear;
   const test::Spot corner{config.to_units(15), config.to_units(15)};
   const test::Spot middle{config.to_units(30), config.to_units(30)};
   for (const SteeringModel model : {SteeringModel::kCurvilinear, SteeringModel::kSocialForce}) {

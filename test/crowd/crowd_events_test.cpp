@@ -72,7 +72,7 @@ TEST(CrowdEvents, tell_who_comes_into_areas) {
 TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
   const World world = plane();
   Context context;
-  auto plain = Crowd::create(world, {}), watched = Crowd::create(world, {.stuck_after = 1});
+  auto plain = Crowd::create(world, {}), watched = Crowd::create(world, {.no_progress_after = 1});
   ASSERT_TRUE(plain && watched);
   for (Crowd* crowd : {&*plain, &*watched}) {
     const auto ids = crowd->scatter(100, {}, context);
@@ -86,7 +86,7 @@ TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
   EXPECT_EQ(watched->watch_area(box).error().code, Errc::kLimit);
   EXPECT_FALSE(plain->watch_area({}));
   EXPECT_FALSE(plain->watch_area(std::vector<Prism>(1)));
-  EXPECT_FALSE(Crowd::create(world, {.stuck_after = -1}));
+  EXPECT_FALSE(Crowd::create(world, {.no_progress_after = -1}));
   for (int step = 0; step < 50; ++step) {
     plain->step();
     watched->step();
@@ -98,7 +98,7 @@ TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
 TEST(CrowdEvents, tell_who_is_stuck) {
   const World world = plane();
   Context context;
-  auto crowd = Crowd::create(world, {.ways = CrowdWays::kStraight, .stuck_after = 2});
+  auto crowd = Crowd::create(world, {.ways = Routing::kStraight, .no_progress_after = 2});
   ASSERT_TRUE(crowd);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 1); };
   const std::vector<AvatarSpawn> spawns = {
@@ -111,11 +111,11 @@ TEST(CrowdEvents, tell_who_is_stuck) {
   for (int step = 1; step <= 100; ++step) {
     crowd->step();
     if (step % 20 != 0) {
-      EXPECT_TRUE(crowd->stuck().empty()) << step;
+      EXPECT_TRUE(crowd->no_progress().empty()) << step;
     }
     if (step % 20 != 0 || step == 20) continue;
     ++looks;
-    for (const AvatarId id : crowd->stuck()) {
+    for (const AvatarId id : crowd->no_progress()) {
       EXPECT_EQ(id, (*ids)[0]);
       ++told;
     }

@@ -19,7 +19,7 @@
 namespace throng {
 namespace {
 
-ObstacleId put_up(Crowd& crowd, const Prism& prism, ObstacleKind kind = ObstacleKind::kStanding) {
+ObstacleId put_up(Crowd& crowd, const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic) {
   const auto id = crowd.add_obstacle(prism, kind);
   EXPECT_TRUE(id) << id.error().message;
   return id ? *id : ObstacleId{};
@@ -131,7 +131,7 @@ TEST(CrowdObstacles, OfTwoDoorsThatTakeTurnsTheOpenOneIsTaken) {
     bool passed = false, there = false;
     for (int step = 0; step < 500 && !there; ++step) {
       crowd.step();
-      ASSERT_TRUE(crowd.stranded().empty());
+      ASSERT_TRUE(crowd.goal_unreachable().empty());
       ASSERT_TRUE(is_free(crowd));
       const Vec3d at = position(crowd, id);
       passed |= std::hypot(at.x - open.x, at.z - open.z) < 1;
@@ -147,19 +147,19 @@ TEST(CrowdObstacles, WhoHasNoWayLeftIsStranded) {
   const AvatarId id = added(crowd, world.find_place(0, {4, 0, 12}, 0.5));
   send(crowd, id, world.find_place(0, {20, 0, 12}, 0.5));
   crowd.step();
-  EXPECT_TRUE(crowd.stranded().empty());
+  EXPECT_TRUE(crowd.goal_unreachable().empty());
   put_up(crowd, crate_at(kNearDoor));
   crowd.step();
-  EXPECT_TRUE(crowd.stranded().empty());
+  EXPECT_TRUE(crowd.goal_unreachable().empty());
   put_up(crowd, crate_at(kFarDoor));
-  EXPECT_EQ(crowd.step().no_way, 1u);
-  ASSERT_EQ(crowd.stranded().size(), 1u);
-  EXPECT_EQ(crowd.stranded()[0], id);
+  EXPECT_EQ(crowd.step().no_path, 1u);
+  ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
+  EXPECT_EQ(crowd.goal_unreachable()[0], id);
   // A goal under an obstacle is none either.
   const Place here = world.find_place(0, {8, 0, 22}, 0.5);
   put_up(crowd, crate_at({8, 0, 22}));
   send(crowd, id, here);
-  EXPECT_EQ(crowd.step().no_way, 1u);
+  EXPECT_EQ(crowd.step().no_path, 1u);
 }
 
 TEST(CrowdObstacles, ADoorWaitsForWhoStandsInItAndOpensAtOnce) {
@@ -173,8 +173,8 @@ TEST(CrowdObstacles, ADoorWaitsForWhoStandsInItAndOpensAtOnce) {
   EXPECT_TRUE(waits(crowd, door));
   for (int step = 0; step < 20; ++step) {
     EXPECT_EQ(crowd.step().waiting, 1u);
-    ASSERT_EQ(crowd.in_the_way().size(), 1u);
-    EXPECT_EQ(crowd.in_the_way()[0], id);
+    ASSERT_EQ(crowd.blockers().size(), 1u);
+    EXPECT_EQ(crowd.blockers()[0], id);
     ASSERT_TRUE(is_free(crowd));
   }
   send(crowd, id, world.find_place(0, {6, 0, 4}, 0.5));
@@ -186,7 +186,7 @@ TEST(CrowdObstacles, ADoorWaitsForWhoStandsInItAndOpensAtOnce) {
   EXPECT_GT(steps, 3);
   EXPECT_LT(steps, 20);
   EXPECT_EQ(crowd.step().waiting, 0u);
-  EXPECT_TRUE(crowd.in_the_way().empty());
+  EXPECT_TRUE(crowd.blockers().empty());
   EXPECT_FALSE(added(crowd, world.find_place(0, kNearDoor, 0.5))) << "it is closed";
   EXPECT_TRUE(crowd.set_obstacle_active(door, false));
   EXPECT_FALSE(is_up(crowd, door));
@@ -203,14 +203,14 @@ TEST(CrowdObstacles, ACartDoesNotJumpOverAnybody) {
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, {10, 0, 10}, 0.5));
   const auto cart_at = [](double x) { return Prism::circle({x, 0, 10}, 0.5, 1); };
-  const ObstacleId cart = put_up(crowd, cart_at(5), ObstacleKind::kMoving);
+  const ObstacleId cart = put_up(crowd, cart_at(5), ObstacleKind::kKinematic);
   EXPECT_TRUE(is_up(crowd, cart));
   ASSERT_TRUE(crowd.move_obstacle(cart, cart_at(15)));
   EXPECT_TRUE(waits(crowd, cart));
   crowd.step();
   EXPECT_NEAR(crowd.obstacle(cart)->prism.corners[0][0], 5.5, 0.02) << "it stays where it is";
-  ASSERT_EQ(crowd.in_the_way().size(), 1u);
-  EXPECT_EQ(crowd.in_the_way()[0], id);
+  ASSERT_EQ(crowd.blockers().size(), 1u);
+  EXPECT_EQ(crowd.blockers()[0], id);
   ASSERT_TRUE(crowd.move_obstacle(cart, cart_at(8)));
   EXPECT_NEAR(crowd.obstacle(cart)->prism.corners[0][0], 8.5, 0.02);
   EXPECT_FALSE(waits(crowd, cart));
@@ -225,7 +225,7 @@ TEST(CrowdObstacles, WaysDoNotMindCartsButWalkersDo) {
   const World world = test::bake(worlds::flat(20), 0.1);
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, {4, 0, 10}, 0.5));
-  put_up(crowd, Prism::circle({10, 0, 10.1}, 0.4, 1), ObstacleKind::kMoving);
+  put_up(crowd, Prism::circle({10, 0, 10.1}, 0.4, 1), ObstacleKind::kKinematic);
   send(crowd, id, world.find_place(0, {16, 0, 10}, 0.5));
   bool there = false;
   for (int step = 0; step < 300 && !there; ++step) {
@@ -293,7 +293,7 @@ TEST(CrowdObstacles, TinyOnesOnBordersAndHugeOnesCountToo) {
   const ObstacleId again = put_up(crowd, Prism::box({-1e6, -1, -1e6}, {1e6, 50, 1e6}));
   EXPECT_FALSE(is_up(crowd, again));
   crowd.step();
-  EXPECT_EQ(crowd.in_the_way().size(), 50u);
+  EXPECT_EQ(crowd.blockers().size(), 50u);
 }
 
 TEST(CrowdObstacles, WhatIsNoPrismOrNoObstacleIsRefusedWithASentence) {
@@ -400,7 +400,7 @@ struct Chaos {
   void act() {
     for (int k = 0; k < 3; ++k) {
       if (ids.size() < 40) {
-        const auto kind = draw() < 0.6 ? ObstacleKind::kStanding : ObstacleKind::kMoving;
+        const auto kind = draw() < 0.6 ? ObstacleKind::kStatic : ObstacleKind::kKinematic;
         ids.push_back(put_up(crowd, prism(somewhere()), kind));
         came_up += is_up(crowd, ids.back()) ? 1 : 0;
       }
@@ -536,7 +536,7 @@ TEST(CrowdObstacles, WhoAreBoundForATargetTakeTheOtherWayToo) {
   for (int step = 0; step < 900; ++step) {
     crowd.step();
     ASSERT_TRUE(is_free(crowd)) << step;
-    ASSERT_TRUE(crowd.stranded().empty());
+    ASSERT_TRUE(crowd.goal_unreachable().empty());
     arrived += crowd.arrived().size();
   }
   EXPECT_FALSE(waits(crowd, door));
@@ -559,7 +559,7 @@ TEST(CrowdObstacles, RestoredWithTargetsAndForAnyWorkersItIsTheSame) {
     const TargetId target =
         target_at(crowd, {at.x - 4, at.y - 1, at.z - 4}, {at.x + 4, at.y + 2, at.z + 4});
     put_up(crowd, Prism::circle({at.x + 1, at.y, at.z}, 0.5, 1));
-    put_up(crowd, Prism::circle({at.x - 2, at.y, at.z}, 0.5, 1), ObstacleKind::kMoving);
+    put_up(crowd, Prism::circle({at.x - 2, at.y, at.z}, 0.5, 1), ObstacleKind::kKinematic);
     crowd.set_targets(ids, target);
     Chaos chaos{crowd, world, 33, {}};
     for (int step = 0; step < 20; ++step) {
@@ -604,7 +604,8 @@ TEST(CrowdObstacles, SavedNonsenseIsRefusedOrHarmless) {
   const World world = test::bake(worlds::flat(20), 0.1);
   Crowd crowd = made(world);
   put_up(crowd, crate_at({5, 0, 5}));
-  const ObstacleId cart = put_up(crowd, Prism::circle({10, 0, 10}, 0.5, 1), ObstacleKind::kMoving);
+  const ObstacleId cart =
+      put_up(crowd, Prism::circle({10, 0, 10}, 0.5, 1), ObstacleKind::kKinematic);
   const AvatarId id = added(crowd, world.find_place(0, {12, 0, 10}, 0.5));
   ASSERT_TRUE(crowd.move_obstacle(cart, Prism::circle({12, 0, 10}, 0.5, 1)));
   EXPECT_TRUE(crowd.remove_obstacle(put_up(crowd, crate_at({15, 0, 5}))));

@@ -113,11 +113,11 @@ TEST(Crowd, WhoseGoalCannotBeReachedIsTold) {
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, low);
   crowd.set_goals(std::span(&id, 1), std::span(&high, 1));
-  EXPECT_EQ(crowd.step().no_way, 1u);
-  ASSERT_EQ(crowd.stranded().size(), 1u);
-  EXPECT_EQ(crowd.stranded()[0], id);
+  EXPECT_EQ(crowd.step().no_path, 1u);
+  ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
+  EXPECT_EQ(crowd.goal_unreachable()[0], id);
   crowd.step();
-  EXPECT_TRUE(crowd.stranded().empty());
+  EXPECT_TRUE(crowd.goal_unreachable().empty());
 }
 
 TEST(Crowd, FloorsAboveEachOtherDoNotMindEachOther) {

@@ -21,7 +21,7 @@ constexpr int32_t kStep = 400;  // mm
 struct Crated {
   World world;
   CrowdGround ground;
-  ObstacleBook book;
+  ObstacleSet book;
   LiveGround live;
   PathFinder finder;
 
@@ -34,7 +34,7 @@ struct Crated {
     book.open_class(0, ground);
   }
   void put_up(const Prism& prism) {
-    book.settle(book.add(prism, ObstacleKind::kStanding, true));
+    book.settle(book.add(prism, ObstacleKind::kStatic, true));
     book.take_cells();
     ASSERT_TRUE(live.add_obstacle(prism));
   }
@@ -69,7 +69,7 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
       c.put_up(Prism::circle(at, 0.2 + random_unit(8, 1, i), 1));
     }
     const StrideGround ground(c.ground, kStep);
-    DetourScratch scratch;
+    RepairScratch scratch;
     Path path, best;
     for (uint64_t i = 0; i < 150; ++i) {
       const Place from = c.world.random_place(0, 5, 2 * i),

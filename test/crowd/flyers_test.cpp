@@ -92,7 +92,7 @@ class Stage {
                                 .high = state.position.y + avatar.height,
                                 .radius = avatar.radius};
     return tree_.find(body.bounds(), [&](uint32_t, const verify::Corners& corners) {
-      return verify::meets(body, corners);
+      return verify::in_counterflow(body, corners);
     });
   }
 
@@ -403,8 +403,8 @@ TEST(Flyers, KeepOutOfObstaclesThatWaitForThem) {
   ASSERT_TRUE(at_it);
   EXPECT_TRUE(crowd.obstacle(*at_it)->waits);
   EXPECT_EQ(crowd.step().waiting, 1u);
-  ASSERT_EQ(crowd.in_the_way().size(), 1u);
-  EXPECT_EQ(crowd.in_the_way()[0], hovers);
+  ASSERT_EQ(crowd.blockers().size(), 1u);
+  EXPECT_EQ(crowd.blockers()[0], hovers);
   const auto beside = crowd.add_obstacle(Prism::box({25, 0, 10}, {26, 12, 30}));
   ASSERT_TRUE(beside);
   EXPECT_FALSE(crowd.obstacle(*beside)->waits);
@@ -439,8 +439,8 @@ TEST(Flyers, GoAroundAWallThatIsPutUpAndAreToldWhereThereIsNoWay) {
   const Place back = air_place({6, 5, 20});
   crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
   crowd.step();
-  ASSERT_EQ(crowd.stranded().size(), 1u);
-  EXPECT_EQ(crowd.stranded()[0], ids[0]);
+  ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
+  EXPECT_EQ(crowd.goal_unreachable()[0], ids[0]);
   ASSERT_TRUE(crowd.remove_obstacle(*rest));
   crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
   expect_all(go(crowd, stage, 1, 1200), 1);
@@ -464,7 +464,7 @@ TEST(Flyers, FindTheirWaysFromAndToWhereTheyTouchAWall) {
 
 TEST(Flyers, GoStraightWhereWaysAreNotAskedFor) {
   Stage stage(open_air(30, 15));
-  Crowd crowd = made(stage.world(), {.ways = CrowdWays::kStraight});
+  Crowd crowd = made(stage.world(), {.ways = Routing::kStraight});
   std::vector<AvatarSpawn> spawns = {flyer_at({5, 5, 5}),
                                      {.place = stage.ground({8, 0, 8}), .avatar_class = kFlyer},
                                      flyer_at({9, 9, 9})};
@@ -498,9 +498,9 @@ TEST(Flyers, WhoseGoalCannotBeReachedIsTold) {
   const AvatarId id = added(crowd, air_place({5, 2, 5}), {.avatar_class = kFlyer});
   const Place inside = air_place({12.2, 1, 1});  // of the wall
   crowd.set_goals(std::span(&id, 1), std::span(&inside, 1));
-  EXPECT_EQ(crowd.step().no_way, 1u);
-  ASSERT_EQ(crowd.stranded().size(), 1u);
-  EXPECT_EQ(crowd.stranded()[0], id);
+  EXPECT_EQ(crowd.step().no_path, 1u);
+  ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
+  EXPECT_EQ(crowd.goal_unreachable()[0], id);
   EXPECT_EQ(crowd.step().flying, 1u);
 }
 

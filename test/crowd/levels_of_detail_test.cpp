@@ -40,7 +40,7 @@ TEST(LevelsOfDetail, NobodyTouchesAnybodyWhileViewsMoveAtRandom) {
   for (const SteeringModel model : {SteeringModel::kSampled, SteeringModel::kSocialForce}) {
     for (const char* name : {"garage", "maze", "stairs"}) {
       const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
-      Crowd crowd = made(world, {.dt = 0.05, .model = model, .far_steps = 6});
+      Crowd crowd = made(world, {.dt = 0.05, .model = model, .low_detail_steps = 6});
       const auto ids = scattered(crowd, 250);
       give_goals(crowd, world, ids, 1);
       const AvatarClass body = world.summary().classes[0];
@@ -114,13 +114,13 @@ TEST(LevelsOfDetail, StatesAreTheSameForAnyWorkersAndWhenRestored) {
   ASSERT_TRUE(restored) << restored.error().message;
   for (int step = 0; step < 30; ++step) restored->step();
   EXPECT_EQ(restored->state_hash(), hashes[0]);
-  EXPECT_FALSE(Crowd::restore(world, {.dt = 0.05, .far_steps = 2}, saved, context));
+  EXPECT_FALSE(Crowd::restore(world, {.dt = 0.05, .low_detail_steps = 2}, saved, context));
 }
 
 // Nobody moves farther at once than the narrowest body is wide.
 TEST(LevelsOfDetail, NobodyJumpsThroughAnother) {
   const World world = test::bake(worlds::flat(30), 0.1);
-  Crowd crowd = made(world, {.dt = 0.05, .far_steps = 16});
+  Crowd crowd = made(world, {.dt = 0.05, .low_detail_steps = 16});
   const AvatarId id = added(crowd, world.find_place(0, {5, 0, 15}, 0.5), {.radius = 0.3});
   added(crowd, world.find_place(0, {25, 0, 25}, 0.5), {.radius = 0.2});
   const Place goal = world.find_place(0, {25, 0, 15}, 0.5);
@@ -145,9 +145,9 @@ TEST(LevelsOfDetail, LimitsAreNamed) {
     const auto crowd = Crowd::create(world, config);
     return crowd ? std::string() : crowd.error().message;
   };
-  EXPECT_EQ(why({.far_steps = 0}), "crowd: far_steps must be 1 to 16");
-  EXPECT_EQ(why({.far_steps = 17}), "crowd: far_steps must be 1 to 16");
-  EXPECT_EQ(why({.far_reaction = -1}), "crowd: far_reaction must be 0 to 10 s");
+  EXPECT_EQ(why({.low_detail_steps = 0}), "crowd: far_steps must be 1 to 16");
+  EXPECT_EQ(why({.low_detail_steps = 17}), "crowd: far_steps must be 1 to 16");
+  EXPECT_EQ(why({.low_detail_reaction = -1}), "crowd: far_reaction must be 0 to 10 s");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ uint64_t hash_of(const CrowdGround& ground) {
 struct Fixture {
   World world;
   CrowdGround ground;
-  ObstacleBook book;
+  ObstacleSet book;
   uint64_t n = 0;
 
   explicit Fixture(World of)
@@ -59,7 +59,7 @@ struct Fixture {
                          3 + static_cast<int>(20 * draw()));
   }
   uint32_t put_up(const Prism& prism) {
-    const uint32_t slot = book.add(prism, ObstacleKind::kStanding, true);
+    const uint32_t slot = book.add(prism, ObstacleKind::kStatic, true);
     book.settle(slot);
     book.take_cells();
     return slot;
@@ -85,7 +85,7 @@ double far_from(const Prism& prism, double x, double z) {
   return left || right ? 0 : nearest;
 }
 
-TEST(ObstacleBook, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
+TEST(ObstacleSet, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
   uint64_t taken = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
@@ -138,7 +138,7 @@ TEST(ObstacleBook, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
   EXPECT_GT(left, 50000u);
 }
 
-TEST(ObstacleBook, GivesBackToTheBitWhatItTook) {
+TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
   for (const char* name : {"garage", "church", "maze"}) {
     Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
     const uint64_t baked = hash_of(f.ground);
@@ -161,10 +161,10 @@ TEST(ObstacleBook, GivesBackToTheBitWhatItTook) {
     EXPECT_NE(hash_of(f.ground), baked);
     // What is left is what the same obstacles take of a new ground.
     CrowdGround fresh = *CrowdGround::make(*f.world.data(), 0, kStep);
-    ObstacleBook again(f.world, f.world.summary().classes.size());
+    ObstacleSet again(f.world, f.world.summary().classes.size());
     again.open_class(0, fresh);
     for (const uint32_t slot : slots) {
-      again.settle(again.add(f.book.at(slot).place, ObstacleKind::kStanding, true));
+      again.settle(again.add(f.book.at(slot).place, ObstacleKind::kStatic, true));
     }
     again.take_cells();
     EXPECT_EQ(hash_of(f.ground), hash_of(fresh)) << name;
@@ -174,7 +174,7 @@ TEST(ObstacleBook, GivesBackToTheBitWhatItTook) {
   }
 }
 
-TEST(ObstacleBook, TakesNoMoreMemoryTheMoreOftenOneComesAndGoes) {
+TEST(ObstacleSet, TakesNoMoreMemoryTheMoreOftenOneComesAndGoes) {
   Fixture f(test::bake(worlds::flat(14), 0.1));
   const auto come_and_go = [&] {
     f.book.remove(f.put_up(Prism::box({5, 0, 5}, {8, 1, 8})));
@@ -205,7 +205,7 @@ struct PlainGround {
   }
 };
 
-TEST(ObstacleBook, FastMovesAreThoseOfThePlainGround) {
+TEST(ObstacleSet, FastMovesAreThoseOfThePlainGround) {
   uint64_t legal_moves = 0, moves = 0, over_edges = 0;
   for (const char* name : {"garage", "church", "stairs", "landscape"}) {
     Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
@@ -236,7 +236,7 @@ TEST(ObstacleBook, FastMovesAreThoseOfThePlainGround) {
   EXPECT_GT(over_edges, 1000u);
 }
 
-TEST(ObstacleBook, TheHullOfTwoPrismsHoldsAllBetween) {
+TEST(ObstacleSet, TheHullOfTwoPrismsHoldsAllBetween) {
   uint64_t n = 0;
   const auto draw = [&] { return random_unit(4, 4, n++); };
   for (int round = 0; round < 300; ++round) {

@@ -51,7 +51,7 @@ struct Bend {
     route.corners[0] = corner;
     route.corners[1] = next;
     route.count = 2;
-    return own_place(body, route, stride, metre);
+    return lane_offset(body, route, stride, metre);
   }
   [[nodiscard]] double off(const Spot& place) const {  // from the corner [m]
     return std::hypot(place.x - corner.x, place.z - corner.z) / metre;
@@ -65,7 +65,7 @@ struct Bend {
   float metre = 1;
 };
 
-TEST(OwnPlace, WhoWalksFartherOutTurnsFartherOut) {
+TEST(LaneOffset, WhoWalksFartherOutTurnsFartherOut) {
   Bend bend(2);
   double before = -1;
   for (const double z : {1.7, 1.4, 1.0, 0.6, 0.25}) {  // the inner wall is at z = 2
@@ -78,7 +78,7 @@ TEST(OwnPlace, WhoWalksFartherOutTurnsFartherOut) {
   EXPECT_LT(before, 1.9);  // of the widest, ten radii
 }
 
-TEST(OwnPlace, IsSeenFromHereAndSeesTheNextCorner) {
+TEST(LaneOffset, IsSeenFromHereAndSeesTheNextCorner) {
   Bend bend(2);
   uint64_t others = 0;
   for (int n = 0; n < 200; ++n) {
@@ -95,7 +95,7 @@ TEST(OwnPlace, IsSeenFromHereAndSeesTheNextCorner) {
   EXPECT_GT(others, 150u);
 }
 
-TEST(OwnPlace, IsTheCornerWhereFewFitOrNothingBends) {
+TEST(LaneOffset, IsTheCornerWhereFewFitOrNothingBends) {
   Bend narrow(1.2);  // Middles have 0.82 m: two abreast, not three.
   EXPECT_EQ(narrow.off(narrow.own(5, 0.4)), 0);
   Bend bend(2);
@@ -106,7 +106,7 @@ TEST(OwnPlace, IsTheCornerWhereFewFitOrNothingBends) {
   EXPECT_GT(bend.off(bend.own(5, 1.0)), 0);
 }
 
-TEST(OwnPlace, WhoMeetsAStreamKeepsToTheRightHalf) {
+TEST(LaneOffset, WhoMeetsAStreamKeepsToTheRightHalf) {
   Bend bend(2);  // to the right
   for (const double z : {1.7, 1.4, 1.0, 0.6, 0.25}) {
     bend.body.on_right = false;
@@ -118,7 +118,7 @@ TEST(OwnPlace, WhoMeetsAStreamKeepsToTheRightHalf) {
 
 // Two rooms and a corridor of 2 m between them: with everybody at the place that the walls leave
 // him, sixty who met sixty there stood for ever.
-TEST(OwnPlace, GroupsThatMeetInACorridorPass) {
+TEST(LaneOffset, GroupsThatMeetInACorridorPass) {
   PlaneConfig plane;
   plane.ground = {{{0, 0}, {30, 0}, {30, 10}, {0, 10}}, {}};
   plane.obstacles = {{{{10, 0}, {20, 0}, {20, 4}, {10, 4}}, {}},

@@ -106,15 +106,15 @@ TEST(PlainCrowd, OfTwoBoundForOnePlaceOneArrivesFirst) {
 
 TEST(PlainCrowd, RingsChangePlacesBecauseTheImpatientTurnTogether) {
   double took[2] = {};
-  for (const bool patient : {true, false}) {
+  for (const bool deadlock_avoidance : {true, false}) {
     PlainConfig config;
-    config.patient = patient;
+    config.deadlock_avoidance = deadlock_avoidance;
     PlainCrowd crowd(ring_bodies(config, 70, 6), config);
     while (!have_arrived(crowd) && crowd.time() < 60) {
       crowd.step();
       ASSERT_EQ(crowd.overlaps(), 0u);
     }
-    took[patient ? 1 : 0] = crowd.time();
+    took[deadlock_avoidance ? 1 : 0] = crowd.time();
   }
   EXPECT_LT(took[1], 59);
   EXPECT_LT(took[1], took[0]);

@@ -88,7 +88,7 @@ TEST(StrideGround, FreeWaysEndWhereTheCellByCellWalkDoes) {
       const steer::Plane direction{static_cast<float>(std::cos(angle)),
                                    static_cast<float>(std::sin(angle))};
       const float most = 20.0f * kUnitsPerCell;
-      const float way = f.stride.free_way(s.level, s.at, direction, most);
+      const float way = f.stride.free_distance(s.level, s.at, direction, most);
       const auto at = [&](double size) {
         return GroundPoint{s.at.x + std::lround(size * direction.x),
                            s.at.z + std::lround(size * direction.z)};
@@ -189,8 +189,8 @@ TEST(WallWindow, WaysAreThoseOfAPlainLoop) {
       const steer::Fan fan = steer::fan_around(
           {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
       const auto look = static_cast<float>(window.reach() * number(n, 6));
-      FreeWays ways;
-      find_free_ways(window, fan, look, ways);
+      FreeDistances ways;
+      find_free_distances(window, fan, look, ways);
       for (size_t k = 0; k < ways.size(); ++k) {
         ASSERT_EQ(ways[k], plain(window, fan[k], look)) << name << " " << n << " " << k;
         short_ways += ways[k] < look;
@@ -216,14 +216,14 @@ TEST(StrideGround, WindowsShowTheWaysThatAreFree) {
       steps += around == StrideGround::Around::kSteps;
       if (around == StrideGround::Around::kSteps) continue;
       const steer::Fan fan = steer::fan_around({1, 0.3f});
-      FreeWays found;
+      FreeDistances found;
       found.fill(look);
       if (around == StrideGround::Around::kWalls) {
         ASSERT_LE(look, window.reach());
-        find_free_ways(window, fan, look, found);
+        find_free_distances(window, fan, look, found);
       }
       for (size_t k = 0; k < fan.size(); ++k) {
-        const float exact = f.stride.free_way(s.level, s.at, fan[k], look);
+        const float exact = f.stride.free_distance(s.level, s.at, fan[k], look);
         ++ways;
         near += std::abs(found[k] - exact) <= 2 * kUnitsPerCell;
       }

@@ -218,7 +218,7 @@ TEST(TextureLayers, AreOfOneSizeWithinTheBudget) {
 
 TEST(TextureLayers, MoreTexturesThanLayersGiveTheirMeans) {
   Scene scene = sign(Opacity::kOpaque);
-  for (size_t i = 0; i < kMostLayers; ++i) {
+  for (size_t i = 0; i < kMaxLayers; ++i) {
     scene.textures.push_back(quarters());
     scene.materials.push_back(
         {.name = {}, .texture1 = static_cast<uint32_t>(scene.textures.size())});
@@ -229,7 +229,7 @@ TEST(TextureLayers, MoreTexturesThanLayersGiveTheirMeans) {
                            .material1 = static_cast<uint32_t>(scene.materials.size())});
   }
   const TextureLayers layers = make_texture_layers(scene, 64 << 20);
-  EXPECT_EQ(layers.layers, static_cast<int32_t>(kMostLayers));
+  EXPECT_EQ(layers.layers, static_cast<int32_t>(kMaxLayers));
   EXPECT_EQ(layers.of_texture.back().layer1, 0U);
   EXPECT_EQ(layers.of_texture.back().mean[3], 191);
   EXPECT_LT(layers.of_texture.back().mean[0], 140);

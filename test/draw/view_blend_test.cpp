@@ -137,7 +137,7 @@ struct Jumps {
   double largest = 0, mean = 0;
 };
 template <class At>
-Jumps jumps_along(Drawing& drawing, int32_t steps, double view_blend, At at) {
+Jumps links_along(Drawing& drawing, int32_t steps, double view_blend, At at) {
   OneAvatar avatar;
   const DrawnCrowd crowd = avatar.crowd();
   Jumps out;
@@ -162,8 +162,8 @@ TEST(ViewBlend, ATurningEyeChangesThePictureGradually) {
   const auto around = [](double turns) { return facing(figure().shape, turns, 0.03, 60); };
   const auto over = [](double turns) { return facing(figure().shape, 0.1, turns, 60); };
   const auto compare = [&](const char* way, const auto& at, int32_t steps) {
-    const Jumps nearest = jumps_along(drawing, steps, 0, at);
-    const Jumps blended = jumps_along(drawing, steps, 0.5, at);
+    const Jumps nearest = links_along(drawing, steps, 0, at);
+    const Jumps blended = links_along(drawing, steps, 0.5, at);
     std::printf("%s: largest jump %.0f by the nearest view, %.0f blended; mean %.0f, %.0f\n", way,
                 nearest.largest, blended.largest, nearest.mean, blended.mean);
     EXPECT_LT(blended.largest, 0.3 * nearest.largest) << way;

@@ -18,7 +18,7 @@ inline int fuzz_reader(Result<RawScene> (*read)(std::string_view, const ReadOpti
   auto raw = read({reinterpret_cast<const char*>(bytes), size}, options, context);
   if (!raw) return 0;
   if (const PatchSet& patches = raw->scene.patches; !patches.empty()) {
-    const TessellationConfig config{.tolerance = 10, .workers = 1, .most_triangles = 1'000'000};
+    const TessellationConfig config{.tolerance = 10, .workers = 1, .max_triangles = 1'000'000};
     const auto mesh = tessellate_patches(patches, config, context);
     if (mesh && mesh->first.size() != patches.size() + 1) std::abort();
     if (!mesh && mesh.error().message.empty()) std::abort();

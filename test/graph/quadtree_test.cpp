@@ -157,7 +157,7 @@ TEST(Quadtree, RaggedNodesAreThePiecesOfEachClass) {
       const size_t i = random_below(seed, k, 50, cells.cells.size());
       cells.cells[i].classes &= static_cast<uint16_t>(random_below(seed, k, 51, 16));
     }
-    cells.ragged = true;
+    cells.partial = true;
     const PatchTree tree = build_tree(cells);
     std::vector<uint16_t> covered(cells.cells.size(), 0);
     for (const PatchNode& node : tree.nodes) {
@@ -273,8 +273,8 @@ TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
   for (uint64_t seed = 1; seed <= 160; ++seed) {
     std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
                                        random_cells(3, seed + 1000, seed % 3 == 0)};
-    cells[0].ragged = seed % 4 > 1;
-    cells[1].ragged = seed % 8 > 3;
+    cells[0].partial = seed % 4 > 1;
+    cells[1].partial = seed % 8 > 3;
     // Steps divide nodes, but not whoever goes over them.
     for (uint64_t p = 0; p < 2 && seed % 5 > 1; ++p) {
       const auto side = static_cast<uint64_t>(cells[p].side());

@@ -313,7 +313,7 @@ TEST(PatchMesh, WhatCannotBeCutIsRefusedWithASentence) {
     ASSERT_FALSE(mesh);
     EXPECT_EQ(mesh.error().code, Errc::kBadConfig);
   }
-  const auto many = tessellate_patches(set, {.tolerance = 0.001, .most_triangles = 1000}, context);
+  const auto many = tessellate_patches(set, {.tolerance = 0.001, .max_triangles = 1000}, context);
   ASSERT_FALSE(many);
   EXPECT_EQ(many.error().code, Errc::kLimit);
   EXPECT_NE(many.error().message.find("give more than 1000 triangles at a tolerance of 0.001 m"),

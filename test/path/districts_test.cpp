@@ -76,17 +76,17 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
 
 TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
   uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, looked_at = 0, plainly = 0;
-  size_t tiers = 0;
+  size_t overlay_levels = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     double sum = 0, most = 0;
     int count = 0;
     for (const size_t crossings : {24, 192}) {
       const NodeView view(mesh);
       const PieceCost piece(view, crossings == 24 ? 2 : 0);
-      const Districts districts(mesh, piece, 2, crossings);
-      ASSERT_FALSE(districts.empty());
-      tiers = std::max(tiers, districts.tiers().size());
-      DistrictSearch search(view, piece, districts);
+      const Districts overlay(mesh, piece, 2, crossings);
+      ASSERT_FALSE(overlay.empty());
+      overlay_levels = std::max(overlay_levels, overlay.overlay_levels().size());
+      OverlaySearch search(view, piece, overlay);
       NodeSearch plain(view, piece), blocks(view, piece);
       for (uint64_t n = 0; n < 40; ++n) {
         const BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
@@ -125,7 +125,7 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
     EXPECT_LE(sum / count, 1.015);
     EXPECT_LE(most, 1.1);
   });
-  EXPECT_GT(tiers, 2u);
+  EXPECT_GT(overlay_levels, 2u);
   EXPECT_GT(reached, 600u);
   EXPECT_GT(unreachable, 40u);
   EXPECT_GT(drops, 0u);
@@ -140,23 +140,23 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);
     const PieceCost piece(view, 1);
-    const Districts districts(mesh, piece, 1, 48);
+    const Districts overlay(mesh, piece, 1, 48);
     NodeSearch search(view, piece);
-    std::vector<uint32_t> of_block = districts.of_block();
+    std::vector<uint32_t> of_block = overlay.of_block();
     std::vector<Crossing> way;
     double sum = 0;
     int count = 0;
-    for (const Districts::Tier& tier : districts.tiers()) {
+    for (const Districts::Tier& overlay_level : overlay.overlay_levels()) {
       uint64_t looked = 0;
-      const uint64_t stride = tier.costs.size() / 300 + 1;
-      for (uint32_t d = 0; d + 1 < tier.first.size(); ++d) {
-        const auto entries = tier.entries_of(d);
+      const uint64_t stride = overlay_level.costs.size() / 300 + 1;
+      for (uint32_t d = 0; d + 1 < overlay_level.first.size(); ++d) {
+        const auto entries = overlay_level.entries_of(d);
         for (const uint32_t entry : entries) {
-          const Crossing crossing = districts.crossing(entry);
-          const auto costs = tier.costs_from(entry);
+          const Crossing crossing = overlay.crossing(entry);
+          const auto costs = overlay_level.costs_from(entry);
           for (size_t j = 0; j < entries.size(); ++j) {
             if (entries[j] == entry || looked++ % stride != 0) continue;
-            const Crossing out = districts.crossing(entries[j] ^ 1);
+            const Crossing out = overlay.crossing(entries[j] ^ 1);
             const NodePortal portal = mesh.portals()[out.portal];
             const bool closed = (crossing.backward && mesh.portals()[crossing.portal].one_way) ||
                                 (out.backward && portal.one_way);
@@ -172,7 +172,7 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
                                                                position(view, ends.in));
             ASSERT_FALSE(std::isinf(costs[j]));
             EXPECT_GE(costs[j], least * (1 - 1e-6));
-            if (&tier == &districts.tiers().front()) {
+            if (&overlay_level == &overlay.overlay_levels().front()) {
               EXPECT_NEAR(costs[j], least, 1e-5 * least);
             }
             sum += costs[j] / least;
@@ -181,8 +181,8 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
           }
         }
       }
-      if (tier.above.empty()) continue;
-      for (uint32_t& district : of_block) district = tier.above[district];
+      if (overlay_level.above.empty()) continue;
+      for (uint32_t& overlay_cell : of_block) overlay_cell = overlay_level.above[overlay_cell];
     }
     EXPECT_LE(sum / count, 1.05);
   });
@@ -196,10 +196,10 @@ TEST(Districts, AreTheSameForAnyNumberOfWorkers) {
     const PieceCost piece(view, 0);
     const Districts one(mesh, piece, 1), four(mesh, piece, 4);
     EXPECT_EQ(one.bytes(), four.bytes());
-    ASSERT_EQ(one.tiers().size(), four.tiers().size());
-    for (size_t k = 0; k < one.tiers().size(); ++k) {
-      EXPECT_EQ(one.tiers()[k].entries, four.tiers()[k].entries);
-      EXPECT_EQ(one.tiers()[k].costs, four.tiers()[k].costs);
+    ASSERT_EQ(one.overlay_levels().size(), four.overlay_levels().size());
+    for (size_t k = 0; k < one.overlay_levels().size(); ++k) {
+      EXPECT_EQ(one.overlay_levels()[k].entries, four.overlay_levels()[k].entries);
+      EXPECT_EQ(one.overlay_levels()[k].costs, four.overlay_levels()[k].costs);
     }
   });
 }

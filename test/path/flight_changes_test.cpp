@@ -194,7 +194,7 @@ class Cells {
   }
 
   const FlightSpace& space_;
-  FlightEnds ends_;
+  FlightEndpoints ends_;
   std::vector<int32_t> label_;
 };
 
@@ -209,14 +209,14 @@ int faults(const std::vector<Prism>& prisms, const FlightPath& path) {
   };
   for (size_t i = 1; i < path.points.size(); ++i) {
     const Vec3d a = path.points[i - 1], b = path.points[i];
-    const LegKind kind = path.legs[i - 1];
-    if (kind == LegKind::kTakeOff || kind == LegKind::kLand) {
-      const Vec3d &low = kind == LegKind::kTakeOff ? a : b,
-                  &high = kind == LegKind::kTakeOff ? b : a;
+    const SegmentKind kind = path.segments[i - 1];
+    if (kind == SegmentKind::kTakeOff || kind == SegmentKind::kLand) {
+      const Vec3d &low = kind == SegmentKind::kTakeOff ? a : b,
+                  &high = kind == SegmentKind::kTakeOff ? b : a;
       look(high, std::min(low.y + body_bottom(avatar), high.y), high.y + avatar.height);
       continue;
     }
-    const double under = kind == LegKind::kWalk ? body_bottom(avatar) : 0;
+    const double under = kind == SegmentKind::kWalk ? body_bottom(avatar) : 0;
     const auto steps = static_cast<int>(length(b - a) / 0.05) + 1;
     for (int s = 0; s <= steps; ++s) {
       const Vec3d feet = a + (b - a) * (static_cast<double>(s) / steps);
@@ -240,7 +240,7 @@ void expect_same(const FlightPath& a, const FlightPath& b) {
   EXPECT_EQ(a.end, b.end);
   EXPECT_EQ(a.length, b.length);
   EXPECT_EQ(a.obstacle, b.obstacle);
-  EXPECT_EQ(a.legs, b.legs);
+  EXPECT_EQ(a.segments, b.segments);
   ASSERT_EQ(a.points.size(), b.points.size());
   for (size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(length(a.points[i] - b.points[i]), 0);
 }
@@ -328,7 +328,7 @@ TEST(FlightChanges, WaysAreWhereTheCellsHoldTogetherAndNobodyTouchesAPrism) {
         if (path.end == PathEnd::kReached) {
           ASSERT_LT(length(path.points.front() - from), 0.1);
           ASSERT_LT(length(path.points.back() - to), 0.1);
-          if (path.legs.empty() || path.legs.front() != LegKind::kFly) ++on_ground;
+          if (path.segments.empty() || path.segments.front() != SegmentKind::kFly) ++on_ground;
         }
         if (path.end == PathEnd::kUnreachable && a > 0) {
           ASSERT_FALSE(path.points.empty()) << seed << ", " << n;
@@ -520,7 +520,7 @@ TEST(FlightChanges, WalksAndPlacesToTakeOffMindThemToo) {
   for (const Vec3d to : {Vec3d{10, 0, 4}, Vec3d{10, 4, 4}, Vec3d{4, 0, 1.5}}) {
     flight.find({.from = {4, 0, 4}, .to = to}, path);
     ASSERT_EQ(path.end, PathEnd::kReached);
-    EXPECT_EQ(path.legs.front(), LegKind::kWalk);  // it stands under a table
+    EXPECT_EQ(path.segments.front(), SegmentKind::kWalk);  // it stands under a table
     EXPECT_EQ(faults(prisms, path), 0);
   }
 }
@@ -560,8 +560,8 @@ TEST(FlightChanges, UnderACurtainOneWalks) {
   FlightPath path;
   flight.find({.from = {3, 2, 4}, .to = {16, 3, 3}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  EXPECT_NE(std::count(path.legs.begin(), path.legs.end(), LegKind::kLand), 0);
-  EXPECT_NE(std::count(path.legs.begin(), path.legs.end(), LegKind::kTakeOff), 0);
+  EXPECT_NE(std::count(path.segments.begin(), path.segments.end(), SegmentKind::kLand), 0);
+  EXPECT_NE(std::count(path.segments.begin(), path.segments.end(), SegmentKind::kTakeOff), 0);
   EXPECT_EQ(faults({curtain, low}, path), 0);
 }
 
@@ -585,7 +585,7 @@ TEST(FlightChanges, ABoxedInGoalIsToldWithHowNearOneComes) {
   EXPECT_LT(length(path.points.back() - goal), 1.2);
   // It keeps to its budget.
   flight.find({.from = {15, 3, 4}, .to = {21, 3, 4}, .max_nodes = 2}, path);
-  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
 }
 
 // Two halves too large to look around in when the wall comes: a search tells, and how near.
@@ -603,7 +603,7 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundOutBySearching) {
   ASSERT_TRUE(world) << world.error().message;
   FlightFinder flight = finder(*world);
   ASSERT_GT(flight.summary().boxes, 90'000u);
-  const FlightEnds ends(*world->data(), flight.space(), 0);
+  const FlightEndpoints ends(*world->data(), flight.space(), 0);
   const auto component_of = [&](Vec3d p) {
     const uint32_t at = flight.space().box_at(ends.to_air(p));
     return at == kNoBox ? kNoBox : flight.space().component[at];
@@ -641,10 +641,10 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundOutBySearching) {
     }
   }
   flight.find({.from = left[0], .to = right[0], .max_nodes = 500}, path);
-  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   const std::atomic<bool> cancel = true;
   flight.find({.from = left[0], .to = right[0], .cancel = &cancel}, path);
-  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   flight.remove(*wall);
   flight.find({.from = left[0], .to = right[0]}, path);
   EXPECT_EQ(path.end, PathEnd::kReached);

@@ -50,11 +50,12 @@ TEST(Flight, LeadsFromTheGroundThroughTheAirToTheGround) {
   FlightPath path;
   flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  ASSERT_GE(path.legs.size(), 3u);
-  EXPECT_EQ(path.legs.front(), LegKind::kTakeOff);
-  EXPECT_EQ(path.legs.back(), LegKind::kLand);
-  for (size_t i = 1; i + 1 < path.legs.size(); ++i) EXPECT_EQ(path.legs[i], LegKind::kFly);
-  EXPECT_EQ(path.points.size(), path.legs.size() + 1);
+  ASSERT_GE(path.segments.size(), 3u);
+  EXPECT_EQ(path.segments.front(), SegmentKind::kTakeOff);
+  EXPECT_EQ(path.segments.back(), SegmentKind::kLand);
+  for (size_t i = 1; i + 1 < path.segments.size(); ++i)
+    EXPECT_EQ(path.segments[i], SegmentKind::kFly);
+  EXPECT_EQ(path.points.size(), path.segments.size() + 1);
   EXPECT_NEAR(path.points.front().y, 0, 1e-6);
   EXPECT_NEAR(path.points.back().y, 3, 1e-6);
   EXPECT_LT(path.length, 1.1 * std::hypot(28, 3));
@@ -66,7 +67,7 @@ TEST(Flight, WalksWhereThatIsShorter) {
   FlightPath path;
   flight.find({.from = {2, 0, 4}, .to = {6, 0, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  EXPECT_EQ(path.legs, (std::vector<LegKind>{LegKind::kWalk}));
+  EXPECT_EQ(path.segments, (std::vector<SegmentKind>{SegmentKind::kWalk}));
   EXPECT_NEAR(path.length, 4, 1e-3);
 }
 
@@ -80,8 +81,8 @@ TEST(Flight, WalksToWhereOneCanTakeOff) {
   FlightPath path;
   flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  EXPECT_EQ(path.legs.front(), LegKind::kWalk);
-  EXPECT_EQ(path.legs.back(), LegKind::kLand);
+  EXPECT_EQ(path.segments.front(), SegmentKind::kWalk);
+  EXPECT_EQ(path.segments.back(), SegmentKind::kLand);
 }
 
 // A hall with a door that one walks through and cannot fly through: the nearest take-off leads
@@ -104,13 +105,13 @@ TEST(Flight, LeavesAClosedPocketOfAirOnFoot) {
     FlightPath path;
     flight.find({.from = from, .to = to}, path);
     EXPECT_EQ(path.end, PathEnd::kReached);
-    return path.legs.empty() ? std::vector<LegKind>{LegKind::kFly} : path.legs;
+    return path.segments.empty() ? std::vector<SegmentKind>{SegmentKind::kFly} : path.segments;
   };
   for (const Vec3d there : {beyond, above}) {
-    const std::vector<LegKind> out = find(inside, there), in = find(there, inside);
-    EXPECT_EQ(out.front(), LegKind::kWalk);
-    EXPECT_EQ(in.back(), LegKind::kWalk);
-    EXPECT_NE(std::find(out.begin(), out.end(), LegKind::kTakeOff), out.end());
+    const std::vector<SegmentKind> out = find(inside, there), in = find(there, inside);
+    EXPECT_EQ(out.front(), SegmentKind::kWalk);
+    EXPECT_EQ(in.back(), SegmentKind::kWalk);
+    EXPECT_NE(std::find(out.begin(), out.end(), SegmentKind::kTakeOff), out.end());
   }
 }
 
@@ -125,7 +126,7 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
   for (const bool yard : {true, false}) {
     const World world = bake(yard ? yards : church, 0.2);
     FlightFinder flight = finder(world);
-    const FlightEnds ends(*world.data(), flight.space(), 0);
+    const FlightEndpoints ends(*world.data(), flight.space(), 0);
     CircleFlood flood;
     FlightPath path;
     std::vector<uint32_t> over;
@@ -190,7 +191,7 @@ TEST(Flight, TellsWhatCannotBeReachedAndKeepsToItsBudget) {
   flight.find({.from = {15, 4, 4}, .to = {32, 6, 4}}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}, .max_nodes = 3}, path);
-  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}}, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
   EXPECT_GT(path.nodes, 3u);
@@ -221,17 +222,17 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   const World world = bake(scene);
   FlightFinder flight = finder(world);
   const Vec3d here{3, 2, 4}, there{16, 3, 3};
-  const FlightEnds ends(*world.data(), flight.space(), 0);
+  const FlightEndpoints ends(*world.data(), flight.space(), 0);
   ASSERT_TRUE(ends.in_air(here) && ends.in_air(there));
-  ASSERT_FALSE(AirView(flight.space()).hold_together(*ends.in_air(here), *ends.in_air(there)));
+  ASSERT_FALSE(AirView(flight.space()).same_component(*ends.in_air(here), *ends.in_air(there)));
   FlightPath path;
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  ASSERT_EQ(path.points.size(), path.legs.size() + 1);
-  std::vector<LegKind> kinds = path.legs;
+  ASSERT_EQ(path.points.size(), path.segments.size() + 1);
+  std::vector<SegmentKind> kinds = path.segments;
   kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
-  EXPECT_EQ(kinds, (std::vector{LegKind::kFly, LegKind::kLand, LegKind::kWalk, LegKind::kTakeOff,
-                                LegKind::kFly}));
+  EXPECT_EQ(kinds, (std::vector{SegmentKind::kFly, SegmentKind::kLand, SegmentKind::kWalk,
+                                SegmentKind::kTakeOff, SegmentKind::kFly}));
   EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
   EXPECT_NEAR(length(path.points.back() - there), 0, 0.01);
   double sum = 0;
@@ -257,11 +258,11 @@ TEST(Flight, TellsHowNearItComesAndWhatIsInTheWay) {
     ASSERT_EQ(path.end, PathEnd::kUnreachable);
     EXPECT_EQ(path.obstacle, Obstacle::kNarrow);
     ASSERT_GE(path.points.size(), 2u);
-    EXPECT_EQ(path.points.size(), path.legs.size() + 1);
+    EXPECT_EQ(path.points.size(), path.segments.size() + 1);
     EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
     // As near as the air comes, of all boxes, by many points of each.
     double least = INFINITY;
-    const FlightEnds ends(*world.data(), flight.space(), 0);
+    const FlightEndpoints ends(*world.data(), flight.space(), 0);
     const uint32_t part = flight.space().component[flight.space().box_at(*ends.in_air({3, 2, 4}))];
     for (size_t b = 0; b < flight.space().boxes.size(); ++b) {
       if (flight.space().component[b] != part) continue;
@@ -335,15 +336,15 @@ TEST(Flight, GivingUpOnFootIsNoProofThatNothingLeadsThere) {
   ASSERT_FALSE(flight.take_off(world.find_place(0, query.from, 0.1)));
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  ASSERT_EQ(path.legs.back(), LegKind::kWalk);
+  ASSERT_EQ(path.segments.back(), SegmentKind::kWalk);
   query.max_nodes = 1;
   flight.find(query, path);
-  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   query.max_nodes = UINT64_MAX;
   const std::atomic<bool> cancel = true;
   query.cancel = &cancel;
   flight.find(query, path);
-  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
 }
 
 TEST(Flight, NeedsAirAndAClassThatFlies) {

@@ -96,7 +96,7 @@ TEST(FlowField, WhoFollowsItArrives) {
       const double distance = flow.distance(at);
       if (!std::isfinite(distance)) continue;
       double length = 0;
-      int legs = 0;
+      int segments = 0;
       while (std::hypot(at.position.x - goal.position.x, at.position.z - goal.position.z) > 1e-3 ||
              at.level1 != goal.level1) {
         const Place to = flow.next(at);
@@ -107,9 +107,9 @@ TEST(FlowField, WhoFollowsItArrives) {
         ASSERT_EQ(move.place.level1, to.level1);
         length += std::hypot(step.x, step.z);
         at = to;
-        ASSERT_LT(++legs, 1000);
+        ASSERT_LT(++segments, 1000);
       }
-      EXPECT_LE(length, distance + 1e-3 * (legs + 1));
+      EXPECT_LE(length, distance + 1e-3 * (segments + 1));
       ++walked;
     }
   }

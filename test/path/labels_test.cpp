@@ -46,7 +46,7 @@ class Ways {
   [[nodiscard]] bool can_be_gone(const Stop& from, const std::vector<uint32_t>& corners,
                                  const Stop& to) const {
     std::vector<Stop> stops;
-    return LegWalker(*world_.data(), mesh).walk(from, corners, to.at, stops) &&
+    return SegmentWalker(*world_.data(), mesh).walk(from, corners, to.at, stops) &&
            stops.back().rect == to.rect;
   }
 
@@ -71,7 +71,7 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
   int pulled = 0, shortest = 0;
   for (const World& world : some_worlds()) {
     Ways ways(world, 0);
-    Puller puller;
+    StringPuller puller;
     std::vector<uint32_t> first, second, corners, exact;
     for (uint64_t n = 0; n < 150; ++n) {
       const Stop from = ways.random_stop(1, 3 * n), over = ways.random_stop(1, 3 * n + 1);
@@ -79,10 +79,10 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
       if (!ways.together(from, to) || !ways.together(from, over)) continue;
       SCOPED_TRACE(testing::Message() << n);
       const double both = ways.search(from, over, first) + ways.search(over, to, second);
-      std::vector<WayPoint> way{{in_cells(from.at), from.rect}};
-      for (const uint32_t c : first) way.push_back(way_point(ways.mesh, c));
+      std::vector<Waypoint> way{{in_cells(from.at), from.rect}};
+      for (const uint32_t c : first) way.push_back(waypoint(ways.mesh, c));
       way.push_back({in_cells(over.at), over.rect});
-      for (const uint32_t c : second) way.push_back(way_point(ways.mesh, c));
+      for (const uint32_t c : second) way.push_back(waypoint(ways.mesh, c));
       way.push_back({in_cells(to.at), to.rect});
       double length = 0;
       ASSERT_TRUE(puller.pull(ways.mesh, way, corners, length));
@@ -94,8 +94,8 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
       shortest += length < least + 1e-6;
       // What is taut stays as it is.
       double again = 0;
-      std::vector<WayPoint> taut{way.front()};
-      for (const uint32_t c : corners) taut.push_back(way_point(ways.mesh, c));
+      std::vector<Waypoint> taut{way.front()};
+      for (const uint32_t c : corners) taut.push_back(waypoint(ways.mesh, c));
       taut.push_back(way.back());
       ASSERT_TRUE(puller.pull(ways.mesh, taut, exact, again));
       EXPECT_EQ(exact, corners);

@@ -328,24 +328,24 @@ TEST(LiveGround, JumpsLeadWhereMovesDoNot) {
   Path path;
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  EXPECT_FALSE(ground.add_jump({at(3.5, 3), at(4.5, 3), 0.5}));  // shorter than it is
-  EXPECT_FALSE(ground.add_jump({at(3.5, 3), {}, 2}));
-  const auto jump = ground.add_jump({at(3.5, 3), at(4.5, 3), 1.5, false});
-  ASSERT_TRUE(jump);
+  EXPECT_FALSE(ground.add_off_mesh_link({at(3.5, 3), at(4.5, 3), 0.5}));  // shorter than it is
+  EXPECT_FALSE(ground.add_off_mesh_link({at(3.5, 3), {}, 2}));
+  const auto off_mesh_link = ground.add_off_mesh_link({at(3.5, 3), at(4.5, 3), 1.5, false});
+  ASSERT_TRUE(off_mesh_link);
   ground.find(from, to, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  ASSERT_EQ(path.jumps, std::vector<uint32_t>{2});
+  ASSERT_EQ(path.off_mesh_links, std::vector<uint32_t>{2});
   EXPECT_NEAR(path.points[1].position.x, 3.5, 1e-3);
   EXPECT_NEAR(path.points[2].position.x, 4.5, 1e-3);
   EXPECT_NEAR(path.length, 2 * std::hypot(2.5, 2) + 1, 0.01);
   EXPECT_NEAR(path.cost, 2 * std::hypot(2.5, 2) + 1.5, 0.01);
   ground.find(to, from, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);  // one way
-  const auto lift = ground.add_jump({at(3.5, 5), at(4.5, 5), 1.1});
+  const auto lift = ground.add_off_mesh_link({at(3.5, 5), at(4.5, 5), 1.1});
   ASSERT_TRUE(lift);
   ground.find(to, from, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  EXPECT_EQ(path.jumps.size(), 1u);
+  EXPECT_EQ(path.off_mesh_links.size(), 1u);
   LiveGround copy = ground;
   ASSERT_TRUE(ground.set_active(*lift, false));
   ground.find(to, from, path);
@@ -360,7 +360,7 @@ TEST(LiveGround, JumpsLeadWhereMovesDoNot) {
   ASSERT_TRUE(ground.remove(*lift));
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  ASSERT_TRUE(ground.remove(*jump));
+  ASSERT_TRUE(ground.remove(*off_mesh_link));
 }
 
 // Two jumps to one place: the way takes the cheaper, and stands where that one begins.
@@ -370,13 +370,14 @@ TEST(LiveGround, OfTwoJumpsToOnePlaceTheCheaperIsTaken) {
   const Place from = at(1, 3), to = at(7, 3);
   for (const bool cheap_first : {true, false}) {
     LiveGround ground = live(world);
-    const Jump cheap{at(3.3, 3), at(4.7, 3), 2, false}, dear{at(3.3, 4.5), at(4.7, 3), 9, false};
-    ASSERT_TRUE(ground.add_jump(cheap_first ? cheap : dear));
-    ASSERT_TRUE(ground.add_jump(cheap_first ? dear : cheap));
+    const OffMeshLink cheap{at(3.3, 3), at(4.7, 3), 2, false},
+        dear{at(3.3, 4.5), at(4.7, 3), 9, false};
+    ASSERT_TRUE(ground.add_off_mesh_link(cheap_first ? cheap : dear));
+    ASSERT_TRUE(ground.add_off_mesh_link(cheap_first ? dear : cheap));
     Path path;
     ground.find(from, to, path);
     ASSERT_EQ(path.end, PathEnd::kReached);
-    ASSERT_EQ(path.jumps, std::vector<uint32_t>{2});
+    ASSERT_EQ(path.off_mesh_links, std::vector<uint32_t>{2});
     EXPECT_NEAR(path.points[1].position.z, 3, 1e-3);
     EXPECT_NEAR(path.cost, 2.3 + 2 + 2.3, 0.01);
   }
@@ -394,11 +395,11 @@ TEST(LiveGround, NothingOfAnOldPathIsLeft) {
   finder.find(at(1, 1), at(2, 5), path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(path.obstacle, Obstacle::kNone);
-  ASSERT_TRUE(ground.add_jump({at(3.5, 3), at(4.5, 3), 1.5, false}));
+  ASSERT_TRUE(ground.add_off_mesh_link({at(3.5, 3), at(4.5, 3), 1.5, false}));
   ground.find(at(1, 1), at(7, 5), path);
-  ASSERT_EQ(path.jumps.size(), 1u);
+  ASSERT_EQ(path.off_mesh_links.size(), 1u);
   finder.find(at(1, 1), at(2, 5), path);
-  EXPECT_TRUE(path.jumps.empty());
+  EXPECT_TRUE(path.off_mesh_links.empty());
   EXPECT_EQ(path.cost, 0);
 }
 
@@ -412,7 +413,7 @@ TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
     ground.find(from, to, whole);
     ground.begin(from, to);
     while (!ground.advance(10, path)) {
-      EXPECT_EQ(path.end, PathEnd::kGaveUp);
+      EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
       ++slices;
       if (slices % 7 == 0) {
         const auto id = ground.add_obstacle(Prism::box({-90, 0, -90}, {90, 0.1, 90}));
@@ -425,7 +426,7 @@ TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
     EXPECT_EQ(path.end, whole.end);
     EXPECT_EQ(path.length, whole.length);
     ground.find(from, to, path, 3);
-    EXPECT_TRUE(path.end == PathEnd::kGaveUp || path.nodes <= 3);
+    EXPECT_TRUE(path.end == PathEnd::kBudgetExhausted || path.nodes <= 3);
   }
   EXPECT_GT(slices, 50u);
 }

@@ -122,7 +122,7 @@ BlockPoint point_of(const NodeView& view, const NodePlace& place) {
 
 // A search of all crossings that are left.
 TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
-  uint64_t reached = 0, unreachable = 0, nowhere = 0, pockets = 0;
+  uint64_t reached = 0, unreachable = 0, nowhere = 0, islands = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
@@ -169,7 +169,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
           continue;
         }
         ++unreachable;
-        pockets += n < 10 ? 1 : 0;
+        islands += n < 10 ? 1 : 0;
         const BlockPoint last = best.empty() ? a : ends_of(view, best.back()).in;
         // As near as the nearest crossing, or nearer in the block that it leads into.
         EXPECT_LE(length(path.points.back().place.feet - to.feet),
@@ -180,7 +180,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
   });
   EXPECT_GT(reached, 250u);
   EXPECT_GT(unreachable, 30u);
-  EXPECT_GT(pockets, 10u);
+  EXPECT_GT(islands, 10u);
   EXPECT_GT(nowhere, 10u);
 }
 
@@ -199,9 +199,9 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
       const PieceCost piece(view, 0);
       const NodeView baked(*mesh);
       const PieceCost baked_piece(baked, 0);
-      const Districts districts(*mesh, baked_piece, 1, 48);
-      ASSERT_FALSE(districts.empty());
-      DistrictSearch search(view, piece, districts);
+      const Districts overlay(*mesh, baked_piece, 1, 48);
+      ASSERT_FALSE(overlay.empty());
+      OverlaySearch search(view, piece, overlay);
       NodeSearch plain(view, piece), blocks(view, piece);
       std::vector<Crossing> best, way;
       for (uint64_t round = 0; round < 3; ++round) {
@@ -214,14 +214,14 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
           const BlockPoint to = point_of(view, world.nodes.random_place(c, 9, 2 * n + 1));
           if (from.block == kNoNode || to.block == kNoNode) continue;
           const PathEnd end = plain.find(from, to, {}, best);
-          const PathEnd over_gates = search.find(from, to, {}, blocks, way);
+          const PathEnd over_entrances = search.find(from, to, {}, blocks, way);
           if (end != PathEnd::kReached) {
-            EXPECT_EQ(over_gates, end);
+            EXPECT_EQ(over_entrances, end);
             continue;
           }
           // A finder goes on to a search of all where gates do not lead there any more.
-          missed += over_gates != PathEnd::kReached ? 1 : 0;
-          if (over_gates != PathEnd::kReached || plain.cost() < 5) continue;
+          missed += over_entrances != PathEnd::kReached ? 1 : 0;
+          if (over_entrances != PathEnd::kReached || plain.cost() < 5) continue;
           ++reached;
           EXPECT_GE(search.cost(), plain.cost() * (1 - 1e-9));
           sum += search.cost() / plain.cost();

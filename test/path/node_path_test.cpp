@@ -292,7 +292,8 @@ TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {
   Context context;
   const auto nodes = Nodes::make(
       bake(scene, 0.2), scene,
-      {.jumps = {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .both_ways = false}}},
+      {.off_mesh_links =
+           {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .both_ways = false}}},
       context);
   ASSERT_TRUE(nodes);
   NodePathFinder found = finder(*nodes, 0);
@@ -301,11 +302,12 @@ TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {
   found.find(here, there, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
   EXPECT_NEAR(path.length, 12, 0.05);
-  const auto jump = std::find_if(path.links.begin(), path.links.end(),
-                                 [](const NodePathLink& l) { return l.kind == LinkKind::kJump; });
-  ASSERT_NE(jump, path.links.end());
-  EXPECT_TRUE(jump->leaps);
-  EXPECT_NEAR(path.points[jump->point].place.feet.x, 10, 0.21);
+  const auto off_mesh_link =
+      std::find_if(path.links.begin(), path.links.end(),
+                   [](const NodePathLink& l) { return l.kind == LinkKind::kOffMesh; });
+  ASSERT_NE(off_mesh_link, path.links.end());
+  EXPECT_TRUE(off_mesh_link->leaps);
+  EXPECT_NEAR(path.points[off_mesh_link->point].place.feet.x, 10, 0.21);
   found.find(there, here, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
 }

@@ -329,7 +329,7 @@ TEST(Path, WaysOverManyZonesAreHardlyLonger) {
     auto made = PathFinder::make(*world, {.avatar_class = c, .zones = true}, context);
     ASSERT_TRUE(made);
     PathFinder over_zones = *std::move(made), exact = finder(*world, c);
-    EXPECT_GT(over_zones.summary().gates, 100u);
+    EXPECT_GT(over_zones.summary().entrances, 100u);
     Path path, best;
     for (uint64_t n = 0; n < 150; ++n) {
       Place from = world->random_place(c, 4, 2 * n), to = world->random_place(c, 4, 2 * n + 1);
@@ -391,18 +391,18 @@ TEST(Path, StopsWhenItIsToldTo) {
     EXPECT_EQ(path.length, whole.length);
     search.find(from, to, path, {UINT64_MAX, &stop});
     // A goal in the start's own rectangle is not searched for.
-    EXPECT_TRUE(path.end == PathEnd::kGaveUp || whole.nodes == 0);
-    stopped += path.end == PathEnd::kGaveUp;
+    EXPECT_TRUE(path.end == PathEnd::kBudgetExhausted || whole.nodes == 0);
+    stopped += path.end == PathEnd::kBudgetExhausted;
     over_zones->find(from, to, path, {UINT64_MAX, &stop});
-    EXPECT_TRUE(path.end == PathEnd::kGaveUp || path.nodes <= 1);
+    EXPECT_TRUE(path.end == PathEnd::kBudgetExhausted || path.nodes <= 1);
     live->find(from, to, whole);
     live->find(from, to, path, {UINT64_MAX, &go});
     EXPECT_EQ(path.end, whole.end);
     EXPECT_EQ(path.length, whole.length);
     live->find(from, to, path, {UINT64_MAX, &stop});
-    EXPECT_EQ(path.end, PathEnd::kGaveUp);
+    EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
     live->find(from, to, path, {5, &go});
-    EXPECT_TRUE(path.end == PathEnd::kGaveUp || path.nodes <= 5);
+    EXPECT_TRUE(path.end == PathEnd::kBudgetExhausted || path.nodes <= 5);
   }
   EXPECT_GT(stopped, 20u);
 }
@@ -429,7 +429,7 @@ TEST(Path, SaysWhyThereIsNone) {
   const Place from = maze.random_place(0, 1, 1), to = maze.random_place(0, 1, 2);
   ASSERT_TRUE(from && to);
   through.find(from, to, path, 3);
-  EXPECT_EQ(path.end, PathEnd::kGaveUp);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   through.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
   PathFinder copy = through;

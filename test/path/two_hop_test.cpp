@@ -18,7 +18,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct RandomGraph {
-  WayGraph ways;
+  PathGraph ways;
   std::vector<double> edge;      // count x count; infinite: none
   std::vector<double> shortest;  // count x count
 
@@ -115,7 +115,7 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
 }
 
 TEST(TwoHop, AGraphWithoutNodesHasNoLabels) {
-  WayGraph none;
+  PathGraph none;
   none.first = {0};
   Context context;
   const auto labels = label_graph(none, 16, 2, context);

@@ -26,15 +26,15 @@ PathMesh among_pillars(int32_t a_side) {
 }
 
 // Ways name corners by 16 bits, of which one number says that there is none.
-TEST(ZoneWays, AZoneOfMoreCornersThanTheyCanNameIsRefused) {
-  const std::vector<Gate> gates{{.at = {0, 0.5}, .zone = {0, 1}, .rect = {0, 0}}};
+TEST(ZonePaths, AZoneOfMoreCornersThanTheyCanNameIsRefused) {
+  const std::vector<Entrance> entrances{{.at = {0, 0.5}, .zone = {0, 1}, .rect = {0, 0}}};
   Sight sight;
   const auto fits = [&](int32_t pillars, size_t corners) {
     const PathMesh mesh = among_pillars(pillars);
-    ZoneWays ways;
+    ZonePaths ways;
     ways.last_rect = static_cast<uint32_t>(mesh.rects.size() - 1);
-    ways.gates = {0};
-    const bool found = find_zone_ways(mesh, gates, 0, sight, ways);
+    ways.entrances = {0};
+    const bool found = find_zone_paths(mesh, entrances, 0, sight, ways);
     EXPECT_EQ(ways.corners.size(), corners);
     return found;
   };

@@ -30,19 +30,19 @@ double distance_to_law(const Distribution& d, const std::function<double(double)
 }
 
 // 1.36 / sqrt(n) is exceeded by chance once in twenty; the numbers are fixed, so never here.
-constexpr double kMost = 0.0096;
+constexpr double kMax = 0.0096;
 
 TEST(Distribution, follows_its_law) {
   EXPECT_LT(distance_to_law({Distribution::Kind::kUniform, 2, 5, 2, 5},
                             [](double x) { return (x - 2) / 3; }),
-            kMost);
+            kMax);
   EXPECT_LT(
       distance_to_law({Distribution::Kind::kNormal, 1.34, 0.26},
                       [](double x) { return std::erfc(-(x - 1.34) / 0.26 / std::sqrt(2)) / 2; }),
-      kMost);
+      kMax);
   EXPECT_LT(distance_to_law({Distribution::Kind::kExponential, 4, 0},
                             [](double x) { return 1 - std::exp(-x / 4); }),
-            kMost);
+            kMax);
 }
 
 TEST(Distribution, keeps_within_its_limits) {

@@ -202,18 +202,18 @@ journey = "ride"
 count = 10
 )");
   Simulation simulation = made(run);
-  uint64_t most_in = 0;
+  uint64_t max_in = 0;
   std::set<double> rides;
   uint64_t before = 0;
   while (!simulation.is_over()) {
     const auto report = simulation.step();
     ASSERT_TRUE(report);
     ASSERT_LT(report->time, 120);
-    most_in = std::max(most_in, report->in_links);
+    max_in = std::max(max_in, report->in_links);
     if (report->in_links > before) rides.insert(report->time);
     before = report->in_links;
   }
-  EXPECT_EQ(most_in, 4U);
+  EXPECT_EQ(max_in, 4U);
   EXPECT_GE(rides.size(), 3U);
   for (const double time : rides) EXPECT_NEAR(std::remainder(time - 0.1, 10), 0, 0.01) << time;
   for (const Visit& visit : simulation.visits()) EXPECT_GE(visit.left, 16);
@@ -536,7 +536,7 @@ TEST(Crowd, targets_are_reached_around_obstacles) {
   ASSERT_TRUE(door);
   EXPECT_FALSE(std::isfinite(crowd->distance((*ids)[0], *target)));
   crowd->step();
-  EXPECT_EQ(crowd->stranded().size(), ids->size());
+  EXPECT_EQ(crowd->goal_unreachable().size(), ids->size());
   ASSERT_TRUE(crowd->remove_obstacle(*door));
   crowd->set_targets(*ids, *target);
   uint64_t arrived = 0;

@@ -365,7 +365,7 @@ TEST(CaacdSimulation, BadSpacesAreRefused) {
   EXPECT_EQ(refused({.avatars = 0}), Errc::kBadConfig);
   EXPECT_EQ(refused({.side = NAN}), Errc::kBadConfig);
   EXPECT_EQ(refused({.fields = {5, 4, 10}}), Errc::kBadConfig);
-  EXPECT_EQ(refused({.least_obstacle = 9, .largest_obstacle = 8}), Errc::kBadConfig);
+  EXPECT_EQ(refused({.min_obstacle = 9, .largest_obstacle = 8}), Errc::kBadConfig);
   EXPECT_EQ(refused({.avatars = 100, .side = 60, .obstacles = 0}), Errc::kLimit);
   EXPECT_EQ(refused({.avatars = 5, .side = 60, .obstacles = 1}), Errc::kLimit);
   Space space;

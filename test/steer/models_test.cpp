@@ -18,7 +18,7 @@ constexpr SteeringModel kCurves = SteeringModel::kCurvilinear,
 
 View walker(Plane velocity, Plane way = {100, 0}) {
   return {.velocity = velocity,
-          .wish = {1.3f, 0},
+          .preferred = {1.3f, 0},
           .way = way,
           .fastest = 1.3f,
           .radius = 0.25f,

@@ -24,9 +24,13 @@ float time_to_touch(Plane at, Plane velocity, float radii) {
   return s > 0 ? 1 / s : -1;
 }
 
-Situation situation(Plane velocity, Plane wish, const std::vector<Neighbour>& others = {},
+Situation situation(Plane velocity, Plane preferred, const std::vector<Neighbour>& others = {},
                     float fastest = 1.3f) {
-  Situation s{.velocity = velocity, .wish = wish, .fastest = fastest, .near = {}, .free_way = {}};
+  Situation s{.velocity = velocity,
+              .preferred = preferred,
+              .fastest = fastest,
+              .near = {},
+              .free_distance = {}};
   for (const Neighbour& other : others) s.near.add({}, other);
   return s;
 }
@@ -59,16 +63,16 @@ TEST(SampledSteering, NearnessOfAWallIsThatOfTheTimeToReachIt) {
 }
 
 TEST(SampledSteering, AloneItDoesWhatItWishes) {
-  const Plane wish = best(situation({0.3f, 0.9f}, {1.1f, -0.2f}));
-  EXPECT_EQ(wish.x, 1.1f);
-  EXPECT_EQ(wish.z, -0.2f);
+  const Plane preferred = best(situation({0.3f, 0.9f}, {1.1f, -0.2f}));
+  EXPECT_EQ(preferred.x, 1.1f);
+  EXPECT_EQ(preferred.z, -0.2f);
   EXPECT_EQ(size_of(best(situation({0, 0}, {0, 0}))), 0);
-  EXPECT_TRUE(wish_is_open({}, situation({0.3f, 0.9f}, {1.1f, -0.2f})));
+  EXPECT_TRUE(preferred_is_open({}, situation({0.3f, 0.9f}, {1.1f, -0.2f})));
 }
 
 TEST(SampledSteering, HeadOnItGoesToTheRight) {
   const Situation ahead = situation({1.3f, 0}, {1.3f, 0}, {{{1.6f, 0}, {-1.3f, 0}, 0.6f}});
-  EXPECT_FALSE(wish_is_open({}, ahead));
+  EXPECT_FALSE(preferred_is_open({}, ahead));
   EXPECT_GT(best(ahead).z, 0.1f);
   EXPECT_GT(best(ahead).x, 0);
   // Turned by 90 degrees, so is the answer.
@@ -91,24 +95,25 @@ double speed_for(double room, double fastest) {
 }
 
 TEST(SampledSteering, FollowsNoFasterThanTheRoomAllows) {
-  const Plane wish{1.3f, 0};
+  const Plane preferred{1.3f, 0};
   const auto speed = [&](const Neighbour& other) {
-    return following({}, situation({}, wish, {other}));
+    return following({}, situation({}, preferred, {other}));
   };
   // 0.8 m apart, of which 0.4 m are bodies however wide they are.
-  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.6f, wish}).x, speed_for(0.4, 1.3), 1e-5);
-  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.5f, wish}).x, speed_for(0.4, 1.3), 1e-5);
-  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.28f, wish}).x, speed_for(0.5, 1.3), 1e-5);  // and the gap
-  EXPECT_EQ(speed({{0.4f, 0}, {}, 0.38f, wish}).x, 0);
-  EXPECT_EQ(speed({{3, 0}, {}, 0.5f, wish}).x, 1.3f);
+  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.6f, preferred}).x, speed_for(0.4, 1.3), 1e-5);
+  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.5f, preferred}).x, speed_for(0.4, 1.3), 1e-5);
+  EXPECT_NEAR(speed({{0.8f, 0}, {}, 0.28f, preferred}).x, speed_for(0.5, 1.3),
+              1e-5);  // and the gap
+  EXPECT_EQ(speed({{0.4f, 0}, {}, 0.38f, preferred}).x, 0);
+  EXPECT_EQ(speed({{3, 0}, {}, 0.5f, preferred}).x, 1.3f);
   // A leader who is faster lets a part of that through.
   const double limit = speed_for(0.2, 1.3), foresight = SampledSettings{}.foresight;
-  EXPECT_NEAR(speed({{0.6f, 0}, {1.2f, 0.4f}, 0.5f, wish}).x, limit + foresight * (1.2 - limit),
-              1e-5);
-  EXPECT_NEAR(speed({{0.6f, 0}, {0.1f, 0}, 0.5f, wish}).x, limit, 1e-5);
+  EXPECT_NEAR(speed({{0.6f, 0}, {1.2f, 0.4f}, 0.5f, preferred}).x,
+              limit + foresight * (1.2 - limit), 1e-5);
+  EXPECT_NEAR(speed({{0.6f, 0}, {0.1f, 0}, 0.5f, preferred}).x, limit, 1e-5);
   // Behind, beside, bound elsewhere, or without a wish: nobody to follow.
-  EXPECT_EQ(speed({{-0.8f, 0}, {}, 0.6f, wish}).x, 1.3f);
-  EXPECT_EQ(speed({{0.5f, 0.6f}, {}, 0.6f, wish}).x, 1.3f);
+  EXPECT_EQ(speed({{-0.8f, 0}, {}, 0.6f, preferred}).x, 1.3f);
+  EXPECT_EQ(speed({{0.5f, 0.6f}, {}, 0.6f, preferred}).x, 1.3f);
   EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {0, 1.3f}}).x, 1.3f);
   EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {-1.3f, 0}}).x, 1.3f);
   EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {1, 0.8f}}).x, 1.3f);  // 39 degrees, 37 are one's way
@@ -124,14 +129,14 @@ TEST(SampledSteering, FollowsNoFasterThanTheRoomAllows) {
 TEST(SampledSteering, TurnsAwayFromAWallAheadAndStopsInADeadEnd) {
   Situation s = situation({1.3f, 0}, {1.3f, 0});
   s.has_walls = true;
-  s.free_way.fill(5);
+  s.free_distance.fill(5);
   EXPECT_EQ(best(s).x, 1.3f);
-  for (const size_t k : {0, 1, 2, 22, 23}) s.free_way[k] = 0.2f;
-  EXPECT_FALSE(wish_is_open({}, s));
+  for (const size_t k : {0, 1, 2, 22, 23}) s.free_distance[k] = 0.2f;
+  EXPECT_FALSE(preferred_is_open({}, s));
   const Plane aside = best(s);
   EXPECT_GT(std::fabs(aside.z), 0.5f);
   EXPECT_GT(aside.x, 0);
-  s.free_way.fill(0);
+  s.free_distance.fill(0);
   EXPECT_EQ(size_of(best(s)), 0);
 }
 
@@ -143,18 +148,19 @@ Situation random_situation(uint64_t seed, uint64_t n) {
   };
   const float fastest = 0.2f + std::fabs(number(2));
   Situation s = situation({number(1), number(1)}, {number(1), number(1)}, {}, fastest);
-  const float size = size_of(s.wish);
-  if (size > fastest) s.wish = {s.wish.x * fastest / size, s.wish.z * fastest / size};
-  if (n % 11 == 0) s.wish = {};
-  const uint64_t others = random_below(seed, n, k++, kMostNear + 1);
+  const float size = size_of(s.preferred);
+  if (size > fastest)
+    s.preferred = {s.preferred.x * fastest / size, s.preferred.z * fastest / size};
+  if (n % 11 == 0) s.preferred = {};
+  const uint64_t others = random_below(seed, n, k++, kMaxNear + 1);
   for (uint64_t i = 0; i < others; ++i) {
     const Plane at = i == 3 && n % 7 == 0 ? Plane{} : Plane{number(3), number(3)};
     const float radii = 0.1f + static_cast<float>(n % 5) / 4;
-    const Plane heading = n % 2 == 0 ? s.wish : Plane{number(1), number(1)};
+    const Plane heading = n % 2 == 0 ? s.preferred : Plane{number(1), number(1)};
     s.near.add({}, {at, {number(2), number(2)}, radii, heading});
   }
   s.has_walls = n % 3 == 0;
-  for (float& way : s.free_way) way = std::max(number(1), 0.0f);
+  for (float& way : s.free_distance) way = std::max(number(1), 0.0f);
   return s;
 }
 
@@ -173,7 +179,7 @@ TEST(SampledSteering, MachinesFindTheSameBits) {
       const Situation s = random_situation(9, n);
       const Plane limited = following_fast({}, s), expected_limit = following({}, s);
       ASSERT_EQ(std::memcmp(&limited, &expected_limit, sizeof limited), 0) << name << ' ' << n;
-      ASSERT_EQ(wish_is_open_fast({}, s), wish_is_open({}, s)) << name << ' ' << n;
+      ASSERT_EQ(preferred_is_open_fast({}, s), preferred_is_open({}, s)) << name << ' ' << n;
       for (const int32_t opposers : {0, 1, 2, 3}) {
         const LaneSettings lanes{.opposers = opposers};
         ASSERT_EQ(is_opposed_fast(lanes, s), is_opposed(lanes, s)) << name << ' ' << n;

@@ -52,12 +52,12 @@ TEST(SocialForce, TheForceIsTheSlopeOfThePotential) {
 }
 
 TEST(SocialForce, AWishIsTakenUpInHalfASecondAndNobodyRuns) {
-  std::vector<ForceWalker> one{{.wish_x = 1}};
+  std::vector<ForceWalker> one{{.preferred_x = 1}};
   step_social_force(one, 0.1, {});
   EXPECT_NEAR(one[0].vx, 0.2, 1e-12);  // 1 / 0.5 x 0.1
   EXPECT_NEAR(one[0].x, 0.02, 1e-12);
   // Somebody right behind: 7 exp(-1) by half, as he is not seen, and the speed is cut at 1.3.
-  std::vector<ForceWalker> two{{.vx = 1, .wish_x = 1}, {.x = -0.3}};
+  std::vector<ForceWalker> two{{.vx = 1, .preferred_x = 1}, {.x = -0.3}};
   step_social_force(two, 0.1, {});
   EXPECT_NEAR(two[0].vx, 1 + 0.05 * 7 * std::exp(-1), 1e-9);
   step_social_force(two, 10, {});

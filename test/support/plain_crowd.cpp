@@ -78,9 +78,9 @@ Spot PlainCrowd::between(Spot a, Spot b) const {
   return {wrapped(b.x - a.x, config_.side), wrapped(b.z - a.z, config_.side)};
 }
 
-Plane PlainCrowd::wish_of(const PlainBody& body) const {
+Plane PlainCrowd::preferred_of(const PlainBody& body) const {
   const Plane way = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
-  return steer::wish_towards(way, body.speed, config_.units.dt, body.turn);
+  return steer::preferred_towards(way, body.speed, config_.units.dt, body.turn);
 }
 
 void PlainCrowd::sense() {
@@ -126,7 +126,7 @@ void PlainCrowd::prefer(uint32_t i) {
   }
   const steer::View view{
       .velocity = body.velocity,
-      .wish = wish_of(body),
+      .preferred = preferred_of(body),
       .way = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z),
       .stops = true,
       .fastest = body.speed,
@@ -145,10 +145,10 @@ void PlainCrowd::steer_all() {
     }
     const PlainBody& body = bodies_[i];
     steer::Situation situation{.velocity = body.velocity,
-                               .wish = wish_of(body),
+                               .preferred = preferred_of(body),
                                .fastest = body.speed,
                                .near = {},
-                               .free_way = {}};
+                               .free_distance = {}};
     bool waits = false;
     for (const Near& n : near_[i]) {
       if (situation.near.size == static_cast<size_t>(config_.steering.neighbours)) break;
@@ -161,35 +161,37 @@ void PlainCrowd::steer_all() {
       if (body.arrived < 0 && other.arrived < 0 &&
           goes_first(bound(other, n.other), bound(body, i))) {
         waits = true;
-        situation.wish = wish_of_waiting(
+        situation.preferred = preferred_of_waiting(
             config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,
             static_cast<float>(body.radius + other.radius) * config_.units.unit);
       }
       situation.near.add(
           config_.steering,
-          {config_.units.metres(n.at.x, n.at.z), makes_way ? wish_of(other) : other.velocity,
-           static_cast<float>(body.radius + other.radius) * config_.units.unit, wish_of(other)});
+          {config_.units.metres(n.at.x, n.at.z), makes_way ? preferred_of(other) : other.velocity,
+           static_cast<float>(body.radius + other.radius) * config_.units.unit,
+           preferred_of(other)});
     }
-    const Plane wish = situation.wish;
-    situation.wish = steer::following(config_.steering, situation);
-    follows_[i] = steer::can_but_crawl(config_.patience, wish, situation.wish, body.speed) ? 1 : 0;
-    bool open = steer::wish_is_open(config_.steering, situation);
+    const Plane preferred = situation.preferred;
+    situation.preferred = steer::following(config_.steering, situation);
+    follows_[i] =
+        steer::can_but_crawl(config_.patience, preferred, situation.preferred, body.speed) ? 1 : 0;
+    bool open = steer::preferred_is_open(config_.steering, situation);
     if (!open && !waits && steer::is_opposed(config_.lanes, situation)) {
-      steer::Lanes lanes(config_.lanes, wish_of(body));
+      steer::Lanes lanes(config_.lanes, preferred_of(body));
       for (const Near& n : near_[i]) {
         const PlainBody& other = bodies_[n.other];
         lanes.add(config_.units.metres(n.at.x, n.at.z),
                   config_.units.metres(other.goal.x - other.at.x, other.goal.z - other.at.z));
       }
-      situation.wish = lanes.wish();
-      situation.wish = steer::following(config_.steering, situation);
-      open = steer::wish_is_open(config_.steering, situation);
+      situation.preferred = lanes.preferred();
+      situation.preferred = steer::following(config_.steering, situation);
+      open = steer::preferred_is_open(config_.steering, situation);
     }
     choices_[i] = steer::choose_velocity(config_.steering, situation);
     // Who meets nobody does as he wishes.
     if (open) {
       std::rotate(choices_[i].begin(), choices_[i].end() - 1, choices_[i].end());
-      choices_[i][0] = situation.wish;
+      choices_[i][0] = situation.preferred;
     }
   }
 }
@@ -278,7 +280,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
   for (size_t i = 0; i < bodies_.size(); ++i) {
     PlainBody& body = bodies_[i];
     const Plane way = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
-    const Plane wish = wish_of(body);
+    const Plane preferred = preferred_of(body);
     const float left = size_of(way);
     body.velocity = {units.velocity(now[i].x - body.at.x), units.velocity(now[i].z - body.at.z)};
     const float towards =
@@ -286,7 +288,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
     body.keeps = keeps[i] != 0;
-    if (config_.patient) {
+    if (config_.deadlock_avoidance) {
       const bool alone = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
         return can_touch(static_cast<uint32_t>(i), n);
       });
@@ -294,8 +296,8 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
           left > 1 && !alone
               ? steer::progress_felt(config_.patience, towards / body.speed, body.follows)
               : 1;
-      const float along =
-          (body.velocity.x * wish.x + body.velocity.z * wish.z) / (body.speed * body.speed);
+      const float along = (body.velocity.x * preferred.x + body.velocity.z * preferred.z) /
+                          (body.speed * body.speed);
       body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
     }
     const Plane rest = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);

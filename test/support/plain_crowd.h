@@ -36,7 +36,7 @@ struct PlainConfig {
   int32_t side = 0;  // the plane repeats itself after so many units; 0: it does not
   float sight = 5;   // [m]
   int32_t rounds = 3;
-  bool patient = true;
+  bool deadlock_avoidance = true;
   float reaction = 0.2f;  // [s]
   uint64_t seed = 1;
   SteeringModel model = SteeringModel::kSampled;
@@ -69,7 +69,7 @@ class PlainCrowd {
     Spot at;  // from the body
   };
   [[nodiscard]] Spot between(Spot a, Spot b) const;
-  [[nodiscard]] steer::Plane wish_of(const PlainBody& body) const;
+  [[nodiscard]] steer::Plane preferred_of(const PlainBody& body) const;
   [[nodiscard]] bool can_touch(uint32_t i, const Near& n) const;
   void sense();
   void steer_all();

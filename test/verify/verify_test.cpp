@@ -15,7 +15,7 @@ namespace {
 
 VerifyReport judge(const FakeWorld& world, uint64_t samples = 4000) {
   Context context;
-  const auto report = verify_claims(world.claims(), world.scene, {.samples = samples}, context);
+  const auto report = verify_proposals(world.claims(), world.scene, {.samples = samples}, context);
   EXPECT_TRUE(report) << report.error().message;
   return report ? *report : VerifyReport{};
 }
@@ -92,7 +92,7 @@ TEST(Verify, MoveThatEndsOnAnotherFloorIsTorn) {
     return result;
   };
   Context context;
-  const auto report = verify_claims(claims, world.scene, {.samples = 200}, context);
+  const auto report = verify_proposals(claims, world.scene, {.samples = 200}, context);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->torn, report->moves);
 }
@@ -243,8 +243,8 @@ TEST(Verify, ReportIsTheSameForAnyNumberOfWorkers) {
   FakeWorld world = flat_world(one_wall(), -0.01);
   const auto run = [&](int32_t workers, uint64_t seed) {
     Context context;
-    return *verify_claims(world.claims(), world.scene,
-                          {.samples = 3000, .seed = seed, .workers = workers}, context);
+    return *verify_proposals(world.claims(), world.scene,
+                             {.samples = 3000, .seed = seed, .workers = workers}, context);
   };
   const VerifyReport expected = run(1, 5);
   EXPECT_GT(expected.entered, 0u);
@@ -268,7 +268,7 @@ TEST(Verify, BadInputIsRefusedInOneSentence) {
   const FakeWorld world = flat_world({});
   Context context;
   const auto refuse = [&](const Scene& scene, const VerifyConfig& config) {
-    const auto report = verify_claims(world.claims(), scene, config, context);
+    const auto report = verify_proposals(world.claims(), scene, config, context);
     EXPECT_FALSE(report);
     return report ? Errc::kOk : report.error().code;
   };
@@ -294,7 +294,7 @@ TEST(Verify, CancelStopsIt) {
     EXPECT_EQ(progress.total, 3000000u);
     if (++calls == 2) context.cancel = true;
   };
-  const auto report = verify_claims(world.claims(), world.scene, {.samples = 1000000}, context);
+  const auto report = verify_proposals(world.claims(), world.scene, {.samples = 1000000}, context);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, Errc::kCancelled);
   EXPECT_EQ(calls, 2u);

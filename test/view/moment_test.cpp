@@ -17,8 +17,8 @@ struct Someone {
   float x, z, heading;
 };
 
-Moment moment_of(double time, const std::vector<Someone>& people) {
-  Moment m;
+TimelineFrame moment_of(double time, const std::vector<Someone>& people) {
+  TimelineFrame m;
   m.time = time;
   m.resize(people.size());
   for (size_t i = 0; i < people.size(); ++i) {
@@ -40,34 +40,34 @@ Figures one_figure() {
   return figures;
 }
 
-TEST(Moment, FollowAddsUpWhatEachHasWalkedThoughOthersComeAndGo) {
-  Moment a = moment_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
+TEST(TimelineFrame, FollowAddsUpWhatEachHasWalkedThoughOthersComeAndGo) {
+  TimelineFrame a = moment_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
   follow({}, a);
-  Moment b = moment_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
+  TimelineFrame b = moment_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
   follow(a, b);
   EXPECT_NEAR(b.walked[0] - a.walked[0], 5, 1e-5);
   EXPECT_NEAR(b.pace[0], 5 * (1 - std::exp(-1 / 0.4)), 1e-4);
   EXPECT_EQ(b.pace[1], 0);
-  Moment back = moment_of(0, {{3, 0, 0, 0.25F}});
+  TimelineFrame back = moment_of(0, {{3, 0, 0, 0.25F}});
   follow(b, back);  // Backwards: feet go back the way they came.
   EXPECT_NEAR(back.walked[0], a.walked[0], 1e-5);
 }
 
-TEST(Moment, FiguresTurnTheShortWayAndNotAtOnce) {
-  Moment a = moment_of(0, {{1, 0, 0, 0.95F}});
-  Moment b = moment_of(0.1, {{1, 0.2F, 0, 0.45F}});
+TEST(TimelineFrame, FiguresTurnTheShortWayAndNotAtOnce) {
+  TimelineFrame a = moment_of(0, {{1, 0, 0, 0.95F}});
+  TimelineFrame b = moment_of(0.1, {{1, 0.2F, 0, 0.45F}});
   follow(a, b);  // Half a turn is asked for; 0.9 turns a second are allowed.
   const double turned = std::abs(std::remainder(b.heading[0] - 0.95, 1.0));
   EXPECT_NEAR(turned, 0.09, 1e-5);
-  Moment c = moment_of(0.2, {{1, 0.4F, 0, 0.02F}});
+  TimelineFrame c = moment_of(0.2, {{1, 0.4F, 0, 0.02F}});
   a.heading[0] = 0.97F;
   follow(a, c);  // Over zero: 0.05 turns, within the limit of 0.18.
   EXPECT_NEAR(c.heading[0], 0.02, 1e-5);
 }
 
-TEST(Moment, WhoStandsKeepsHisHeading) {
-  Moment a = moment_of(0, {{1, 0, 0, 0.4F}});
-  Moment b = moment_of(0.1, {{1, 0, 0, 0}});
+TEST(TimelineFrame, WhoStandsKeepsHisHeading) {
+  TimelineFrame a = moment_of(0, {{1, 0, 0, 0.4F}});
+  TimelineFrame b = moment_of(0.1, {{1, 0, 0, 0}});
   follow(a, b);
   EXPECT_NEAR(b.heading[0], 0.4, 1e-6);
 }
@@ -77,14 +77,14 @@ AvatarState climber(Vec3d at, Vec3d up, Vec3d goes) {
   return {.id = 1, .position = at, .heading_x = ahead.x, .heading_z = ahead.z, .up = up};
 }
 
-Vec3d looks(const Moment& m, size_t i) {
+Vec3d looks(const TimelineFrame& m, size_t i) {
   const double angle = 2 * std::numbers::pi * m.heading[i];
   return leaned({std::sin(angle), 0, std::cos(angle)}, m.up(i));
 }
 
-TEST(Moment, WhoClimbsLeansAndLooksWhereHeGoes) {
+TEST(TimelineFrame, WhoClimbsLeansAndLooksWhereHeGoes) {
   const double r = std::sqrt(0.5);
-  Moment a, b;
+  TimelineFrame a, b;
   a.time = 1;
   b.time = 1.5;
   put_states({climber({0, 0, 0}, {0, 1, 0}, {-1, 0, 0})}, {}, a);
@@ -114,14 +114,14 @@ TEST(Moment, WhoClimbsLeansAndLooksWhereHeGoes) {
 }
 
 // Over a ceiling, where axes are straight down but for a little, to all sides.
-TEST(Moment, WhoHangsFromAnUnevenCeilingDoesNotSpin) {
-  Moment before;
+TEST(TimelineFrame, WhoHangsFromAnUnevenCeilingDoesNotSpin) {
+  TimelineFrame before;
   for (int step = 0; step < 40; ++step) {
     const double turn = 2.1 * step, lean = 0.05;
     const Vec3d up{lean * std::cos(turn), -std::sqrt(1 - lean * lean), lean * std::sin(turn)};
     Vec3d goes = Vec3d{0, 0, 1} - up * up.z;
     goes = goes * (1 / length(goes));
-    Moment now;
+    TimelineFrame now;
     now.time = 0.1 * step;
     put_states({climber({0, 0, 0.1 * step}, up, goes)}, {}, now);
     follow(before, now);
@@ -130,13 +130,13 @@ TEST(Moment, WhoHangsFromAnUnevenCeilingDoesNotSpin) {
   }
 }
 
-TEST(Moment, BlendsBetweenTwoAndShowsWhoCame) {
-  Moment a = moment_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
-  Moment b = moment_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
+TEST(TimelineFrame, BlendsBetweenTwoAndShowsWhoCame) {
+  TimelineFrame a = moment_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
+  TimelineFrame b = moment_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
   b.pace = {1.2F, 0};
   BlendedCrowd crowd;
   crowd.blend(a, b, 0.25, one_figure(), 1e9);
-  const Moment& now = crowd.now();
+  const TimelineFrame& now = crowd.now();
   ASSERT_EQ(now.size(), 2U);
   EXPECT_NEAR(now.time, 1.25, 1e-12);
   EXPECT_NEAR(now.x[0], 1, 1e-6);
@@ -151,8 +151,8 @@ TEST(Moment, BlendsBetweenTwoAndShowsWhoCame) {
   EXPECT_EQ(crowd.crowds()[1].clip, 1U);
 }
 
-TEST(Moment, LeavesOutWhoIsAboveTheCutOrLooksHimself) {
-  Moment a = moment_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
+TEST(TimelineFrame, LeavesOutWhoIsAboveTheCutOrLooksHimself) {
+  TimelineFrame a = moment_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
   a.y = {0, 6, 0};
   BlendedCrowd crowd;
   crowd.hide(3);

@@ -87,7 +87,7 @@ void watch(At at, int32_t steps) {
   CrowdPlayer& player = **made;
   EXPECT_EQ(player.next(), nullptr);  // It waits to be told from where one looks.
   using Who = std::pair<uint64_t, uint32_t>;
-  std::shared_ptr<const Moment> last;
+  std::shared_ptr<const TimelineFrame> last;
   uint64_t came = 0, went = 0, in_sight = 0, seen = 0, counted = 0;
   size_t least = kAll, most = 0, largest = 0;
   for (int32_t step = 0; step <= steps; ++step) {
@@ -97,12 +97,13 @@ void watch(At at, int32_t steps) {
     ASSERT_NE(now, nullptr);
     ASSERT_EQ(now->fault, "");
     ASSERT_EQ(now->lives.size(), now->size());
-    const auto people = [](const Moment& m) {
+    const auto people = [](const TimelineFrame& m) {
       std::set<Who> out;
       for (size_t i = 0; i < m.size(); ++i) out.insert({m.ids[i], m.lives[i]});
       return out;
     };
-    const auto count_seen = [&](const Moment& m, const std::set<Who>& others, uint64_t& all) {
+    const auto count_seen = [&](const TimelineFrame& m, const std::set<Who>& others,
+                                uint64_t& all) {
       for (size_t i = 0; i < m.size(); ++i) {
         if (others.count({m.ids[i], m.lives[i]}) > 0) continue;
         const Vec3d feet = origin + Vec3d{m.x[i], m.y[i], m.z[i]};

@@ -125,7 +125,7 @@ double area_of(const Marks& marks) {
 
 TEST(OverlayMarks, FieldsAreColouredByTheStateThatTheyAreIn) {
   // Two who walk into each other, one far off, one on another storey.
-  Moment crowd;
+  TimelineFrame crowd;
   crowd.resize(4);
   crowd.ids = {1, 2, 3, 4};
   crowd.x = {0, 1, 50, 0};
@@ -163,7 +163,7 @@ TEST(OverlayMarks, ClearanceCoversWhatAClassCanWalkOnAndNothingElse) {
 }
 
 TEST(OverlayMarks, DensityCountsHeadsByStorey) {
-  Moment crowd;
+  TimelineFrame crowd;
   crowd.resize(9);
   for (size_t i = 0; i < 9; ++i) {
     crowd.ids[i] = i;
@@ -178,7 +178,7 @@ TEST(OverlayMarks, DensityCountsHeadsByStorey) {
 }
 
 TEST(OverlayMarks, NeighboursAreThoseInSightOnTheSameStorey) {
-  Moment crowd;
+  TimelineFrame crowd;
   crowd.resize(5);
   for (size_t i = 0; i < 5; ++i) crowd.ids[i] = i;
   crowd.x = {0, 3, 4.9F, 5.2F, 1};

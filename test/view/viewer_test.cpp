@@ -345,7 +345,7 @@ TEST(CrowdPlayer, PeopleGoWhereItIsPainted) {
   auto player = CrowdPlayer::make(two_floors().world, {}, start, 1, {}, nullptr, context);
   ASSERT_TRUE(player) << player.error().message;
   std::vector<DensityMap> maps;
-  const auto near = [](const Moment& moment, double x, double z, double within) {
+  const auto near = [](const TimelineFrame& moment, double x, double z, double within) {
     size_t count = 0;
     for (size_t i = 0; i < moment.size(); ++i) {
       count += std::hypot(moment.x[i] - x, moment.z[i] - z) < within ? 1 : 0;
@@ -479,29 +479,29 @@ TEST(Viewer, OneWalksOneselfByTheSameRules) {
   EXPECT_GT(end.z, 0);            // The ground's edge stops it.
   press(viewer, key_of('V'));
   (void)picture(viewer, 0.5);
-  EXPECT_TRUE(viewer.take_wishes().grab_mouse);
+  EXPECT_TRUE(viewer.take_requests().grab_mouse);
   press(viewer, Key::kEscape);
   viewer.play_for(0.5);
   (void)picture(viewer, 0.6);
   EXPECT_EQ(viewer.status().driven, -1);
   EXPECT_EQ(viewer.status().avatars, 30U);
-  EXPECT_FALSE(viewer.take_wishes().grab_mouse);
+  EXPECT_FALSE(viewer.take_requests().grab_mouse);
 }
 
 TEST(Viewer, WishesAreAskedForByKeys) {
   Viewer viewer = made_viewer();
   press(viewer, Key::kF11);
   press(viewer, Key::kF12);
-  EXPECT_TRUE(viewer.take_wishes().fullscreen);
-  EXPECT_TRUE(viewer.take_wishes().fullscreen);
-  EXPECT_FALSE(viewer.take_wishes().save_picture);
+  EXPECT_TRUE(viewer.take_requests().fullscreen);
+  EXPECT_TRUE(viewer.take_requests().fullscreen);
+  EXPECT_FALSE(viewer.take_requests().save_picture);
   ViewEvent drop{.kind = ViewEventKind::kDrop};
   drop.path = "walks/a.replay";
   viewer.handle(drop);
-  EXPECT_EQ(viewer.take_wishes().open, "walks/a.replay");
+  EXPECT_EQ(viewer.take_requests().open, "walks/a.replay");
   hold(viewer, Key::kControl, true);
   press(viewer, key_of('Q'));
-  EXPECT_TRUE(viewer.take_wishes().close);
+  EXPECT_TRUE(viewer.take_requests().close);
 }
 
 TEST(Viewer, ThePanelIsDrawnAndTakesTheMouse) {

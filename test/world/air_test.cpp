@@ -449,7 +449,7 @@ TEST(Air, ForgedTreesAreRefused) {
   tree.roots = 2;
   EXPECT_TRUE(refused(tree));
   // Heights must fit 32 bits.
-  tree = {.side = AirTree::kMostSide, .base = 0, .roots = 256, .nodes = {}, .leaves = {}};
+  tree = {.side = AirTree::kMaxSide, .base = 0, .roots = 256, .nodes = {}, .leaves = {}};
   tree.nodes.assign(tree.roots, air_word(AirKind::kFree, 0));
   EXPECT_FALSE(refused(tree));
   tree.roots = 1 << 17;

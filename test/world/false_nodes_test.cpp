@@ -52,7 +52,7 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
       const format::NodePatch& patch = found->patch_of(n);
       EXPECT_GE(n, patch.first_node());
       EXPECT_LT(n, patch.first_node() + patch.nodes());
-      EXPECT_EQ(found->cells_of(n) != 0, (found->nodes()[n].flags() & kRaggedFlag) != 0);
+      EXPECT_EQ(found->cells_of(n) != 0, (found->nodes()[n].flags() & kPartialFlag) != 0);
       if (patch.kind() == 0) sum += static_cast<uint64_t>(found->points(patch)[47] != 0);
       for (const format::Arc& arc : found->arcs(n)) {
         const uint32_t to = arc.to() & ~kFarNode;

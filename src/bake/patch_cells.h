@@ -11,7 +11,7 @@
 #include "bake/body_sweep.h"
 #include "bake/own_ground.h"
 #include "bake/surface_bound.h"
-#include "bake/triangle_sieve.h"
+#include "bake/triangle_filter.h"
 #include "graph/node_width.h"
 #include "graph/quadtree.h"
 #include "throng/nodes.h"

@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/stopwatch.h"
-#include "crowd/first_come.h"
+#include "crowd/precedence.h"
 #include "crowd/reaction.h"
 #include "crowd/sense_kernel.h"
 #include "steer/sampled_kernel.h"

@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "crowd/crowd_state.h"
-#include "path/taken_cells.h"
+#include "path/blocked_cells.h"
 #include "throng/crowd.h"
 
 // Obstacles that are put up, moved and taken away while a crowd walks. Between two steps all stand;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "crowd/own_place.h"
+#include "crowd/lane_offset.h"
 #include "crowd/step_units.h"
 #include "world/place.h"
 

@@ -7,7 +7,7 @@
 
 #include "graph/ground_parts.h"
 #include "path/air_view.h"
-#include "path/taken_cells.h"
+#include "path/blocked_cells.h"
 
 namespace throng {
 namespace {

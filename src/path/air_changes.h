@@ -10,10 +10,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "path/air_pockets.h"
+#include "path/air_islands.h"
+#include "path/blocked_air.h"
 #include "path/solid.h"
 #include "path/split_boxes.h"
-#include "path/taken_air.h"
 #include "throng/live_ground.h"
 #include "world/cell_blocks.h"
 #include "world/ground.h"

@@ -7,8 +7,8 @@
 
 #include "path/hub_labels.h"
 #include "path/mesh.h"
-#include "path/pull.h"
 #include "path/sight.h"
+#include "path/string_puller.h"
 
 /// Shortest ways looked up in hub labels.
 namespace throng {

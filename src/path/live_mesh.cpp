@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "path/blocked_cells.h"
 #include "path/plan_shapes.h"
 #include "path/rects.h"
-#include "path/taken_cells.h"
 #include "world/place.h"
 
 namespace throng {

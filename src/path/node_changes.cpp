@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "graph/surface_piece.h"
-#include "path/taken_cells.h"
+#include "path/blocked_cells.h"
 #include "world/place.h"
 
 namespace throng {

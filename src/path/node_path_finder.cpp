@@ -7,16 +7,16 @@
 #include <numbers>
 
 #include "path/block_squares.h"
-#include "path/district_search.h"
+#include "path/blocked_cells.h"
 #include "path/node_changes.h"
+#include "path/node_island.h"
 #include "path/node_parts.h"
-#include "path/node_pocket.h"
-#include "path/node_pull.h"
 #include "path/node_search.h"
+#include "path/node_string_puller.h"
 #include "path/node_view.h"
 #include "path/obstacle.h"
+#include "path/overlay_search.h"
 #include "path/solid.h"
-#include "path/taken_cells.h"
 #include "throng/node_path.h"
 #include "world/place.h"
 

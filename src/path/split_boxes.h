@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "path/taken_air.h"
+#include "path/blocked_air.h"
 
 /// Boxes of a space of which some cells are taken.
 namespace throng {

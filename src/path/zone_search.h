@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "path/mesh.h"
-#include "path/pull.h"
 #include "path/search.h"
 #include "path/sight.h"
-#include "path/territory.h"
+#include "path/string_puller.h"
+#include "path/zone_cell.h"
 #include "throng/search_budget.h"
 
 /// Ways over large worlds: inside zones by their tables, inside territories by labels of their
@@ -22,7 +22,7 @@ namespace throng {
 class ZoneSearch {
  public:
   /// As PathSearch::find. Between zones that touch, the shortest way if that is found within a
-  /// budget; else the shortest of its kind (path/pull.h), led through gates.
+  /// budget; else the shortest of its kind (path/string_puller.h), led through gates.
   SearchResult find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                     const Stop& from, const Stop& to, const SearchBudget& budget,
                     std::vector<uint32_t>& corners, double& length);

@@ -15,8 +15,8 @@
 #include "render/text.h"
 #include "render/tile_slopes.h"
 #include "throng/nodes.h"
+#include "throng/partial_runs.h"
 #include "throng/picture.h"
-#include "throng/ragged_runs.h"
 #include "world/node_data.h"
 
 // Nodes as surfaces seen at a slant from the south, as in the last figures of [PACS00]: every

@@ -12,7 +12,7 @@
 #include "throng/verify.h"
 #include "verify/body_check.h"
 #include "verify/claims.h"
-#include "verify/leg_check.h"
+#include "verify/segment_check.h"
 #include "verify/triangle_tree.h"
 #include "verify/world_claims.h"
 

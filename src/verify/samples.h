@@ -8,7 +8,7 @@
 #include "throng/math.h"
 #include "verify/body_check.h"
 #include "verify/claims.h"
-#include "verify/leg_check.h"
+#include "verify/segment_check.h"
 #include "verify/stance.h"
 #include "verify/surface_sampler.h"
 

@@ -17,7 +17,7 @@
 #include "throng_view/viewer.h"
 #include "view/density_brush.h"
 #include "view/eye_sight.h"
-#include "view/moment_feed.h"
+#include "view/timeline_source.h"
 
 namespace throng {
 

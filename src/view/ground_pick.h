@@ -6,7 +6,7 @@
 
 #include "throng/impostor_pack.h"
 #include "throng/world.h"
-#include "view/moment.h"
+#include "view/timeline_frame.h"
 
 namespace throng {
 

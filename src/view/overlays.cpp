@@ -11,7 +11,7 @@
 
 #include "core/random.h"
 #include "throng/flight.h"
-#include "throng/ragged_runs.h"
+#include "throng/partial_runs.h"
 
 namespace throng {
 namespace {

@@ -11,7 +11,7 @@
 #include "throng/scenario.h"
 #include "throng/world.h"
 #include "throng_draw/draw.h"
-#include "view/moment.h"
+#include "view/timeline_frame.h"
 
 /// What is drawn over the scene to explain it. All marks are relative to `origin`.
 namespace throng {

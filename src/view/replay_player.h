@@ -3,7 +3,7 @@
 #pragma once
 
 #include "throng/recording.h"
-#include "view/moment_feed.h"
+#include "view/timeline_source.h"
 
 namespace throng {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "throng/simulation.h"
-#include "view/moment_feed.h"
+#include "view/timeline_source.h"
 
 namespace throng {
 

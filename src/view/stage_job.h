@@ -12,10 +12,10 @@
 #include "throng/context.h"
 #include "throng_view/viewer.h"
 #include "view/crowd_player.h"
-#include "view/moment_feed.h"
 #include "view/replay_player.h"
 #include "view/scenario_player.h"
 #include "view/side_task.h"
+#include "view/timeline_source.h"
 
 namespace throng {
 

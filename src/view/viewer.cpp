@@ -12,10 +12,10 @@
 
 #include "view/camera_rig.h"
 #include "view/ground_pick.h"
-#include "view/moment.h"
-#include "view/moment_feed.h"
 #include "view/panel.h"
 #include "view/stage_job.h"
+#include "view/timeline_frame.h"
+#include "view/timeline_source.h"
 #include "view/ui.h"
 #include "view/view_settings.h"
 #include "view/viewer_state.h"

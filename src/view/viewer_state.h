@@ -13,12 +13,12 @@
 #include "throng_view/viewer.h"
 #include "view/camera_rig.h"
 #include "view/ground_pick.h"
-#include "view/moment.h"
-#include "view/moment_feed.h"
 #include "view/overlay_view.h"
 #include "view/panel.h"
 #include "view/scenario_player.h"
 #include "view/stage_job.h"
+#include "view/timeline_frame.h"
+#include "view/timeline_source.h"
 #include "view/ui.h"
 
 namespace throng {

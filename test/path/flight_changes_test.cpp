@@ -10,7 +10,7 @@
 
 #include "core/random.h"
 #include "exact_prism.h"
-#include "path/flight_ends.h"
+#include "path/flight_endpoints.h"
 #include "path/flight_space.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"

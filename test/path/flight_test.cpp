@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "path/air_view.h"
 #include "path/circle_flood.h"
-#include "path/flight_ends.h"
+#include "path/flight_endpoints.h"
 #include "path/flight_space.h"
 #include "throng/bake.h"
 #include "throng/builtin_worlds.h"

@@ -7,10 +7,10 @@
 #include "baked.h"
 #include "core/random.h"
 #include "path/label_search.h"
-#include "path/legs.h"
 #include "path/mesh.h"
-#include "path/pull.h"
 #include "path/search.h"
+#include "path/segments.h"
+#include "path/string_puller.h"
 #include "world/place.h"
 
 // Ways that are pulled taut, and ways looked up by the middles of blocks, against the search.

@@ -7,9 +7,9 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/district_search.h"
 #include "path/node_changes.h"
 #include "path/node_view.h"
+#include "path/overlay_search.h"
 #include "prism_shell.h"
 #include "throng/node_path.h"
 #include "throng/verify.h"

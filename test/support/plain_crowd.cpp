@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/random.h"
-#include "crowd/first_come.h"
+#include "crowd/precedence.h"
 #include "crowd/reaction.h"
 
 namespace throng::test {

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/flight_string_puller.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+// A taut way bends on edges of what is in the way, and its angles to the edge are alike on both
+// sides. Edges run along the axes, so a bend is slid along one axis at a time to where that is so;
+// a bend that hangs in the air is cut off, which makes two of it that reach the edges.
+namespace throng {
+namespace {
+
+constexpr int32_t kRounds = 6;
+constexpr int32_t kHalvings = 8;
+constexpr double kGain = 1e-3;  // less is not worth a round, of the whole length
+
+double length_of(const std::vector<AirPoint>& way) {
+  double sum = 0;
+  for (size_t i = 1; i < way.size(); ++i) sum += air_distance(way[i - 1], way[i]);
+  return sum;
+}
+
+}  // namespace
+
+void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& way) {
+  air_ = air;
+  way_ = &way;
+  if (way.size() <= 2) return;
+  shortcut();
+  double length = length_of(way);
+  for (int32_t round = 0; round < kRounds && way.size() > 2; ++round) {
+    if (round < 3) cut_corners();
+    for (size_t i = 1; i + 1 < way.size(); ++i) slide(i);
+    shortcut();
+    const double now = length_of(way);
+    if (now > length * (1 - kGain)) break;
+    length = now;
+  }
+}
+
+// From each point on to the last one that it sees.
+void FlightStringPuller::shortcut() {
+  std::vector<AirPoint>& way = *way_;
+  next_.clear();
+  next_.push_back(way[0]);
+  for (size_t at = 0; at + 1 < way.size();) {
+    size_t to = at + 1;
+    for (size_t far = way.size() - 1; far > at + 1; --far) {
+      if (air_->sees(way[at], way[far])) {
+        to = far;
+        break;
+      }
+    }
+    next_.push_back(way[to]);
+    at = to;
+  }
+  way.swap(next_);
+}
+
+// Two points on the legs of a bend, as far out as they see each other, instead of it.
+void FlightStringPuller::cut_corners() {
+  std::vector<AirPoint>& way = *way_;
+  next_.clear();
+  next_.push_back(way[0]);
+  for (size_t i = 1; i + 1 < way.size(); ++i) {
+    const AirPoint before = next_.back(), here = way[i], after = way[i + 1];
+    const auto toward = [&](AirPoint end, double part) {
+      return off_faces(here + part * (end - here));
+    };
+    double low = 0, high = 1;
+    for (int32_t h = 0; h < kHalvings; ++h) {
+      const double part = (low + high) / 2;
+      const AirPoint a = toward(before, part), b = toward(after, part);
+      const bool legal = air_->sees(before, a) && air_->sees(a, b) && air_->sees(b, after);
+      (legal ? low : high) = part;
+    }
+    if (low == 0) {
+      next_.push_back(here);
+      continue;
+    }
+    next_.push_back(toward(before, low));
+    next_.push_back(toward(after, low));
+  }
+  next_.push_back(way.back());
+  way.swap(next_);
+}
+
+void FlightStringPuller::slide(size_t bend) {
+  AirPoint& here = (*way_)[bend];
+  const AirPoint before = (*way_)[bend - 1], after = (*way_)[bend + 1];
+  for (int axis = 0; axis < 3; ++axis) {
+    // Where the angles are alike: the other two coordinates tell how far either end is.
+    double across[2] = {0, 0};
+    for (int other = 0; other < 3; ++other) {
+      if (other == axis) continue;
+      const double a = axis_of(before, other) - axis_of(here, other);
+      const double b = axis_of(after, other) - axis_of(here, other);
+      across[0] += a * a;
+      across[1] += b * b;
+    }
+    const double da = std::sqrt(across[0]), db = std::sqrt(across[1]);
+    if (!(da + db > 0)) continue;
+    const double from = axis_of(here, axis);
+    const double best =
+        axis_of(before, axis) + (axis_of(after, axis) - axis_of(before, axis)) * (da / (da + db));
+    const double old = air_distance(before, here) + air_distance(here, after);
+    double low = 0, high = 1;
+    AirPoint to = here;
+    for (int32_t h = 0; h <= kHalvings; ++h) {
+      const double part = h == 0 ? 1.0 : (low + high) / 2;
+      axis_of(to, axis) = off_faces(from + part * (best - from));
+      const bool legal = air_->sees(before, to) && air_->sees(to, after);
+      (legal ? low : high) = part;
+      if (h == 0 && legal) break;
+    }
+    if (low == 0) continue;
+    axis_of(to, axis) = off_faces(from + low * (best - from));
+    if (air_distance(before, to) + air_distance(to, after) >= old) continue;
+    here = to;
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "path/mesh.h"
+#include "path/two_hop.h"
+#include "path/zone_paths.h"
+#include "throng/context.h"
+#include "throng/result.h"
+
+/// Territories group zones ([PACS00]): ways inside one are looked up in labels of its gates, ways
+/// between them in labels of posts, a few of the gates of their borders.
+namespace throng {
+
+inline constexpr int32_t kZonesPerCell = 8;  // along a side
+
+struct OverlayCell {
+  std::vector<uint32_t> entrances;           // of its zones, rising
+  TwoHopLabels labels;                       // of places in `entrances`: ways inside the territory
+  std::vector<uint32_t> boundary_nodes;      // on its borders, rising
+  std::vector<uint32_t> boundary_entrances;  // their places in `entrances`
+  std::vector<CellPoint>
+      boundary_node_at;  // where they are, side by side: a query looks at all of them
+
+  [[nodiscard]] uint32_t place_of_entrance(uint32_t entrance) const;
+};
+
+struct ZoneGraph {
+  std::vector<Entrance> entrances;
+  std::vector<ZonePaths> zones;        // per slot of the world
+  std::vector<uint32_t> cell_of_zone;  // per slot
+  std::vector<OverlayCell> zone_cells;
+  // Of each post the territories that it lies between.
+  std::vector<std::array<uint32_t, 2>> boundary_cells;
+  TwoHopLabels boundary_labels;  // ways between posts over all territories
+  [[nodiscard]] uint64_t bytes() const;
+  [[nodiscard]] uint64_t label_count() const;
+};
+
+/// Fails with kBadConfig (a zone has too many corners) or kCancelled. The same for any number of
+/// workers.
+Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh, int32_t workers,
+                                   Context& context);
+
+}  // namespace throng

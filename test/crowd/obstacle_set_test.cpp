@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/obstacle_set.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "baked.h"
+#include "core/hash.h"
+#include "core/random.h"
+#include "crowd/stride_ground.h"
+#include "world/place.h"
+#include "worlds.h"
+
+namespace throng {
+namespace {
+
+constexpr int32_t kStep = 400;  // mm
+
+// All that a step reads of the ground.
+uint64_t hash_of(const CrowdGround& ground) {
+  uint64_t hash = 1;
+  for (uint32_t level = 0; level < ground.records().size(); ++level) {
+    const LevelLine& line = ground.line(level);
+    const auto add = [&](const void* data, size_t bytes) { hash = hash_bytes(data, bytes, hash); };
+    add(ground.legal(level), 512);
+    add(ground.plain(level), 512);
+    add(line.plain.data(), sizeof line.plain);
+    add(line.beyond.data(), sizeof line.beyond);
+    add(line.joined.data(), sizeof line.joined);
+    add(&ground.records()[level].legal_cells, 4);
+    const CrowdGround::Walk walk = ground.walk(level);
+    const bool flags[] = {walk.is_step_safe, walk.is_alone};
+    add(flags, sizeof flags);
+  }
+  return hash;
+}
+
+struct Fixture {
+  World world;
+  CrowdGround ground;
+  ObstacleSet book;
+  uint64_t n = 0;
+
+  explicit Fixture(World of)
+      : world(std::move(of)),
+        ground(*CrowdGround::make(*world.data(), 0, kStep)),
+        book(world, world.summary().classes.size()) {
+    book.open_class(0, ground);
+  }
+  double draw() { return random_unit(9, 1, n++); }
+  Prism random_prism() {
+    const Vec3d at = world.random_place(0, 9, n++).position;
+    const double low = at.y - 0.2 + 2 * draw() * draw();
+    return Prism::circle({at.x, low, at.z}, 0.05 + 1.5 * draw() * draw(), 0.1 + 2 * draw(),
+                         3 + static_cast<int>(20 * draw()));
+  }
+  uint32_t put_up(const Prism& prism) {
+    const uint32_t slot = book.add(prism, ObstacleKind::kStatic, true);
+    book.settle(slot);
+    book.take_cells();
+    return slot;
+  }
+};
+
+// Square of the distance of a point from a convex polygon, by a walk along its sides in fine steps:
+// nothing of the code that takes cells.
+double far_from(const Prism& prism, double x, double z) {
+  bool left = true, right = true;
+  double nearest = 1e300;
+  for (size_t i = 0; i < prism.corners.size(); ++i) {
+    const auto [ax, az] = prism.corners[i];
+    const auto [bx, bz] = prism.corners[(i + 1) % prism.corners.size()];
+    const double side = (bx - ax) * (z - az) - (bz - az) * (x - ax);
+    left &= side >= 0;
+    right &= side <= 0;
+    for (int k = 0; k <= 64; ++k) {
+      const double t = k / 64.0;
+      nearest = std::min(nearest, std::hypot(ax + (bx - ax) * t - x, az + (bz - az) * t - z));
+    }
+  }
+  return left || right ? 0 : nearest;
+}
+
+TEST(ObstacleSet, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
+  uint64_t taken = 0, left = 0;
+  for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
+    Fixture f(test::bake(scene, 0.1));
+    const CrowdGround baked = *CrowdGround::make(*f.world.data(), 0, kStep);
+    const AvatarClass avatar = f.world.summary().classes[0];
+    const double bottom = body_bottom(avatar), cell = f.world.summary().cell;
+    const Vec3d origin = f.world.summary().origin;
+    for (int round = 0; round < 10; ++round) {
+      const Prism prism = f.random_prism();
+      const uint32_t slot = f.put_up(prism);
+      for (uint32_t level = 0; level < f.ground.records().size(); ++level) {
+        const auto& record = f.ground.records()[level];
+        for (int32_t c = 0; c < 4096; ++c) {
+          const int32_t x = c % 64, z = c / 64;
+          if (!baked.is_legal(level, x, z)) {
+            ASSERT_FALSE(f.ground.is_legal(level, x, z));
+            continue;
+          }
+          // Bodies at random points of the cell.
+          const bool is_taken = !f.ground.is_legal(level, x, z);
+          bool touches = false, could = false;
+          for (int k = 0; k < 3; ++k) {
+            const GroundPoint p{(int64_t{record.tile_x * 64 + x} << kUnitBits) +
+                                    static_cast<int64_t>(f.draw() * kUnitsPerCell),
+                                (int64_t{record.tile_z * 64 + z} << kUnitBits) +
+                                    static_cast<int64_t>(f.draw() * kUnitsPerCell)};
+            const double unit = cell / kUnitsPerCell;
+            const double far = far_from(prism, origin.x + (static_cast<double>(p.x) + 0.5) * unit,
+                                        origin.z + (static_cast<double>(p.z) + 0.5) * unit);
+            const double feet = baked.feet(level, p) * 1e-3;
+            const double gap =
+                std::max(feet + bottom - prism.high, prism.low - feet - avatar.height);
+            touches |= far < avatar.radius && gap < 0;
+            could |= far < avatar.radius + 1.5 * cell + 0.05 && gap < 0.12;
+          }
+          if (touches) {
+            ASSERT_TRUE(is_taken) << level << ' ' << x << ' ' << z;
+          }
+          if (is_taken) {
+            ASSERT_TRUE(could) << level << ' ' << x << ' ' << z;
+          }
+          ++(is_taken ? taken : left);
+        }
+      }
+      f.book.remove(slot);
+      f.book.take_cells();
+    }
+  }
+  EXPECT_GT(taken, 2000u);
+  EXPECT_GT(left, 50000u);
+}
+
+TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
+  for (const char* name : {"garage", "church", "maze"}) {
+    Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
+    const uint64_t baked = hash_of(f.ground);
+    std::vector<uint32_t> slots;
+    for (int round = 0; round < 400; ++round) {
+      if (slots.size() < 5 || f.draw() < 0.55) {
+        slots.push_back(f.put_up(f.random_prism()));
+        continue;
+      }
+      const size_t i = static_cast<size_t>(f.draw() * static_cast<double>(slots.size()));
+      if (f.draw() < 0.5) {
+        f.book.ask_to_be_at(slots[i], f.random_prism());
+        f.book.settle(slots[i]);
+      } else {
+        f.book.remove(slots[i]);
+        slots.erase(slots.begin() + static_cast<ptrdiff_t>(i));
+      }
+      f.book.take_cells();
+    }
+    EXPECT_NE(hash_of(f.ground), baked);
+    // What is left is what the same obstacles take of a new ground.
+    CrowdGround fresh = *CrowdGround::make(*f.world.data(), 0, kStep);
+    ObstacleSet again(f.world, f.world.summary().classes.size());
+    again.open_class(0, fresh);
+    for (const uint32_t slot : slots) {
+      again.settle(again.add(f.book.at(slot).place, ObstacleKind::kStatic, true));
+    }
+    again.take_cells();
+    EXPECT_EQ(hash_of(f.ground), hash_of(fresh)) << name;
+    for (const uint32_t slot : slots) f.book.remove(slot);
+    f.book.take_cells();
+    EXPECT_EQ(hash_of(f.ground), baked) << name;
+  }
+}
+
+TEST(ObstacleSet, TakesNoMoreMemoryTheMoreOftenOneComesAndGoes) {
+  Fixture f(test::bake(worlds::flat(14), 0.1));
+  const auto come_and_go = [&] {
+    f.book.remove(f.put_up(Prism::box({5, 0, 5}, {8, 1, 8})));
+    f.book.take_cells();
+  };
+  come_and_go();
+  const uint64_t ground = f.ground.bytes(), book = f.book.bytes();
+  for (int i = 0; i < 100; ++i) come_and_go();
+  EXPECT_EQ(f.ground.bytes(), ground);
+  EXPECT_EQ(f.book.bytes(), book);
+}
+
+// The ground as it was baked, without the cells that `now` lacks: none of its lines, sets or joins.
+struct PlainGround {
+  using Level = GroundLevel;
+  WorldGround baked;
+  const CrowdGround& now;
+  [[nodiscard]] bool is_legal(const Level& level, int32_t x, int32_t z) const {
+    return baked.is_legal(level, x, z) && now.is_legal(level.world_level, x, z);
+  }
+  [[nodiscard]] int32_t sample(const Level& level, int32_t x, int32_t z) const {
+    return baked.sample(level, x, z);
+  }
+  [[nodiscard]] bool step_safe(const Level& level) const { return baked.step_safe(level); }
+  template <class Visit>
+  void for_tile(int32_t x, int32_t z, int32_t low, int32_t high, Visit visit) const {
+    baked.for_tile(x, z, low, high, visit);
+  }
+};
+
+TEST(ObstacleSet, FastMovesAreThoseOfThePlainGround) {
+  uint64_t legal_moves = 0, moves = 0, over_edges = 0;
+  for (const char* name : {"garage", "church", "stairs", "landscape"}) {
+    Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
+    for (int i = 0; i < 60; ++i) f.put_up(f.random_prism());
+    const StrideGround stride(f.ground, kStep);
+    const PlainGround plain{{*f.world.data(), 0}, f.ground};
+    for (int i = 0; i < 30000; ++i) {
+      const Place place = f.world.random_place(0, 31, static_cast<uint64_t>(i));
+      const auto from = *ground_point(*f.world.data(), place);
+      uint32_t level = place.level1 - 1;
+      if (!f.ground.is_legal(level, from.cell_x() & 63, from.cell_z() & 63)) continue;
+      const auto way = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
+      const GroundPoint to{from.x + way(), from.z + way()};
+      StrideGround::Landing landing;
+      const bool moved = stride.move(level, f.ground.feet(level, from), from, to, landing);
+      GroundLevel on = ground_level(*f.world.data(), level, 0);
+      const bool expected = walk(plain, on, from, to, kStep);
+      ASSERT_EQ(moved, expected) << name << ' ' << i;
+      ++moves;
+      legal_moves += expected;
+      if (!expected) continue;
+      ASSERT_EQ(landing.level, on.world_level);
+      over_edges += landing.level != level;
+    }
+  }
+  EXPECT_GT(legal_moves, moves / 3);
+  EXPECT_LT(legal_moves, moves);
+  EXPECT_GT(over_edges, 1000u);
+}
+
+TEST(ObstacleSet, TheHullOfTwoPrismsHoldsAllBetween) {
+  uint64_t n = 0;
+  const auto draw = [&] { return random_unit(4, 4, n++); };
+  for (int round = 0; round < 300; ++round) {
+    const Prism a = Prism::circle({draw(), draw(), draw()}, 0.1 + draw(), draw() + 0.1,
+                                  3 + static_cast<int>(10 * draw()));
+    Prism b = a;
+    const double dx = 4 * draw() - 2, dz = draw() < 0.2 ? 0 : 4 * draw() - 2;
+    for (auto& [x, z] : b.corners) {
+      x += dx;
+      z += dz;
+    }
+    b.low -= draw();
+    const Prism hull = hull_of(a, b);
+    ASSERT_TRUE(check_prism(hull)) << check_prism(hull).error().message;
+    EXPECT_LE(hull.low, std::min(a.low, b.low));
+    EXPECT_GE(hull.high, std::max(a.high, b.high));
+    for (const auto& [x, z] : a.corners) {
+      const double t = draw();
+      EXPECT_LT(far_from(hull, x + t * dx, z + t * dz), 0.05);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace throng

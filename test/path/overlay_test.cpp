@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "baked.h"
+#include "core/random.h"
+#include "path/node_parts.h"
+#include "path/overlay_search.h"
+#include "throng/node_path.h"
+
+namespace throng {
+namespace {
+
+using test::bake;
+using test::builtin;
+
+// Walkers, one who drops, and climbers with leaps.
+std::vector<AvatarClass> classes() {
+  std::vector<AvatarClass> all = default_classes();
+  all.push_back({.name = "climber"});
+  all.back().climb_slope = 180;
+  all.back().max_drop = 6;
+  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  all.back().climb_slope = 95;
+  all[0].max_drop = 3;
+  return all;
+}
+
+// Calls check(mesh) for classes of worlds of many districts: of curved ground, of level tiles.
+template <class Check>
+void for_each_mesh(Check check) {
+  Context context;
+  for (const Scene& scene : {builtin({.name = "landscape", .size = 160, .seed = 2}),
+                             builtin({.name = "garage"}), builtin({.name = "bridge"})}) {
+    const auto nodes = Nodes::make(bake(scene, 0.25, classes()), scene, {.size = 1}, context);
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    for (const int32_t c : {0, 3, 4, 5}) {
+      const auto mesh = NodeMesh::make(*nodes, c, 1, context);
+      ASSERT_TRUE(mesh);
+      check(*mesh);
+    }
+  }
+}
+
+BlockPoint random_point(const NodeMesh& mesh, uint64_t n) {
+  const NodePlace place = mesh.nodes().random_place(mesh.avatar_class(), 7, n);
+  return {mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t), place.s, place.t};
+}
+
+// What a way costs from middle to middle; it must hang together.
+double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint& from,
+                  const std::vector<Crossing>& way, const BlockPoint& to) {
+  double cost = 0;
+  BlockPoint at = from;
+  const auto go = [&](const BlockPoint& next) {
+    EXPECT_EQ(next.block, at.block);
+    cost +=
+        piece(at.block, at.s, at.t, position(mesh, at), next.s, next.t, position(mesh, next)).cost;
+  };
+  for (const Crossing& crossing : way) {
+    const NodePortal portal = mesh.portal(crossing.portal);
+    EXPECT_FALSE(crossing.backward && portal.one_way);
+    const auto [out, in] = ends_of(mesh, crossing);
+    go(out);
+    cost += portal_length(portal, position(mesh, out), position(mesh, in));
+    at = in;
+  }
+  go(to);
+  return cost;
+}
+
+TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
+  uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, looked_at = 0, plainly = 0;
+  size_t overlay_levels = 0;
+  for_each_mesh([&](const NodeMesh& mesh) {
+    double sum = 0, most = 0;
+    int count = 0;
+    for (const size_t crossings : {24, 192}) {
+      const NodeView view(mesh);
+      const PieceCost piece(view, crossings == 24 ? 2 : 0);
+      const Districts overlay(mesh, piece, 2, crossings);
+      ASSERT_FALSE(overlay.empty());
+      overlay_levels = std::max(overlay_levels, overlay.overlay_levels().size());
+      OverlaySearch search(view, piece, overlay);
+      NodeSearch plain(view, piece), blocks(view, piece);
+      for (uint64_t n = 0; n < 40; ++n) {
+        const BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
+        ASSERT_TRUE(from.block != kNoNode && to.block != kNoNode);
+        std::vector<Crossing> best, way;
+        const PathEnd end = plain.find(from, to, {}, best);
+        ASSERT_EQ(search.find(from, to, {}, blocks, way), end);
+        if (end != PathEnd::kReached) {
+          ++unreachable;
+          EXPECT_TRUE(way.empty());
+          continue;
+        }
+        ++reached;
+        looked_at += search.looked_at();
+        plainly += plain.looked_at();
+        const double cost = cost_along(view, piece, from, way, to);
+        EXPECT_NEAR(search.cost(), cost, 1e-9 * cost);
+        EXPECT_GE(cost, plain.cost() * (1 - 1e-9));
+        for (const Crossing& crossing : way) {
+          drops += mesh.portals()[crossing.portal].kind == LinkKind::kDrop;
+          leaps += mesh.portals()[crossing.portal].leaps;
+        }
+        if (plain.cost() < 5) continue;
+        sum += cost / plain.cost();
+        most = std::max(most, cost / plain.cost());
+        ++count;
+        // A budget is kept: it gives up, or needs no more.
+        const SearchBudget little{search.looked_at() / 2};
+        const PathEnd cut = search.find(from, to, little, blocks, way);
+        if (cut == PathEnd::kReached) {
+          EXPECT_LE(search.looked_at(), 2 * little.max_nodes + 1);
+        }
+      }
+    }
+    EXPECT_GT(count, 30);
+    EXPECT_LE(sum / count, 1.015);
+    EXPECT_LE(most, 1.1);
+  });
+  EXPECT_GT(overlay_levels, 2u);
+  EXPECT_GT(reached, 600u);
+  EXPECT_GT(unreachable, 40u);
+  EXPECT_GT(drops, 0u);
+  EXPECT_GT(leaps, drops);
+  EXPECT_LT(2 * looked_at, plainly);
+}
+
+// Of every tier: what it tells of a district is what a search finds that does not leave it, or a
+// little more.
+TEST(Districts, TellWhatItCostsToGoThrough) {
+  uint64_t through = 0, none = 0;
+  for_each_mesh([&](const NodeMesh& mesh) {
+    const NodeView view(mesh);
+    const PieceCost piece(view, 1);
+    const Districts overlay(mesh, piece, 1, 48);
+    NodeSearch search(view, piece);
+    std::vector<uint32_t> of_block = overlay.of_block();
+    std::vector<Crossing> way;
+    double sum = 0;
+    int count = 0;
+    for (const Districts::Tier& overlay_level : overlay.overlay_levels()) {
+      uint64_t looked = 0;
+      const uint64_t stride = overlay_level.costs.size() / 300 + 1;
+      for (uint32_t d = 0; d + 1 < overlay_level.first.size(); ++d) {
+        const auto entries = overlay_level.entries_of(d);
+        for (const uint32_t entry : entries) {
+          const Crossing crossing = overlay.crossing(entry);
+          const auto costs = overlay_level.costs_from(entry);
+          for (size_t j = 0; j < entries.size(); ++j) {
+            if (entries[j] == entry || looked++ % stride != 0) continue;
+            const Crossing out = overlay.crossing(entries[j] ^ 1);
+            const NodePortal portal = mesh.portals()[out.portal];
+            const bool closed = (crossing.backward && mesh.portals()[crossing.portal].one_way) ||
+                                (out.backward && portal.one_way);
+            const auto ends = ends_of(view, out);
+            const PathEnd end =
+                search.find(ends_of(view, crossing).in, ends.out, {}, way, {of_block.data(), d});
+            if (closed || end != PathEnd::kReached) {
+              EXPECT_TRUE(std::isinf(costs[j]));
+              ++none;
+              continue;
+            }
+            const double least = search.cost() + portal_length(portal, position(view, ends.out),
+                                                               position(view, ends.in));
+            ASSERT_FALSE(std::isinf(costs[j]));
+            EXPECT_GE(costs[j], least * (1 - 1e-6));
+            if (&overlay_level == &overlay.overlay_levels().front()) {
+              EXPECT_NEAR(costs[j], least, 1e-5 * least);
+            }
+            sum += costs[j] / least;
+            ++count;
+            ++through;
+          }
+        }
+      }
+      if (overlay_level.above.empty()) continue;
+      for (uint32_t& overlay_cell : of_block) overlay_cell = overlay_level.above[overlay_cell];
+    }
+    EXPECT_LE(sum / count, 1.05);
+  });
+  EXPECT_GT(through, 3000u);
+  EXPECT_GT(none, 100u);
+}
+
+TEST(Districts, AreTheSameForAnyNumberOfWorkers) {
+  for_each_mesh([&](const NodeMesh& mesh) {
+    const NodeView view(mesh);
+    const PieceCost piece(view, 0);
+    const Districts one(mesh, piece, 1), four(mesh, piece, 4);
+    EXPECT_EQ(one.bytes(), four.bytes());
+    ASSERT_EQ(one.overlay_levels().size(), four.overlay_levels().size());
+    for (size_t k = 0; k < one.overlay_levels().size(); ++k) {
+      EXPECT_EQ(one.overlay_levels()[k].entries, four.overlay_levels()[k].entries);
+      EXPECT_EQ(one.overlay_levels()[k].costs, four.overlay_levels()[k].costs);
+    }
+  });
+}
+
+TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
+  uint64_t reached = 0, unreachable = 0;
+  for_each_mesh([&](const NodeMesh& mesh) {
+    const NodeView view(mesh);
+    const PieceCost piece(view, 0);
+    const NodeParts parts(mesh, 2);
+    NodeParts::Reached marks;
+    NodeSearch plain(view, piece);
+    std::vector<Crossing> way;
+    for (uint64_t n = 0; n < 60; ++n) {
+      const BlockPoint from = random_point(mesh, 3 * n), to = random_point(mesh, 3 * n + 1);
+      const PathEnd end = plain.find(from, to, {}, way);
+      parts.reach(from.block, marks);
+      EXPECT_EQ(marks.holds(parts.of_block(to.block)), end == PathEnd::kReached);
+      if (end == PathEnd::kReached) {
+        ++reached;
+        continue;
+      }
+      ++unreachable;
+      const Vec3d goal = position(view, to);
+      const BlockPoint searched = way.empty() ? from : ends_of(view, way.back()).in;
+      const BlockPoint told =
+          parts.nearest(view, from, goal, marks, [](uint32_t) { return false; });
+      EXPECT_EQ(length(position(view, told) - goal), length(position(view, searched) - goal));
+      EXPECT_EQ(plain.find(from, told, {}, way), PathEnd::kReached);
+    }
+  });
+  EXPECT_GT(reached, 400u);
+  EXPECT_GT(unreachable, 40u);
+}
+
+}  // namespace
+}  // namespace throng

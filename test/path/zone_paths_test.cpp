@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/zone_paths.h"
+
+#include <gtest/gtest.h>
+
+#include "throng/bake.h"
+#include "throng/cells.h"
+
+namespace throng {
+namespace {
+
+// Pillars of one cell, one cell apart: each has four corners.
+PathMesh among_pillars(int32_t a_side) {
+  const int32_t side = 2 * a_side + 1;
+  FlatCells cells{.width = side, .depth = side, .passable = {}};
+  for (int32_t z = 0; z < side; ++z) {
+    for (int32_t x = 0; x < side; ++x) cells.passable.push_back(x % 2 == 1 && z % 2 == 1 ? 0 : 1);
+  }
+  Context context;
+  const auto world = bake_flat_cells(cells, 0.5, 0);
+  EXPECT_TRUE(world);
+  auto mesh = build_mesh(*world->data(), 0, 0, context);
+  EXPECT_TRUE(mesh);
+  return *std::move(mesh);
+}
+
+// Ways name corners by 16 bits, of which one number says that there is none.
+TEST(ZonePaths, AZoneOfMoreCornersThanTheyCanNameIsRefused) {
+  const std::vector<Entrance> entrances{{.at = {0, 0.5}, .zone = {0, 1}, .rect = {0, 0}}};
+  Sight sight;
+  const auto fits = [&](int32_t pillars, size_t corners) {
+    const PathMesh mesh = among_pillars(pillars);
+    ZonePaths ways;
+    ways.last_rect = static_cast<uint32_t>(mesh.rects.size() - 1);
+    ways.entrances = {0};
+    const bool found = find_zone_paths(mesh, entrances, 0, sight, ways);
+    EXPECT_EQ(ways.corners.size(), corners);
+    return found;
+  };
+  EXPECT_TRUE(fits(8, 4 * 8 * 8));
+  EXPECT_FALSE(fits(128, 4 * 128 * 128));
+}
+
+}  // namespace
+}  // namespace throng

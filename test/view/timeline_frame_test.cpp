@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "view/timeline_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "throng/lean.h"
+
+namespace throng {
+namespace {
+
+struct Someone {
+  uint64_t id;
+  float x, z, heading;
+};
+
+TimelineFrame moment_of(double time, const std::vector<Someone>& people) {
+  TimelineFrame m;
+  m.time = time;
+  m.resize(people.size());
+  for (size_t i = 0; i < people.size(); ++i) {
+    m.ids[i] = people[i].id;
+    m.x[i] = people[i].x;
+    m.z[i] = people[i].z;
+    m.heading[i] = people[i].heading;
+  }
+  return m;
+}
+
+Figures one_figure() {
+  Figures figures;
+  figures.of_class = {{0}};
+  figures.shapes.resize(1);
+  figures.shapes[0].clips = {
+      {.name = "Walk", .first_frame = 0, .frames = 10, .seconds = 1, .stride = 1.5},
+      {.name = "Idle", .first_frame = 10, .frames = 10, .seconds = 2, .stride = 0}};
+  return figures;
+}
+
+TEST(TimelineFrame, FollowAddsUpWhatEachHasWalkedThoughOthersComeAndGo) {
+  TimelineFrame a = moment_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
+  follow({}, a);
+  TimelineFrame b = moment_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
+  follow(a, b);
+  EXPECT_NEAR(b.walked[0] - a.walked[0], 5, 1e-5);
+  EXPECT_NEAR(b.pace[0], 5 * (1 - std::exp(-1 / 0.4)), 1e-4);
+  EXPECT_EQ(b.pace[1], 0);
+  TimelineFrame back = moment_of(0, {{3, 0, 0, 0.25F}});
+  follow(b, back);  // Backwards: feet go back the way they came.
+  EXPECT_NEAR(back.walked[0], a.walked[0], 1e-5);
+}
+
+TEST(TimelineFrame, FiguresTurnTheShortWayAndNotAtOnce) {
+  TimelineFrame a = moment_of(0, {{1, 0, 0, 0.95F}});
+  TimelineFrame b = moment_of(0.1, {{1, 0.2F, 0, 0.45F}});
+  follow(a, b);  // Half a turn is asked for; 0.9 turns a second are allowed.
+  const double turned = std::abs(std::remainder(b.heading[0] - 0.95, 1.0));
+  EXPECT_NEAR(turned, 0.09, 1e-5);
+  TimelineFrame c = moment_of(0.2, {{1, 0.4F, 0, 0.02F}});
+  a.heading[0] = 0.97F;
+  follow(a, c);  // Over zero: 0.05 turns, within the limit of 0.18.
+  EXPECT_NEAR(c.heading[0], 0.02, 1e-5);
+}
+
+TEST(TimelineFrame, WhoStandsKeepsHisHeading) {
+  TimelineFrame a = moment_of(0, {{1, 0, 0, 0.4F}});
+  TimelineFrame b = moment_of(0.1, {{1, 0, 0, 0}});
+  follow(a, b);
+  EXPECT_NEAR(b.heading[0], 0.4, 1e-6);
+}
+
+AvatarState climber(Vec3d at, Vec3d up, Vec3d goes) {
+  const Vec3d ahead = unleaned(goes, up);
+  return {.id = 1, .position = at, .heading_x = ahead.x, .heading_z = ahead.z, .up = up};
+}
+
+Vec3d looks(const TimelineFrame& m, size_t i) {
+  const double angle = 2 * std::numbers::pi * m.heading[i];
+  return leaned({std::sin(angle), 0, std::cos(angle)}, m.up(i));
+}
+
+TEST(TimelineFrame, WhoClimbsLeansAndLooksWhereHeGoes) {
+  const double r = std::sqrt(0.5);
+  TimelineFrame a, b;
+  a.time = 1;
+  b.time = 1.5;
+  put_states({climber({0, 0, 0}, {0, 1, 0}, {-1, 0, 0})}, {}, a);
+  EXPECT_TRUE(a.ups.empty());
+  EXPECT_NEAR(length(looks(a, 0) - Vec3d{-1, 0, 0}), 0, 1e-6);
+  follow({}, a);
+  // Against a wall that faces +X, and up.
+  put_states({climber({-0.3, 0.4, 0}, {1, 0, 0}, {0, 1, 0}), AvatarState{.id = 5, .position = {}}},
+             {}, b);
+  ASSERT_EQ(b.ups.size(), 2U);
+  follow(a, b);
+  EXPECT_NEAR(length(looks(b, 0) - Vec3d{0, 1, 0}), 0, 1e-5) << "no turn but that over the edge";
+  EXPECT_NEAR(b.walked[0] - a.walked[0], 0.5, 1e-5);
+  BlendedCrowd crowd;
+  crowd.blend(a, b, 0.5, one_figure(), 1e9);
+  EXPECT_NEAR(length(crowd.now().ups[0] - Vec3d{r, r, 0}), 0, 1e-6);
+  EXPECT_NEAR(length(looks(crowd.now(), 0) - Vec3d{-r, r, 0}), 0, 1e-5);
+  ASSERT_EQ(crowd.crowds().size(), 2U);  // Who leans, and who does not.
+  size_t leaning = 0;
+  for (const DrawnCrowd& drawn : crowd.crowds()) {
+    EXPECT_TRUE(drawn.ups.empty() || drawn.ups.size() == drawn.avatars.x.size());
+    leaning += drawn.ups.size();
+  }
+  EXPECT_EQ(leaning, 1U);
+  crowd.blend(a, a, 1, one_figure(), 1e9);
+  EXPECT_TRUE(crowd.now().ups.empty());
+}
+
+// Over a ceiling, where axes are straight down but for a little, to all sides.
+TEST(TimelineFrame, WhoHangsFromAnUnevenCeilingDoesNotSpin) {
+  TimelineFrame before;
+  for (int step = 0; step < 40; ++step) {
+    const double turn = 2.1 * step, lean = 0.05;
+    const Vec3d up{lean * std::cos(turn), -std::sqrt(1 - lean * lean), lean * std::sin(turn)};
+    Vec3d goes = Vec3d{0, 0, 1} - up * up.z;
+    goes = goes * (1 / length(goes));
+    TimelineFrame now;
+    now.time = 0.1 * step;
+    put_states({climber({0, 0, 0.1 * step}, up, goes)}, {}, now);
+    follow(before, now);
+    EXPECT_TRUE(step < 7 || dot(looks(now, 0), goes) > 0.99) << step;  // (once he has turned)
+    before = now;
+  }
+}
+
+TEST(TimelineFrame, BlendsBetweenTwoAndShowsWhoCame) {
+  TimelineFrame a = moment_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
+  TimelineFrame b = moment_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
+  b.pace = {1.2F, 0};
+  BlendedCrowd crowd;
+  crowd.blend(a, b, 0.25, one_figure(), 1e9);
+  const TimelineFrame& now = crowd.now();
+  ASSERT_EQ(now.size(), 2U);
+  EXPECT_NEAR(now.time, 1.25, 1e-12);
+  EXPECT_NEAR(now.x[0], 1, 1e-6);
+  EXPECT_NEAR(now.z[0], 2, 1e-6);
+  EXPECT_NEAR(now.heading[0], 0.95, 1e-6);
+  EXPECT_EQ(now.ids[1], 7U);
+  EXPECT_EQ(now.find(7), 1U);
+  EXPECT_EQ(now.find(2), 2U);
+  ASSERT_EQ(crowd.crowds().size(), 2U);  // One walks, one stands.
+  EXPECT_EQ(crowd.crowds()[0].avatars.x.size(), 1U);
+  EXPECT_EQ(crowd.crowds()[0].clip, 0U);
+  EXPECT_EQ(crowd.crowds()[1].clip, 1U);
+}
+
+TEST(TimelineFrame, LeavesOutWhoIsAboveTheCutOrLooksHimself) {
+  TimelineFrame a = moment_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
+  a.y = {0, 6, 0};
+  BlendedCrowd crowd;
+  crowd.hide(3);
+  crowd.blend(a, a, 1, one_figure(), 5);
+  ASSERT_EQ(crowd.crowds().size(), 1U);
+  EXPECT_EQ(crowd.crowds()[0].avatars.x.size(), 1U);
+  EXPECT_EQ(crowd.now().size(), 3U);
+}
+
+}  // namespace
+}  // namespace throng

@@ -32,7 +32,7 @@ MODELS = [
     ("bezier/teapot.bpt", []),
     ("nel", []),
 ]
-# Scene files that some models need: room volumes of building models are not matter.
+# Scene files that some models need: room volumes of building models are not solid.
 SCENES = {"no_rooms.toml": '[[rule]]\nnode = "IfcSpace*"\nkind = "ignored"\n'}
 
 

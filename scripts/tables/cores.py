@@ -1,11 +1,13 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Bakes a city, makes its nodes, reads them for ways and steps a large crowd with more and more threads; compares the bytes
-that come out; writes times and ratios into docs/results.md.
+"""Bakes a city, makes its nodes, its path finder and steps a large crowd by 1 to 16 threads.
+
+Compares the bytes that come out; writes times and ratios into docs/results.md.
 
 scripts/results cores [--side METRES] [--avatars N] [--threads 1,2,4,8,16] [--measure FILE | --read FILE]
 
---measure only measures, into a file, on a machine that has the built programs and no documents; --read writes these."""
+--measure writes the measurements into a file, on a machine that has the built programs but no docs; --read makes the
+table of such a file."""
 import argparse
 import hashlib
 import json
@@ -16,7 +18,7 @@ import shutil
 from results_page import PROGRAM, ROOT, WORK, human, machine, run_json, table, write_between
 
 CROWD = ROOT / "build/release/bench/bench_crowd"
-WAYS = ROOT / "build/release/bench/bench_node_ways"
+FINDER = ROOT / "build/release/bench/bench_node_ways"
 
 
 def digest(folder):
@@ -33,10 +35,10 @@ def measure(options):
     for threads in options.threads:
         bake = run_json(PROGRAM, "bake", f"builtin:city,size={options.side}", "-o", folder, "--fresh", "--cell", 0.5, "--nodes",
                         "--threads", threads, "--json")
-        ways = run_json(WAYS, folder, "--pairs", 1, "--judged", 0, "--distances", 1000, "--threads", threads)
+        finder = run_json(FINDER, folder, "--pairs", 1, "--judged", 0, "--distances", 1000, "--threads", threads)
         crowd = run_json(CROWD, "--avatars", options.avatars, "--threads", threads)
         rows.append({"threads": threads, "bake": bake["seconds_total"], "graph": bake["seconds_graph"], "nodes": bake["seconds_nodes"],
-                     "ways": ways["seconds"], "step": crowd["ns"], "peak": bake["peak_bytes"], "world": digest(folder),
+                     "finder": finder["seconds"], "step": crowd["ns"], "peak": bake["peak_bytes"], "world": digest(folder),
                      "crowd": crowd["state_hash"], "faults": crowd["overlaps"] + crowd["wall_entries"]})
         shutil.rmtree(folder)
     return {"machine": machine(), "side": options.side, "avatars": options.avatars, "load": os.getloadavg()[1], "rows": rows}
@@ -49,16 +51,16 @@ def text_of(found):
         return f"{row[key]:.{digits}f} ({first[key] / row[key]:.1f})"
 
     for row in found["rows"]:
-        rows.append((row["threads"], beside(row, "bake"), beside(row, "graph"), beside(row, "nodes"), beside(row, "ways"), beside(row, "step", 1),
+        rows.append((row["threads"], beside(row, "bake"), beside(row, "graph"), beside(row, "nodes"), beside(row, "finder"), beside(row, "step", 1),
                      human(row["peak"]), row["faults"]))
     worlds = {row["world"] for row in found["rows"]}
     crowds = {str(row["crowd"]) for row in found["rows"]}
     same = "the same" if len(worlds) == len(crowds) == 1 else f"{len(worlds)} WORLDS, {len(crowds)} CROWDS"
     return (f"Machine: {found['machine']}; load {found['load']:.1f} over the last five minutes. Built-in city, {found['side']} m wide, cells of 0.5 m, "
-            f"four classes, with nodes; the finder of ways over nodes of one class; {found['avatars']} avatars with goals. One run of each; in brackets, "
-            f"times one thread. All bytes and states for any number of threads: {same} (SHA-256 of the world {sorted(worlds)[0][:16]}, "
+            f"four classes, with nodes; the finder of paths over nodes for one class; {found['avatars']} avatars with goals. One run of each; in brackets: "
+            f"the speed-up over one thread. All bytes and states for any number of threads: {same} (SHA-256 of the world {sorted(worlds)[0][:16]}, "
             f"state {sorted(crowds)[0]}).\n\n" +
-            table(["threads", "bake [s]", "of it the graph [s]", "nodes [s]", "ways made [s]", "step [ns an avatar]", "memory of the bake", "faults"], rows))
+            table(["threads", "bake [s]", "of it the graph [s]", "nodes [s]", "path finder made [s]", "step [ns an avatar]", "memory of the bake", "faults"], rows))
 
 
 def main():

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Walks the eight crowds of [ML06] Table 1 and writes their times beside its own into docs/results.md.
+"""Walks the eight crowds of [ML06] Table 1 and compares times.
 
 scripts/results crowd [--steps N] [--largest N]"""
 import argparse
@@ -60,7 +60,7 @@ def main():
     text += table(["avatars", "m2 for each", "[ML06] draw, ms", "[ML06] move, ms", "ours, 1 thread, ms", "ours, 2 threads, ms",
                    "[ML06] ns an avatar", "ours, 1 thread", "ours, 2 threads", "same state", "faults", "memory"], rows)
     if options.largest >= 10000:
-        text += (f"\n\nAsked: at most {TARGET} ns an avatar a step on 2 threads, for every crowd from 10 000 to 1 000 000. "
+        text += (f"\n\nTarget: at most {TARGET} ns an avatar a step on 2 threads, for every crowd from 10 000 to 1 000 000. "
                  f"Slowest of these: {worst:.1f} ns, {met}.")
     write_between("crowd_table", text)
 

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Runs a station for three days as fast as it goes, and looks whether anything drifts, leaks or is stuck; writes
-docs/results.md. Nightly work.
+"""Runs a station for three simulated days and checks for drift, leaks and avatars without progress.
+
+Takes hours.
 
 scripts/results days [--days N] [--threads T]"""
 import argparse
@@ -11,8 +12,8 @@ import sys
 
 from results_page import PROGRAM, WORK, human, machine, run_json, table, write_between
 
-DAY, NIGHT = 86400, 4 * 3600  # [s] Nobody comes from midnight on; by four all should be gone.
-# From which hour on how many come a second.
+DAY, NIGHT = 86400, 4 * 3600  # [s] No avatar enters from midnight on; by four all must have left.
+# Hour of the day, avatars that enter a second from then on.
 HOURS = [(0, 0), (5, 0.1), (7, 1.0), (9, 0.4), (12, 0.6), (14, 0.4), (16, 1.0), (19, 0.3), (23.5, 0)]
 STATION = """seconds = {seconds}
 [plane]
@@ -81,7 +82,7 @@ AREAS = {"street": (0.5, 1, 4, 19), "hall": (12, 2, 26, 12), "below": (27, 8, 29
 def station(days):
     rates = [[day * DAY + hour * 3600, rate / 2] for day in range(days) for hour, rate in HOURS]
     areas = "\n".join(f'[[area]]\nname = "{name}"\nbox = [{", ".join(map(str, box))}]' for name, box in AREAS.items())
-    # One of the doors between street and hall is half shut for an hour, at noon.
+    # One of the doors between street and hall is half closed for an hour, at noon.
     doors = "\n".join(f'[[obstacle]]\nname = "works {day + 1}"\nbox = [9, 10.5, 11, 12]\nbegin = {day * DAY + 43200}\nend = {day * DAY + 46800}'
                       for day in range(days))
     file = WORK / "days.toml"
@@ -92,11 +93,11 @@ def station(days):
 
 def run(days, threads):
     visits = WORK / "days.csv"
-    told = run_json(PROGRAM, "run", station(days), "--threads", threads, "--check-every", 600, "--visits", visits, "--json")
+    report = run_json(PROGRAM, "run", station(days), "--threads", threads, "--check-every", 600, "--visits", visits, "--json")
     with open(visits, newline="", encoding="utf-8") as lines:
         people = [(float(v["entered"]), float(v["left"] or -1)) for v in csv.DictReader(lines)]
     visits.unlink()
-    return told, people
+    return report, people
 
 
 def main():
@@ -105,25 +106,25 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     options = parser.parse_args()
     first, _ = run(1, options.threads)
-    told, people = run(options.days, options.threads)
+    report, people = run(options.days, options.threads)
     rows, stays = [], []
     for day in range(options.days):
         here = [(entered, left) for entered, left in people if day * DAY <= entered < (day + 1) * DAY]
         stay = [left - entered for entered, left in here if left >= 0]
-        stuck = sum(1 for _, left in here if left < 0 or left > (day + 1) * DAY + NIGHT)
+        left_behind = sum(1 for _, left in here if left < 0 or left > (day + 1) * DAY + NIGHT)
         stays.append(statistics.mean(stay))
-        rows.append((day + 1, len(here), f"{stays[-1]:.1f}", f"{statistics.median(stay):.1f}", f"{max(stay):.0f}", stuck))
-    stuck = sum(row[-1] for row in rows)
+        rows.append((day + 1, len(here), f"{stays[-1]:.1f}", f"{statistics.median(stay):.1f}", f"{max(stay):.0f}", left_behind))
+    left_behind = sum(row[-1] for row in rows)
     drift = max(stays) / min(stays) - 1
-    faults = told["wall_entries"] + told["overlaps"] + told["obstacle_entries"]
-    grown = told["peak_bytes"] - first["peak_bytes"]
-    met = stuck == 0 and faults == 0 and drift < 0.05 and told["still_here"] == 0
-    head = ("day", "came", "stayed, mean [s]", "median [s]", "longest [s]", "still here at four in the morning")
+    faults = report["wall_entries"] + report["overlaps"] + report["obstacle_entries"]
+    grown = report["peak_bytes"] - first["peak_bytes"]
+    met = left_behind == 0 and faults == 0 and drift < 0.05 and report["still_here"] == 0
+    head = ("day", "entered", "stayed, mean [s]", "median [s]", "longest [s]", "not yet left at four in the morning")
     text = f"Machine: {machine()}.\n\n" + table(head, rows)
-    text += (f"\n\n{told['steps']:,} steps of {told['dt']} s, {told['checks']:,} looks at everybody: {told['overlaps']} overlaps, {told['wall_entries']} walls entered, "
-             f"{told['obstacle_entries']} in obstacles. Mean stays differ by {drift * 100:.1f} % (asked here: less than 5). Memory at the peak: {human(first['peak_bytes'])} after a day, "
-             f"{human(told['peak_bytes'])} after {options.days}: {grown / max(1, len(people) - rows[0][1]):.0f} bytes for each visit more, which are kept to be told. "
-             f"Nobody stuck, no faults, no drift: {'met' if met else 'MISSED'}.")
+    text += (f"\n\n{report['steps']:,} steps of {report['dt']} s, {report['checks']:,} checks of all avatars: {report['overlaps']} overlaps, {report['wall_entries']} walls entered, "
+             f"{report['obstacle_entries']} in obstacles. Mean stays differ by {drift * 100:.1f} % (target: less than 5). Memory at the peak: {human(first['peak_bytes'])} after a day, "
+             f"{human(report['peak_bytes'])} after {options.days}: {grown / max(1, len(people) - rows[0][1]):.0f} more bytes for each visit, kept until the end. "
+             f"No avatar left behind, no faults, no drift: {'met' if met else 'MISSED'}.")
     write_between("days_table", text)
     return 0 if met else 1
 

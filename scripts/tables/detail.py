@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""What levels of detail save: the random scene, seen whole and through one view, one after the other; writes docs/results.md.
+"""Times levels of detail: the random scene seen whole and through one view, alternating.
 
 scripts/results detail [--runs N] [--threads T] [--avatars N...]"""
 import argparse
@@ -10,7 +10,7 @@ from results_page import ROOT, machine, run_json, table, write_between
 
 CROWD = ROOT / "build/release/bench/bench_crowd"
 DT = 0.05  # [s]
-# Share of the crowd in view, and how many steps at once beyond.
+# Share of the crowd in view, and how many steps an avatar out of view covers at once.
 VIEWS = ((0.1, 1), (0.1, 4), (0.01, 1), (0.01, 4))
 
 
@@ -43,8 +43,8 @@ def main():
     parser.add_argument("--avatars", type=int, nargs="+", default=[10_000, 100_000])
     options = parser.parse_args()
     found = [row for avatars in options.avatars for area in (4, 1) for row in rows(avatars, area, options.runs, options.threads)]
-    head = ("avatars", "m2 each", "in view", "steps at once, at most", "held", "ns an avatar a step", "times as fast", "progress", "overlaps and walls entered")
-    text = (f"Machine: {machine()}. {options.threads} thread(s), dt {DT} s, {options.runs} runs, median (least to most); ratios of runs one after the other.\n\n")
+    head = ("avatars", "m2 each", "in view", "steps at once, max", "skipped", "ns an avatar a step", "times as fast", "progress", "overlaps and walls entered")
+    text = (f"Machine: {machine()}. {options.threads} thread(s), dt {DT} s, {options.runs} runs, median (min to max); ratios of consecutive runs.\n\n")
     write_between("detail_table", text + table(head, found))
 
 

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Times frames of a city with avatars, beside plain quads at the same places, and against polygons and avatars as in
-[TC00] figures 3 and 4; writes the tables into docs/results.md and the charts to docs/images.
+"""Times frames of a city with avatars, beside plain quads, and by polygons and avatars as in [TC00] figures 3 and 4.
+
+Writes the tables into docs/results.md and the charts into docs/images.
 
 scripts/results draw [--runs N] [--quick] [--growth] [--street]    --quick: no chart beyond 100 000"""
 import argparse
@@ -12,14 +13,14 @@ import sys
 from results_page import ROOT, machine, run_json, say, table, write_between
 
 BENCH = ROOT / "build/release/bench/bench_draw"
-MOST_RATIO = 1.3
+MAX_RATIO = 1.3
 CITY = 30_000
-PEOPLE, QUADS, NOBODY = "#b5432b", "#3b6ea5", "#7a7a72"
+PEOPLE, QUADS, EMPTY = "#b5432b", "#3b6ea5", "#7a7a72"
 
 
 def measure(avatars, polygons, runs, *more):
-    ahead = ["nice", "-n", "-5"] if os.geteuid() == 0 else []
-    return run_json(*ahead, BENCH, "--avatars", avatars, "--polygons", polygons, "--runs", runs, *more)
+    priority = ["nice", "-n", "-5"] if os.geteuid() == 0 else []
+    return run_json(*priority, BENCH, "--avatars", avatars, "--polygons", polygons, "--runs", runs, *more)
 
 
 def ms(value):
@@ -27,17 +28,17 @@ def ms(value):
 
 
 def slope(points):
-    """Least squares of log time over log size, of what is above the smallest time."""
+    """Least squares of log time over log size."""
     logs = [(math.log(x), math.log(y)) for x, y in points if y > 0]
     mean_x = sum(x for x, _ in logs) / len(logs)
     mean_y = sum(y for _, y in logs) / len(logs)
     return sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs)
 
 
-def alone(told):
-    """What people add to a frame by what quads add, where that is more than a tenth of the frame."""
-    added = told["ms_quads"] - told["ms_nobody"]
-    return f"{(told['ms_people'] - told['ms_nobody']) / added:.2f}" if added > 0.1 * told["ms_quads"] else "too little to tell"
+def alone(report):
+    """Time that people add to a frame / time that quads add, where the latter is more than a tenth of the frame."""
+    added = report["ms_quads"] - report["ms_nobody"]
+    return f"{(report['ms_people'] - report['ms_nobody']) / added:.2f}" if added > 0.1 * report["ms_quads"] else "too little to measure"
 
 
 def number(value):
@@ -84,29 +85,29 @@ def chart(path, title, x_title, curves):
 def beside_quads(runs):
     rows, met, renderer, load = [], True, "", os.getloadavg()[0]
     for avatars in (10_000, 100_000, 1_000_000):
-        told = measure(avatars, CITY, runs)
+        report = measure(avatars, CITY, runs)
         views = measure(avatars, CITY, max(3, runs // 3), "--point-pixels", 0)
         shadows = measure(avatars, CITY, max(3, runs // 3), "--shadows")
-        renderer = told["renderer"]
-        met = met and told["ratio"] <= MOST_RATIO
-        rows.append((number(avatars), number(told["seen"]), ms(told["ms_quads"]), ms(told["ms_people"]), ms(told["ms_nobody"]),
-                     f"**{told['ratio']:.2f}**: {'met' if told['ratio'] <= MOST_RATIO else 'MISSED'}", alone(told),
-                     f"{views['ratio']:.2f}", f"{shadows['ratio']:.2f}", ms(told["ms_pack"])))
-    head = ("avatars", "drawn", "plain quads [ms]", "people [ms]", "nobody [ms]", f"people / quads, <= {MOST_RATIO}", "without the city's share",
+        renderer = report["renderer"]
+        met = met and report["ratio"] <= MAX_RATIO
+        rows.append((number(avatars), number(report["seen"]), ms(report["ms_quads"]), ms(report["ms_people"]), ms(report["ms_nobody"]),
+                     f"**{report['ratio']:.2f}**: {'met' if report['ratio'] <= MAX_RATIO else 'MISSED'}", alone(report),
+                     f"{views['ratio']:.2f}", f"{shadows['ratio']:.2f}", ms(report["ms_pack"])))
+    head = ("avatars", "drawn", "plain quads [ms]", "people [ms]", "no avatar [ms]", f"people / quads, <= {MAX_RATIO}", "without the city's share",
             "views alone, no points", "with shadows of avatars", "cull and pack, 2 threads [ms]")
-    write_between("draw_table", f"Machine: {machine()}; {renderer}, 1280 x 720, one sample a pixel. Medians of {runs} frames of each kind, in turn, in one run. Load of the machine when it began: {load:.1f}.\n\n" + table(head, rows))
+    write_between("draw_table", f"Machine: {machine()}; {renderer}, 1280 x 720, one sample a pixel. Medians of {runs} frames of each kind, in turn, in one run. Load of the machine at the start: {load:.1f}.\n\n" + table(head, rows))
     return met
 
 
 def street(runs):
     rows = []
     for avatars, polygons in ((100_000, CITY), (1_000_000, 300_000), (10_000, 3_000_000)):
-        told = measure(avatars, polygons, runs, "--street")
-        rows.append((number(told["avatars"]), number(told["triangles"]), f"{number(told['seen'])} / {number(told['hidden'])}",
-                     f"{number(told['triangles_seen'])} / {number(told['triangles_drawn'])}", ms(told["ms_all"]), ms(told["ms_people"]),
-                     f"{told['ms_all'] / told['ms_people']:.2f}", ms(told["ms_nobody"])))
-    head = ("avatars", "triangles", "in the frustum / hidden", "triangles in the frustum / drawn", "all of that drawn [ms]", "what is hidden left out [ms]", "times faster", "nobody [ms]")
-    write_between("draw_street_table", f"Medians of {runs} frames of each kind, in turn. Load of the machine when it began: {os.getloadavg()[0]:.1f}.\n\n" + table(head, rows))
+        report = measure(avatars, polygons, runs, "--street")
+        rows.append((number(report["avatars"]), number(report["triangles"]), f"{number(report['seen'])} / {number(report['hidden'])}",
+                     f"{number(report['triangles_seen'])} / {number(report['triangles_drawn'])}", ms(report["ms_all"]), ms(report["ms_people"]),
+                     f"{report['ms_all'] / report['ms_people']:.2f}", ms(report["ms_nobody"])))
+    head = ("avatars", "triangles", "in the frustum / hidden", "triangles in the frustum / drawn", "all of it drawn [ms]", "without what is hidden [ms]", "times faster", "no avatar [ms]")
+    write_between("draw_street_table", f"Medians of {runs} frames of each kind, in turn. Load of the machine at the start: {os.getloadavg()[0]:.1f}.\n\n" + table(head, rows))
 
 
 def growth(runs, quick):
@@ -115,9 +116,9 @@ def growth(runs, quick):
     by_avatars = [measure(n, CITY, runs) for n in counts]
     by_polygons = [measure(10_000, n, runs) for n in sizes]
 
-    def curves(told, key):
-        return [(name, colour, [(row[key], row[f"least_{what}"]) for row in told])
-                for name, colour, what in (("people", PEOPLE, "people"), ("plain quads", QUADS, "quads"), ("nobody", NOBODY, "nobody"))]
+    def curves(report, key):
+        return [(name, colour, [(row[key], row[f"least_{what}"]) for row in report])
+                for name, colour, what in (("people", PEOPLE, "people"), ("plain quads", QUADS, "quads"), ("no avatar", EMPTY, "nobody"))]
 
     chart(ROOT / "docs/images/draw_avatars.svg", f"Time against avatars; a city of {number(by_avatars[0]['triangles'])} triangles", "avatars",
           curves(by_avatars, "avatars"))
@@ -126,10 +127,10 @@ def growth(runs, quick):
     large = [(row["triangles"], row["least_nobody"]) for row in by_polygons if row["triangles"] >= 100_000]
     rows = [(number(row["avatars"]), ms(row["least_people"]), ms(row["least_quads"]), ms(row["least_nobody"])) for row in by_avatars]
     more = [(number(row["triangles"]), ms(row["least_people"]), ms(row["least_quads"]), ms(row["least_nobody"])) for row in by_polygons]
-    text = [f"Smallest of {runs} frames: what else the machine does only adds.", table(("avatars", "people [ms]", "plain quads [ms]", "nobody [ms]"), rows)]
+    text = [f"Minimum of {runs} frames: other load on the machine only adds.", table(("avatars", "people [ms]", "plain quads [ms]", "no avatar [ms]"), rows)]
     if len(added) > 1:
         text.append(f"What the avatars add grows from 30 000 on with the power {slope(added):.2f} of their number.")
-    text.append(table(("triangles", "10 000 people [ms]", "plain quads [ms]", "nobody [ms]"), more))
+    text.append(table(("triangles", "10 000 people [ms]", "plain quads [ms]", "no avatar [ms]"), more))
     if len(large) > 1:
         text.append(f"The city's time grows from 100 000 triangles on with the power {slope(large):.2f} of their number; below that, pixels take it.")
     text.append("![Time against avatars](images/draw_avatars.svg)\n\n![Time against polygons](images/draw_polygons.svg)")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Bakes worlds for two classes that fly, verifies their ways against the triangles and writes docs/results.md.
+"""Bakes worlds for two flying classes and verifies their paths against the triangles.
 
 scripts/results flight [--pairs N]"""
 import argparse
@@ -21,7 +21,7 @@ step = 0.1
 max_slope = 20
 flies = true
 """
-# World, cell [m], share of the pairs: ways over all of nel take a second each.
+# World, cell [m], share of the pairs: paths over all of nel take a second each.
 RUNS = [("builtin:garage", 0.1, 10), ("builtin:church", 0.1, 10), ("builtin:bridge", 0.1, 10), ("builtin:landscape", 0.2, 10),
         ("recast/nav_test.obj", 0.1, 10), ("recast/dungeon.obj", 0.1, 10), ("sponza/sponza.obj", 0.1, 20), ("recast/city400.obj", 0.2, 10),
         ("nel", 0.5, 1)]
@@ -60,10 +60,10 @@ def main():
         rows += found
         pairs += total["pairs"]
         entered += total["entered"]
-    head = ("world, class", "cell / air cell [m]", "free air cells, million", "air files (ground's)", "s to bake the air (all)", "points", "reached / pairs",
-            "legs in the air", "bodies on them", "entered")
+    head = ("world, class", "cell / voxel [m]", "free voxels, million", "air files (ground's)", "s to bake the air (all)", "points", "reached / pairs",
+            "segments in the air", "bodies on them", "entered")
     verdict = "met" if entered == 0 and pairs >= options.pairs else "MISSED"
-    write_between("flight_table", f"Machine: {machine()}. {pairs} pairs, {entered} illegal, asked 0 of 10000: {verdict}.\n\n" + table(head, rows))
+    write_between("flight_table", f"Machine: {machine()}. {pairs} pairs, {entered} illegal, target 0 of 10000: {verdict}.\n\n" + table(head, rows))
     say("done")
     return 0 if entered == 0 else 1
 

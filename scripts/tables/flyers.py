@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Times the step of those who fly, and sees whether all arrive; writes docs/results.md.
+"""Times the step of flyers and checks that all arrive.
 
 scripts/results flyers [--runs N]"""
 import argparse
@@ -46,16 +46,16 @@ def sphere_rows():
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--note", default="", help="what else is to be said of the machine")
+    parser.add_argument("--note", default="", help="text added after the machine")
     options = parser.parse_args()
     text = [f"Machine: {machine()}. Median of {options.runs} runs (smallest to largest){options.note}.\n",
             table(("flyers", "m3 for each", "ns a step, 1 thread", "ns a step, 2 threads", "plan / sort / steer / commit / settle", "progress",
-                   "avatar-steps looked at", "faults", "same state"), air_rows(options.runs)),
-            "\nOver `builtin:city` (cells 0.2 m, of the air 0.4 m), 300 steps, goals within 60 m, 2 threads:\n",
-            table(("flyers", "ns a step, median (mean)", "ways planned", "without a way", "arrived", "progress", "avatar-steps looked at", "faults"),
+                   "avatar-steps checked", "faults", "same state"), air_rows(options.runs)),
+            "\nOver `builtin:city` (cells 0.2 m, voxels 0.4 m), 300 steps, goals within 60 m, 2 threads:\n",
+            table(("flyers", "ns a step, median (mean)", "paths planned", "without a path", "arrived", "progress", "avatar-steps checked", "faults"),
                   city_rows()),
             "\nAcross a sphere; straight it takes 10 s:\n",
-            table(("flyers", "seed", "arrived", "s until all have", "avatar-steps looked at", "faults"), sphere_rows())]
+            table(("flyers", "seed", "arrived", "s until all have", "avatar-steps checked", "faults"), sphere_rows())]
     write_between("flyers_table", "\n".join(text))
 
 

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Draws the README's pictures and copies the first figures of docs/results.md into it.
+"""Copies the first figures of docs/results.md into README.md and draws its pictures; run it after the others.
 
-scripts/results headline [--no-picture]    after the scripts that write docs/results.md"""
+scripts/results headline [--no-picture] [--print]"""
+import argparse
 import re
 import sys
 
@@ -12,7 +13,7 @@ RESULTS = (ROOT / "docs/results.md").read_text()
 
 
 def rows(marker):
-    """The tables between two markers, as dictionaries by their heads."""
+    """The rows of the tables between two markers, each a dictionary by column."""
     found, head = [], None
     for line in RESULTS.split(f"<!-- begin {marker} -->")[1].split(f"<!-- end {marker} -->")[0].splitlines():
         if not line.startswith("|"):
@@ -35,7 +36,7 @@ def bake_line():
         return
     ratios = {row["world"].split(",")[0]: first_number(row["ratio, 1 thread"]) for row in fine}
     listed = ", ".join(f"{ratio} on `{world}`" for world, ratio in ratios.items())
-    yield f"**Bake** beside Recast's, one thread each, 0.1 m cells: Recast's time is ours times {listed}."
+    yield f"**Bake** beside Recast's, one thread each, 0.1 m cells: Recast's time / throng's is {listed}."
 
 
 def crowd_line():
@@ -50,15 +51,15 @@ def crowd_line():
 
 def goals_line():
     walks = [row for row in rows("goals_table") if "ns a step, 2 threads" in row]
-    looks = [row for row in rows("many_steps_table") if row["scene"] == "all"]
-    if not walks or not looks:
+    checks = [row for row in rows("many_steps_table") if row["scene"] == "all"]
+    if not walks or not checks:
         return
     last = walks[-1]
     count = f"{int(last['avatars']):,}".replace(",", " ")
-    steps = looks[-1]["of these looked at"].replace(",", " ")
-    yield (f"**{count} with goals of their own**, who avoid each other: {first_number(last['ns a step, 2 threads'])} ns each a step, two threads. "
-           f"{steps} avatar-steps in {looks[-1]['runs']} runs looked at one by one: {looks[-1]['overlaps']} overlaps, "
-           f"{looks[-1]['walls entered']} walls entered.")
+    steps = checks[-1]["of these checked"].replace(",", " ")
+    yield (f"**{count} with goals of their own** that avoid each other: {first_number(last['ns a step, 2 threads'])} ns each a step, two threads. "
+           f"{steps} avatar-steps in {checks[-1]['runs']} runs checked one by one: {checks[-1]['overlaps']} overlaps, "
+           f"{checks[-1]['walls entered']} walls entered.")
 
 
 def proof_line():
@@ -70,17 +71,17 @@ def proof_line():
     entered, unsupported = (sum(int(row[name]) for row in worlds if row[name].isdigit())
                             for name in ("entered", "unsupported"))
     yield (f"**Proof**: {int(counts[1]) / 1e6:.1f} million places and moves in {counts[2]} worlds tested against the source triangles: "
-           f"{entered} bodies in matter, {unsupported} without floor.")
+           f"{entered} bodies in solids, {unsupported} without floor.")
 
 
-def ways_line():
+def paths_line():
     found = {row["world, ours by"].removesuffix(", labels"): row for row in rows("detour_table") if row["world, ours by"].endswith(", labels")}
     city = [row for row in rows("city_table") if row.get("apart [m]") == "10000"]
     if not found or not city:
         return
     listed = ", ".join(f"{float(first_number(row['ratio'])):.1f} on `{world}`" for world, row in found.items())
-    shorter = max(float(first_number(row["length, ours by Detour's"])) for row in found.values())
-    yield (f"**Ways** beside Detour's, whole queries, one thread: ours a second are its times {listed}, and at most {shorter:.3f} times as long on average. "
+    shorter = max(float(first_number(row["length, ours / Detour's"])) for row in found.values())
+    yield (f"**Paths** beside Detour's, whole queries, one thread: queries a second, throng's / Detour's, are {listed}; mean lengths are at most {shorter:.3f} of Detour's. "
            f"10 km through a city of 100 km2: {first_number(city[-1]['median [ms]'])} ms.")
 
 
@@ -88,8 +89,8 @@ def landscape_line():
     found = [row for row in rows("landscape_table") if row["world"].startswith("nel") and row["cell [m]"] == "0.25"]
     if len(found) < 2:
         return
-    plain, nodes = found[0], found[-1]
-    yield (f"**A real Bezier landscape** of 96 zones, 0.25 m cells, two threads, reading and all: {plain['whole, ms a zone']} ms a zone, "
+    ground, nodes = found[0], found[-1]
+    yield (f"**A real Bezier landscape** of 96 zones, 0.25 m cells, two threads, with reading: {ground['whole, ms a zone']} ms a zone, "
            f"{nodes['whole, ms a zone']} with nodes and links ([PACS00], 2000: more than two minutes).")
 
 
@@ -139,7 +140,7 @@ count = 9000
 
 
 def crowd_pictures():
-    """Frames of the viewer: a real city and the garage, walked by the people of ../shared/characters; left as they are where these are not."""
+    """Frames of the viewer: a real city and the garage, with the people of ../shared/characters; unchanged where these are missing."""
     model, people = WORLDS / "cities/denhaag_01.obj", sorted((WORLDS.parent / "characters").glob("*.fbx"))
     if not model.exists() or not people:
         return
@@ -156,13 +157,21 @@ def crowd_pictures():
 
 
 def main():
-    if "--no-picture" not in sys.argv:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--no-picture", action="store_true", help="only the figures")
+    parser.add_argument("--print", action="store_true", help="print the figures, write and draw nothing")
+    options = parser.parse_args()
+    lines = [*bake_line(), *paths_line(), *landscape_line(), *crowd_line(), *goals_line(), *proof_line()]
+    if not lines:
+        sys.exit("headline: docs/results.md has no tables yet; run the scripts that it names")
+    text = "\n".join(f"- {line}" for line in lines)
+    if options.print:
+        print(text)
+        return
+    if not options.no_picture:
         picture()
         crowd_pictures()
-    lines = [*bake_line(), *ways_line(), *landscape_line(), *crowd_line(), *goals_line(), *proof_line()]
-    if not lines:
-        sys.exit("headline: docs/results.md holds no tables yet; run the scripts that it names")
-    write_between("headline", "\n".join(f"- {line}" for line in lines), "README.md")
+    write_between("headline", text, "README.md")
 
 
 main()

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Walks crowds through all scenes until 10^9 avatar-steps have been looked at; writes docs/results.md.
+"""Walks crowds through all scenes until 10^9 avatar-steps have been checked.
 
 scripts/results many_steps [--minutes M] [--fresh]
 
-Goes on where the last call stopped: what was counted lies in build/results/many_steps.json."""
+Continues where the last call stopped: the counts are in build/results/many_steps.json."""
 import argparse
 import json
 import sys
@@ -14,11 +14,11 @@ from results_page import ROOT, WORK, WORLDS, run_json, say, table, write_between
 
 SCENES = ROOT / "build/release/bench/bench_scenes"
 CROWD = ROOT / "build/release/bench/bench_crowd"
-ASKED = 10**9
+TARGET = 10**9
 
 
 def scenes():
-    """Name, and a command for each seed: some minutes at most."""
+    """Name, and the command for a seed: each takes some minutes at most."""
     def play(*words):
         return lambda seed: (SCENES, *words, "--seed", seed)
 
@@ -37,8 +37,8 @@ def scenes():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=float, default=8, help="stop after the run in which so many have passed")
-    parser.add_argument("--fresh", action="store_true", help="forget what was counted")
+    parser.add_argument("--minutes", type=float, default=8, help="stop after the run in which this time is over")
+    parser.add_argument("--fresh", action="store_true", help="forget the counts")
     options = parser.parse_args()
     state = WORK / "many_steps.json"
     counted = {} if options.fresh or not state.exists() else json.loads(state.read_text())
@@ -46,8 +46,8 @@ def main():
     start = time.monotonic()
     checked = lambda: sum(c["checked"] for c in counted.values())
     plays = list(scenes())
-    while checked() < ASKED and time.monotonic() - start < 60 * options.minutes:
-        # Each once, then those of a million.
+    while checked() < TARGET and time.monotonic() - start < 60 * options.minutes:
+        # Each scene once, then those of a million.
         name, command = min(plays, key=lambda p: (counted.get(p[0], {}).get("runs", 0) if p[0].startswith("random") else
                                                   (-1 if p[0] not in counted else 10**6)))
         here = counted.setdefault(name, {"runs": 0, "steps": 0, "checked": 0, "overlaps": 0, "wall_entries": 0})
@@ -63,10 +63,10 @@ def main():
     rows = [(name, c["runs"], f"{c['steps']:,}", f"{c['checked']:,}", c["overlaps"], c["wall_entries"]) for name, c in counted.items()]
     sums = [sum(c[key] for c in counted.values()) for key in ("runs", "steps", "checked", "overlaps", "wall_entries")]
     rows.append(("all", sums[0], f"{sums[1]:,}", f"{sums[2]:,}", sums[3], sums[4]))
-    met = sums[2] >= ASKED and sums[3] + sums[4] == 0
-    write_between("many_steps_table", table(("scene", "runs", "avatar-steps", "of these looked at", "overlaps", "walls entered"), rows) +
-                  f"\n\nAsked: 10^9 avatar-steps looked at, 0 faults: {'met' if met else 'MISSED'}.")
-    say("done" if met else "call it again to go on")
+    met = sums[2] >= TARGET and sums[3] + sums[4] == 0
+    write_between("many_steps_table", table(("scene", "runs", "avatar-steps", "of these checked", "overlaps", "walls entered"), rows) +
+                  f"\n\nTarget: 10^9 avatar-steps checked, 0 faults: {'met' if met else 'MISSED'}.")
+    say("done" if met else "call it again to continue")
 
 
 if __name__ == "__main__":

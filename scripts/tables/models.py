@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Compares the models that a crowd can be steered by; writes docs/results.md.
+"""Compares the models of steering: quality scenes and tests of `throng validate`.
 
 scripts/results models [--seeds N] [--scenes sparse|dense|circle...] [--tests TEST...]"""
 import argparse
@@ -19,14 +19,14 @@ def spread(values, digits):
 
 
 def quality(model, seeds, scenes):
-    """What is asked, and what came out, scene by scene."""
+    """Name, target and result, scene by scene."""
     overlaps = 0
-    for scene, asked in (("sparse", ">= 0.93"), ("dense", ">= 0.50")):
+    for scene, target in (("sparse", ">= 0.93"), ("dense", ">= 0.50")):
         if scene not in scenes:
             continue
         runs = [run_json(QUALITY, "--scene", scene, "--model", model, "--seed", s) for s in seeds]
         overlaps += sum(r["overlaps"] for r in runs)
-        yield f"{scene}: progress", asked, spread([r["progress"] for r in runs], 3)
+        yield f"{scene}: progress", target, spread([r["progress"] for r in runs], 3)
     if "circle" in scenes:
         runs = [run_json(QUALITY, "--scene", "circle", "--bodies", 1000, "--seconds", 150, "--model", model, "--seed", s) for s in seeds]
         overlaps += sum(r["overlaps"] for r in runs)
@@ -41,14 +41,14 @@ def validation(model, seeds, tests):
             if "low" not in measure and "high" not in measure:
                 continue
             values = [r[n]["measures"][k]["value"] for r in runs]
-            asked = " to ".join(f"{measure[b]:g}" for b in ("low", "high") if b in measure)
+            target = " to ".join(f"{measure[b]:g}" for b in ("low", "high") if b in measure)
             if "high" not in measure:
-                asked = f">= {asked}"
+                target = f">= {target}"
             elif "low" not in measure:
-                asked = f"<= {asked}"
+                target = f"<= {target}"
             known = [v for v in values if v is not None]
             text = spread(known, 2) if known else "none"
-            yield f"{test['test']}: {measure['name']} {measure['unit']}".rstrip(), asked, text + (" or none" if known and len(known) < len(values) else "")
+            yield f"{test['test']}: {measure['name']} {measure['unit']}".rstrip(), target, text + (" or none" if known and len(known) < len(values) else "")
     yield "overlaps and walls entered in these", "0", sum(t["overlaps"] + t["wall_entries"] for r in runs for t in r)
 
 
@@ -65,10 +65,10 @@ def main():
         if options.tests:
             found[model] += validation(model, seeds, options.tests)
     rows = []
-    for n, (what, asked, _) in enumerate(found[MODELS[0]]):
-        rows.append((what, asked, *(found[model][n][2] for model in MODELS)))
-    text = f"Machine: {machine()}. {len(seeds)} seed{'s' if len(seeds) > 1 else ''}: median (least to most).\n\n"
-    write_between("models_table", text + table(("", "asked", *MODELS), rows))
+    for n, (what, target, _) in enumerate(found[MODELS[0]]):
+        rows.append((what, target, *(found[model][n][2] for model in MODELS)))
+    text = f"Machine: {machine()}. {len(seeds)} seed{'s' if len(seeds) > 1 else ''}: median (min to max).\n\n"
+    write_between("models_table", text + table(("", "target", *MODELS), rows))
 
 
 if __name__ == "__main__":

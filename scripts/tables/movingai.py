@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Runs the scenarios of Moving AI's grid maps and writes lengths and times into docs/results.md.
+"""Runs the scenarios of Moving AI's grid maps: lengths and times.
 
 scripts/results movingai [--runs N] [--sample N]"""
 import argparse
@@ -31,7 +31,7 @@ def main():
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--sample", type=int, default=20)
     options = parser.parse_args()
-    head = ("map, ours by", "reached", "length by the optimum's, asked <= 1.01", "length by the published one, eight directions",
+    head = ("map, ours by", "reached", "length / optimum, target <= 1.01", "length / published one, eight directions",
             "ms a query, mean (median, worst)", "to make")
     rows = [row(name, labels, options) for name in MAPS for labels in (False, True)]
     text = (f"Machine: {machine()}. Times: median of {options.runs} runs over all queries, one thread.\n\n" + table(head, rows))

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Times ways over nodes by distance, by districts and by a search of all crossings, and compares their lengths; writes
-docs/results.md.
+"""Times paths over nodes by distance, by the overlay and by a search of all crossings, and compares lengths.
 
 scripts/results node_path_times [--threads N] [--pairs N]"""
 import argparse
@@ -31,27 +30,27 @@ def main():
     parser.add_argument("--pairs", default=60, type=int)
     options = parser.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
-    classes = WORK / "node_ways.json"
+    classes = WORK / "node_path_times.json"
     classes.write_text(json.dumps({"class": CLASSES}))
     rows, crates = [], []
     differ = judged = parted = 0
     for name, model, cell, size, distances in worlds():
-        folder = WORK / "node_ways.throng"
+        folder = WORK / "node_path_times.throng"
         run_json(PROGRAM, "bake", model, "-o", folder, "--cell", cell, "--node-size", size, "--classes", classes, "--threads",
                  options.threads, "--nodes", "--fresh", "--json")
         for avatar in CLASSES:
             found = run_json(BENCH, folder, "--class", avatar["name"], "--distances", ",".join(map(str, distances)), "--pairs", options.pairs,
                              "--judged", options.pairs // 2, "--threads", options.threads)
             made = f"{found['seconds']:.1f} s, {human(found['bytes'])} ({found['search_seconds']:.1f} s, {human(found['search_bytes'])})"
-            for ways in found["ways"]:
-                differ += ways["differ"]
+            for paths in found["ways"]:
+                differ += paths["differ"]
                 judged += options.pairs // 2
-                rows.append((name, avatar["name"], found["crossings"], made, f"{ways['distance']:.0f}", f"{ways['reached']} of {ways['pairs']}",
-                             f"{ways['mean_length']:.0f}", f"{ways['median_ms']:.2f}, {ways['most_ms']:.2f}",
-                             f"{ways['search_median_ms']:.2f}, {ways['search_most_ms']:.2f}",
-                             f"{ways['looked_at']:.0f}, {ways['searched']:.0f}",
-                             f"{ways['mean_ratio']:.4f}, {ways['worst_ratio']:.4f} of {ways['judged']}",
-                             f"{ways['unreachable_median_ms']:.2f}, {ways['unreachable_most_ms']:.2f}"))
+                rows.append((name, avatar["name"], found["crossings"], made, f"{paths['distance']:.0f}", f"{paths['reached']} of {paths['pairs']}",
+                             f"{paths['mean_length']:.0f}", f"{paths['median_ms']:.2f}, {paths['most_ms']:.2f}",
+                             f"{paths['search_median_ms']:.2f}, {paths['search_most_ms']:.2f}",
+                             f"{paths['looked_at']:.0f}, {paths['searched']:.0f}",
+                             f"{paths['mean_ratio']:.4f}, {paths['worst_ratio']:.4f} of {paths['judged']}",
+                             f"{paths['unreachable_median_ms']:.2f}, {paths['unreachable_most_ms']:.2f}"))
             for put in found["crates"]:
                 parted += put["differ"]
                 crates.append((name, avatar["name"], f"{put['distance']:.0f}", put["crates"], f"{put['before_median_ms']:.2f}",
@@ -59,14 +58,14 @@ def main():
                                f"{put['until_median_ms']:.2f}, {put['until_most_ms']:.2f}", f"{put['without_median_ms']:.2f}",
                                f"{put['mean_ratio']:.4f}, {put['worst_ratio']:.4f}", put["shut"]))
         shutil.rmtree(folder)
-    text = (f"Machine: {machine()}. Random places about so far from each other, one run, one thread; half of the pairs searched for "
-            f"over all crossings too: {differ} of {judged} of which only one of both reaches.\n\n")
-    text += table(["world", "class", "crossings", "to make (without districts)", "m apart", "reached", "mean length [m]", "ms, median and most",
-                   "searched over all: ms", "looked at, median: by districts, over all", "length by that: mean, most", "unreachable: ms, median and most"], rows)
-    text += ("\n\nA crate of 1 m put up in the middle of each way at run time. Milliseconds, medians; lengths of the ways around them by "
-             f"those that a search of all crossings finds; {parted} of which only one of both finds a way:\n\n")
-    text += table(["world", "class", "m apart", "crates", "the way before", "to add", "the way around", "until it avoids the crate: median, most",
-                   "the way when it is gone", "length: mean, most", "shut off"], crates)
+    text = (f"Machine: {machine()}. Random places about this far from each other, one run, one thread; half of the pairs searched for "
+            f"over all crossings too: {differ} of {judged} of which only one of the two searches reaches the goal.\n\n")
+    text += table(["world", "class", "crossings", "to make (without overlay)", "m apart", "reached", "mean length [m]", "ms, median and max",
+                   "searched over all: ms", "expanded, median: by overlay, over all", "length / that: mean, max", "unreachable: ms, median and max"], rows)
+    text += ("\n\nA crate of 1 m placed in the middle of each path at run time. Milliseconds, medians; lengths of the paths around them / "
+             f"those that a search of all crossings finds; {parted} of which only one of the two finds a path:\n\n")
+    text += table(["world", "class", "m apart", "crates", "the path before", "to add", "the path around", "until it avoids the crate: median, max",
+                   "the path after its removal", "length / that: mean, max", "disconnected"], crates)
     write_between("node_path_times_table", text)
 
 

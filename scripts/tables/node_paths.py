@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Goes the ways over nodes between random pairs of places, for six classes, two of which climb, with their bodies against
-all triangles; writes counts and lengths into docs/results.md.
+"""Checks paths over nodes between random pairs, for six classes, two of which climb, with bodies against all triangles.
 
 scripts/results node_paths [--threads T] [--share S] [--only WORLD ...]"""
 import argparse
@@ -35,7 +34,7 @@ def worlds():
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--threads", default=2, type=int)
-    parser.add_argument("--share", default=1, type=float, help="of the pairs")
+    parser.add_argument("--share", default=1, type=float, help="share of the pairs")
     parser.add_argument("--only", nargs="*", default=[], help="worlds, by their first letters")
     options = parser.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
@@ -62,10 +61,10 @@ def main():
             rows.append((name, c["class"], c["pairs"], c["reached"], c["parted"], c["legs"], c["poses"], links, c["leaps"],
                          f"{c['length'] / max(c['straight'], 1e-9):.3f}", f"{c['length'] / max(c['reached'], 1):.0f}",
                          f"{c['search_seconds'] / c['pairs'] * 1000:.2f}", human(c["finder_bytes"]), faults))
-    text = (f"Machine: {machine()}. {pairs} pairs, {illegal} faults (0 asked). A fault: a leg whose body meets a triangle or has "
-            "nothing under its feet, a leg that leaves its node, a pair that holds together and has no way, or the reverse.\n\n")
-    text += table(["world", "class", "pairs", "reached", "in different parts", "legs", "bodies on them", "links", "leaps",
-                   "length by the straight line", "mean length [m]", "ms a query", "finder", "faults"], rows)
+    text = (f"Machine: {machine()}. {pairs} pairs, {illegal} faults (target 0). A fault: a segment whose body meets a triangle or has "
+            "nothing under its feet, a segment that leaves its node, a connected pair without a path, or the reverse.\n\n")
+    text += table(["world", "class", "pairs", "reached", "in different components", "segments", "bodies on them", "links", "links over holes",
+                   "length / straight line", "mean length [m]", "ms a query", "path finder", "faults"], rows)
     write_between("node_paths_table", text)
 
 

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Makes the nodes of curved and other worlds for six classes, two of which climb, and for each class alone; tests them;
-writes counts, bytes and times into docs/results.md.
+"""Makes the nodes of curved and other worlds for six classes and for each alone, and tests them: counts, bytes and times.
+
+Two of the classes climb.
 
 scripts/results nodes [--threads T] [--samples N] [--runs R] [--but WORLD ...] [--everywhere]"""
 import argparse
@@ -96,8 +97,8 @@ def main():
             rows += [row for row in rows_between("nodes_table") if row[:3] == (name, str(cell), str(size))]
             continue
         one = [[bake(model, cell, size, path, options.threads)[1] for _ in range(options.runs)] for path in alone]
-        most_seconds = max(median([run["seconds_nodes"] for run in runs]) for runs in one)
-        most_bytes = max(runs[0]["node_bytes"] for runs in one)
+        max_seconds = max(median([run["seconds_nodes"] for run in runs]) for runs in one)
+        max_bytes = max(runs[0]["node_bytes"] for runs in one)
         runs = [bake(model, cell, size, together, options.threads) for _ in range(options.runs)]
         folder = runs[0][0]
         seconds = median([run["seconds_nodes"] for _, run in runs])
@@ -108,12 +109,12 @@ def main():
         rows.append((name, cell, size, found["patches"], found["nodes"], found["arcs"], f"{found['bytes_a_node']:.1f}",
                      f"{found['nodes'] / area * 1e6:.0f}" if area else "", human(found["bytes"]),
                      f"{seconds:.2f}", f"{seconds * 1000 / found['zones']:.0f}",
-                     f"{seconds / most_seconds:.2f}", f"{found['bytes'] / most_bytes:.2f}",
+                     f"{seconds / max_seconds:.2f}", f"{found['bytes'] / max_bytes:.2f}",
                      f"{sum(c['leaps'] for c in proof['classes'])}", faults))
     text = (f"Machine: {machine()}. Six classes, two of which climb; {options.threads} threads; {options.samples} places a "
-            f"class; median of {options.runs} runs. The last ratios: six classes together against the class that alone takes most.\n\n")
+            f"class; median of {options.runs} runs. The last ratios: six classes together / the most expensive class alone.\n\n")
     text += table(["world", "cell [m]", "node size [m]", "patches", "nodes", "arcs", "bytes a node", "nodes a km2", "bytes",
-                   "nodes [s]", "ms a zone", "time of 6 / 1", "bytes of 6 / 1", "leaps tested", "faults"], rows)
+                   "nodes [s]", "ms a zone", "time of 6 / 1", "bytes of 6 / 1", "links over holes tested", "faults"], rows)
     write_between("nodes_table", text)
     everywhere(options)
 

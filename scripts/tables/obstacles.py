@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Walks crowds through a city in which crates come and go and carts drive; writes what that costs, and whether anybody
-was ever in one, into docs/results.md.
+"""Walks crowds through a city with crates that move and carts that drive: times and overlaps.
 
 scripts/results obstacles [--avatars N...] [--steps N]"""
 import argparse
@@ -40,10 +39,10 @@ def main():
     shutil.rmtree(folder)
     text = (f"Machine: {machine()}. `city` of {SIDE} m, cells of {CELL} m, dt 0.1 s, {options.steps} steps alone and as many "
             "with obstacles.\n\n")
-    text += table(["avatars", "threads", "crates + carts", "ns an avatar a step alone (of it ways)", "with them",
-                   "times as many ways", "us to add / remove / move one", "carts moved", "waited", "stranded", "faults"], rows)
+    text += table(["avatars", "threads", "crates + carts", "ns an avatar a step alone (of it paths)", "with them",
+                   "times as many paths", "us to add / remove / move one", "carts moved", "waited", "goal unreachable", "faults"], rows)
     same = "the same" if len(hashes) == len(options.avatars) else "DIFFERENT"
-    text += (f"\n\n{avatar_steps} avatar steps among obstacles, {faults} faults in those looked at; states are {same} for 1 "
+    text += (f"\n\n{avatar_steps} avatar steps among obstacles, {faults} faults in those checked; states are {same} for 1 "
              "and 2 threads.\n")
     write_between("obstacles_table", text)
 

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Goes the ways between random pairs of places on the level tiles of every world: by legal moves, and with the body
-against all triangles; writes counts into docs/results.md.
+"""Checks paths over level tiles between random pairs in every world: legal moves, and bodies against all triangles.
 
 scripts/results paths [--pairs N] [--only TEXT] [--threads T]"""
 import argparse
@@ -32,7 +31,7 @@ def row_of(name, model, words, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--pairs", default=10_000, type=int, help="of each world, shared out to its classes")
+    parser.add_argument("--pairs", default=10_000, type=int, help="in each world, over all its classes")
     parser.add_argument("--only", default="", help="worlds whose name has this text; prints, writes nothing")
     parser.add_argument("--threads", default=0, type=int)
     options = parser.parse_args()
@@ -44,10 +43,10 @@ def main():
         rows.append(row)
         total = {key: total[key] + sums[key] for key in COUNTS}
     faults = sum(total[fault] for fault in FAULTS)
-    text = (f"Machine: {machine()}. {total['pairs']:,} pairs on {len(rows)} worlds, cells of 0.1 m, four classes: {total['reached']:,} with a way, "
-            f"{total['parted']:,} on ground that does not hold together; {total['bodies']:,} bodies on the ways; {faults} faults (0 asked): "
+    text = (f"Machine: {machine()}. {total['pairs']:,} pairs on {len(rows)} worlds, cells of 0.1 m, four classes: {total['reached']:,} with a path, "
+            f"{total['parted']:,} in different components; {total['bodies']:,} bodies on the paths; {faults} faults (target 0): "
             f"{'met' if faults == 0 else 'MISSED'}.\n\n")
-    text += table(["world", "pairs", "reached", "legs", "bodies on them", "mean length [m]", "length by the straight line", *FAULTS], rows)
+    text += table(["world", "pairs", "reached", "segments", "bodies on them", "mean length [m]", "length / straight line", *FAULTS], rows)
     if options.only:
         print(text)
     else:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Bakes a city and its nodes by threads and by ranks of mpirun, alternating; writes times beside each other into docs/results.md.
+"""Bakes a city and its nodes by threads and by ranks of mpirun, alternating.
 
 scripts/results ranks [--size METRES] [--runs N] [--print]"""
 import argparse
@@ -12,8 +12,8 @@ import time
 from results_page import PROGRAM, WORK, human, machine, run_json, table, write_between
 
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none", *(["--allow-run-as-root"] if os.geteuid() == 0 else [])]
-# Name, ranks (0: without mpirun), threads of each.
-WAYS = [("1 thread", 0, 1), ("2 threads", 0, 2), ("1 rank, 1 thread", 1, 1), ("2 ranks, 1 thread each", 2, 1)]
+# Name, ranks (0: without mpirun), threads of each rank.
+CASES = [("1 thread", 0, 1), ("2 threads", 0, 2), ("1 rank, 1 thread", 1, 1), ("2 ranks, 1 thread each", 2, 1)]
 
 
 def measure(size, ranks, threads):
@@ -37,12 +37,12 @@ def main():
     parser.add_argument("--print", action="store_true", help="print the table, write nothing")
     options = parser.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
-    found = {name: [] for name, _, _ in WAYS}
+    found = {name: [] for name, _, _ in CASES}
     for _ in range(options.runs):
-        for name, ranks, threads in WAYS:
+        for name, ranks, threads in CASES:
             found[name].append(measure(options.size, ranks, threads))
     rows = []
-    for name, ranks, _ in WAYS:
+    for name, ranks, _ in CASES:
         bakes, nodes, walls, peaks = zip(*found[name])
         ratios = [found["1 thread"][i][0] / bake for i, bake in enumerate(bakes)]
         node_ratios = [found["1 thread"][i][1] / seconds for i, seconds in enumerate(nodes)]
@@ -50,7 +50,7 @@ def main():
                      human(max(peaks)) + (" a rank" if ranks else "")))
     text = (f"Machine: {machine()}; load {os.getloadavg()[1]:.1f} over the last five minutes. Built-in city, {options.size} m wide, cells of 0.1 m, four "
             f"classes. {options.runs} alternating runs; median (smallest to largest).\n\n")
-    text += table(["by", "bake [s]", "times 1 thread", "nodes [s]", "times 1 thread", "with start, model and end [s]", "memory"], rows)
+    text += table(["by", "bake [s]", "times 1 thread", "nodes [s]", "times 1 thread", "wall clock of the process [s]", "memory"], rows)
     if options.print:
         print(text)
     else:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Records crowds of wanderers and writes what an avatar and frame costs into docs/results.md.
+"""Records crowds of wanderers and of avatars with goals: bytes and time an avatar and frame.
 
 scripts/results recording [--runs N]"""
 import argparse
@@ -10,16 +10,16 @@ import subprocess
 
 from results_page import PROGRAM, WORK, human, machine, run_json, table, write_between
 
-# Avatars, steps: at ease, dense, so dense that hardly anybody can move; a large crowd; and with goals.
+# Avatars, steps: sparse, dense, so dense that hardly any avatar can move; a large crowd; and with goals.
 GOALS = ("--goals", "random", "--near", 50)
 CROWDS = [("garage_60", "size=60,levels=4", 500, 1000), ("garage_60", "size=60,levels=4", 2000, 500),
           ("garage_60", "size=60,levels=4", 6000, 300), ("garage_382", "size=382,levels=4", 100000, 100),
           ("garage_60", "size=60,levels=4", 500, 1000, *GOALS), ("garage_60", "size=60,levels=4", 2000, 500, *GOALS)]
-LIMIT = 3.0  # Bytes asked for.
+LIMIT = 3.0  # An avatar and frame. [bytes]
 
 
 def cpu_seconds(command):
-    """Of the process, on all cores: what else runs on the machine counts less than by the clock."""
+    """Processor time of the process on all cores: other load counts less than in wall-clock time."""
     process = subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0:
@@ -56,10 +56,10 @@ def main():
     rows = [row(runs, *crowd) for crowd in CROWDS]
     worst = max(r[5] for r in rows)
     rows = [(*r[:5], f"{r[5]:.2f}", *r[6:]) for r in rows]
-    text = f"Machine: {machine()}. Built-in garage, dt 0.1 s, every step a frame; median of {runs} runs for the time; beside the steps of a crowd with goals it is too short to be told.\n\n"
-    text += table(["avatars", "crowd", "m2 for each", "frames", "file", "bytes an avatar and frame", "CSV is so many times larger",
-                   "recording, ns of one core an avatar and frame", "comes out the same again"], rows)
-    text += f"\n\nAsked: at most {LIMIT:g} bytes an avatar and frame. Most of these: {worst:.2f}, {'met' if worst <= LIMIT else 'MISSED'}."
+    text = f"Machine: {machine()}. Built-in garage, dt 0.1 s, every step a frame; median of {runs} runs for the time; beside the steps of a crowd with goals it is too short to measure.\n\n"
+    text += table(["avatars", "crowd", "m2 for each", "frames", "file", "bytes an avatar and frame", "size of CSV / file",
+                   "recording, ns of one core an avatar and frame", "replays the same"], rows)
+    text += f"\n\nTarget: at most {LIMIT:g} bytes an avatar and frame. Max of these: {worst:.2f}, {'met' if worst <= LIMIT else 'MISSED'}."
     write_between("recording_table", text)
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""What the scripts that write docs/results.md share."""
+"""Shared by the scripts that write docs/results.md: the paths of program and models, running, tables, markers."""
 import json
 import os
 import pathlib
@@ -19,7 +19,7 @@ def say(text):
 
 
 def run_json(*command):
-    """Runs a command that prints one JSON object; stops with its own sentence if it fails."""
+    """Runs a command that prints one JSON object, and returns it; exits if the command fails."""
     say("$ " + " ".join(str(word) for word in command))
     done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode not in (0, 1) or not done.stdout.strip():
@@ -28,7 +28,7 @@ def run_json(*command):
 
 
 def machine():
-    """One line on what the numbers were measured on."""
+    """One line: processor, cores, memory, system, compiler."""
     model = "unknown processor"
     cpuinfo = pathlib.Path("/proc/cpuinfo")
     if cpuinfo.exists():
@@ -41,14 +41,14 @@ def machine():
 
 
 def table(head, rows):
-    """A Markdown table; numbers are right-aligned by the caller's formatting alone."""
+    """A Markdown table."""
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
     return "\n".join(lines)
 
 
 def write_between(marker, text, page="docs/results.md"):
-    """Replaces what stands between <!-- begin marker --> and <!-- end marker -->."""
+    """Replaces the text between <!-- begin marker --> and <!-- end marker -->."""
     path = ROOT / page
     begin, end = f"<!-- begin {marker} -->", f"<!-- end {marker} -->"
     content = path.read_text()
@@ -61,7 +61,7 @@ def write_between(marker, text, page="docs/results.md"):
 
 
 def rows_between(marker, page="docs/results.md"):
-    """The rows of the first table there, without its head, cells as text."""
+    """The rows of the first table between the markers, without its head, cells as text."""
     content = (ROOT / page).read_text()
     text = content.split(f"<!-- begin {marker} -->", 1)[1].split(f"<!-- end {marker} -->", 1)[0]
     rows = []

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Sends crowds through corridors, crossings and the cases of SteerBench; writes docs/results.md.
+"""Sends crowds through corridors, crossings and the cases of SteerBench: do all arrive, and when?
 
 scripts/results scenes [--seeds N]"""
 import argparse
@@ -11,7 +11,7 @@ from results_page import ROOT, WORLDS, run_json, say, table, write_between
 
 SCENES = ROOT / "build/release/bench/bench_scenes"
 RUNS = [("corridor", 2000, 4), ("corridor", 2000, 2), ("crossing", 1000, 4), ("crossing", 1000, 2), ("crossing", 1000, 1)]
-MOST = {4: 1000, 2: 600, 1: 600}  # [s]
+MAX_SECONDS = {4: 1000, 2: 600, 1: 600}  # By area for each. [s]
 
 
 def row(name, runs, area):
@@ -31,13 +31,13 @@ def main():
     seeds = range(1, options.seeds + 1)
     rows = []
     for scene, bodies, area in RUNS:
-        runs = [run_json(SCENES, scene, "--bodies", bodies, "--area", area, "--seconds", MOST[area], "--seed", seed, "--check-every", 5)
+        runs = [run_json(SCENES, scene, "--bodies", bodies, "--area", area, "--seconds", MAX_SECONDS[area], "--seed", seed, "--check-every", 5)
                 for seed in seeds]
         rows.append(row(scene, runs, area))
     for case in sorted((WORLDS / "steersuite").glob("*.xml")):
         rows.append(row(case.stem, [run_json(SCENES, case, "--seconds", 200, "--seed", seed) for seed in seeds], "-"))
-    head = ("scene", "walkers", "m2 for each at first", "s, were they alone", "s until all have arrived", "arrived, of the worst seed",
-            "avatar-steps looked at", "overlaps and walls entered", "all arrive, 0 faults")
+    head = ("scene", "walkers", "m2 for each at first", "s, if alone", "s until all have arrived", "arrived, of the worst seed",
+            "avatar-steps checked", "overlaps and walls entered", "all arrive, 0 faults")
     write_between("scenes_table", f"Of {options.seeds} seeds, median (smallest to largest).\n\n" + table(head, rows))
     say("done")
 

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Cuts the built-in worlds of [ML06] Table 2 and every model of ../shared/worlds into slices and writes the
-table into docs/results.md.
+"""Cuts the worlds of [ML06] Table 2 and every model of ../shared/worlds into slices: counts, bytes and times.
 
 scripts/results slice [--only PART_OF_NAME]"""
 import argparse
@@ -19,7 +18,7 @@ FOLDERS = ["bezier", "buildings", "cities", "quake3", "recast", "sponza"]
 OPTIONS = {"buildings/wd1_psup.obj": ("--up", "z"), "cities/denhaag_01.obj": ("--up", "z"),
            "cities/lod3_railway.obj": ("--up", "z"), ".bsp": ("--scale", "0.0254")}
 CELLS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 50]
-MOST_CELLS = 2_000_000  # A kept slice is a full grid, so large worlds get larger cells.
+MAX_CELLS = 2_000_000  # A kept slice is a full grid, so larger worlds get larger cells.
 
 
 def slices(source, cell):
@@ -34,11 +33,11 @@ def slices(source, cell):
 
 def cell_for(coarse):
     area = coarse["width"] * coarse["depth"] * coarse["cell"] ** 2
-    return next(cell for cell in CELLS if area / cell ** 2 <= MOST_CELLS or cell == CELLS[-1])
+    return next(cell for cell in CELLS if area / cell ** 2 <= MAX_CELLS or cell == CELLS[-1])
 
 
 def row(name, source):
-    """None for a format that the program does not read."""
+    """A row, or None for a format that the program does not read."""
     report = slices(source, 1 if source in PAPER else 5)
     if "unknown kind" in report.get("error", ""):
         say(f"left out: {report['error']}")
@@ -65,7 +64,7 @@ def main():
         sources += [(str(path.relative_to(WORLDS)), path) for path in sorted((WORLDS / "nel").glob("*.zonel"))[:1]]
     rows = [line for name, source in sources if only in name and (line := row(name, source)) is not None]
     text = (f"Machine: {machine()}. Avatar 1.75 m, resolution 0.1 m, all threads. Cells of 0.1 m where that gives at most "
-            f"{MOST_CELLS / 1e6:g} million, else larger. Bytes: kept slices with 16-bit depths where they fit. Seconds: columns "
+            f"{MAX_CELLS / 1e6:g} million, else larger. Bytes: kept slices with 16-bit depths where they fit. Seconds: columns "
             "and all cuts, without reading the model.\n\n")
     text += table(["world", "triangles", "size", "cell [m]", "taken / kept", "[ML06]", "bytes", "seconds", "peak memory"],
                   rows)

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Runs `throng validate` and writes its tables into docs/results.md and its charts into docs/images. Without names:
-all tests, and those of recordings in ../shared/worlds/pedestrians where that folder is. Each is run with several seeds: a test
-passes if it does with all, and a number is told from its least to its most. Charts are those of the first.
+"""Runs `throng validate`, several seeds each: tables and charts of realism.
+
+Without names: all tests, and those of recordings in ../shared/worlds/pedestrians where that folder exists. A test passes if
+it passes with all seeds; a number is given from its minimum to its maximum. Charts are those of the first seed.
 
 scripts/results validate [TEST...] [--threads T] [--seeds N]"""
 import argparse
@@ -13,7 +14,7 @@ from results_page import PROGRAM, ROOT, WORLDS, machine, run_json, table, write_
 IMAGES = ROOT / "docs/images"
 
 
-def asked(measure):
+def target(measure):
     low, high = measure.get("low", -math.inf), measure.get("high", math.inf)
     if low == -math.inf and high == math.inf:
         return ""
@@ -30,8 +31,8 @@ def short(number):
     return f"{number:g}" if number == int(number) else f"{number:.3g}" if abs(number) < 100 else f"{number:.1f}"
 
 
-# Of all seeds.
 def value(measure):
+    """The values of all seeds, from min to max."""
     numbers = sorted({v for v in measure["values"] if v is not None})
     texts = [short(v) for v in ([numbers[0], numbers[-1]] if numbers else [])]
     text = " to ".join(dict.fromkeys(texts))
@@ -48,7 +49,7 @@ def verdict(test):
     if "lacks" in test:
         return "not modelled"
     if all("passed" not in m for m in test["measures"]):
-        return "told"
+        return "reported"
     if test["passes"] == test["runs"]:
         return "passed"
     return "MISSED" if test["passes"] == 0 else f"MISSED with {test['runs'] - test['passes']} of {test['runs']} seeds"
@@ -58,8 +59,8 @@ def faults(test):
     return test["overlaps"] + test["wall_entries"] + test["obstacle_entries"]
 
 
-# The same test with several seeds, as one.
 def merged(runs):
+    """The same test with several seeds, as one."""
     test = dict(runs[0])
     if "lacks" in test:
         return test
@@ -73,27 +74,27 @@ def merged(runs):
     return test
 
 
-# A test of a standard is a row: what was measured, and what is asked in brackets.
 def standard_row(test):
+    """A test of a standard as a row: what was measured, and the target in brackets."""
     if "lacks" in test:
         return (test["test"], test["title"], test["lacks"], "not modelled")
-    told = []
+    cells = []
     for m in test["measures"]:
-        told.append(f"{m['name']}: {value(m)}" + (f" ({asked(m)}{', MISSED' if missed(m) else ''})" if asked(m) else ""))
-    return (test["test"], test["title"], "; ".join(told), verdict(test))
+        cells.append(f"{m['name']}: {value(m)}" + (f" ({target(m)}{', MISSED' if missed(m) else ''})" if target(m) else ""))
+    return (test["test"], test["title"], "; ".join(cells), verdict(test))
 
 
 def standards(name, tests):
-    count = {kind: sum(verdict(t).startswith(kind) for t in tests) for kind in ("passed", "MISSED", "told", "not modelled")}
+    count = {kind: sum(verdict(t).startswith(kind) for t in tests) for kind in ("passed", "MISSED", "reported", "not modelled")}
     looks, entered = sum(t.get("looks", 0) for t in tests), sum(faults(t) for t in tests if "looks" in t)
     return "\n".join([f"### {name}", "",
-                      f"{count['passed']} passed, {count['MISSED']} missed, {count['told']} only told, {count['not modelled']} not modelled. "
-                      f"Overlaps and walls entered: {entered} in {looks} looks.", "",
-                      table(["test", "", "measured (asked)", ""], map(standard_row, tests))])
+                      f"{count['passed']} passed, {count['MISSED']} missed, {count['reported']} only reported, {count['not modelled']} not modelled. "
+                      f"Overlaps and walls entered: {entered} in {looks} checks.", "",
+                      table(["test", "", "measured (target)", ""], map(standard_row, tests))])
 
 
-# Names are "scene: what": a column for each scene.
 def by_scene(test):
+    """Names are "scene: what": a column for each scene."""
     scenes, rows = [], {}
     for m in test["measures"]:
         scene, what = m["name"].split(": ", 1)
@@ -104,15 +105,15 @@ def by_scene(test):
 
 
 def measures(test):
-    return table(["measure", "here", "asked", ""],
-                 [(m["name"], value(m), asked(m), "" if "passed" not in m else "MISSED" if missed(m) else "met") for m in test["measures"]])
+    return table(["measure", "here", "target", ""],
+                 [(m["name"], value(m), target(m), "" if "passed" not in m else "MISSED" if missed(m) else "met") for m in test["measures"]])
 
 
 def section(test):
     recorded = test["test"] in ("walkers", "laboratory")
     lines = [f"### {test['test']}: {test['title']}", "", f"{test['method']} Range: {test['source']}.", "",
              by_scene(test) if recorded else measures(test), "",
-             f"{faults(test)} overlaps and walls entered in {test['looks']} looks; {test['simulated']:.0f} s simulated in {test['seconds']:.0f} s. "
+             f"{faults(test)} overlaps and walls entered in {test['looks']} checks; {test['simulated']:.0f} s simulated in {test['seconds']:.0f} s. "
              f"**{verdict(test)[0].upper()}{verdict(test)[1:]}.**"]
     for chart in test["charts"]:
         lines += ["", f"![{chart}](images/validate_{chart}.png)"]
@@ -128,7 +129,7 @@ def main():
     out = ROOT / "build/results/validate"
     out.mkdir(parents=True, exist_ok=True)
     people, runs = WORLDS / "pedestrians", []
-    for seed in range(options.seeds, 0, -1):  # The first last, so that its charts stay.
+    for seed in range(options.seeds, 0, -1):  # The first seed runs last, so that its charts stay.
         common = ("--json", "-o", out, "--threads", options.threads, "--seed", seed)
         found = run_json(PROGRAM, "validate", *options.tests, *common)["tests"]
         if not options.tests and people.is_dir():
@@ -139,7 +140,7 @@ def main():
     for test in found:
         for chart in test.get("charts", []):
             (IMAGES / f"validate_{chart}.png").write_bytes((out / f"{chart}.png").read_bytes())
-    text = [f"Machine: {machine()}. {options.seeds} seeds: a test passes if it does with all; numbers are told from the least to the most."]
+    text = [f"Machine: {machine()}. {options.seeds} seeds: a test passes if it passes with all; numbers are given from min to max."]
     for name, key in (("RiMEA", "rimea."), ("NIST TN 1822", "nist.")):
         tests = [t for t in found if t["test"].startswith(key)]
         if tests:

@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Bakes and verifies every built-in world and every model in ../shared/worlds; writes a table into
-docs/results.md. The default of 10 000 000 samples takes a minute or two on two cores.
+"""Bakes and verifies every built-in world and every model in ../shared/worlds.
+
+The default of 10 000 000 samples takes a minute or two on two cores.
 
 scripts/results verify [SAMPLES] [--coarse] [--only TEXT] [--threads T] [--print]
 
-SAMPLES are shared out evenly: to the worlds, their classes, and states, moves and points of surfaces.
+SAMPLES are distributed evenly over the worlds, their classes, and states, moves and points of surfaces.
 Exit code 1 if any world fails to bake or to pass."""
 import argparse
 import json
@@ -17,11 +18,13 @@ from all_worlds import worlds
 from results_page import PROGRAM, WORK, machine, say, table, write_between
 
 CLASSES = 4  # The default ones.
-FEET_MEAN, FEET_P95 = 0.010, 0.030  # Asked of feet_error at 0.1 m cells. [m]
-MOST_LOST = 0.01  # Asked, of what a body that is grown by a cell and a resolution could stand on.
-SURE, CLOSER = 3, 4  # Errors beyond which it is too much for sure; so many times the samples if it is not.
+FEET_MEAN, FEET_P95 = 0.010, 0.030  # Limits of feet_error at 0.1 m cells. [m]
+MAX_LOST = 0.01  # Of the places of a body that is grown by a cell and a resolution.
+SURE, CLOSER = 3, 4  # Errors beyond the limit that make a miss certain; else CLOSER times the samples are taken.
+
+
 class Failed(Exception):
-    """The program's own sentence."""
+    """Carries the program's error message."""
 
 
 def run(*words):
@@ -35,11 +38,11 @@ def run(*words):
     return json.loads(done.stdout)
 
 
-def look_closer(report, words, samples):
-    """What is lost to a class is known only within an error: where that leaves open whether it is too much, more samples tell."""
+def sample_more(report, words, samples):
+    """The loss of a class is known within an error: where that leaves the verdict open, takes more samples."""
     for at, entry in enumerate(report["classes"]):
         lost = entry["lost"]
-        if not MOST_LOST < lost["grown"] < MOST_LOST + SURE * lost["grown_error"]:
+        if not MAX_LOST < lost["grown"] < MAX_LOST + SURE * lost["grown_error"]:
             continue
         closer = run(*words, "--class", entry["class"], "--samples", CLOSER * samples)
         entry = report["classes"][at] = closer["classes"][0]
@@ -52,12 +55,12 @@ def look_closer(report, words, samples):
 
 
 def verify(name, model, options, samples, threads, coarse):
-    """One row of the table, the classes that miss something, and whether all is well."""
+    """One row of the table, a note for each class that fails, and the number of tests."""
     folder = WORK / "verify.throng"
     try:
         bake = run("bake", model, *options, "-o", folder, "--fresh", *coarse, "--cell", 0.1, "--resolution", 0.1, "--threads", threads)
         report = run("verify", folder, "--source", model, *options, "--samples", samples, "--threads", threads)
-        look_closer(report, ["verify", folder, "--source", model, *options, "--threads", threads], samples)
+        sample_more(report, ["verify", folder, "--source", model, *options, "--threads", threads], samples)
     except Failed as failure:
         return (name, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "FAILED"), [f"{name}: {failure}"], 0
     finally:
@@ -98,7 +101,7 @@ def main():
     everything = list(worlds())
     chosen = [world for world in everything if options.only in world[0]]
     if not chosen:
-        sys.exit(f"verify_all: no world's name has '{options.only}' in it")
+        sys.exit(f"verify: no world's name has '{options.only}' in it")
     samples = max(1, options.samples // (3 * CLASSES * len(everything)))
     rows, notes, tests = [], [], 0
     for name, model, arguments in chosen:
@@ -113,7 +116,7 @@ def main():
     text += table(["world", "triangles", "m2 adult", "tests", "entered", "unsupported", "torn",
                    "feet mean / p95 [mm]", "lost [%]", "lost exact [%]", "bake + verify [s]", "passes"], rows)
     if notes:
-        text += "\n\nWhat was missed:\n\n" + "\n".join(f"- {line}" for line in notes)
+        text += "\n\nMissed:\n\n" + "\n".join(f"- {line}" for line in notes)
     if options.only or options.print or options.coarse:
         print(text)
     else:

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-// docs/design/008-engine.md, "A place of one's own".
+// docs/design/008-engine.md, "Lane offset at corners".
 namespace throng {
 namespace {
 

@@ -11,7 +11,7 @@
 /// Lanes of a counter-flow. The nearest few are mostly one's own people until it is too late to
 /// make way for those who come towards one; so whoever is opposed counts, farther off, who goes
 /// which way on which side of him, and walks where most go his own.
-/// docs/design/008-engine.md has how the settings were found.
+/// docs/log/008-engine.md has how the settings were found.
 namespace throng::steer {
 
 struct LaneSettings {

@@ -13,7 +13,7 @@
 
 /// Steering by trying velocities: which of some velocities costs least, by how far it leads from
 /// the wish and how soon the body would touch another or a wall. A model of avoidance that knows
-/// nothing of how a crowd stores its avatars. docs/design/008-engine.md has how its settings were
+/// nothing of how a crowd stores its avatars. docs/log/008-engine.md has how its settings were
 /// found. Here as plainly as it can be written; steer/sampled_kernel.h is the same, bit by bit, for
 /// machines.
 namespace throng::steer {
@@ -24,7 +24,7 @@ struct Plane {
 };
 inline float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
-/// Sources of all numbers: docs/design/008-engine.md.
+/// Sources of all numbers: docs/log/008-engine.md.
 struct SampledSettings {
   float horizon = 2;          ///< Touching later than that is of no concern. [s, > 0]
   float straightness = 0.8f;  ///< Share of "less progress", beside "another velocity", in a cost.

@@ -164,7 +164,7 @@ TEST(Bake, ZoneBordersChangeNothing) {
     EXPECT_LE(whole.summary().zones, 2u) << name;
     EXPECT_GT(pieces.summary().zones, 8u) << name;
     // Margins may: seen from a zone, a floor of the next one can fall into pieces
-    // (docs/algorithms.md, sheets), and a margin ends at a piece's end.
+    // (docs/algorithms.md, layers), and a margin ends at a piece's end.
     expect_same(spots_of(whole, false), spots_of(pieces, false), name);
     EXPECT_EQ(whole.summary().walkable_area, pieces.summary().walkable_area) << name;
   }

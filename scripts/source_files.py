@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""The files that the checks look at: what git tracks or would, or the folder without what is built."""
+"""The files that the checks read: those that git tracks or would track; without git, the folder without build outputs."""
 import pathlib
 import subprocess
 
@@ -9,7 +9,7 @@ BUILT = {"build", "demo_out", "demo_out.part", ".git", ".cache", "__pycache__"}
 
 
 def source_files():
-    """Names relative to ROOT, in order; data of the tests left out."""
+    """Names relative to ROOT, sorted, without test data."""
     listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
                             cwd=ROOT, capture_output=True, check=False)
     if listed.returncode == 0 and listed.stdout:

@@ -12,7 +12,7 @@
 #include "throng/character.h"
 #include "throng_draw/draw.h"
 
-// Impostors in a browser, for scripts/web_table: the page says where everybody stands and where one
+// Impostors in a browser, for scripts/results web: the page says where everybody stands and where one
 // looks from, and takes the time.
 namespace throng {
 namespace {

@@ -199,7 +199,11 @@ struct CubeKey {
   uint32_t patch = 0;
   std::array<int64_t, 3> cube{};
 
-  friend auto operator<=>(const CubeKey&, const CubeKey&) = default;
+  friend bool operator==(const CubeKey&, const CubeKey&) = default;
+  // Not <=>: an array has none in the standard library that the page is compiled with.
+  friend bool operator<(const CubeKey& a, const CubeKey& b) {
+    return a.patch != b.patch ? a.patch < b.patch : a.cube < b.cube;
+  }
 };
 
 // std::floor() is a call where the oldest of machines must be able to go on.

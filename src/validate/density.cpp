@@ -211,7 +211,7 @@ Result<ValidationResult> fundamental_dense(const ValidationConfig& config, Conte
         {.name = at_density("speed", p.density), .value = p.speed, .unit = "m/s"});
     if (i > 0) rises = std::max(rises, p.speed - (*points)[i - 1].speed);
   }
-  result.measures.push_back({.name = "most that speed rises with density",
+  result.measures.push_back({.name = "largest rise of speed with density",
                              .value = rises,
                              .unit = "m/s",
                              .low = 0,
@@ -224,7 +224,7 @@ Result<ValidationResult> fundamental_dense(const ValidationConfig& config, Conte
 }
 
 constexpr const char* kMethod =
-    "A ring 6 m wide, middle 16 m from its centre, everybody wishing to go around at 1.34 m/s. "
+    "A ring 6 m wide, middle 16 m from its centre, desired speed 1.34 m/s around it. "
     "After "
     "30 s, over 30 s: classic density and mean speed along the ring in the 4 m around its middle "
     "line, "

@@ -250,7 +250,7 @@ Result<void> compare(const Experiment& e, const std::string& path, const Validat
     result.measures.push_back(
         {.name = std::string(e.title) + ": " + what, .value = value, .unit = unit});
   };
-  told("people filmed over the line", static_cast<double>(real.passed), "");
+  told("people recorded over the line", static_cast<double>(real.passed), "");
   told("people walked over the line", static_cast<double>(ours.passed), "");
   told("flow, real", real.flow, "p/s");
   told("flow, throng", ours.flow, "p/s");

@@ -255,10 +255,14 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
        .value = inside / (kCross * kCross * static_cast<double>(steps)),
        .unit = "1/m2"},
       {.name = "speed there", .value = speeds / inside, .unit = "m/s", .low = weidmann(1) / 2},
-      {.name = "left by came",
+      {.name = "left / entered",
        .value = static_cast<double>(left) / static_cast<double>(came),
        .low = 0.9},
+<<<<<<< HEAD
       {.name = "most who found no room to come in", .value = static_cast<double>(max_outside)},
+=======
+      {.name = "max waiting for room to enter", .value = static_cast<double>(most_outside)},
+>>>>>>> main
   };
   return result;
 }
@@ -333,7 +337,7 @@ const std::array<Test, 3> kTests{
           "ours: an order of 0.5 from 0.6 /m2 up, and half of the speed of [Weidmann93]"},
          lanes},
     Test{{"crossing", "Two streams that cross at right angles",
-          "Corridors 4 m wide, half a person a square metre coming in each, so 1 /m2 where they "
+          "Corridors 4 m wide, half a person a square metre entering each, so 1 /m2 where they "
           "cross; after the first third of 120 s.",
           "ours: no jam, that is half of [Weidmann93]'s speed at 1 /m2, and nine of ten who come "
           "leave"},

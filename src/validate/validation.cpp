@@ -17,17 +17,18 @@ struct RecordedTest {
 };
 
 const RecordedTest kRecorded[] = {
-    {{"walkers", "People in streets for 4.8 s, and four guesses where they will be",
+    {{"walkers", "People in streets for 4.8 s, and four predictions of their positions",
       "All who were filmed for 0.4 s before and 4.8 s after a beginning, one each 4.8 s, begin "
       "where "
       "they are as they walked in the last 0.4 s; no guess knows a destination or a wall. Errors: "
       "distance "
       "from where they were, mean of 12 positions and last. Least distances among those who are "
       "followed, at the same positions.",
-      "scenes of [PESV09], [LCL07]; nothing is asked, beside constant velocity, [HM95] and "
+      "scenes of [PESV09], [LCL07]; no target; beside constant velocity, [HM95] and "
       "[CAACD]"},
      validate::walkers},
-    {{"laboratory", "Corridors, a counter-flow and a gate, beside the people who were filmed there",
+    {{"laboratory",
+      "Corridors, a counter-flow and an entrance gate, beside recordings of these experiments",
       "The same walls; everybody comes in when and where he was filmed first, wishing for 1.34 "
       "m/s. "
       "Flow over a line by the time between people, without the first and the last tenth [SS10]; "

@@ -297,7 +297,7 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   const auto told = [&](const std::string& what, double value, const std::string& unit) {
     result.measures.push_back({.name = scene + ": " + what, .value = value, .unit = unit});
   };
-  told("people followed", people, "");
+  told("people predicted", people, "");
   told("left out, nearer to another than two bodies", static_cast<double>(no_room), "");
   for (size_t m = kOurs; m < kModels; ++m) {
     told(std::string("mean error, ") + kNames[m], scores[m].mean_error / people, "m");
@@ -307,9 +307,9 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
     std::ranges::sort(scores[m].nearest);
     const auto below = std::ranges::count_if(
         scores[m].nearest, [](double d) { return d < 2 * walker().radius - 1e-6; });
-    told(std::string("least distance, 5 % of people, ") + kNames[m],
+    told(std::string("min distance, 5 % of people, ") + kNames[m],
          quantile(scores[m].nearest, 0.05), "m");
-    told(std::string("least distance, half of people, ") + kNames[m],
+    told(std::string("min distance, half of people, ") + kNames[m],
          quantile(scores[m].nearest, 0.5), "m");
     told(std::string("bodies overlap, ") + kNames[m],
          100 * static_cast<double>(below) /

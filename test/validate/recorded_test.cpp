@@ -128,8 +128,8 @@ TEST_F(Recorded, ErrorsOfConstantVelocityAreThoseWorkedOutByHand) {
   EXPECT_NEAR(value_of(*result, "scene: mean error, social force [HM95]"), 0.65 / 2, 1e-5);
   // Nobody is near, so ours walks as straight, a tenth of a millimetre aside.
   EXPECT_NEAR(value_of(*result, "scene: mean error, throng"), 0.65 / 2, 1e-3);
-  EXPECT_NEAR(value_of(*result, "scene: least distance, half of people, real"), 20.1, 1e-5);
-  EXPECT_NEAR(value_of(*result, "scene: least distance, half of people, constant velocity"), 20,
+  EXPECT_NEAR(value_of(*result, "scene: min distance, half of people, real"), 20.1, 1e-5);
+  EXPECT_NEAR(value_of(*result, "scene: min distance, half of people, constant velocity"), 20,
               1e-5);
   EXPECT_EQ(value_of(*result, "scene: bodies overlap, throng"), 0);
   EXPECT_EQ(result->faults.overlaps, 0U);

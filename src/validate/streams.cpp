@@ -261,7 +261,7 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
 <<<<<<< HEAD
       {.name = "most who found no room to come in", .value = static_cast<double>(max_outside)},
 =======
-      {.name = "max waiting for room to enter", .value = static_cast<double>(most_outside)},
+      {.name = "max waiting for room to enter", .value = static_cast<double>(max_outside)},
 >>>>>>> main
   };
   return result;

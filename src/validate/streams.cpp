@@ -258,11 +258,7 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
       {.name = "left / entered",
        .value = static_cast<double>(left) / static_cast<double>(came),
        .low = 0.9},
-<<<<<<< HEAD
-      {.name = "most who found no room to come in", .value = static_cast<double>(max_outside)},
-=======
       {.name = "max waiting for room to enter", .value = static_cast<double>(max_outside)},
->>>>>>> main
   };
   return result;
 }

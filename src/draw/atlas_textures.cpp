@@ -146,7 +146,7 @@ Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
   const Atlas atlas = convert_atlas(packed, AtlasFormat::kRgba8);
   AtlasTextures out;
   out.shape.shape = atlas.shape;
-  out.reaches = reaches_of(atlas);
+  out.extents = extents_of(atlas);
   out.shape.clips = atlas.clips;
   out.shape.width = atlas.width;
   out.shape.height = atlas.height;

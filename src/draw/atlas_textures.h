@@ -21,7 +21,7 @@ struct AtlasTextures {
   void bind(const GlProgram& program) const;
 
   Atlas shape;                                  ///< Without texels.
-  std::vector<FigureReach> reaches;             ///< Of each view.
+  std::vector<FigureExtent> extents;            ///< Of each view.
   std::array<float, kBodyParts> part_bright{};  ///< On the mean, of linear light.
   size_t colour_bytes = 0;  ///< Of the largest level: blocks stay blocks where the card reads them.
   GlTexture colour, detail, views;

@@ -70,7 +70,7 @@ class CrowdPass {
     Level() { texels = sizeof(Instance) / sizeof(ImpostorInstance); }
     std::vector<Instance> instances;
     [[nodiscard]] std::span<Instance> rest() { return std::span(instances).subspan(used); }
-    void begin(size_t most);
+    void begin(size_t max_count);
     [[nodiscard]] GLsizei rows() const;
     void upload();
     /// Takes out those of which `is_hidden(run, instance)`, and returns how many.

@@ -82,7 +82,7 @@ Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
   Result<SceneCorners> corners = scene_corners(scene, origin, textures.of_texture);
   if (!corners) return corners.error();
   sort_into_chunks(*corners);
-  add_plain(*corners);
+  add_ground_plane(*corners);
   return PreparedScene(std::make_unique<State>(State{*std::move(corners), std::move(textures)}));
 }
 
@@ -218,7 +218,7 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, 
   begin(mesh.has_holes() ? surfaced_depth : depth);
   if (mesh.has_holes()) surfaced_depth.set("pictures", kPictureUnit);
   mesh.draw(chunks_in_view(mesh.chunks(), sun_from_world, {}));
-  mesh.draw_plain();
+  mesh.draw_ground_plane();
   if (mesh.has_holes()) begin(depth);
   props.draw();
   glDisable(GL_POLYGON_OFFSET_FILL);
@@ -256,7 +256,7 @@ size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
     mesh.draw(rest);
     drawn += triangles(rest);
   }
-  mesh.draw_plain();
+  mesh.draw_ground_plane();
   return drawn;
 }
 
@@ -448,13 +448,13 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   const Box3d& bounds = mesh.bounds();
   const double scene_radius = bounds.empty() ? 1 : 0.5 * length(bounds.max - bounds.min) + 1;
   const Vec3d scene_middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
-  const double reach = std::min(scene_radius, 1.6 * length(camera.target - camera.eye) + 20);
-  const Vec3d middle = reach < scene_radius ? camera.target : scene_middle;
+  const double half_side = std::min(scene_radius, 1.6 * length(camera.target - camera.eye) + 20);
+  const Vec3d middle = half_side < scene_radius ? camera.target : scene_middle;
   const Vec3d sun_right =
       cross({0, 1, 0}, to_sun) * (1 / std::max(1e-9, length(cross({0, 1, 0}, to_sun))));
   const Vec3d sun_up = cross(to_sun, sun_right);
   const Matrix sun_from_world =
-      parallel_view(sun_right, sun_up, to_sun, middle, reach, 2 * scene_radius + reach);
+      parallel_view(sun_right, sun_up, to_sun, middle, half_side, 2 * scene_radius + half_side);
   const Matrix clip_from_world = perspective(camera);
   // Little of it over the scene, whatever its size, and the sky's colour at the end of the plain.
   const auto haze = static_cast<float>(
@@ -498,7 +498,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
 
   const auto begin_scene = [&](const GlProgram& program, float prop) {
     begin(program);
-    program.set("bias", static_cast<float>(2.5 * reach / sun_pixels));
+    program.set("bias", static_cast<float>(2.5 * half_side / sun_pixels));
     program.set("soft", config.soft_shadows ? 1.0F : 0.0F);
     program.set("cut", cut);
     program.set("edges", static_cast<float>(config.edges));

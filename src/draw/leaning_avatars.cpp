@@ -26,7 +26,7 @@ LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const Pack
   const EyeCamera& camera = config.camera;
   const CameraAxes axes = camera_axes(camera);
   const double up = std::tan(0.5 * camera.field_of_view), right = up * camera.aspect;
-  const double reach = 0.5 * atlas.shape.side;
+  const double radius = 0.5 * atlas.shape.side;
   LevelCounts counts;
   for (size_t i = 0; i < a.x.size(); ++i) {
     const Vec3d feet{a.x[i], a.y[i], a.z[i]}, axis = crowd.ups[i];
@@ -34,9 +34,9 @@ LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const Pack
     const double depth = dot(from_eye, axes.forward);
     // Outside the sides of what a camera sees by more than the reach, each side a unit's measure.
     const auto outside = [&](Vec3d across, double slope) {
-      return std::fabs(dot(from_eye, across)) - depth * slope > reach * std::hypot(1, slope);
+      return std::fabs(dot(from_eye, across)) - depth * slope > radius * std::hypot(1, slope);
     };
-    if (depth + reach < camera.nearest || depth - reach > camera.furthest ||
+    if (depth + radius < camera.nearest || depth - radius > camera.furthest ||
         outside(axes.right, right) || outside(axes.up, up)) {
       continue;
     }

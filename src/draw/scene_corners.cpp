@@ -61,8 +61,8 @@ void mark_edges(std::vector<Side>& sides, const std::vector<Vec3d>& normals,
     for (end = begin;
          end < sides.size() && sides[end].low == first.low && sides[end].high == first.high;
          ++end) {
-      const double bend = dot(normals[first.triangle], normals[sides[end].triangle]);
-      smooth = smooth && std::abs(bend) > kSmooth;
+      const double cosine = dot(normals[first.triangle], normals[sides[end].triangle]);
+      smooth = smooth && std::abs(cosine) > kSmooth;
     }
     if (smooth && end - begin > 1) continue;
     for (size_t i = begin; i < end; ++i) {
@@ -171,14 +171,14 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin,
 }
 
 // One triangle: where two of that size meet and are clipped, the sky would show through.
-void add_plain(SceneCorners& scene) {
+void add_ground_plane(SceneCorners& scene) {
   if (scene.bounds.empty()) return;
-  const double reach = 40 * length(scene.bounds.max - scene.bounds.min) + 100;
+  const double half_side = 40 * length(scene.bounds.max - scene.bounds.min) + 100;
   const auto middle = (scene.bounds.min + scene.bounds.max) * 0.5;
   const double y = scene.bounds.min.y - 0.02;
   const auto corner = [&](double x, double z) {
-    scene.corners.push_back({{static_cast<float>(middle.x + x * reach), static_cast<float>(y),
-                              static_cast<float>(middle.z + z * reach)},
+    scene.corners.push_back({{static_cast<float>(middle.x + x * half_side), static_cast<float>(y),
+                              static_cast<float>(middle.z + z * half_side)},
                              {0, 127, 0},
                              0});
   };

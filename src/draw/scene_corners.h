@@ -54,6 +54,6 @@ struct SceneCorners {
 [[nodiscard]] Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin,
                                                  std::span<const LayerOf> textures = {});
 /// A plain just under the lowest point, out to the haze, for the scene to stand on.
-void add_plain(SceneCorners& scene);
+void add_ground_plane(SceneCorners& scene);
 
 }  // namespace throng

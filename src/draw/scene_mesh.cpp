@@ -73,7 +73,7 @@ void SceneMesh::draw(std::vector<uint32_t> chunks) const {
   draw_corners(first, count);
 }
 
-void SceneMesh::draw_plain() const {
+void SceneMesh::draw_ground_plane() const {
   const uint32_t first = chunks_.empty() ? 0 : chunks_.back().first + chunks_.back().count;
   draw_corners(first, static_cast<uint32_t>(corners_) - first);
 }

@@ -222,9 +222,9 @@ void show(vec3 texel, vec3 right_of_texels) {
   float in_front = (float(mask & 31u) - 16.0) / 30.0 * side + 0.05;
   vec2 zw = depth + depth_ahead * in_front;
   gl_FragDepth = clamp(0.5 * zw.x / zw.y + 0.5, 0.0, 1.0);
-  vec2 side_ways = (d.xy * 255.0 - 128.0) / 127.0;
-  vec3 n = normalize(right_of_texels * side_ways.x + up * side_ways.y +
-                     towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
+  vec2 lateral = (d.xy * 255.0 - 128.0) / 127.0;
+  vec3 n = normalize(right_of_texels * lateral.x + up * lateral.y +
+                     towards * sqrt(max(0.04, 1.0 - dot(lateral, lateral))));
   uint part = mask >> 5;
   vec3 own = stored.rgb * stored.rgb;
   own = dressed(own, part, outfit);
@@ -479,9 +479,9 @@ uniform usampler2D views;
 uniform int first;
 uniform float side;    // Of a view [m].
 uniform float pixels;  // Along a view's side.
-out vec2 spot;  // On the card, in texels of a view, from its upper left corner.
+out vec2 card_texel;  // On the card, in texels of a view, from its upper left corner.
 flat out vec3 limits;  // Of the pattern: where the second, third and fourth view begin.
-// Where in its page a spot is: x times the first plus the second, y plus the third; the page.
+// Where in its page a card_texel is: x times the first plus the second, y plus the third; the page.
 flat out vec4 map0, map1, map2, map3;
 flat out vec4 box0, box1, box2, box3;  // The rectangle in its page.
 vec2 low, high;
@@ -511,8 +511,8 @@ void main() {
   limits.x = (1.0 - next.x) * (1.0 - next.y);
   limits.y = 1.0 - next.y;
   limits.z = limits.y + (1.0 - next.x) * next.y;
-  spot = mix(low, high, vec2(float(k & 1), float(k >> 1)));
-  stand(uintBitsToFloat(data.xyz), (spot - 0.5 * pixels) * vec2(1.0, -1.0) * (side / pixels),
+  card_texel = mix(low, high, vec2(float(k & 1), float(k >> 1)));
+  stand(uintBitsToFloat(data.xyz), (card_texel - 0.5 * pixels) * vec2(1.0, -1.0) * (side / pixels),
         data.w >> 21);
 }
 )";
@@ -520,20 +520,20 @@ void main() {
 
 std::string blended_fragment() {
   return std::string(kHead) + kLight + kPattern + kClothes + kFigure + R"(
-in vec2 spot;
+in vec2 card_texel;
 flat in vec3 limits;
 flat in vec4 map0, map1, map2, map3;
 flat in vec4 box0, box1, box2, box3;
 void main() {
   vec2 page = vec2(textureSize(albedo, 0).xy);
-  vec2 a_right = dFdx(spot) / page, a_down = dFdy(spot) / page;
+  vec2 a_right = dFdx(card_texel) / page, a_down = dFdy(card_texel) / page;
   float rank = threshold();
   if (rank < shown_from || rank > shown_to) discard;
   // Those pixels that this level of detail shows are dealt out to the views.
   float share = (rank - shown_from) / max(shown_to - shown_from, 1e-3);
   vec4 map = share < limits.y ? share < limits.x ? map0 : map1 : share < limits.z ? map2 : map3;
   vec4 box = share < limits.y ? share < limits.x ? box0 : box1 : share < limits.z ? box2 : box3;
-  vec2 at = vec2(map.x * spot.x + map.y, spot.y + map.z);
+  vec2 at = vec2(map.x * card_texel.x + map.y, card_texel.y + map.z);
   if (any(lessThan(at, box.xy)) || any(greaterThan(at, box.zw))) discard;
   vec3 texel = vec3(at / page, map.w);
   if (textureGrad(albedo, texel, a_right, a_down).a < 0.5) discard;

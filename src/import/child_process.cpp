@@ -23,7 +23,7 @@
 namespace throng {
 namespace {
 
-// What this process holds already, which a child inherits and which counts against its limit.
+// The address space of this process, which a child inherits and which counts against its limit.
 uint64_t own_data_bytes() {
   unsigned long long pages[6] = {};
   std::FILE* file = std::fopen("/proc/self/statm", "r");
@@ -52,7 +52,7 @@ void prepare_child(const ChildLimits& limits, uint64_t own_bytes) {
     setrlimit(RLIMIT_DATA, &memory);
   }
   const int nowhere = open("/dev/null", O_RDWR);
-  if (nowhere >= 0) {  // A library must not print, and what it calls neither.
+  if (nowhere >= 0) {  // Neither the library nor what it calls may print.
     dup2(nowhere, 1);
     dup2(nowhere, 2);
   }

@@ -6,9 +6,9 @@
 #include "import/builtin_table.h"
 #include "import/world_shapes.h"
 
-// Two terraces, 3.06 m and 6.12 m over a yard. Every bay (4 m along z) has its own way up from the
+// Two terraces, 3.06 m and 6.12 m over a yard. Every bay (4 m along z) has its own climb from the
 // yard (x = 0) to the first terrace (x = 12), and another one from there (x = 18) to the second
-// (x = 30). Some are made for nobody: 0.51 m risers, a 50 degree slope.
+// (x = 30). Some fit no avatar: 0.51 m risers, a 50 degree slope.
 namespace throng::builtin {
 namespace {
 
@@ -114,7 +114,7 @@ void dogleg_up(WorldBuilder& b, double x, double y, double z) {
   landing(b, foot, x + kReach, y + kStorey, z);
 }
 
-void way_up(WorldBuilder& b, Kind kind, double x, double y, double z) {
+void add_climb(WorldBuilder& b, Kind kind, double x, double y, double z) {
   const double top = y + kStorey;
   if (const Tread& t = kTreads[kind]; t.risers > 0) {
     const double rise = kStorey / t.risers;
@@ -177,7 +177,7 @@ void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config) {
   }
   const double pad = (depth - bays * kBay) / 2 + (kBay - kWidth) / 2;
   double last = 0.1;
-  for (int32_t i = 0; i <= bays; ++i) {  // Railings and posts between the ways up.
+  for (int32_t i = 0; i <= bays; ++i) {  // Railings and posts between the climbs.
     const double z = i < bays ? pad + i * kBay : depth - 0.1;
     railing(b, {kFirst + 0.05, kStorey, last}, {kFirst + 0.05, kStorey, z});
     railing(b, {17.95, kStorey, last}, {17.95, kStorey, z});
@@ -199,9 +199,9 @@ void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config) {
     const Kind low = bay < kKinds ? static_cast<Kind>(bay) : pick(0);
     const Kind high = bay < kKinds ? static_cast<Kind>((bay + 5) % kKinds) : pick(1);
     b.node(fmt::format("bay {}: {}", i, kNames[low]));
-    way_up(b, low, 0, 0, pad + i * kBay);
+    add_climb(b, low, 0, 0, pad + i * kBay);
     b.node(fmt::format("bay {}, upper: {}", i, kNames[high]));
-    way_up(b, high, 18, kStorey, pad + i * kBay);
+    add_climb(b, high, 18, kStorey, pad + i * kBay);
   }
 }
 

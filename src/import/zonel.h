@@ -11,8 +11,8 @@
 namespace throng {
 
 /// Reads one zone (version 3 to 5): its patches, with their neighbours in the same zone, and in
-/// RawScene::zone what lies beyond. The node is the zone's name, "3_AC". Fails with kBadFile and
-/// the place.
+/// RawScene::zone the edges and corners to other zones. The node is the zone's name, "3_AC". Fails
+/// with kBadFile and the place.
 [[nodiscard]] Result<RawScene> read_zonel(std::string_view bytes, const ReadOptions& options,
                                           Context& context);
 

@@ -21,8 +21,8 @@ Between find_keys(const std::vector<double>& times, double time) {
   if (after == times.begin()) return {};
   const auto low = static_cast<size_t>(after - times.begin()) - 1;
   if (after == times.end()) return {low, low, 0};
-  const double gap = times[low + 1] - times[low];
-  return {low, low + 1, gap > 0 ? (time - times[low]) / gap : 0};
+  const double interval = times[low + 1] - times[low];
+  return {low, low + 1, interval > 0 ? (time - times[low]) / interval : 0};
 }
 
 Vec3d value_at(const std::vector<double>& times, const std::vector<Vec3d>& values, double time) {

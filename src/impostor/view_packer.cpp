@@ -43,7 +43,7 @@ PageSize pack_views(std::span<AtlasView> views) {
   // Rows go to the first page with room; the lowest height of a page that needs no more pages.
   const int32_t total = std::accumulate(
       rows.begin(), rows.end(), 0, [](int32_t sum, const Row& row) { return sum + row.height; });
-  const int32_t fewest = std::max(1, (total + kPageHeight - 1) / kPageHeight);
+  const int32_t min_pages = std::max(1, (total + kPageHeight - 1) / kPageHeight);
   std::vector<int32_t> page_of(rows.size()), top_of(rows.size());
   const auto place = [&](int32_t height) {
     std::vector<int32_t> filled;
@@ -58,7 +58,7 @@ PageSize pack_views(std::span<AtlasView> views) {
     return static_cast<int32_t>(filled.size());
   };
   PageSize size{.width = kPageWidth, .height = kPageHeight, .pages = place(kPageHeight)};
-  for (int32_t height = (total / fewest + 3) / 4 * 4; height < kPageHeight; height += 4) {
+  for (int32_t height = (total / min_pages + 3) / 4 * 4; height < kPageHeight; height += 4) {
     if (rows.empty() || height < rows[0].height || place(height) > size.pages) continue;
     size.height = height;
     break;

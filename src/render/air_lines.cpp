@@ -61,8 +61,8 @@ class LineFinder {
   void add_links(const AirCube& cube, std::vector<AirLine>& lines) const {
     const Vec3d here = middle(cube);
     for (const auto& face : kFaces) {
-      const auto beyond = [&](int32_t at, int32_t way) {
-        return way == 0 ? at + cube.side / 2 : way > 0 ? at + cube.side : at - 1;
+      const auto beyond = [&](int32_t at, int32_t direction) {
+        return direction == 0 ? at + cube.side / 2 : direction > 0 ? at + cube.side : at - 1;
       };
       const auto next =
           cube_at(beyond(cube.x, face[0]), beyond(cube.y, face[1]), beyond(cube.z, face[2]));

@@ -31,11 +31,11 @@ struct Frame {
   }
 };
 
-// The least round step that makes at most `most` ticks.
-double tick_step(double range, double most) {
-  double step = round_below(range / most);
+// The smallest round step that makes at most `max_ticks` ticks.
+double tick_step(double range, double max_ticks) {
+  double step = round_below(range / max_ticks);
   if (!(step > 0)) return range;  // hardly more than the smallest number
-  while (range / step > most + 1e-9) step = round_below(step * 2.5 * (1 + 1e-9));
+  while (range / step > max_ticks + 1e-9) step = round_below(step * 2.5 * (1 + 1e-9));
   return step;
 }
 
@@ -209,14 +209,14 @@ Result<Image> draw_chart(const Chart& chart) {
   frame.plot = {90 * u, head + 34 * u, chart.width - 130 * u, 520 * u};
   frame.x_low = std::min(0.0, chart.x.front());
   frame.x_high = chart.x.back();
-  double most = chart.most;
-  if (most == 0) {
+  double top = chart.most;
+  if (top == 0) {
     for (const ChartLine& line : chart.lines) {
-      for (const double v : line.values) most = std::max(most, v);
+      for (const double v : line.values) top = std::max(top, v);
     }
-    most = most > 0 ? most * 1.05 : 1;
+    top = top > 0 ? top * 1.05 : 1;
   }
-  frame.y_high = most;
+  frame.y_high = top;
 
   Canvas canvas(chart.width, static_cast<int32_t>(frame.plot.y + frame.plot.height + 78 * u),
                 kPaper);

@@ -138,21 +138,21 @@ class DepthCanvas {
   [[nodiscard]] bool clip(Seen& a, Seen& b, double rim) const {
     double first = 0, last = 1;
     const auto keep_within = [&](double from, double to, double size) {
-      const double low = -rim - 1 - from, high = size + rim + 1 - from, way = to - from;
-      if (way == 0) {
+      const double low = -rim - 1 - from, high = size + rim + 1 - from, delta = to - from;
+      if (delta == 0) {
         if (low > 0 || high < 0) last = -1;
         return;
       }
-      first = std::max(first, (way > 0 ? low : high) / way);
-      last = std::min(last, (way > 0 ? high : low) / way);
+      first = std::max(first, (delta > 0 ? low : high) / delta);
+      last = std::min(last, (delta > 0 ? high : low) / delta);
     };
     keep_within(a.x, b.x, canvas_.width());
     keep_within(a.y, b.y, canvas_.height());
     const bool finite = std::isfinite(a.x + a.y + b.x + b.y);
     if (!finite || !(first <= last)) return false;
-    const Seen from = a, way{b.x - a.x, b.y - a.y, b.depth - a.depth};
+    const Seen from = a, delta{b.x - a.x, b.y - a.y, b.depth - a.depth};
     const auto at = [&](double t) {
-      return Seen{from.x + t * way.x, from.y + t * way.y, from.depth + t * way.depth};
+      return Seen{from.x + t * delta.x, from.y + t * delta.y, from.depth + t * delta.depth};
     };
     if (first > 0) a = at(first);
     if (last < 1) b = at(last);
@@ -334,20 +334,20 @@ class NodePicture {
   // of those who have room there. [code]
   [[nodiscard]] uint8_t inclination(uint32_t node, const NodeInfo& info) {
     if (info.kind != PatchKind::kLevelTile) return info.inclination;
-    uint8_t most = info.inclination, code = 0;
+    uint8_t limit = info.inclination, code = 0;
     if (config_.avatar_class >= 0) {
       const auto c = static_cast<size_t>(config_.avatar_class);
-      most = std::min(most, summary_.bins.inclination_code(summary_.classes[c].max_slope));
+      limit = std::min(limit, summary_.bins.inclination_code(summary_.classes[c].max_slope));
     }
     const int32_t size = 64 >> info.level;
     const uint64_t cells = info.cells != 0 ? cells_of(node, info) : 0;
-    for (int32_t i = 0; i < size * size && code < most; ++i) {
+    for (int32_t i = 0; i < size * size && code < limit; ++i) {
       if (info.cells != 0 && (cells >> i & 1) == 0) continue;
       const double degrees =
           slopes_.at(info.source, info.s * size + i % size, info.t * size + i / size);
       code = std::max(code, summary_.bins.inclination_code(degrees));
     }
-    return std::min(code, most);
+    return std::min(code, limit);
   }
 
   void surface(DepthCanvas& canvas, uint32_t node) {
@@ -473,9 +473,9 @@ class NodePicture {
     keep_within(a.x, b.x, plan_.min.x, plan_.max.x);
     keep_within(a.z, b.z, plan_.min.z, plan_.max.z);
     if (!(first <= last)) return false;
-    const Vec3d from = a, way = b - a;
-    if (first > 0) a = from + way * first;
-    if (last < 1) b = from + way * last;
+    const Vec3d from = a, delta = b - a;
+    if (first > 0) a = from + delta * first;
+    if (last < 1) b = from + delta * last;
     return true;
   }
 
@@ -489,7 +489,7 @@ class NodePicture {
       }
     };
     stroke(9, kPaper);
-    stroke(5, kWay);
+    stroke(5, kPath);
   }
 
   void letter(Canvas& sheet) const {

@@ -80,14 +80,14 @@ void find_pieces(const LevelTileContent& tile, size_t level, std::vector<Piece>&
 // storeys that are not shown have no home: they join the nearest storey, or are not shown either.
 // At home, a piece keeps the cells where no larger one is: ground under the low end of a ramp has
 // the ramp's storey.
-std::vector<size_t> deal_pieces(std::span<Piece> pieces, std::span<const size_t> home,
-                                const LocalStoreys& local) {
+std::vector<size_t> assign_pieces(std::span<Piece> pieces, std::span<const size_t> home,
+                                  const LocalStoreys& local) {
   constexpr double kAtHome = 1500, kJustRight = 500, kReach = 2500;  // mm
   std::vector<size_t> order(pieces.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return pieces[a].count > pieces[b].count; });
-  std::vector<CellMask> taken(local.storey.size());
+  std::vector<CellMask> occupied(local.storey.size());
   std::vector<size_t> storey(pieces.size(), kNotShown);
   for (const size_t p : order) {
     const size_t own = home[pieces[p].level];
@@ -98,20 +98,20 @@ std::vector<size_t> deal_pieces(std::span<Piece> pieces, std::span<const size_t>
     const bool stray = !homeless && distance(at) > kAtHome;
     size_t best = homeless ? kNotShown : at;
     if (homeless || stray) {
-      double least = homeless ? kReach : kJustRight;
+      double smallest = homeless ? kReach : kJustRight;
       for (size_t s = 0; s < local.storey.size(); ++s) {
-        if (distance(s) >= least) continue;
-        if ((taken[s] & pieces[p].cells).any()) {
+        if (distance(s) >= smallest) continue;
+        if ((occupied[s] & pieces[p].cells).any()) {
           if (stray && distance(at) > kReach && best == at) best = kNotShown;
           continue;
         }
-        least = distance(s);
+        smallest = distance(s);
         best = s;
       }
     }
     if (best == kNotShown) continue;
-    pieces[p].cells &= ~taken[best];
-    taken[best] |= pieces[p].cells;
+    pieces[p].cells &= ~occupied[best];
+    occupied[best] |= pieces[p].cells;
     storey[p] = local.storey[best];
   }
   return storey;
@@ -124,7 +124,7 @@ uint64_t add_tile(std::span<const LevelTileContent> levels, std::span<const size
                   std::span<const size_t> place, std::vector<std::vector<Sums>>& sums) {
   std::vector<Piece> pieces;
   for (size_t l = 0; l < levels.size(); ++l) find_pieces(levels[l], l, pieces);
-  const std::vector<size_t> storeys = deal_pieces(pieces, home, local);
+  const std::vector<size_t> storeys = assign_pieces(pieces, home, local);
   uint64_t left_out = 0;
   for (size_t p = 0; p < pieces.size(); ++p) {
     if (storeys[p] == kNotShown) {

@@ -45,14 +45,14 @@ struct DrawnPoint {
 };
 
 /// Points along a way, two a texel, where it is within a metre of the floor of a storey.
-[[nodiscard]] std::vector<DrawnPoint> place_way(std::span<const Vec3d> way,
-                                                std::span<const StoreyRaster> storeys,
-                                                const RasterGrid& grid);
+[[nodiscard]] std::vector<DrawnPoint> place_path(std::span<const Vec3d> path,
+                                                 std::span<const StoreyRaster> storeys,
+                                                 const RasterGrid& grid);
 
 /// What is drawn over the floors.
 struct PlacedMarks {
   std::vector<PlacedAvatar> avatars;
-  std::vector<DrawnPoint> way;
+  std::vector<DrawnPoint> path;
 };
 
 /// Storey `index` seen from above, x to the right, z down; a texel is a square of `block` pixels.
@@ -62,7 +62,7 @@ void draw_plan(Canvas& canvas, int32_t x, int32_t y, double pixels_per_texel,
                const HeightScale& scale, const PlacedMarks& marks);
 
 /// Free space over one cell of the section. [m]
-struct SectionGap {
+struct SectionSpan {
   double floor = 0;
   double ceiling = 0;
   bool stands = false;
@@ -72,7 +72,7 @@ struct SectionGap {
 /// lowest first.
 struct Section {
   double z = 0;  ///< Where it is cut. [m]
-  std::vector<std::vector<SectionGap>> gaps;
+  std::vector<std::vector<SectionSpan>> free_spans;
 };
 
 [[nodiscard]] Section cut_section(const PictureWorld& world, const RasterGrid& grid, int32_t row,

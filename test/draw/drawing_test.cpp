@@ -96,11 +96,11 @@ TEST(GlDrawing, AtlasesOfBlocksStayBlocksAndLookTheSame) {
     ASSERT_TRUE(empty);
     for (size_t i = 0; i < a->rgb.size(); i += 3) {
       const auto far = [&](const Image& image, const Image& other) {
-        int32_t most = 0;
+        int32_t largest = 0;
         for (size_t c = i; c < i + 3; ++c) {
-          most = std::max(most, std::abs(image.rgb[c] - other.rgb[c]));
+          largest = std::max(largest, std::abs(image.rgb[c] - other.rgb[c]));
         }
-        return most > 8;
+        return largest > 8;
       };
       people += far(*b, *empty) ? 1 : 0;
       differ += far(*a, *b) ? 1 : 0;

@@ -272,7 +272,7 @@ TEST(Materials, TexturesThatAreDamagedOrTooLargeAreRefusedInAClause) {
 
 // Decoders of the kind that the child process is for, told by the names of what they read.
 Result<Texture> fragile_decoder(const TextureSource& source, const std::string& model,
-                                int32_t most) {
+                                int32_t max_side) {
   if (source.name == "crash") std::raise(SIGSEGV);
   if (source.name == "abort") std::abort();
   if (source.name == "leave") _exit(0);
@@ -282,7 +282,7 @@ Result<Texture> fragile_decoder(const TextureSource& source, const std::string& 
   if (source.name == "greedy") {
     for (std::vector<std::vector<char>> all;;) all.emplace_back(size_t{16} << 20, 'x');
   }
-  return read_texture(source, model, most);
+  return read_texture(source, model, max_side);
 }
 
 RawScene scene_with_textures(const std::vector<std::string>& names) {

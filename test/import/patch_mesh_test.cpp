@@ -153,14 +153,14 @@ double distance_to_part(const BezierPatch& patch, const PatchPart& part, Vec3d a
 // Every corner of a triangle is a point of the surface within its part, as far off as is told.
 TEST(PatchMesh, EveryTriangleTellsItsPartOfThePatch) {
   size_t rings = 0;
-  double most = 0;
+  double largest = 0;
   for (const double jitter : {0.0, 0.05}) {
     const PatchSet set = test::make_net({.side = 3, .jitter = jitter, .seed = 6});
     const PatchMesh mesh = cut(set, 0.02);
     ASSERT_EQ(mesh.parts.size(), mesh.triangles.size());
     ASSERT_EQ(mesh.off.size(), set.size());
     for (uint32_t p = 0; p < set.size(); ++p) {
-      most = std::fmax(most, mesh.off[p]);
+      largest = std::fmax(largest, mesh.off[p]);
       for (uint32_t t = mesh.first[p]; t < mesh.first[p + 1]; t += 5) {
         const PatchPart& part = mesh.parts[t];
         ASSERT_LE(part.s0, part.s1);
@@ -175,7 +175,7 @@ TEST(PatchMesh, EveryTriangleTellsItsPartOfThePatch) {
     }
   }
   EXPECT_GT(rings, 10u);
-  EXPECT_GT(most, 0.01);  // The neighbours' curves.
+  EXPECT_GT(largest, 0.01);  // The neighbours' curves.
 }
 
 // Bent by its corners alone: all of its gap comes from the mixed derivative.

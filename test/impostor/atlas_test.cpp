@@ -65,7 +65,7 @@ std::array<uint8_t, 4> texel(const Atlas& atlas, const AtlasView& view, int32_t 
 TEST(Atlas, ViewsKeepToBlocksDoNotOverlapAndHaveAnEmptyBorder) {
   const Atlas& atlas = small_atlas();
   ASSERT_EQ(atlas.views.size(), 8U * 3 * 6);
-  std::vector<uint8_t> taken(atlas.mask.size());
+  std::vector<uint8_t> used(atlas.mask.size());
   for (const AtlasView& v : atlas.views) {
     EXPECT_EQ((v.x | v.y | v.width | v.height) % 4, 0);
     ASSERT_LE(v.x + v.width, atlas.width);
@@ -75,7 +75,7 @@ TEST(Atlas, ViewsKeepToBlocksDoNotOverlapAndHaveAnEmptyBorder) {
       for (int32_t x = 0; x < v.width; ++x) {
         const size_t at = static_cast<size_t>(v.page * atlas.height + v.y + y) * atlas.width +
                           static_cast<size_t>(v.x + x);
-        EXPECT_EQ(taken[at]++, 0);
+        EXPECT_EQ(used[at]++, 0);
         const uint8_t alpha = atlas.colour[at * 4 + 3];
         const bool border = x == 0 || y == 0 || x + 1 == v.width || y + 1 == v.height;
         EXPECT_TRUE(!border || alpha == 0);
@@ -223,12 +223,12 @@ TEST(Atlas, SameBytesForAnyNumberOfWorkers) {
 TEST(Atlas, EachFormatKeepsItsColoursAsWellAsAsked) {
   const Atlas& atlas = small_atlas();
   EXPECT_EQ(atlas_psnr(atlas, atlas), INFINITY);
-  const double least[] = {INFINITY, 38, 34, 34, 34, 35};
+  const double min_psnr[] = {INFINITY, 38, 34, 34, 34, 35};
   for (int32_t f = 0; f < kAtlasFormats; ++f) {
     const auto format = static_cast<AtlasFormat>(f);
     const Atlas other = convert_atlas(atlas, format);
     EXPECT_EQ(other.colour.size(), packed_colour_bytes(atlas, format));
-    EXPECT_GE(atlas_psnr(atlas, other), least[f]) << word_for(format);
+    EXPECT_GE(atlas_psnr(atlas, other), min_psnr[f]) << word_for(format);
     // Back and forth again changes nothing more.
     const Atlas back = convert_atlas(other, AtlasFormat::kRgba8);
     EXPECT_EQ(atlas_psnr(back, other), INFINITY);
@@ -402,14 +402,14 @@ TEST(ViewPacker, ManyViewsFillPagesWithLittleWaste) {
   EXPECT_GT(size.pages, 1);
   const uint64_t total = uint64_t(size.width) * size.height * size.pages;
   EXPECT_LT(total, area + area / 10);
-  std::vector<uint8_t> taken(total);
+  std::vector<uint8_t> used(total);
   for (const AtlasView& v : views) {
     ASSERT_TRUE(v.page < size.pages && v.x + v.width <= size.width &&
                 v.y + v.height <= size.height);
     for (int32_t y = 0; y < v.height; ++y) {
       for (int32_t x = 0; x < v.width; ++x) {
         ASSERT_EQ(
-            taken[(static_cast<size_t>(v.page) * size.height + v.y + y) * size.width + v.x + x]++,
+            used[(static_cast<size_t>(v.page) * size.height + v.y + y) * size.width + v.x + x]++,
             0);
       }
     }

@@ -130,8 +130,8 @@ TEST(Etc2Codec, ASlopeIsKeptToThreeSteps) {
 TEST(Etc2Codec, KeepsColoursAsWellAsAsked) {
   // Mean squares of 8 bits, by how many colours a block has: one colour has more bits in planar
   // mode, two have T and H, and sixteen at random are too many for any.
-  const std::map<uint64_t, double> most{{1, 5}, {2, 18}, {3, 460}, {16, 1700}};
-  for (const auto& [kinds, limit] : most) {
+  const std::map<uint64_t, double> limits{{1, 5}, {2, 18}, {3, 460}, {16, 1700}};
+  for (const auto& [kinds, limit] : limits) {
     double sum = 0;
     for (uint64_t number = 0; number < 400; ++number) {
       const ColourBlock block = test::random_block(kSeed, number * 7 + kinds, kinds, 6);

@@ -18,14 +18,14 @@ namespace {
 // Two storeys of 40 x 20 m, 3 m apart, and a ramp between them along the middle.
 Scene two_storeys_scene() {
   Scene scene;
-  const auto sheet = [&](double x0, double z0, double x1, double z1, double y0, double y1) {
+  const auto floor_quad = [&](double x0, double z0, double x1, double z1, double y0, double y1) {
     scene.add_quad({x0, y0, z0}, {x0, y0, z1}, {x1, y1, z1}, {x1, y1, z0});
   };
-  sheet(0, 0, 40, 20, 0, 0);
-  sheet(0, 0, 40, 8, 3, 3);
-  sheet(0, 12, 40, 20, 3, 3);
-  sheet(28, 8, 40, 12, 3, 3);
-  sheet(10, 8, 28, 12, 0, 3);
+  floor_quad(0, 0, 40, 20, 0, 0);
+  floor_quad(0, 0, 40, 8, 3, 3);
+  floor_quad(0, 12, 40, 20, 3, 3);
+  floor_quad(28, 8, 40, 12, 3, 3);
+  floor_quad(10, 8, 28, 12, 0, 3);
   return scene;
 }
 World two_storeys() {
@@ -61,11 +61,11 @@ TEST(NodePicture, DrawsNodesAndAWayFromFarBeyondThem) {
   const auto all = draw_nodes(*nodes, config);
   ASSERT_TRUE(all) << all.error().message;
   config.path = {{-1e13, 1, 10}, {1e13, 1, 10}};
-  const auto with_way = draw_nodes(*nodes, config);
-  ASSERT_TRUE(with_way);
-  ASSERT_EQ(with_way->rgb.size(), all->rgb.size());
+  const auto with_path = draw_nodes(*nodes, config);
+  ASSERT_TRUE(with_path);
+  ASSERT_EQ(with_path->rgb.size(), all->rgb.size());
   size_t changed = 0;
-  for (size_t i = 0; i < all->rgb.size(); i += 3) changed += with_way->rgb[i] != all->rgb[i];
+  for (size_t i = 0; i < all->rgb.size(); i += 3) changed += with_path->rgb[i] != all->rgb[i];
   EXPECT_GT(changed, 1000u);  // from side to side
   config.path.clear();
   config.storey = 1;

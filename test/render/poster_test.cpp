@@ -160,12 +160,12 @@ TEST(Views, TheSectionSeesWhatIsThere) {
   const RasterGrid grid = make_raster_grid(house.world, 64, 64);
   const Section section = cut_section(house.world, grid, 35, 64);
   EXPECT_DOUBLE_EQ(section.z, 17.75);
-  ASSERT_EQ(section.gaps[20].size(), 2u);
-  EXPECT_EQ(section.gaps[20][0].ceiling, 2.8);
-  EXPECT_EQ(section.gaps[20][1].floor, 3);
-  EXPECT_TRUE(std::isinf(section.gaps[20][1].ceiling));
-  EXPECT_EQ(section.gaps[35].size(), 1u) << "the shaft";
-  EXPECT_TRUE(section.gaps[20][0].stands);
+  ASSERT_EQ(section.free_spans[20].size(), 2u);
+  EXPECT_EQ(section.free_spans[20][0].ceiling, 2.8);
+  EXPECT_EQ(section.free_spans[20][1].floor, 3);
+  EXPECT_TRUE(std::isinf(section.free_spans[20][1].ceiling));
+  EXPECT_EQ(section.free_spans[35].size(), 1u) << "the shaft";
+  EXPECT_TRUE(section.free_spans[20][0].stands);
 }
 
 TEST(Views, TheSectionLeavesTheMiddleOnlyForMuchMoreFloor) {
@@ -215,7 +215,7 @@ TEST(Poster, DrawsAWayOnTheStoreyWhoseFloorItIsOn) {
     config.path = {{4, height, 4}, {20, height, 4}, {20, height, 12}};
     const auto image = draw_poster(house.world, {}, {}, config);
     EXPECT_TRUE(image);
-    return image ? count_colour(*image, kWay) : 0;
+    return image ? count_colour(*image, kPath) : 0;
   };
   const size_t in_legend = count_on(0, 3);
   EXPECT_GT(in_legend, 0u);

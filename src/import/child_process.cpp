@@ -23,7 +23,7 @@
 namespace throng {
 namespace {
 
-// The address space of this process, which a child inherits and which counts against its limit.
+// The data memory of this process, which a child inherits and which counts against its limit.
 uint64_t own_data_bytes() {
   unsigned long long pages[6] = {};
   std::FILE* file = std::fopen("/proc/self/statm", "r");

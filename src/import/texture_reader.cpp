@@ -111,7 +111,7 @@ std::string find_file(const std::string& model, const std::string& named) {
   return {};
 }
 
-// Halves the largest until all together fit the budget.
+// The largest side at which `count` textures fit the budget.
 int32_t side_for(size_t count) {
   int32_t side = kLargestSide;
   while (side > 16 && static_cast<int64_t>(count) * side * side * 4 > kBudget) side /= 2;

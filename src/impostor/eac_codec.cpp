@@ -7,14 +7,14 @@
 #include "impostor/etc2_tables.h"
 
 // Source: [KDF]. A block is a base, a factor, and one of sixteen tables of eight steps.
-// For each table, the factors that just span the values are tried, with a base that centres them,
-// and the best of all is then moved by single steps for as long as the error falls.
+// For each table, the encoder tries the factors that just span the values, with a base that centres
+// them; the best of all is then moved by single steps while the error falls.
 namespace throng {
 namespace {
 
 using namespace etc2;
 
-// Which of the two kinds of block: 8 bits, or 11.
+// One of the two kinds of block: 8 bits or 11.
 struct Kind {
   int32_t scale;      // Of a base.
   int32_t offset;     // Of a base.
@@ -36,8 +36,7 @@ struct Fit {
   int64_t error = INT64_MAX;
 };
 
-// Which texels count. Loops over all sixteen, in 16 bits, are what compilers turn into vector
-// instructions.
+// Which texels count. Compilers vectorise loops over all sixteen in 16 bits.
 struct Seen {
   std::array<int16_t, 16> value{};
   std::array<int16_t, 16> counts{};  // 1 or 0.
@@ -80,7 +79,7 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
     // A factor too small cuts the ends, one too large leaves steps unused: either may be better.
     const int32_t factor = range / width;
     for (int32_t f = factor; f <= factor + 2; ++f) {
-      // Steps reach one further down than up, so the middle lies half a factor under the base.
+      // Steps extend one further down than up, so the middle lies half a factor under the base.
       const int32_t base = (middle - kind.offset + f * kind.scale / 2) / kind.scale;
       for (int32_t b = base - 1; b <= base + 1; ++b) try_fit(kind, seen, b, f, t, best);
     }

@@ -11,8 +11,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-// Plain loops without a branch, compiled once for each set of vector instructions: the compiler
-// makes vector code of them, and the numbers are those of choose_view.
+// Loops without a branch, compiled once for each set of vector instructions: the compiler
+// vectorises them, and the results are those of choose_view.
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -44,10 +44,10 @@ void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
 }
 
 void FindViews(const PackShared& shared, const PackInput& input, PackBlock& block) {
-  const PackShared s = shared;  // A copy: nobody else's writes can change it in the loop.
+  const PackShared s = shared;  // A copy, so that no write in the loop can change it.
   const PackInput in = input;
   FindSeen(s, in, block);
-  if (block.seen_any == 0) return;  // Nobody asks for their views.
+  if (block.seen_any == 0) return;  // None is drawn, so no view is needed.
   for (size_t i = 0; i < in.count; ++i) {
     const float x = block.to_x[i], y = block.to_y[i], z = block.to_z[i];
     const uint32_t sector = view_sector(x, z, in.heading[i], 2 * s.directions);

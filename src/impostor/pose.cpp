@@ -10,7 +10,8 @@
 namespace throng {
 namespace {
 
-// Between which keys `time` lies, and how far: before the first and after the last they hold.
+// The two keys around `time`, and the share of the second; constant before the first and after the
+// last.
 struct Between {
   size_t low = 0, high = 0;
   double share = 0;
@@ -30,8 +31,8 @@ Vec3d value_at(const std::vector<double>& times, const std::vector<Vec3d>& value
   return values[b.low] + (values[b.high] - values[b.low]) * b.share;
 }
 
-// The straight line between two unit quaternions, on the shorter side, made unit again: with keys
-// as dense as those of a walk it is the arc between them for all that the eye can see.
+// Interpolates linearly between two unit quaternions, on the shorter side, and normalises: with
+// keys as dense as those of a walk the difference to the arc is not visible.
 std::array<double, 4> rotation_at(const JointTrack& track, double time) {
   const Between b = find_keys(track.rotation_times, time);
   const auto& low = track.rotations[b.low];
@@ -50,7 +51,7 @@ std::array<double, 4> rotation_at(const JointTrack& track, double time) {
   return q;
 }
 
-// What turns the axes of a joint at rest, without its scale.
+// The rotation of a joint at rest, without its scale.
 Transform without_scale(const Transform& rest, Vec3d scale) {
   Transform t = rest;
   const double by[3] = {scale.x, scale.y, scale.z};

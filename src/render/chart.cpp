@@ -17,7 +17,7 @@
 namespace throng {
 namespace {
 
-// Apart for colour-blind readers. Source: M. Okabe, K. Ito. Color Universal Design. 2008.
+// Distinct for colour-blind readers. Source: M. Okabe, K. Ito. Color Universal Design. 2008.
 constexpr std::array<Rgb, 6> kColours{
     {{213, 94, 0}, {0, 114, 178}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0}, {86, 180, 233}}};
 
@@ -69,7 +69,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, const Chart& chart) {
 
 void draw_dashes(Canvas& canvas, const std::vector<Point>& points, double width, double dash,
                  Rgb colour) {
-  double walked = 0;  // Along the whole line, so that dashes go on around corners.
+  double walked = 0;  // Along the whole line, so that dashes continue around corners.
   for (size_t i = 1; i < points.size(); ++i) {
     const Point a = points[i - 1], b = points[i];
     const double size = std::hypot(b.x - a.x, b.y - a.y);
@@ -159,7 +159,7 @@ void draw_legend(Canvas& canvas, const Frame& frame, const std::vector<Drawn>& d
   for (const Drawn& d : drawn) {
     if (d.line->name.empty()) continue;
     const Point a{frame.plot.x + 20 * u, y}, b{frame.plot.x + 64 * u, y};
-    // On paper, or the grid would run through the words.
+    // On a paper background, so that the grid does not cross the words.
     canvas.fill(
         {a.x - 6 * u, y - 11 * u, 78 * u + text_width(d.line->name, {.size = text}), 22 * u},
         kPaper);

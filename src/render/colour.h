@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-/// Colours of all pictures, chosen to stay apart for colour-blind readers and in grey print.
+/// Colours of all pictures, chosen to be distinct for colour-blind readers and in grey print.
 namespace throng {
 
 struct Rgb {

@@ -9,10 +9,9 @@
 #include "render/text.h"
 #include "render/views.h"
 
-// The storeys pulled apart and seen at a slant. Every texel is a small block: a top and the two
-// sides that face the eye. Blocks go to the paper from the back to the front and storeys from the
-// lowest to the highest, so that what is nearer covers what is farther (the painter's way); drawn
-// three times too large and then averaged.
+// Draws the storeys apart from each other and seen at a slant. Every texel is a small block: a top
+// and the two sides that face the eye. Blocks are drawn from back to front and storeys from the
+// lowest to the highest (painter's algorithm), three times too large and then averaged.
 namespace throng {
 namespace {
 
@@ -166,7 +165,7 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
   canvas.draw_reduced(large, kSamples, x, y);
   if (storeys.size() < 2) return;
   for (size_t s = 0; s < storeys.size(); ++s) {
-    // The left corner of the sheet: x = 0 at its far end in z.
+    // The left corner of the storey: x = 0 at its far end in z.
     const double depth = grid.depth_metres() * layout.scale;
     const double left = x + layout.left - depth * kAcross;
     const double line = y + layout.top +

@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-// Light for little, dark for much: on paper, nothing is white.
+// Light for low values, dark for high ones: zero is white paper.
 Rgb heat_colour(double t) { return height_colour(0.98 - 0.93 * std::clamp(t, 0.0, 1.0)); }
 
 Result<void> check_map(const HeatMap& map) {

@@ -12,7 +12,7 @@
 namespace throng {
 namespace {
 
-// As many decimals as a tick needs.
+// The number of decimals that a tick needs.
 std::string number(double value, double tick) {
   const int decimals = tick >= 1 ? 0 : static_cast<int>(std::ceil(-std::log10(tick) - 1e-9));
   return fmt::format("{:.{}f}", std::fabs(value) < tick / 2 ? 0.0 : value, decimals);

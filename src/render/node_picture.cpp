@@ -37,7 +37,7 @@ struct InclinationColour {
   double degrees;
   Rgb colour;
 };
-// Green flat, yellow steep, red overhanging, as the source has it; light enough for lines above.
+// Green flat, yellow steep, red overhanging, as in [PACS00]; light enough for lines above.
 constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
                                                   {30, {142, 194, 84}},
                                                   {45, {206, 210, 78}},
@@ -127,14 +127,14 @@ class DepthCanvas {
   }
 
   [[nodiscard]] const Canvas& canvas() const { return canvas_; }
-  /// How near what is drawn so far is; to draw over what was drawn since.
+  /// The depth of what is drawn so far. Set again, it lets later strokes cover all drawn since.
   using Depths = std::vector<float>;
   [[nodiscard]] const Depths& depths() const { return depth_; }
   void set_depths(const Depths& depths) { depth_ = depths; }
 
  private:
-  // Cuts a line to the picture and a rim around it; false if nothing is left. Ends far off it would
-  // not fit whole pixels.
+  // Cuts a line to the picture and a rim around it; false if nothing is left. Ends far outside
+  // would overflow whole pixels.
   [[nodiscard]] bool clip(Seen& a, Seen& b, double rim) const {
     double first = 0, last = 1;
     const auto keep_within = [&](double from, double to, double size) {
@@ -216,24 +216,25 @@ class NodePicture {
   }
 
  private:
-  // Of the classes of a node or a link, is the one asked for there?
+  // Do the classes of a node or a link include the selected one?
   [[nodiscard]] bool is_for(uint16_t classes) const {
     return config_.avatar_class < 0 || (classes >> config_.avatar_class & 1) != 0;
   }
 
-  // Is a node on the storey and for the class asked for?
+  // Is a node on the selected storey and for the selected class?
   [[nodiscard]] bool is_asked(const NodeInfo& info) const {
     const bool on_storey = config_.storey < 0 || (info.kind == PatchKind::kLevelTile &&
                                                   storeys_[info.source] == config_.storey);
     return on_storey && is_for(info.classes);
   }
 
-  // Cells of a ragged node on which the class asked for stands, or any.
+  // Cells of a partial node on which the selected class stands, or any class if none is selected.
   [[nodiscard]] uint64_t cells_of(uint32_t node, const NodeInfo& info) const {
     return config_.avatar_class < 0 ? info.cells : nodes_.partial_cells(config_.avatar_class, node);
   }
 
-  // Calls visit(corner) for corners around a node. A ragged one's block may have no floor there.
+  // Calls visit(corner) for corners around a node. The block of a partial node may have no floor
+  // there.
   template <class Visit>
   void for_corners(uint32_t node, const NodeInfo& info, Visit visit) const {
     if (info.cells == 0) {
@@ -330,8 +331,8 @@ class NodePicture {
     });
   }
 
-  // Of the steepest ground in a node: of level tiles not more than it promises, for that is a limit
-  // of those who have room there. [code]
+  // Inclination of the steepest ground in a node. In level tiles it is at most what the node
+  // promises, which is a limit of the classes that fit there. [code]
   [[nodiscard]] uint8_t inclination(uint32_t node, const NodeInfo& info) {
     if (info.kind != PatchKind::kLevelTile) return info.inclination;
     uint8_t limit = info.inclination, code = 0;
@@ -376,7 +377,7 @@ class NodePicture {
       return;
     }
     paint({s0, t0, side, side});
-    // The rim, unless it would be all that is seen.
+    // The rim, unless it would cover the whole block.
     const auto corners = nodes_.corners(node);
     const double pixels = length(corners[2] - corners[0]) * scale_;
     if (pixels < 5) return;
@@ -421,8 +422,8 @@ class NodePicture {
     NodeArc arc;
   };
 
-  // Links between nodes that are drawn, of the class asked for: as many as there are, and those to
-  // draw. Both directions of a link are arcs: one is enough, but for drops.
+  // Links of the selected class between nodes that are drawn: their number, and those to draw. Both
+  // directions of a link are arcs: one of them is drawn, except for drop links.
   void find_links() {
     for (const uint32_t n : shown_) {
       const NodeInfo info = nodes_.node(n);
@@ -457,7 +458,7 @@ class NodePicture {
     canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
   }
 
-  // A part of the way over the ground that is drawn; false if none of it is.
+  // Clips a segment of the path to the ground that is drawn; false if nothing is left.
   [[nodiscard]] bool clip_to_map(Vec3d& a, Vec3d& b) const {
     double first = 0, last = 1;
     const auto keep_within = [&](double from, double to, double low, double high) {
@@ -479,7 +480,7 @@ class NodePicture {
     return true;
   }
 
-  // Above all links, and its rim behind all of it; only ground hides it.
+  // Above all links, with the rim behind the path; only ground hides it.
   void path(DepthCanvas& canvas, const DepthCanvas::Depths& ground) const {
     const auto stroke = [&](double thick, Rgb colour) {
       canvas.set_depths(ground);

@@ -7,8 +7,8 @@
 
 #include "render/views.h"
 
-// A plan: floors by height, shaded by slope as if lit from the upper left, a little darker close to
-// walls. Where there is a floor but the class cannot stand, grey hatching.
+// Draws a plan: floors coloured by height, shaded by slope as if lit from the upper left, a little
+// darker close to walls; grey hatching where there is floor but the class cannot stand.
 namespace throng {
 namespace {
 
@@ -79,7 +79,7 @@ void draw_avatars(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre,
   draw(0, dots ? 1.0 : 1.6, kAvatar);
 }
 
-// A light rim, so that it stands out on every floor.
+// With a light rim, so that it is visible on every floor.
 void draw_path(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre, size_t index,
                const RasterGrid& grid, std::span<const DrawnPoint> path) {
   constexpr double kWidth = 1.6, kRim = 1.2;  // [px]
@@ -210,8 +210,8 @@ void draw_plan(Canvas& canvas, int32_t x0, int32_t y0, double pixels_per_texel,
                             : texel_colour(storey, i, context, scale, metres));
     }
   }
-  // A pixel is never wider than a texel, so it sees two at most each way; both count by their
-  // share.
+  // A pixel is never wider than a texel, so it covers at most two along each axis; both count by
+  // their share.
   const std::vector<Sample> across = sample_line(storey.width, pixels_per_texel);
   const std::vector<Sample> down = sample_line(storey.height, pixels_per_texel);
   for (size_t py = 0; py < down.size(); ++py) {

@@ -11,13 +11,13 @@
 #include "render/text.h"
 #include "render/views.h"
 
-// All lengths are for a sheet 1600 pixels wide and grow with it.
+// Lays out and draws a poster. All lengths are for one 1600 pixels wide and grow with it.
 namespace throng {
 namespace {
 
 constexpr size_t kMaxStoreys = 12;
 
-// Where everything goes. [px]
+// Positions and sizes. [px]
 struct Layout {
   double unit = 1;
   double width = 0, margin = 0, inner = 0;
@@ -47,7 +47,8 @@ Layout make_layout(int32_t width, size_t lines) {
   return layout;
 }
 
-// Fewest columns, so the largest plans, that keep the plans' part of the sheet below its width.
+// The smallest number of columns, hence the largest plans, for which the height of all plans stays
+// below a share of the poster's width.
 void lay_out_plans(Layout& layout, const PictureWorld& world, size_t plans) {
   const double spacing = 36 * layout.unit;
   const double max_height = layout.width * (plans == 1 ? 0.75 : 0.5);
@@ -94,7 +95,7 @@ void draw_axes(Canvas& canvas, Point corner, double length, const TextStyle& tex
   draw_text(canvas, {z.x + text.size * 0.6, z.y + text.size * 0.2}, "z", text);
 }
 
-// What stands over a plan: as much of it as fits.
+// The text over a plan, as much of it as fits.
 std::string storey_text(const StoreyRaster& storey, const std::string& class_name, double width,
                         const TextStyle& text) {
   const std::string height = storey.high - storey.low < 0.05

@@ -9,8 +9,8 @@
 #include "render/text.h"
 #include "render/views.h"
 
-// A section: the world cut along x. Matter is dark, free space light, and the
-// floors lie in it as coloured lines, so that the levels are seen as they stack.
+// Draws a section: the world cut along x. Solid is dark, free space light, and floors are coloured
+// lines.
 namespace throng {
 namespace {
 

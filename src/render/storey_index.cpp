@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+// Finds the storeys of a world and chooses those to show. Reads each level tile once.
 namespace throng {
 namespace {
 

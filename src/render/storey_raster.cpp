@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+// Averages the floors of level tiles into one image a storey. Linear in the cells of all level
+// tiles.
 namespace throng {
 namespace {
 
@@ -75,11 +77,11 @@ void find_pieces(const LevelTileContent& tile, size_t level, std::vector<Piece>&
 }
 
 // A level tile belongs to one storey as a whole, but near a ramp or a stair it can hold pieces of
-// several. A piece far from its storey's height goes to one around at just its own height, the
-// larger piece first, if nothing lies there yet; if something does, it is not shown. Pieces of
-// storeys that are not shown have no home: they join the nearest storey, or are not shown either.
-// At home, a piece keeps the cells where no larger one is: ground under the low end of a ramp has
-// the ramp's storey.
+// several. A piece far from its storey's height is assigned to a storey around at about its own
+// height, larger pieces first, if its cells are free there; else it is not shown. A piece of a
+// storey that is not shown joins the nearest storey, or is not shown either. In its own storey a
+// piece keeps the cells that no larger one occupies: ground under the low end of a ramp has the
+// ramp's storey.
 std::vector<size_t> assign_pieces(std::span<Piece> pieces, std::span<const size_t> home,
                                   const LocalStoreys& local) {
   constexpr double kAtHome = 1500, kJustRight = 500, kReach = 2500;  // mm

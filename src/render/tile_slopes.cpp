@@ -10,8 +10,8 @@
 namespace throng {
 namespace {
 
-// Of a cell's row of floor: the gentler of two differences around it, or, where one of these is
-// missing, of the two beside it.
+// The slope of a cell along a row: the smaller of the two differences around it, or, if one of them
+// is missing, of the two next to it.
 template <class Sample, class Has>
 int32_t slope_along(int32_t i, Sample sample, Has has) {
   const auto is_there = [&](int32_t k) { return k >= 0 && k < 64 && has(k); };

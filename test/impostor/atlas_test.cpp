@@ -86,14 +86,14 @@ TEST(Atlas, ViewsKeepToBlocksDoNotOverlapAndHaveAnEmptyBorder) {
   }
 }
 
-// Each view must be what a camera at its place sees: drawn again, alone, and compared.
+// Each view must equal the picture of a camera at its place, which is drawn again and compared.
 TEST(Atlas, EveryViewIsWhatItsCameraSees) {
   const Atlas& atlas = small_atlas();
   const Character character = built_in_character();
   FigureRaster raster(character, 32);
   FigureView view;
   PosedMesh mesh;
-  // As an atlas is said to be: over the origin, feet at 0, the first clip 1.75 m high.
+  // As an atlas is documented: over the origin, feet at 0, the first clip 1.75 m high.
   const size_t walk = *find_clip(character, "Walk"), idle = *find_clip(character, "Idle");
   Box3d bounds;
   for (int32_t i = 0; i < 4; ++i) {
@@ -159,7 +159,7 @@ TEST(Atlas, AMirroredViewShowsWhatTheOtherSideLooksLike) {
 }
 
 // [TC00]: the view direction picks the row and column, the heading is added, the phase picks the
-// frame. An atlas whose views are filled with their own number tells which one is shown.
+// frame. Views filled with their own numbers show which one was chosen.
 TEST(Atlas, CodedViewsComeBackFromAllDirectionsElevationsAndFrames) {
   Atlas atlas;
   atlas.shape = {.pixels = 8, .directions = 16, .elevations = 8, .frames = 10, .side = 2};
@@ -220,7 +220,7 @@ TEST(Atlas, SameBytesForAnyNumberOfWorkers) {
   }
 }
 
-TEST(Atlas, EachFormatKeepsItsColoursAsWellAsAsked) {
+TEST(Atlas, EachFormatKeepsItsColoursWithinItsLimit) {
   const Atlas& atlas = small_atlas();
   EXPECT_EQ(atlas_psnr(atlas, atlas), INFINITY);
   const double min_psnr[] = {INFINITY, 38, 34, 34, 34, 35};
@@ -250,7 +250,7 @@ TEST(Atlas, EachFormatKeepsItsColoursAsWellAsAsked) {
 }
 
 // The figures of the seed: 1024 x 512 texels of 16 bits for each frame.
-TEST(Atlas, TheSheetOfTheSeedIsAMegabyteAFrame) {
+TEST(Atlas, TheAtlasOfTheSeedIsAMegabyteAFrame) {
   const AtlasShape shape{.pixels = 64, .directions = 16, .elevations = 8, .frames = 10};
   EXPECT_EQ(sheet_colour_bytes(shape, AtlasFormat::kRgb5a1), 10ULL << 20);
   EXPECT_EQ(sheet_colour_bytes(shape, AtlasFormat::kBc1), 10ULL << 18);
@@ -325,7 +325,7 @@ INSTANTIATE_TEST_SUITE_P(Atlas, DamagedAtlas,
                                          AtlasFormat::kEtc2),
                          [](const auto& of) { return std::string(word_for(of.param)); });
 
-// Older programs go on reading the older formats, and say of the others that they are too new.
+// Older programs still read the older formats, and report that the others are too new.
 TEST(Atlas, OnlyFilesOfNewFormatsAreOfTheNewVersion) {
   const test::ScratchFolder folder;
   const std::string path = folder.path() + "/people.atlas";

@@ -14,8 +14,8 @@
 #include "throng_draw/draw.h"
 
 // Frames of a city with a crowd on its ground: as people, as plain quads at the same places,
-// without avatars, and as people without asking what is hidden; frame by frame in turn, so that
-// whatever else the machine does touches all alike. A frame is culling, packing, upload, drawing
+// without avatars, and as people without the query of what is hidden; frame by frame in turn, so
+// that other load on the machine affects all alike. A frame is culling, packing, upload, drawing
 // and reading back.
 namespace throng {
 namespace {
@@ -138,7 +138,7 @@ int run(const Options& options) {
   config.camera.target = {0, 0, 0.1 * half};
   config.camera.furthest = 20 * half;
   config.camera.nearest = 0.002 * half;
-  if (options.street) {  // From where somebody stands near the middle, along the street.
+  if (options.street) {  // From an avatar near the middle, along the street.
     size_t middle = 0;
     for (size_t i = 0; i < crowd.x.size(); ++i) {
       if (std::hypot(crowd.x[i], crowd.z[i]) < std::hypot(crowd.x[middle], crowd.z[middle]))
@@ -208,14 +208,15 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{"A city from above: avatars as people and as plain quads, in one run"};
   throng::Options options;
-  app.add_option("--polygons", options.polygons, "About so many of the city");
-  app.add_option("--avatars", options.avatars, "How many");
+  app.add_option("--polygons", options.polygons, "Triangles of the city, about");
+  app.add_option("--avatars", options.avatars, "Number of avatars");
   app.add_option("--runs", options.runs, "Frames of each kind")->check(CLI::Range(1, 1000));
   app.add_option("--samples", options.samples, "Along a side of a pixel");
   app.add_option("--threads", options.workers, "For culling and packing");
-  app.add_option("--point-pixels", options.point_pixels, "Who is no higher is a point, 0: nobody");
+  app.add_option("--point-pixels", options.point_pixels,
+                 "Avatars up to this height are points, 0: none");
   app.add_option("--view-blend", options.view_blend, "Share of the angle between views, 0: none");
-  app.add_flag("--hard", options.hard, "One look for shadows, not nine");
+  app.add_flag("--hard", options.hard, "One sample for shadows, not nine");
   app.add_flag("--street", options.street, "From a street, not from above");
   app.add_flag("--shadows", options.shadows, "Of avatars");
   app.add_option("--width", options.width, "[px]");

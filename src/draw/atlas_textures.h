@@ -13,7 +13,7 @@ namespace throng {
 /// Can the card read colours of this format as they are, in blocks of 4 x 4 texels (S3TC, ETC2)?
 [[nodiscard]] bool takes_blocks(AtlasFormat format);
 
-/// An atlas in the card's memory, and what the processor needs of it.
+/// An atlas in the card's memory, and the part of it that the processor needs.
 struct AtlasTextures {
   /// Fails with kLimit: pages larger than textures may be.
   [[nodiscard]] static Result<AtlasTextures> make(const Atlas& atlas);

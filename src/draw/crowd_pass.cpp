@@ -11,6 +11,7 @@
 #include "draw/shaders.h"
 #include "draw/wardrobe.h"
 
+// Draws crowds by level of detail: meshes, views, blended views, points; upright or leaning.
 namespace throng {
 namespace {
 
@@ -20,8 +21,8 @@ constexpr int kLooksUnit = 5;
 
 constexpr size_t kCardsADraw = 16384;  // Their corners have numbers of 16 bits.
 
-// What each look wears: the colours of everybody who is too small for a view (head, chest, legs),
-// and which of its twelve colours each part has, in four bits each.
+// The outfit of each look: the three colours of an avatar that is drawn as a point (head, chest,
+// legs), and which of its twelve colours each part has, in four bits each.
 GlTexture make_looks() {
   const auto all = wardrobe();
   std::vector<uint32_t> words(size_t{4} * kLooks);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+// Tests whether all that could be drawn of a figure lies behind the depths of the picture.
 namespace throng {
 
 std::vector<FigureExtent> extents_of(const Atlas& atlas) {
@@ -24,7 +25,7 @@ std::vector<FigureExtent> extents_of(const Atlas& atlas) {
         front = std::max<uint8_t>(front, atlas.mask[first + column] & 31);
       }
     }
-    // The shader's, 5 cm nearer than the texel says, and one more for rounding.
+    // As in the shader 5 cm nearer than the texel's depth, and 1 cm more for rounding.
     out[i] = {static_cast<float>(std::hypot(x, y) * texel + 0.01),
               static_cast<float>((front - 16.0) / 30 * shape.side + 0.06)};
   }
@@ -58,7 +59,7 @@ bool HiddenAvatars::hides(Vec3d middle, FigureExtent extent) const {
   const Vec3d to = middle - camera_.eye;
   const double depth = dot(to, axes_.forward);
   const double along = depth / std::max(length(to), 1e-9);
-  // The card leans by the angle between the ray to it and the view's axis.
+  // The card is inclined by the angle between the ray to it and the view's axis.
   const double lean = extent.across * std::sqrt(std::max(0.0, 1 - along * along));
   return hides(to, depth - lean, depth + lean, extent.across,
                depth - lean - std::max(0.0F, extent.front) * along);

@@ -10,16 +10,16 @@
 
 namespace throng {
 
-/// How far what is drawn of a figure reaches from its middle. [m]
+/// The extent of what is drawn of a figure, from its middle. [m]
 struct FigureExtent {
   float across = 0;  ///< On the card that faces the eye.
   float front = 0;   ///< From the card towards the eye.
 };
 
-/// Of each view of an atlas.
+/// One for each view of an atlas.
 [[nodiscard]] std::vector<FigureExtent> extents_of(const Atlas& atlas);
 
-/// Says of figures whether all that could be drawn of them lies behind what is in the picture.
+/// Tests whether all that could be drawn of a figure lies behind what is in the picture.
 class HiddenAvatars {
  public:
   HiddenAvatars(const EyeCamera& camera, const DepthPyramid& depths);

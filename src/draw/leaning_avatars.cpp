@@ -6,9 +6,9 @@
 
 #include "throng/lean.h"
 
-// A figure that leans is seen as one that stands is by an eye that leans the other way: the same
-// views serve, on cards that lean. What is seen of somebody on a wall is seen from its free side,
-// which is above him, so the rows over the horizon are those that are needed.
+// Packs avatars that lean. A leaning figure looks like an upright one to an eye turned by the
+// opposite rotation, so the same views serve, on cards that lean. An avatar on a wall is seen from
+// the free side of the wall, which is above it, so the rows over the horizon suffice.
 namespace throng {
 namespace {
 
@@ -32,7 +32,7 @@ LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const Pack
     const Vec3d feet{a.x[i], a.y[i], a.z[i]}, axis = crowd.ups[i];
     const Vec3d from_eye = feet + axis * atlas.shape.centre - camera.eye;
     const double depth = dot(from_eye, axes.forward);
-    // Outside the sides of what a camera sees by more than the reach, each side a unit's measure.
+    // Is the figure outside a side plane of the view frustum by more than its radius?
     const auto outside = [&](Vec3d across, double slope) {
       return std::fabs(dot(from_eye, across)) - depth * slope > radius * std::hypot(1, slope);
     };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+// Uploads the poses and vertices of a figure model.
 namespace throng {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
+// Uploads the corners of a scene and draws all of it or some chunks.
 namespace throng {
 
 Result<void> SceneMesh::set(const SceneCorners& scene) {
@@ -62,7 +63,7 @@ void SceneMesh::draw() const { draw_corners(0, static_cast<uint32_t>(corners_));
 
 void SceneMesh::draw(std::vector<uint32_t> chunks) const {
   std::sort(chunks.begin(), chunks.end());
-  uint32_t first = 0, count = 0;  // Neighbours go in one call.
+  uint32_t first = 0, count = 0;  // Neighbours are drawn in one call.
   for (const uint32_t i : chunks) {
     if (first + count != chunks_[i].first) {
       draw_corners(first, count);

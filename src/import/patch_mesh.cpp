@@ -174,7 +174,7 @@ class Tessellator {
   }
 
   // Steps that part k of `count` of an edge needs; the parts are no longer than its pieces.
-  [[nodiscard]] uint32_t asked(PatchSide side, uint32_t k, uint32_t count) const {
+  [[nodiscard]] uint32_t steps_needed(PatchSide side, uint32_t k, uint32_t count) const {
     const uint32_t each = count / pieces(side.patch);
     return ceil_div(along(piece_along(side, k / each), side.edge), each);
   }
@@ -205,10 +205,10 @@ class Tessellator {
         runs_.push_back(run);
         const bool collapsed = is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)));
         for (uint32_t k = 0; k < run.count; ++k) {
-          Seam seam{.steps = asked(side, k, run.count), .collapsed = collapsed};
+          Seam seam{.steps = steps_needed(side, k, run.count), .collapsed = collapsed};
           if (!is_open) {
             const uint32_t across = (which + 1) * run.count - 1 - k;
-            seam.steps = std::max(seam.steps, asked(next, across, runs * run.count));
+            seam.steps = std::max(seam.steps, steps_needed(next, across, runs * run.count));
           }
           seams_.push_back(seam);
         }

@@ -27,7 +27,7 @@ constexpr uint32_t kVersion = 2;
 // Programs of version 1 know no ETC2; they refuse a file of version 2 by its version.
 uint32_t version_of(AtlasFormat format) { return format >= AtlasFormat::kEtc2a1 ? kVersion : 1; }
 
-// Of all that an atlas says.
+// A checksum over all fields and texels of an atlas.
 uint64_t sum_of(const Atlas& atlas) {
   std::vector<uint64_t> words;
   const auto add_number = [&](auto value) { words.push_back(static_cast<uint64_t>(value)); };

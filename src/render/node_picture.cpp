@@ -396,7 +396,7 @@ class NodePicture {
     edge(s0, t0 + side, s0 + side, t0 + side);
   }
 
-  // Sides of cells beyond which the node does not go on.
+  // Sides of cells that border no other cell of the node.
   void rim_of_cells(DepthCanvas& canvas, const NodeInfo& info, uint32_t node, uint64_t cells,
                     Rgb colour, double nearer) const {
     constexpr double kSide = kCell - kInset;

@@ -11,7 +11,7 @@
 #include "impostor/etc2_codec.h"
 #include "throng_draw/draw.h"
 
-// What a driver makes of random blocks is what we make of them, texel by texel.
+// A driver decodes random blocks as we do, texel by texel.
 namespace throng {
 namespace {
 

@@ -80,8 +80,8 @@ Shares shares_of(const Image& image) {
   return out;
 }
 
-// All 32 borders of columns by all 7 of rows: the pixels are dealt out to the four views around in
-// the shares that the eye's place between them asks.
+// All 32 borders of columns by all 7 of rows: the pixels are divided among the four views around
+// in the shares that follow from the eye's direction.
 TEST(ViewBlend, EveryBorderShowsTheViewsOnBothSidesByTheirShares) {
   const Atlas atlas = plain_views();
   Drawing drawing = drawing_of(atlas);
@@ -164,8 +164,8 @@ TEST(ViewBlend, ATurningEyeChangesThePictureGradually) {
   const auto compare = [&](const char* name, const auto& at, int32_t steps) {
     const Changes nearest = changes_along(drawing, steps, 0, at);
     const Changes blended = changes_along(drawing, steps, 0.5, at);
-    std::printf("%s: largest jump %.0f by the nearest view, %.0f blended; mean %.0f, %.0f\n", name,
-                nearest.largest, blended.largest, nearest.mean, blended.mean);
+    std::printf("%s: largest change %.0f by the nearest view, %.0f blended; mean %.0f, %.0f\n",
+                name, nearest.largest, blended.largest, nearest.mean, blended.mean);
     EXPECT_LT(blended.largest, 0.3 * nearest.largest) << name;
   };
   compare("around", around, 180);

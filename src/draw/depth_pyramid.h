@@ -15,7 +15,7 @@ struct NdcBox {
   double left = 0, right = 0, low = 0, high = 0, nearest = 0;
 };
 
-/// The furthest depth that each block of samples holds, in levels: each halves the one before.
+/// The furthest depth of each block of samples, in levels: each halves the one before.
 class DepthPyramid {
  public:
   static constexpr int32_t kBlock = 8;  ///< Samples along a side of a texel of level 0.

@@ -24,7 +24,7 @@
 #include "throng_draw/draw.h"
 
 // A picture in six passes: the sun's depth of scene and avatars, the scene, the avatars, the sky,
-// the marks, the panel. All instances of a picture go up in one upload: those that the eye sees,
+// the marks, the panel. All instances of a picture are uploaded at once: those that the eye sees,
 // then the same as the sun sees them.
 namespace throng {
 namespace {
@@ -267,7 +267,7 @@ void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConf
   mark.set("cut", static_cast<float>(std::min(config.cut_height, 1e9)));
   mark.set_size("half_picture", 0.5F * static_cast<float>(config.width * config.samples),
                 0.5F * static_cast<float>(config.height * config.samples));
-  // Depth is a + b / w: to add to b is to come nearer by a share of w.
+  // Depth is a + b / w: adding to b moves a mark nearer by a share of w.
   const double n = config.camera.nearest, f = config.camera.furthest;
   mark.set("nearer", static_cast<float>(-kNearer * 2 * f * n / (f - n)));
   glEnable(GL_BLEND);

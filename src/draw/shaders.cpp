@@ -213,7 +213,7 @@ uniform sampler2DArray detail;
 uniform float side;          // Of a view [m].
 out vec4 colour;
 void show(vec3 texel, vec3 right_of_texels) {
-  // Not filtered: a texel is of one part, and its colour says nothing of the part beside it.
+  // Not filtered: a texel is of one part, and its colour is not that of the part beside it.
   ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z));
   vec4 stored = texelFetch(albedo, at, 0);
   vec4 d = texelFetch(detail, at, 0);

@@ -69,7 +69,7 @@ std::span<const AreaRule> default_rules() {
 void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
   const auto kind_of = [&](const ScenePart& part) {
     std::optional<AreaKind> kind;
-    // A default rule looks at the part's own name alone: furniture hangs below its IfcSpace.
+    // A default rule tests the part's own name alone: furniture hangs below its IfcSpace.
     const std::string_view node = part.node;
     const std::string_view own = node.substr(node.rfind('/') + 1);
     const std::string_view type = node.substr(0, node.find('/'));  // "Type/id" of city models.

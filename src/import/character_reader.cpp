@@ -174,7 +174,7 @@ class Extractor {
   std::map<const aiNode*, int32_t> joint_of_node_;
 };
 
-// --- Both ends: one function names what goes through the pipe, in order. -----------------------
+// --- Both ends: one function lists the fields that the pipe carries, in order. -----------------
 
 template <class Pipe>
 bool pass_text(Pipe& pipe, std::string& text) {

@@ -127,7 +127,7 @@ Result<void> run_in_child(const ChildLimits& limits, Context& context,
     prepare_child(limits, own_bytes);
     try {
       child(PipeWriter(ends[1]));
-    } catch (...) {  // bad_alloc: it must not go on as a second parent.
+    } catch (...) {  // bad_alloc: it must not continue as a second parent.
       _exit(1);
     }
     _exit(0);  // No destructors, no exit handlers: they are the parent's.

@@ -163,7 +163,7 @@ Steps min_of(const BezierPatch& patch, double tolerance, int32_t min_per_side,
 }
 
 // Pieces are not cut more coarsely, so that no triangle of a patch in pieces covers more than a
-// sixteenth of a side: nodes know the ground around a cell as far as that (bake/own_ground).
+// sixteenth of a side: nodes hold the ground around a cell as far as that (bake/own_ground).
 constexpr int32_t kMinOfPiece = 4;
 
 }  // namespace

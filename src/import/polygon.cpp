@@ -446,7 +446,7 @@ bool PolygonCutter::cut(std::span<const Vec3d> points, std::span<const uint32_t>
   for (size_t ring = 1; ring + 1 < ring_first.size(); ++ring) {
     if (ring_first[ring + 1] - ring_first[ring] < 3) continue;
     const double hole_area = std::fabs(ring_area(ring_first, ring));
-    if (!(hole_area > 0)) continue;  // A slit takes nothing away.
+    if (!(hole_area > 0)) continue;  // A slit removes no area.
     area -= hole_area;
     uint32_t first = add_ring(ring_first, ring, -1);
     for (uint32_t i = nodes_[first].next, end = first; i != end; i = nodes_[i].next) {

@@ -47,7 +47,7 @@ struct PatchZone {
 /// A corner of a triangle that names no vertex; clean_scene drops and counts the triangle.
 inline constexpr uint32_t kNoVertex = UINT32_MAX;
 
-/// A picture that a file names, or holds.
+/// A picture that a file names or contains.
 struct TextureSource {
   std::string name;   ///< As the file has it: a path, if it holds no bytes.
   std::string bytes;  ///< Of a PNG, JPEG ...; or, where it has a size, RGBA texels.

@@ -17,7 +17,7 @@ using namespace shapes;
 constexpr double kStorey = 3.06;
 constexpr double kBay = 4;
 constexpr double kWidth = 2.4;
-constexpr double kReach = 12;  // From the foot of a flight to the terrace's edge.
+constexpr double kRunLength = 12;  // From the foot of a climb to the terrace's edge. [m]
 
 enum Kind : uint64_t {
   kEasy,
@@ -100,18 +100,18 @@ void spiral_up(WorldBuilder& b, double x, double y, double z) {
           .risers = 18});
   cylinder(b, Mat::kPillar, {cx, y, cz}, {cx, y + kStorey + 1.2, cz}, 0.18, 12, true);
   sector(b, Mat::kFloor, cx, cz, 0.1, 1.75, -0.125, 0.25, y + kStorey - 0.2, y + kStorey);
-  landing(b, cx + 1.25, x + kReach, y + kStorey, z);
+  landing(b, cx + 1.25, x + kRunLength, y + kStorey, z);
 }
 
 // Up along the wall of the terrace and back: the last flight ends on a bridge to the terrace.
 void dogleg_up(WorldBuilder& b, double x, double y, double z) {
   Dogleg d{.x = 0, .y = 0, .z = 0, .height = kStorey, .width = 1.2, .gap = 0.1, .landing = 1.6};
   const Frame outer = b.frame();
-  const double foot = x + kReach - 1.8;
+  const double foot = x + kRunLength - 1.8;
   b.place({outer({foot, y, z + kWidth}), -outer.ux, -outer.uz});
   dogleg(b, Mat::kStairs, d);
   b.place(outer);
-  landing(b, foot, x + kReach, y + kStorey, z);
+  landing(b, foot, x + kRunLength, y + kStorey, z);
 }
 
 void add_climb(WorldBuilder& b, Kind kind, double x, double y, double z) {
@@ -127,7 +127,7 @@ void add_climb(WorldBuilder& b, Kind kind, double x, double y, double z) {
                    .risers = t.risers,
                    .thickness = rise + 0.15};
     flight(b, Mat::kStairs, f);
-    landing(b, x + f.length(), x + kReach, top, z);
+    landing(b, x + f.length(), x + kRunLength, top, z);
     return;
   }
   switch (kind) {
@@ -139,15 +139,15 @@ void add_climb(WorldBuilder& b, Kind kind, double x, double y, double z) {
       f.y = f.top();
       f.x = from + 1.8;
       flight(b, Mat::kStairs, f);
-      landing(b, f.x + f.length(), x + kReach, top, z);
+      landing(b, f.x + f.length(), x + kRunLength, top, z);
       return;
     }
     case kGentleRamp:
-      ramp_to(b, x, y, z, kReach);
+      ramp_to(b, x, y, z, kRunLength);
       return;
     case kSteepRamp:
       ramp_to(b, x, y, z, 2.6);
-      landing(b, x + 2.6, x + kReach, top, z);
+      landing(b, x + 2.6, x + kRunLength, top, z);
       return;
     case kSpiral:
       spiral_up(b, x, y, z);
@@ -163,8 +163,8 @@ void add_climb(WorldBuilder& b, Kind kind, double x, double y, double z) {
 void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config) {
   const auto bays = static_cast<int32_t>(config.size / kBay);
   const double depth = config.size;
-  constexpr double kFirst = kReach;        // The first terrace: x from 12 to 18.
-  constexpr double kSecond = 18 + kReach;  // The second: x from 30 to 34.
+  constexpr double kFirst = kRunLength;        // The first terrace: x from 12 to 18.
+  constexpr double kSecond = 18 + kRunLength;  // The second: x from 30 to 34.
   b.node("yard");
   floor_rect(b, Mat::kPavement, {-6, 0, kSecond + 4, depth}, 0);
   b.node("terraces");

@@ -18,7 +18,7 @@ namespace throng {
 
 /// Binds the edges between zones that were read together, zones[i].first_patch being where each
 /// begins. Edges towards a zone that is not here stay open; the report's warnings count them. Fails
-/// with kBadInput if a zone comes twice, or if two zones contradict each other.
+/// with kBadInput if a zone is given twice, or if two zones contradict each other.
 [[nodiscard]] Result<void> join_zones(PatchSet& set, std::span<PatchZone> zones,
                                       SceneReport& report);
 

@@ -83,7 +83,7 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
       const int32_t base = (middle - kind.offset + f * kind.scale / 2) / kind.scale;
       for (int32_t b = base - 1; b <= base + 1; ++b) try_fit(kind, seen, b, f, t, best);
     }
-    // The limits may cut what lies over an end: bases for which the far end still fits.
+    // The limits may clip values beyond an end: tries bases for which the far end still fits.
     if (seen.low > 0 && seen.high < kind.max_value) continue;
     const int32_t reach = kChannelSteps[t][3];
     for (int32_t f = std::max(1, factor); f <= std::min(15, factor + 4); ++f) {

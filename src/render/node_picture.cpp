@@ -47,7 +47,7 @@ constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
 constexpr Rgb kWalkLink{24, 92, 52}, kStepLink{196, 74, 8}, kSteepLink{150, 104, 8},
     kOverLink{140, 20, 32};
 constexpr Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
-constexpr Rgb kLeapLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232};
+constexpr Rgb kHoleLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232};
 
 Rgb inclination_colour(double degrees) {
   for (size_t i = 1; i < kRamp.size(); ++i) {
@@ -340,7 +340,7 @@ class NodePicture {
       const auto c = static_cast<size_t>(config_.avatar_class);
       limit = std::min(limit, summary_.bins.inclination_code(summary_.classes[c].max_slope));
     }
-    const int32_t size = 64 >> info.level;
+    const int32_t size = kTileCells >> info.level;
     const uint64_t cells = info.cells != 0 ? cells_of(node, info) : 0;
     for (int32_t i = 0; i < size * size && code < limit; ++i) {
       if (info.cells != 0 && (cells >> i & 1) == 0) continue;
@@ -372,7 +372,7 @@ class NodePicture {
         paint({(info.s * 8 + first) * kCell, (info.t * 8 + row) * kCell, count * kCell - kInset,
                kCell - kInset});
       });
-      if (whole * 64 * nodes_.data()->world.summary().cell * scale_ >= 5)
+      if (whole * kTileCells * nodes_.data()->world.summary().cell * scale_ >= 5)
         rim_of_cells(canvas, info, node, cells, rim, nearer);
       return;
     }
@@ -454,7 +454,7 @@ class NodePicture {
         std::max(nodes_.node(link.from).inclination, nodes_.node(arc.to).inclination));
     Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
     if (arc.kind == LinkKind::kStep) colour = kStepLink;
-    if (arc.leaps) colour = kLeapLink;
+    if (arc.leaps) colour = kHoleLink;
     canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
   }
 
@@ -536,7 +536,7 @@ class NodePicture {
       key(kStepLink, "step");
       key(kSteepLink, "steep");
       key(kOverLink, "overhanging");
-      key(kLeapLink, "over a hole");
+      key(kHoleLink, "over a hole");
       bool drop = false;
       for (size_t c = 0; c < summary_.classes.size(); ++c) {
         drop |= summary_.classes[c].max_drop > 0 && is_for(static_cast<uint16_t>(1u << c));

@@ -84,7 +84,7 @@ void find_pieces(const LevelTileContent& tile, size_t level, std::vector<Piece>&
 // ramp's storey.
 std::vector<size_t> assign_pieces(std::span<Piece> pieces, std::span<const size_t> home,
                                   const LocalStoreys& local) {
-  constexpr double kAtHome = 1500, kJustRight = 500, kReach = 2500;  // mm
+  constexpr double kMaxOwnOffset = 1500, kMaxOtherOffset = 500, kMaxOffset = 2500;  // mm
   std::vector<size_t> order(pieces.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -96,15 +96,15 @@ std::vector<size_t> assign_pieces(std::span<Piece> pieces, std::span<const size_
     const auto distance = [&](size_t s) { return std::fabs(pieces[p].mean - local.height[s]); };
     size_t at = 0;  // Where its own storey is in `local`.
     while (at < local.storey.size() && local.storey[at] != own) ++at;
-    const bool homeless = at == local.storey.size();
-    const bool stray = !homeless && distance(at) > kAtHome;
-    size_t best = homeless ? kNotShown : at;
-    if (homeless || stray) {
-      double smallest = homeless ? kReach : kJustRight;
+    const bool is_hidden = at == local.storey.size();
+    const bool is_far = !is_hidden && distance(at) > kMaxOwnOffset;
+    size_t best = is_hidden ? kNotShown : at;
+    if (is_hidden || is_far) {
+      double smallest = is_hidden ? kMaxOffset : kMaxOtherOffset;
       for (size_t s = 0; s < local.storey.size(); ++s) {
         if (distance(s) >= smallest) continue;
         if ((occupied[s] & pieces[p].cells).any()) {
-          if (stray && distance(at) > kReach && best == at) best = kNotShown;
+          if (is_far && distance(at) > kMaxOffset && best == at) best = kNotShown;
           continue;
         }
         smallest = distance(s);

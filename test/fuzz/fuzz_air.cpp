@@ -7,7 +7,7 @@
 #include "world/air_data.h"
 
 // An air file that passes the checks must answer every look-up without reading past its bytes. The
-// input is tried as a file, and as a tree's words in a file whose checksum is right.
+// input is tried as a file, and as the words of a tree in a file whose checksum is right.
 namespace throng {
 namespace {
 

@@ -14,8 +14,8 @@
 #include "throng_draw/draw.h"
 
 // Frames of a city with a crowd on its ground: as people, as plain quads at the same places,
-// without avatars, and as people without asking what is hidden; frame by frame in turn, so that
-// whatever else the machine does touches all alike. A frame is culling, packing, upload, drawing
+// without avatars, and as people without the query of what is hidden; frame by frame in turn, so
+// that other load on the machine affects all alike. A frame is culling, packing, upload, drawing
 // and reading back.
 namespace throng {
 namespace {
@@ -85,7 +85,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-double least(const std::vector<double>& values) {
+double min_of(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
@@ -138,16 +138,17 @@ int run(const Options& options) {
   config.camera.target = {0, 0, 0.1 * half};
   config.camera.furthest = 20 * half;
   config.camera.nearest = 0.002 * half;
-  if (options.street) {  // From where somebody stands near the middle, along the street.
-    size_t who = 0;
+  if (options.street) {  // From an avatar near the middle, along the street.
+    size_t middle = 0;
     for (size_t i = 0; i < crowd.x.size(); ++i) {
-      if (std::hypot(crowd.x[i], crowd.z[i]) < std::hypot(crowd.x[who], crowd.z[who])) who = i;
+      if (std::hypot(crowd.x[i], crowd.z[i]) < std::hypot(crowd.x[middle], crowd.z[middle]))
+        middle = i;
     }
-    config.camera = EyeCamera{.eye = {crowd.x[who], crowd.y[who] + 1.7, crowd.z[who]},
-                              .target = {crowd.x[who] + 10.0, 1.5, crowd.z[who] + 1.0}};
+    config.camera = EyeCamera{.eye = {crowd.x[middle], crowd.y[middle] + 1.7, crowd.z[middle]},
+                              .target = {crowd.x[middle] + 10.0, 1.5, crowd.z[middle] + 1.0}};
   }
 
-  std::vector<double> people, quads, nobody, whole, pack, cull, ratio;
+  std::vector<double> people, quads, without_avatars, whole, pack, cull, ratio;
   DrawingReport last, seen, uncut;
   const auto frame = [&](AvatarStyle style, bool with, double& packing) -> double {
     config.avatars = style;
@@ -169,7 +170,7 @@ int run(const Options& options) {
     const double a = frame(AvatarStyle::kPeople, true, packing);
     const double c = frame(AvatarStyle::kPeople, false, none);
     if (r < 0) continue;
-    people.push_back(a), quads.push_back(b), nobody.push_back(c), pack.push_back(packing);
+    people.push_back(a), quads.push_back(b), without_avatars.push_back(c), pack.push_back(packing);
     whole.push_back(d), cull.push_back(last.seconds_cull);
     seen = last;
     ratio.push_back(a / b);
@@ -189,10 +190,10 @@ int run(const Options& options) {
                                        {"runs", options.runs},
                                        {"ms_people", median(people) * 1e3},
                                        {"ms_quads", median(quads) * 1e3},
-                                       {"ms_nobody", median(nobody) * 1e3},
-                                       {"least_people", least(people) * 1e3},
-                                       {"least_quads", least(quads) * 1e3},
-                                       {"least_nobody", least(nobody) * 1e3},
+                                       {"ms_nobody", median(without_avatars) * 1e3},
+                                       {"least_people", min_of(people) * 1e3},
+                                       {"least_quads", min_of(quads) * 1e3},
+                                       {"least_nobody", min_of(without_avatars) * 1e3},
                                        {"ms_all", median(whole) * 1e3},
                                        {"ms_cull", median(cull) * 1e3},
                                        {"ms_pack", median(pack) * 1e3},
@@ -207,14 +208,15 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{"A city from above: avatars as people and as plain quads, in one run"};
   throng::Options options;
-  app.add_option("--polygons", options.polygons, "About so many of the city");
-  app.add_option("--avatars", options.avatars, "How many");
+  app.add_option("--polygons", options.polygons, "Triangles of the city, about");
+  app.add_option("--avatars", options.avatars, "Number of avatars");
   app.add_option("--runs", options.runs, "Frames of each kind")->check(CLI::Range(1, 1000));
   app.add_option("--samples", options.samples, "Along a side of a pixel");
   app.add_option("--threads", options.workers, "For culling and packing");
-  app.add_option("--point-pixels", options.point_pixels, "Who is no higher is a point, 0: nobody");
+  app.add_option("--point-pixels", options.point_pixels,
+                 "Avatars up to this height are points, 0: none");
   app.add_option("--view-blend", options.view_blend, "Share of the angle between views, 0: none");
-  app.add_flag("--hard", options.hard, "One look for shadows, not nine");
+  app.add_flag("--hard", options.hard, "One sample for shadows, not nine");
   app.add_flag("--street", options.street, "From a street, not from above");
   app.add_flag("--shadows", options.shadows, "Of avatars");
   app.add_option("--width", options.width, "[px]");

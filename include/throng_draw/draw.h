@@ -21,7 +21,7 @@
 /// browser can run the same.
 namespace throng {
 
-/// A scene as a card takes it. Made on any thread: the work that a window must not wait for.
+/// A scene in the form that a card reads. Made on any thread, so that a window need not wait.
 class THRONG_API PreparedScene {
  public:
   /// Corners, normals, and which sides of triangles are edges: those where the surface bends by 25
@@ -53,12 +53,12 @@ struct MarkVertex {
   Rgba colour = 0;
 };
 
-/// What is drawn over the scene to explain it: plain colours, no light.
+/// Overlays that explain a scene: flat colours, no light.
 struct Marks {
   std::vector<MarkVertex> triangles;  ///< Three each.
   std::vector<MarkVertex> lines;      ///< Two each.
   float line_width = 2;               ///< [px]
-  bool through_walls = false;         ///< What is hidden shows, too, faintly.
+  bool through_walls = false;         ///< Hidden parts show, too, faintly.
 };
 inline constexpr size_t kMarkSlots = 16;
 
@@ -74,7 +74,7 @@ struct PanelRun {
   int32_t left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// What lies flat over the picture: text, buttons. Borrowed.
+/// Text and buttons over the picture. Borrowed.
 struct PanelView {
   std::span<const PanelVertex> vertices;
   std::span<const uint32_t> indices;  ///< Three a triangle.
@@ -86,20 +86,20 @@ struct DrawnCrowd {
   size_t atlas = 0;  ///< As Drawing::add_atlas numbers them.
   size_t clip = 0;
   ImpostorArrays avatars;
-  /// Along each body from its feet, unit vectors; nothing: all are upright. Headings are those that
-  /// they had before they lean (lean.h).
+  /// Unit vectors along each body from its feet; empty: all are upright. Headings are those before
+  /// the lean (lean.h).
   std::span<const Vec3d> ups = {};
 };
 
-/// As what avatars are drawn.
+/// How avatars are drawn.
 enum class AvatarStyle : uint8_t {
-  kPeople,      ///< As finely as they can be seen.
-  kPlainQuads,  ///< One rectangle of one colour each, to measure the others against.
+  kPeople,      ///< In the detail that can be seen.
+  kPlainQuads,  ///< One rectangle of one colour each, for comparison.
 };
 
-/// Whether to ask, while a picture is drawn, what the nearer parts of the scene hide, and leave
-/// that out: avatars and pieces of the scene. The picture is the same, byte for byte. Asking makes
-/// a graphics card wait for its own work, so it pays where a processor draws.
+/// Whether to query, while a picture is drawn, what the nearer parts of the scene hide, and leave
+/// these avatars and pieces of the scene out. The picture is the same, byte for byte. The query
+/// makes a graphics card wait for its own work, so it pays where a processor draws.
 enum class HiddenCulling : uint8_t {
   kWhereItPays,  ///< If the driver draws by the processor.
   kNever,
@@ -115,31 +115,31 @@ struct DrawingConfig {
   /// Avatars that have a model are drawn by it where a texel of their atlas would be so many
   /// samples of the picture or more, 0: nowhere. [>= 0]
   double mesh_texel = 3;
-  /// Whose view's side is no more than so many samples of the picture is drawn as a point: head,
-  /// chest and legs in his colours. 0: nobody. [>= 0]
+  /// An avatar whose view's side is at most so many samples of the picture is drawn as a point:
+  /// head, chest and legs in its colours. 0: none. [>= 0]
   double point_pixels = 10;
   /// Views fade into the next ones as the eye goes around an avatar, over this share of the angle
   /// between them; 0: the nearest view alone. [0 to 1]
   double view_blend = 0.4;
-  bool avatar_shadows = true;  ///< Those of the scene are always there.
-  bool soft_shadows = true;    ///< Nine looks a pixel at the sun's picture; else one, filtered.
-  int32_t sun_pixels = 4096;   ///< Along a side of the sun's picture. [256 to 8192]
+  bool avatar_shadows = true;  ///< Those of the scene are always drawn.
+  bool soft_shadows = true;    ///< Nine samples of the shadow map a pixel; else one, filtered.
+  int32_t sun_pixels = 4096;   ///< Along a side of the shadow map. [256 to 8192]
   HiddenCulling culling = HiddenCulling::kWhereItPays;
   double edges = 0.5;  ///< How dark edges of the scene are, 0: not drawn. [0 to 1]
-  /// The scene above this height is left out, for looking into buildings; relative to the origin.
-  /// Avatars are the caller's. [m]
+  /// The scene above this height is left out, to show the inside of buildings; relative to the
+  /// origin. The caller leaves out avatars. [m]
   double cut_height = std::numeric_limits<double>::infinity();
   int32_t workers = 0;  ///< For packing, 0 for all cores. [>= 0]
 };
 
-/// What a picture took.
+/// Counts and times of a picture.
 struct DrawingReport {
   size_t avatars = 0;       ///< In all crowds.
   size_t drawn = 0;         ///< Not culled.
-  size_t hidden = 0;        ///< In the picture's frame, but behind the scene.
+  size_t hidden = 0;        ///< Inside the frame, but behind the scene.
   size_t triangles = 0;     ///< Of the scene, drawn for the eye.
   double seconds_pack = 0;  ///< Culling and packing, shadows included.
-  double seconds_cull = 0;  ///< Asking what is hidden, with what the driver must finish for it.
+  double seconds_cull = 0;  ///< Query of what is hidden, and what the driver must finish before.
   double seconds_draw = 0;  ///< Upload, draw calls and reading back.
 };
 
@@ -156,31 +156,31 @@ class THRONG_API Drawing {
   Drawing& operator=(Drawing&&) noexcept;
   ~Drawing();
 
-  /// What draws: "llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// The driver's name: "llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] std::string renderer() const;
-  /// The triangles to draw, and the point that everything is relative to. Replaces what was there.
+  /// Sets the triangles to draw and the point that everything is relative to. Replaces both.
   /// Fails with kLimit: more triangles than the card's memory holds.
   [[nodiscard]] Result<void> set_scene(const Scene& scene, Vec3d origin);
   [[nodiscard]] Result<void> set_scene(const PreparedScene& scene);
-  /// Things that stand in the scene for a time: crates, barriers. Replaces what was there; an empty
-  /// scene takes them away. `origin` as of the scene. Fails with kLimit.
+  /// Sets what stands in the scene for a time: crates, barriers. Replaces all; an empty scene
+  /// removes them. `origin` as of the scene. Fails with kLimit.
   [[nodiscard]] Result<void> set_props(const Scene& props, Vec3d origin);
-  /// What a slot < kMarkSlots shows from now on; lower slots are drawn first. Fails with kLimit.
+  /// Sets what a slot < kMarkSlots shows; lower slots are drawn first. Fails with kLimit.
   [[nodiscard]] Result<void> set_marks(size_t slot, const Marks& marks);
   /// How opaque each texel of the panel's texture is, rows from the top.
   [[nodiscard]] Result<void> set_panel_texture(int32_t width, int32_t height,
                                                std::span<const uint8_t> alpha);
-  /// Keeps a copy of an atlas; colours in blocks stay so where the card reads them (S3TC, ETC2),
-  /// others are unpacked. Fails with kLimit: pages larger than the card's textures.
+  /// Keeps a copy of an atlas. Colours in blocks that the card reads (S3TC, ETC2) stay so, others
+  /// are unpacked. Fails with kLimit: pages larger than the card's textures.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
-  /// What an atlas's colours take in the card's memory, without smaller levels.
+  /// The size of an atlas's colours in the card's memory, without smaller levels.
   [[nodiscard]] size_t colour_bytes(size_t atlas) const;
-  /// Can the card read colours of this format as they are? Never what is not in blocks.
+  /// Can the card read colours of this format as they are? False for formats without blocks.
   [[nodiscard]] bool takes_blocks(AtlasFormat format) const;
   /// Draws avatars of an atlas as meshes where they are near. Fails with kBadInput (other clips
   /// than the atlas has), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
-  void clear_atlases();  ///< Forgets all: the next one is number 0.
+  void clear_atlases();  ///< Removes all: the next one is number 0.
   /// Fails with kBadConfig if draw() would.
   [[nodiscard]] static Result<void> check(const DrawingConfig& config);
   /// Fails with kBadConfig, or kLimit: a picture larger than the card draws.

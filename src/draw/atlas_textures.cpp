@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+// Uploads an atlas: colours as blocks where the card reads them, else unpacked; details; views.
 namespace throng {
 namespace {
 
@@ -31,7 +32,7 @@ void upload_pages(const Atlas& atlas, const std::vector<uint8_t>& four_bytes) {
 #define GL_COMPRESSED_RGBA_S3TC_DXT5_EXT 0x83F3
 #endif
 
-// How the card calls blocks; 0 for what is none.
+// The internal format of blocks in OpenGL; 0 for formats without blocks.
 GLenum kind_of(AtlasFormat format) {
   switch (format) {
     case AtlasFormat::kBc1:
@@ -48,13 +49,13 @@ GLenum kind_of(AtlasFormat format) {
 }
 
 bool takes_s3tc() {
-  // The desktop's name, and the browser's with either prefix.
+  // The desktop's name, and the browser's with both prefixes.
   return has_extension({"GL_EXT_texture_compression_s3tc", "GL_WEBGL_compressed_texture_s3tc",
                         "WEBGL_compressed_texture_s3tc"});
 }
 
-// OpenGL ES 3.0 has it, but a browser only where the card itself does, and not where a driver would
-// unpack it.
+// OpenGL ES 3.0 includes it; a browser has it only where the card itself does, not where a driver
+// would unpack it.
 bool takes_etc2() {
 #ifdef __EMSCRIPTEN__
   return has_extension({"GL_WEBGL_compressed_texture_etc", "WEBGL_compressed_texture_etc"});
@@ -65,8 +66,8 @@ bool takes_etc2() {
 #endif
 }
 
-// Half as many texels either way, as a card makes its next level, but that a colour counts as much
-// as it covers. Rows and columns are filled up to whole blocks.
+// Half as many texels along each axis, like the next level that a card makes, except that a colour
+// counts by its opacity. Rows and columns are filled up to whole blocks.
 Atlas half_of(const Atlas& atlas) {
   Atlas out;
   out.pages = atlas.pages;
@@ -101,7 +102,7 @@ Atlas half_of(const Atlas& atlas) {
   return out;
 }
 
-// As blocks, which the card reads as they are: no card makes their levels, so we do.
+// In blocks, which the card reads as they are. No card makes smaller levels of blocks, so we do.
 void upload_blocks(const Atlas& packed, const Atlas& unpacked) {
   const GLenum kind = kind_of(packed.format);
   const auto upload = [&](GLint level, const std::vector<uint8_t>& blocks) {
@@ -146,12 +147,12 @@ Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
   const Atlas atlas = convert_atlas(packed, AtlasFormat::kRgba8);
   AtlasTextures out;
   out.shape.shape = atlas.shape;
-  out.reaches = reaches_of(atlas);
+  out.extents = extents_of(atlas);
   out.shape.clips = atlas.clips;
   out.shape.width = atlas.width;
   out.shape.height = atlas.height;
   for (size_t part = 0; part < out.part_bright.size(); ++part) {
-    const std::array<float, 3> shares{0.30F, 0.59F, 0.11F};  // As the shaders have them.
+    const std::array<float, 3> shares{0.30F, 0.59F, 0.11F};  // As in the shaders.
     for (size_t c = 0; c < 3; ++c) {
       const float stored = static_cast<float>(atlas.part_colour[part][c]) / 255;
       out.part_bright[part] += shares[c] * std::max(0.02F, stored * stored);

@@ -13,7 +13,7 @@ namespace throng {
 /// Can the card read colours of this format as they are, in blocks of 4 x 4 texels (S3TC, ETC2)?
 [[nodiscard]] bool takes_blocks(AtlasFormat format);
 
-/// An atlas in the card's memory, and what the processor needs of it.
+/// An atlas in the card's memory, and the part of it that the processor needs.
 struct AtlasTextures {
   /// Fails with kLimit: pages larger than textures may be.
   [[nodiscard]] static Result<AtlasTextures> make(const Atlas& atlas);
@@ -21,7 +21,7 @@ struct AtlasTextures {
   void bind(const GlProgram& program) const;
 
   Atlas shape;                                  ///< Without texels.
-  std::vector<FigureReach> reaches;             ///< Of each view.
+  std::vector<FigureExtent> extents;            ///< Of each view.
   std::array<float, kBodyParts> part_bright{};  ///< On the mean, of linear light.
   size_t colour_bytes = 0;  ///< Of the largest level: blocks stay blocks where the card reads them.
   GlTexture colour, detail, views;

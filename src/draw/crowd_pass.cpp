@@ -11,6 +11,7 @@
 #include "draw/shaders.h"
 #include "draw/wardrobe.h"
 
+// Draws crowds by level of detail: meshes, views, blended views, points; upright or leaning.
 namespace throng {
 namespace {
 
@@ -20,8 +21,8 @@ constexpr int kLooksUnit = 5;
 
 constexpr size_t kCardsADraw = 16384;  // Their corners have numbers of 16 bits.
 
-// What each look wears: the colours of everybody who is too small for a view (head, chest, legs),
-// and which of its twelve colours each part has, in four bits each.
+// The outfit of each look: the three colours of an avatar that is drawn as a point (head, chest,
+// legs), and which of its twelve colours each part has, in four bits each.
 GlTexture make_looks() {
   const auto all = wardrobe();
   std::vector<uint32_t> words(size_t{4} * kLooks);
@@ -123,8 +124,8 @@ Result<void> CrowdPass::set_model(size_t atlas, const FigureModel& model) {
 }
 
 template <class Instance>
-void CrowdPass::Level<Instance>::begin(size_t most) {
-  if (instances.size() < most) instances.resize(most);
+void CrowdPass::Level<Instance>::begin(size_t max_count) {
+  if (instances.size() < max_count) instances.resize(max_count);
   runs.clear();
   used = 0;
 }
@@ -153,11 +154,11 @@ void CrowdPass::Level<Instance>::upload() {
 void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                      Vec3d to_sun) {
   const bool plain = config.avatars == AvatarStyle::kPlainQuads;
-  size_t most = 0;
-  for (const DrawnCrowd& crowd : crowds) most += crowd.avatars.x.size();
+  size_t max_count = 0;
+  for (const DrawnCrowd& crowd : crowds) max_count += crowd.avatars.x.size();
   for_each_level([&](auto& level) { level.begin(0); });
-  for (auto* level : {&meshes_, &views_, &points_, &thrown_}) level->begin(most);
-  blends_.begin(most);
+  for (auto* level : {&meshes_, &views_, &points_, &thrown_}) level->begin(max_count);
+  blends_.begin(max_count);
   for (const DrawnCrowd& crowd : crowds) {
     if (!crowd.ups.empty() && !plain) {
       pack_leaning_crowd(crowd, config, to_sun);
@@ -257,26 +258,26 @@ void CrowdPass::drop_hidden(const DrawingConfig& config, const DepthPyramid& dep
     return Vec3d{i.x, i.y + atlases_[run.atlas].shape.shape.centre, i.z};
   };
   const bool plain = config.avatars == AvatarStyle::kPlainQuads;
-  const auto reach = [&](const Run& run, uint32_t word) {
+  const auto extent = [&](const Run& run, uint32_t word) {
     const AtlasTextures& atlas = atlases_[run.atlas];
     const double high = atlas.shape.shape.centre;
-    return plain ? FigureReach{static_cast<float>(std::hypot(0.3, high) + 0.01), 0}
-                 : atlas.reaches[word & 0xfffff];
+    return plain ? FigureExtent{static_cast<float>(std::hypot(0.3, high) + 0.01), 0}
+                 : atlas.extents[word & 0xfffff];
   };
   hidden_ = views_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
-    return test.hides(middle(run, i), reach(run, i.view));
+    return test.hides(middle(run, i), extent(run, i.view));
   });
   hidden_ += blends_.drop(config.workers, [&](const Run& run, const BlendedInstance& b) {
-    FigureReach most = reach(run, b.nearest_below.view);
+    FigureExtent largest = extent(run, b.nearest_below.view);
     for (const uint32_t other : b.others) {
-      most.across = std::max(most.across, reach(run, other).across);
-      most.front = std::max(most.front, reach(run, other).front);
+      largest.across = std::max(largest.across, extent(run, other).across);
+      largest.front = std::max(largest.front, extent(run, other).front);
     }
-    return test.hides(middle(run, b.nearest_below), most);
+    return test.hides(middle(run, b.nearest_below), largest);
   });
   hidden_ += meshes_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
     const auto all = static_cast<float>(
-        models_[run.atlas]->reach(atlases_[run.atlas].shape.shape.centre) + 0.01);
+        models_[run.atlas]->extent(atlases_[run.atlas].shape.shape.centre) + 0.01);
     return test.hides(middle(run, i), {all, all});
   });
   hidden_ += points_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
@@ -287,11 +288,11 @@ void CrowdPass::drop_hidden(const DrawingConfig& config, const DepthPyramid& dep
     return Vec3d{i.body.x, i.body.y, i.body.z} + up * atlases_[run.atlas].shape.shape.centre;
   };
   hidden_ += leaning_views_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
-    return test.hides(leaning_middle(run, i), reach(run, i.body.view));
+    return test.hides(leaning_middle(run, i), extent(run, i.body.view));
   });
   hidden_ += leaning_meshes_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
     const auto all = static_cast<float>(
-        models_[run.atlas]->reach(atlases_[run.atlas].shape.shape.centre) + 0.01);
+        models_[run.atlas]->extent(atlases_[run.atlas].shape.shape.centre) + 0.01);
     return test.hides(leaning_middle(run, i), {all, all});
   });
   drawn_ -= hidden_;

@@ -35,14 +35,15 @@ class CrowdPass {
   /// Fails with kBadInput (other clips than the atlas), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
 
-  /// Who is seen by the eye, and who by the sun.
+  /// Finds which avatars the eye sees, and which the sun.
   void pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config, Vec3d to_sun);
-  /// Leaves out, after pack(), who is behind what `depths` shows of the same view.
+  /// After pack(), leaves out the avatars behind the depths of the same view.
   void drop_hidden(const DrawingConfig& config, const DepthPyramid& depths);
-  /// Who throws shadows, before draw_shadows(); who is seen, before draw().
+  /// Uploads the avatars that cast shadows, before draw_shadows(); those that are seen, before
+  /// draw().
   void upload_shadows();
   void upload_seen();
-  /// Into the sun's depth picture.
+  /// Draws into the shadow map.
   void draw_shadows(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
                     Vec3d sun_up) const;
   /// `begin` puts a program in use and sets what all share.
@@ -57,7 +58,7 @@ class CrowdPass {
     size_t first = 0, count = 0;
     LevelDistances levels = {};
   };
-  // Where those that are drawn in one way lie in the instances' texture: at rows of their own.
+  // The instances of one level of detail, in rows of their own in the instances' texture.
   struct Runs {
     std::vector<Run> runs;
     size_t used = 0;
@@ -70,10 +71,10 @@ class CrowdPass {
     Level() { texels = sizeof(Instance) / sizeof(ImpostorInstance); }
     std::vector<Instance> instances;
     [[nodiscard]] std::span<Instance> rest() { return std::span(instances).subspan(used); }
-    void begin(size_t most);
+    void begin(size_t max_count);
     [[nodiscard]] GLsizei rows() const;
     void upload();
-    /// Takes out those of which `is_hidden(run, instance)`, and returns how many.
+    /// Removes the instances for which is_hidden(run, instance) is true, and returns their number.
     size_t drop(int32_t workers, const auto& is_hidden);
   };
   void draw_cards(const GlProgram& program, const Runs& level) const;

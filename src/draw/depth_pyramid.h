@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-/// What is surely hidden in a picture that is drawn so far. Source: [GKM93].
+/// A test of what the part of a picture drawn so far certainly hides. Source: [GKM93].
 namespace throng {
 
 /// A rectangle of a picture and the depth of the nearest point behind it, all from -1 to 1 as
@@ -15,7 +15,7 @@ struct NdcBox {
   double left = 0, right = 0, low = 0, high = 0, nearest = 0;
 };
 
-/// The furthest depth that each block of samples holds, in levels: each halves the one before.
+/// The furthest depth of each block of samples, in levels: each halves the one before.
 class DepthPyramid {
  public:
   static constexpr int32_t kBlock = 8;  ///< Samples along a side of a texel of level 0.
@@ -23,8 +23,8 @@ class DepthPyramid {
   /// `furthest`: of each block of a picture of `width` x `height` samples, rows from below,
   /// [0 to 1] as the card keeps depth.
   void set(std::span<const float> furthest, int32_t width, int32_t height);
-  /// Is whatever lies in the box behind what every sample of it shows? Never true of a box of which
-  /// a sample shows something, nor outside of the picture.
+  /// Does every sample of the box show something nearer than the box? Never true of a box that some
+  /// sample shows, nor of one outside the picture.
   [[nodiscard]] bool hides(const NdcBox& box) const;
 
  private:

@@ -7,6 +7,7 @@
 #include "draw/crowd_pass.h"
 #include "draw/shaders.h"
 
+// Reduces the depth buffer to the furthest depth of each block, and reads that back.
 namespace throng {
 
 Result<void> DepthReader::make_program() {
@@ -38,7 +39,7 @@ void DepthReader::read(const GlTexture& depth, GLsizei width, GLsizei height, De
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindTexture(GL_TEXTURE_2D, 0);
   const size_t blocks = static_cast<size_t>(wide) * static_cast<size_t>(high);
-  words_.resize(4 * blocks);  // The one form that every driver hands out.
+  words_.resize(4 * blocks);  // The only format that every driver can read back.
   furthest_.resize(blocks);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   glReadPixels(0, 0, wide, high, GL_RGBA_INTEGER, GL_UNSIGNED_INT, words_.data());

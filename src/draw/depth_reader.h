@@ -11,7 +11,7 @@
 namespace throng {
 
 /// Brings the depths of a picture that is being drawn to the processor, as a pyramid. The card
-/// takes the furthest of each block: OpenGL ES hands out no depths, and it is less to send.
+/// takes the furthest of each block: OpenGL ES cannot read depths back, and it is less to send.
 class DepthReader {
  public:
   /// Fails with kNotFound: the driver refuses a shader.

@@ -24,16 +24,17 @@
 #include "throng_draw/draw.h"
 
 // A picture in six passes: the sun's depth of scene and avatars, the scene, the avatars, the sky,
-// the marks, the panel. All instances of a picture go up in one upload: those that the eye sees,
+// the marks, the panel. All instances of a picture are uploaded at once: those that the eye sees,
 // then the same as the sun sees them.
 namespace throng {
 namespace {
 
 constexpr size_t kTextureBudget = size_t{128} << 20;  // Bytes, without smaller levels.
 constexpr int kPictureUnit = 8;
-constexpr double kNearer = 0.002;  // Of the way to the eye that marks are nearer than they are.
+constexpr double kNearer =
+    0.002;  // Share of the distance to the eye by which marks are drawn nearer.
 
-// Colour and depth that are no window's.
+// Colour and depth of an offscreen target.
 struct Target {
   GlFramebuffer frame;
   GlRenderbuffer colour;
@@ -82,7 +83,7 @@ Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
   Result<SceneCorners> corners = scene_corners(scene, origin, textures.of_texture);
   if (!corners) return corners.error();
   sort_into_chunks(*corners);
-  add_plain(*corners);
+  add_ground_plane(*corners);
   return PreparedScene(std::make_unique<State>(State{*std::move(corners), std::move(textures)}));
 }
 
@@ -121,7 +122,7 @@ struct Drawing::State {
   size_t draw_scene(const Matrix& clip_from_world, Vec3d eye,
                     const std::function<void()>& read_depths);
   void draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const;
-  // Does the window keep depths, so that a picture can be painted there at once?
+  // Does the window have depths, so that a picture can be drawn there directly?
   [[nodiscard]] bool window_has_depth() const;
   [[nodiscard]] bool culls(const DrawingConfig& config) const;
   void draw_sky(const DrawingConfig& config, const CameraAxes& axes) const;
@@ -165,7 +166,7 @@ Result<void> Drawing::State::fit_sun(GLsizei pixels) {
   glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT24, pixels, pixels);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  // At its border it must not be compared with what lies at the opposite one.
+  // Its border must not be compared with the opposite one.
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
@@ -218,16 +219,16 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, 
   begin(mesh.has_holes() ? surfaced_depth : depth);
   if (mesh.has_holes()) surfaced_depth.set("pictures", kPictureUnit);
   mesh.draw(chunks_in_view(mesh.chunks(), sun_from_world, {}));
-  mesh.draw_plain();
+  mesh.draw_ground_plane();
   if (mesh.has_holes()) begin(depth);
   props.draw();
   glDisable(GL_POLYGON_OFFSET_FILL);
   crowd.draw_shadows(sun_from_world, to_sun, sun_right, sun_up);
 }
 
-// What is near first: it hides much of the rest, which is asked before it is drawn. The order is
-// the same whether anything is left out or not, for where surfaces coincide the last one shows.
-// Returns how many triangles were drawn.
+// Near parts first: they hide much of the rest, which is tested before it is drawn. The order is
+// the same with and without culling, because where surfaces coincide the last one shows. Returns
+// the number of triangles drawn.
 size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
                                   const std::function<void()>& read_depths) {
   constexpr size_t kWorthAsking = 8'000, kNearShare = 8;
@@ -256,7 +257,7 @@ size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
     mesh.draw(rest);
     drawn += triangles(rest);
   }
-  mesh.draw_plain();
+  mesh.draw_ground_plane();
   return drawn;
 }
 
@@ -266,7 +267,7 @@ void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConf
   mark.set("cut", static_cast<float>(std::min(config.cut_height, 1e9)));
   mark.set_size("half_picture", 0.5F * static_cast<float>(config.width * config.samples),
                 0.5F * static_cast<float>(config.height * config.samples));
-  // Depth is a + b / w: to add to b is to come nearer by a share of w.
+  // Depth is a + b / w: adding to b moves a mark nearer by a share of w.
   const double n = config.camera.nearest, f = config.camera.furthest;
   mark.set("nearer", static_cast<float>(-kNearer * 2 * f * n / (f - n)));
   glEnable(GL_BLEND);
@@ -287,7 +288,7 @@ Drawing::~Drawing() {
   if (!state_) return;
   state_->make_current();
   std::unique_ptr<Headless> last = std::move(state_->context);
-  state_.reset();  // Names first, then the context that they are of.
+  state_.reset();  // OpenGL names first, then their context.
 }
 
 Result<Drawing> Drawing::create() {
@@ -409,9 +410,9 @@ bool Drawing::State::window_has_depth() const {
 }
 
 bool Drawing::State::culls(const DrawingConfig& config) const {
-  const bool asked = config.culling == HiddenCulling::kAlways ||
-                     (config.culling == HiddenCulling::kWhereItPays && is_software);
-  return asked && !(mesh.bounds().empty() && props.bounds().empty());
+  const bool is_wanted = config.culling == HiddenCulling::kAlways ||
+                         (config.culling == HiddenCulling::kWhereItPays && is_software);
+  return is_wanted && !(mesh.bounds().empty() && props.bounds().empty());
 }
 
 // `sky` is in use.
@@ -442,21 +443,21 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   const auto draw_start = Clock::now();
   crowd.upload_shadows();
 
-  // The sun's picture covers what is near the target, as far as shadows can be told apart.
+  // The shadow map covers what is near the target, as far as shadows can be distinguished.
   const EyeCamera& camera = config.camera;
   const CameraAxes axes = camera_axes(camera);
   const Box3d& bounds = mesh.bounds();
   const double scene_radius = bounds.empty() ? 1 : 0.5 * length(bounds.max - bounds.min) + 1;
   const Vec3d scene_middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
-  const double reach = std::min(scene_radius, 1.6 * length(camera.target - camera.eye) + 20);
-  const Vec3d middle = reach < scene_radius ? camera.target : scene_middle;
+  const double half_side = std::min(scene_radius, 1.6 * length(camera.target - camera.eye) + 20);
+  const Vec3d middle = half_side < scene_radius ? camera.target : scene_middle;
   const Vec3d sun_right =
       cross({0, 1, 0}, to_sun) * (1 / std::max(1e-9, length(cross({0, 1, 0}, to_sun))));
   const Vec3d sun_up = cross(to_sun, sun_right);
   const Matrix sun_from_world =
-      parallel_view(sun_right, sun_up, to_sun, middle, reach, 2 * scene_radius + reach);
+      parallel_view(sun_right, sun_up, to_sun, middle, half_side, 2 * scene_radius + half_side);
   const Matrix clip_from_world = perspective(camera);
-  // Little of it over the scene, whatever its size, and the sky's colour at the end of the plain.
+  // Little haze over the scene, however large it is, and the sky's colour at the end of the ground.
   const auto haze = static_cast<float>(
       0.15 / std::max({150.0, scene_radius, length(camera.target - camera.eye)}));
 
@@ -498,7 +499,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
 
   const auto begin_scene = [&](const GlProgram& program, float prop) {
     begin(program);
-    program.set("bias", static_cast<float>(2.5 * reach / sun_pixels));
+    program.set("bias", static_cast<float>(2.5 * half_side / sun_pixels));
     program.set("soft", config.soft_shadows ? 1.0F : 0.0F);
     program.set("cut", cut);
     program.set("edges", static_cast<float>(config.edges));
@@ -522,7 +523,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   crowd.upload_seen();
   crowd.draw(config, begin);
 
-  begin(sky);  // Where nothing else is: most of a picture costs none.
+  begin(sky);  // Only where nothing else is: it costs nothing over most of a picture.
   draw_sky(config, axes);
   draw_marks(clip_from_world, config);
 
@@ -582,7 +583,7 @@ Result<void> Drawing::show(std::span<const DrawnCrowd> crowds, const DrawingConf
   State& state = *state_;
   state.make_current();
   DrawingReport done;
-  // A copy of a picture costs a processor that draws as much as its sky.
+  // On a processor, copying a picture costs as much as drawing its sky.
   const bool at_once = config.samples == 1 && !state.culls(config) && state.window_has_depth();
   if (auto ok = state.paint(crowds, config, at_once, done); !ok) return ok.error();
   if (!at_once) {

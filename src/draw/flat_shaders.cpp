@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/shaders.h"
 
-// What has its colour and no light: marks over the scene, and the panel.
+// Shaders of what is unlit: marks over the scene, and the panel.
 namespace throng::shaders {
 namespace {
 
@@ -14,8 +14,8 @@ uniform mat4 clip_from_world;
 
 }  // namespace
 
-// A line's corners move apart across it, in pixels. All comes a little nearer than the surface that
-// it lies on.
+// The corners of a line are moved apart across it, in pixels. All is drawn a little nearer than the
+// surface that it lies on.
 std::string mark_vertex() {
   return std::string(kHead) + R"(
 layout(location = 0) in vec3 position;
@@ -24,7 +24,7 @@ layout(location = 2) in vec4 paint;
 layout(location = 3) in float side;
 uniform vec2 half_picture; // [px of this target]
 uniform float half_width;  // [px of this target]
-uniform float nearer;      // In clip space: a share of the way to the eye, however far.
+uniform float nearer;      // In clip space: a share of the distance to the eye.
 out vec4 tint;
 out float height;
 void main() {
@@ -33,7 +33,7 @@ void main() {
   gl_Position = clip_from_world * vec4(position, 1.0);
   if (side != 0.0) {
     vec4 end = clip_from_world * vec4(other, 1.0);
-    // What lies behind the eye has no place in the picture: go along the line to just before it.
+    // A point behind the eye has no place in the picture: move along the line in front of it.
     const float kNear = 0.05;
     if (gl_Position.w < kNear && end.w > kNear)
       gl_Position = mix(gl_Position, end, (kNear - gl_Position.w) / (end.w - gl_Position.w));

@@ -11,7 +11,7 @@
 
 namespace throng {
 
-/// Asks for the name of what draws. A browser has one that tells and one that does not.
+/// The query for the driver's name. In a browser GL_RENDERER does not give it.
 #ifdef __EMSCRIPTEN__
 inline constexpr GLenum kRendererName = 0x9246;  // UNMASKED_RENDERER_WEBGL
 #else

@@ -8,6 +8,7 @@
 #include <emscripten/html5.h>
 #endif
 
+// Shader programs and other OpenGL objects, and what the driver supports.
 namespace throng {
 namespace {
 
@@ -91,7 +92,7 @@ bool has_extension(std::initializer_list<std::string_view> names) {
 
 std::string renderer_name() {
 #ifdef __EMSCRIPTEN__
-  // A browser tells only who asks for leave, and counts asking without as a fault.
+  // A browser gives the name only after this extension is enabled; else the query is an error.
   const EMSCRIPTEN_WEBGL_CONTEXT_HANDLE context = emscripten_webgl_get_current_context();
   if (!emscripten_webgl_enable_extension(context, "WEBGL_debug_renderer_info")) return "unknown";
 #endif

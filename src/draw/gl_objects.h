@@ -10,7 +10,7 @@
 #include "draw/gl.h"
 #include "throng/math.h"
 
-/// Names that OpenGL hands out, given back when their owner goes. A context must be current.
+/// Names that OpenGL allocates, released when their owner is destroyed. A context must be current.
 namespace throng {
 
 template <void (*kDelete)(GLuint)>
@@ -49,8 +49,8 @@ using GlRenderbuffer = GlName<delete_renderbuffer>;
 class GlProgram {
  public:
   GlProgram() = default;
-  /// The sources are ours: one that does not compile is a fault of this library or of the driver,
-  /// which fault() tells.
+  /// The sources are ours: if one does not compile, this library or the driver is at fault, and
+  /// fault() returns the driver's message.
   GlProgram(const std::string& vertex, const std::string& fragment);
   void use() const { glUseProgram(name_.get()); }
   [[nodiscard]] bool is_linked() const { return name_.get() != 0; }
@@ -72,7 +72,7 @@ class GlProgram {
 /// Does the current context have an extension by one of its names? Browsers have others.
 bool has_extension(std::initializer_list<std::string_view> names);
 
-/// What draws, as the driver calls itself; "unknown" if it does not tell.
+/// The driver's name for itself; "unknown" if it gives none.
 std::string renderer_name();
 GlTexture make_texture();
 GlBuffer make_buffer();

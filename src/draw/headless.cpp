@@ -8,8 +8,8 @@
 
 #include <string>
 
-// EGL's surfaceless platform: Mesa draws on the processor where there is no graphics card, and no
-// display server has to run. OpenGL ES, not desktop OpenGL: what compiles here compiles in a
+// Uses EGL's surfaceless platform: Mesa draws on the processor where there is no graphics card, and
+// no display server has to run. OpenGL ES, not desktop OpenGL: what compiles here compiles in a
 // browser.
 namespace throng {
 namespace {
@@ -20,7 +20,7 @@ Error nothing_draws(const std::string& why) {
                                "libgl1-mesa-dri"};
 }
 
-// libepoxy ends the program if a library is missing, so we look first.
+// libepoxy ends the program if a library is missing, so we check first.
 bool has_library(const char* name) {
   void* library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr) return false;

@@ -16,7 +16,7 @@ class Headless {
   Headless(const Headless&) = delete;
   Headless& operator=(const Headless&) = delete;
   ~Headless();
-  /// This thread's calls go to this context from now on.
+  /// Makes this context current on the calling thread.
   void make_current() const;
 
  private:

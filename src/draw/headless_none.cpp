@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/headless.h"
 
-// A browser's page: all it has is the canvas's context.
+// In a browser's page there is only the canvas's context.
 namespace throng {
 
 Result<std::unique_ptr<Headless>> Headless::create() {

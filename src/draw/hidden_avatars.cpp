@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+// Tests whether all that could be drawn of a figure lies behind the depths of the picture.
 namespace throng {
 
-std::vector<FigureReach> reaches_of(const Atlas& atlas) {
+std::vector<FigureExtent> extents_of(const Atlas& atlas) {
   const AtlasShape& shape = atlas.shape;
   const double texel = shape.side / shape.pixels, middle = 0.5 * shape.pixels;
-  std::vector<FigureReach> out(atlas.views.size());
+  std::vector<FigureExtent> out(atlas.views.size());
   for (size_t i = 0; i < atlas.views.size(); ++i) {
     const AtlasView& v = atlas.views[i];
     const double x = std::max(std::fabs(v.left - middle), std::fabs(v.left + v.width - middle));
@@ -24,7 +25,7 @@ std::vector<FigureReach> reaches_of(const Atlas& atlas) {
         front = std::max<uint8_t>(front, atlas.mask[first + column] & 31);
       }
     }
-    // The shader's, 5 cm nearer than the texel says, and one more for rounding.
+    // As in the shader 5 cm nearer than the texel's depth, and 1 cm more for rounding.
     out[i] = {static_cast<float>(std::hypot(x, y) * texel + 0.01),
               static_cast<float>((front - 16.0) / 30 * shape.side + 0.06)};
   }
@@ -40,24 +41,28 @@ HiddenAvatars::HiddenAvatars(const EyeCamera& camera, const DepthPyramid& depths
   shift_ = (f + n) / (f - n);
 }
 
-bool HiddenAvatars::hides(Vec3d to, double least, double most, double across,
+bool HiddenAvatars::hides(Vec3d to, double min_depth, double max_depth, double across,
                           double nearest) const {
-  if (std::min(least, nearest) <= camera_.nearest) return false;
+  if (std::min(min_depth, nearest) <= camera_.nearest) return false;
   const double x = dot(to, axes_.right), y = dot(to, axes_.up);
-  const auto low = [&](double v) { return std::min((v - across) / least, (v - across) / most); };
-  const auto high = [&](double v) { return std::max((v + across) / least, (v + across) / most); };
+  const auto low = [&](double v) {
+    return std::min((v - across) / min_depth, (v - across) / max_depth);
+  };
+  const auto high = [&](double v) {
+    return std::max((v + across) / min_depth, (v + across) / max_depth);
+  };
   return depths_.hides(
       {low(x) / right_, high(x) / right_, low(y) / up_, high(y) / up_, shift_ + scale_ / nearest});
 }
 
-bool HiddenAvatars::hides(Vec3d middle, FigureReach reach) const {
+bool HiddenAvatars::hides(Vec3d middle, FigureExtent extent) const {
   const Vec3d to = middle - camera_.eye;
   const double depth = dot(to, axes_.forward);
   const double along = depth / std::max(length(to), 1e-9);
-  // The card leans by the angle between the ray to it and the view's axis.
-  const double lean = reach.across * std::sqrt(std::max(0.0, 1 - along * along));
-  return hides(to, depth - lean, depth + lean, reach.across,
-               depth - lean - std::max(0.0F, reach.front) * along);
+  // The card is inclined by the angle between the ray to it and the view's axis.
+  const double lean = extent.across * std::sqrt(std::max(0.0, 1 - along * along));
+  return hides(to, depth - lean, depth + lean, extent.across,
+               depth - lean - std::max(0.0F, extent.front) * along);
 }
 
 bool HiddenAvatars::hides_point(Vec3d middle, double half_size) const {

@@ -10,26 +10,26 @@
 
 namespace throng {
 
-/// How far what is drawn of a figure reaches from its middle. [m]
-struct FigureReach {
+/// The extent of what is drawn of a figure, from its middle. [m]
+struct FigureExtent {
   float across = 0;  ///< On the card that faces the eye.
   float front = 0;   ///< From the card towards the eye.
 };
 
-/// Of each view of an atlas.
-[[nodiscard]] std::vector<FigureReach> reaches_of(const Atlas& atlas);
+/// One for each view of an atlas.
+[[nodiscard]] std::vector<FigureExtent> extents_of(const Atlas& atlas);
 
-/// Says of figures whether all that could be drawn of them lies behind what is in the picture.
+/// Tests whether all that could be drawn of a figure lies behind what is in the picture.
 class HiddenAvatars {
  public:
   HiddenAvatars(const EyeCamera& camera, const DepthPyramid& depths);
   /// `middle`: of the figure, relative to the same point as the camera.
-  [[nodiscard]] bool hides(Vec3d middle, FigureReach reach) const;
+  [[nodiscard]] bool hides(Vec3d middle, FigureExtent extent) const;
   /// A point has one depth, its middle's.
   [[nodiscard]] bool hides_point(Vec3d middle, double half_size) const;
 
  private:
-  [[nodiscard]] bool hides(Vec3d to, double least, double most, double across,
+  [[nodiscard]] bool hides(Vec3d to, double min_depth, double max_depth, double across,
                            double nearest) const;
   EyeCamera camera_;
   CameraAxes axes_;

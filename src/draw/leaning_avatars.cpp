@@ -6,9 +6,9 @@
 
 #include "throng/lean.h"
 
-// A figure that leans is seen as one that stands is by an eye that leans the other way: the same
-// views serve, on cards that lean. What is seen of somebody on a wall is seen from its free side,
-// which is above him, so the rows over the horizon are those that are needed.
+// Packs avatars that lean. A leaning figure looks like an upright one to an eye turned by the
+// opposite rotation, so the same views serve, on cards that lean. An avatar on a wall is seen from
+// the free side of the wall, which is above it, so the rows over the horizon suffice.
 namespace throng {
 namespace {
 
@@ -26,17 +26,17 @@ LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const Pack
   const EyeCamera& camera = config.camera;
   const CameraAxes axes = camera_axes(camera);
   const double up = std::tan(0.5 * camera.field_of_view), right = up * camera.aspect;
-  const double reach = 0.5 * atlas.shape.side;
+  const double radius = 0.5 * atlas.shape.side;
   LevelCounts counts;
   for (size_t i = 0; i < a.x.size(); ++i) {
     const Vec3d feet{a.x[i], a.y[i], a.z[i]}, axis = crowd.ups[i];
     const Vec3d from_eye = feet + axis * atlas.shape.centre - camera.eye;
     const double depth = dot(from_eye, axes.forward);
-    // Outside the sides of what a camera sees by more than the reach, each side a unit's measure.
+    // Is the figure outside a side plane of the view frustum by more than its radius?
     const auto outside = [&](Vec3d across, double slope) {
-      return std::fabs(dot(from_eye, across)) - depth * slope > reach * std::hypot(1, slope);
+      return std::fabs(dot(from_eye, across)) - depth * slope > radius * std::hypot(1, slope);
     };
-    if (depth + reach < camera.nearest || depth - reach > camera.furthest ||
+    if (depth + radius < camera.nearest || depth - radius > camera.furthest ||
         outside(axes.right, right) || outside(axes.up, up)) {
       continue;
     }

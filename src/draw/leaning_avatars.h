@@ -7,8 +7,8 @@
 #include "throng/impostor_pack.h"
 #include "throng_draw/draw.h"
 
-/// Avatars whose axes are not upright, as a card takes them. They are few beside those who walk, so
-/// one after the other is quick enough.
+/// Avatars whose axes are not upright, in the form that a card reads. They are few, so a serial
+/// loop is fast enough.
 namespace throng {
 
 /// Thirty-two bytes for the card: an instance and its axis.
@@ -18,7 +18,7 @@ struct LeaningInstance {
   uint32_t unused = 0;
 };
 
-/// Where to write to, each as long as the avatars; meshes may be empty if there are none.
+/// Output arrays, each as long as the avatars; meshes may be empty if there are none.
 struct LeaningSpans {
   std::span<LeaningInstance> meshes, views;
 };

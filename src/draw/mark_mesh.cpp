@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+// Uploads marks and draws them; each line is two triangles.
 namespace throng {
 namespace {
 
@@ -26,7 +27,7 @@ Result<void> MarkMesh::set(const Marks& marks) {
   }
   for (size_t i = 0; i + 1 < marks.lines.size(); i += 2) {
     const MarkVertex &a = marks.lines[i], &b = marks.lines[i + 1];
-    // Left and right change ends with the direction, so both ends use the same side numbers turned.
+    // At the other end the direction is reversed, and so are left and right.
     const Vertex a0{{a.x, a.y, a.z}, {b.x, b.y, b.z}, a.colour, -1};
     const Vertex a1{{a.x, a.y, a.z}, {b.x, b.y, b.z}, a.colour, 1};
     const Vertex b0{{b.x, b.y, b.z}, {a.x, a.y, a.z}, b.colour, 1};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+// Uploads the poses and vertices of a figure model.
 namespace throng {
 namespace {
 
@@ -68,12 +69,12 @@ void ModelMesh::draw(const GlProgram& program, size_t clip, size_t instances) co
                           static_cast<GLsizei>(instances));
 }
 
-double ModelMesh::reach(double centre) const {
-  const auto most = [](double low, double high) {
+double ModelMesh::extent(double centre) const {
+  const auto larger = [](double low, double high) {
     return std::max(std::fabs(low), std::fabs(high));
   };
-  return std::hypot(most(low_.x, high_.x), most(low_.y - centre, high_.y - centre),
-                    most(low_.z, high_.z));
+  return std::hypot(larger(low_.x, high_.x), larger(low_.y - centre, high_.y - centre),
+                    larger(low_.z, high_.z));
 }
 
 }  // namespace throng

@@ -16,7 +16,7 @@ class ModelMesh {
   /// Draws `instances` of a clip, with the program in use that they are set in.
   void draw(const GlProgram& program, size_t clip, size_t instances) const;
   /// Of any pose from a point this high over the feet. [m]
-  [[nodiscard]] double reach(double centre) const;
+  [[nodiscard]] double extent(double centre) const;
 
  private:
   std::vector<AtlasClip> clips_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
+// Uploads and draws a panel.
 namespace throng {
 
 Result<void> PanelMesh::set_texture(int32_t width, int32_t height, std::span<const uint8_t> alpha) {

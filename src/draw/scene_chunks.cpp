@@ -9,11 +9,12 @@
 #include <numeric>
 #include <utility>
 
+// Sorts triangles into chunks, and culls chunks by the view frustum and by a depth pyramid.
 namespace throng {
 namespace {
 
 constexpr double kPerChunk = 500;  // Triangles.
-// The card computes in floats: what lies outside by less than this share may yet be drawn.
+// The card computes in floats: what lies outside by less than this share may still be drawn.
 constexpr double kSlack = 1e-4;
 
 using Corner = std::array<double, 4>;
@@ -74,7 +75,7 @@ void sort_into_chunks(SceneCorners& scene) {
   scene.chunks.clear();
   if (triangles == 0) return;
   const Vec3d size = scene.bounds.max - scene.bounds.min;
-  // As if they lay evenly over the plan, and storeys as far apart as cells are wide.
+  // As if triangles lay evenly over the plan, and storeys were as far apart as cells are wide.
   const double side = std::max({4.0,
                                 std::sqrt(std::max(size.x, 1.0) * std::max(size.z, 1.0) *
                                           kPerChunk / static_cast<double>(triangles)),

@@ -22,7 +22,7 @@ void sort_into_chunks(SceneCorners& scene);
 [[nodiscard]] std::vector<uint32_t> chunks_in_view(std::span<const SceneChunk> chunks,
                                                    const Matrix& clip_from_world, Vec3d eye);
 
-/// Takes out those that lie behind what the pyramid has seen. The pyramid must be of the same view.
+/// Removes the chunks that the pyramid hides. The pyramid must be of the same view.
 void drop_hidden_chunks(std::span<const SceneChunk> chunks, const Matrix& clip_from_world,
                         const DepthPyramid& depths, std::vector<uint32_t>& indices);
 

@@ -9,8 +9,9 @@
 
 #include "core/random.h"
 
-// Models are soups: triangles that share a side have corners of their own there, and sides may be
-// turned either way. So sides are matched by where they are, to a tenth of a millimetre.
+// Makes the corners of a scene and finds its edges. Models are triangle soups: triangles that share
+// a side do not share corners, and may have opposite windings. So sides are matched by position, to
+// a tenth of a millimetre.
 namespace throng {
 namespace {
 
@@ -61,8 +62,8 @@ void mark_edges(std::vector<Side>& sides, const std::vector<Vec3d>& normals,
     for (end = begin;
          end < sides.size() && sides[end].low == first.low && sides[end].high == first.high;
          ++end) {
-      const double bend = dot(normals[first.triangle], normals[sides[end].triangle]);
-      smooth = smooth && std::abs(bend) > kSmooth;
+      const double cosine = dot(normals[first.triangle], normals[sides[end].triangle]);
+      smooth = smooth && std::abs(cosine) > kSmooth;
     }
     if (smooth && end - begin > 1) continue;
     for (size_t i = begin; i < end; ++i) {
@@ -104,7 +105,7 @@ SurfaceCorner surface_of(const Scene& scene, const ScenePart& part,
   return out;
 }
 
-// Large numbers have no digits left for texels: whole textures more or less look the same.
+// Large coordinates have no digits left for texels: whole repetitions are subtracted.
 void set_places(const TextureCorners& places, SurfaceCorner* corners) {
   for (size_t axis = 0; axis < 2; ++axis) {
     const float low = std::floor(std::min({places[0][axis], places[1][axis], places[2][axis]}));
@@ -170,15 +171,15 @@ Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin,
   return out;
 }
 
-// One triangle: where two of that size meet and are clipped, the sky would show through.
-void add_plain(SceneCorners& scene) {
+// One triangle: where two of that size met and were clipped, the sky would show through.
+void add_ground_plane(SceneCorners& scene) {
   if (scene.bounds.empty()) return;
-  const double reach = 40 * length(scene.bounds.max - scene.bounds.min) + 100;
+  const double half_side = 40 * length(scene.bounds.max - scene.bounds.min) + 100;
   const auto middle = (scene.bounds.min + scene.bounds.max) * 0.5;
   const double y = scene.bounds.min.y - 0.02;
   const auto corner = [&](double x, double z) {
-    scene.corners.push_back({{static_cast<float>(middle.x + x * reach), static_cast<float>(y),
-                              static_cast<float>(middle.z + z * reach)},
+    scene.corners.push_back({{static_cast<float>(middle.x + x * half_side), static_cast<float>(y),
+                              static_cast<float>(middle.z + z * half_side)},
                              {0, 127, 0},
                              0});
   };

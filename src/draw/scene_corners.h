@@ -12,20 +12,20 @@
 #include "throng/result.h"
 #include "throng/scene.h"
 
-/// A scene's triangles as the card takes them, three corners each, no index: flat normals are not
-/// shared.
+/// A scene's triangles in the form that the card reads: three corners each, no index, because flat
+/// normals are not shared.
 namespace throng {
 
 struct SceneCorner {
   std::array<float, 3> position{};
   std::array<int8_t, 3> normal{};
-  /// Bit k: the side opposite to the triangle's corner k is an edge. Higher bits: 0 for the plain
+  /// Bit k: the side opposite to the triangle's corner k is an edge. Higher bits: 0 for the ground
   /// around the scene, else 1 to 31, the tint of the part.
   uint8_t edges_tint = 0;
 };
 static_assert(sizeof(SceneCorner) == 16);
 
-/// What a corner has besides where a scene has materials.
+/// Further attributes of a corner in a scene with materials.
 struct SurfaceCorner {
   std::array<float, 2> place{};    ///< In the texture.
   std::array<uint8_t, 4> paint{};  ///< Roots of red, green, blue in linear light; how opaque.
@@ -45,15 +45,15 @@ struct SceneCorners {
   std::vector<SceneCorner> corners;
   std::vector<SurfaceCorner> surfaces;  ///< One a corner; empty where there are no materials.
   bool has_holes = false;               ///< Some surface lets light through.
-  std::vector<SceneChunk> chunks;       ///< See sort_into_chunks. Without the plain.
-  Box3d bounds;                         ///< Of the scene without the plain, relative to the origin.
+  std::vector<SceneChunk> chunks;       ///< See sort_into_chunks. Without the ground plane.
+  Box3d bounds;                         ///< Without the ground plane, relative to the origin.
   Vec3d origin;
 };
 
-/// Fails with kLimit. `textures`: what became of the scene's.
+/// Fails with kLimit. `textures`: the layers of the scene's textures.
 [[nodiscard]] Result<SceneCorners> scene_corners(const Scene& scene, Vec3d origin,
                                                  std::span<const LayerOf> textures = {});
-/// A plain just under the lowest point, out to the haze, for the scene to stand on.
-void add_plain(SceneCorners& scene);
+/// Adds a plane just under the lowest point, out to the haze, on which the scene stands.
+void add_ground_plane(SceneCorners& scene);
 
 }  // namespace throng

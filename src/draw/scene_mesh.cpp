@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
+// Uploads the corners of a scene and draws all of it or some chunks.
 namespace throng {
 
 Result<void> SceneMesh::set(const SceneCorners& scene) {
@@ -62,7 +63,7 @@ void SceneMesh::draw() const { draw_corners(0, static_cast<uint32_t>(corners_));
 
 void SceneMesh::draw(std::vector<uint32_t> chunks) const {
   std::sort(chunks.begin(), chunks.end());
-  uint32_t first = 0, count = 0;  // Neighbours go in one call.
+  uint32_t first = 0, count = 0;  // Neighbours are drawn in one call.
   for (const uint32_t i : chunks) {
     if (first + count != chunks_[i].first) {
       draw_corners(first, count);
@@ -73,7 +74,7 @@ void SceneMesh::draw(std::vector<uint32_t> chunks) const {
   draw_corners(first, count);
 }
 
-void SceneMesh::draw_plain() const {
+void SceneMesh::draw_ground_plane() const {
   const uint32_t first = chunks_.empty() ? 0 : chunks_.back().first + chunks_.back().count;
   draw_corners(first, static_cast<uint32_t>(corners_) - first);
 }

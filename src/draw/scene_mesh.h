@@ -21,7 +21,7 @@ class SceneMesh {
   void draw() const;  ///< All of it.
   /// `chunks` as indices in any order; the pieces are drawn in the order of the mesh.
   void draw(std::vector<uint32_t> chunks) const;
-  void draw_plain() const;  ///< What is in no chunk.
+  void draw_ground_plane() const;  ///< The triangles that are in no chunk.
   /// Attributes 3 to 5 are there.
   [[nodiscard]] bool has_surfaces() const { return has_surfaces_; }
   [[nodiscard]] bool has_holes() const { return has_holes_; }

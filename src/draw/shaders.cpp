@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/shaders.h"
 
+// Source texts of the shaders.
 namespace throng::shaders {
 namespace {
 
@@ -40,7 +41,7 @@ vec4 shown(vec3 colour, vec3 from_eye) {
 }
 )";
 
-// How much of the sun reaches a point: nine looks at the sun's depth picture.
+// The share of the sun that reaches a point: nine samples of the shadow map.
 constexpr const char* kSunlit = R"(
 uniform mat4 sun_from_world;
 uniform sampler2DShadow sun_depth;
@@ -55,7 +56,7 @@ float sunlit(vec3 p) {
       sum += textureLod(sun_depth, vec3(at.xy + vec2(x, y) * sun_texel, at.z), 0.0);
   return sum / 9.0;
 }
-// One look, which the card filters: for what is all in the sun or all in the shade.
+// One sample, which the card filters: for what lies fully in the sun or in the shade.
 float sunlit_once(vec3 p) {
   vec4 c = sun_from_world * vec4(p, 1.0);
   vec3 at = c.xyz * 0.5 + 0.5;
@@ -69,7 +70,7 @@ constexpr const char* kUpright = "\n";
 constexpr const char* kLeans = R"(
 #define LEANS
 vec3 axis;
-// As lean.h: the least turn that takes straight up to the axis.
+// As in lean.h: the smallest rotation that turns straight up to the axis.
 vec3 leaned(vec3 v) {
   if (axis.y < -0.999999) return vec3(v.x, -v.y, -v.z);
   vec3 by = vec3(axis.z, 0.0, -axis.x), turned = cross(by, v);
@@ -102,7 +103,7 @@ float threshold() {
 }
 )";
 
-// Whose clothes an avatar wears: one of twelve colours for each part, by four bits of its outfit.
+// The outfit of an avatar: one of twelve colours for each part, by four bits.
 constexpr const char* kOutfit = R"(
 uniform usampler2D looks;  // By look: head, chest and legs of a point, and the outfit.
 uint outfit_of(uint look) { return texelFetch(looks, ivec2(int(look), 0), 0).w; }
@@ -113,7 +114,7 @@ vec3 cloth(uint part, uint outfit) {
   return wardrobe[part * 12u + (outfit >> (4u * part) & 15u)];
 }
 uniform float part_bright[6];  // What the atlas has, on the mean of each part.
-// The part's own light and dark stay, its hue does not.
+// Keeps the part's own lightness, replaces its hue.
 vec3 dressed(vec3 own, uint part, uint outfit) {
   if (part == 0u) return own;
   float relief = clamp(dot(own, vec3(0.30, 0.59, 0.11)) / part_bright[part], 0.4, 1.7);
@@ -212,19 +213,19 @@ uniform sampler2DArray detail;
 uniform float side;          // Of a view [m].
 out vec4 colour;
 void show(vec3 texel, vec3 right_of_texels) {
-  // Not filtered: a texel is of one part, and its colour says nothing of the part beside it.
+  // Not filtered: a texel is of one part, and its colour is not that of the part beside it.
   ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z));
   vec4 stored = texelFetch(albedo, at, 0);
   vec4 d = texelFetch(detail, at, 0);
-  // Where the body is, not the card that shows it: so it is cut where it meets a wall or a stair.
-  // A texel knows its place to 7 cm, so it comes 5 cm nearer, or soles would sink into the ground.
+  // The depth of the body, not of the card, so that it is cut where it meets a wall or a stair. A
+  // texel has its depth to 7 cm, so it is drawn 5 cm nearer; else soles would sink into the ground.
   uint mask = uint(d.z * 255.0 + 0.5);
   float in_front = (float(mask & 31u) - 16.0) / 30.0 * side + 0.05;
   vec2 zw = depth + depth_ahead * in_front;
   gl_FragDepth = clamp(0.5 * zw.x / zw.y + 0.5, 0.0, 1.0);
-  vec2 side_ways = (d.xy * 255.0 - 128.0) / 127.0;
-  vec3 n = normalize(right_of_texels * side_ways.x + up * side_ways.y +
-                     towards * sqrt(max(0.04, 1.0 - dot(side_ways, side_ways))));
+  vec2 lateral = (d.xy * 255.0 - 128.0) / 127.0;
+  vec3 n = normalize(right_of_texels * lateral.x + up * lateral.y +
+                     towards * sqrt(max(0.04, 1.0 - dot(lateral, lateral))));
   uint part = mask >> 5;
   vec3 own = stored.rgb * stored.rgb;
   own = dressed(own, part, outfit);
@@ -233,7 +234,7 @@ void show(vec3 texel, vec3 right_of_texels) {
 }
 )";
 
-// What a scene is drawn of, in pieces that its two kinds share: with materials and without.
+// Pieces of the scene shaders that both kinds share: with materials and without.
 constexpr const char* kSceneInputs = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 face;
@@ -257,11 +258,11 @@ in vec3 corner;
 flat in vec3 normal;
 flat in uint kind;
 uniform float bias;
-uniform float soft;      // 1: nine looks at the sun's picture, 0: one.
+uniform float soft;      // 1: nine samples of the shadow map, 0: one.
 uniform float cut;
 uniform float edges;     // How dark.
 uniform float edge_wide; // [px of this target]
-uniform float prop;      // 1: something that stands here for a time.
+uniform float prop;      // 1: a temporary object.
 out vec4 colour;
 )";
 constexpr const char* kEdges = R"(
@@ -284,7 +285,7 @@ constexpr const char* kFlatColours = R"(
   if (dot(n, from_eye) > 0.0) n = -n;
   vec3 wall = mix(vec3(0.62, 0.52, 0.42), vec3(0.56, 0.57, 0.58), (tint - 1.0) / 30.0);
   vec3 floor_colour = vec3(0.42, 0.41, 0.39);
-  if (tint < 0.5) floor_colour = vec3(0.33, 0.35, 0.32);  // The plain around the scene.
+  if (tint < 0.5) floor_colour = vec3(0.33, 0.35, 0.32);  // The ground around the scene.
   vec3 albedo = mix(wall, floor_colour, smoothstep(0.5, 0.8, abs(n.y)));
   albedo = mix(albedo, vec3(0.72, 0.42, 0.12), prop);
 )";
@@ -297,7 +298,7 @@ constexpr const char* kSceneFragment = R"(
   colour = shown(lit(albedo, n, in_sun) * (1.0 - edges * edge), from_eye);
 )";
 
-// What materials add: see SurfaceCorner.
+// Attributes of materials: see SurfaceCorner.
 constexpr const char* kSurfaceInputs = R"(
 layout(location = 3) in vec2 place_of;
 layout(location = 4) in vec4 paint_of;
@@ -357,7 +358,7 @@ std::string scene_vertex() {
   return std::string(kHead) + kSceneInputs + "void main() {" + kSceneVertex + "}\n";
 }
 
-// Flat colours: what one may stand on is light, walls vary a little from part to part.
+// Flat colours: floors are light, walls vary a little from part to part.
 std::string scene_fragment() {
   return std::string(kHead) + kLight + kSunlit + kSceneOutputs + kEdges + "void main() {" +
          kFlatColours + kSceneFragment + "}\n";
@@ -368,7 +369,7 @@ std::string surface_vertex() {
          kSurfaceVertex + "}\n";
 }
 
-// Edges tell apart what has one colour; what has a texture needs them less.
+// Edges separate areas of one colour; textured surfaces need them less.
 std::string surface_fragment() {
   return std::string(kHead) + kLight + kSunlit + kPattern + kSceneOutputs + kSurfaceOutputs +
          kEdges + "void main() {" + kFlatColours + R"(
@@ -410,7 +411,7 @@ out float height;
          "  gl_Position = clip_from_world * vec4(position, 1.0);\n}\n";
 }
 
-// What is more than half see-through casts no shadow.
+// A surface that is more than half transparent casts no shadow.
 std::string surface_depth_fragment() {
   return std::string(kHead) + kSurfaceOutputs + R"(
 in float height;
@@ -470,8 +471,8 @@ void main() {
 )";
 }
 
-// Four views at once: a card that holds all their rectangles, each pixel of which shows one of
-// them, by its place in the pattern.
+// Four views at once: a card that holds all their rectangles. Each pixel shows one of them, by its
+// place in the pattern.
 std::string blended_vertex() {
   return std::string(kHead) + kSunlit + kFade + kOutfit + kCard + R"(
 uniform usampler2D instances;
@@ -479,9 +480,10 @@ uniform usampler2D views;
 uniform int first;
 uniform float side;    // Of a view [m].
 uniform float pixels;  // Along a view's side.
-out vec2 spot;  // On the card, in texels of a view, from its upper left corner.
+out vec2 card_texel;  // On the card, in texels of a view, from its upper left corner.
 flat out vec3 limits;  // Of the pattern: where the second, third and fourth view begin.
-// Where in its page a spot is: x times the first plus the second, y plus the third; the page.
+// From card_texel to a place in the page: x times the first plus the second, y plus the third; the
+// fourth is the page.
 flat out vec4 map0, map1, map2, map3;
 flat out vec4 box0, box1, box2, box3;  // The rectangle in its page.
 vec2 low, high;
@@ -511,8 +513,8 @@ void main() {
   limits.x = (1.0 - next.x) * (1.0 - next.y);
   limits.y = 1.0 - next.y;
   limits.z = limits.y + (1.0 - next.x) * next.y;
-  spot = mix(low, high, vec2(float(k & 1), float(k >> 1)));
-  stand(uintBitsToFloat(data.xyz), (spot - 0.5 * pixels) * vec2(1.0, -1.0) * (side / pixels),
+  card_texel = mix(low, high, vec2(float(k & 1), float(k >> 1)));
+  stand(uintBitsToFloat(data.xyz), (card_texel - 0.5 * pixels) * vec2(1.0, -1.0) * (side / pixels),
         data.w >> 21);
 }
 )";
@@ -520,20 +522,20 @@ void main() {
 
 std::string blended_fragment() {
   return std::string(kHead) + kLight + kPattern + kClothes + kFigure + R"(
-in vec2 spot;
+in vec2 card_texel;
 flat in vec3 limits;
 flat in vec4 map0, map1, map2, map3;
 flat in vec4 box0, box1, box2, box3;
 void main() {
   vec2 page = vec2(textureSize(albedo, 0).xy);
-  vec2 a_right = dFdx(spot) / page, a_down = dFdy(spot) / page;
+  vec2 a_right = dFdx(card_texel) / page, a_down = dFdy(card_texel) / page;
   float rank = threshold();
   if (rank < shown_from || rank > shown_to) discard;
-  // Those pixels that this level of detail shows are dealt out to the views.
+  // The pixels that this level of detail shows are divided among the views.
   float share = (rank - shown_from) / max(shown_to - shown_from, 1e-3);
   vec4 map = share < limits.y ? share < limits.x ? map0 : map1 : share < limits.z ? map2 : map3;
   vec4 box = share < limits.y ? share < limits.x ? box0 : box1 : share < limits.z ? box2 : box3;
-  vec2 at = vec2(map.x * spot.x + map.y, spot.y + map.z);
+  vec2 at = vec2(map.x * card_texel.x + map.y, card_texel.y + map.z);
   if (any(lessThan(at, box.xy)) || any(greaterThan(at, box.zw))) discard;
   vec3 texel = vec3(at / page, map.w);
   if (textureGrad(albedo, texel, a_right, a_down).a < 0.5) discard;
@@ -660,7 +662,7 @@ void main() {
   gl_PointSize = size;
   shape = vec3(max(0.21 / high, 0.55 / size), mix(0.45, 0.16, flat_share),
                mix(0.9, 0.54, flat_share));
-  // The mean of what the sides that are seen get of the sun.
+  // The mean of the sunlight on the visible sides.
   vec3 normal = normalize(from_eye / -far + vec3(0.0, 0.3, 0.0));
   vec3 light = lit(vec3(1.0), normal, sunlit_once(middle + to_sun * 0.9));
   float haze_share = 1.0 - exp(-haze * far);
@@ -689,7 +691,7 @@ void main() {
 )";
 }
 
-// Nothing but a rectangle of one colour: what drawing so many things costs at least.
+// A rectangle of one colour: the minimal cost of drawing so many instances.
 std::string plain_vertex() {
   return std::string(kHead) + R"(
 uniform usampler2D instances;
@@ -720,7 +722,7 @@ void main() { colour = vec4(tint, 1.0); }
 )";
 }
 
-// The card that the sun sees, in the sun's depth picture.
+// The card that the sun sees, in the shadow map.
 std::string shadow_vertex(Leaning leaning) {
   return std::string(kHead) + lean_of(leaning) + kPull + R"(
 uniform vec3 sun_right, sun_up;

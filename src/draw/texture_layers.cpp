@@ -9,6 +9,7 @@
 #include "core/texel_mean.h"
 #include "draw/gl.h"
 
+// Scales textures to one size and makes their smaller levels.
 namespace throng {
 namespace {
 
@@ -19,7 +20,7 @@ constexpr int32_t kSmallestSide = 16;
 #define GL_TEXTURE_MAX_ANISOTROPY_EXT 0x84FE
 #endif
 
-// The texels that lie under one of `to` out of `from`, and how much of each.
+// The texels of `from` that one of `to` covers, and the share of each.
 struct Span {
   int32_t first = 0, last = 0;
   double begin = 0, end = 0;
@@ -33,8 +34,7 @@ struct Span {
   }
 };
 
-// To side x side texels. Larger ones become as smooth as they are shown anyway: the nearest texel
-// does.
+// Scales to side x side texels. When enlarging, the nearest texel suffices, since the card filters.
 void fit(const Texture& from, int32_t side, uint8_t* to) {
   for (int32_t y = 0; y < side; ++y) {
     const Span down(y, from.height, side);

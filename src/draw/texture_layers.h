@@ -16,7 +16,7 @@ namespace throng {
 
 inline constexpr size_t kMaxLayers = 256;  // What any card has.
 
-/// What became of a scene's textures, one entry each.
+/// The layers of a scene's textures, one entry each.
 struct LayerOf {
   uint32_t layer1 = 0;  ///< Plus one; 0: it has none, and its mean stands in.
   std::array<uint8_t, 4> mean{255, 255, 255, 255};
@@ -25,8 +25,8 @@ struct LayerOf {
 struct TextureLayers {
   int32_t side = 0;  ///< Of a layer's first level, a power of two; 0: there are none. [px]
   int32_t layers = 0;
-  /// RGBA, layer by layer, each level half as large as the one before, down to one texel. What is
-  /// see-through counts as little in smaller levels as it shows.
+  /// RGBA, layer by layer, each level half as large as the one before, down to one texel. In
+  /// smaller levels a colour counts by its opacity.
   std::vector<std::vector<uint8_t>> levels;
   std::vector<LayerOf> of_texture;
 };
@@ -38,8 +38,7 @@ struct TextureLayers {
 /// The same in the card's memory.
 class SurfaceTextures {
  public:
-  /// Fails with kLimit. `smooth`: several looks where a surface is seen from the side, if the card
-  /// can.
+  /// Fails with kLimit. `smooth`: anisotropic filtering, if the card has it.
   [[nodiscard]] Result<void> set(const TextureLayers& layers, bool smooth);
   void bind(GLenum unit) const;  ///< Nothing where there are none.
 

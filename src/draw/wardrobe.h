@@ -6,7 +6,7 @@
 
 #include "throng/character.h"
 
-/// What a crowd wears.
+/// The colours of a crowd's clothes.
 namespace throng {
 
 inline constexpr int32_t kColoursAPart = 12;

@@ -9,6 +9,8 @@
 
 #include "import/scene_triangles.h"
 
+// Gives triangles their area kinds by the names of their parts. Linear in parts and triangles;
+// patterns are matched with one place to return to, so a match needs pattern x text steps at most.
 namespace throng {
 namespace {
 
@@ -16,7 +18,7 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 
 }  // namespace
 
-// One place to return to is enough: a later star makes all earlier ones irrelevant.
+// One place to return to suffices: a later star makes all earlier ones irrelevant.
 bool glob_matches(std::string_view pattern, std::string_view text) {
   if (pattern.empty()) return true;
   size_t p = 0;
@@ -67,7 +69,7 @@ std::span<const AreaRule> default_rules() {
 void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
   const auto kind_of = [&](const ScenePart& part) {
     std::optional<AreaKind> kind;
-    // A default rule looks at the part's own name alone: furniture hangs below its IfcSpace.
+    // A default rule tests the part's own name alone: furniture hangs below its IfcSpace.
     const std::string_view node = part.node;
     const std::string_view own = node.substr(node.rfind('/') + 1);
     const std::string_view type = node.substr(0, node.find('/'));  // "Type/id" of city models.

@@ -7,7 +7,7 @@
 
 #include "throng/scene.h"
 
-/// Area kinds by name: which triangles are walkable, blocked or no matter at all.
+/// Area kinds by name: which triangles are walkable, blocked or not solid.
 namespace throng {
 
 /// Shell pattern (`*`, `?`), ASCII case ignored. An empty pattern matches everything. Linear in
@@ -17,8 +17,8 @@ namespace throng {
 /// The same for a node path "a/b/c": the pattern may match the whole path or any one name in it.
 [[nodiscard]] bool glob_matches_path(std::string_view pattern, std::string_view path);
 
-/// What is never matter unless a rule of the user says so: volumes of rooms, cut-outs of doors and
-/// windows, surfaces that close a model only for its maker's arithmetic.
+/// What is not solid unless a rule of the user says so: volumes of rooms, cut-outs of doors and
+/// windows, surfaces that only close a model for its maker's arithmetic.
 [[nodiscard]] std::span<const AreaRule> default_rules();
 
 /// Sets `area` by the default rules, then by `rules`; the last match wins. Triangles of ignored

@@ -20,8 +20,8 @@
 #include "import/child_process.h"
 
 // assimp parses untrusted files with raw pointers, and some files crash it, loop in it or make it
-// take all memory. So it runs in a child process, which streams mesh by mesh and frees each one as
-// it goes; the parent believes nothing that it has not counted itself.
+// take all memory. So it runs in a child process, which sends mesh by mesh and frees each one that
+// is sent. The parent checks every count, index and number itself.
 namespace throng {
 namespace {
 
@@ -86,7 +86,7 @@ int32_t area_of(const aiNode& node, int32_t above) {
       case AI_DOUBLE:
         return number(double{});
       default:
-        break;  // Words, say.
+        break;  // Text, for example.
     }
   }
   return above;
@@ -150,7 +150,7 @@ class Sender {
       material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
     }
     const float parts[3] = {colour.r, colour.g, colour.b};
-    // Other formats mean colours as a screen shows them: their squares are nearly the light.
+    // Other formats store colours as a screen shows them; their squares are nearly linear light.
     for (size_t c = 0; c < 3; ++c) {
       const float part = parts[c] > 0 ? std::min(parts[c], 1.0F) : 0.0F;
       out.colour[c] = is_gltf ? part : part * part;
@@ -168,7 +168,7 @@ class Sender {
     if (texture1 != 0 && is_black && !is_gltf) out.colour = {1, 1, 1, 1};
     float opaque = is_gltf ? colour.a : 1;
     if (!is_gltf) material.Get(AI_MATKEY_OPACITY, opaque);
-    // Files that mix up how opaque and how transparent would show nothing at all.
+    // A file that confuses opacity with transparency would show nothing.
     if (!(opaque > 0.01F && opaque < 1)) opaque = 1;
     if (opaque < 1) out.opacity = static_cast<uint32_t>(Opacity::kBlended);
     if (is_gltf) {
@@ -192,25 +192,25 @@ class Sender {
     pipe_.write(name.data(), name.size());
   }
 
-  // The same name is the same texture. One that the file holds is called by its number, or by the
-  // name that it had.
+  // Equal names are one texture. A texture that the file holds is named by its number or its name.
   uint32_t texture_number1(const std::string& name) {
     for (size_t i = 0; i < textures_.size(); ++i) {
       if (textures_[i].first == name) return static_cast<uint32_t>(i + 1);
     }
     if (name.empty() || textures_.size() >= kMaxTextures) return 0;
-    const aiTexture* held = scene_.GetEmbeddedTexture(name.c_str());
-    textures_.emplace_back(name, held);
+    const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
+    textures_.emplace_back(name, embedded);
     return static_cast<uint32_t>(textures_.size());
   }
 
-  void send_texture(std::string name, const aiTexture* held) {
+  void send_texture(std::string name, const aiTexture* embedded) {
     name.resize(std::min<size_t>(name.size(), kLongestText));
     Message message{.tag = Tag::kTexture, .node_size = static_cast<uint32_t>(name.size())};
-    const bool is_texels = held != nullptr && held->mHeight > 0;
-    if (held != nullptr && held->pcData != nullptr) {
-      message.vertices = is_texels ? uint64_t{held->mWidth} * held->mHeight * 4 : held->mWidth;
-      if (is_texels) message.triangles = uint64_t{held->mHeight} << 32 | held->mWidth;
+    const bool is_texels = embedded != nullptr && embedded->mHeight > 0;
+    if (embedded != nullptr && embedded->pcData != nullptr) {
+      message.vertices =
+          is_texels ? uint64_t{embedded->mWidth} * embedded->mHeight * 4 : embedded->mWidth;
+      if (is_texels) message.triangles = uint64_t{embedded->mHeight} << 32 | embedded->mWidth;
     }
     texture_bytes_ += message.vertices;
     if (texture_bytes_ > kMaxTextureBytes) message.vertices = message.triangles = 0;
@@ -218,13 +218,13 @@ class Sender {
     pipe_.write(name.data(), name.size());
     if (message.vertices == 0) return;
     if (!is_texels) {
-      pipe_.write(held->pcData, message.vertices);
+      pipe_.write(embedded->pcData, message.vertices);
       return;
     }
-    std::vector<uint8_t> row(size_t{held->mWidth} * 4);
-    for (unsigned y = 0; y < held->mHeight; ++y) {
-      for (unsigned x = 0; x < held->mWidth; ++x) {
-        const aiTexel& t = held->pcData[size_t{y} * held->mWidth + x];
+    std::vector<uint8_t> row(size_t{embedded->mWidth} * 4);
+    for (unsigned y = 0; y < embedded->mHeight; ++y) {
+      for (unsigned x = 0; x < embedded->mWidth; ++x) {
+        const aiTexel& t = embedded->pcData[size_t{y} * embedded->mWidth + x];
         const uint8_t rgba[4] = {t.r, t.g, t.b, t.a};
         std::copy_n(rgba, 4, row.begin() + std::ptrdiff_t{x} * 4);
       }
@@ -325,7 +325,7 @@ class Sender {
   const PipeWriter& pipe_;
   bool looks_;
   std::string extension_;
-  bool has_areas_ = false;  // In other formats "area" is somebody else's measure.
+  bool has_areas_ = false;  // In other formats "area" means something else.
   std::vector<uint32_t> uses_;
   std::vector<int> texture_sets_;  // By material, -1: it has no texture.
   std::vector<std::pair<std::string, const aiTexture*>> textures_;
@@ -505,10 +505,10 @@ class Receiver {
         };
         writer_.add_triangle(corner(0), corner(1), corner(2));
         if (part.has_places == 0) continue;
-        const auto spot = [&](int k) {
+        const auto texture_place = [&](int k) {
           return corners_[i][k] < part.vertices ? places_[corners_[i][k]] : std::array<float, 2>{};
         };
-        writer_.set_texture_corners({spot(0), spot(1), spot(2)});
+        writer_.set_texture_corners({texture_place(0), texture_place(1), texture_place(2)});
       }
       left -= count;
     }

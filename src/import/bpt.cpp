@@ -9,7 +9,7 @@
 #include "import/patch_edges.h"
 #include "import/text_cursor.h"
 
-// Format, after the files that it is known by: the number of patches; then for each its two degrees
+// Format, as in the files that use it: the number of patches; then for each patch its two degrees
 // and the control points, one a line, those of the second direction next to each other. Lines that
 // begin with # are comments. Z is up.
 namespace throng {
@@ -37,7 +37,7 @@ class BptReader {
     return false;
   }
 
-  // The next line that says something.
+  // The next line that is neither blank nor a comment.
   bool next_line(TextCursor& line) {
     while (!text_.empty()) {
       const size_t end = text_.find('\n');

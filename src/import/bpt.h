@@ -6,10 +6,10 @@
 
 #include "import/raw_scene.h"
 
-/// Lists of Bezier patches as text (.bpt), the format that the teapot is known by.
+/// Lists of Bezier patches as text (.bpt), the format of the Utah teapot.
 namespace throng {
 
-/// Reads patches of degree 1 to 3 in each direction, raised to 3. The file knows no neighbours: two
+/// Reads patches of degree 1 to 3 in each direction, raised to 3. The file lists no neighbours: two
 /// patches are neighbours where their borders are the same numbers. Its second index is our t, so
 /// that the teapot's normals point outward. Fails with kBadFile and the line.
 [[nodiscard]] Result<RawScene> read_bpt(std::string_view bytes, const ReadOptions& options,

@@ -21,7 +21,7 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr double kMetresPerUnit = 0.0254;
 constexpr int32_t kVersion = 46;
-// A damaged file can make a thousand faces share the same corners; no level has a million.
+// A damaged file can make many faces share the same corners, so the counts have a limit.
 constexpr size_t kMaxVertices = 20'000'000;
 constexpr size_t kMaxPatches = 500'000;
 
@@ -68,7 +68,7 @@ constexpr int32_t kSurfaceHint = 0x100;
 constexpr int32_t kSurfaceSkip = 0x200;
 constexpr int32_t kSurfaceNonSolid = 0x4000;
 
-bool is_matter(const Texture& texture) {
+bool is_solid(const Texture& texture) {
   if ((texture.content & kContentTrigger) != 0) return false;
   if ((texture.surface & (kSurfaceSky | kSurfaceHint | kSurfaceSkip | kSurfaceNonSolid)) != 0) {
     return false;
@@ -211,7 +211,7 @@ class BspReader {
       return;
     }
     const Texture& texture = textures_[static_cast<size_t>(face.texture)];
-    if (!is_matter(texture)) {
+    if (!is_solid(texture)) {
       ++left_out_;
       return;
     }

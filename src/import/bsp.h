@@ -11,7 +11,7 @@ namespace throng {
 
 /// Reads the drawn faces that are solid: polygons and meshes as triangles, curved pieces as patches
 /// of raised degree that are neighbours where their borders are the same numbers. Water, sky, fog,
-/// triggers and what the map calls non-solid are no matter and are left out; billboards are
+/// triggers and what the map calls non-solid are left out; billboards are
 /// counted. The node is the class of the entity that owns the face ("worldspawn", "func_door" ...),
 /// the material its texture. Fails with kBadFile and the lump.
 [[nodiscard]] Result<RawScene> read_bsp(std::string_view bytes, const ReadOptions& options,

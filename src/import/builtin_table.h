@@ -5,7 +5,8 @@
 #include "import/world_builder.h"
 #include "throng/builtin_worlds.h"
 
-/// One builder a world. The config has been checked and its zeros replaced by the world's defaults.
+/// One builder for each world. The config has been checked and its zeros replaced by the world's
+/// defaults.
 namespace throng::builtin {
 
 void build_cube(WorldBuilder& b, const BuiltinWorldConfig& config);

@@ -10,6 +10,7 @@
 #include "import/name_colour.h"
 #include "import/patch_scene.h"
 
+// The table of built-in worlds: checks a config, fills in defaults and calls the builder.
 namespace throng {
 namespace {
 

@@ -19,8 +19,8 @@
 #include "import/child_process.h"
 #include "throng/character.h"
 
-// assimp reads a character in a child process (why: assimp_reader.cpp); the child makes our own
-// arrays of it and sends them; the parent checks every index and number before anybody uses them.
+// assimp reads a character in a child process (for the reason see assimp_reader.cpp). The child
+// converts it to our own arrays and sends them; the parent checks every index and number first.
 namespace throng {
 namespace {
 
@@ -75,7 +75,7 @@ class Extractor {
     character_.materials.push_back(std::move(out));
   }
 
-  // A bone with this joint and bind, an old one if there is one. Past the limit: counted only.
+  // The bone of this joint and bind matrix, new if there is none. Past the limit: counted only.
   uint8_t bone_of(int32_t joint, const Transform& inverse_bind) {
     for (size_t b = 0; b < character_.bones.size(); ++b) {
       const Bone& bone = character_.bones[b];
@@ -116,7 +116,7 @@ class Extractor {
                    bone.mWeights[w].mWeight);
       }
     }
-    // What follows no bone (an eye, a hat) goes where its node goes.
+    // A mesh without bones (an eye, a hat) moves with its node.
     for (size_t v = base; v < character_.influences.size(); ++v) {
       if (character_.influences[v].weight[0] > 0) continue;
       character_.influences[v].bone[0] = bone_of(node_joint, {});
@@ -170,11 +170,11 @@ class Extractor {
 
   const aiScene& scene_;
   Character character_;
-  std::map<std::string, int32_t> joint_of_;  // The first of a name, as clips mean it.
+  std::map<std::string, int32_t> joint_of_;  // The first joint of a name: clips mean that one.
   std::map<const aiNode*, int32_t> joint_of_node_;
 };
 
-// --- Both ends: one function names what goes through the pipe, in order. -----------------------
+// --- Both ends: one function lists the fields that the pipe carries, in order. -----------------
 
 template <class Pipe>
 bool pass_text(Pipe& pipe, std::string& text) {
@@ -237,7 +237,7 @@ struct Receiving {
     static_assert(std::is_trivially_copyable_v<T>);
     return pipe.read(&v, sizeof v);
   }
-  // Grows as the bytes come, so that a false count costs nothing.
+  // Grows as the bytes arrive, so that a false count costs nothing.
   template <class Array>
   bool array(Array& v) const {
     uint64_t count = 0;
@@ -346,7 +346,7 @@ bool is_sound(const JointTrack& track, size_t joints) {
   return true;
 }
 
-// The first thing that is wrong with a character, or nothing.
+// The first fault of a character, or nothing.
 std::string fault_of(const Character& c) {
   if (c.triangles.empty()) return "has no mesh";
   const size_t vertices = c.positions.size();

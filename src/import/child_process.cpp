@@ -23,7 +23,7 @@
 namespace throng {
 namespace {
 
-// What this process holds already, which a child inherits and which counts against its limit.
+// The data memory of this process, which a child inherits and which counts against its limit.
 uint64_t own_data_bytes() {
   unsigned long long pages[6] = {};
   std::FILE* file = std::fopen("/proc/self/statm", "r");
@@ -52,7 +52,7 @@ void prepare_child(const ChildLimits& limits, uint64_t own_bytes) {
     setrlimit(RLIMIT_DATA, &memory);
   }
   const int nowhere = open("/dev/null", O_RDWR);
-  if (nowhere >= 0) {  // A library must not print, and what it calls neither.
+  if (nowhere >= 0) {  // Neither the library nor what it calls may print.
     dup2(nowhere, 1);
     dup2(nowhere, 2);
   }
@@ -127,7 +127,7 @@ Result<void> run_in_child(const ChildLimits& limits, Context& context,
     prepare_child(limits, own_bytes);
     try {
       child(PipeWriter(ends[1]));
-    } catch (...) {  // bad_alloc: it must not go on as a second parent.
+    } catch (...) {  // bad_alloc: it must not continue as a second parent.
       _exit(1);
     }
     _exit(0);  // No destructors, no exit handlers: they are the parent's.

@@ -9,7 +9,7 @@
 #include "throng/context.h"
 #include "throng/result.h"
 
-/// Runs code that we do not trust with our memory in a child process that talks through a pipe.
+/// Runs code that may corrupt memory in a child process, which sends its results through a pipe.
 namespace throng {
 
 /// How much a child may use before the system ends it.
@@ -18,7 +18,7 @@ struct ChildLimits {
   uint64_t seconds = 0;  ///< Time on a processor. [> 0]
 };
 
-/// A child's way to its parent. Ends the child if the parent is gone.
+/// The child's end of the pipe. A write ends the child if the parent has ended.
 class PipeWriter {
  public:
   explicit PipeWriter(int file) : file_(file) {}
@@ -40,11 +40,11 @@ class PipeReader {
   Context& context_;
 };
 
-/// In a child: that it may use the processor so much longer from now on, within its limits.
+/// In a child: allows it that much more processor time from now on, within its limits.
 void allow_this_child(uint64_t seconds);
 
-/// Forks; the child calls `child` and ends, the parent calls `parent` meanwhile, which returns true
-/// once it got all it wanted. What `child` throws ends the child. Fails with kBadFile and a clause
+/// Forks. The child calls `child` and ends; the parent calls `parent`, which returns true once it
+/// has received everything. What `child` throws ends the child. Fails with kBadFile and a clause
 /// that says how the child ended, with kCancelled, or with kIo. Needs a POSIX system.
 [[nodiscard]] Result<void> run_in_child(const ChildLimits& limits, Context& context,
                                         const std::function<void(const PipeWriter&)>& child,

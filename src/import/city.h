@@ -10,7 +10,7 @@
 namespace throng {
 
 /// Nodes are "Type/id", materials are the semantic surface types. Of each object the highest level
-/// of detail is taken; an object whose parts (BuildingPart ...) show more detail leaves it to them.
+/// of detail is read; if its parts (BuildingPart ...) have more detail, they are read instead.
 /// Fails with kBadFile and the place.
 [[nodiscard]] Result<RawScene> read_cityjson(std::string_view bytes, const ReadOptions& options,
                                              Context& context);
@@ -20,7 +20,7 @@ namespace throng {
 [[nodiscard]] Result<RawScene> read_citygml(std::string_view bytes, const ReadOptions& options,
                                             Context& context);
 
-/// Does a coordinate system's name say degrees? Such files are refused: degrees are not metres.
+/// Is the unit of a named coordinate system the degree? Such files are refused.
 [[nodiscard]] bool names_degrees(std::string_view reference_system);
 
 }  // namespace throng

@@ -13,10 +13,10 @@
 #include "import/city.h"
 #include "import/text_cursor.h"
 
-// CityGML nests features, thematic surfaces and geometries, and versions 2 and 3 (and countless
-// profiles) name the properties between them differently. What they share: names that begin with a
-// capital are features or geometries, properties are `lodN...`, and faces are gml:Polygon and a few
-// relatives. So the reader walks the tree and notes for each face its object, theme and detail.
+// CityGML nests features, thematic surfaces and geometries. Versions 2 and 3 (and many profiles)
+// name the properties between them differently, but in all of them names that begin with a capital
+// are features or geometries, properties are `lodN...`, and faces are gml:Polygon or similar. So
+// the reader walks the tree and notes for each face its object, theme and detail.
 namespace throng {
 namespace {
 
@@ -68,7 +68,7 @@ struct CityObject {
   bool is_part = false;
   size_t parent = 0;
   int detail = -1;        // Highest of its faces.
-  int parts_detail = -1;  // Least that all its parts reach; -1 without parts.
+  int parts_detail = -1;  // The lowest detail of its parts; -1 without parts.
   bool has_parts = false;
 };
 

@@ -190,10 +190,10 @@ class CityJsonReader {
     }
   }
 
-  // The least detail that all parts of an object reach; a part without surfaces reaches none.
+  // The lowest detail among the parts of an object; a part without surfaces has none.
   double parts_detail(const element& city_object) const {
     array children;
-    double least = kNoDetail;
+    double lowest = kNoDetail;
     bool first = true;
     if (city_object["children"].get(children) != simdjson::SUCCESS) return kNoDetail;
     for (const element child : children) {
@@ -202,10 +202,10 @@ class CityJsonReader {
       if (!parts_.contains(id)) continue;
       const auto found = detail_of_object_.find(id);
       const double detail = found == detail_of_object_.end() ? kNoDetail : found->second;
-      least = first ? detail : std::min(least, detail);
+      lowest = first ? detail : std::min(lowest, detail);
       first = false;
     }
-    return least;
+    return lowest;
   }
 
   void read_geometry(const element& geometry) {

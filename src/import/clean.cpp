@@ -18,15 +18,17 @@
 #include "import/raw_scene.h"
 #include "import/scene_triangles.h"
 
+// Removes what a bake cannot use and counts what is suspicious. Each test is one pass over the
+// triangles; only the search for duplicates sorts.
 namespace throng {
 namespace {
 
 constexpr double kFarthest = 1e9;      // [m] Beyond it a double keeps less than a micrometre.
 constexpr double kLargestWorld = 1e6;  // [m] 1000 km.
-constexpr double kSpikeLength = 1000;  // [m] Shorter ones do no harm.
+constexpr double kSpikeLength = 1000;  // [m] Shorter ones are harmless.
 
-// Calls look(begin, end, share) over all triangles, and add(share) for each share, one by one: it
-// must not matter in which order.
+// Calls look(begin, end, share) for ranges of all triangles in parallel, and add(share) for each
+// share, one at a time and in no fixed order: add must not depend on the order.
 template <class Share, class Look>
 void share_out(size_t triangles, Look look, const std::function<void(Share&)>& add) {
   constexpr size_t kGrain = 1 << 16;
@@ -59,7 +61,7 @@ double largest_side(const Box3d& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-// Keeps the triangles that keep(t) wants, and the parts' ranges with them.
+// Keeps the triangles for which keep(t) is true and adapts the ranges of the parts.
 template <class Keep>
 void filter_triangles(Scene& scene, Keep keep) {
   size_t kept = 0;
@@ -144,7 +146,7 @@ void drop_unused_vertices(Scene& scene) {
   }
 }
 
-// Triangles without area. They stay: a wire is matter.
+// Triangles without area. They stay: a wire is solid.
 uint64_t count_degenerate(const Scene& scene) {
   return count_triangles(scene, [&](size_t t) {
     const auto& [ia, ib, ic] = scene.triangles[t];
@@ -157,8 +159,8 @@ uint64_t count_degenerate(const Scene& scene) {
   });
 }
 
-// Triangles with the same three corners in whatever order, beyond the first of each: one 64-bit
-// hash a triangle, sorted. Two different triangles out of ten million share one with a chance of
+// Counts triangles whose three corners, in any order, are those of an earlier one: one 64-bit hash
+// a triangle, sorted. Among ten million triangles two different ones share a hash with probability
 // 3e-6. Triangles of patches are left out: a patch is cut once, and comparing them took three
 // quarters of the time in which a landscape is read.
 uint64_t count_duplicates(const Scene& scene) {
@@ -183,9 +185,9 @@ uint64_t count_duplicates(const Scene& scene) {
   return count;
 }
 
-// A spike is a triangle over 1 km long and thin, ten times longer than all others together: one
-// corner went astray. The box of the others grows by the shorter candidates first, so a model of
-// kilometres that really is that large has none.
+// A spike is a thin triangle over 1 km long and ten times longer than the box of all others: one of
+// its corners is wrong. The box grows by the shorter candidates first, so a model that really is
+// kilometres large has no spikes.
 Box3d count_spikes(Scene& scene) {
   using Candidates = std::vector<std::pair<double, uint32_t>>;
   struct Share {

@@ -6,12 +6,12 @@
 #include "throng/result.h"
 #include "throng/scene.h"
 
-/// From any triangles to triangles that a bake can trust.
+/// Turns any triangles into triangles that a bake can rely on.
 namespace throng {
 
 /// Drops triangles with bad indices or non-finite corners, drops unused vertices, counts
 /// degenerate, coincident and spike triangles, and warns of suspicious sizes. Fails with kBadInput
-/// if nothing is left or the scene is larger than a world can be. `name` is for the sentences.
+/// if nothing is left or the scene is larger than a world can be. `name` is for messages.
 [[nodiscard]] Result<void> clean_scene(Scene& scene, const std::string& name, Context& context);
 
 }  // namespace throng

@@ -7,6 +7,7 @@
 
 #include "import/plan.h"
 
+// Reads GeoJSON (RFC 7946) as a plan.
 namespace throng {
 namespace {
 
@@ -25,7 +26,7 @@ class GeoJsonReader {
 
   Result<Plan> read(const element& root) {
     if (!read_any(root, 0)) return Error{Errc::kBadFile, message_};
-    // Where the ground is named, what has no kind stands on it.
+    // If some polygon is named ground, a polygon without kind is an obstacle.
     for (Plan::Area& area : unset_)
       (ground_named_ ? plan_.obstacles : plan_.ground).push_back(std::move(area));
     return std::move(plan_);
@@ -76,7 +77,7 @@ class GeoJsonReader {
       }
       return true;
     }
-    if (type == "Point" || type == "MultiPoint") return true;  // Labels: no matter.
+    if (type == "Point" || type == "MultiPoint") return true;  // Labels: not solid.
     return fail(fmt::format("cannot use the type '{}'", type));
   }
 

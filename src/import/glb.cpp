@@ -16,8 +16,8 @@
 #include <vector>
 
 // Khronos Group. glTF 2.0 Specification. 2021. Every number of the file is checked before it is
-// used; whatever is missing or of another type counts as its default, or as a fault where there is
-// none.
+// used; a value that is missing or of another type counts as its default, or as a fault if it has
+// no default.
 namespace throng {
 namespace {
 
@@ -30,7 +30,7 @@ constexpr size_t kDeepest = 256;               // Nodes below nodes.
 
 enum Component : uint64_t { kByte = 5121, kShort = 5123, kInt = 5125, kFloat = 5126 };
 
-// An element of an array of the file's, or nothing.
+// An element of an array of the file, or nothing.
 const Json* element(const Json& file, const char* array, uint64_t index) {
   const auto found = file.find(array);
   if (found == file.end() || !found->is_array() || index >= found->size()) return nullptr;
@@ -139,7 +139,7 @@ class GlbReader {
   }
 
  private:
-  // What a node hands down.
+  // What a node passes to its children.
   struct Above {
     Transform place;
     std::string path;
@@ -184,7 +184,7 @@ class GlbReader {
     return {};
   }
 
-  // What cannot be read of them is left out: a model is more than its looks.
+  // Materials that cannot be read are left out; the triangles are read in any case.
   void read_materials() {
     const auto materials = file_.find("materials");
     if (materials == file_.end() || !materials->is_array()) return;
@@ -247,7 +247,7 @@ class GlbReader {
     const Json* node = element(file_, "nodes", index);
     if (node == nullptr) return bad("names a node that does not exist");
     if (deep > kDeepest) return bad("has more than 256 nodes below each other");
-    // A tree, so that a small file cannot grow without end.
+    // Each node is visited once, so that a small file cannot expand without limit.
     if (been_.size() <= index) been_.resize(static_cast<size_t>(index) + 1);
     if (been_[static_cast<size_t>(index)]) return bad("has a node below two others, or itself");
     been_[static_cast<size_t>(index)] = true;

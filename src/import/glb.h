@@ -6,12 +6,13 @@
 
 #include "import/raw_scene.h"
 
-/// Binary glTF 2.0 by ourselves, for builds without assimp: triangles at rest, where their nodes
-/// put them; no skins, no compression.
+/// Binary glTF 2.0, read without assimp for builds that lack it: triangles at rest, placed by their
+/// nodes; no skins, no compression.
 namespace throng {
 
 /// Nodes become "parent/child" paths; an "area" among a node's extras is the area kind of all below
-/// it, as write_glb writes it. Fails with kBadFile and what the file uses that is not read.
+/// it, as write_glb writes it. Fails with kBadFile and the feature of the file that is not
+/// supported.
 [[nodiscard]] Result<RawScene> read_glb(std::string_view bytes, const ReadOptions& options,
                                         Context& context);
 

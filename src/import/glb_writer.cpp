@@ -24,10 +24,10 @@
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
-// Writes binary glTF 2.0 (Khronos, 2017). Three walks over each run of triangles: one measures, so
-// that the header can be written first; one writes corners; one writes indices. Only a renumbering
-// of the corners is ever held, so the memory is four bytes a corner whatever the file's size. Runs
-// with a texture share no corners: neighbours may lie elsewhere in it.
+// Writes binary glTF 2.0 (Khronos, 2017). Three passes over each run of triangles: the first
+// measures, so that the header can be written first; the second writes corners, the third indices.
+// Only a renumbering of the corners is kept: four bytes a corner, however large the file is. Runs
+// with a texture share no corners, because neighbours may have other texture coordinates.
 namespace throng {
 namespace {
 
@@ -123,7 +123,7 @@ void measure(const Scene& scene, Renumbering& order, Run& run) {
   run.corners = run.textured ? 3 * run.count : static_cast<uint32_t>(order.used().size());
   Box3d box;
   for (const uint32_t corner : order.used()) box.add(scene.positions[corner]);
-  // Near the origin floats are fine enough. Whole metres are exact as floats, too.
+  // Near the origin floats are precise enough. Whole metres are exact as floats, too.
   const auto origin = [](double low, double high) {
     return std::fmax(std::fabs(low), std::fabs(high)) <= 256 ? 0 : std::floor((low + high) / 2);
   };

@@ -24,8 +24,8 @@
 #include "import/texture_reader.h"
 #include "import/zonel.h"
 
-// Every way in ends here: read each file as it is, place it in metres with Y up, name its areas,
-// join, clean.
+// The one entry for all formats: reads each file as it is, places it in metres with Y up, sets area
+// kinds, joins the files and cleans the result.
 namespace throng {
 namespace {
 
@@ -38,8 +38,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// A .json file may be patches, a city or a plan; each but the plan says so in one of its keys, or
-// its name does.
+// A .json file may hold patches, a city or a plan. Patches and cities are recognised by a key or by
+// the file's name; all else is a plan.
 Reader json_reader(const std::string& path, std::string_view bytes) {
   if (lower_case(path).ends_with(".patches.json") ||
       bytes.find("\"throng-patches\"") != std::string_view::npos)
@@ -52,7 +52,7 @@ Result<RawScene> read_source(const SceneSource& source, const ReadOptions& optio
   const std::string extension = lower_case(std::filesystem::path(source.path).extension().string());
   for (const char* known : {".gltf", ".glb", ".fbx", ".stl", ".dae", ".ifc", ".3ds"}) {
     if (extension != known) continue;
-    // The child reads the file itself; here only the sentence for a missing one is wanted.
+    // The child reads the file itself; here only the message for a missing file is made.
     std::error_code failure;
     if (!std::filesystem::is_regular_file(source.path, failure)) break;
     return read_with_assimp(source.path, options, context);

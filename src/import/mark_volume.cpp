@@ -12,8 +12,8 @@
 #include "throng/scene.h"
 
 // Cuts triangles at the sides of a prism, one plane after the other (Sutherland and Hodgman, 1974,
-// keeping both halves), so that what is inside can have a kind of its own. The bake then needs to
-// know nothing of volumes.
+// keeping both halves), so that what is inside can have its own kind. The bake then needs no notion
+// of volumes.
 namespace throng {
 namespace {
 

@@ -5,6 +5,7 @@
 #include "core/read_file.h"
 #include "import/text_cursor.h"
 
+// Reads the maps of movingai.com as text, line by line. Source: [Stu12], [BS18].
 namespace throng {
 namespace {
 

@@ -7,10 +7,10 @@
 
 #include "throng/cells.h"
 
-/// Text of Moving AI's benchmark maps.
+/// Moving AI's benchmark maps.
 namespace throng {
 
-/// `name` is for sentences only. Fails with kBadFile and the line.
+/// `name` is for messages only. Fails with kBadFile and the line.
 Result<FlatCells> read_grid_map(std::string_view text, const std::string& name);
 Result<VoxelCells> read_voxel_map(std::string_view text, const std::string& name);
 

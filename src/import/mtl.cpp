@@ -11,8 +11,8 @@
 #include "core/read_file.h"
 #include "import/text_cursor.h"
 
-// Of a material: Kd, d or Tr, map_Kd and map_d. Colours of such files are as a screen shows them,
-// so their squares are (nearly) the light.
+// Reads of a material: Kd, d or Tr, map_Kd and map_d. Colours of such files are as a screen shows
+// them, so their squares are nearly linear light.
 namespace throng {
 namespace {
 
@@ -86,7 +86,7 @@ void MaterialLibrary::parse(std::string_view bytes) {
       for (size_t c = 0; c < 3 && cursor.take(number); ++c) current->colour[c] = linear(number);
     } else if ((word == "d" || word == "Tr") && cursor.take(number)) {
       const double opaque = word == "d" ? number : 1 - number;
-      // Files that mix up the two would show nothing at all.
+      // A file that confuses the two would show nothing.
       current->colour[3] = opaque > 0.01 && opaque < 1 ? static_cast<float>(opaque) : 1.0F;
       if (current->colour[3] < 1) current->opacity = Opacity::kBlended;
     } else if (word == "map_Kd") {
@@ -96,7 +96,7 @@ void MaterialLibrary::parse(std::string_view bytes) {
         current->colour = {1, 1, 1, colour[3]};
       }
     } else if (word == "map_d") {
-      // Held by the alpha of the colours' own texture where it is the same; else left out.
+      // The same file as the colours: its alpha is used. Any other is left out.
       current->opacity = Opacity::kHoles;
     }
   }

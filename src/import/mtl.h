@@ -12,13 +12,13 @@
 
 namespace throng {
 
-/// The materials of a Wavefront OBJ: what its .mtl files beside it say.
+/// The materials of a Wavefront OBJ, from the .mtl files beside it.
 class MaterialLibrary {
  public:
   explicit MaterialLibrary(std::string model) : model_(std::move(model)) {}
 
-  /// Adds the materials of a file that the model names. One that is not there leaves its materials
-  /// out and is told once.
+  /// Adds the materials of a file that the model names. If the file is missing, its materials are
+  /// left out and one warning names it.
   void read(const std::string& named);
   /// The same from bytes.
   void parse(std::string_view bytes);

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+// Looks for known words in names of materials and nodes. Linear in the length of a name.
 namespace throng {
 namespace {
 
@@ -14,7 +15,7 @@ struct Named {
   float r, g, b, a;
 };
 
-// What built-in worlds are made of.
+// The materials of built-in worlds.
 constexpr std::array<Named, 26> kWhole = {{
     {"floor", 0.50F, 0.49F, 0.46F, 1},     {"slab", 0.38F, 0.38F, 0.38F, 1},
     {"wall", 0.72F, 0.66F, 0.56F, 1},      {"roof", 0.42F, 0.14F, 0.09F, 1},
@@ -31,8 +32,8 @@ constexpr std::array<Named, 26> kWhole = {{
     {"crown", 0.10F, 0.26F, 0.06F, 1},     {"water", 0.05F, 0.18F, 0.26F, 1},
 }};
 
-// Anywhere in a name, the first one that is found: "textures/gothic_floor/metalbridge06",
-// "RoofSurface", "IfcWallStandardCase".
+// Words that may stand anywhere in a name; the first that is found counts:
+// "textures/gothic_floor/metalbridge06", "RoofSurface", "IfcWallStandardCase".
 constexpr std::array<Named, 57> kWords = {{
     {"water", 0.05F, 0.18F, 0.26F, 1},      {"lava", 0.70F, 0.15F, 0.02F, 1},
     {"grass", 0.16F, 0.28F, 0.09F, 1},      {"vegetation", 0.11F, 0.24F, 0.07F, 1},
@@ -98,7 +99,7 @@ void add_named_materials(Scene& scene) {
     std::string name = part.material;
     auto colour = name_colour(name);
     if (!colour) {
-      // Of "Type/id" or "storey/wall/wall 12" the last that says something.
+      // Of "Type/id" or "storey/wall/wall 12" the last part that has a known colour.
       for (size_t end = part.node.size(); !colour && end != std::string::npos;) {
         const size_t slash = end == 0 ? std::string::npos : part.node.rfind('/', end - 1);
         const size_t begin = slash == std::string::npos ? 0 : slash + 1;

@@ -8,18 +8,17 @@
 
 #include "throng/scene.h"
 
-/// Colours by what things are called: for worlds that say what they are made of, but not what it
-/// looks like.
+/// Colours by name, for worlds that name their materials but give them no colours.
 namespace throng {
 
-/// In linear light. Nothing if the name is of nothing known.
+/// In linear light. Nothing if no part of the name is known.
 [[nodiscard]] std::optional<std::array<float, 4>> name_colour(std::string_view name);
 
-/// The same, or a colour of the name's own.
+/// The same, or a colour made from a hash of the name.
 [[nodiscard]] std::array<float, 4> any_colour(std::string_view name);
 
-/// Gives each part that has no material one by the name of its material, or else of its node, where
-/// these say what it is.
+/// Gives each part without a material one by its material's name, or by its node's name, if that
+/// name is known.
 void add_named_materials(Scene& scene);
 
 }  // namespace throng

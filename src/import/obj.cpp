@@ -12,6 +12,7 @@
 #include "import/mtl.h"
 #include "import/text_cursor.h"
 
+// Reads Wavefront OBJ in one pass over the lines.
 namespace throng {
 namespace {
 
@@ -74,7 +75,7 @@ class ObjReader {
     } else if (looks_ && word == "vt") {
       std::array<double, 2> place{};
       if (!(cursor.take(place[0]) && cursor.take(place[1]))) place = {};
-      // Files count up from the lower edge.
+      // Files count upwards from the lower edge.
       places_.push_back({static_cast<float>(place[0]), static_cast<float>(1 - place[1])});
     } else if (looks_ && word == "mtllib") {
       library_.read(name(cursor));

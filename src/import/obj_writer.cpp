@@ -9,8 +9,8 @@
 #include "throng/scene.h"
 
 // Writes Wavefront OBJ as read_obj reads it: corners once, then faces under the names of their
-// parts. No material file: names are enough for rules, and for programs that have colours of their
-// own.
+// parts. No material file: names suffice for rules, and for programs that have their own
+// colours.
 namespace throng {
 namespace {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-// A floating-point filter first; where it cannot tell, the six products of the expanded determinant
-// are summed without error as a list of non-overlapping terms.
+// A floating-point filter first; where it cannot decide, the six products of the expanded
+// determinant are summed without error as a list of non-overlapping terms.
 // Method: Shewchuk. Adaptive precision floating-point arithmetic and fast robust geometric
 // predicates. 1997.
 namespace throng {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// On which side of a line a point lies, decided exactly: cracks and hangs in polygon code come
-/// from signs that contradict each other.
+/// On which side of a line a point lies, decided exactly: signs that contradict each other cause
+/// cracks and endless loops in polygon code.
 namespace throng {
 
 struct Vec2d {

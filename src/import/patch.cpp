@@ -95,8 +95,8 @@ Vec3d BezierPatch::along_t(double s, double t) const {
 Vec3d BezierPatch::normal(double s, double t) const {
   const Box3d box = bounds();
   const double size2 = dot(box.max - box.min, box.max - box.min);
-  // First where we are, then a little towards the middle: near a collapsed edge the derivative
-  // along it shrinks, but the direction of the product has a limit.
+  // First at the point itself, then a little towards the middle: near a collapsed edge the
+  // derivative along it shrinks, but the direction of the product has a limit.
   Vec3d widest;
   for (const double inward : {0.0, 0x1p-20, 0x1p-16, 0x1p-12, 0x1p-8, 0x1p-4}) {
     const double u = s + (0.5 - s) * inward;
@@ -105,7 +105,7 @@ Vec3d BezierPatch::normal(double s, double t) const {
     if (dot(n, n) > 1e-18 * size2 * size2) return n * (1 / length(n));
     if (dot(n, n) > dot(widest, widest)) widest = n;
   }
-  const double long_enough = length(widest);  // A sliver: its direction is all there is.
+  const double long_enough = length(widest);  // A sliver: only its direction is known.
   return long_enough > 0 ? widest * (1 / long_enough) : Vec3d{};
 }
 

@@ -73,10 +73,10 @@ std::vector<uint32_t> weld_corners(const PatchSet& set) {
       if (is_collapsed(set.patches[p].edge(static_cast<int32_t>(e)))) {
         groups.join(start_of(side), end_of(side));
       }
-      if (edge.bind == EdgeBind::kPart) continue;  // The bigger edge does it.
+      if (edge.bind == EdgeBind::kPart) continue;  // The larger edge does it.
       const size_t count = neighbour_count(edge.bind);
       for (size_t k = 0; k < count; ++k) {
-        // Neighbours run the other way: the first one ends where this edge starts.
+        // Neighbours run in the opposite direction: the first one ends where this edge starts.
         groups.join(k == 0 ? start_of(side) : start_of(edge.next[k - 1]), end_of(edge.next[k]));
       }
       if (count > 0) groups.join(end_of(side), start_of(edge.next[count - 1]));

@@ -8,7 +8,7 @@
 
 #include "throng/patch.h"
 
-/// Who meets whom along the edges of patches.
+/// Neighbours along the edges of patches.
 namespace throng {
 
 /// How many entries of PatchEdge::next an edge of this kind uses; 5 for a kind that does not exist.
@@ -36,7 +36,7 @@ namespace throng {
 void bind_equal_edges(PatchSet& set, uint32_t first);
 
 /// A number for each corner, corner_of[4 * patch + vertex]: the smallest 4 * patch + vertex among
-/// the corners that bindings and collapsed edges make one. The set must pass check_patches.
+/// the corners that bindings and collapsed edges identify. The set must pass check_patches.
 [[nodiscard]] std::vector<uint32_t> weld_corners(const PatchSet& set);
 
 }  // namespace throng

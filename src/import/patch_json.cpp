@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+// Reads docs/file_format.md, "Patch files". Linear in the file.
 namespace throng {
 namespace {
 
@@ -37,7 +38,7 @@ class PatchJsonReader {
     return false;
   }
 
-  // A misspelt key would otherwise be an edge left open.
+  // Else a misspelt key would leave an edge open.
   bool only_keys(const object& node, std::initializer_list<std::string_view> keys) {
     for (const auto& field : node) {
       bool known = false;

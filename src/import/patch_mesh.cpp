@@ -13,12 +13,12 @@
 #include "import/patch_steps.h"
 #include "throng/patch.h"
 
-// Without cracks: a *seam* is what pieces of patches share, a run of vertices between two corners
-// of pieces; both sides use them by index. Seams end wherever a piece on either side does, so a
-// piece has one or more on each edge. It takes them as they come: where they are as fine as its
-// inside it is a grid, else a ring of triangles joins the seams to a grid of inner points. No seam
-// is coarser than a piece beside it, so that the ring's triangles span no more than the piece's own
-// steps (see join), and what bounds the gap of those holds for them.
+// Cuts patches into triangles without cracks. A *seam* is a run of vertices between two corners of
+// pieces, which the pieces on both sides use by index. Seams end wherever a piece on either side
+// does, so a piece has one or more on each edge. If they are as fine as its inside, it is a grid;
+// else a ring of triangles joins the seams to a grid of inner points. No seam is coarser than a
+// piece beside it, so the ring's triangles span no more than the piece's own steps (see join), and
+// the bound of their deviation holds for them too. Linear in the triangles.
 namespace throng {
 namespace {
 
@@ -31,8 +31,8 @@ struct Seam {
   bool collapsed = false;
 };
 
-// The seams along the whole edge of a patch, in its direction, all but those that two smaller
-// neighbours share out.
+// The seams along the whole edge of a patch, in its direction, except along an edge that two
+// smaller neighbours divide.
 struct Run {
   PatchSide side;  // whose curve it is
   uint32_t first = 0, count = 1;
@@ -61,8 +61,8 @@ class Tessellator {
  public:
   Tessellator(const PatchSet& set, const TessellationConfig& config, Context& context)
       : set_(set), config_(config), context_(context) {
-    // Millimetres, or a twentieth of the tolerance if that is finer: what rounding adds stays
-    // within.
+    // Millimetres, or a twentieth of the tolerance if that is finer, so that rounding stays within
+    // the tolerance.
     grid_ = std::max(1000.0, std::ceil(20 / config.tolerance));
   }
 
@@ -75,7 +75,7 @@ class Tessellator {
     if (!number_vertices()) return too_many();
     if (context_.cancel) return cancelled();
     if (!count_triangles()) return too_many();
-    // Memory that is touched for the first time costs as much as what is then written there.
+    // The first touch of memory costs as much as the writing itself.
     const std::array<std::function<void()>, 3> make_room{
         [&] { mesh_.positions.resize(vertices_); },
         [&] { mesh_.triangles.resize(mesh_.first.back()); },
@@ -121,7 +121,7 @@ class Tessellator {
     });
   }
 
-  // Corners that are one vertex get one number, in order of their first patch.
+  // Corners that are one vertex get one number, in the order of their first patch.
   void number_corners() {
     corner_ = weld_corners(set_);
     for (uint32_t i = 0; i < corner_.size(); ++i) {
@@ -173,8 +173,8 @@ class Tessellator {
     }
   }
 
-  // Steps that a part of an edge asks for, the k-th of `count` that are no longer than its pieces.
-  [[nodiscard]] uint32_t asked(PatchSide side, uint32_t k, uint32_t count) const {
+  // Steps that part k of `count` of an edge needs; the parts are no longer than its pieces.
+  [[nodiscard]] uint32_t steps_needed(PatchSide side, uint32_t k, uint32_t count) const {
     const uint32_t each = count / pieces(side.patch);
     return ceil_div(along(piece_along(side, k / each), side.edge), each);
   }
@@ -205,10 +205,10 @@ class Tessellator {
         runs_.push_back(run);
         const bool collapsed = is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)));
         for (uint32_t k = 0; k < run.count; ++k) {
-          Seam seam{.steps = asked(side, k, run.count), .collapsed = collapsed};
+          Seam seam{.steps = steps_needed(side, k, run.count), .collapsed = collapsed};
           if (!is_open) {
             const uint32_t across = (which + 1) * run.count - 1 - k;
-            seam.steps = std::max(seam.steps, asked(next, across, runs * run.count));
+            seam.steps = std::max(seam.steps, steps_needed(next, across, runs * run.count));
           }
           seams_.push_back(seam);
         }
@@ -569,11 +569,11 @@ class Tessellator {
     join(edges[3], ns, emit_ring(3), [&](uint32_t k) { return inner(ns - k, 1); });
   }
 
-  // Triangles between an edge and the row of inner points beside it, n - 1 of them at k / n, each
-  // with from where to where it reaches along the edge. A step between inner points is joined to a
-  // point of the edge that lies within it, of which there is one since no step of the edge is
-  // longer, and to the one nearest to its middle; so the steps of the edge that are joined to an
-  // inner point lie within a step of it. No triangle spans more than 1 / n.
+  // Triangles between an edge and the row of n - 1 inner points beside it, at k / n; each with its
+  // range along the edge. A step between inner points is joined to a point of the edge within it,
+  // the one nearest to its middle; there is one, since no step of the edge is longer. So the steps
+  // of the edge that are joined to an inner point lie within a step of it, and no triangle spans
+  // more than 1 / n.
   template <class Emit, class Row>
   static void join(const std::vector<EdgePoint>& edge, uint32_t n, Emit emit, Row row) {
     uint32_t k = 1;
@@ -621,7 +621,7 @@ Result<PatchMesh> tessellate_patches(const PatchSet& set, const TessellationConf
   if (!(config.tolerance > 0 && config.tolerance <= 1e6 && config.workers >= 0 &&
         config.max_triangles <= kMax)) {
     return Error{Errc::kBadConfig,
-                 "patches: need tolerance > 0, workers >= 0, most_triangles <= 4e9"};
+                 "patches: need tolerance > 0, workers >= 0, max_triangles <= 4e9"};
   }
   if (set.size() >= kNoPatch / 4) {
     return Error{Errc::kLimit, "patches: more than 1.07 thousand million; bake them in parts"};

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "import/area_rules.h"
 
+// Cuts the patches of a scene and appends their triangles. Linear in the triangles.
 namespace throng {
 
 Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& context) {
@@ -21,7 +22,7 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
     return Error{Errc::kLimit, "scene: more than 4.29 thousand million vertices; bake it in parts"};
   }
 
-  // As a scene of its own first, so that rules see these parts alone.
+  // First as a separate scene, so that rules see these parts alone.
   Scene cut;
   cut.triangles = std::move(mesh->triangles);
   cut.patch_part = std::move(mesh->parts);
@@ -34,7 +35,7 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
                          .first_triangle = first,
                          .triangle_count = last - first});
   }
-  // Beside each other: what costs is to touch so much memory for the first time.
+  // In parallel: most of the cost is the first touch of so much memory.
   const std::array<std::function<void()>, 2> fills{
       [&] {
         cut.area.reserve(cut.triangles.size());

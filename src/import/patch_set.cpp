@@ -8,6 +8,7 @@
 #include "import/patch_edges.h"
 #include "throng/patch.h"
 
+// Checks that neighbours along edges name each other and meet. Linear in the edges.
 namespace throng {
 namespace {
 
@@ -93,7 +94,7 @@ class PatchChecker {
     return true;
   }
 
-  // Does `other` name `me`, and as what I am to it?
+  // Does `other` name `me`, and in the relation that holds between them?
   [[nodiscard]] bool names_me(PatchSide other, PatchSide me, EdgeBind mine) const {
     const PatchEdge& edge = at(other);
     if (mine == EdgeBind::kOne) return edge.bind == EdgeBind::kOne && edge.next[0] == me;
@@ -104,7 +105,7 @@ class PatchChecker {
     return edge.bind == EdgeBind::kPart && edge.next[0] == me;
   }
 
-  // Part k of n of the edge against the neighbour's edge, which runs the other way.
+  // Part k of n of the edge against the neighbour's edge, which runs in the opposite direction.
   bool meets(PatchSide side, PatchSide next, size_t k, size_t n) {
     const auto mine = set_.patches[side.patch].edge(static_cast<int32_t>(side.edge));
     const auto theirs = set_.patches[next.patch].edge(static_cast<int32_t>(next.edge));

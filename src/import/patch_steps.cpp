@@ -9,21 +9,21 @@
 // Over a triangle whose parameters span a x b, a surface f leaves the plane through the three
 // corners by at most (a^2 |f_ss| + 2 a b |f_st| + b^2 |f_tt|) / 8. Source: D. Filip, R. Magedson,
 // R. Markot. Surface algorithms using bounds on derivatives. 1986. It holds for any triangle: the
-// error is a mean, weighted like the corners, of half the second derivative along the ways to them,
-// and the weighted mean square of ways within an interval of length a is at most a^2 / 4.
+// error is a mean, weighted like the corners, of half the second derivative along the offsets to
+// them, and the weighted mean square of offsets within an interval of length a is at most a^2 / 4.
 //
-// That is the error at equal parameters. What counts is the gap, and a surface that slides within
-// itself leaves none: seen as a height over a plane with slopes of at most g, the gap is at most
-// the error's height and g times the rest of it. What is cut evenly is looked at in parts, at most
-// 4 x 4, because over a small part g is small; steps end where parts do, so that each triangle lies
-// in one.
+// That is the error at equal parameters. What counts is the deviation: the distance to the surface,
+// which an error along the surface does not add to. Over a plane to which the surface has slopes of
+// at most g, the deviation is at most the error's height plus g times the rest of the error. An
+// evenly cut patch is bounded in parts, at most 4 x 4, because g is small over a small part; steps
+// end where parts do, so that each triangle lies in one part.
 namespace throng {
 namespace {
 
-// Bounds of second derivatives over a piece, by how much each opens a gap. [m]
-struct Bend {
+// Bounds of second derivatives over a piece, by what each adds to the deviation. [m]
+struct DeviationBounds {
   double ss = 0, st = 0, tt = 0;
-  [[nodiscard]] double gap(double a, double b) const {
+  [[nodiscard]] double deviation(double a, double b) const {
     return (a * a * ss + 2 * a * b * st + b * b * tt) / 8;
   }
 };
@@ -75,37 +75,37 @@ double steepest(const BezierPatch& piece, Vec3d up) {
 }
 
 // `span_s` and `span_t` are the parts of the patch's parameters that the piece covers.
-Bend bend_of(const BezierPatch& piece, double span_s, double span_t) {
+DeviationBounds deviation_bounds(const BezierPatch& piece, double span_s, double span_t) {
   const auto& c = piece.points;
   const Vec3d up = piece.normal(0.5, 0.5);
   const double slope = steepest(piece, up);
   // Raises a bound by what v opens: at most its length, so most vectors raise nothing. (Of doubles
   // whose squares are normal numbers, the root of the square is the number again.)
-  const auto raise = [&](double& most, Vec3d v) {
-    if (most > 1e-150 && most < 1e150 && dot(v, v) <= most * most) return;
+  const auto raise = [&](double& bound, Vec3d v) {
+    if (bound > 1e-150 && bound < 1e150 && dot(v, v) <= bound * bound) return;
     const double height = dot(v, up);
     const double rest = length(v - up * height);
-    most = std::max(most, std::min(length(v), std::fabs(height) + slope * rest));
+    bound = std::max(bound, std::min(length(v), std::fabs(height) + slope * rest));
   };
-  Bend bend;
+  DeviationBounds bounds;
   for (size_t k = 0; k < 4; ++k) {
     for (size_t i = 0; i < 2; ++i) {
       const size_t row = 4 * k + i;
       const size_t column = 4 * i + k;
-      raise(bend.ss, c[row] - c[row + 1] * 2 + c[row + 2]);
-      raise(bend.tt, c[column] - c[column + 4] * 2 + c[column + 8]);
+      raise(bounds.ss, c[row] - c[row + 1] * 2 + c[row + 2]);
+      raise(bounds.tt, c[column] - c[column + 4] * 2 + c[column + 8]);
     }
   }
   for (size_t j = 0; j < 3; ++j) {
     for (size_t i = 0; i < 3; ++i) {
       const size_t a = 4 * j + i;
-      raise(bend.st, c[a] - c[a + 1] - c[a + 4] + c[a + 5]);
+      raise(bounds.st, c[a] - c[a + 1] - c[a + 4] + c[a + 5]);
     }
   }
-  bend.ss *= 6 / (span_s * span_s);
-  bend.st *= 9 / (span_s * span_t);
-  bend.tt *= 6 / (span_t * span_t);
-  return bend;
+  bounds.ss *= 6 / (span_s * span_s);
+  bounds.st *= 9 / (span_s * span_t);
+  bounds.tt *= 6 / (span_t * span_t);
+  return bounds;
 }
 
 // The patch in 2^halvings x 2^halvings parts, by t, then s.
@@ -124,24 +124,25 @@ std::vector<BezierPatch> parts_of(const BezierPatch& patch, int32_t halvings) {
   return rows;
 }
 
-// The fewest steps, multiples of what the surface was looked at in.
-Steps min_steps(const BezierPatch& patch, double tolerance, int32_t least, int32_t most,
-                int32_t halvings) {
+// The smallest number of steps, in multiples of the parts.
+Steps min_steps(const BezierPatch& patch, double tolerance, int32_t min_per_side,
+                int32_t max_per_side, int32_t halvings) {
   const int32_t parts = 1 << halvings;
-  std::vector<Bend> bends;
+  std::vector<DeviationBounds> all_bounds;
   for (const BezierPatch& part : parts_of(patch, halvings)) {
-    bends.push_back(bend_of(part, 1.0 / parts, 1.0 / parts));
+    all_bounds.push_back(deviation_bounds(part, 1.0 / parts, 1.0 / parts));
   }
   const auto is_enough = [&](int32_t s, int32_t t) {
     // Also false for a NaN of wild coordinates.
-    return std::all_of(bends.begin(), bends.end(),
-                       [&](const Bend& bend) { return bend.gap(1.0 / s, 1.0 / t) <= tolerance; });
+    return std::all_of(all_bounds.begin(), all_bounds.end(), [&](const DeviationBounds& bounds) {
+      return bounds.deviation(1.0 / s, 1.0 / t) <= tolerance;
+    });
   };
-  Steps best{static_cast<uint8_t>(most), static_cast<uint8_t>(most)};
-  const int32_t first = (least + parts - 1) / parts * parts;
+  Steps best{static_cast<uint8_t>(max_per_side), static_cast<uint8_t>(max_per_side)};
+  const int32_t first = (min_per_side + parts - 1) / parts * parts;
   // The more steps along s, the fewer along t.
-  int32_t t = most;
-  for (int32_t s = first; s <= most; s += parts) {
+  int32_t t = max_per_side;
+  for (int32_t s = first; s <= max_per_side; s += parts) {
     if (!is_enough(s, t)) continue;
     while (t - parts >= first && is_enough(s, t - parts)) t -= parts;
     if (s * t < best.count()) best = {static_cast<uint8_t>(s), static_cast<uint8_t>(t)};
@@ -149,19 +150,20 @@ Steps min_steps(const BezierPatch& patch, double tolerance, int32_t least, int32
   return best;
 }
 
-// Of a few ways to look at it the one that asks for the least.
-Steps min_of(const BezierPatch& patch, double tolerance, int32_t least, int32_t most) {
+// The smallest number of steps over a few sizes of parts.
+Steps min_of(const BezierPatch& patch, double tolerance, int32_t min_per_side,
+             int32_t max_per_side) {
   constexpr int32_t kMaxHalvings = 2;
-  Steps best = min_steps(patch, tolerance, least, most, 0);
-  for (int32_t h = 1; h <= kMaxHalvings && best.count() > least * least; ++h) {
-    const Steps steps = min_steps(patch, tolerance, least, most, h);
+  Steps best = min_steps(patch, tolerance, min_per_side, max_per_side, 0);
+  for (int32_t h = 1; h <= kMaxHalvings && best.count() > min_per_side * min_per_side; ++h) {
+    const Steps steps = min_steps(patch, tolerance, min_per_side, max_per_side, h);
     if (steps.count() < best.count()) best = steps;
   }
   return best;
 }
 
 // Pieces are not cut more coarsely, so that no triangle of a patch in pieces covers more than a
-// sixteenth of a side: nodes know the ground around a cell as far as that (bake/own_ground).
+// sixteenth of a side: nodes hold the ground around a cell as far as that (bake/own_ground).
 constexpr int32_t kMinOfPiece = 4;
 
 }  // namespace

@@ -18,8 +18,8 @@ struct Steps {
   friend bool operator==(Steps, Steps) = default;
 };
 
-/// A patch is cut as a whole, or in 4 x 4 pieces of which each has steps of its own: piece
-/// 4 * j + i, i along s and j along t.
+/// A patch is cut as a whole, or in 4 x 4 pieces that each have their own steps: piece 4 * j + i,
+/// i along s and j along t.
 struct PatchCut {
   static constexpr int32_t kMaxPieces = 4;  // along a side
 
@@ -33,8 +33,8 @@ struct PatchCut {
 
 inline constexpr int32_t kMaxSteps = 128;  ///< Along a side of a whole patch.
 
-/// The cut with the fewest triangles of those that are nowhere farther than `tolerance` from the
-/// surface, as far as bounds tell; or the finest allowed.
+/// The cut with the smallest number of triangles that is proven to stay within `tolerance` of the
+/// surface, or the finest allowed.
 [[nodiscard]] PatchCut cut_within(const BezierPatch& patch, double tolerance);
 
 }  // namespace throng

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Builds ground, walls, roofs and plates from the polygons of a plan, which a sweep over the edges
+// checks for crossings.
 namespace throng {
 namespace {
 
@@ -39,8 +41,8 @@ Vec2d crossing_point(const Segment& s, const Segment& t) {
   return {s.a.x + k * d.x, s.a.y + k * d.y};
 }
 
-// Where two edges of the polygon cross, as words, or nothing. Edges are compared only while a line
-// that sweeps from left to right touches both.
+// The place where two edges of the polygon cross, in words, or nothing. Two edges are compared only
+// while a line that sweeps from left to right touches both.
 std::string find_crossing(const Polygon& polygon) {
   std::vector<Segment> segments;
   const auto add = [&](const Ring& ring, size_t index) {
@@ -57,7 +59,7 @@ std::string find_crossing(const Polygon& polygon) {
   std::stable_sort(segments.begin(), segments.end(),
                    [](const Segment& s, const Segment& t) { return s.a.x < t.a.x; });
   std::vector<size_t> active;
-  uint64_t budget = 1'000'000'000;  // Hundreds of thousands of edges: the cut itself tells, later.
+  uint64_t budget = 1'000'000'000;  // Beyond it the cut itself finds crossings.
   for (size_t i = 0; i < segments.size(); ++i) {
     const Segment& s = segments[i];
     std::erase_if(active, [&](size_t k) { return segments[k].b.x < s.a.x; });
@@ -68,16 +70,16 @@ std::string find_crossing(const Polygon& polygon) {
       if (std::max(t.a.y, t.b.y) < std::min(s.a.y, s.b.y)) continue;
       if (std::min(t.a.y, t.b.y) > std::max(s.a.y, s.b.y)) continue;
       if (!cross_each_other(s, t)) continue;
-      const char* who = s.ring == t.ring ? "the outline crosses itself" : "two rings cross";
+      const char* fault = s.ring == t.ring ? "the outline crosses itself" : "two rings cross";
       const Vec2d at = crossing_point(s, t);
-      return fmt::format("{} near ({:.3f}, {:.3f})", who, at.x, at.y);
+      return fmt::format("{} near ({:.3f}, {:.3f})", fault, at.x, at.y);
     }
     active.push_back(i);
   }
   return {};
 }
 
-// What makes the polygon unusable, as words, or nothing.
+// The fault that makes the polygon unusable, in words, or nothing.
 std::string find_fault(const Polygon& polygon) {
   const auto ring_fault = [](const Ring& ring) -> std::string {
     if (ring.size() < 3) return fmt::format("a ring has {} corners, needs 3", ring.size());
@@ -197,7 +199,7 @@ Result<Scene> make_plane_scene(const PlaneConfig& config) {
   ReadOptions options;
   options.name = "plane";
   SceneWriter writer(options);
-  constexpr double kPlate = 0.05;  // [m] Nobody fits below it.
+  constexpr double kPlate = 0.05;  // [m] No avatar fits below it.
   if (auto done = write_plan(plan, PlanAxes::kXZ, config.ground_height, kPlate, writer); !done) {
     return done.error();
   }

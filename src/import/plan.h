@@ -11,12 +11,12 @@
 /// Worlds from 2D plans: flat ground, and obstacles that rise from it.
 namespace throng {
 
-/// What a plan says, in its own two axes.
+/// The content of a plan, in its own two axes.
 struct Plan {
   struct Area {
     Polygon polygon;
     double height = 0;  ///< Of an obstacle; of the holes' walls for ground. Units of the plan.
-    std::string place;  ///< Where it stands in the file, for messages.
+    std::string place;  ///< Its position in the file, for messages.
   };
   struct Wall {
     Ring line;  ///< Open: two corners or more.
@@ -27,16 +27,16 @@ struct Plan {
   std::vector<Wall> walls;
 };
 
-/// Which way a plan's two axes lie in space.
+/// How a plan's two axes lie in space.
 enum class PlanAxes {
   kXZ,  ///< (x, z), Y up: the library's own.
   kXY,  ///< (x, y), Z up: maps.
 };
 
 /// Writes the plan's triangles: ground is walkable; walls and roofs are blocked, and so is a plate
-/// inside each obstacle `plate_height` above the ground, so that nobody is placed inside or on top.
-/// Fails with kBadInput and the place of a polygon that crosses itself, has no area or whose holes
-/// leave it.
+/// inside each obstacle `plate_height` above the ground, so that no avatar is placed inside or on
+/// top. Fails with kBadInput and the place of a polygon that crosses itself, has no area or whose
+/// holes leave it.
 [[nodiscard]] Result<void> write_plan(const Plan& plan, PlanAxes axes, double ground_height,
                                       double plate_height, SceneWriter& writer);
 

@@ -6,11 +6,11 @@
 
 #include "import/raw_scene.h"
 
-/// Stanford PLY, text and binary, read by ourselves: on a truncated text file assimp never ends.
+/// Stanford PLY, text and binary, read without assimp, which never ends on a truncated text file.
 namespace throng {
 
 /// Reads `x y z` of the element "vertex" and the list `vertex_indices` (or `vertex_index`) of the
-/// element "face"; steps over everything else. Faces that the file ends before are refused; bad
+/// element "face"; skips everything else. A file that ends before its last face is refused; bad
 /// indices are counted. Fails with kBadFile and the line of the header or the element.
 [[nodiscard]] Result<RawScene> read_ply(std::string_view bytes, const ReadOptions& options,
                                         Context& context);

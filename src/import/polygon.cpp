@@ -8,15 +8,15 @@
 
 // Ear clipping: a corner is cut off when nothing of the polygon lies in its triangle; a hole is
 // first joined to the outer ring by a double edge. Signs are exact (orient.h), so rings that touch
-// themselves or each other are told apart from rings that cross. A grid of corners keeps the test
-// for an ear local, which makes 100 000 corners a matter of a second.
+// themselves or each other are distinguished from rings that cross. A grid of corners keeps the
+// test for an ear local: 100 000 corners take about a second.
 // Methods: Meisters. Polygons have ears. 1975. Held. FIST: fast industrial-strength triangulation.
 // 2001 (the grid).
 namespace throng {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
-constexpr int kMaxForced = 8;      // After so many wrong cuts only speed matters.
+constexpr int kMaxForced = 8;      // After so many wrong cuts exactness is given up.
 constexpr double kLargest = 1e15;  // Beyond it products of coordinates are meaningless as lengths.
 
 bool is_usable(Vec3d p) {
@@ -34,7 +34,7 @@ double distance2(Vec2d a, Vec2d b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b
 }  // namespace
 
 // Drops the axis along which the outer ring's normal is longest: the kept coordinates stay as they
-// are, so that nothing is rounded. False if the ring has no area to speak of.
+// are, so that nothing is rounded. False if the ring has almost no area.
 bool PolygonCutter::project(std::span<const Vec3d> points, std::span<const uint32_t> ring_first) {
   for (const Vec3d& p : points) {
     if (!is_usable(p)) return false;  // Also false for NaN.
@@ -159,8 +159,8 @@ void PolygonCutter::split_edges_at(uint32_t start, uint32_t hole) {
   } while (i != start);
 }
 
-// Joins a hole to the ring at its first corner in (x, y) order: all holes still to come lie behind
-// it, so that only the ring can be in the way.
+// Joins a hole to the ring at its first corner in (x, y) order: all later holes lie behind
+// it, so only the ring can block the line.
 bool PolygonCutter::bridge(uint32_t start, uint32_t hole) {
   split_edges_at(start, hole);
   const Vec2d m = nodes_[hole].at;
@@ -168,7 +168,7 @@ bool PolygonCutter::bridge(uint32_t start, uint32_t hole) {
   uint32_t tried = 0;
   uint64_t ring_size = 0;
   for (int attempt = 0;; ++attempt) {
-    // The nearest corner that was not tried yet; near ones are nearly always visible.
+    // The nearest corner not tried yet; near ones are nearly always visible.
     uint32_t best = kNone;
     double best_distance = 0;
     uint32_t i = start;
@@ -206,7 +206,7 @@ bool PolygonCutter::bridge(uint32_t start, uint32_t hole) {
       nodes_[hole].prev = best;
       return true;
     }
-    if (attempt >= 32) {  // Only crossing rings come here often: they must not take for ever.
+    if (attempt >= 32) {  // Only crossing rings come here often; this bounds the time.
       if (bridge_budget_ < ring_size) return false;
       bridge_budget_ -= ring_size;
     }
@@ -327,16 +327,16 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     cut_area_ += std::fabs(cross2(nodes_[c.prev].at, c.at, nodes_[c.next].at)) / 2;
     out.push_back({nodes_[c.prev].point, c.point, nodes_[c.next].point});
   };
-  // Corners that go at once: doubled ones, ends of spikes (two edges that lie on each other look
-  // like the two sides of a corner), and those on an edge that is straight in space. Where the edge
-  // is straight in the plane only, say a kerb seen from above, the corner carries a height: it
-  // stays until nothing else is left to cut.
+  // Corners that are dropped at once: doubled ones, ends of spikes (two edges that lie on each
+  // other look like the two sides of a corner), and those on an edge that is straight in space.
+  // Where the edge is straight in the plane only, say a kerb seen from above, the corner carries a
+  // height: it stays until only such corners are left.
   const auto is_idle = [&](uint32_t node) {
     if (turn(node) != 0) return false;
     return straighten_ || !bends_in_space(node);
   };
   const auto drop = [&](uint32_t node) {
-    if (bends_in_space(node)) emit(node);  // An upright sliver: no matter is lost.
+    if (bends_in_space(node)) emit(node);  // An upright sliver, so that nothing solid is lost.
     return remove(node);
   };
   const auto take_out = [&](uint32_t node) {
@@ -345,9 +345,9 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     --left;
     while (left > 2) {
       if (is_idle(prev)) {
-        const uint32_t gone = prev;
-        prev = nodes_[gone].prev;
-        drop(gone);
+        const uint32_t dropped = prev;
+        prev = nodes_[dropped].prev;
+        drop(dropped);
       } else if (is_idle(next)) {
         next = drop(next);
       } else {
@@ -359,7 +359,7 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
     queue_.push_back(prev);
     queue_.push_back(next);
   };
-  // Where rings cross, soon only speed matters.
+  // Where rings cross, exactness is given up soon.
   const auto careful = [&] { return forced < kMaxForced && ear_budget_ > 0; };
   straighten_ = false;
   bool idle_ones = true;
@@ -379,14 +379,15 @@ bool PolygonCutter::clip(uint32_t start, std::vector<std::array<uint32_t, 3>>& o
       if (!(careful() ? is_ear(node) : turn(node) > 0)) continue;
       emit(node);
       take_out(node);
-      if (left < built / 2 && left > 16) break;  // Few are left in many cells: list them afresh.
+      if (left < built / 2 && left > 16)
+        break;  // Few are left in many cells: build the grid again.
     }
     if (std::exchange(idle_ones, false) || left < before || left <= 2) continue;
     if (!std::exchange(straighten_, true)) {
       idle_ones = true;
       continue;
     }
-    // Rings that cross: give up exactness, never the end of the loop.
+    // Rings that cross: exactness is given up, so that the loop ends.
     exact = false;
     ++forced;
     uint32_t pick = start;
@@ -445,7 +446,7 @@ bool PolygonCutter::cut(std::span<const Vec3d> points, std::span<const uint32_t>
   for (size_t ring = 1; ring + 1 < ring_first.size(); ++ring) {
     if (ring_first[ring + 1] - ring_first[ring] < 3) continue;
     const double hole_area = std::fabs(ring_area(ring_first, ring));
-    if (!(hole_area > 0)) continue;  // A slit takes nothing away.
+    if (!(hole_area > 0)) continue;  // A slit removes no area.
     area -= hole_area;
     uint32_t first = add_ring(ring_first, ring, -1);
     for (uint32_t i = nodes_[first].next, end = first; i != end; i = nodes_[i].next) {

@@ -20,8 +20,9 @@ class PolygonCutter {
   /// are holes; either winding. Corners are appended to `out` as indices into `points`; triangles
   /// face like the outer ring. False if the rings cross so that the area could not be kept exactly:
   /// then `out` holds a best effort. A polygon without area gives triangles without area, so that
-  /// its matter is not lost. All corners are used but those that are straight in space. What folds
-  /// back onto itself, seen along the longest axis of the normal, is lost: faces are near planar.
+  /// it still counts as solid. All corners are used but those that are straight in space. A part
+  /// that folds back onto itself, seen along the longest axis of the normal, is lost: faces must be
+  /// nearly planar.
   bool cut(std::span<const Vec3d> points, std::span<const uint32_t> ring_first,
            std::vector<std::array<uint32_t, 3>>& out);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+// Collects the triangles of a reader into parts and counts bad corners and faces.
 namespace throng {
 
 void SceneWriter::begin_part(std::string_view node, std::string_view material, uint32_t material1) {

@@ -15,7 +15,7 @@
 #include "throng/result.h"
 #include "throng/scene.h"
 
-/// What the readers of single formats share. A reader turns bytes into triangles as they are in the
+/// What the readers of all formats share. A reader turns bytes into triangles as they are in the
 /// file: its units, its axes, nothing cleaned. load_scene does the rest.
 namespace throng {
 
@@ -47,7 +47,7 @@ struct PatchZone {
 /// A corner of a triangle that names no vertex; clean_scene drops and counts the triangle.
 inline constexpr uint32_t kNoVertex = UINT32_MAX;
 
-/// A picture that a file names, or holds.
+/// A picture that a file names or contains.
 struct TextureSource {
   std::string name;   ///< As the file has it: a path, if it holds no bytes.
   std::string bytes;  ///< Of a PNG, JPEG ...; or, where it has a size, RGBA texels.
@@ -72,12 +72,12 @@ struct ReadOptions {
   SceneLooks looks = SceneLooks::kLeaveOut;
 };
 
-/// Adds meshes and polygons to a scene, and counts what cannot be matter.
+/// Adds meshes and polygons to a scene, and counts what cannot be solid.
 class SceneWriter {
  public:
   explicit SceneWriter(const ReadOptions& options) : file_(options.name) {}
 
-  /// What follows belongs to this node and material. `material1` as of a ScenePart.
+  /// Triangles added from here on belong to this node and material. `material1` as of a ScenePart.
   void begin_part(std::string_view node, std::string_view material, uint32_t material1 = 0);
   uint32_t add_vertex(Vec3d p);
   void add_triangle(uint32_t a, uint32_t b, uint32_t c);

@@ -49,13 +49,13 @@ Result<RawScene> read_patch_json(std::string_view, const ReadOptions& options, C
 }
 
 Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<TextureSource>& sources,
-                                                       const std::string& model, int32_t most,
+                                                       const std::string& model, int32_t max_side,
                                                        Context& context,
                                                        const TextureDecoding& decoding) {
   std::vector<Result<Texture>> all;
   for (const TextureSource& source : sources) {
     if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
-    all.push_back(decoding.read(source, model, most));
+    all.push_back(decoding.read(source, model, max_side));
   }
   return all;
 }

@@ -4,6 +4,7 @@
 
 #include "core/corner_box.h"
 
+// Adding triangles, and the bounds of a scene.
 namespace throng {
 
 void Scene::add_triangle(Vec3d a, Vec3d b, Vec3d c, AreaKind kind) {
@@ -36,7 +37,7 @@ void Scene::add_box(Vec3d low, Vec3d high, AreaKind kind) {
   area.insert(area.end(), 12, kind);
 }
 
-// Through the triangles, not the positions: a corner that no triangle uses is not matter.
+// Through the triangles, not the positions: a corner that no triangle uses is not solid.
 Box3d Scene::bounds() const { return corner_box(positions, triangles, 1); }
 
 }  // namespace throng

@@ -38,7 +38,7 @@ Result<Transform> read_transform(const ConfigNode& table, const std::string& nam
     reader.number("rotate_y", degrees, -360, 360);
     reader.number("scale", scale, 1e-6, 1e6);
     reader.numbers("translate", shift, 3);
-    // Whole quarter turns stay exact; other angles to 12 digits, the same on every machine.
+    // Quarter turns stay exact; other angles to 12 digits, the same on every machine.
     const auto round = [](double value) { return std::round(value * 1e12) / 1e12; };
     const double c = round(std::cos(degrees * std::numbers::pi / 180)) * scale;
     const double s = round(std::sin(degrees * std::numbers::pi / 180)) * scale;

@@ -7,7 +7,7 @@
 #include "core/config_file.h"
 #include "throng/scene.h"
 
-/// The scene file: which models, how they lie, what their surfaces are for.
+/// The scene file: its models, their placement and the area kinds of their surfaces.
 namespace throng {
 
 /// The settings of a parsed scene file; relative paths begin at `folder`. Fails with kBadFile, line

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+// Buffers what is written to a scene file, and checks the triangles before.
 namespace throng {
 
 SceneOutput::SceneOutput(std::string path) : file_(std::move(path)) { buffer_.reserve(kBuffer); }

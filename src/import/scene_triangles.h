@@ -6,7 +6,7 @@
 
 #include "throng/scene.h"
 
-/// All that a scene keeps by the triangle, so that nobody forgets one of them.
+/// Moves and removes triangles with all arrays that a scene keeps by the triangle.
 namespace throng {
 
 /// Puts a triangle in the place of another.

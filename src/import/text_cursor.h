@@ -5,10 +5,10 @@
 #include <charconv>
 #include <string_view>
 
-/// Numbers out of text, in the same way on every machine and in every locale.
+/// Reads numbers from text, with the same result on every machine and in every locale.
 namespace throng {
 
-/// A place in a text that moves on as things are taken from it.
+/// A position in a text, which advances as tokens are read.
 class TextCursor {
  public:
   explicit TextCursor(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
@@ -39,7 +39,7 @@ class TextCursor {
     at_ = stop;
     return true;
   }
-  /// Takes what stands up to the next space.
+  /// Takes the text up to the next space.
   std::string_view take_word() {
     skip_space();
     const char* from = at_;

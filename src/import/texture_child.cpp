@@ -3,60 +3,61 @@
 #include "import/child_process.h"
 #include "import/texture_reader.h"
 
-// Decoders of pictures are code that strangers' files have crashed before. So they run in a child
-// process; where one ends early, the next goes on behind the texture that it ended at. A file full
-// of textures that end it is no model any more: then the rest is left.
+// Damaged files can crash decoders of pictures. So they run in a child process; if it ends early,
+// the next one goes on after the texture at which it ended. After kMaxEnds such textures the rest
+// is not decoded.
 namespace throng {
 namespace {
 
-struct Told {
-  int32_t width = 0, height = 0;  // 0: it cannot be used, and a clause follows.
+struct TextureHeader {
+  int32_t width = 0, height = 0;  // 0: it cannot be used, and the reason follows.
   uint64_t size = 0;
 };
 
 constexpr uint64_t kLongestClause = 1000;
-constexpr size_t kMaxEnds = 8;  // Of children, before the rest of a model is left.
+constexpr size_t kMaxEnds = 8;  // Children that may end early in one model.
 
-bool take(PipeReader& pipe, const TextureSource& source, int32_t most,
-          std::vector<Result<Texture>>& all) {
-  Told told;
-  if (!pipe.read(&told, sizeof told)) return false;
-  if (told.width == 0) {
-    if (told.size > kLongestClause) return false;
-    std::string why(static_cast<size_t>(told.size), ' ');
+bool receive_texture(PipeReader& pipe, const TextureSource& source, int32_t max_side,
+                     std::vector<Result<Texture>>& all) {
+  TextureHeader header;
+  if (!pipe.read(&header, sizeof header)) return false;
+  if (header.width == 0) {
+    if (header.size > kLongestClause) return false;
+    std::string why(static_cast<size_t>(header.size), ' ');
     if (!pipe.read(why.data(), why.size())) return false;
     all.emplace_back(Error{Errc::kBadFile, std::move(why)});
     return true;
   }
   const bool sound =
-      told.width > 0 && told.width <= most && told.height > 0 && told.height <= most &&
-      told.size == static_cast<uint64_t>(told.width) * static_cast<uint64_t>(told.height) * 4;
+      header.width > 0 && header.width <= max_side && header.height > 0 &&
+      header.height <= max_side &&
+      header.size == static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height) * 4;
   if (!sound) return false;
-  Texture texture{.name = source.name, .width = told.width, .height = told.height, .rgba = {}};
-  texture.rgba.resize(static_cast<size_t>(told.size));
+  Texture texture{.name = source.name, .width = header.width, .height = header.height, .rgba = {}};
+  texture.rgba.resize(static_cast<size_t>(header.size));
   if (!pipe.read(texture.rgba.data(), texture.rgba.size())) return false;
   all.emplace_back(std::move(texture));
   return true;
 }
 
-void tell(const PipeWriter& pipe, const Result<Texture>& texture) {
-  Told told;
+void send_texture(const PipeWriter& pipe, const Result<Texture>& texture) {
+  TextureHeader header;
   if (!texture) {
     const std::string why = texture.error().message.substr(0, kLongestClause);
-    told.size = why.size();
-    pipe.write(&told, sizeof told);
+    header.size = why.size();
+    pipe.write(&header, sizeof header);
     pipe.write(why.data(), why.size());
     return;
   }
-  told = {texture->width, texture->height, texture->rgba.size()};
-  pipe.write(&told, sizeof told);
+  header = {texture->width, texture->height, texture->rgba.size()};
+  pipe.write(&header, sizeof header);
   pipe.write(texture->rgba.data(), texture->rgba.size());
 }
 
 }  // namespace
 
 Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<TextureSource>& sources,
-                                                       const std::string& model, int32_t most,
+                                                       const std::string& model, int32_t max_side,
                                                        Context& context,
                                                        const TextureDecoding& decoding) {
   std::vector<Result<Texture>> all;
@@ -68,18 +69,18 @@ Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<Texture
         [&](const PipeWriter& pipe) {
           for (size_t i = first; i < sources.size(); ++i) {
             allow_this_child(decoding.seconds);
-            tell(pipe, decoding.read(sources[i], model, most));
+            send_texture(pipe, decoding.read(sources[i], model, max_side));
           }
         },
         [&](PipeReader& pipe) {
           while (all.size() < sources.size()) {
-            if (!take(pipe, sources[all.size()], most, all)) return false;
+            if (!receive_texture(pipe, sources[all.size()], max_side, all)) return false;
           }
           return true;
         });
     if (!done && done.error().code == Errc::kCancelled) return done.error();
     if (all.size() == sources.size()) break;
-    if (!done && done.error().code == Errc::kIo) {  // There is no child: the next would not be.
+    if (!done && done.error().code == Errc::kIo) {  // No child could be started.
       all.resize(sources.size(), Error{Errc::kIo, "is not decoded: " + done.error().message});
       break;
     }

@@ -28,6 +28,7 @@
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
+// Finds the textures of a model, decodes them (stb_image) and halves them until they fit.
 namespace throng {
 namespace {
 
@@ -65,8 +66,8 @@ Texture halved(const Texture& from) {
   return to;
 }
 
-Texture fitted(Texture texture, int32_t most) {
-  while (std::max(texture.width, texture.height) > most) texture = halved(texture);
+Texture fitted(Texture texture, int32_t max_side) {
+  while (std::max(texture.width, texture.height) > max_side) texture = halved(texture);
   return texture;
 }
 
@@ -110,7 +111,7 @@ std::string find_file(const std::string& model, const std::string& named) {
   return {};
 }
 
-// So large that all together keep to the budget.
+// The largest side at which `count` textures fit the budget.
 int32_t side_for(size_t count) {
   int32_t side = kLargestSide;
   while (side > 16 && static_cast<int64_t>(count) * side * side * 4 > kBudget) side /= 2;
@@ -124,13 +125,13 @@ bool has_no_hue(const std::array<float, 4>& colour) {
 
 }  // namespace
 
-Result<Texture> decode_texture(std::string_view bytes, int32_t most) {
+Result<Texture> decode_texture(std::string_view bytes, int32_t max_side) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const auto size = static_cast<int>(std::min<size_t>(bytes.size(), INT32_MAX));
   int width = 0, height = 0, channels = 0;
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0 || width <= 0 ||
       height <= 0) {
-    // Or has more than 2^30 bytes of texels, which the decoder does not tell apart.
+    // Or it has more than 2^30 bytes of texels: the decoder reports both alike.
     return unusable("is no PNG, JPEG, TGA or BMP that can be read");
   }
   if (int64_t{width} * height > kMaxTexels) {
@@ -142,17 +143,18 @@ Result<Texture> decode_texture(std::string_view bytes, int32_t most) {
   Texture out{.name = {}, .width = width, .height = height, .rgba = {}};
   out.rgba.assign(texels.get(),
                   texels.get() + static_cast<size_t>(width) * static_cast<size_t>(height) * 4);
-  return fitted(std::move(out), most);
+  return fitted(std::move(out), max_side);
 }
 
-Result<Texture> read_texture(const TextureSource& source, const std::string& model, int32_t most) {
+Result<Texture> read_texture(const TextureSource& source, const std::string& model,
+                             int32_t max_side) {
   if (source.width > 0 && source.height > 0) {
     const uint64_t size =
         static_cast<uint64_t>(source.width) * static_cast<uint64_t>(source.height) * 4;
     if (source.bytes.size() != size) return unusable("is damaged");
     Texture out{.name = source.name, .width = source.width, .height = source.height, .rgba = {}};
     out.rgba.assign(source.bytes.begin(), source.bytes.end());
-    return fitted(std::move(out), most);
+    return fitted(std::move(out), max_side);
   }
   std::string read;
   if (source.bytes.empty()) {
@@ -164,7 +166,7 @@ Result<Texture> read_texture(const TextureSource& source, const std::string& mod
     if (!bytes) return unusable("cannot be read");
     read = *std::move(bytes);
   }
-  auto texture = decode_texture(source.bytes.empty() ? read : source.bytes, most);
+  auto texture = decode_texture(source.bytes.empty() ? read : source.bytes, max_side);
   if (texture) texture->name = source.name;
   return texture;
 }
@@ -197,7 +199,7 @@ Result<void> read_textures(RawScene& raw, const std::string& model, Context& con
     if (material.texture1 != 0) continue;
     material.opacity = Opacity::kOpaque;
     material.colour[3] = 1;
-    // A colour without hue was only meant to be multiplied by the texture.
+    // A colour without hue was meant only as a factor of the texture.
     unknown[i] = has_no_hue(material.colour);
   }
   for (ScenePart& part : scene.parts) {

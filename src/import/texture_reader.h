@@ -15,13 +15,13 @@
 /// Pictures of surfaces, wherever a model keeps them.
 namespace throng {
 
-/// PNG, JPEG, TGA, BMP. Halved until no side is longer than `most`; at most 2^26 texels before.
-/// Fails with kBadFile and a clause that says what is wrong.
-[[nodiscard]] Result<Texture> decode_texture(std::string_view bytes, int32_t most);
+/// PNG, JPEG, TGA, BMP. Halved until no side is longer than `max_side`; at most 2^26 texels before.
+/// Fails with kBadFile and a clause that names the fault.
+[[nodiscard]] Result<Texture> decode_texture(std::string_view bytes, int32_t max_side);
 
-/// One texture of a model: bytes that it holds, or a file beside it. As decode_texture.
+/// One texture of a model: bytes that it holds, or a file beside it. Fails like decode_texture.
 [[nodiscard]] Result<Texture> read_texture(const TextureSource& source, const std::string& model,
-                                           int32_t most);
+                                           int32_t max_side);
 
 /// How each texture is read: tests put decoders here that crash, hang or eat memory.
 struct TextureDecoding {
@@ -31,14 +31,14 @@ struct TextureDecoding {
 };
 
 /// Turns `raw.textures` into those of its scene; materials whose texture cannot be used get a plain
-/// colour. In a child process where there are any, so a file that crashes the decoder is only one
+/// colour. They are decoded in a child process, so a file that crashes the decoder is just one
 /// that cannot be used. Fails with kCancelled.
 [[nodiscard]] Result<void> read_textures(RawScene& raw, const std::string& model, Context& context,
                                          const TextureDecoding& decoding = {});
 
-/// What came of each of `sources`: for builds with child processes and without.
+/// Decodes each of `sources`; one implementation with child processes and one without.
 [[nodiscard]] Result<std::vector<Result<Texture>>> read_all_textures(
-    const std::vector<TextureSource>& sources, const std::string& model, int32_t most,
+    const std::vector<TextureSource>& sources, const std::string& model, int32_t max_side,
     Context& context, const TextureDecoding& decoding);
 
 }  // namespace throng

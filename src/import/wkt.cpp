@@ -7,7 +7,7 @@
 #include "import/plan.h"
 #include "import/text_cursor.h"
 
-// Well-known text, the plans of pedestrian tools: what a POLYGON encloses is where people walk, its
+// Reads well-known text, the plans of pedestrian simulators: a POLYGON is walkable ground, its
 // holes are obstacles.
 namespace throng {
 namespace {

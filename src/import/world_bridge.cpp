@@ -195,9 +195,9 @@ void add_ground(WorldBuilder& b, const Plan& p, uint64_t seed) {
       }
     } else {
       const double wide = span == 0 ? 8 : 3;
-      const Rect way{x + (kSpan - wide) / 2, 0, x + (kSpan + wide) / 2, kDepth};
-      holes.push_back(way);
-      floor_rect(b, span == 0 ? Mat::kRoad : Mat::kPavement, way, 0);
+      const Rect passage{x + (kSpan - wide) / 2, 0, x + (kSpan + wide) / 2, kDepth};
+      holes.push_back(passage);
+      floor_rect(b, span == 0 ? Mat::kRoad : Mat::kPavement, passage, 0);
     }
   }
   for (const double x : {0.0, p.size - kApproach}) {
@@ -212,10 +212,10 @@ void add_ground(WorldBuilder& b, const Plan& p, uint64_t seed) {
     const double x = 3 + (p.size - 6) * random_unit(seed, 1, i);
     const double off = 16 * random_unit(seed, 2, i);
     const double z = i % 2 == 0 ? 2 + off : kDepth - 2 - off;
-    const bool on_way = std::any_of(holes.begin(), holes.end(), [&](const Rect& r) {
+    const bool on_passage = std::any_of(holes.begin(), holes.end(), [&](const Rect& r) {
       return x > r.x0 - 2.5 && x < r.x1 + 2.5 && z > r.z0 - 2 && z < r.z1 + 2;
     });
-    if (!on_way) tree(b, {x, 0, z}, random_u64(seed, 3, i));
+    if (!on_passage) tree(b, {x, 0, z}, random_u64(seed, 3, i));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+// The materials of built-in worlds, and the assembly of triangles into parts.
 namespace throng {
 namespace {
 
@@ -38,8 +39,8 @@ constexpr std::array<MaterialInfo, static_cast<size_t>(Mat::kCount)> kMaterialTa
     {"water", kAreaBlocked},
 }};
 
-// The small shift keeps products such as 0.025 * cos(60 degrees) away from the tie, where the last
-// bit would decide.
+// The small shift keeps products such as 0.025 * cos(60 degrees) off the tie, where the last bit
+// would decide.
 double millimetres(double metres) { return std::floor(metres * 1000 + 0.5001) / 1000; }
 
 }  // namespace

@@ -16,7 +16,7 @@
 /// Collects the triangles of a built-in world by node and material, with shared corners.
 namespace throng {
 
-/// Everything that built-in worlds are made of. Names and kinds: material_info.
+/// The materials of built-in worlds. Names and kinds: material_info.
 enum class Mat : uint8_t {
   kFloor,
   kSlab,
@@ -64,9 +64,9 @@ struct Frame {
   }
 };
 
-/// Corner ids are into one array for the whole world; triangles are dealt to (node, material) parts
-/// and joined at the end. Corners are rounded to whole millimetres, so that no last bit of a sine
-/// can ever show.
+/// Corner ids are into one array for the whole world; triangles are sorted into (node, material)
+/// parts and joined at the end. Corners are rounded to whole millimetres, so that the last bit of a
+/// sine never matters.
 class WorldBuilder {
  public:
   WorldBuilder() { node("world"); }

@@ -15,7 +15,7 @@ struct Building {
   int32_t storeys = 2;
   bool interior = true;  ///< Floors, walls with doors and stairs inside; else a closed block.
   bool roof_access = false;
-  bool gable = false;  ///< A pitched roof that nobody walks on; else flat with a parapet.
+  bool gable = false;  ///< A pitched roof, not walkable; else flat with a parapet.
 };
 
 inline constexpr double kBuildingStorey = 3.2;

@@ -10,10 +10,10 @@
 #include "import/world_building.h"
 #include "import/world_shapes.h"
 
-// A city of square blocks, about 125 m from street to street, in districts of 4 x 4 blocks that all
-// hold the same kinds of things, so that triangles grow with the area: two squares, twelve blocks
-// of eight houses around a yard, a canal with a towpath, bridges and stairs, a pedestrian
-// underpass. Above 16 km2 some houses lose their inside, more of them the larger the city.
+// A city of square blocks, about 125 m from street to street, in groups of 4 x 4 blocks with the
+// same content, so that the triangles grow with the area: two squares, twelve blocks of eight
+// houses around a yard, a canal with a towpath, bridges and stairs, a pedestrian underpass. Above
+// 16 km2 some houses lose their inside, more of them the larger the city.
 namespace throng::builtin {
 namespace {
 
@@ -224,7 +224,7 @@ void add_square(WorldBuilder& b, const Plan& p, const Rect& block, int32_t bx, i
       tree(b, {tx, kKerb + 0.1, tz}, p.dice(bx, bz, k + 400));
     }
   }
-  // A fountain where the ways cross.
+  // A fountain where the footpaths cross.
   cylinder(b, Mat::kStone, {cx, kKerb, cz}, {cx, kKerb + 0.55, cz}, 3.5, 16, true);
   frustum(b, Mat::kWater, {cx, kKerb + 0.55, cz}, 3.1, 3.0, 0.02, 16, true);
   frustum(b, Mat::kStone, {cx, kKerb + 0.55, cz}, 0.5, 0.2, 1.6, 8, true);

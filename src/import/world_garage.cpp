@@ -135,7 +135,7 @@ void add_outer_walls(WorldBuilder& b, const Plan& p) {
   const double w = p.width();
   const double d = p.depth();
   const double top = p.levels * kStorey + kParapet;
-  const auto side = [&](double x0, double z0, double x1, double z1, bool gates) {
+  const auto side = [&](double x0, double z0, double x1, double z1, bool has_exits) {
     const double run = std::fabs(x1 - x0) + std::fabs(z1 - z0);
     const auto piers = static_cast<int32_t>(run / 7.5 + 0.5);
     const double dx = (x1 - x0) / run;
@@ -154,11 +154,11 @@ void add_outer_walls(WorldBuilder& b, const Plan& p) {
       const double band = level + 1 == p.levels ? y + kStorey + kParapet : y + kStorey + 1.1;
       part(0, run, y + kStorey - kSlab - 0.1, band);
       if (level > 0) continue;
-      if (!gates) {
+      if (!has_exits) {
         part(0, run, 0, 1.1);
         continue;
       }
-      for (int32_t i = 0; i < piers; ++i) {  // One bay in eight is a gate to the street.
+      for (int32_t i = 0; i < piers; ++i) {  // One bay in eight is an exit to the street.
         if (i % 8 != 1) part(i * pitch, (i + 1) * pitch, 0, 1.1);
       }
     }
@@ -227,8 +227,7 @@ void build_garage(WorldBuilder& b, const BuiltinWorldConfig& config) {
   p.levels = config.levels;
   p.seed = config.seed;
   const double decks = static_cast<double>(p.modules_x) * p.modules_z * (p.levels + 1);
-  if (decks >
-      100) {  // Far too many cars to look at each: keep within about three million triangles.
+  if (decks > 100) {  // Many cars: this keeps within about three million triangles.
     p.detail = CarDetail::kPlain;
     p.parked = std::clamp(2'000'000 / (decks * 80 * 42), 0.05, 0.5);
   }

@@ -10,14 +10,14 @@
 // Ground as [PACS00] has it: hills and plateaus of Bezier patches, cliffs between them, overhangs,
 // and rocks and arches that are surfaces of their own and reach through the ground. The ground is a
 // lattice of cells of about 32 m, each one bicubic patch through its four vertices with slopes from
-// the vertices around (so that neighbours join smoothly), then cut into 1, 4 or 16 patches, of
-// which the inner vertices get relief of their own: hence edges with 1, 2 and 4 neighbours.
+// the vertices around (so that neighbours join smoothly), then cut into 1, 4 or 16 patches, whose
+// inner vertices get relief of their own: hence edges with 1, 2 and 4 neighbours.
 namespace throng::builtin {
 namespace {
 
 constexpr double kCell = 32;
 
-// What each random number is for.
+// The use of each random number.
 enum Stream : uint64_t {
   kHills,
   kMounds,
@@ -122,8 +122,8 @@ class Ground {
            1.5 * noise(seed_, kBumps, x, z) + 13 * ((1 - r) * cliff + r * rise);
   }
 
-  // Above and below a cliff vertices move towards it, those above more: it gets steep, or leans
-  // out. Not across the first cells, whose curves would swing over the border of the world.
+  // Above and below a cliff vertices move towards it, those above more: it becomes steep or
+  // leans out. Not across the first cells, whose curves would leave the world.
   [[nodiscard]] Vec3d vertex(int64_t i, int64_t j) const {
     Vec3d p{static_cast<double>(i) * cell_, height(i, j), static_cast<double>(j) * cell_};
     if (i <= 0 || j <= 0 || i >= n_ || j >= n_) return p;
@@ -296,8 +296,8 @@ std::vector<Cell> add_ground(PatchSet& set, const Ground& ground) {
   return cells;
 }
 
-// A cube blown up to a boulder: six patches. Control points on the way between two corners lie 1.3
-// times as far out, those inside a face 2.1 times, which makes a ball of a cube.
+// A cube blown up to a boulder: six patches. Control points between two corners lie 1.3 times
+// as far out, those inside a face 2.1 times, which makes a ball of a cube.
 void add_rock(PatchSet& set, Vec3d centre, double radius, Numbers& roll) {
   const auto [ux, uz] = unit_circle(roll(0, 1));
   const Vec3d stretch{roll(0.7, 1.4), roll(0.6, 1.2), roll(0.7, 1.4)};
@@ -311,17 +311,17 @@ void add_rock(PatchSet& set, Vec3d centre, double radius, Numbers& roll) {
   }
   constexpr std::array<std::array<size_t, 4>, 6> kFaces{
       {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-  constexpr std::array<double, 4> kWay{0, 1.0 / 3, 2.0 / 3, 1};
+  constexpr std::array<double, 4> kThirds{0, 1.0 / 3, 2.0 / 3, 1};
   const auto first = static_cast<uint32_t>(set.size());
   for (const auto& face : kFaces) {
     BezierPatch patch;
     for (size_t j = 0; j < 4; ++j) {
       for (size_t i = 0; i < 4; ++i) {
-        const double s = kWay[i];
-        const double t = kWay[j];
-        const Vec3d p = corner[face[0]] * (kWay[3 - i] * kWay[3 - j]) +
-                        corner[face[1]] * (kWay[3 - i] * t) + corner[face[2]] * (s * t) +
-                        corner[face[3]] * (s * kWay[3 - j]);
+        const double s = kThirds[i];
+        const double t = kThirds[j];
+        const Vec3d p = corner[face[0]] * (kThirds[3 - i] * kThirds[3 - j]) +
+                        corner[face[1]] * (kThirds[3 - i] * t) + corner[face[2]] * (s * t) +
+                        corner[face[3]] * (s * kThirds[3 - j]);
         const int within = (i % 3 != 0 ? 1 : 0) + (j % 3 != 0 ? 1 : 0);
         patch.points[4 * j + i] = rounded(centre + p * (within == 2   ? 2.1
                                                         : within == 1 ? 1.3

@@ -9,7 +9,7 @@
 #include "import/builtin_table.h"
 #include "import/world_shapes.h"
 
-// A perfect maze a level (exactly one way between any two places), by Kruskal's algorithm on walls
+// A perfect maze a level (exactly one path between any two places), by Kruskal's algorithm on walls
 // in random order. Two rooms of 3 x 3 cells, at opposite corners, take turns in holding the spiral
 // stairs to the level above.
 namespace throng::builtin {
@@ -110,7 +110,7 @@ void build_maze(WorldBuilder& b, const BuiltinWorldConfig& config) {
     const double y = l * kStorey;
     const bool last = l + 1 == config.levels;
     Level level = carve(n, config.seed, static_cast<uint64_t>(l));
-    if (l == 0) {  // The way in and the way out.
+    if (l == 0) {  // The entrance and the exit.
       level.across_z[0] = 0;
       level.across_z[static_cast<size_t>((n - 1) * (n + 1) + n)] = 0;
     }

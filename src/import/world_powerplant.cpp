@@ -9,7 +9,7 @@
 #include "import/builtin_table.h"
 #include "import/world_shapes.h"
 
-// A boiler house like the power plant of [ML06], whose 13 million triangles are not ours to ship: a
+// A boiler house like the power plant of [ML06], whose 13 million triangles we may not ship: a
 // steel frame of 6 m bays and 3.5 m storeys, floors of grating with their bearing bars, pipe racks,
 // vessels, shafts, ladders. Blocks of 6 x 6 bays repeat; each has a boiler with a chimney in its
 // middle and two staircases. 835 slices mean a height between 85.05 and 85.15 m; 85.125 m is exact
@@ -23,7 +23,7 @@ constexpr double kBay = 6;
 constexpr double kStorey = 3.5;
 constexpr double kYard = 6;         // Ground around the frame.
 constexpr double kChimney = 8.125;  // Over the top floor.
-constexpr int32_t kBlock = 6;       // Bays of a block, each way.
+constexpr int32_t kBlock = 6;       // Bays along a side of a block.
 
 enum class Use { kGrating, kVessel, kShaft, kStairs, kBoiler };
 
@@ -56,10 +56,10 @@ struct Plan {
     const int32_t bi = i % kBlock;
     const int32_t bj = j % kBlock;
     if ((bi == 0 && bj == 1) || (bi == 3 && bj == 4)) return Use::kStairs;
-    const bool on_the_way = bi == 1 || bj == 1 || bi == 4 || bj == 4;  // Kept free to walk around.
+    const bool kept_free = bi == 1 || bj == 1 || bi == 4 || bj == 4;  // Kept free to walk around.
     const uint64_t roll = dice(i, j, level, 0) % 100;
     // A shaft goes through several storeys: the same roll for all of them.
-    if (!on_the_way && level > 0 && dice(i, j, 2000 + level / 5, 0) % 100 < 30) return Use::kShaft;
+    if (!kept_free && level > 0 && dice(i, j, 2000 + level / 5, 0) % 100 < 30) return Use::kShaft;
     return roll < 30 ? Use::kVessel : Use::kGrating;
   }
   [[nodiscard]] bool has_floor(int32_t i, int32_t j, int32_t level) const {

@@ -90,7 +90,7 @@ void floor_with_holes(WorldBuilder& b, Mat material, const Rect& r, std::span<co
 
 void slab(WorldBuilder& b, Mat top, Mat below, const Rect& r, std::span<const Rect> holes,
           double y0, double y1) {
-  // Each piece is a closed box: the faces between pieces lie inside matter and harm nobody.
+  // Each piece is a closed box: the faces between pieces lie inside the solid and are harmless.
   for_each_piece(r, holes, [&](const Rect& p) {
     std::array<uint32_t, 8> v{};
     for (size_t i = 0; i < 8; ++i) {
@@ -255,7 +255,7 @@ void cylinder(WorldBuilder& b, Mat material, Vec3d from, Vec3d to, double radius
 
 void pipe(WorldBuilder& b, Mat material, std::span<const Vec3d> path, double radius,
           int32_t sides) {
-  // One ring a corner, in the plane that halves the bend.
+  // One ring for each corner, in the plane that halves its angle.
   std::vector<uint32_t> last;
   Vec3d u{};
   for (size_t p = 0; p < path.size(); ++p) {
@@ -278,7 +278,7 @@ void pipe(WorldBuilder& b, Mat material, std::span<const Vec3d> path, double rad
       b.quad(material, last[i], last[j], ring[j], ring[i]);
     }
     last = std::move(ring);
-    // Carry the ring's first direction around the bend.
+    // Carries the ring's first direction around the corner.
     u = u - c * (dot(u, c));
     if (length(u) < 1e-6) u = a * -1.0;
     u = u * (1 / length(u));

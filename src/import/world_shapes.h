@@ -9,7 +9,7 @@
 
 #include "import/world_builder.h"
 
-/// What the built-in worlds are put together from: boxes, slabs with holes, walls with doors,
+/// The parts of the built-in worlds: boxes, slabs with holes, walls with doors,
 /// flights of stairs, spirals, pipes, cars, trees. All in the builder's current frame, Y up, faces
 /// outward.
 namespace throng::shapes {
@@ -48,7 +48,7 @@ void thin_wall(WorldBuilder& b, Mat material, double x0, double z0, double x1, d
 /// A level slab from y0 to y1 with rectangular holes (disjoint, inside `r`).
 void slab(WorldBuilder& b, Mat top, Mat below, const Rect& r, std::span<const Rect> holes,
           double y0, double y1);
-/// The same without a thickness: only the surface that one walks on.
+/// The same without thickness: only the walkable surface.
 void floor_with_holes(WorldBuilder& b, Mat material, const Rect& r, std::span<const Rect> holes,
                       double y);
 
@@ -108,7 +108,7 @@ void sector(WorldBuilder& b, Mat material, double x, double z, double inner, dou
 /// A round bar or pipe between two points.
 void cylinder(WorldBuilder& b, Mat material, Vec3d from, Vec3d to, double radius, int32_t sides,
               bool caps);
-/// A pipe along a path, with mitred bends.
+/// A pipe along a line of points, with mitred corners.
 void pipe(WorldBuilder& b, Mat material, std::span<const Vec3d> path, double radius, int32_t sides);
 /// An upright cone frustum or dome ring pair.
 void frustum(WorldBuilder& b, Mat material, Vec3d foot, double radius0, double radius1,
@@ -116,7 +116,7 @@ void frustum(WorldBuilder& b, Mat material, Vec3d foot, double radius0, double r
 
 /// Posts and two rails along a segment at feet height `from.y`.
 void railing(WorldBuilder& b, Vec3d from, Vec3d to, double height = 1.0, double spacing = 2.0);
-/// Two stringers and rungs: nobody walks it.
+/// Two stringers and rungs; not walkable.
 void ladder(WorldBuilder& b, Vec3d foot, double height, double along_x, double along_z);
 
 enum class CarDetail { kFull, kPlain };

@@ -6,9 +6,9 @@
 #include "import/builtin_table.h"
 #include "import/world_shapes.h"
 
-// Two terraces, 3.06 m and 6.12 m over a yard. Every bay (4 m along z) has its own way up from the
+// Two terraces, 3.06 m and 6.12 m over a yard. Every bay (4 m along z) has its own climb from the
 // yard (x = 0) to the first terrace (x = 12), and another one from there (x = 18) to the second
-// (x = 30). Some are made for nobody: 0.51 m risers, a 50 degree slope.
+// (x = 30). Some fit no avatar: 0.51 m risers, a 50 degree slope.
 namespace throng::builtin {
 namespace {
 
@@ -17,7 +17,7 @@ using namespace shapes;
 constexpr double kStorey = 3.06;
 constexpr double kBay = 4;
 constexpr double kWidth = 2.4;
-constexpr double kReach = 12;  // From the foot of a flight to the terrace's edge.
+constexpr double kRunLength = 12;  // From the foot of a climb to the terrace's edge. [m]
 
 enum Kind : uint64_t {
   kEasy,
@@ -100,21 +100,21 @@ void spiral_up(WorldBuilder& b, double x, double y, double z) {
           .risers = 18});
   cylinder(b, Mat::kPillar, {cx, y, cz}, {cx, y + kStorey + 1.2, cz}, 0.18, 12, true);
   sector(b, Mat::kFloor, cx, cz, 0.1, 1.75, -0.125, 0.25, y + kStorey - 0.2, y + kStorey);
-  landing(b, cx + 1.25, x + kReach, y + kStorey, z);
+  landing(b, cx + 1.25, x + kRunLength, y + kStorey, z);
 }
 
 // Up along the wall of the terrace and back: the last flight ends on a bridge to the terrace.
 void dogleg_up(WorldBuilder& b, double x, double y, double z) {
   Dogleg d{.x = 0, .y = 0, .z = 0, .height = kStorey, .width = 1.2, .gap = 0.1, .landing = 1.6};
   const Frame outer = b.frame();
-  const double foot = x + kReach - 1.8;
+  const double foot = x + kRunLength - 1.8;
   b.place({outer({foot, y, z + kWidth}), -outer.ux, -outer.uz});
   dogleg(b, Mat::kStairs, d);
   b.place(outer);
-  landing(b, foot, x + kReach, y + kStorey, z);
+  landing(b, foot, x + kRunLength, y + kStorey, z);
 }
 
-void way_up(WorldBuilder& b, Kind kind, double x, double y, double z) {
+void add_climb(WorldBuilder& b, Kind kind, double x, double y, double z) {
   const double top = y + kStorey;
   if (const Tread& t = kTreads[kind]; t.risers > 0) {
     const double rise = kStorey / t.risers;
@@ -127,7 +127,7 @@ void way_up(WorldBuilder& b, Kind kind, double x, double y, double z) {
                    .risers = t.risers,
                    .thickness = rise + 0.15};
     flight(b, Mat::kStairs, f);
-    landing(b, x + f.length(), x + kReach, top, z);
+    landing(b, x + f.length(), x + kRunLength, top, z);
     return;
   }
   switch (kind) {
@@ -139,15 +139,15 @@ void way_up(WorldBuilder& b, Kind kind, double x, double y, double z) {
       f.y = f.top();
       f.x = from + 1.8;
       flight(b, Mat::kStairs, f);
-      landing(b, f.x + f.length(), x + kReach, top, z);
+      landing(b, f.x + f.length(), x + kRunLength, top, z);
       return;
     }
     case kGentleRamp:
-      ramp_to(b, x, y, z, kReach);
+      ramp_to(b, x, y, z, kRunLength);
       return;
     case kSteepRamp:
       ramp_to(b, x, y, z, 2.6);
-      landing(b, x + 2.6, x + kReach, top, z);
+      landing(b, x + 2.6, x + kRunLength, top, z);
       return;
     case kSpiral:
       spiral_up(b, x, y, z);
@@ -163,8 +163,8 @@ void way_up(WorldBuilder& b, Kind kind, double x, double y, double z) {
 void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config) {
   const auto bays = static_cast<int32_t>(config.size / kBay);
   const double depth = config.size;
-  constexpr double kFirst = kReach;        // The first terrace: x from 12 to 18.
-  constexpr double kSecond = 18 + kReach;  // The second: x from 30 to 34.
+  constexpr double kFirst = kRunLength;        // The first terrace: x from 12 to 18.
+  constexpr double kSecond = 18 + kRunLength;  // The second: x from 30 to 34.
   b.node("yard");
   floor_rect(b, Mat::kPavement, {-6, 0, kSecond + 4, depth}, 0);
   b.node("terraces");
@@ -177,7 +177,7 @@ void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config) {
   }
   const double pad = (depth - bays * kBay) / 2 + (kBay - kWidth) / 2;
   double last = 0.1;
-  for (int32_t i = 0; i <= bays; ++i) {  // Railings and posts between the ways up.
+  for (int32_t i = 0; i <= bays; ++i) {  // Railings and posts between the climbs.
     const double z = i < bays ? pad + i * kBay : depth - 0.1;
     railing(b, {kFirst + 0.05, kStorey, last}, {kFirst + 0.05, kStorey, z});
     railing(b, {17.95, kStorey, last}, {17.95, kStorey, z});
@@ -199,9 +199,9 @@ void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config) {
     const Kind low = bay < kKinds ? static_cast<Kind>(bay) : pick(0);
     const Kind high = bay < kKinds ? static_cast<Kind>((bay + 5) % kKinds) : pick(1);
     b.node(fmt::format("bay {}: {}", i, kNames[low]));
-    way_up(b, low, 0, 0, pad + i * kBay);
+    add_climb(b, low, 0, 0, pad + i * kBay);
     b.node(fmt::format("bay {}, upper: {}", i, kNames[high]));
-    way_up(b, high, 18, kStorey, pad + i * kBay);
+    add_climb(b, high, 18, kStorey, pad + i * kBay);
   }
 }
 

@@ -11,10 +11,10 @@
 #include <tuple>
 #include <type_traits>
 
-// Format: read off 96 real zones (zone version 3, patch version 4), where every byte is accounted
-// for; what later versions add is skipped. Little-endian. A version is one byte, or 255 and 32
-// bits; a list is a 32-bit count and its elements. Source of the format: the NeL library, which
-// [PACS00] became part of.
+// Format: derived from 96 real zones (zone version 3, patch version 4), of which every byte is
+// accounted for; what later versions add is skipped. Little-endian. A version is one byte, or 255
+// and 32 bits; a list is a 32-bit count and its elements. Source of the format: the NeL library,
+// which [PACS00] became part of.
 namespace throng {
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include "throng/math.h"
 
-/// Affine maps of a skeleton.
+/// Affine maps for skeletons.
 namespace throng {
 
 /// outer(inner(p)).
@@ -22,7 +22,7 @@ inline Transform operator*(const Transform& outer, const Transform& inner) {
   return out;
 }
 
-/// Only the 3 x 3 part: for directions.
+/// The 3 x 3 part only, for directions.
 inline Vec3d turn(const Transform& t, Vec3d v) {
   return {t.m[0][0] * v.x + t.m[0][1] * v.y + t.m[0][2] * v.z,
           t.m[1][0] * v.x + t.m[1][1] * v.y + t.m[1][2] * v.z,
@@ -31,7 +31,7 @@ inline Vec3d turn(const Transform& t, Vec3d v) {
 
 inline Vec3d column(const Transform& t, size_t c) { return {t.m[0][c], t.m[1][c], t.m[2][c]}; }
 
-/// Scale, then turn by the quaternion x, y, z, w, then move.
+/// Scales, then rotates by the quaternion x, y, z, w, then translates.
 inline Transform compose(Vec3d position, const std::array<double, 4>& q, Vec3d scale) {
   const auto [x, y, z, w] = q;
   Transform t;

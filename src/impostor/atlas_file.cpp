@@ -17,16 +17,17 @@
 #include "impostor/view_packer.h"
 #include "throng/impostor.h"
 
+// Reads and writes atlas files (FlatBuffers) and checks every number that is used as an index.
 namespace throng {
 namespace {
 
 constexpr const char* kIdentifier = "THIA";
 constexpr uint32_t kVersion = 2;
 
-// Programs of version 1 know no ETC2, and say so if a file tells them its version.
+// Programs of version 1 know no ETC2; they refuse a file of version 2 by its version.
 uint32_t version_of(AtlasFormat format) { return format >= AtlasFormat::kEtc2a1 ? kVersion : 1; }
 
-// Of all that an atlas says.
+// A checksum over all fields and texels of an atlas.
 uint64_t sum_of(const Atlas& atlas) {
   std::vector<uint64_t> words;
   const auto add_number = [&](auto value) { words.push_back(static_cast<uint64_t>(value)); };
@@ -63,7 +64,7 @@ Error bad(const std::string& path, const std::string& what) {
   return {Errc::kBadFile, path + ": " + what + "; make it again with throng atlas"};
 }
 
-// Every number that is used as an index or as a divisor.
+// Checks every number that is used as an index or as a divisor.
 bool is_sound(const Atlas& atlas) {
   const AtlasShape& s = atlas.shape;
   const bool shape = s.pixels >= 8 && s.pixels <= 256 && s.directions >= 2 && s.directions <= 64 &&

@@ -11,7 +11,7 @@
 
 namespace throng {
 
-/// load_atlas from bytes; `name` is for its sentences.
+/// load_atlas from bytes; `name` is for messages.
 [[nodiscard]] Result<Atlas> read_atlas(std::span<const uint8_t> bytes, const std::string& name);
 
 }  // namespace throng

@@ -11,8 +11,8 @@
 #include "impostor/etc2_codec.h"
 #include "throng/impostor.h"
 
-// Formats are converted by way of bytes: whatever comes in is unpacked to 8 bits a channel, and
-// packed again as asked.
+// Converts formats in two steps: any format is unpacked to 8 bits a channel, which are then packed
+// in the requested format.
 namespace throng {
 namespace {
 
@@ -56,7 +56,7 @@ bool is_etc2(AtlasFormat format) {
   return format == AtlasFormat::kEtc2a1 || format == AtlasFormat::kEtc2;
 }
 
-// Blocks of 8 bytes, whose texels are there or not; others have 8 bytes of alpha in front.
+// Formats of 8 bytes a block, whose texels are opaque or holes; others have 8 bytes of alpha first.
 bool has_holes(AtlasFormat format) {
   return format == AtlasFormat::kBc1 || format == AtlasFormat::kEtc2a1;
 }
@@ -78,7 +78,7 @@ void encode_colour(AtlasFormat format, const ColourBlock& texel, std::vector<uin
   ChannelBlock alpha;
   TexelWeights weights, all;
   all.fill(1);
-  for (size_t i = 0; i < 16; ++i) weights[i] = alpha[i] = texel[i][3];  // As much as it shows.
+  for (size_t i = 0; i < 16; ++i) weights[i] = alpha[i] = texel[i][3];  // By its opacity.
   const bool holes = has_holes(format);
   put(is_etc2(format) ? encode_etc2(texel, weights, holes) : encode_bc1(texel, weights, holes), to,
       holes ? block * 8 : block * 16 + 8);

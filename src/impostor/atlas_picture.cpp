@@ -7,7 +7,7 @@
 #include "impostor/srgb.h"
 #include "throng/impostor.h"
 
-// A sheet as figure 2 of [TC00]: to see what an atlas holds.
+// Draws the views of an atlas as in figure 2 of [TC00].
 namespace throng {
 namespace {
 

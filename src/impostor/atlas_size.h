@@ -6,7 +6,7 @@
 
 #include "throng/impostor.h"
 
-/// How many bytes the arrays of an atlas have.
+/// Sizes in bytes of the arrays of an atlas.
 namespace throng {
 
 inline bool in_blocks(AtlasFormat format) { return format >= AtlasFormat::kBc1; }

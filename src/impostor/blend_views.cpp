@@ -7,19 +7,21 @@
 
 #include "impostor/choose_view.h"
 
+// Blends the views around the direction to the eye by how near it is to the borders between them.
 namespace throng {
 namespace {
 
 constexpr uint32_t kWhole = 256;  // Of a share.
 
-// Two neighbours and the share of the second; or twice the same.
+// Two neighbours and the share of the second, or the same view twice.
 struct Between {
   uint32_t first = 0, second = 0;
   uint32_t share = 0;
   [[nodiscard]] bool is_one() const { return first == second; }
 };
 
-// `fine`: 65536 a view, a border at each multiple. Within half of `band` of a border both show.
+// `fine`: 65536 a view, a border at each multiple. Within half of `band` of a border both views
+// show.
 Between between(uint32_t fine, float band, uint32_t count, bool circle) {
   const uint32_t at = fine >> 16;
   const float in = static_cast<float>(fine & 0xffffU) / 65536.0F;

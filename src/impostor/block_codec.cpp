@@ -7,10 +7,10 @@
 #include <cmath>
 #include <utility>
 
-// Two end colours and what lies between them on a line. The ends start at the extremes along the
-// axis of largest variance, are fitted to their texels by least squares, and are then moved by
-// single steps of their quantised components for as long as the error falls. Texels that nobody
-// sees have no weight, so that all of a block's range serves those that are seen.
+// Encodes a block as two end colours and colours on the line between them. The ends start at the
+// extremes along the axis of largest variance, are fitted to their texels by least squares, and are
+// then moved by single steps of their quantised components while the error falls. Invisible texels
+// have no weight, so all of a block's range serves the visible ones.
 namespace throng {
 namespace {
 
@@ -57,7 +57,7 @@ struct Fit {
   int64_t error = INT64_MAX;
 };
 
-// The texels that count.
+// The texels with weight.
 struct Seen {
   std::array<Colour, 16> colour{};
   std::array<int32_t, 16> weight{};
@@ -121,7 +121,8 @@ void first_ends(const Seen& seen, End& low, End& high) {
       }
     }
   }
-  std::array<double, 3> axis{1, 1.1, 0.9};  // Even, so that no plain colour is at right angles.
+  std::array<double, 3> axis{1, 1.1,
+                             0.9};  // Nearly even, so that no pure colour is perpendicular to it.
   for (int round = 0; round < 8; ++round) {
     std::array<double, 3> next{};
     double largest = 0;
@@ -229,8 +230,8 @@ Bytes8 encode_bc1(const ColourBlock& block, const TexelWeights& weights, bool ho
   }
   Fit fit;
   if (seen.count > 0) fit = fit_colours(seen, three);
-  // The order of the ends says which kind of block it is. Equal ends are always the kind with a
-  // hole; the first colour then serves all.
+  // The order of the ends gives the kind of block. Equal ends always mean the kind with a hole; the
+  // first colour then serves all texels.
   uint16_t a = fit.a.packed(), b = fit.b.packed();
   std::array<uint8_t, 16> index{};
   for (size_t i = 0; i < seen.count; ++i) index[seen.place[i]] = fit.index[i];

@@ -5,16 +5,16 @@
 #include <array>
 #include <cstdint>
 
-/// Blocks of 4 x 4 texels as graphics cards read them: BC1 (S3TC DXT1) for colours, BC4 (RGTC) for
+/// Blocks of 4 x 4 texels that graphics cards read: BC1 (S3TC DXT1) for colours, BC4 (RGTC) for
 /// one channel. BC3 is BC4 of alpha before BC1 of colour; BC5 is two BC4.
 namespace throng {
 
 using ColourBlock = std::array<std::array<uint8_t, 4>, 16>;  ///< Red, green, blue, alpha; by row.
 using ChannelBlock = std::array<uint8_t, 16>;
 using Bytes8 = std::array<uint8_t, 8>;
-using TexelWeights = std::array<uint8_t, 16>;  ///< How much each texel matters.
+using TexelWeights = std::array<uint8_t, 16>;  ///< The weight of each texel in the error.
 
-/// Colours for the least square error by weight. With `holes`, texels of alpha under
+/// Encodes colours with minimal weighted square error. With `holes`, texels of alpha under
 /// 128 become transparent.
 [[nodiscard]] Bytes8 encode_bc1(const ColourBlock& block, const TexelWeights& weights, bool holes);
 /// Alpha becomes 0 or 255. `holes`: as BC1 alone; without, as the second half of BC3.

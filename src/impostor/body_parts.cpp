@@ -6,6 +6,7 @@
 
 #include "throng/character.h"
 
+// Finds the body part of a material, and a clip, by their names.
 namespace throng {
 namespace {
 
@@ -25,7 +26,7 @@ std::string_view last_word(std::string_view name) {
 }  // namespace
 
 BodyPart body_part_of(std::string_view material) {
-  // Longer words first where one holds another; the first that is found decides.
+  // A word that holds another stands before it; the first that is found decides.
   static constexpr std::pair<std::string_view, BodyPart> kWords[] = {
       {"hair", BodyPart::kHair},     {"beard", BodyPart::kHair},  {"brow", BodyPart::kHair},
       {"shoe", BodyPart::kShoes},    {"boot", BodyPart::kShoes},  {"sock", BodyPart::kShoes},

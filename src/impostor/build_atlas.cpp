@@ -17,11 +17,11 @@
 
 // [TC00] keeps views as equal squares, most of which are empty. Here a view keeps its own rectangle
 // in blocks of four texels (what block compression and two mipmap levels need), and the rectangles
-// share pages: its section 5 names this as what to do next.
+// share pages, as its section 5 proposes.
 namespace throng {
 namespace {
 
-// What is left of a view once its empty rows and columns are gone, with one empty texel around.
+// A view without its empty rows and columns, with one empty texel around.
 AtlasView trim(const FigureView& view) {
   int32_t x0 = view.pixels, y0 = view.pixels, x1 = -1, y1 = -1;
   for (int32_t i = 0; i < view.pixels * view.pixels; ++i) {
@@ -45,8 +45,8 @@ struct Texels {
   std::vector<uint8_t> mask;
 };
 
-// Empty texels beside covered ones take the mean of their colours and normals, twice: filters and
-// blocks then see no edge where only alpha has one.
+// Empty texels beside covered ones take the mean of their colours and normals, twice, so that
+// filters and blocks see an edge in alpha only.
 void bleed(Texels& texels, int32_t width, int32_t height) {
   std::vector<uint8_t> known(texels.colour.size());
   for (size_t i = 0; i < known.size(); ++i) known[i] = texels.colour[i][3] != 0;
@@ -142,7 +142,7 @@ Result<Atlas> build_atlas(const Character& character, const AtlasConfig& config,
 
   Atlas atlas;
   atlas.clips = std::move(poses->clips);
-  // Two texels of air on each side: the border of a view, and half a sample of rounding.
+  // Two empty texels on each side: the border of a view, and half a sample of rounding.
   const double side = 2 * poses->radius * config.pixels / (config.pixels - 4);
   atlas.shape = {.pixels = config.pixels,
                  .directions = config.directions,

@@ -9,9 +9,10 @@
 #include "impostor/figure_mesh.h"
 #include "throng/character.h"
 
-// A plain person: 16 joints, tubes for a body, and a gait from the angles that every textbook of
-// walking draws: hip as a cosine, knee with a small bend as it takes the weight and a large one as
-// it swings, foot flat while it stands. The pelvis is as high as the standing foot needs.
+// Makes a simple person: 16 joints, tubes for a body, and a gait with the joint angles of
+// textbooks: the hip follows a cosine, the knee flexes a little as it takes the weight and more as
+// it swings, the foot is flat while it stands. The height of the pelvis follows from the standing
+// foot.
 namespace throng {
 namespace {
 
@@ -203,7 +204,7 @@ Pose walking(double phase) {
     pose[kThighL + s] = pitch(leg.hip);
     pose[kShinL + s] = pitch(-leg.knee);
     pose[kFootL + s] = pitch(leg.foot - leg.hip + leg.knee);
-    const double swing = -cos_turns(own - 0.02);  // Against the leg of its own side.
+    const double swing = -cos_turns(own - 0.02);  // Opposite to the leg of its side.
     const double outward = side == 0 ? 0.012 : -0.012;
     pose[kArmL + s] = product(pitch(0.005 + 0.060 * swing), roll(outward));
     pose[kForearmL + s] = pitch(0.045 + 0.030 * swing);
@@ -215,7 +216,7 @@ Pose walking(double phase) {
   return pose;
 }
 
-// Weight on both feet, a breath and a slow look around.
+// Weight on both feet; breathing, and a slow turn of the head.
 Pose standing(double phase) {
   Pose pose;
   pose.fill({0, 0, 0, 1});
@@ -252,7 +253,7 @@ void add_clip(Character& character, const char* name, double seconds, PoseAt pos
     }
   }
   character.clips.push_back(std::move(clip));
-  // Then the hips are put as high as the lowest foot needs.
+  // Then the height of the hips follows from the lowest foot.
   const size_t index = character.clips.size() - 1;
   std::vector<double> lowest;
   for (int32_t k = 0; k < kKeys; ++k) {

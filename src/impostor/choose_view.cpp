@@ -6,6 +6,8 @@
 
 #include "throng/impostor.h"
 
+// Chooses the view of an atlas for one avatar: column by heading and direction, row by elevation,
+// frame by phase. Source: [TC00] 2.
 namespace throng {
 namespace {
 

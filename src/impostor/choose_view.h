@@ -7,7 +7,7 @@
 
 #include "core/trig.h"
 
-/// The arithmetic of choosing a view, for one avatar and for arrays of them. Angles are 65536 steps
+/// The arithmetic that chooses a view, for one avatar and for arrays. Angles are 65536 steps
 /// a turn, so that sums wrap by themselves.
 namespace throng {
 
@@ -16,8 +16,8 @@ inline uint32_t angle_steps(float turns) {
   return static_cast<uint32_t>(static_cast<int32_t>(turns * 65536.0F)) & 0xffffU;
 }
 
-/// In which of `sectors` sectors of a turn the direction to the eye lies as the avatar sees it, and
-/// where in it: 65536 a sector.
+/// The sector, of `sectors` in a turn, in which the direction to the eye lies relative to the
+/// heading, and the position in it: 65536 a sector.
 inline uint32_t fine_sector(float x, float z, uint32_t heading, uint32_t sectors) {
   const uint32_t seen = (angle_steps(turns_of(x, z)) - heading) & 0xffffU;
   return seen * sectors;
@@ -32,7 +32,7 @@ inline uint32_t half_cycle_on(uint32_t frame, uint32_t frames) {
   return half >= frames ? half - frames : half;
 }
 
-/// In which of `rows` rows, from the horizon to straight above, and where in it: 65536 a row.
+/// The row, of `rows` from the horizon to straight above, and the position in it: 65536 a row.
 inline uint32_t fine_row(float flat, float rise, uint32_t rows) {
   const float above = rise > 0 ? rise : 0;
   // The angle from `flat` towards `rise` is at most a quarter turn.

@@ -7,19 +7,19 @@
 #include "impostor/etc2_tables.h"
 
 // Source: [KDF]. A block is a base, a factor, and one of sixteen tables of eight steps.
-// For each table, the factors that just span the values are tried, with a base that centres them,
-// and the best of all is then moved by single steps for as long as the error falls.
+// For each table, the encoder tries the factors that just span the values, with a base that centres
+// them; the best of all is then moved by single steps while the error falls.
 namespace throng {
 namespace {
 
 using namespace etc2;
 
-// Which of the two kinds of block: 8 bits, or 11.
+// One of the two kinds of block: 8 bits or 11.
 struct Kind {
-  int32_t scale;   // Of a base.
-  int32_t offset;  // Of a base.
-  int32_t most;    // Largest value.
-  int32_t factor;  // Smallest: encoders of 8 bits must not write 0.
+  int32_t scale;      // Of a base.
+  int32_t offset;     // Of a base.
+  int32_t max_value;  // Largest value.
+  int32_t factor;     // Smallest: encoders of 8 bits must not write 0.
 };
 constexpr Kind kEight{1, 0, 255, 1}, kEleven{8, 4, 2047, 0};
 
@@ -27,7 +27,7 @@ int32_t value_of(const Kind& kind, int32_t base, int32_t factor, size_t table, s
   // A factor of zero means an eighth where there are bits for it.
   const int32_t step = factor == 0 && kind.scale > 1 ? 1 : factor * kind.scale;
   return std::clamp(base * kind.scale + kind.offset + channel_step(table, index) * step, 0,
-                    kind.most);
+                    kind.max_value);
 }
 
 struct Fit {
@@ -36,8 +36,7 @@ struct Fit {
   int64_t error = INT64_MAX;
 };
 
-// Which texels count. Loops over all sixteen, in 16 bits, are what compilers turn into vector
-// instructions.
+// Which texels count. Compilers vectorise loops over all sixteen in 16 bits.
 struct Seen {
   std::array<int16_t, 16> value{};
   std::array<int16_t, 16> counts{};  // 1 or 0.
@@ -59,12 +58,12 @@ void try_fit(const Kind& kind, const Seen& seen, int32_t base, int32_t factor, s
   const auto values = values_of(kind, fit);
   std::array<int16_t, 16> nearest;
   for (size_t i = 0; i < 16; ++i) {
-    int16_t least = INT16_MAX;
+    int16_t smallest = INT16_MAX;
     for (size_t p = 0; p < 8; ++p) {
       const auto off = static_cast<int16_t>(seen.value[i] - values[p]);
-      least = std::min(least, std::max(off, static_cast<int16_t>(-off)));
+      smallest = std::min(smallest, std::max(off, static_cast<int16_t>(-off)));
     }
-    nearest[i] = least;
+    nearest[i] = smallest;
   }
   int32_t error = 0;
   for (size_t i = 0; i < 16; ++i) error += nearest[i] * nearest[i] * seen.counts[i];
@@ -80,12 +79,12 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
     // A factor too small cuts the ends, one too large leaves steps unused: either may be better.
     const int32_t factor = range / width;
     for (int32_t f = factor; f <= factor + 2; ++f) {
-      // Steps reach one further down than up, so the middle lies half a factor under the base.
+      // Steps extend one further down than up, so the middle lies half a factor under the base.
       const int32_t base = (middle - kind.offset + f * kind.scale / 2) / kind.scale;
       for (int32_t b = base - 1; b <= base + 1; ++b) try_fit(kind, seen, b, f, t, best);
     }
-    // The limits may cut what lies over an end: bases for which the far end still fits.
-    if (seen.low > 0 && seen.high < kind.most) continue;
+    // The limits may clip values beyond an end: tries bases for which the far end still fits.
+    if (seen.low > 0 && seen.high < kind.max_value) continue;
     const int32_t reach = kChannelSteps[t][3];
     for (int32_t f = std::max(1, factor); f <= std::min(15, factor + 4); ++f) {
       try_fit(kind, seen, (seen.low - kind.offset) / kind.scale - reach * f, f, t, best);
@@ -107,7 +106,7 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
 Bytes8 encode(const Kind& kind, const ChannelBlock& block, const TexelWeights& weights) {
   Seen seen;
   for (size_t i = 0; i < 16; ++i) {
-    const int32_t value = (2 * block[i] * kind.most + 255) / 510;
+    const int32_t value = (2 * block[i] * kind.max_value + 255) / 510;
     seen.value[i] = static_cast<int16_t>(value);
     if (weights[i] == 0) continue;
     seen.counts[i] = 1;

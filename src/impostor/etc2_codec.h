@@ -7,15 +7,15 @@
 
 #include "impostor/block_codec.h"
 
-/// Blocks of 4 x 4 texels as the graphics cards of phones read them: ETC2 for colours, EAC for one
+/// Blocks of 4 x 4 texels that the graphics cards of phones read: ETC2 for colours, EAC for one
 /// channel. RGBA8 is EAC of alpha before ETC2 of colour; RG11 is two EAC of 11 bits. Texels are
 /// given by row, though the blocks hold them by column. Source: [KDF].
 namespace throng {
 
 using WideChannelBlock = std::array<uint16_t, 16>;  ///< 11 bits each, by row.
 
-/// Colours for the least square error by weight. With `holes` (punch-through alpha), texels of
-/// alpha under 128 become transparent.
+/// Encodes colours with minimal weighted square error. With `holes` (punch-through alpha), texels
+/// of alpha under 128 become transparent.
 [[nodiscard]] Bytes8 encode_etc2(const ColourBlock& block, const TexelWeights& weights, bool holes);
 /// Alpha becomes 0 or 255 with `holes`, and stays what it is without. Transparent texels are black.
 void decode_etc2(const Bytes8& bytes, bool holes, ColourBlock& block);

@@ -3,9 +3,10 @@
 #include "impostor/etc2_codec.h"
 #include "impostor/etc2_tables.h"
 
-// Source: [KDF]. A block is two halves of a base colour each; the second base may be told by how
-// far it is from the first. Where that leaves the range of five bits, which no encoder of the
-// older ETC1 wrote, the bits mean one of three other modes: red says T, green H, blue planar.
+// Decodes ETC2 and EAC. Source: [KDF]. A block is two halves with a base colour each; the second
+// base may be stored as a difference from the first. If a component of the sum leaves the range of
+// five bits, which no encoder of the older ETC1 wrote, the bits mean another mode: red T, green H,
+// blue planar.
 namespace throng {
 namespace {
 
@@ -40,7 +41,7 @@ void decode_h(uint64_t word, bool holes, bool hole, ColourBlock& block) {
   const Colour a{bits(word, 59, 4), bits(word, 56, 3) << 1 | bits(word, 52, 1),
                  bits(word, 51, 1) << 3 | bits(word, 47, 3)};
   const Colour b{bits(word, 43, 4), bits(word, 39, 4), bits(word, 35, 4)};
-  // The distance's last bit is told by the order of the bases.
+  // The order of the bases gives the distance's last bit.
   const int32_t distance =
       kDistances[bits(word, 34, 1) << 2 | bits(word, 32, 1) << 1 | (a >= b ? 1 : 0)];
   const auto colours = h_colours({widen4(a[0]), widen4(a[1]), widen4(a[2])},
@@ -90,7 +91,7 @@ void decode_etc2(const Bytes8& bytes, bool holes, ColourBlock& block) {
   }
   const auto first = half_colours(a, static_cast<size_t>(bits(word, 37, 3)), hole);
   const auto second = half_colours(b, static_cast<size_t>(bits(word, 34, 3)), hole);
-  const bool rows = bits(word, 32, 1) != 0;  // The halves lie over each other.
+  const bool rows = bits(word, 32, 1) != 0;  // One half lies above the other.
   for (size_t i = 0; i < 16; ++i) {
     const bool in_second = rows ? i % 4 >= 2 : i >= 8;
     put_index(block, word, i, in_second ? second : first, holes, hole);

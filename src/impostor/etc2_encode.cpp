@@ -8,17 +8,17 @@
 #include "impostor/etc2_codec.h"
 #include "impostor/etc2_tables.h"
 
-// All five modes of a block are tried, and the one of least error is written. Wherever a mode has
-// bases and steps from them, it is fitted as k-means are: texels choose their steps, then bases
-// become the means of what chose them, less the steps; at last bases move by single steps of their
-// quantised components for as long as the error falls. Source of the modes: [KDF].
+// Tries all five modes of a block and writes the one with the smallest error. A mode of bases and
+// steps is fitted like k-means: texels choose steps, then each base becomes the mean of the texels
+// that chose it, less their steps; at last bases move by single steps of their quantised components
+// while the error falls. Source of the modes: [KDF].
 namespace throng {
 namespace {
 
 using namespace etc2;
 
-// The texels that count, component by component. The rest have no weight: loops over all of them,
-// in whole numbers that a float keeps exactly, are what compilers turn into vector instructions.
+// The texels by component; those that do not count have no weight. Compilers vectorise loops over
+// all of them in whole numbers that a float stores exactly.
 struct Seen {
   std::array<std::array<float, 16>, 3> part{};
   std::array<int32_t, 16> weight{};
@@ -32,7 +32,7 @@ struct Seen {
   [[nodiscard]] int32_t value(size_t i, size_t k) const { return static_cast<int32_t>(part[k][i]); }
 };
 
-// Which of four colours each texel takes.
+// Which of the four colours each texel chooses.
 struct Choice {
   std::array<int32_t, 16> index{};
   int64_t error = INT64_MAX;
@@ -54,9 +54,9 @@ Colour quantise(const Exact& value, int32_t largest) {
   return {quantise(value[0], largest), quantise(value[1], largest), quantise(value[2], largest)};
 }
 
-// With `hole`, index 2 is not to be had.
+// With `hole`, index 2 is not available.
 Choice choose(const Seen& seen, std::array<Colour, 4> colours, bool hole) {
-  if (hole) colours[2] = colours[0];  // Of two that are the same, the first is taken.
+  if (hole) colours[2] = colours[0];  // Of two equal colours the first is chosen.
   std::array<std::array<float, 4>, 3> part{};
   for (size_t p = 0; p < 4; ++p) {
     for (size_t k = 0; k < 3; ++k) part[k][p] = static_cast<float>(colours[p][k]);
@@ -82,7 +82,7 @@ Choice choose(const Seen& seen, std::array<Colour, 4> colours, bool hole) {
   return choice;
 }
 
-// The mean of what chose an index for which `mine` holds, less its step.
+// The mean, less its step, of the texels that chose an index for which `mine` holds.
 template <class Mine>
 std::optional<Exact> mean_less_steps(const Seen& seen, const Choice& choice,
                                      const std::array<int32_t, 4>& steps, Mine mine) {
@@ -197,7 +197,7 @@ uint64_t half_bits(const Seen& first, const Seen& second, const Half& a, const H
          field(rows ? 1 : 0, 32);
 }
 
-// Two halves beside or, with `rows`, over each other. `hole`: some texel is one.
+// Two halves beside each other or, with `rows`, one above the other. `hole`: some texel is one.
 Block fit_halves(const Seen& seen, bool holes, bool hole, bool rows) {
   Seen first, second;
   for (size_t i = 0; i < seen.count; ++i) {
@@ -205,7 +205,7 @@ Block fit_halves(const Seen& seen, bool holes, bool hole, bool rows) {
     to.add({seen.value(i, 0), seen.value(i, 1), seen.value(i, 2)}, seen.weight[i], seen.place[i]);
   }
   Half a = fit_half(first, kAnyOf5, hole), b = fit_half(second, kAnyOf5, hole);
-  // The second base tells how far it is from the first: -4 to 3.
+  // The second base is stored as a difference from the first: -4 to 3.
   if (first.count == 0) a.base = b.base;
   if (second.count == 0) b.base = a.base;
   const bool apart = !near(a.base, 4, 3).has(b.base);
@@ -226,7 +226,7 @@ Block fit_halves(const Seen& seen, bool holes, bool hole, bool rows) {
     out.word |= field(a.base[c], 59 - 8 * k) | field((b.base[c] - a.base[c]) & 7, 56 - 8 * k);
   }
   if (!apart || holes) return out;
-  // Bases of four bits may be as far apart as they like.
+  // The distance of bases of four bits is not limited.
   a = fit_half(first, kAnyOf4, false);
   b = fit_half(second, kAnyOf4, false);
   if (a.choice.error + b.choice.error >= out.error) return out;
@@ -295,8 +295,8 @@ void improve_pair(const Seen& seen, bool hole, Pair& best) {
   }
 }
 
-// Two groups of texels: by their nearness to the two that are furthest apart. `by_hue` leaves out
-// how light they are, along which the steps lie anyway.
+// Two groups of texels, by which of the two that are furthest apart is nearer. `by_hue` ignores
+// lightness, along which the steps lie anyway.
 std::array<Exact, 2> two_groups(const Seen& seen, bool by_hue) {
   std::array<Exact, 16> at{};
   for (size_t i = 0; i < seen.count; ++i) {
@@ -375,7 +375,7 @@ Block fit_pair(const Seen& seen, bool hole, bool h) {
     Pair own;
     const auto middle = two_groups(seen, by_hue);
     for (size_t turn = 0; turn < 2; ++turn) {
-      // Without holes H is the same either way.
+      // Without holes the order of the bases does not change H.
       if (turn == 1 && h && !hole) break;
       for (int32_t distance = 0; distance < 8; ++distance) {
         try_pair(seen, hole,
@@ -401,7 +401,7 @@ Block fit_pair(const Seen& seen, bool hole, bool h) {
       best.choice.error};
 }
 
-// Planar: a slope, told by the colours at the block's corner and beyond its ends.
+// Planar: a slope, given by the colours at the block's corner and beyond its ends.
 
 // One component: at the corner, across and down. Six bits each, or seven.
 struct Slope {
@@ -424,7 +424,7 @@ int64_t slope_error(const Seen& seen, size_t k, const std::array<int32_t, 3>& en
 }
 
 Slope fit_slope(const Seen& seen, size_t k) {
-  // The plane of least squares about the mean, held a little where texels are too few for one.
+  // The plane of least squares about the mean, regularised for blocks with too few texels.
   double weight = 0, mx = 0, my = 0, mc = 0;
   for (size_t i = 0; i < seen.count; ++i) {
     const double w = seen.weight[i];

@@ -9,7 +9,7 @@
 
 #include "impostor/block_codec.h"
 
-/// The numbers of ETC2's blocks, and how its colours widen. Source: [KDF].
+/// The tables of ETC2, and how its colours widen to 8 bits. Source: [KDF].
 namespace throng::etc2 {
 
 using Colour = std::array<int32_t, 3>;

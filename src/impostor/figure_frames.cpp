@@ -7,6 +7,7 @@
 
 #include "impostor/gait.h"
 
+// Poses all frames of all clips of a figure, on the spot, and measures them.
 namespace throng {
 
 Result<void> check_atlas_config(const AtlasConfig& config) {

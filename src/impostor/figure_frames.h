@@ -17,7 +17,7 @@ namespace throng {
 struct FigureFrames {
   std::vector<PosedMesh> frames;
   std::vector<AtlasClip> clips;
-  double height = 0, radius = 0;  ///< Radius of the ball around (0, height / 2, 0) that holds all.
+  double height = 0, radius = 0;  ///< Radius of a ball around (0, height / 2, 0) that holds all.
 };
 
 /// Fails with kNotFound (a clip), kBadInput (a character without height).

@@ -4,6 +4,7 @@
 
 #include "core/trig.h"
 
+// Builds tubes from rings of vertices.
 namespace throng {
 namespace {
 
@@ -37,7 +38,7 @@ void add_tube(Character& character, const std::vector<BodyRing>& rings, uint8_t 
   add(rings.back().centre, rings.back());
   const auto triangle = [&](uint32_t a, uint32_t b, uint32_t c) {
     const auto& p = character.positions;
-    const Vec3d normal = cross(p[b] - p[a], p[c] - p[a]);  // As long as the triangle is large.
+    const Vec3d normal = cross(p[b] - p[a], p[c] - p[a]);  // Its length is twice the area.
     for (const uint32_t corner : {a, b, c}) {
       character.normals[corner] = character.normals[corner] + normal;
     }

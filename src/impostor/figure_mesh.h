@@ -9,7 +9,7 @@
 /// Bodies from rings: a limb is a tube through ellipses that lie flat.
 namespace throng {
 
-/// An ellipse around `centre`, that follows `bone`, and `other` by `share`.
+/// An ellipse around `centre` that follows `bone`, and `other` by `share`.
 struct BodyRing {
   Vec3d centre;
   double wide = 0, deep = 0;  ///< Half axes along x and z.

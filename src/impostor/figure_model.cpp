@@ -11,8 +11,8 @@
 #include "impostor/figure_frames.h"
 #include "impostor/srgb.h"
 
-// Bones stay with the processor: poses are few and figures many, so that a card that blends two
-// poses draws a figure for two texel fetches a vertex, whatever its skeleton.
+// Makes the poses of a figure's clips as vertices in textures: the card blends two poses with two
+// texel fetches a vertex, whatever the skeleton. Bones stay on the processor.
 namespace throng {
 namespace {
 

@@ -9,9 +9,9 @@
 #include "core/trig.h"
 #include "impostor/srgb.h"
 
-// A z-buffer with kSub x kSub samples a texel. Nothing but sums and products of doubles: an atlas
-// is data that other machines must be able to make again, byte for byte. A graphics driver would be
-// faster and never the same twice.
+// Rasterises with a z-buffer of kSub x kSub samples a texel. It uses only sums and products of
+// doubles, so that every machine makes the same bytes; a graphics driver would be faster, but its
+// results differ between machines.
 namespace throng {
 namespace {
 
@@ -86,8 +86,8 @@ void FigureRaster::draw_triangle(uint32_t index, const std::array<Vec3d, 3>& p) 
   }
 }
 
-// A texel is of the part that most of its samples show, and its colour and normal are the means of
-// those samples alone: a tint then colours it whole, without fringes of the part beside it.
+// A texel belongs to the part that most of its samples show, and its colour and normal are the
+// means of those samples alone, so that a tint leaves no fringe of another part.
 void FigureRaster::resolve(const PosedMesh& mesh, const FigureCamera& camera,
                            FigureView& out) const {
   const auto count = static_cast<size_t>(pixels_) * static_cast<size_t>(pixels_);

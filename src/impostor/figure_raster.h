@@ -9,10 +9,10 @@
 #include "throng/character.h"
 #include "throng/math.h"
 
-/// One view of a figure, drawn by hand: the same texels on every machine, no window, no driver.
+/// One view of a figure, rasterised in software: the same texels on every machine, no driver.
 namespace throng {
 
-/// How a figure is looked at: parallel rays along -`towards`, onto a square around `centre`.
+/// The camera of a view: parallel rays along -`towards`, onto a square around `centre`.
 struct FigureCamera {
   Vec3d right, up, towards;  ///< Unit vectors; `towards` points from the figure to the eye.
   Vec3d centre;
@@ -20,7 +20,7 @@ struct FigureCamera {
 };
 
 /// The camera of a column and row. Source: [TC00] 2; sampled at half steps, so that mirroring gives
-/// twice the directions and not one less.
+/// exactly twice the directions.
 [[nodiscard]] FigureCamera figure_camera(int32_t column, int32_t directions, int32_t row,
                                          int32_t elevations);
 
@@ -36,7 +36,7 @@ struct FigureView {
 class FigureRaster {
  public:
   FigureRaster(const Character& character, int32_t pixels);
-  /// `positions` and `normals` are one a vertex of the character.
+  /// `positions` and `normals` have one entry for each vertex of the character.
   void draw(const PosedMesh& mesh, const FigureCamera& camera, FigureView& out);
 
  private:

@@ -6,10 +6,11 @@
 #include <limits>
 #include <vector>
 
-// No skeleton says which of its bones are feet. But what stands is near the ground and goes back
-// under a figure that walks on the spot, as fast as the figure walks; the other foot comes forward.
-// So each moment has a speed, that of the low vertex that goes back fastest, and the median of all
-// moments is the walk's: toes that scrape the ground, and heels that roll off it, are few.
+// Finds the speed of a walk without knowing which bones are feet. Under a figure that walks on the
+// spot, a foot that stands is near the ground and moves back at the walking speed, and the other
+// foot moves forward. So the speed at a moment is that of the low vertex that moves back fastest,
+// and the median over all moments is the speed of the walk: toes that scrape the ground and heels
+// that roll off it are few.
 namespace throng {
 namespace {
 

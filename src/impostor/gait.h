@@ -7,11 +7,11 @@
 #include "throng/character.h"
 #include "throng/math.h"
 
-/// How a clip carries its figure.
+/// How a clip moves its figure.
 namespace throng {
 
-/// A clip's frame of reference: what to take off a vertex so that the figure walks on the spot,
-/// over the origin.
+/// A clip's frame of reference: what is subtracted from a vertex so that the figure walks on the
+/// spot, over the origin.
 struct ClipPlace {
   Vec3d middle;  ///< Mean of all vertices, at height 0, when the cycle begins.
   Vec3d drift;   ///< How far it moves in one cycle, at height 0.

@@ -10,28 +10,29 @@
 #include "impostor/pack_loops.h"
 #include "throng/impostor_pack.h"
 
-// Blocks of avatars: short loops over arrays that stay in the first cache find who is in the
-// picture and which view shows them, another writes out those who are. A block writes at its own
-// place; then the gaps that those left behind who are not seen are closed, in order.
+// Packs visible avatars, block by block: short loops over arrays that fit the first-level cache
+// find which avatars are in the picture and by which view, and another loop writes these out. A
+// block writes at its own place; then the gaps that invisible avatars left are closed, in order.
+// Linear.
 namespace throng {
 namespace {
 
-// The six sides of what a camera sees, each moved out by `reach`.
-std::array<PackPlane, 6> planes_of(const EyeCamera& camera, double reach) {
+// The six planes of the view frustum, each moved out by `margin`.
+std::array<PackPlane, 6> planes_of(const EyeCamera& camera, double margin) {
   const CameraAxes axes = camera_axes(camera);
   const double up = std::tan(0.5 * camera.field_of_view), right = up * camera.aspect;
   const auto plane = [&](Vec3d normal, double offset) {
     normal = normal * (1 / length(normal));
     return PackPlane{static_cast<float>(normal.x), static_cast<float>(normal.y),
                      static_cast<float>(normal.z),
-                     static_cast<float>(offset - dot(normal, camera.eye) + reach)};
+                     static_cast<float>(offset - dot(normal, camera.eye) + margin)};
   };
   return {plane(axes.forward * right + axes.right, 0), plane(axes.forward * right - axes.right, 0),
           plane(axes.forward * up + axes.up, 0),       plane(axes.forward * up - axes.up, 0),
           plane(axes.forward, -camera.nearest),        plane(axes.forward * -1, camera.furthest)};
 }
 
-// Without a branch: who is not seen is overwritten by the next.
+// Without a branch: the next avatar overwrites one that is not seen.
 size_t write_seen(const PackInput& in, const PackBlock& block, uint32_t bit,
                   ImpostorInstance* out) {
   size_t written = 0;
@@ -42,7 +43,7 @@ size_t write_seen(const PackInput& in, const PackBlock& block, uint32_t bit,
   return written;
 }
 
-// Few are that near, so a branch.
+// Few avatars are that near, so a branch is faster.
 size_t write_meshes(const PackInput& in, const PackBlock& block, ImpostorInstance* out) {
   size_t written = 0;
   for (size_t i = 0; i < in.count; ++i) {
@@ -54,7 +55,7 @@ size_t write_meshes(const PackInput& in, const PackBlock& block, ImpostorInstanc
   return written;
 }
 
-// Closes the gaps that each block left behind; returns how many there are.
+// Closes the gaps that each block left; returns the number of instances.
 template <class Instance>
 size_t close_gaps(const std::vector<uint32_t>& kept, std::span<Instance> out) {
   size_t total = 0;

@@ -11,8 +11,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-// Plain loops without a branch, compiled once for each set of vector instructions: the compiler
-// makes vector code of them, and the numbers are those of choose_view.
+// Loops without a branch, compiled once for each set of vector instructions: the compiler
+// vectorises them, and the results are those of choose_view.
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -20,11 +20,12 @@ namespace HWY_NAMESPACE {
 void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
   for (size_t i = 0; i < in.count; ++i) {
     const float px = in.x[i], py = in.y[i] + s.centre, pz = in.z[i];
-    float least = s.planes[0].x * px + s.planes[0].y * py + s.planes[0].z * pz + s.planes[0].offset;
+    float min_inside =
+        s.planes[0].x * px + s.planes[0].y * py + s.planes[0].z * pz + s.planes[0].offset;
     for (size_t k = 1; k < 6; ++k) {
       const PackPlane& p = s.planes[k];
       const float inside = p.x * px + p.y * py + p.z * pz + p.offset;
-      least = inside < least ? inside : least;
+      min_inside = inside < min_inside ? inside : min_inside;
     }
     const float dx = s.eye_x - px, dy = s.eye_y - py, dz = s.eye_z - pz;
     const float far = dx * dx + dy * dy + dz * dz;
@@ -32,7 +33,7 @@ void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
     const uint32_t by_view = far >= s.mesh_near && far < s.point_far ? near_view : 0;
     const uint32_t as_mesh = far < s.mesh_far ? kSeenAsMesh : 0;
     const uint32_t as_point = far >= s.point_near ? kSeenAsPoint : 0;
-    block.seen[i] = least >= 0 ? by_view | as_mesh | as_point : 0;
+    block.seen[i] = min_inside >= 0 ? by_view | as_mesh | as_point : 0;
     block.to_x[i] = s.fixed ? s.to_x : dx;
     block.to_y[i] = s.fixed ? s.to_y : dy;
     block.to_z[i] = s.fixed ? s.to_z : dz;
@@ -43,10 +44,10 @@ void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
 }
 
 void FindViews(const PackShared& shared, const PackInput& input, PackBlock& block) {
-  const PackShared s = shared;  // A copy: nobody else's writes can change it in the loop.
+  const PackShared s = shared;  // A copy, so that no write in the loop can change it.
   const PackInput in = input;
   FindSeen(s, in, block);
-  if (block.seen_any == 0) return;  // Nobody asks for their views.
+  if (block.seen_any == 0) return;  // None is drawn, so no view is needed.
   for (size_t i = 0; i < in.count; ++i) {
     const float x = block.to_x[i], y = block.to_y[i], z = block.to_z[i];
     const uint32_t sector = view_sector(x, z, in.heading[i], 2 * s.directions);

@@ -6,7 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The inner loops of packing: a block of avatars at a time, in arrays that the first cache holds.
+/// The inner loops of packing: a block of avatars at a time, in arrays that fit the first-level
+/// cache.
 namespace throng {
 
 inline constexpr size_t kPackBlock = 1024;
@@ -16,7 +17,7 @@ struct PackPlane {
   float x = 0, y = 0, z = 0, offset = 0;
 };
 
-/// Everything about a picture that is the same for all avatars.
+/// Values of a picture that are the same for all avatars.
 struct PackShared {
   std::array<PackPlane, 6> planes;
   float eye_x = 0, eye_y = 0, eye_z = 0;
@@ -41,11 +42,11 @@ struct PackInput {
 struct PackBlock {
   alignas(64) std::array<float, kPackBlock> to_x, to_y, to_z;
   alignas(64) std::array<uint32_t, kPackBlock> view;  ///< ImpostorInstance::view.
-  alignas(64) std::array<uint32_t, kPackBlock> seen;  ///< As what, 0: not in the picture.
+  alignas(64) std::array<uint32_t, kPackBlock> seen;  ///< Drawn as what; 0: not in the picture.
   uint32_t seen_any = 0;                              ///< All of `seen`, or-ed.
 };
 
-/// Fills `seen` and `seen_any`, and `view` if anybody is seen.
+/// Fills `seen` and `seen_any`, and `view` if any avatar is seen.
 void find_views(const PackShared& shared, const PackInput& input, PackBlock& block);
 
 }  // namespace throng

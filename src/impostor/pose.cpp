@@ -10,7 +10,8 @@
 namespace throng {
 namespace {
 
-// Between which keys `time` lies, and how far: before the first and after the last they hold.
+// The two keys around `time`, and the share of the second; constant before the first and after the
+// last.
 struct Between {
   size_t low = 0, high = 0;
   double share = 0;
@@ -21,8 +22,8 @@ Between find_keys(const std::vector<double>& times, double time) {
   if (after == times.begin()) return {};
   const auto low = static_cast<size_t>(after - times.begin()) - 1;
   if (after == times.end()) return {low, low, 0};
-  const double gap = times[low + 1] - times[low];
-  return {low, low + 1, gap > 0 ? (time - times[low]) / gap : 0};
+  const double interval = times[low + 1] - times[low];
+  return {low, low + 1, interval > 0 ? (time - times[low]) / interval : 0};
 }
 
 Vec3d value_at(const std::vector<double>& times, const std::vector<Vec3d>& values, double time) {
@@ -30,8 +31,8 @@ Vec3d value_at(const std::vector<double>& times, const std::vector<Vec3d>& value
   return values[b.low] + (values[b.high] - values[b.low]) * b.share;
 }
 
-// The straight line between two unit quaternions, on the shorter side, made unit again: with keys
-// as dense as those of a walk it is the arc between them for all that the eye can see.
+// Interpolates linearly between two unit quaternions, on the shorter side, and normalises: with
+// keys as dense as those of a walk the difference to the arc is not visible.
 std::array<double, 4> rotation_at(const JointTrack& track, double time) {
   const Between b = find_keys(track.rotation_times, time);
   const auto& low = track.rotations[b.low];
@@ -50,7 +51,7 @@ std::array<double, 4> rotation_at(const JointTrack& track, double time) {
   return q;
 }
 
-// What turns the axes of a joint at rest, without its scale.
+// The rotation of a joint at rest, without its scale.
 Transform without_scale(const Transform& rest, Vec3d scale) {
   Transform t = rest;
   const double by[3] = {scale.x, scale.y, scale.z};

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-/// Colours as they are stored. The curve is a square root, not sRGB's own: a shader undoes it with
-/// one product, and its bytes are the same everywhere; the two differ by less than 0.04.
+/// Colours as they are stored. The curve is a square root, not that of sRGB: a shader inverts it
+/// with one product, and its bytes are the same everywhere; the two differ by less than 0.04.
 namespace throng {
 
 inline uint8_t encode_colour(double linear) {

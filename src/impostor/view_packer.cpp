@@ -6,8 +6,8 @@
 #include <numeric>
 #include <vector>
 
-// Rows, tallest first: figures are nearly of one height from one elevation, so rows waste little,
-// and each view's place follows from the sizes alone.
+// Packs views in rows, tallest first: from one elevation, figures have nearly one height, so rows
+// waste little, and each view's place follows from the sizes alone.
 namespace throng {
 namespace {
 
@@ -40,10 +40,10 @@ PageSize pack_views(std::span<AtlasView> views) {
     x += view.width;
     rows.back().last = static_cast<int32_t>(i) + 1;
   }
-  // Rows go to the first page with room; the lowest height of a page that needs no more pages.
+  // Rows go to the first page with room; pages are as low as possible without more pages.
   const int32_t total = std::accumulate(
       rows.begin(), rows.end(), 0, [](int32_t sum, const Row& row) { return sum + row.height; });
-  const int32_t fewest = std::max(1, (total + kPageHeight - 1) / kPageHeight);
+  const int32_t min_pages = std::max(1, (total + kPageHeight - 1) / kPageHeight);
   std::vector<int32_t> page_of(rows.size()), top_of(rows.size());
   const auto place = [&](int32_t height) {
     std::vector<int32_t> filled;
@@ -58,7 +58,7 @@ PageSize pack_views(std::span<AtlasView> views) {
     return static_cast<int32_t>(filled.size());
   };
   PageSize size{.width = kPageWidth, .height = kPageHeight, .pages = place(kPageHeight)};
-  for (int32_t height = (total / fewest + 3) / 4 * 4; height < kPageHeight; height += 4) {
+  for (int32_t height = (total / min_pages + 3) / 4 * 4; height < kPageHeight; height += 4) {
     if (rows.empty() || height < rows[0].height || place(height) > size.pages) continue;
     size.height = height;
     break;

@@ -11,7 +11,7 @@
 namespace throng {
 
 inline constexpr int32_t kPageWidth = 1024;
-inline constexpr int32_t kPageHeight = 2048;  ///< What every WebGL 2 can hold.
+inline constexpr int32_t kPageHeight = 2048;  ///< Every WebGL 2 implementation allows it.
 inline constexpr int32_t kMaxPages = 64;
 
 struct PageSize {

@@ -11,9 +11,9 @@
 #include "world/air_data.h"
 #include "world/zone_data.h"
 
-// The octree's free cubes, as they are stored for all classes together. Two are linked where they
-// share a part of a face; of a face's neighbours the one behind its middle is drawn, from the
-// smaller cube to the larger, so that every line is drawn once. Source: [PACS00] 1.2.3.7.
+// The free air boxes of the octree, as they are stored for all classes together. Two are linked
+// where they share a part of a face. Of the neighbours at a face only the one behind its middle is
+// drawn, from the smaller box to the larger, so every line is drawn once. Source: [PACS00] 1.2.3.7.
 namespace throng {
 namespace {
 
@@ -25,7 +25,7 @@ class LineFinder {
   LineFinder(const WorldData& world, const Box3d& area)
       : world_(world), air_(*world.air), area_(area) {}
 
-  // The free cube that holds a cell of the world, cut to the layers that may be flown in.
+  // The free air box that holds a cell of the world, cut to the layers that may be flown in.
   [[nodiscard]] std::optional<AirCube> cube_at(int32_t x, int32_t y, int32_t z) const {
     if (x < 0 || z < 0 || x >= air_.width || z >= air_.depth || y < air_.shape.floor ||
         y >= air_.shape.ceiling) {
@@ -61,8 +61,8 @@ class LineFinder {
   void add_links(const AirCube& cube, std::vector<AirLine>& lines) const {
     const Vec3d here = middle(cube);
     for (const auto& face : kFaces) {
-      const auto beyond = [&](int32_t at, int32_t way) {
-        return way == 0 ? at + cube.side / 2 : way > 0 ? at + cube.side : at - 1;
+      const auto beyond = [&](int32_t at, int32_t direction) {
+        return direction == 0 ? at + cube.side / 2 : direction > 0 ? at + cube.side : at - 1;
       };
       const auto next =
           cube_at(beyond(cube.x, face[0]), beyond(cube.y, face[1]), beyond(cube.z, face[2]));
@@ -73,7 +73,7 @@ class LineFinder {
     }
   }
 
-  // To the best ground under a cube that has no air below it.
+  // To the best ground under an air box that has no air below it.
   void add_ground(const AirCube& cube, const FlightFinder& flight,
                   std::vector<AirLine>& lines) const {
     const int32_t x = cube.x + cube.side / 2, z = cube.z + cube.side / 2;

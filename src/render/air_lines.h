@@ -12,15 +12,15 @@
 /// The links of a world's air as lines to draw, like the last figures of [PACS00].
 namespace throng {
 
-/// From the middle of a free cube to that of one that shares a face with it, or to the ground that
-/// is elected for it.
+/// From the middle of a free air box to the middle of one that shares a face with it, or to the
+/// ground elected for it.
 struct AirLine {
   Vec3d a, b;
   bool to_ground = false;
 };
 
-/// Lines from cubes whose middle lies in the area's x and z; of all for an empty area. Ground is
-/// linked for the first class that flies. Fails with kNotFound: the world has no air.
+/// Lines from air boxes whose middle lies in the area's x and z; from all for an empty area. Ground
+/// is linked for the first class that flies. Fails with kNotFound: the world has no air.
 [[nodiscard]] Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area);
 
 }  // namespace throng

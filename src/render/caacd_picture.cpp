@@ -13,7 +13,7 @@
 #include "render/marks.h"
 #include "render/text.h"
 
-// [CAACD] figure 9, in colours: an avatar is filled by what it does.
+// [CAACD] figure 9, in colours: the fill of an avatar shows its state.
 namespace throng::caacd {
 namespace {
 
@@ -41,7 +41,7 @@ Rgb colour_of(Activity activity) {
 }
 
 struct View {
-  double unit = 1;  // Of the sheet, as in other pictures.
+  double unit = 1;  // Of the picture, as in other pictures.
   double scale = 1, left = 0, top = 0;
   [[nodiscard]] Point operator()(Vec3d p) const { return {left + p.x * scale, top + p.z * scale}; }
 };
@@ -68,7 +68,7 @@ void draw_avatar(Canvas& canvas, const View& view, const Body& body, Activity ac
   if (activity != Activity::kArrived) {
     draw_ring(canvas, at, body.fields.alert * view.scale, thin, kRule);
     draw_ring(canvas, at, body.fields.precaution * view.scale, thin, kHatch);
-    // The zone: two lines ahead, as wide as the repulsive field.
+    // The probe: two lines ahead, as wide as the repulsive field.
     const Vec3d right = right_of(body.forward) * body.fields.repulsive;
     const Vec3d ahead = body.forward * zone_length(body, model);
     for (const Vec3d& side : {right, right * -1}) {
@@ -122,7 +122,7 @@ Result<Image> draw_simulation(const Simulation& simulation,
     std::vector<Point> points;
     for (const Vec3d& p : trails[i]) points.push_back(view(p));
     const Rgb colour = mix(colour_of(simulation.activities()[i]), kPaper, 0.55);
-    // Piece by piece: a long line as one would look at all of it for each pixel around it.
+    // Piece by piece: a long line drawn as one would be tested as a whole for each pixel around it.
     for (size_t k = 1; k < points.size(); ++k) {
       canvas.line(points[k - 1], points[k], std::max(1.0, 1.2 * u), colour);
     }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-// Lines and discs by the distance of a pixel's centre to the shape: one half pixel on either side
-// of the edge goes from full to none.
+// Draws lines and discs by the distance of a pixel's centre to the shape: coverage falls from full
+// to none within half a pixel on either side of the edge.
 namespace throng {
 namespace {
 

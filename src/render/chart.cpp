@@ -17,7 +17,7 @@
 namespace throng {
 namespace {
 
-// Apart for colour-blind readers. Source: M. Okabe, K. Ito. Color Universal Design. 2008.
+// Distinct for colour-blind readers. Source: M. Okabe, K. Ito. Color Universal Design. 2008.
 constexpr std::array<Rgb, 6> kColours{
     {{213, 94, 0}, {0, 114, 178}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0}, {86, 180, 233}}};
 
@@ -31,11 +31,11 @@ struct Frame {
   }
 };
 
-// The least round step that makes at most `most` ticks.
-double tick_step(double range, double most) {
-  double step = round_below(range / most);
+// The smallest round step that makes at most `max_ticks` ticks.
+double tick_step(double range, double max_ticks) {
+  double step = round_below(range / max_ticks);
   if (!(step > 0)) return range;  // hardly more than the smallest number
-  while (range / step > most + 1e-9) step = round_below(step * 2.5 * (1 + 1e-9));
+  while (range / step > max_ticks + 1e-9) step = round_below(step * 2.5 * (1 + 1e-9));
   return step;
 }
 
@@ -69,7 +69,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, const Chart& chart) {
 
 void draw_dashes(Canvas& canvas, const std::vector<Point>& points, double width, double dash,
                  Rgb colour) {
-  double walked = 0;  // Along the whole line, so that dashes go on around corners.
+  double walked = 0;  // Along the whole line, so that dashes continue around corners.
   for (size_t i = 1; i < points.size(); ++i) {
     const Point a = points[i - 1], b = points[i];
     const double size = std::hypot(b.x - a.x, b.y - a.y);
@@ -159,7 +159,7 @@ void draw_legend(Canvas& canvas, const Frame& frame, const std::vector<Drawn>& d
   for (const Drawn& d : drawn) {
     if (d.line->name.empty()) continue;
     const Point a{frame.plot.x + 20 * u, y}, b{frame.plot.x + 64 * u, y};
-    // On paper, or the grid would run through the words.
+    // On a paper background, so that the grid does not cross the words.
     canvas.fill(
         {a.x - 6 * u, y - 11 * u, 78 * u + text_width(d.line->name, {.size = text}), 22 * u},
         kPaper);
@@ -209,14 +209,14 @@ Result<Image> draw_chart(const Chart& chart) {
   frame.plot = {90 * u, head + 34 * u, chart.width - 130 * u, 520 * u};
   frame.x_low = std::min(0.0, chart.x.front());
   frame.x_high = chart.x.back();
-  double most = chart.most;
-  if (most == 0) {
+  double top = chart.most;
+  if (top == 0) {
     for (const ChartLine& line : chart.lines) {
-      for (const double v : line.values) most = std::max(most, v);
+      for (const double v : line.values) top = std::max(top, v);
     }
-    most = most > 0 ? most * 1.05 : 1;
+    top = top > 0 ? top * 1.05 : 1;
   }
-  frame.y_high = most;
+  frame.y_high = top;
 
   Canvas canvas(chart.width, static_cast<int32_t>(frame.plot.y + frame.plot.height + 78 * u),
                 kPaper);

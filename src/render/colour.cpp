@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-// Oklab: B. Ottosson, A perceptual color space for image processing, 2020.
+// Colour ramps through Oklab: B. Ottosson, A perceptual color space for image processing, 2020.
 namespace throng {
 namespace {
 
@@ -30,7 +30,7 @@ Rgb from_oklab(double lightness, double a, double b) {
 Rgb ramp_at(double t) {
   constexpr double kRadians = 3.14159265358979323846 / 180;
   const double lightness = 0.43 + 0.50 * t;
-  const double hue = (300 - 195 * t) * kRadians;  // Violet by way of blue and green to yellow.
+  const double hue = (300 - 195 * t) * kRadians;  // From violet through blue and green to yellow.
   const double chroma = 0.105 + 0.035 * t;
   return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
 }

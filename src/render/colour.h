@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-/// Colours of all pictures, chosen to stay apart for colour-blind readers and in grey print.
+/// Colours of all pictures, chosen to be distinct for colour-blind readers and in grey print.
 namespace throng {
 
 struct Rgb {
@@ -22,7 +22,7 @@ inline constexpr Rgb kNoStanding{214, 216, 220};
 inline constexpr Rgb kHatch{160, 164, 171};
 inline constexpr Rgb kShaft{226, 233, 243};
 inline constexpr Rgb kAvatar{232, 74, 28};
-inline constexpr Rgb kWay{20, 60, 220};
+inline constexpr Rgb kPath{20, 60, 220};
 
 /// The height ramp at t in [0, 1]: dark violet, blue, green, light yellow. Lightness rises evenly
 /// (it is a path through Oklab), so equal steps in height look equal.

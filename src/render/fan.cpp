@@ -9,10 +9,9 @@
 #include "render/text.h"
 #include "render/views.h"
 
-// The storeys pulled apart and seen at a slant. Every texel is a small block: a top and the two
-// sides that face the eye. Blocks go to the paper from the back to the front and storeys from the
-// lowest to the highest, so that what is nearer covers what is farther (the painter's way); drawn
-// three times too large and then averaged.
+// Draws the storeys apart from each other and seen at a slant. Every texel is a small block: a top
+// and the two sides that face the eye. Blocks are drawn from back to front and storeys from the
+// lowest to the highest (painter's algorithm), three times too large and then averaged.
 namespace throng {
 namespace {
 
@@ -23,7 +22,7 @@ constexpr int32_t kSamples = 3;
 constexpr int32_t kMaxTexels = 420;  // Along the longer side.
 
 // A storey reduced to few enough texels.
-struct Sheet {
+struct ReducedStorey {
   int32_t width = 0, height = 0;
   std::vector<float> top;  // [m] over the storey's lowest floor, NaN where there is nothing
   std::vector<Rgb> colour;
@@ -34,14 +33,15 @@ struct Sheet {
   }
 };
 
-Sheet make_sheet(const StoreyRaster& storey, const RasterGrid& grid, const HeightScale& scale) {
+ReducedStorey reduce_storey(const StoreyRaster& storey, const RasterGrid& grid,
+                            const HeightScale& scale) {
   const int32_t share = (std::max(storey.width, storey.height) + kMaxTexels - 1) / kMaxTexels;
-  Sheet sheet;
-  sheet.width = (storey.width + share - 1) / share;
-  sheet.height = (storey.height + share - 1) / share;
+  ReducedStorey reduced;
+  reduced.width = (storey.width + share - 1) / share;
+  reduced.height = (storey.height + share - 1) / share;
   const double base = storey.low;
-  for (int32_t z = 0; z < sheet.height; ++z) {
-    for (int32_t x = 0; x < sheet.width; ++x) {
+  for (int32_t z = 0; z < reduced.height; ++z) {
+    for (int32_t x = 0; x < reduced.width; ++x) {
       double height = 0, r = 0, g = 0, b = 0;
       int32_t floors = 0, obstacles = 0;
       for (int32_t k = 0; k < share * share; ++k) {
@@ -59,23 +59,23 @@ Sheet make_sheet(const StoreyRaster& storey, const RasterGrid& grid, const Heigh
       }
       if (floors > 0) {
         const double n = floors;
-        sheet.top.push_back(static_cast<float>(height / n));
-        sheet.colour.push_back({static_cast<uint8_t>(r / n), static_cast<uint8_t>(g / n),
-                                static_cast<uint8_t>(b / n)});
+        reduced.top.push_back(static_cast<float>(height / n));
+        reduced.colour.push_back({static_cast<uint8_t>(r / n), static_cast<uint8_t>(g / n),
+                                  static_cast<uint8_t>(b / n)});
       } else {
-        sheet.top.push_back(obstacles > 0 ? 0 : std::numeric_limits<float>::quiet_NaN());
-        sheet.colour.push_back(kSolid);
+        reduced.top.push_back(obstacles > 0 ? 0 : std::numeric_limits<float>::quiet_NaN());
+        reduced.colour.push_back(kSolid);
       }
     }
   }
-  return sheet;
+  return reduced;
 }
 
 double relief(const StoreyRaster& storey) { return storey.high - storey.low; }
 
 // Draws one storey whose back corner (x = z = 0 at its lowest floor) is at `corner`.
-void draw_sheet(Canvas& canvas, const Sheet& sheet, Point corner, double texel_x, double texel_z,
-                double lift) {
+void draw_storey(Canvas& canvas, const ReducedStorey& reduced, Point corner, double texel_x,
+                 double texel_z, double lift) {
   const auto project = [&](double x, double z, double height) {
     return Point{corner.x + (x * texel_x - z * texel_z) * kAcross,
                  corner.y + (x * texel_x + z * texel_z) * kDown - height * lift};
@@ -86,17 +86,17 @@ void draw_sheet(Canvas& canvas, const Sheet& sheet, Point corner, double texel_x
                                        project(x1, z1, low), project(x0, z0, low)};
     canvas.fill_convex(face, colour);
   };
-  for (int32_t sum = 0; sum < sheet.width + sheet.height - 1; ++sum) {
-    for (int32_t x = std::max(0, sum - sheet.height + 1); x <= std::min(sum, sheet.width - 1);
+  for (int32_t sum = 0; sum < reduced.width + reduced.height - 1; ++sum) {
+    for (int32_t x = std::max(0, sum - reduced.height + 1); x <= std::min(sum, reduced.width - 1);
          ++x) {
       const int32_t z = sum - x;
-      const float top = sheet.at(x, z);
+      const float top = reduced.at(x, z);
       if (std::isnan(top)) continue;
-      const Rgb colour = sheet.colour[static_cast<size_t>(z * sheet.width + x)];
+      const Rgb colour = reduced.colour[static_cast<size_t>(z * reduced.width + x)];
       const auto low = [&](float neighbour) {
         return std::isnan(neighbour) ? top - kSlab : std::min<double>(neighbour, top);
       };
-      const double low_x = low(sheet.at(x + 1, z)), low_z = low(sheet.at(x, z + 1));
+      const double low_x = low(reduced.at(x + 1, z)), low_z = low(reduced.at(x, z + 1));
       if (low_x < top) side(x + 1, z, x + 1, z + 1, top, low_x, shade(colour, 0.62));
       if (low_z < top) side(x, z + 1, x + 1, z + 1, top, low_z, shade(colour, 0.8));
       const std::array<Point, 4> roof = {project(x, z, top), project(x + 1, z, top),
@@ -116,15 +116,15 @@ FanLayout lay_out_fan(std::span<const StoreyRaster> storeys, const RasterGrid& g
   layout.scale = width / (span * kAcross);
   double highest = 0;  // Relief of the storey that rises most above its place in the fan.
   for (const StoreyRaster& storey : storeys) highest = std::max(highest, relief(storey));
-  const auto gaps = static_cast<double>(storeys.size()) - 1;
+  const auto spacings = static_cast<double>(storeys.size()) - 1;
   // Try the largest first: ground, relief and the offsets must fit the height.
   for (int i = 0; i < 40; ++i, layout.scale *= 0.93) {
     layout.lift = layout.scale * kUpright;
-    const double sheet = span * kDown * layout.scale;
-    layout.offset = gaps > 0 ? sheet * std::clamp(2.2 / gaps, 0.3, 0.55) : 0;
+    const double ground = span * kDown * layout.scale;
+    layout.offset = spacings > 0 ? ground * std::clamp(2.2 / spacings, 0.3, 0.55) : 0;
     layout.offset = std::max(layout.offset, 18.0);
     layout.top = highest * layout.lift + 4;
-    layout.height = layout.top + sheet + gaps * layout.offset + kSlab * layout.lift + 6;
+    layout.height = layout.top + ground + spacings * layout.offset + kSlab * layout.lift + 6;
     if (layout.height <= max_height) break;
   }
   layout.left =
@@ -141,10 +141,10 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
   for (size_t s = 0; s < storeys.size(); ++s) {
     const auto above = static_cast<double>(storeys.size() - 1 - s);
     const Point corner{layout.left, layout.top + above * layout.offset};
-    const Sheet sheet = make_sheet(storeys[s], grid, scale);
-    draw_sheet(large, sheet, {corner.x * factor, corner.y * factor},
-               grid.width_metres() / sheet.width * layout.scale * factor,
-               grid.depth_metres() / sheet.height * layout.scale * factor, layout.lift * factor);
+    const ReducedStorey reduced = reduce_storey(storeys[s], grid, scale);
+    draw_storey(large, reduced, {corner.x * factor, corner.y * factor},
+                grid.width_metres() / reduced.width * layout.scale * factor,
+                grid.depth_metres() / reduced.height * layout.scale * factor, layout.lift * factor);
     const auto disc = [&](const Vec3d& p, double radius, Rgb colour) {
       const double ax = (p.x - grid.origin_x) * layout.scale,
                    az = (p.z - grid.origin_z) * layout.scale;
@@ -152,8 +152,8 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
                      corner.y + (ax + az) * kDown - (p.y - storeys[s].low) * layout.lift};
       large.disc({at.x * factor, at.y * factor}, radius * factor, colour);
     };
-    for (const auto& [radius, colour] : {std::pair{2.2, kPaper}, {1.3, kWay}}) {
-      for (const DrawnPoint& point : marks.way) {
+    for (const auto& [radius, colour] : {std::pair{2.2, kPaper}, {1.3, kPath}}) {
+      for (const DrawnPoint& point : marks.path) {
         if (point.storey == s) disc(point.position, radius, colour);
       }
     }
@@ -165,7 +165,7 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
   canvas.draw_reduced(large, kSamples, x, y);
   if (storeys.size() < 2) return;
   for (size_t s = 0; s < storeys.size(); ++s) {
-    // The left corner of the sheet: x = 0 at its far end in z.
+    // The left corner of the storey: x = 0 at its far end in z.
     const double depth = grid.depth_metres() * layout.scale;
     const double left = x + layout.left - depth * kAcross;
     const double line = y + layout.top +

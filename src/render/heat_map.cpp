@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-// Light for little, dark for much: on paper, nothing is white.
+// Light for low values, dark for high ones: zero is white paper.
 Rgb heat_colour(double t) { return height_colour(0.98 - 0.93 * std::clamp(t, 0.0, 1.0)); }
 
 Result<void> check_map(const HeatMap& map) {
@@ -59,16 +59,16 @@ double value_at(const HeatMap& map, double pixel, int32_t px, int32_t py) {
   return sum / static_cast<double>((i1 - i0 + 1) * (k1 - k0 + 1));
 }
 
-void draw_bar(Canvas& canvas, const Rect& bar, double most, const std::string& unit, double text) {
+void draw_bar(Canvas& canvas, const Rect& bar, double top, const std::string& unit, double text) {
   const auto rows = static_cast<int32_t>(bar.height);
   for (int32_t row = 0; row < rows; ++row) {
     canvas.fill({bar.x, bar.y + row, bar.width, 1}, heat_colour(1 - (row + 0.5) / rows));
   }
   canvas.frame(bar, 1, kFaintInk);
-  double tick = round_below(most / 5);
-  while (most / tick > 6.001) tick = round_below(tick * 2.5);
-  for (int32_t i = 0; i * tick <= most * (1 + 1e-9); ++i) {
-    const double y = bar.y + bar.height * (1 - i * tick / most);
+  double tick = round_below(top / 5);
+  while (top / tick > 6.001) tick = round_below(tick * 2.5);
+  for (int32_t i = 0; i * tick <= top * (1 + 1e-9); ++i) {
+    const double y = bar.y + bar.height * (1 - i * tick / top);
     canvas.line({bar.x + bar.width, y}, {bar.x + bar.width + text * 0.35, y}, 1, kFaintInk);
     draw_text(canvas, {bar.x + bar.width + text * 0.7, y + text / 2}, fmt::format("{:g}", i * tick),
               {.size = text});
@@ -116,19 +116,19 @@ Result<Image> draw_heat_map(const HeatMap& map) {
     draw_text(canvas, {plot.x, (80 + 22 * static_cast<double>(i)) * u}, map.notes[i],
               {.size = 11 * u, .colour = kFaintInk});
   }
-  double most = map.most > 0 ? map.most : *std::ranges::max_element(map.values);
-  if (!(most > 0)) most = 1;
+  double top = map.most > 0 ? map.most : *std::ranges::max_element(map.values);
+  if (!(top > 0)) top = 1;
   const double pixel = 1 / (scale * map.cell);  // in cells
   const auto x0 = static_cast<int32_t>(plot.x), y0 = static_cast<int32_t>(plot.y);
   for (int32_t y = 0; y < static_cast<int32_t>(plot.height); ++y) {
     for (int32_t x = 0; x < static_cast<int32_t>(plot.width); ++x) {
       const double value = value_at(map, pixel, x, y);
-      canvas.set(x0 + x, y0 + y, value > 0 ? heat_colour(value / most) : kPaper);
+      canvas.set(x0 + x, y0 + y, value > 0 ? heat_colour(value / top) : kPaper);
     }
   }
   canvas.frame({plot.x - 1, plot.y - 1, plot.width + 2, plot.height + 2}, 1, kRule);
   draw_ticks(canvas, plot, map, scale, text);
-  draw_bar(canvas, {map.picture_width - 110 * u, plot.y + 30 * u, 22 * u, tall - 40 * u}, most,
+  draw_bar(canvas, {map.picture_width - 110 * u, plot.y + 30 * u, 22 * u, tall - 40 * u}, top,
            map.unit, text);
   return std::move(canvas).take();
 }

@@ -12,7 +12,7 @@
 namespace throng {
 namespace {
 
-// As many decimals as a tick needs.
+// The number of decimals that a tick needs.
 std::string number(double value, double tick) {
   const int decimals = tick >= 1 ? 0 : static_cast<int>(std::ceil(-std::log10(tick) - 1e-9));
   return fmt::format("{:.{}f}", std::fabs(value) < tick / 2 ? 0.0 : value, decimals);
@@ -61,9 +61,9 @@ void draw_height_bar(Canvas& canvas, const Rect& bar, double low, double high, d
               style);
     return;
   }
-  const double most = std::clamp(bar.height / (text * 2.6), 2.0, 6.0);
-  double tick = round_below(range / most);
-  while (range / tick > most + 1) tick *= 2;
+  const double max_ticks = std::clamp(bar.height / (text * 2.6), 2.0, 6.0);
+  double tick = round_below(range / max_ticks);
+  while (range / tick > max_ticks + 1) tick *= 2;
   for (double value = std::ceil(low / tick - 1e-6) * tick; value <= high + tick * 1e-6;
        value += tick) {
     const double y = bar.y + bar.height * (1 - std::clamp((value - low) / range, 0.0, 1.0));

@@ -37,7 +37,7 @@ struct InclinationColour {
   double degrees;
   Rgb colour;
 };
-// Green flat, yellow steep, red overhanging, as the source has it; light enough for lines above.
+// Green flat, yellow steep, red overhanging, as in [PACS00]; light enough for lines above.
 constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
                                                   {30, {142, 194, 84}},
                                                   {45, {206, 210, 78}},
@@ -47,7 +47,7 @@ constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
 constexpr Rgb kWalkLink{24, 92, 52}, kStepLink{196, 74, 8}, kSteepLink{150, 104, 8},
     kOverLink{140, 20, 32};
 constexpr Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
-constexpr Rgb kLeapLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232};
+constexpr Rgb kHoleLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232};
 
 Rgb inclination_colour(double degrees) {
   for (size_t i = 1; i < kRamp.size(); ++i) {
@@ -127,32 +127,32 @@ class DepthCanvas {
   }
 
   [[nodiscard]] const Canvas& canvas() const { return canvas_; }
-  /// How near what is drawn so far is; to draw over what was drawn since.
+  /// The depth of what is drawn so far. Set again, it lets later strokes cover all drawn since.
   using Depths = std::vector<float>;
   [[nodiscard]] const Depths& depths() const { return depth_; }
   void set_depths(const Depths& depths) { depth_ = depths; }
 
  private:
-  // Cuts a line to the picture and a rim around it; false if nothing is left. Ends far off it would
-  // not fit whole pixels.
+  // Cuts a line to the picture and a rim around it; false if nothing is left. Ends far outside
+  // would overflow whole pixels.
   [[nodiscard]] bool clip(Seen& a, Seen& b, double rim) const {
     double first = 0, last = 1;
     const auto keep_within = [&](double from, double to, double size) {
-      const double low = -rim - 1 - from, high = size + rim + 1 - from, way = to - from;
-      if (way == 0) {
+      const double low = -rim - 1 - from, high = size + rim + 1 - from, delta = to - from;
+      if (delta == 0) {
         if (low > 0 || high < 0) last = -1;
         return;
       }
-      first = std::max(first, (way > 0 ? low : high) / way);
-      last = std::min(last, (way > 0 ? high : low) / way);
+      first = std::max(first, (delta > 0 ? low : high) / delta);
+      last = std::min(last, (delta > 0 ? high : low) / delta);
     };
     keep_within(a.x, b.x, canvas_.width());
     keep_within(a.y, b.y, canvas_.height());
     const bool finite = std::isfinite(a.x + a.y + b.x + b.y);
     if (!finite || !(first <= last)) return false;
-    const Seen from = a, way{b.x - a.x, b.y - a.y, b.depth - a.depth};
+    const Seen from = a, delta{b.x - a.x, b.y - a.y, b.depth - a.depth};
     const auto at = [&](double t) {
-      return Seen{from.x + t * way.x, from.y + t * way.y, from.depth + t * way.depth};
+      return Seen{from.x + t * delta.x, from.y + t * delta.y, from.depth + t * delta.depth};
     };
     if (first > 0) a = at(first);
     if (last < 1) b = at(last);
@@ -216,24 +216,25 @@ class NodePicture {
   }
 
  private:
-  // Of the classes of a node or a link, is the one asked for there?
+  // Do the classes of a node or a link include the selected one?
   [[nodiscard]] bool is_for(uint16_t classes) const {
     return config_.avatar_class < 0 || (classes >> config_.avatar_class & 1) != 0;
   }
 
-  // Is a node on the storey and for the class asked for?
+  // Is a node on the selected storey and for the selected class?
   [[nodiscard]] bool is_asked(const NodeInfo& info) const {
     const bool on_storey = config_.storey < 0 || (info.kind == PatchKind::kLevelTile &&
                                                   storeys_[info.source] == config_.storey);
     return on_storey && is_for(info.classes);
   }
 
-  // Cells of a ragged node on which the class asked for stands, or any.
+  // Cells of a partial node on which the selected class stands, or any class if none is selected.
   [[nodiscard]] uint64_t cells_of(uint32_t node, const NodeInfo& info) const {
     return config_.avatar_class < 0 ? info.cells : nodes_.partial_cells(config_.avatar_class, node);
   }
 
-  // Calls visit(corner) for corners around a node. A ragged one's block may have no floor there.
+  // Calls visit(corner) for corners around a node. The block of a partial node may have no floor
+  // there.
   template <class Visit>
   void for_corners(uint32_t node, const NodeInfo& info, Visit visit) const {
     if (info.cells == 0) {
@@ -330,24 +331,24 @@ class NodePicture {
     });
   }
 
-  // Of the steepest ground in a node: of level tiles not more than it promises, for that is a limit
-  // of those who have room there. [code]
+  // Inclination of the steepest ground in a node. In level tiles it is at most what the node
+  // promises, which is a limit of the classes that fit there. [code]
   [[nodiscard]] uint8_t inclination(uint32_t node, const NodeInfo& info) {
     if (info.kind != PatchKind::kLevelTile) return info.inclination;
-    uint8_t most = info.inclination, code = 0;
+    uint8_t limit = info.inclination, code = 0;
     if (config_.avatar_class >= 0) {
       const auto c = static_cast<size_t>(config_.avatar_class);
-      most = std::min(most, summary_.bins.inclination_code(summary_.classes[c].max_slope));
+      limit = std::min(limit, summary_.bins.inclination_code(summary_.classes[c].max_slope));
     }
-    const int32_t size = 64 >> info.level;
+    const int32_t size = kTileCells >> info.level;
     const uint64_t cells = info.cells != 0 ? cells_of(node, info) : 0;
-    for (int32_t i = 0; i < size * size && code < most; ++i) {
+    for (int32_t i = 0; i < size * size && code < limit; ++i) {
       if (info.cells != 0 && (cells >> i & 1) == 0) continue;
       const double degrees =
           slopes_.at(info.source, info.s * size + i % size, info.t * size + i / size);
       code = std::max(code, summary_.bins.inclination_code(degrees));
     }
-    return std::min(code, most);
+    return std::min(code, limit);
   }
 
   void surface(DepthCanvas& canvas, uint32_t node) {
@@ -371,12 +372,12 @@ class NodePicture {
         paint({(info.s * 8 + first) * kCell, (info.t * 8 + row) * kCell, count * kCell - kInset,
                kCell - kInset});
       });
-      if (whole * 64 * nodes_.data()->world.summary().cell * scale_ >= 5)
+      if (whole * kTileCells * nodes_.data()->world.summary().cell * scale_ >= 5)
         rim_of_cells(canvas, info, node, cells, rim, nearer);
       return;
     }
     paint({s0, t0, side, side});
-    // The rim, unless it would be all that is seen.
+    // The rim, unless it would cover the whole block.
     const auto corners = nodes_.corners(node);
     const double pixels = length(corners[2] - corners[0]) * scale_;
     if (pixels < 5) return;
@@ -395,7 +396,7 @@ class NodePicture {
     edge(s0, t0 + side, s0 + side, t0 + side);
   }
 
-  // Sides of cells beyond which the node does not go on.
+  // Sides of cells that border no other cell of the node.
   void rim_of_cells(DepthCanvas& canvas, const NodeInfo& info, uint32_t node, uint64_t cells,
                     Rgb colour, double nearer) const {
     constexpr double kSide = kCell - kInset;
@@ -421,8 +422,8 @@ class NodePicture {
     NodeArc arc;
   };
 
-  // Links between nodes that are drawn, of the class asked for: as many as there are, and those to
-  // draw. Both directions of a link are arcs: one is enough, but for drops.
+  // Links of the selected class between nodes that are drawn: their number, and those to draw. Both
+  // directions of a link are arcs: one of them is drawn, except for drop links.
   void find_links() {
     for (const uint32_t n : shown_) {
       const NodeInfo info = nodes_.node(n);
@@ -453,11 +454,11 @@ class NodePicture {
         std::max(nodes_.node(link.from).inclination, nodes_.node(arc.to).inclination));
     Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
     if (arc.kind == LinkKind::kStep) colour = kStepLink;
-    if (arc.leaps) colour = kLeapLink;
+    if (arc.leaps) colour = kHoleLink;
     canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
   }
 
-  // A part of the way over the ground that is drawn; false if none of it is.
+  // Clips a segment of the path to the ground that is drawn; false if nothing is left.
   [[nodiscard]] bool clip_to_map(Vec3d& a, Vec3d& b) const {
     double first = 0, last = 1;
     const auto keep_within = [&](double from, double to, double low, double high) {
@@ -473,13 +474,13 @@ class NodePicture {
     keep_within(a.x, b.x, plan_.min.x, plan_.max.x);
     keep_within(a.z, b.z, plan_.min.z, plan_.max.z);
     if (!(first <= last)) return false;
-    const Vec3d from = a, way = b - a;
-    if (first > 0) a = from + way * first;
-    if (last < 1) b = from + way * last;
+    const Vec3d from = a, delta = b - a;
+    if (first > 0) a = from + delta * first;
+    if (last < 1) b = from + delta * last;
     return true;
   }
 
-  // Above all links, and its rim behind all of it; only ground hides it.
+  // Above all links, with the rim behind the path; only ground hides it.
   void path(DepthCanvas& canvas, const DepthCanvas::Depths& ground) const {
     const auto stroke = [&](double thick, Rgb colour) {
       canvas.set_depths(ground);
@@ -489,7 +490,7 @@ class NodePicture {
       }
     };
     stroke(9, kPaper);
-    stroke(5, kWay);
+    stroke(5, kPath);
   }
 
   void letter(Canvas& sheet) const {
@@ -535,7 +536,7 @@ class NodePicture {
       key(kStepLink, "step");
       key(kSteepLink, "steep");
       key(kOverLink, "overhanging");
-      key(kLeapLink, "over a hole");
+      key(kHoleLink, "over a hole");
       bool drop = false;
       for (size_t c = 0; c < summary_.classes.size(); ++c) {
         drop |= summary_.classes[c].max_drop > 0 && is_for(static_cast<uint16_t>(1u << c));

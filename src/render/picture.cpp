@@ -6,7 +6,7 @@
 
 #include "render/poster.h"
 
-// From the public World to what the poster needs: this file alone knows both.
+// Converts the public World to what the poster needs: only this file knows both.
 namespace throng {
 
 Result<Image> draw_world(const World& world, std::span<const PictureAvatar> avatars,

@@ -7,8 +7,8 @@
 
 #include "render/views.h"
 
-// A plan: floors by height, shaded by slope as if lit from the upper left, a little darker close to
-// walls. Where there is a floor but the class cannot stand, grey hatching.
+// Draws a plan: floors coloured by height, shaded by slope as if lit from the upper left, a little
+// darker close to walls; grey hatching where there is floor but the class cannot stand.
 namespace throng {
 namespace {
 
@@ -65,12 +65,12 @@ bool on_rim(const StoreyRaster& storey, int32_t x, int32_t z) {
 
 void draw_avatars(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre, size_t index,
                   const RasterGrid& grid, std::span<const PlacedAvatar> avatars) {
-  const auto draw = [&](double grow, double least, Rgb colour) {
+  const auto draw = [&](double grow, double min_radius, Rgb colour) {
     for (const PlacedAvatar& placed : avatars) {
       if (placed.storey != index) continue;
       const Point at{x + (placed.avatar.position.x - grid.origin_x) * pixels_per_metre,
                      y + (placed.avatar.position.z - grid.origin_z) * pixels_per_metre};
-      canvas.disc(at, std::max(placed.avatar.radius * pixels_per_metre, least) + grow, colour);
+      canvas.disc(at, std::max(placed.avatar.radius * pixels_per_metre, min_radius) + grow, colour);
     }
   };
   // All rims first: in a dense crowd every body stays visible. No rims where discs are dots.
@@ -79,12 +79,12 @@ void draw_avatars(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre,
   draw(0, dots ? 1.0 : 1.6, kAvatar);
 }
 
-// A light rim, so that it stands out on every floor.
-void draw_way(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre, size_t index,
-              const RasterGrid& grid, std::span<const DrawnPoint> way) {
+// With a light rim, so that it is visible on every floor.
+void draw_path(Canvas& canvas, int32_t x, int32_t y, double pixels_per_metre, size_t index,
+               const RasterGrid& grid, std::span<const DrawnPoint> path) {
   constexpr double kWidth = 1.6, kRim = 1.2;  // [px]
-  for (const auto& [radius, colour] : {std::pair{kWidth + kRim, kPaper}, {kWidth, kWay}}) {
-    for (const DrawnPoint& point : way) {
+  for (const auto& [radius, colour] : {std::pair{kWidth + kRim, kPaper}, {kWidth, kPath}}) {
+    for (const DrawnPoint& point : path) {
       if (point.storey != index) continue;
       canvas.disc({x + (point.position.x - grid.origin_x) * pixels_per_metre,
                    y + (point.position.z - grid.origin_z) * pixels_per_metre},
@@ -175,17 +175,17 @@ std::vector<PlacedAvatar> place_avatars(std::span<const PictureAvatar> avatars,
   return placed;
 }
 
-std::vector<DrawnPoint> place_way(std::span<const Vec3d> way, std::span<const StoreyRaster> storeys,
-                                  const RasterGrid& grid) {
+std::vector<DrawnPoint> place_path(std::span<const Vec3d> path,
+                                   std::span<const StoreyRaster> storeys, const RasterGrid& grid) {
   constexpr double kOff = 1;  // On its floor, and not that of another storey. [m]
   constexpr double kMax = 1e6;
   std::vector<DrawnPoint> placed;
-  for (size_t i = 1; i < way.size(); ++i) {
-    const Vec3d segment = way[i] - way[i - 1];
+  for (size_t i = 1; i < path.size(); ++i) {
+    const Vec3d segment = path[i] - path[i - 1];
     const double steps = std::ceil(2 * std::hypot(segment.x, segment.z) / grid.texel_metres()) + 1;
     if (!(steps < kMax)) continue;
     for (double k = 0; k <= steps; ++k) {
-      const Vec3d at = way[i - 1] + segment * (k / steps);
+      const Vec3d at = path[i - 1] + segment * (k / steps);
       const NearStorey nearest = nearest_storey(at, storeys, grid);
       if (nearest.distance < kOff) placed.push_back({at, nearest.storey});
     }
@@ -210,8 +210,8 @@ void draw_plan(Canvas& canvas, int32_t x0, int32_t y0, double pixels_per_texel,
                             : texel_colour(storey, i, context, scale, metres));
     }
   }
-  // A pixel is never wider than a texel, so it sees two at most each way; both count by their
-  // share.
+  // A pixel is never wider than a texel, so it covers at most two along each axis; both count by
+  // their share.
   const std::vector<Sample> across = sample_line(storey.width, pixels_per_texel);
   const std::vector<Sample> down = sample_line(storey.height, pixels_per_texel);
   for (size_t py = 0; py < down.size(); ++py) {
@@ -229,7 +229,7 @@ void draw_plan(Canvas& canvas, int32_t x0, int32_t y0, double pixels_per_texel,
                      mix(at(h.first, v.second), at(h.second, v.second), h.share), v.share));
     }
   }
-  draw_way(canvas, x0, y0, pixels_per_texel / metres, index, grid, marks.way);
+  draw_path(canvas, x0, y0, pixels_per_texel / metres, index, grid, marks.path);
   draw_avatars(canvas, x0, y0, pixels_per_texel / metres, index, grid, marks.avatars);
 }
 

@@ -15,6 +15,7 @@
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
+// Writes PNG (stb_image_write).
 namespace throng {
 namespace {
 

@@ -11,14 +11,14 @@
 #include "render/text.h"
 #include "render/views.h"
 
-// All lengths are for a sheet 1600 pixels wide and grow with it.
+// Lays out and draws a poster. All lengths are for one 1600 pixels wide and grow with it.
 namespace throng {
 namespace {
 
 constexpr size_t kMaxStoreys = 12;
 
-// Where everything goes. [px]
-struct Sheet {
+// Positions and sizes. [px]
+struct Layout {
   double unit = 1;
   double width = 0, margin = 0, inner = 0;
   double head = 0;  // Height of the title block.
@@ -31,51 +31,53 @@ struct Sheet {
   [[nodiscard]] double plans_end() const { return head + static_cast<double>(rows) * row_height(); }
 };
 
-TextStyle style(const Sheet& sheet, double size, Rgb colour = kInk) {
-  return {.size = std::max(4.5, size * sheet.unit), .colour = colour};
+TextStyle style(const Layout& layout, double size, Rgb colour = kInk) {
+  return {.size = std::max(4.5, size * layout.unit), .colour = colour};
 }
 
-Sheet make_sheet(int32_t width, size_t lines) {
-  Sheet sheet;
-  sheet.width = width;
-  sheet.unit = width / 1600.0;
-  sheet.margin = 44 * sheet.unit;
-  sheet.inner = width - 2 * sheet.margin;
-  sheet.head = (104 + 24 * static_cast<double>(lines)) * sheet.unit;
-  sheet.caption = 34 * sheet.unit;
-  sheet.foot = 58 * sheet.unit;
-  return sheet;
+Layout make_layout(int32_t width, size_t lines) {
+  Layout layout;
+  layout.width = width;
+  layout.unit = width / 1600.0;
+  layout.margin = 44 * layout.unit;
+  layout.inner = width - 2 * layout.margin;
+  layout.head = (104 + 24 * static_cast<double>(lines)) * layout.unit;
+  layout.caption = 34 * layout.unit;
+  layout.foot = 58 * layout.unit;
+  return layout;
 }
 
-// Fewest columns, so the largest plans, that keep the plans' part of the sheet below its width.
-void lay_out_plans(Sheet& sheet, const PictureWorld& world, size_t plans) {
-  const double gap = 36 * sheet.unit;
-  const double most = sheet.width * (plans == 1 ? 0.75 : 0.5);
+// The smallest number of columns, hence the largest plans, for which the height of all plans stays
+// below a share of the poster's width.
+void lay_out_plans(Layout& layout, const PictureWorld& world, size_t plans) {
+  const double spacing = 36 * layout.unit;
+  const double max_height = layout.width * (plans == 1 ? 0.75 : 0.5);
   for (size_t columns = 1; columns <= std::min<size_t>(plans, 6); ++columns) {
-    sheet.columns = columns;
-    sheet.rows = (plans + columns - 1) / columns;
-    sheet.panel_width =
-        (sheet.inner - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
-    sheet.grid = make_raster_grid(world, std::max(1, static_cast<int32_t>(sheet.panel_width)),
-                                  std::max(1, static_cast<int32_t>(most)));
-    const double fit = std::min(sheet.panel_width / sheet.grid.width, most / sheet.grid.height);
-    sheet.pixels_per_texel = std::max(1.0, fit);
-    sheet.map_width = std::floor(sheet.grid.width * sheet.pixels_per_texel + 1e-6);
-    sheet.map_height = std::floor(sheet.grid.height * sheet.pixels_per_texel + 1e-6);
-    if (sheet.plans_end() - sheet.head <= sheet.width * (plans == 1 ? 0.9 : 0.8)) break;
+    layout.columns = columns;
+    layout.rows = (plans + columns - 1) / columns;
+    layout.panel_width =
+        (layout.inner - spacing * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+    layout.grid = make_raster_grid(world, std::max(1, static_cast<int32_t>(layout.panel_width)),
+                                   std::max(1, static_cast<int32_t>(max_height)));
+    const double fit =
+        std::min(layout.panel_width / layout.grid.width, max_height / layout.grid.height);
+    layout.pixels_per_texel = std::max(1.0, fit);
+    layout.map_width = std::floor(layout.grid.width * layout.pixels_per_texel + 1e-6);
+    layout.map_height = std::floor(layout.grid.height * layout.pixels_per_texel + 1e-6);
+    if (layout.plans_end() - layout.head <= layout.width * (plans == 1 ? 0.9 : 0.8)) break;
   }
 }
 
-void draw_head(Canvas& canvas, const Sheet& sheet, const PosterText& text) {
-  TextStyle title = style(sheet, 24);
+void draw_head(Canvas& canvas, const Layout& layout, const PosterText& text) {
+  TextStyle title = style(layout, 24);
   title.bold = true;
-  double y = sheet.margin + title.size;
-  draw_text(canvas, {sheet.margin, y}, fit_text(text.title, sheet.inner, title), title);
-  const TextStyle plain = style(sheet, 10.5, kFaintInk);
-  y += 16 * sheet.unit;
+  double y = layout.margin + title.size;
+  draw_text(canvas, {layout.margin, y}, fit_text(text.title, layout.inner, title), title);
+  const TextStyle plain = style(layout, 10.5, kFaintInk);
+  y += 16 * layout.unit;
   for (const std::string& line : text.lines) {
-    y += 22 * sheet.unit;
-    draw_text(canvas, {sheet.margin, y}, fit_text(line, sheet.inner, plain), plain);
+    y += 22 * layout.unit;
+    draw_text(canvas, {layout.margin, y}, fit_text(line, layout.inner, plain), plain);
   }
 }
 
@@ -93,7 +95,7 @@ void draw_axes(Canvas& canvas, Point corner, double length, const TextStyle& tex
   draw_text(canvas, {z.x + text.size * 0.6, z.y + text.size * 0.2}, "z", text);
 }
 
-// What stands over a plan: as much of it as fits.
+// The text over a plan, as much of it as fits.
 std::string storey_text(const StoreyRaster& storey, const std::string& class_name, double width,
                         const TextStyle& text) {
   const std::string height = storey.high - storey.low < 0.05
@@ -109,37 +111,37 @@ std::string storey_text(const StoreyRaster& storey, const std::string& class_nam
   return fit_text(height, width, text);
 }
 
-void draw_plans(Canvas& canvas, const Sheet& sheet, const PictureWorld& world,
+void draw_plans(Canvas& canvas, const Layout& layout, const PictureWorld& world,
                 std::span<const StoreyRaster> storeys, std::span<const size_t> plans,
                 const HeightScale& scale, const PlacedMarks& marks) {
-  const double step = (sheet.inner + 36 * sheet.unit) / static_cast<double>(sheet.columns);
+  const double step = (layout.inner + 36 * layout.unit) / static_cast<double>(layout.columns);
   for (size_t p = 0; p < plans.size(); ++p) {
     const StoreyRaster& storey = storeys[plans[p]];
-    const double x = std::floor(sheet.margin + static_cast<double>(p % sheet.columns) * step);
+    const double x = std::floor(layout.margin + static_cast<double>(p % layout.columns) * step);
     const double y =
-        std::floor(sheet.head + static_cast<double>(p / sheet.columns) * sheet.row_height());
-    TextStyle name = style(sheet, 12);
+        std::floor(layout.head + static_cast<double>(p / layout.columns) * layout.row_height());
+    TextStyle name = style(layout, 12);
     name.bold = true;
     const std::string title = fmt::format("Storey {}", storey.storey);
-    draw_text(canvas, {x, y + 18 * sheet.unit}, title, name);
-    const TextStyle plain = style(sheet, 9.5, kFaintInk);
-    const double used = text_width(title, name) + 14 * sheet.unit;
-    draw_text(canvas, {x + used, y + 18 * sheet.unit},
-              storey_text(storey, world.class_name, sheet.panel_width - used, plain), plain);
+    draw_text(canvas, {x, y + 18 * layout.unit}, title, name);
+    const TextStyle plain = style(layout, 9.5, kFaintInk);
+    const double used = text_width(title, name) + 14 * layout.unit;
+    draw_text(canvas, {x + used, y + 18 * layout.unit},
+              storey_text(storey, world.class_name, layout.panel_width - used, plain), plain);
 
-    const double top = std::floor(y + sheet.caption);
-    draw_plan(canvas, static_cast<int32_t>(x), static_cast<int32_t>(top), sheet.pixels_per_texel,
-              storeys, plans[p], sheet.grid, scale, marks);
-    canvas.frame({x - 1, top - 1, sheet.map_width + 2, sheet.map_height + 2}, 1, kRule);
-    const double foot = top + sheet.map_height + 16 * sheet.unit;
-    const TextStyle small = style(sheet, 9.5);
+    const double top = std::floor(y + layout.caption);
+    draw_plan(canvas, static_cast<int32_t>(x), static_cast<int32_t>(top), layout.pixels_per_texel,
+              storeys, plans[p], layout.grid, scale, marks);
+    canvas.frame({x - 1, top - 1, layout.map_width + 2, layout.map_height + 2}, 1, kRule);
+    const double foot = top + layout.map_height + 16 * layout.unit;
+    const TextStyle small = style(layout, 9.5);
     draw_scale_bar(canvas, {x + small.size * 0.2, foot},
-                   std::min(sheet.map_width * 0.4, 360 * sheet.unit),
-                   sheet.pixels_per_texel / sheet.grid.texel_metres(), small.size);
+                   std::min(layout.map_width * 0.4, 360 * layout.unit),
+                   layout.pixels_per_texel / layout.grid.texel_metres(), small.size);
     if (p == 0) {
       draw_axes(canvas,
-                {x + std::max(sheet.map_width - 34 * sheet.unit, 0.0), foot - 4 * sheet.unit},
-                16 * sheet.unit, style(sheet, 8.5, kFaintInk));
+                {x + std::max(layout.map_width - 34 * layout.unit, 0.0), foot - 4 * layout.unit},
+                16 * layout.unit, style(layout, 8.5, kFaintInk));
     }
   }
 }
@@ -152,8 +154,8 @@ struct SectionPlace {
   int32_t exaggeration = 1;
 };
 
-SectionPlace place_section(const Sheet& sheet, std::span<const StoreyRaster> storeys, Point corner,
-                           double width) {
+SectionPlace place_section(const Layout& layout, std::span<const StoreyRaster> storeys,
+                           Point corner, double width) {
   double low = 0, high = 0;
   for (size_t s = 0; s < storeys.size(); ++s) {
     low = s == 0 ? storeys[s].low : std::min(low, storeys[s].low);
@@ -163,41 +165,42 @@ SectionPlace place_section(const Sheet& sheet, std::span<const StoreyRaster> sto
   const double range = high - low + 1.5 * air;
   SectionPlace place;
   place.low = low - 0.5 * air;
-  const double true_scale = width / sheet.grid.width_metres();
-  const double least = 110 * sheet.unit, most = 420 * sheet.unit;
-  place.exaggeration = std::max(1, static_cast<int32_t>(std::ceil(least / (range * true_scale))));
+  const double true_scale = width / layout.grid.width_metres();
+  const double min_height = 110 * layout.unit, max_height = 420 * layout.unit;
+  place.exaggeration =
+      std::max(1, static_cast<int32_t>(std::ceil(min_height / (range * true_scale))));
   place.pixels_per_metre = true_scale * place.exaggeration;
-  if (place.exaggeration == 1 && range * true_scale > most) {
-    width *= most / (range * true_scale);  // A tower: narrower, so that it is not distorted.
-    place.pixels_per_metre = most / range;
+  if (place.exaggeration == 1 && range * true_scale > max_height) {
+    width *= max_height / (range * true_scale);  // A tower: narrower, so that it is not distorted.
+    place.pixels_per_metre = max_height / range;
   }
   place.rect = {std::floor(corner.x), std::floor(corner.y), std::floor(width),
                 std::floor(range * place.pixels_per_metre)};
   return place;
 }
 
-void draw_titled_section(Canvas& canvas, const Sheet& sheet, const PictureWorld& world,
+void draw_titled_section(Canvas& canvas, const Layout& layout, const PictureWorld& world,
                          const SectionPlace& place, int32_t row, const HeightScale& scale) {
   const Section section =
-      cut_section(world, sheet.grid, row, std::max(1, static_cast<int32_t>(place.rect.width)));
-  TextStyle name = style(sheet, 12);
+      cut_section(world, layout.grid, row, std::max(1, static_cast<int32_t>(place.rect.width)));
+  TextStyle name = style(layout, 12);
   name.bold = true;
   std::string title = fmt::format("Section along x at z = {:.1f} m", section.z);
   if (place.exaggeration > 1) title += fmt::format(", heights x {}", place.exaggeration);
-  draw_text(canvas, {place.rect.x, place.rect.y - 16 * sheet.unit}, title, name);
-  const TextStyle small = style(sheet, 9.5);
+  draw_text(canvas, {place.rect.x, place.rect.y - 16 * layout.unit}, title, name);
+  const TextStyle small = style(layout, 9.5);
   draw_section(canvas, place.rect, section, place.low, place.pixels_per_metre, small.size, scale);
-  draw_scale_bar(canvas, {place.rect.x, place.rect.y + place.rect.height + 16 * sheet.unit},
-                 place.rect.width * 0.4, place.rect.width / sheet.grid.width_metres(), small.size);
+  draw_scale_bar(canvas, {place.rect.x, place.rect.y + place.rect.height + 16 * layout.unit},
+                 place.rect.width * 0.4, place.rect.width / layout.grid.width_metres(), small.size);
 }
 
-void draw_legend(Canvas& canvas, const Sheet& sheet, Point corner, const HeightScale& scale,
+void draw_legend(Canvas& canvas, const Layout& layout, Point corner, const HeightScale& scale,
                  const std::string& class_name, const PlacedMarks& marks) {
-  const double unit = sheet.unit;
-  TextStyle name = style(sheet, 12);
+  const double unit = layout.unit;
+  TextStyle name = style(layout, 12);
   name.bold = true;
   draw_text(canvas, {corner.x, corner.y}, "Legend", name);
-  const TextStyle small = style(sheet, 9.5);
+  const TextStyle small = style(layout, 9.5);
   const double top = corner.y + 24 * unit;
   draw_height_bar(canvas, {corner.x, top, 20 * unit, 168 * unit}, scale.low, scale.high, small.size,
                   [](double t) { return height_colour(t); });
@@ -224,13 +227,13 @@ void draw_legend(Canvas& canvas, const Sheet& sheet, Point corner, const HeightS
         },
         "avatar");
   }
-  if (!marks.way.empty()) {
+  if (!marks.path.empty()) {
     swatch(
         [&](const Rect& r) {
           canvas.line({r.x, r.y + r.height / 2}, {r.x + r.width, r.y + r.height / 2}, 3.2 * unit,
-                      kWay);
+                      kPath);
         },
-        "way");
+        "path");
   }
 }
 
@@ -257,9 +260,9 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
   const StoreyChoice choice = index.choose(config.storey, kMaxStoreys);
   PosterText head = text;
   if (choice.left_out > 0) head.lines.emplace_back();  // Written below.
-  Sheet sheet = make_sheet(config.width, head.lines.size());
-  lay_out_plans(sheet, world, one ? 1 : choice.shown.size());
-  const StoreyRasters rasters = rasterise_storeys(world, index, choice.shown, sheet.grid);
+  Layout layout = make_layout(config.width, head.lines.size());
+  lay_out_plans(layout, world, one ? 1 : choice.shown.size());
+  const StoreyRasters rasters = rasterise_storeys(world, index, choice.shown, layout.grid);
   const std::span<const StoreyRaster> storeys = rasters.storeys;
   if (choice.left_out > 0) {
     head.lines.back() = fmt::format(
@@ -271,41 +274,41 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
     if (!one || storeys[s].storey == config.storey) plans.push_back(s);
   }
   const HeightScale scale = make_height_scale(storeys);
-  const PlacedMarks marks{place_avatars(avatars, storeys, sheet.grid),
-                          place_way(config.path, storeys, sheet.grid)};
+  const PlacedMarks marks{place_avatars(avatars, storeys, layout.grid),
+                          place_path(config.path, storeys, layout.grid)};
 
   // The lower part: the fan and, beside it, section and legend; without the fan they share the row.
-  const double unit = sheet.unit, top = sheet.plans_end() + 44 * unit;
+  const double unit = layout.unit, top = layout.plans_end() + 44 * unit;
   const double axis = 64 * unit, names = 30 * unit;
   FanLayout fan;
-  double right = sheet.margin;
+  double right = layout.margin;
   if (!one) {
-    fan = lay_out_fan(storeys, sheet.grid, sheet.inner * 0.56 - names, sheet.width * 0.66);
-    right += sheet.inner * 0.6;
+    fan = lay_out_fan(storeys, layout.grid, layout.inner * 0.56 - names, layout.width * 0.66);
+    right += layout.inner * 0.6;
   }
-  const double section_width = one ? sheet.inner * 0.62 : sheet.inner * 0.4;
+  const double section_width = one ? layout.inner * 0.62 : layout.inner * 0.4;
   const SectionPlace section =
-      place_section(sheet, storeys, {right + axis, top + 16 * unit}, section_width - axis);
+      place_section(layout, storeys, {right + axis, top + 16 * unit}, section_width - axis);
   const double section_end = section.rect.y + section.rect.height + 40 * unit;
   const Point legend =
-      one ? Point{sheet.margin + sheet.inner * 0.68, top} : Point{right, section_end + 44 * unit};
+      one ? Point{layout.margin + layout.inner * 0.68, top} : Point{right, section_end + 44 * unit};
   const double bottom = std::max({section_end, legend.y + 226 * unit, one ? 0 : top + fan.height});
 
-  Canvas canvas(config.width, static_cast<int32_t>(std::ceil(bottom + sheet.margin)), kPaper);
-  draw_head(canvas, sheet, head);
-  draw_plans(canvas, sheet, world, storeys, plans, scale, marks);
+  Canvas canvas(config.width, static_cast<int32_t>(std::ceil(bottom + layout.margin)), kPaper);
+  draw_head(canvas, layout, head);
+  draw_plans(canvas, layout, world, storeys, plans, scale, marks);
   if (!one) {
-    TextStyle name = style(sheet, 12);
+    TextStyle name = style(layout, 12);
     name.bold = true;
-    draw_fan(canvas, static_cast<int32_t>(sheet.margin + names),
-             static_cast<int32_t>(top + 14 * unit), fan, storeys, sheet.grid, style(sheet, 11).size,
-             scale, marks);
-    draw_text(canvas, {sheet.margin, top},
+    draw_fan(canvas, static_cast<int32_t>(layout.margin + names),
+             static_cast<int32_t>(top + 14 * unit), fan, storeys, layout.grid,
+             style(layout, 11).size, scale, marks);
+    draw_text(canvas, {layout.margin, top},
               storeys.size() > 1 ? "The storeys pulled apart" : "Seen at a slant", name);
   }
-  draw_titled_section(canvas, sheet, world, section,
-                      index.section_row(sheet.grid.cell_z, sheet.grid.cells_z), scale);
-  draw_legend(canvas, sheet, legend, scale, world.class_name, marks);
+  draw_titled_section(canvas, layout, world, section,
+                      index.section_row(layout.grid.cell_z, layout.grid.cells_z), scale);
+  draw_legend(canvas, layout, legend, scale, world.class_name, marks);
   return std::move(canvas).take();
 }
 

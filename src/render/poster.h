@@ -10,7 +10,7 @@
 #include "throng/picture.h"
 #include "throng/result.h"
 
-/// The whole picture: title, plans, fan, section, legend, laid out on one sheet.
+/// The whole picture: title, plans, fan, section, legend, laid out as a poster.
 namespace throng {
 
 struct PosterText {

@@ -9,8 +9,8 @@
 #include "render/text.h"
 #include "render/views.h"
 
-// A section: the world cut along x. Matter is dark, free space light, and the
-// floors lie in it as coloured lines, so that the levels are seen as they stack.
+// Draws a section: the world cut along x. Solid is dark, free space light, and floors are coloured
+// lines.
 namespace throng {
 namespace {
 
@@ -22,7 +22,7 @@ constexpr Rgb kAir{250, 251, 253};
 Section cut_section(const PictureWorld& world, const RasterGrid& grid, int32_t row,
                     int32_t columns) {
   Section section;
-  section.gaps.resize(static_cast<size_t>(columns));
+  section.free_spans.resize(static_cast<size_t>(columns));
   section.z = world.origin.z + (row + 0.5) * world.cell;
   std::vector<int32_t> cells;  // Sampled, not averaged: half a wall would be no wall.
   for (int32_t c = 0; c < columns; ++c) {
@@ -39,14 +39,14 @@ Section cut_section(const PictureWorld& world, const RasterGrid& grid, int32_t r
                                  ? std::numeric_limits<double>::infinity()
                                  : world.origin.y + tile.ceiling[cell] / 1000.0;
       const auto avatar_class = static_cast<size_t>(world.avatar_class);
-      section.gaps[c].push_back({.floor = world.origin.y + tile.floor[cell] / 1000.0,
-                                 .ceiling = ceiling,
-                                 .stands = tile.clearance[avatar_class][cell] > 0});
+      section.free_spans[c].push_back({.floor = world.origin.y + tile.floor[cell] / 1000.0,
+                                       .ceiling = ceiling,
+                                       .stands = tile.clearance[avatar_class][cell] > 0});
     }
   }
-  for (auto& gaps : section.gaps) {
-    std::sort(gaps.begin(), gaps.end(),
-              [](const SectionGap& a, const SectionGap& b) { return a.floor < b.floor; });
+  for (auto& free_spans : section.free_spans) {
+    std::sort(free_spans.begin(), free_spans.end(),
+              [](const SectionSpan& a, const SectionSpan& b) { return a.floor < b.floor; });
   }
   return section;
 }
@@ -57,21 +57,21 @@ void draw_section(Canvas& canvas, const Rect& rect, const Section& section, doub
   const auto y_of = [&](double height) {
     return std::clamp(bottom - (height - low) * pixels_per_metre, rect.y, bottom);
   };
-  const double column = rect.width / static_cast<double>(section.gaps.size());
+  const double column = rect.width / static_cast<double>(section.free_spans.size());
   const double line = std::max(1.5, text * 0.22);
-  for (size_t c = 0; c < section.gaps.size(); ++c) {
+  for (size_t c = 0; c < section.free_spans.size(); ++c) {
     const double x = rect.x + static_cast<double>(c) * column;
-    if (section.gaps[c].empty()) continue;
+    if (section.free_spans[c].empty()) continue;
     canvas.fill({x, rect.y, column, rect.height}, kAir);
-    const double top = y_of(section.gaps[c].back().floor);
+    const double top = y_of(section.free_spans[c].back().floor);
     canvas.fill({x, top, column, bottom - top}, kMatter);
-    for (const SectionGap& gap : section.gaps[c]) {
-      const double ceiling = y_of(gap.ceiling), floor = y_of(gap.floor);
+    for (const SectionSpan& span : section.free_spans[c]) {
+      const double ceiling = y_of(span.ceiling), floor = y_of(span.floor);
       canvas.fill({x, ceiling, column, floor - ceiling}, kAir);
     }
-    for (const SectionGap& gap : section.gaps[c]) {
-      const double floor = y_of(gap.floor);
-      canvas.fill({x, floor, column, line}, gap.stands ? scale.colour(gap.floor) : kHatch);
+    for (const SectionSpan& span : section.free_spans[c]) {
+      const double floor = y_of(span.floor);
+      canvas.fill({x, floor, column, line}, span.stands ? scale.colour(span.floor) : kHatch);
     }
   }
   canvas.frame({rect.x - 1, rect.y - 1, rect.width + 2, rect.height + 2}, 1, kRule);

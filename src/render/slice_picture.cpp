@@ -11,7 +11,7 @@
 #include "render/text.h"
 #include "throng/picture.h"
 
-// A slice as [ML06] figures 9 and 10 show it: darker is higher, the contrast stretched, the far
+// Draws a slice as in [ML06] figures 9 and 10: darker is higher, the contrast stretched, the far
 // plane white. Cells become blocks of whole pixels, or share a pixel that shows the highest of
 // them: a wall one cell wide must stay visible.
 namespace throng {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+// Finds the storeys of a world and chooses those to show. Reads each level tile once.
 namespace throng {
 namespace {
 
@@ -70,7 +71,7 @@ int32_t StoreyIndex::section_row(int32_t first, int32_t count) const {
   return floors(middle) * 10 >= floors(best) * 6 ? middle : best;
 }
 
-StoreyChoice StoreyIndex::choose(int32_t wanted, size_t most) const {
+StoreyChoice StoreyIndex::choose(int32_t wanted, size_t max_count) const {
   const double all = std::accumulate(area_.begin(), area_.end(), 0.0);
   StoreyChoice choice;
   choice.shown.resize(area_.size());
@@ -82,7 +83,7 @@ StoreyChoice StoreyIndex::choose(int32_t wanted, size_t most) const {
   while (choice.shown.size() > 1) {
     const auto smallest = std::min_element(choice.shown.begin(), choice.shown.end(),
                                            [&](int32_t a, int32_t b) { return rank(a) < rank(b); });
-    if (choice.shown.size() <= most && rank(*smallest) >= kCrumb * all) break;
+    if (choice.shown.size() <= max_count && rank(*smallest) >= kCrumb * all) break;
     ++choice.left_out;
     choice.shown.erase(smallest);
   }

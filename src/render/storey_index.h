@@ -60,8 +60,9 @@ class StoreyIndex {
   /// The middle row of cells of [first, first + count), or one of its middle half that crosses many
   /// more floors.
   [[nodiscard]] int32_t section_row(int32_t first, int32_t count) const;
-  /// The `most` largest storeys, without crumbs; `wanted` is among them in any case (-1: none).
-  [[nodiscard]] StoreyChoice choose(int32_t wanted, size_t most) const;
+  /// The `max_count` largest storeys, without crumbs; `wanted` is among them in any case (-1:
+  /// none).
+  [[nodiscard]] StoreyChoice choose(int32_t wanted, size_t max_count) const;
 
  private:
   std::vector<int32_t> storeys_;  // of each level tile

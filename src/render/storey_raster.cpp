@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+// Averages the floors of level tiles into one image a storey. Linear in the cells of all level
+// tiles.
 namespace throng {
 namespace {
 
@@ -75,43 +77,43 @@ void find_pieces(const LevelTileContent& tile, size_t level, std::vector<Piece>&
 }
 
 // A level tile belongs to one storey as a whole, but near a ramp or a stair it can hold pieces of
-// several. A piece far from its storey's height goes to one around at just its own height, the
-// larger piece first, if nothing lies there yet; if something does, it is not shown. Pieces of
-// storeys that are not shown have no home: they join the nearest storey, or are not shown either.
-// At home, a piece keeps the cells where no larger one is: ground under the low end of a ramp has
-// the ramp's storey.
-std::vector<size_t> deal_pieces(std::span<Piece> pieces, std::span<const size_t> home,
-                                const LocalStoreys& local) {
-  constexpr double kAtHome = 1500, kJustRight = 500, kReach = 2500;  // mm
+// several. A piece far from its storey's height is assigned to a storey around at about its own
+// height, larger pieces first, if its cells are free there; else it is not shown. A piece of a
+// storey that is not shown joins the nearest storey, or is not shown either. In its own storey a
+// piece keeps the cells that no larger one occupies: ground under the low end of a ramp has the
+// ramp's storey.
+std::vector<size_t> assign_pieces(std::span<Piece> pieces, std::span<const size_t> home,
+                                  const LocalStoreys& local) {
+  constexpr double kMaxOwnOffset = 1500, kMaxOtherOffset = 500, kMaxOffset = 2500;  // mm
   std::vector<size_t> order(pieces.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return pieces[a].count > pieces[b].count; });
-  std::vector<CellMask> taken(local.storey.size());
+  std::vector<CellMask> occupied(local.storey.size());
   std::vector<size_t> storey(pieces.size(), kNotShown);
   for (const size_t p : order) {
     const size_t own = home[pieces[p].level];
     const auto distance = [&](size_t s) { return std::fabs(pieces[p].mean - local.height[s]); };
     size_t at = 0;  // Where its own storey is in `local`.
     while (at < local.storey.size() && local.storey[at] != own) ++at;
-    const bool homeless = at == local.storey.size();
-    const bool stray = !homeless && distance(at) > kAtHome;
-    size_t best = homeless ? kNotShown : at;
-    if (homeless || stray) {
-      double least = homeless ? kReach : kJustRight;
+    const bool is_hidden = at == local.storey.size();
+    const bool is_far = !is_hidden && distance(at) > kMaxOwnOffset;
+    size_t best = is_hidden ? kNotShown : at;
+    if (is_hidden || is_far) {
+      double smallest = is_hidden ? kMaxOffset : kMaxOtherOffset;
       for (size_t s = 0; s < local.storey.size(); ++s) {
-        if (distance(s) >= least) continue;
-        if ((taken[s] & pieces[p].cells).any()) {
-          if (stray && distance(at) > kReach && best == at) best = kNotShown;
+        if (distance(s) >= smallest) continue;
+        if ((occupied[s] & pieces[p].cells).any()) {
+          if (is_far && distance(at) > kMaxOffset && best == at) best = kNotShown;
           continue;
         }
-        least = distance(s);
+        smallest = distance(s);
         best = s;
       }
     }
     if (best == kNotShown) continue;
-    pieces[p].cells &= ~taken[best];
-    taken[best] |= pieces[p].cells;
+    pieces[p].cells &= ~occupied[best];
+    occupied[best] |= pieces[p].cells;
     storey[p] = local.storey[best];
   }
   return storey;
@@ -124,7 +126,7 @@ uint64_t add_tile(std::span<const LevelTileContent> levels, std::span<const size
                   std::span<const size_t> place, std::vector<std::vector<Sums>>& sums) {
   std::vector<Piece> pieces;
   for (size_t l = 0; l < levels.size(); ++l) find_pieces(levels[l], l, pieces);
-  const std::vector<size_t> storeys = deal_pieces(pieces, home, local);
+  const std::vector<size_t> storeys = assign_pieces(pieces, home, local);
   uint64_t left_out = 0;
   for (size_t p = 0; p < pieces.size(); ++p) {
     if (storeys[p] == kNotShown) {

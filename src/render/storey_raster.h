@@ -24,7 +24,7 @@ struct RasterGrid {
   [[nodiscard]] double texel_metres() const { return width_metres() / width; }
 };
 
-/// The grid of the world's bounds with at most this many texels each way.
+/// The grid of the world's bounds with at most this many texels along each axis.
 [[nodiscard]] RasterGrid make_raster_grid(const PictureWorld& world, int32_t max_width,
                                           int32_t max_height);
 
@@ -52,7 +52,7 @@ struct StoreyRaster {
 
 struct StoreyRasters {
   std::vector<StoreyRaster> storeys;
-  double left_out_area = 0;  ///< Floor that no storey here has. [m^2]
+  double left_out_area = 0;  ///< Floor of no storey that is shown. [m^2]
 };
 
 /// Rasters of the storeys `shown`; small pieces of others join them where they lie near and free.

@@ -8,10 +8,11 @@
 #include <utility>
 #include <vector>
 
-// A glyph is a few strokes on a grid: baseline at 4, small letters up to 12, capitals up to 16,
-// descenders down to 0. A stroke is a list of corners, each two characters (0-9, then a = 10 ...),
-// and strokes are parted by blanks. A stroke that begins with '~' is rounded by cutting its corners
-// (Chaikin, 1974), three times; a corner on a straight run limits how far the rounding reaches.
+// The font: a glyph is a few strokes on a grid: baseline at 4, small letters up to 12, capitals up
+// to 16, descenders down to 0. A stroke is a list of corners, each two characters (0-9, then a = 10
+// ...), and strokes are separated by blanks. A stroke that begins with '~' is rounded by cutting
+// its corners (Chaikin, 1974), three times; a corner on a straight run limits how far the rounding
+// reaches.
 namespace throng {
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "render/canvas.h"
 
-/// Lettering with a stroke font of our own, sharp at any size. ASCII; other bytes draw as a box.
+/// Text in a built-in stroke font, sharp at any size. ASCII; other bytes draw as a box.
 namespace throng {
 
 enum class Align { kLeft, kCentre, kRight };
@@ -25,7 +25,7 @@ struct TextStyle {
 /// Draws one line of text whose baseline begins (or centres, or ends) at `at`.
 void draw_text(Canvas& canvas, Point at, std::string_view text, const TextStyle& style);
 
-/// The longest beginning of `text` that fits, with ".." if it was cut.
+/// The longest beginning of `text` that fits, followed by ".." if it was cut.
 [[nodiscard]] std::string fit_text(std::string_view text, double width, const TextStyle& style);
 
 }  // namespace throng

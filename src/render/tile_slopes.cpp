@@ -10,11 +10,11 @@
 namespace throng {
 namespace {
 
-// Of a cell's row of floor: the gentler of two differences around it, or, where one of these is
-// missing, of the two beside it.
+// The slope of a cell along a row: the smaller of the two differences around it, or, if one of them
+// is missing, of the two next to it.
 template <class Sample, class Has>
 int32_t slope_along(int32_t i, Sample sample, Has has) {
-  const auto is_there = [&](int32_t k) { return k >= 0 && k < 64 && has(k); };
+  const auto is_there = [&](int32_t k) { return k >= 0 && k < kTileCells && has(k); };
   for (const int32_t middle : {i, i + 1, i - 1}) {
     if (!is_there(middle - 1) || !is_there(middle) || !is_there(middle + 1)) continue;
     return minmod(sample(middle) - sample(middle - 1), sample(middle + 1) - sample(middle));

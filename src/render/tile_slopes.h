@@ -7,12 +7,12 @@
 
 #include "world/ground.h"
 
-/// How steep the ground of level tiles is: what their nodes promise is a limit of some class, for
-/// the bake asks no more, and flat floor on which only the steepest walkers have room promises
-/// theirs.
+/// The slope of the ground of level tiles. It is measured, because a node promises only the limit
+/// of some class: flat floor on which only the class with the steepest limit fits promises that
+/// limit.
 namespace throng {
 
-/// Reads the tile that was asked for last once.
+/// Keeps the level tile that was read last.
 class TileSlopes {
  public:
   explicit TileSlopes(const WorldData& world) : world_(&world) {}

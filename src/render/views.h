@@ -13,7 +13,7 @@
 /// The three views of a world: plan, section, fan. Each draws into a part of a canvas.
 namespace throng {
 
-/// Which colour a height has, the same in all views of a picture.
+/// The colour of a height, the same in all views of a picture.
 struct HeightScale {
   double low = 0, high = 1;  ///< [m]
   [[nodiscard]] Rgb colour(double height) const;
@@ -38,21 +38,21 @@ struct PlacedAvatar {
                                                       std::span<const StoreyRaster> storeys,
                                                       const RasterGrid& grid);
 
-/// A point of a way and the storey whose floor it is on.
+/// A point of a path and the storey whose floor it is on.
 struct DrawnPoint {
   Vec3d position;
   size_t storey = 0;
 };
 
-/// Points along a way, two a texel, where it is within a metre of the floor of a storey.
-[[nodiscard]] std::vector<DrawnPoint> place_way(std::span<const Vec3d> way,
-                                                std::span<const StoreyRaster> storeys,
-                                                const RasterGrid& grid);
+/// Points along a path, two a texel, where it is within a metre of the floor of a storey.
+[[nodiscard]] std::vector<DrawnPoint> place_path(std::span<const Vec3d> path,
+                                                 std::span<const StoreyRaster> storeys,
+                                                 const RasterGrid& grid);
 
 /// What is drawn over the floors.
 struct PlacedMarks {
   std::vector<PlacedAvatar> avatars;
-  std::vector<DrawnPoint> way;
+  std::vector<DrawnPoint> path;
 };
 
 /// Storey `index` seen from above, x to the right, z down; a texel is a square of `block` pixels.
@@ -62,17 +62,17 @@ void draw_plan(Canvas& canvas, int32_t x, int32_t y, double pixels_per_texel,
                const HeightScale& scale, const PlacedMarks& marks);
 
 /// Free space over one cell of the section. [m]
-struct SectionGap {
+struct SectionSpan {
   double floor = 0;
   double ceiling = 0;
   bool stands = false;
 };
 
-/// What a cut along x meets in one row of cells, sampled at `columns` places. Column c has gaps[c],
-/// lowest first.
+/// The free spans that a cut along x meets in one row of cells, sampled at `columns` places; those
+/// of a column lowest first.
 struct Section {
-  double z = 0;  ///< Where it is cut. [m]
-  std::vector<std::vector<SectionGap>> gaps;
+  double z = 0;  ///< Position of the cut. [m]
+  std::vector<std::vector<SectionSpan>> free_spans;
 };
 
 [[nodiscard]] Section cut_section(const PictureWorld& world, const RasterGrid& grid, int32_t row,
@@ -83,7 +83,7 @@ struct Section {
 void draw_section(Canvas& canvas, const Rect& rect, const Section& section, double low,
                   double pixels_per_metre, double text, const HeightScale& scale);
 
-/// How the fan lies on paper.
+/// The layout of the fan.
 struct FanLayout {
   double scale = 1;   ///< Pixels a metre of ground.
   double lift = 1;    ///< Pixels a metre of height.
@@ -97,7 +97,7 @@ struct FanLayout {
 [[nodiscard]] FanLayout lay_out_fan(std::span<const StoreyRaster> storeys, const RasterGrid& grid,
                                     double width, double max_height);
 
-/// All storeys from above at a slant, pulled apart, the highest on top.
+/// All storeys from above at a slant, apart from each other, the highest on top.
 void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
               std::span<const StoreyRaster> storeys, const RasterGrid& grid, double text,
               const HeightScale& scale, const PlacedMarks& marks);

@@ -58,7 +58,7 @@ Atlas coded_atlas() {
   return atlas;
 }
 
-// What the card makes of blocks is what we make of them, near and far.
+// The card decodes blocks as we do, near and far.
 TEST(GlDrawing, AtlasesOfBlocksStayBlocksAndLookTheSame) {
   AtlasConfig made;
   made.frames = 4;
@@ -96,11 +96,11 @@ TEST(GlDrawing, AtlasesOfBlocksStayBlocksAndLookTheSame) {
     ASSERT_TRUE(empty);
     for (size_t i = 0; i < a->rgb.size(); i += 3) {
       const auto far = [&](const Image& image, const Image& other) {
-        int32_t most = 0;
+        int32_t largest = 0;
         for (size_t c = i; c < i + 3; ++c) {
-          most = std::max(most, std::abs(image.rgb[c] - other.rgb[c]));
+          largest = std::max(largest, std::abs(image.rgb[c] - other.rgb[c]));
         }
-        return most > 8;
+        return largest > 8;
       };
       people += far(*b, *empty) ? 1 : 0;
       differ += far(*a, *b) ? 1 : 0;
@@ -217,7 +217,7 @@ Avatars people_on_stage() {
   return avatars;
 }
 
-// Exact on one machine's llvmpipe; others' vector instructions may round a pixel otherwise.
+// Exact on the llvmpipe of one machine; other vector instructions may round a pixel differently.
 TEST(GlDrawing, AStageLooksAsItDid) {
   Drawing drawing = made_drawing();
   ASSERT_TRUE(drawing.set_scene(stage_with_wall(), {}));
@@ -239,9 +239,9 @@ size_t pixels_that_differ(const Image& a, const Image& b) {
   return count;
 }
 
-// The card stands askew, the body upright: who is behind a wall must be cut by it in a straight
-// line, and nothing of him may be seen in front of it.
-TEST(GlDrawing, AWallHidesWhoIsBehindItAndNothingElse) {
+// The card is inclined, the body upright: a wall must cut an avatar behind it in a straight line,
+// and no part of the avatar may be visible in front of the wall.
+TEST(GlDrawing, AWallHidesAvatarsBehindItAndNothingElse) {
   Drawing drawing = made_drawing();
   ASSERT_TRUE(drawing.add_atlas(people()));
   DrawingConfig config = stage_config();

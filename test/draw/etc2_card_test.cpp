@@ -11,7 +11,7 @@
 #include "impostor/etc2_codec.h"
 #include "throng_draw/draw.h"
 
-// What a driver makes of random blocks is what we make of them, texel by texel.
+// A driver decodes random blocks as we do, texel by texel.
 namespace throng {
 namespace {
 
@@ -43,9 +43,9 @@ GLuint shader(GLenum kind, const char* text) {
   return name;
 }
 
-// Uploads blocks to the current context and reads texels as whole numbers up to `most`; rows from
-// the first block's.
-std::vector<uint32_t> read_back(GLenum kind, const std::vector<uint8_t>& blocks, int most) {
+// Uploads blocks to the current context and reads texels as whole numbers up to `max_value`; rows
+// from the first block's.
+std::vector<uint32_t> read_back(GLenum kind, const std::vector<uint8_t>& blocks, int max_value) {
   GLuint textures[2] = {};
   glGenTextures(2, textures);
   glActiveTexture(GL_TEXTURE0);
@@ -69,15 +69,15 @@ std::vector<uint32_t> read_back(GLenum kind, const std::vector<uint8_t>& blocks,
     precision highp float;
     precision highp int;
     uniform highp sampler2D blocks;
-    uniform float most;
+    uniform float max_value;
     out highp uvec4 texel;
     void main() {
-      texel = uvec4(texelFetch(blocks, ivec2(gl_FragCoord.xy), 0) * most + 0.5);
+      texel = uvec4(texelFetch(blocks, ivec2(gl_FragCoord.xy), 0) * max_value + 0.5);
     })"));
   glLinkProgram(program);
   glUseProgram(program);
   glUniform1i(glGetUniformLocation(program, "blocks"), 0);
-  glUniform1f(glGetUniformLocation(program, "most"), static_cast<float>(most));
+  glUniform1f(glGetUniformLocation(program, "max_value"), static_cast<float>(max_value));
   GLuint vertices = 0;
   glGenVertexArrays(1, &vertices);
   glBindVertexArray(vertices);

@@ -36,7 +36,7 @@ class Figure {
   [[nodiscard]] double centre() const { return atlas_.shape.centre; }
   Drawing& drawing() { return drawing_; }
 
-  // At the origin, heading as told [turns], along `up`; nothing: drawn as those who do not lean.
+  // At the origin, with a heading [turns], along `ups`; if empty, drawn as an upright avatar.
   DrawingReport draw(const DrawingConfig& config, double heading, std::span<const Vec3d> ups,
                      Image& image) {
     const std::vector<float> zero{0};
@@ -93,7 +93,7 @@ size_t count(const std::vector<uint8_t>& mask) {
 
 // The least turn from up to +X is one by a right angle around -Z: an eye along Z sees the upright
 // figure's picture, turned.
-TEST(GlLeaning, APictureOfWhoLeansIsThatOfWhoStandsTurned) {
+TEST(GlLeaning, ALeaningAvatarLooksLikeAnUprightOneTurned) {
   for (const bool mesh : {false, true}) {
     Figure figure(mesh);
     const double c = figure.centre();
@@ -117,8 +117,8 @@ TEST(GlLeaning, APictureOfWhoLeansIsThatOfWhoStandsTurned) {
   }
 }
 
-// An axis that is straight up makes the picture of those who have none, whatever the eye.
-TEST(GlLeaning, WhoDoesNotLeanIsDrawnAsEver) {
+// With an axis straight up the picture is that without an axis, from any eye.
+TEST(GlLeaning, AnAvatarWithAnUprightAxisIsDrawnAsWithoutOne) {
   for (const bool mesh : {false, true}) {
     Figure figure(mesh);
     const double c = figure.centre();
@@ -159,7 +159,7 @@ Reach reach_of(const std::vector<uint8_t>& mask, double metres_high) {
 }
 
 // A wall that faces +X, one that faces -X, a slope, a ceiling: figures reach away from them.
-TEST(GlLeaning, WhoIsOnAWallReachesAwayFromItAndNotUp) {
+TEST(GlLeaning, AnAvatarOnAWallExtendsAwayFromItAndNotUp) {
   for (const bool mesh : {false, true}) {
     Figure figure(mesh);
     DrawingConfig config = looking({0, 0, 10}, {0, 0, 0});
@@ -190,9 +190,9 @@ TEST(GlLeaning, WhoIsOnAWallReachesAwayFromItAndNotUp) {
   }
 }
 
-// The sun straight above: who reaches out from a wall throws a long shadow on the ground below, who
-// stands there a short one.
-TEST(GlLeaning, WhoLeansThrowsAShadowOfHisOwn) {
+// The sun straight above: an avatar on a wall casts a long shadow on the ground below, an upright
+// one a short shadow.
+TEST(GlLeaning, ALeaningAvatarCastsItsOwnShadow) {
   Figure figure(false);
   Scene ground;
   ground.add_quad({-9, -3, -9}, {-9, -3, 9}, {9, -3, 9}, {9, -3, -9});
@@ -211,8 +211,8 @@ TEST(GlLeaning, WhoLeansThrowsAShadowOfHisOwn) {
   EXPECT_GT(shadow({1, 0, 0}), 2 * shadow({0, 1, 0}));
 }
 
-// Whose middle is in the picture is drawn, who is well outside is not.
-TEST(GlLeaning, WhoIsNotInThePictureIsLeftOutAndNobodyElse) {
+// An avatar whose middle is in the picture is drawn; one well outside is not.
+TEST(GlLeaning, OnlyAvatarsOutsideThePictureAreLeftOut) {
   Context context;
   AtlasConfig made;
   const auto atlas = build_atlas(built_in_character(), made, context);

@@ -155,7 +155,7 @@ TEST(GlSurfaces, HolesShowWhatIsBehindThemAndLetTheSunThrough) {
   EXPECT_GT(2 * light(Opacity::kHoles), 3 * light(Opacity::kOpaque));
 }
 
-TEST(GlSurfaces, WhatIsBlendedLetsAsMuchThroughAsItIsSeeThrough) {
+TEST(GlSurfaces, ABlendedSurfaceLetsLightThroughByItsTransparency) {
   Scene scene = sign(Opacity::kBlended);
   scene.materials[0] = {
       .name = "pane", .colour = {0, 0, 1, 0.5F}, .texture1 = 0, .opacity = Opacity::kBlended};
@@ -201,7 +201,7 @@ TEST(TextureLayers, AreOfOneSizeWithinTheBudget) {
   Texture large{.name = "large", .width = 300, .height = 5, .rgba = {}};
   large.rgba.assign(size_t{300} * 5 * 4, 77);
   scene.textures.push_back(large);
-  EXPECT_EQ(make_texture_layers(scene, 1 << 30).layers, 1);  // Nobody uses the other.
+  EXPECT_EQ(make_texture_layers(scene, 1 << 30).layers, 1);  // No part uses the other.
   scene.materials[1].texture1 = 2;
   layers = make_texture_layers(scene, 1 << 30);
   EXPECT_EQ(layers.side, 512);
@@ -210,7 +210,7 @@ TEST(TextureLayers, AreOfOneSizeWithinTheBudget) {
   EXPECT_EQ(make_texture_layers(scene, 2 * 64 * 64 * 4).side, 64);
   EXPECT_EQ(make_texture_layers(scene, 0).side, 16);
 
-  scene.textures[1].rgba.clear();  // Not what its size says.
+  scene.textures[1].rgba.clear();  // Not of its size.
   layers = make_texture_layers(scene, 1 << 30);
   EXPECT_EQ(layers.layers, 1);
   EXPECT_EQ(layers.of_texture[1].layer1, 0U);

@@ -80,8 +80,8 @@ Shares shares_of(const Image& image) {
   return out;
 }
 
-// All 32 borders of columns by all 7 of rows: the pixels are dealt out to the four views around in
-// the shares that the eye's place between them asks.
+// All 32 borders of columns by all 7 of rows: the pixels are divided among the four views around
+// in the shares that follow from the eye's direction.
 TEST(ViewBlend, EveryBorderShowsTheViewsOnBothSidesByTheirShares) {
   const Atlas atlas = plain_views();
   Drawing drawing = drawing_of(atlas);
@@ -133,14 +133,14 @@ const Atlas& figure() {
 
 // The largest and the mean change of a picture from one step of the eye to the next, of half a
 // degree each: what all channels of all pixels differ by.
-struct Jumps {
+struct Changes {
   double largest = 0, mean = 0;
 };
 template <class At>
-Jumps links_along(Drawing& drawing, int32_t steps, double view_blend, At at) {
+Changes changes_along(Drawing& drawing, int32_t steps, double view_blend, At at) {
   OneAvatar avatar;
   const DrawnCrowd crowd = avatar.crowd();
-  Jumps out;
+  Changes out;
   Image last;
   for (int32_t i = 0; i <= steps; ++i) {
     DrawingConfig config = at(i * 0.5 / 360);
@@ -161,12 +161,12 @@ TEST(ViewBlend, ATurningEyeChangesThePictureGradually) {
   Drawing drawing = drawing_of(figure());
   const auto around = [](double turns) { return facing(figure().shape, turns, 0.03, 60); };
   const auto over = [](double turns) { return facing(figure().shape, 0.1, turns, 60); };
-  const auto compare = [&](const char* way, const auto& at, int32_t steps) {
-    const Jumps nearest = links_along(drawing, steps, 0, at);
-    const Jumps blended = links_along(drawing, steps, 0.5, at);
-    std::printf("%s: largest jump %.0f by the nearest view, %.0f blended; mean %.0f, %.0f\n", way,
-                nearest.largest, blended.largest, nearest.mean, blended.mean);
-    EXPECT_LT(blended.largest, 0.3 * nearest.largest) << way;
+  const auto compare = [&](const char* name, const auto& at, int32_t steps) {
+    const Changes nearest = changes_along(drawing, steps, 0, at);
+    const Changes blended = changes_along(drawing, steps, 0.5, at);
+    std::printf("%s: largest change %.0f by the nearest view, %.0f blended; mean %.0f, %.0f\n",
+                name, nearest.largest, blended.largest, nearest.mean, blended.mean);
+    EXPECT_LT(blended.largest, 0.3 * nearest.largest) << name;
   };
   compare("around", around, 180);
   compare("over", over, 120);

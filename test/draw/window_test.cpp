@@ -12,14 +12,14 @@
 #include "throng/character.h"
 #include "throng_draw/draw.h"
 
-// A picture goes into a window at once where that keeps depths and nothing else asks for them, else
-// by way of a picture of our own: the same in both.
+// A picture is drawn directly into a window that has depths, unless something else needs them; else
+// it is copied from an offscreen target. Both give the same picture.
 namespace throng {
 namespace {
 
 constexpr int32_t kWide = 200, kHigh = 120;
 
-// A window that nobody sees, current as long as it lives.
+// An invisible window, current as long as it lives.
 class Window {
  public:
   explicit Window(EGLint depth_bits) {
@@ -115,7 +115,7 @@ std::vector<uint8_t> shown(EGLint depth_bits, HiddenCulling culling, const Scene
   return out;
 }
 
-// A driver may keep a window's rows the other way around, and then decides ties at edges otherwise.
+// A driver may store a window's rows in reverse order, and then decides ties at edges differently.
 void expect_alike(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
   ASSERT_EQ(a.size(), b.size());
   size_t far = 0;

@@ -7,7 +7,7 @@
 #include "world/air_data.h"
 
 // An air file that passes the checks must answer every look-up without reading past its bytes. The
-// input is tried as a file, and as a tree's words in a file whose sum is right.
+// input is tried as a file, and as the words of a tree in a file whose checksum is right.
 namespace throng {
 namespace {
 
@@ -15,7 +15,7 @@ void ask(const AirTree& tree) {
   static volatile uint64_t sum = 0;
   uint64_t nodes = 0;
   tree.for_each([&](const AirCube& cube, uint32_t word) {
-    if (++nodes > tree.nodes.size()) std::abort();  // more than there are: in circles
+    if (++nodes > tree.nodes.size()) std::abort();  // more than there are: a cycle
     if (air_kind(word) == AirKind::kLeaf) sum = sum + tree.leaves[air_number(word)];
     const bool free = tree.is_free(cube.x, cube.y, cube.z);
     if (air_kind(word) == AirKind::kFree && !free) std::abort();

@@ -6,7 +6,7 @@
 #include "import/polygon.h"
 
 // Bytes become rings of small whole numbers: touching, crossing and degenerate rings are then
-// common. A byte of 255 begins a new ring, 254 makes the next corner anything at all.
+// common. A byte of 255 begins a new ring, 254 makes the next corner arbitrary.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   std::vector<throng::Vec3d> points;
   std::vector<uint32_t> rings{0};

@@ -8,7 +8,7 @@
 #include "world/region_data.h"
 
 // Files of regions and links that pass the checks must answer every look-up without reading past
-// their bytes. The input is tried as a file, and as the numbers of one whose sum is right.
+// their bytes. The input is tried as a file, and as the numbers of one whose checksum is right.
 namespace throng {
 namespace {
 
@@ -114,7 +114,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   (void)read_graph_index({bytes, size}, "fuzz", WorldData{}, 0);
   try_packed(bytes, size);
   if (size < 8) return 0;
-  // The first bytes say how long the arrays are.
+  // The first bytes give the lengths of the arrays.
   const uint8_t *at = bytes + 8, *end = bytes + size;
   RegionTables t;
   t.classes = bytes[4];

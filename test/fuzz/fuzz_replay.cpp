@@ -8,8 +8,8 @@
 #include "core/hash.h"
 #include "record/replay_file.h"
 
-// Checksums would keep the fuzzer out, so they are made right first: what is behind them must stand
-// by itself. Whatever opens must be readable in any order without reading past its bytes.
+// Checksums would stop the fuzzer, so they are corrected first: the code behind them must not rely
+// on them. A file that opens must be readable in any order without reading past its bytes.
 namespace {
 
 void seal(std::vector<uint8_t>& bytes) {
@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   std::vector<uint8_t> bytes(data, data + size);
   for (const bool sealed : {false, true}) {
     if (sealed) seal(bytes);
-    // A copy of the exact size, so that the sanitizer sees a byte too far.
+    // A copy of the exact size, so that the sanitizer detects a read past its end.
     const std::vector<uint8_t> exact(bytes.begin(), bytes.end());
     auto replay = Replay::from_bytes(exact, "fuzz");
     if (!replay) continue;

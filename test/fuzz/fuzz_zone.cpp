@@ -5,8 +5,8 @@
 
 #include "world/ground.h"
 
-// A zone that passes the checks must answer every question that a look-up, a move, a crowd or a
-// picture can ask of it, without reading past its bytes.
+// A zone that passes the checks must answer every query of a look-up, a move, a crowd or a
+// picture without reading past its bytes.
 namespace throng {
 namespace {
 

@@ -89,7 +89,7 @@ TEST_F(Teapot, IsABodyAHandleASpoutAndALidWithPoles) {
   EXPECT_EQ(one, 104u);  // 52 borders.
   EXPECT_EQ(collapsed, 8u);
   EXPECT_EQ(outward, 8u);
-  // The tip of the lid and the middle of the bottom are single points with a way up and down.
+  // The tip of the lid and the middle of the bottom are single points with upright normals.
   EXPECT_GT(set.patches[20].normal(0, 0.5).y, 0.99);
   EXPECT_LT(set.patches[28].normal(0, 0.5).y, -0.99);
   const Box3d box = scene->bounds();

@@ -54,7 +54,7 @@ TEST(Bsp, ALevelBecomesMetresWithYUp) {
   EXPECT_NEAR(box.min.z, -400 * 0.0254, 1e-6);
   EXPECT_NEAR(box.max.y, 100 * 0.0254, 0.02);  // The arch's crown: half of its control height.
   EXPECT_NEAR(scene->patches.patches[0].at(0.5, 0).y, 100 * 0.0254, 1e-9);
-  // Two triangles each for the floor and the door, then those of the arch, which know their patch.
+  // Two triangles each for the floor and the door, then those of the arch, which name their patch.
   ASSERT_EQ(scene->parts.size(), 3u);
   EXPECT_EQ(scene->parts[2].material, "textures/base/arch");
   ASSERT_EQ(scene->patch_of_triangle.size(), scene->triangles.size());
@@ -90,7 +90,7 @@ TEST(Bsp, PiecesOfAGridAndEqualBordersOfFacesAreNeighbours) {
   EXPECT_EQ(set.edges[2][2].bind, EdgeBind::kOpen);
 }
 
-TEST(Bsp, OtherKindsOfFileAreToldApart) {
+TEST(Bsp, OtherKindsOfFileAreDistinguished) {
   std::string level = test::tiny_level();
   level[4] = 47;
   EXPECT_EQ(read(level).error().message,

@@ -19,7 +19,7 @@ Scene make(const BuiltinWorldConfig& config) {
   return scene ? std::move(*scene) : Scene{};
 }
 
-// Corners lie on whole millimetres, so integers say all there is to say.
+// Corners lie on whole millimetres, so integers describe them exactly.
 uint64_t hash_of(const Scene& scene) {
   std::vector<int64_t> numbers;
   for (const Vec3d& p : scene.positions) {
@@ -37,7 +37,7 @@ double doubled_area(const Scene& scene, const std::array<uint32_t, 3>& t) {
   return length(cross(scene.positions[t[1]] - a, scene.positions[t[2]] - a));
 }
 
-// Whatever a world is, it must be this much of a mesh.
+// What every world must satisfy as a mesh.
 void expect_sound(const Scene& scene, const std::string& name) {
   ASSERT_FALSE(scene.triangles.empty()) << name;
   ASSERT_EQ(scene.area.size(), scene.triangles.size()) << name;
@@ -85,7 +85,7 @@ TEST(BuiltinWorlds, SameNameSizeAndSeedGiveTheSameBytesOnEveryMachine) {
   }
 }
 
-TEST(BuiltinWorlds, AnotherSeedGivesAnotherWorldWhereChanceHasASay) {
+TEST(BuiltinWorlds, AnotherSeedGivesAnotherWorldWhereAWorldIsRandom) {
   for (const std::string name :
        {"garage", "bridge", "church", "powerplant", "city", "maze", "landscape"}) {
     EXPECT_NE(hash_of(make({.name = name})), hash_of(make({.name = name, .seed = 2}))) << name;
@@ -139,7 +139,7 @@ TEST(BuiltinWorlds, LevelsSetTheStoreys) {
   EXPECT_NEAR(top({.name = "powerplant", .levels = 5}), 5 * 3.5 + 8.125, 1e-9);
 }
 
-TEST(BuiltinWorlds, PowerplantAndCityGrowToTheTrianglesAskedFor) {
+TEST(BuiltinWorlds, PowerplantAndCityGrowToTheRequestedTriangles) {
   for (const uint64_t triangles : {300'000ull, 700'000ull, 1'500'000ull}) {
     const auto count =
         static_cast<double>(make({.name = "powerplant", .triangles = triangles}).triangles.size());
@@ -182,7 +182,7 @@ TEST(BuiltinWorlds, StoreysOfTheGarageAreAlmostAllFloorWithHeadroom) {
   }
 }
 
-TEST(BuiltinWorlds, NobodyStandsOnCarsPipesOrTrees) {
+TEST(BuiltinWorlds, NoAvatarStandsOnCarsPipesOrTrees) {
   for (const std::string name : {"garage", "powerplant", "city"}) {
     const Scene scene = make({.name = name});
     uint32_t blocked = 0;

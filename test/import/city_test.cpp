@@ -24,7 +24,7 @@ Result<RawScene> gml(const std::string& text) {
   return read_citygml(text, options, context);
 }
 
-// Area by "node material", which tells both what was read and what was counted twice.
+// Area by "node material": it shows what was read and what was counted twice.
 std::map<std::string, double> areas(const Scene& scene) {
   std::map<std::string, double> out;
   for (const ScenePart& part : scene.parts) {
@@ -79,7 +79,7 @@ TEST(CityJson, SolidsOfAllDepthsAndNullMeanings) {
   }
 }
 
-TEST(CityJson, TheHighestDetailOfEachObjectAndItsPartsIsTaken) {
+TEST(CityJson, TheHighestDetailOfEachObjectAndItsPartsIsRead) {
   const std::string flat = R"({"type":"MultiSurface","lod":"0","boundaries":[[[0,1,2,3]]]})";
   const std::string fine = R"({"type":"MultiSurface","lod":"2.2","boundaries":[[[8,9,10]]]})";
   const std::string mid = R"({"type":"MultiSurface","lod":"1.3","boundaries":[[[8,9,10,11]]]})";

@@ -118,7 +118,7 @@ TEST(Clean, AMillionMetreSpikeIsRefused) {
   EXPECT_FALSE(clean(far));
 }
 
-TEST(Clean, FarPartsAreTold) {
+TEST(Clean, FarPartsAreReported) {
   Scene scene;
   for (int i = 0; i < 100; ++i) scene.add_box({1.0 * i, 0, 0}, {i + 0.9, 2, 2});
   scene.add_box({50000, 0, 0}, {50001, 1, 1});
@@ -128,7 +128,7 @@ TEST(Clean, FarPartsAreTold) {
             "m.obj: 12 triangles lie more than 1 km away from the rest; they are kept");
 }
 
-TEST(Clean, SuspiciousUnitsAreTold) {
+TEST(Clean, SuspiciousUnitsAreReported) {
   Scene small = cube(0.002);
   ASSERT_TRUE(clean(small));
   ASSERT_EQ(small.report.warnings.size(), 1u);
@@ -151,14 +151,14 @@ TEST(AreaRules, GlobsMatchAsAShellDoes) {
   EXPECT_FALSE(glob_matches("a?c", "ac"));
   EXPECT_FALSE(glob_matches("abc", "abcd"));
   EXPECT_FALSE(glob_matches("*b", "abc"));
-  // A pattern that makes a naive matcher take for ever.
+  // A pattern that takes a naive matcher exponential time.
   EXPECT_FALSE(glob_matches("*a*a*a*a*a*a*a*a*a*a*b", std::string(5000, 'a')));
   EXPECT_TRUE(glob_matches_path("level2", "House/Level2/Wall 7"));
   EXPECT_TRUE(glob_matches_path("House/*7", "House/Level2/Wall 7"));
   EXPECT_FALSE(glob_matches_path("Level", "House/Level2/Wall 7"));
 }
 
-TEST(AreaRules, RoomVolumesAreNoMatterButWhatStandsInThemIs) {
+TEST(AreaRules, RoomVolumesAreNotSolidButFurnitureInThemIs) {
   const auto make = [] {
     Scene scene;
     for (int i = 0; i < 5; ++i)

@@ -20,8 +20,8 @@
 #include "throng/avatar_class.h"
 #include "tiny_bsp.h"
 
-// Every parser on damaged files: cut at every byte, bytes changed at random. What is asserted is
-// that the process lives, that results are in order, and that refusals have a sentence.
+// Every parser on damaged files: cut at every byte, bytes changed at random. The tests assert
+// that the process survives, that results are consistent, and that refusals have a message.
 namespace throng {
 namespace {
 
@@ -41,7 +41,7 @@ void for_damaged(const std::string& whole, size_t stride, uint64_t flips,
     for (uint64_t k = 0; k < changes; ++k) {
       const size_t at = random_below(7, i, 3 * k + 1, text.size());
       const auto byte = static_cast<char>(random_below(7, i, 3 * k + 2, 256));
-      // Half of the changes stay printable, to come past the first look of a text parser.
+      // Half of the changes stay printable, to pass the first checks of a text parser.
       const auto digit = static_cast<char>('0' + random_below(7, i, 3 * k + 2, 10));
       text[at] = random_below(7, i, 3 * k + 3, 2) == 0 ? byte : digit;
     }
@@ -74,7 +74,7 @@ void expect_survives(Reader read, const std::string& whole) {
     ASSERT_EQ(in_parts, scene.triangles.size());
   });
   EXPECT_GT(kept,
-            100u);  // Else the damage would be so heavy that nothing behind the door is tested.
+            100u);  // Else damage is too heavy to test more than the first checks.
 }
 
 TEST(Damaged, ObjFiles) { expect_survives(&read_obj, data("box.obj")); }

@@ -119,8 +119,7 @@ TEST(Glb, WhatIsNotReadIsRefusedByName) {
   EXPECT_FALSE(read("glTF"));
 }
 
-// Bytes that are wrong anywhere give a fault or a scene, and nothing else: under the sanitizers
-// too.
+// Wrong bytes give an error or a scene, and no other fault, under the sanitizers too.
 TEST(Glb, DamagedFilesNeverReachBeyondTheirEnd) {
   const test::ScratchFolder folder;
   const auto cube = make_builtin_world({.name = "cube"});

@@ -90,7 +90,7 @@ TEST_F(GlbWriter, BuiltinWorldsComeBackAsTheyWere) {
     SCOPED_TRACE(name);
     expect_equal(read_with_assimp(path(name + ".glb")), triangles_of(*scene));
   }
-  EXPECT_EQ(files(), builtin_worlds().size());  // And nothing else lies about.
+  EXPECT_EQ(files(), builtin_worlds().size());  // And no other file is left.
 }
 
 Scene load(const std::string& path) {
@@ -124,7 +124,7 @@ TEST_F(GlbWriter, EveryTriangleKeepsItsAreaKind) {
   EXPECT_EQ(back.report.warnings, std::vector<std::string>{});
 }
 
-// The maker's area kinds decide where one may walk: cars, pillars, railings.
+// The generator's area kinds decide what is walkable: cars, pillars, railings.
 TEST_F(GlbWriter, AWorldFromItsFileIsBakedLikeTheWorldItself) {
   const auto garage = make_builtin_world({.name = "garage"});
   ASSERT_TRUE(garage);
@@ -142,8 +142,8 @@ TEST_F(GlbWriter, AWorldFromItsFileIsBakedLikeTheWorldItself) {
   }
 }
 
-// Extras by other hands: kinds are inherited from the node above, and nonsense does no harm.
-TEST_F(GlbWriter, AreaKindsOfOtherProgramsAreInheritedOrTold) {
+// Extras of other programs: kinds are inherited from the node above, and nonsense is harmless.
+TEST_F(GlbWriter, AreaKindsOfOtherProgramsAreInheritedOrReported) {
   std::ifstream box(std::string(THRONG_TEST_DATA) + "/box.gltf");
   const std::string text{std::istreambuf_iterator<char>(box), {}};
   std::filesystem::copy_file(std::string(THRONG_TEST_DATA) + "/box.bin", path("box.bin"));
@@ -226,7 +226,7 @@ TEST_F(GlbWriter, WhatCannotBeWrittenIsRefusedAndLeavesNothing) {
   scene.positions[1].y = 0;
   std::filesystem::create_directory(path("taken.glb"));
   EXPECT_EQ(refusal(scene, "taken.glb").code, Errc::kIo);
-  EXPECT_EQ(files(), 1u);  // Only the folder that stood in the way.
+  EXPECT_EQ(files(), 1u);  // Only the folder that blocks the name.
 }
 
 }  // namespace

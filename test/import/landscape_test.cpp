@@ -9,7 +9,7 @@
 #include "scratch_folder.h"
 #include "throng/builtin_worlds.h"
 
-// What the built-in landscape promises beyond being a world.
+// What the built-in landscape guarantees beyond what every world does.
 namespace throng {
 namespace {
 

@@ -41,7 +41,7 @@ TEST(LoadScene, EveryFormatGivesTheSameBox) {
   }
 }
 
-TEST(LoadScene, FormatsWithAUnitOrAnAxisOfTheirOwnAreHonoured) {
+TEST(LoadScene, UnitsAndAxesOfFormatsAreRespected) {
   const auto fbx = load(data("box_ascii.fbx"));  // FBX counts in centimetres.
   ASSERT_TRUE(fbx) << fbx.error().message;
   expect_box(*fbx, {0, 0, 0}, {0.02, 0.03, 0.04});

@@ -96,7 +96,7 @@ TEST(MarkVolume, BakesToAreasOfThatKindAndSize) {
   }
   EXPECT_NEAR(marked, 12, 0.8);
   EXPECT_NEAR(marked + plain, world.summary().walkable_area[0], 1e-6);
-  // Blocked: nobody stands there, nor so near that his body would.
+  // Blocked: no avatar stands there, nor so near that its body would be inside.
   ASSERT_TRUE(mark_volume(scene, {Prism::box({3, -1, 2}, {7, 1, 5}), kAreaBlocked}));
   const World blocked = test::bake(scene, 0.1);
   EXPECT_FALSE(blocked.find_place(0, {5, 0, 3.5}, 1));
@@ -130,8 +130,8 @@ TEST(MarkVolume, KeepsPartsTogether) {
   }
 }
 
-// Volumes come before broken triangles are dropped: those must come out of them as they were.
-TEST(MarkVolume, LeavesBrokenTrianglesToWhoeverCountsThem) {
+// Volumes come before broken triangles are dropped: such triangles must stay as they were.
+TEST(MarkVolume, LeavesBrokenTrianglesUnchanged) {
   Scene scene = worlds::flat(4);
   const auto corners = static_cast<uint32_t>(scene.positions.size());
   scene.positions.push_back({std::numeric_limits<double>::quiet_NaN(), 0, 1});
@@ -167,7 +167,7 @@ TEST(MarkVolume, KeepsTrianglesThatNoPartNames) {
                   .first_triangle = first,
                   .triangle_count = last - first}};
   const auto before = scene.triangles.size();
-  ASSERT_TRUE(mark_volume(scene, {Prism::box({8, 0, 8}, {9, 1, 9}), 3}));  // beside all
+  ASSERT_TRUE(mark_volume(scene, {Prism::box({8, 0, 8}, {9, 1, 9}), 3}));  // outside all triangles
   EXPECT_EQ(scene.triangles.size(), before);
   ASSERT_EQ(scene.parts.size(), 1u);
   EXPECT_EQ(scene.parts[0].first_triangle, first);

@@ -60,8 +60,7 @@ std::string tga(int32_t width, int32_t height, const std::vector<uint8_t>& rgba)
 
 std::string tga(const Texture& t) { return tga(t.width, t.height, t.rgba); }
 
-// A square with the whole texture on it, a triangle of one colour, and one that nothing is known
-// of.
+// A square with the whole texture on it, a triangle of one colour, and one without material.
 Scene textured_scene() {
   Scene scene;
   scene.add_quad({0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1});
@@ -164,7 +163,7 @@ TEST(Materials, GoThroughGlbAndBackWithTheirTextures) {
   expect_looks_of_textured_scene(by_us->scene);
 }
 
-TEST(Materials, AreLeftOutUnlessAskedFor) {
+TEST(Materials, AreLeftOutUnlessRequested) {
   const test::ScratchFolder folder;
   const std::string path = folder.path() + "/looks.glb";
   ASSERT_TRUE(write_glb(textured_scene(), path));
@@ -219,7 +218,7 @@ TEST(Materials, OfAnObjComeFromTheFileBesideIt) {
   }
 }
 
-TEST(Materials, ThatAreMissingAreToldOnceAndPlainColoursStandIn) {
+TEST(Materials, ThatAreMissingAreReportedOnceAndReplacedByPlainColours) {
   const test::ScratchFolder folder;
   const std::string path = folder.write("looks.obj", kObj);
   const auto without = load(path);
@@ -242,7 +241,7 @@ TEST(Materials, ThatAreMissingAreToldOnceAndPlainColoursStandIn) {
   EXPECT_TRUE(damaged->texture_corners.empty());
 }
 
-// The sizes of a PNG's header come before anything that could be checked.
+// The sizes in a PNG's header precede everything that can be checked.
 std::string png_of_size(uint32_t width, uint32_t height) {
   std::string out("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
   for (const uint32_t value : {width, height}) {
@@ -263,16 +262,16 @@ TEST(Materials, TexturesThatAreDamagedOrTooLargeAreRefusedInAClause) {
   EXPECT_EQ(decode_texture(png_of_size(64, 64), 2048).error().message, "is damaged");
   const std::string whole = tga(four_texels());
   for (size_t size = 0; size < whole.size(); ++size) {
-    (void)decode_texture(whole.substr(0, size), 2048);  // Whatever comes of it, no crash.
+    (void)decode_texture(whole.substr(0, size), 2048);  // Any result, but no crash.
   }
   const auto one = decode_texture(tga(1, 1, {9, 8, 7, 255}), 2048);
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_EQ(one->rgba, (std::vector<uint8_t>{9, 8, 7, 255}));
 }
 
-// Decoders of the kind that the child process is for, told by the names of what they read.
+// Faulty decoders, for which the child process exists; the texture's name selects the fault.
 Result<Texture> fragile_decoder(const TextureSource& source, const std::string& model,
-                                int32_t most) {
+                                int32_t max_side) {
   if (source.name == "crash") std::raise(SIGSEGV);
   if (source.name == "abort") std::abort();
   if (source.name == "leave") _exit(0);
@@ -282,7 +281,7 @@ Result<Texture> fragile_decoder(const TextureSource& source, const std::string& 
   if (source.name == "greedy") {
     for (std::vector<std::vector<char>> all;;) all.emplace_back(size_t{16} << 20, 'x');
   }
-  return read_texture(source, model, most);
+  return read_texture(source, model, max_side);
 }
 
 RawScene scene_with_textures(const std::vector<std::string>& names) {
@@ -334,7 +333,7 @@ TEST(Materials, ADecoderThatCrashesHangsOrEatsMemoryCostsOnlyThatTexture) {
   }
 }
 
-TEST(Materials, TexturesThatAllCrashTheirDecoderAreNotTriedForEver) {
+TEST(Materials, TexturesThatAllCrashTheirDecoderAreGivenUpAfterSome) {
   std::vector<std::string> names(40, "crash");
   names[2] = "good";
   names[39] = "behind";
@@ -344,7 +343,7 @@ TEST(Materials, TexturesThatAllCrashTheirDecoderAreNotTriedForEver) {
   ASSERT_EQ(raw.scene.textures.size(), 1U);
   EXPECT_EQ(raw.scene.textures[0].name, "good");
   EXPECT_EQ(raw.scene.parts[2].material1, 3U);
-  EXPECT_EQ(raw.scene.parts[39].material1, 0U);  // White without its texture says nothing.
+  EXPECT_EQ(raw.scene.parts[39].material1, 0U);  // White without its texture is no colour.
   ASSERT_EQ(raw.scene.report.warnings.size(), 1U);
   EXPECT_TRUE(raw.scene.report.warnings[0].starts_with("sign.dae: 39 of 40 textures"));
 }
@@ -353,7 +352,7 @@ TEST(Materials, LargeTexturesAreHalvedUntilTheyFit) {
   std::vector<uint8_t> rgba;
   for (int32_t i = 0; i < 100 * 40; ++i) {
     const bool left = i % 100 < 50;
-    // What is see-through is black, which must not darken what is seen.
+    // Transparent texels are black, which must not darken opaque ones.
     const std::array<uint8_t, 4> texel = left         ? std::array<uint8_t, 4>{200, 100, 50, 255}
                                          : i % 2 == 0 ? std::array<uint8_t, 4>{80, 60, 40, 255}
                                                       : std::array<uint8_t, 4>{0, 0, 0, 0};

@@ -56,7 +56,7 @@ TEST(PatchMesh, RandomNetsWithOneTwoAndFourNeighboursHaveNoCrack) {
   EXPECT_GT(four, 10u);
 }
 
-// Some patches are cut in pieces and some as a whole, whatever lies beside them.
+// Some patches are cut in pieces and some as a whole, independently of their neighbours.
 TEST(PatchMesh, PiecesMeetPatchesThatAreWholeAndPiecesOfOthersWithoutACrack) {
   size_t met[2][2][3] = {};  // pieces here, pieces there; one, two or four neighbours
   for (uint64_t seed = 0; seed < 16; ++seed) {
@@ -124,10 +124,10 @@ TEST(PatchMesh, TrianglesStayWithinTheToleranceOfTheirPatch) {
       worst = std::fmax(worst, distance / tolerance);
     }
   }
-  EXPECT_GT(worst, 0.2);  // Not simply cut as fine as can be.
+  EXPECT_GT(worst, 0.2);  // Not simply the finest cut.
 }
 
-// The nearest point of a part, looked for on ever finer grids around the nearest so far.
+// The nearest point of a part, searched on ever finer grids around the nearest so far.
 double distance_to_part(const BezierPatch& patch, const PatchPart& part, Vec3d at) {
   constexpr int kSteps = 8;
   const double s0 = part.s0 / 256.0, s1 = (part.s1 + 1) / 256.0;
@@ -150,17 +150,18 @@ double distance_to_part(const BezierPatch& patch, const PatchPart& part, Vec3d a
   return nearest;
 }
 
-// Every corner of a triangle is a point of the surface within its part, as far off as is told.
-TEST(PatchMesh, EveryTriangleTellsItsPartOfThePatch) {
+// Every corner of a triangle is a point of the surface within its part, off it by the reported
+// distance.
+TEST(PatchMesh, EveryTriangleNamesItsPartOfThePatch) {
   size_t rings = 0;
-  double most = 0;
+  double largest = 0;
   for (const double jitter : {0.0, 0.05}) {
     const PatchSet set = test::make_net({.side = 3, .jitter = jitter, .seed = 6});
     const PatchMesh mesh = cut(set, 0.02);
     ASSERT_EQ(mesh.parts.size(), mesh.triangles.size());
     ASSERT_EQ(mesh.off.size(), set.size());
     for (uint32_t p = 0; p < set.size(); ++p) {
-      most = std::fmax(most, mesh.off[p]);
+      largest = std::fmax(largest, mesh.off[p]);
       for (uint32_t t = mesh.first[p]; t < mesh.first[p + 1]; t += 5) {
         const PatchPart& part = mesh.parts[t];
         ASSERT_LE(part.s0, part.s1);
@@ -175,10 +176,10 @@ TEST(PatchMesh, EveryTriangleTellsItsPartOfThePatch) {
     }
   }
   EXPECT_GT(rings, 10u);
-  EXPECT_GT(most, 0.01);  // The neighbours' curves.
+  EXPECT_GT(largest, 0.01);  // The neighbours' curves.
 }
 
-// Bent by its corners alone: all of its gap comes from the mixed derivative.
+// Bent by its corners alone: all of its deviation comes from the mixed derivative.
 TEST(PatchMesh, ATwistedPatchIsCutByItsTwist) {
   PatchSet set;
   BezierPatch patch;

@@ -193,7 +193,7 @@ std::string fault_of(const PatchSet& set) {
   return checked.error().message;
 }
 
-TEST(PatchSet, NeighboursMustNameEachOtherAndMeetTheOppositeWay) {
+TEST(PatchSet, NeighboursMustNameEachOtherAndRunOppositely) {
   const PatchSet good = two_quads();
   EXPECT_EQ(fault_of(good), "");
   const std::string at = "hill.json: patch 0 of ground, edge 2: ";

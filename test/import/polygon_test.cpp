@@ -67,7 +67,7 @@ Cut cut(const Rings& rings) {
   return cut(rings, [](Vec2d p) { return Vec3d{p.x, p.y, 0}; });
 }
 
-// Area, side and place of every triangle: together they leave no room for a wrong cut.
+// Checks area, side and place of every triangle, which together exclude a wrong cut.
 void expect_exact(const Rings& rings, const char* what) {
   double area = area_of(rings[0]);
   for (size_t i = 1; i < rings.size(); ++i) area -= area_of(rings[i]);
@@ -301,7 +301,7 @@ TEST(Polygon, AnyCornerThatBendsInSpaceIsUsed) {
   }
 }
 
-TEST(Polygon, CrossingRingsAreToldAndEnd) {
+TEST(Polygon, CrossingRingsAreReportedAndEnd) {
   EXPECT_FALSE(cut({{{0, 0}, {4, 4}, {4, 0}, {0, 5}}}).exact);  // a bow tie
   EXPECT_FALSE(cut({{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{9, 9}, {8, 9}, {8, 8}}}).exact);  // outside
   EXPECT_FALSE(cut({{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{3, 1}, {6, 1}, {6, 2}, {3, 2}}}).exact);
@@ -319,7 +319,7 @@ TEST(Polygon, CrossingRingsAreToldAndEnd) {
   }
 }
 
-TEST(Polygon, WithoutAreaItStaysAsThinMatter) {
+TEST(Polygon, WithoutAreaItStaysSolidButThin) {
   const Cut line = cut({{{0, 0}, {1, 0}, {2, 0}, {3, 0}}});
   EXPECT_EQ(line.triangles.size(), 2u);
   EXPECT_EQ(line.area, 0);

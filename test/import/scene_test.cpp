@@ -21,7 +21,7 @@ TEST(Scene, ABoxIsClosedAndFacesOut) {
   EXPECT_EQ(scene.bounds().max, (Vec3d{3, 5, 4}));
 }
 
-TEST(Scene, BoundsLookAtMatterOnly) {
+TEST(Scene, BoundsUseCornersOfTrianglesOnly) {
   Scene scene;
   EXPECT_TRUE(scene.bounds().empty());
   scene.positions.push_back({1e9, 0, 0});  // a corner that no triangle uses

@@ -7,7 +7,7 @@
 
 #include "throng/scene.h"
 
-// The real models, where they are present: sizes in metres, triangles, and what each must warn of.
+// The real models, where they are present: sizes in metres, triangles, and the warnings of each.
 namespace throng {
 namespace {
 

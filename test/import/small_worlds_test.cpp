@@ -5,7 +5,7 @@
 #include "throng/slices.h"
 #include "worlds.h"
 
-// The hand-made scenes hold what their comments promise.
+// The hand-made scenes are as their comments state.
 namespace throng {
 namespace {
 

@@ -80,7 +80,7 @@ TEST(TexturedModels, OfEveryFormatHaveTheSameTexelAtTheSamePlace) {
   }
 }
 
-// In a browser there is no other.
+// A browser has only this reader.
 TEST(TexturedModels, OurOwnReaderOfGlbAgrees) {
   size_t read = 0;
   for (const test::TexturedModel& model : test::textured_models()) {

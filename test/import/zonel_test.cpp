@@ -50,7 +50,7 @@ TEST(Zonel, AZoneIsNamedByRowAndColumn) {
 TEST(Zonel, TwoZonesWithAllKindsOfNeighboursBecomeOneSurface) {
   const test::ScratchFolder folder;
   const auto zones = test::tiny_landscape();
-  // The order of the files must not matter to who meets whom.
+  // Neighbours must not depend on the order of the files.
   for (const bool swapped : {false, true}) {
     const std::string a = folder.write("a.zonel", test::make_zonel(zones[swapped ? 1 : 0]));
     const std::string b = folder.write("b.zonel", test::make_zonel(zones[swapped ? 0 : 1]));
@@ -65,7 +65,7 @@ TEST(Zonel, TwoZonesWithAllKindsOfNeighboursBecomeOneSurface) {
     EXPECT_TRUE(scene->report.warnings.empty());
     for (const uint32_t component : patch_components(set)) EXPECT_EQ(component, 0u);
     EXPECT_EQ(set.runs[swapped ? 1 : 0].node, "3_AC");
-    // All but one are flat, Z up: they lie in the plane y = 0, and the way up is up.
+    // All but one are flat, Z up: they lie in the plane y = 0, with normals up.
     const Box3d box = scene->bounds();
     EXPECT_EQ(box.min, (Vec3d{0, 0, -24}));
     EXPECT_EQ(box.max, (Vec3d{33, 3, 0}));
@@ -162,7 +162,7 @@ TEST(Zonel, DamageIsNamedByItsPlace) {
             "3_AC.zonel: ends in the neighbours of patch 5 of 6 (byte " +
                 std::to_string(whole.size() - 1) +
                 "); the file is truncated or damaged, get it again");
-  // A count that lies: the border vertices begin at byte 52.
+  // A wrong count: the border vertices begin at byte 52.
   bytes = whole;
   const int32_t many = 0x7fffffff;
   std::memcpy(bytes.data() + 52, &many, 4);
@@ -226,7 +226,7 @@ TEST(Zonel, ZonesThatContradictEachOtherAreRefused) {
   EXPECT_NE(fault(west, tiny[1]).find("lies 1 m from"), std::string::npos);
 }
 
-// The real landscape. What must come out was counted independently of this reader.
+// The real landscape. The expected counts were made independently of this reader.
 class NelLandscape : public testing::Test {
  protected:
   static std::string folder() { return std::string(THRONG_SHARED_WORLDS) + "/nel"; }
@@ -246,7 +246,7 @@ TEST_F(NelLandscape, HasTheNeighboursThatWereCounted) {
   EXPECT_EQ(count_kind(set, EdgeBind::kFour), 0u);
   EXPECT_EQ(count_kind(set, EdgeBind::kPart), 162u);
   EXPECT_EQ(count_kind(set, EdgeBind::kOpen), 265u);
-  EXPECT_TRUE(check_patches(set));  // All reciprocal, all the opposite way.
+  EXPECT_TRUE(check_patches(set));  // All reciprocal, all in opposite directions.
   for (const uint32_t component : patch_components(set)) ASSERT_EQ(component, 0u);
   EXPECT_TRUE(scene->report.warnings.empty());
 
@@ -284,7 +284,7 @@ TEST_F(NelLandscape, HasNoCrackAndSharesWhatIsStoredTwice) {
   EXPECT_EQ(hash_span(std::span<const uint64_t>(numbers)), 0x26faef06455719a0);
 }
 
-// Cuts and changes of a real file: a sentence or a surface that can be used, never more.
+// Cuts and changes of a real file: the result is an error or a usable surface.
 TEST_F(NelLandscape, SurvivesDamageToARealFile) {
   const auto whole = read_file(folder() + "/4_AE.zonel");
   ASSERT_TRUE(whole) << whole.error().message;
@@ -307,12 +307,12 @@ TEST_F(NelLandscape, SurvivesDamageToARealFile) {
     }
   };
   for (uint64_t i = 0; i < 300; ++i) use(whole->substr(0, random_below(3, i, 0, whole->size())));
-  EXPECT_EQ(kept, 0u);  // Nothing but a whole file is a zone.
+  EXPECT_EQ(kept, 0u);  // Only a complete file is a zone.
   for (uint64_t i = 0; i < 600; ++i) {
     std::string bytes = *whole;
     const uint64_t changes = 1 + random_below(4, i, 0, 4);
     for (uint64_t k = 0; k < changes; ++k) {
-      // Half of them in the last tenth, where the neighbours stand.
+      // Half of them in the last tenth, which lists the neighbours.
       const size_t from = random_below(4, i, 3 * k + 1, 2) == 0 ? 0 : bytes.size() / 10 * 9;
       bytes[from + random_below(4, i, 3 * k + 2, bytes.size() - from)] =
           static_cast<char>(random_below(4, i, 3 * k + 3, 256));

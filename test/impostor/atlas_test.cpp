@@ -65,7 +65,7 @@ std::array<uint8_t, 4> texel(const Atlas& atlas, const AtlasView& view, int32_t 
 TEST(Atlas, ViewsKeepToBlocksDoNotOverlapAndHaveAnEmptyBorder) {
   const Atlas& atlas = small_atlas();
   ASSERT_EQ(atlas.views.size(), 8U * 3 * 6);
-  std::vector<uint8_t> taken(atlas.mask.size());
+  std::vector<uint8_t> used(atlas.mask.size());
   for (const AtlasView& v : atlas.views) {
     EXPECT_EQ((v.x | v.y | v.width | v.height) % 4, 0);
     ASSERT_LE(v.x + v.width, atlas.width);
@@ -75,7 +75,7 @@ TEST(Atlas, ViewsKeepToBlocksDoNotOverlapAndHaveAnEmptyBorder) {
       for (int32_t x = 0; x < v.width; ++x) {
         const size_t at = static_cast<size_t>(v.page * atlas.height + v.y + y) * atlas.width +
                           static_cast<size_t>(v.x + x);
-        EXPECT_EQ(taken[at]++, 0);
+        EXPECT_EQ(used[at]++, 0);
         const uint8_t alpha = atlas.colour[at * 4 + 3];
         const bool border = x == 0 || y == 0 || x + 1 == v.width || y + 1 == v.height;
         EXPECT_TRUE(!border || alpha == 0);
@@ -86,14 +86,14 @@ TEST(Atlas, ViewsKeepToBlocksDoNotOverlapAndHaveAnEmptyBorder) {
   }
 }
 
-// Each view must be what a camera at its place sees: drawn again, alone, and compared.
+// Each view must equal the picture of a camera at its place, which is drawn again and compared.
 TEST(Atlas, EveryViewIsWhatItsCameraSees) {
   const Atlas& atlas = small_atlas();
   const Character character = built_in_character();
   FigureRaster raster(character, 32);
   FigureView view;
   PosedMesh mesh;
-  // As an atlas is said to be: over the origin, feet at 0, the first clip 1.75 m high.
+  // As an atlas is documented: over the origin, feet at 0, the first clip 1.75 m high.
   const size_t walk = *find_clip(character, "Walk"), idle = *find_clip(character, "Idle");
   Box3d bounds;
   for (int32_t i = 0; i < 4; ++i) {
@@ -159,7 +159,7 @@ TEST(Atlas, AMirroredViewShowsWhatTheOtherSideLooksLike) {
 }
 
 // [TC00]: the view direction picks the row and column, the heading is added, the phase picks the
-// frame. An atlas whose views are filled with their own number tells which one is shown.
+// frame. Views filled with their own numbers show which one was chosen.
 TEST(Atlas, CodedViewsComeBackFromAllDirectionsElevationsAndFrames) {
   Atlas atlas;
   atlas.shape = {.pixels = 8, .directions = 16, .elevations = 8, .frames = 10, .side = 2};
@@ -220,15 +220,15 @@ TEST(Atlas, SameBytesForAnyNumberOfWorkers) {
   }
 }
 
-TEST(Atlas, EachFormatKeepsItsColoursAsWellAsAsked) {
+TEST(Atlas, EachFormatKeepsItsColoursWithinItsLimit) {
   const Atlas& atlas = small_atlas();
   EXPECT_EQ(atlas_psnr(atlas, atlas), INFINITY);
-  const double least[] = {INFINITY, 38, 34, 34, 34, 35};
+  const double min_psnr[] = {INFINITY, 38, 34, 34, 34, 35};
   for (int32_t f = 0; f < kAtlasFormats; ++f) {
     const auto format = static_cast<AtlasFormat>(f);
     const Atlas other = convert_atlas(atlas, format);
     EXPECT_EQ(other.colour.size(), packed_colour_bytes(atlas, format));
-    EXPECT_GE(atlas_psnr(atlas, other), least[f]) << word_for(format);
+    EXPECT_GE(atlas_psnr(atlas, other), min_psnr[f]) << word_for(format);
     // Back and forth again changes nothing more.
     const Atlas back = convert_atlas(other, AtlasFormat::kRgba8);
     EXPECT_EQ(atlas_psnr(back, other), INFINITY);
@@ -250,7 +250,7 @@ TEST(Atlas, EachFormatKeepsItsColoursAsWellAsAsked) {
 }
 
 // The figures of the seed: 1024 x 512 texels of 16 bits for each frame.
-TEST(Atlas, TheSheetOfTheSeedIsAMegabyteAFrame) {
+TEST(Atlas, TheAtlasOfTheSeedIsAMegabyteAFrame) {
   const AtlasShape shape{.pixels = 64, .directions = 16, .elevations = 8, .frames = 10};
   EXPECT_EQ(sheet_colour_bytes(shape, AtlasFormat::kRgb5a1), 10ULL << 20);
   EXPECT_EQ(sheet_colour_bytes(shape, AtlasFormat::kBc1), 10ULL << 18);
@@ -325,7 +325,7 @@ INSTANTIATE_TEST_SUITE_P(Atlas, DamagedAtlas,
                                          AtlasFormat::kEtc2),
                          [](const auto& of) { return std::string(word_for(of.param)); });
 
-// Older programs go on reading the older formats, and say of the others that they are too new.
+// Older programs still read the older formats, and report that the others are too new.
 TEST(Atlas, OnlyFilesOfNewFormatsAreOfTheNewVersion) {
   const test::ScratchFolder folder;
   const std::string path = folder.path() + "/people.atlas";
@@ -402,14 +402,14 @@ TEST(ViewPacker, ManyViewsFillPagesWithLittleWaste) {
   EXPECT_GT(size.pages, 1);
   const uint64_t total = uint64_t(size.width) * size.height * size.pages;
   EXPECT_LT(total, area + area / 10);
-  std::vector<uint8_t> taken(total);
+  std::vector<uint8_t> used(total);
   for (const AtlasView& v : views) {
     ASSERT_TRUE(v.page < size.pages && v.x + v.width <= size.width &&
                 v.y + v.height <= size.height);
     for (int32_t y = 0; y < v.height; ++y) {
       for (int32_t x = 0; x < v.width; ++x) {
         ASSERT_EQ(
-            taken[(static_cast<size_t>(v.page) * size.height + v.y + y) * size.width + v.x + x]++,
+            used[(static_cast<size_t>(v.page) * size.height + v.y + y) * size.width + v.x + x]++,
             0);
       }
     }

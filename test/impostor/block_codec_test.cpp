@@ -28,7 +28,7 @@ int64_t square_error(const ColourBlock& a, const ColourBlock& b) {
   return sum;
 }
 
-TEST(BlockCodec, ReadsABlockAsTheStandardSaysIt) {
+TEST(BlockCodec, ReadsABlockAsTheStandardDefinesIt) {
   // Red 255 and blue 255 as ends, red above: red, blue, two thirds red, one third red.
   const Bytes8 four{0x00, 0xf8, 0x1f, 0x00, 0xe4, 0xe4, 0xe4, 0xe4};
   ColourBlock block;
@@ -37,7 +37,7 @@ TEST(BlockCodec, ReadsABlockAsTheStandardSaysIt) {
   EXPECT_EQ(block[1], (std::array<uint8_t, 4>{0, 0, 255, 255}));
   EXPECT_EQ(block[2], (std::array<uint8_t, 4>{170, 0, 85, 255}));
   EXPECT_EQ(block[15], (std::array<uint8_t, 4>{85, 0, 170, 255}));
-  // The ends the other way round: a half, and a hole.
+  // The ends in reverse order: a half, and a hole.
   const Bytes8 three{0x1f, 0x00, 0x00, 0xf8, 0xe4, 0xe4, 0xe4, 0xe4};
   decode_bc1(three, true, block);
   EXPECT_EQ(block[2], (std::array<uint8_t, 4>{127, 0, 127, 255}));

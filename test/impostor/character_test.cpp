@@ -13,7 +13,7 @@
 namespace throng {
 namespace {
 
-TEST(Character, MaterialsSayWhatTheyAreOf) {
+TEST(Character, MaterialNamesGiveBodyParts) {
   EXPECT_EQ(body_part_of("Shirt"), BodyPart::kShirt);
   EXPECT_EQ(body_part_of("T-SHIRT.001"), BodyPart::kShirt);
   EXPECT_EQ(body_part_of("HairBase"), BodyPart::kHair);
@@ -72,7 +72,7 @@ TEST(Character, VerticesFollowTheirBonesByWeight) {
   expect_at(3, {1.5, 0.5, 0});
   EXPECT_NEAR(length(mesh.normals[1] - Vec3d{-1, 0, 0}), 0, 1e-12);
   EXPECT_NEAR(length(mesh.normals[2] - Vec3d{-half, half, 0}), 0, 1e-12);
-  pose_character(c, 0, 1.5, mesh);  // q and -q are one rotation: no way round between them.
+  pose_character(c, 0, 1.5, mesh);  // q and -q are one rotation: no rotation between them.
   expect_at(1, {1, 1, 0});
   pose_character(c, 0, 0.5, mesh);
   expect_at(1, {1 + half, half, 0});
@@ -80,7 +80,7 @@ TEST(Character, VerticesFollowTheirBonesByWeight) {
   expect_at(1, {1, 1, 0});
 }
 
-TEST(BuiltInCharacter, StandsOnTheGroundAsHighAsItSays) {
+TEST(BuiltInCharacter, StandsOnTheGroundAndHasItsHeight) {
   const Character c = built_in_character();
   PosedMesh mesh;
   for (const char* word : {"Walk", "Idle"}) {

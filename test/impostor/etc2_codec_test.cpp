@@ -127,11 +127,11 @@ TEST(Etc2Codec, ASlopeIsKeptToThreeSteps) {
   }
 }
 
-TEST(Etc2Codec, KeepsColoursAsWellAsAsked) {
+TEST(Etc2Codec, KeepsColoursWithinItsLimits) {
   // Mean squares of 8 bits, by how many colours a block has: one colour has more bits in planar
   // mode, two have T and H, and sixteen at random are too many for any.
-  const std::map<uint64_t, double> most{{1, 5}, {2, 18}, {3, 460}, {16, 1700}};
-  for (const auto& [kinds, limit] : most) {
+  const std::map<uint64_t, double> limits{{1, 5}, {2, 18}, {3, 460}, {16, 1700}};
+  for (const auto& [kinds, limit] : limits) {
     double sum = 0;
     for (uint64_t number = 0; number < 400; ++number) {
       const ColourBlock block = test::random_block(kSeed, number * 7 + kinds, kinds, 6);
@@ -193,7 +193,7 @@ TEST(Etc2Codec, HolesStayHolesAndNothingElseBecomesOne) {
     ColourBlock back;
     decode_etc2(encode_etc2(block, weights, true), true, back);
     for (size_t i = 0; i < 16; ++i) {
-      // A block of which no texel counts keeps its holes; what else it is, nobody sees.
+      // A block of which no texel counts keeps its holes; its colour is not visible.
       EXPECT_EQ(back[i][3], block[i][3] < 128 ? 0 : 255) << number;
     }
   }

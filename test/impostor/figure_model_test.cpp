@@ -61,7 +61,7 @@ TEST(FigureModel, VerticesAreWhereThePoseHasThem) {
   ASSERT_TRUE(model);
   PosedMesh mesh;
   pose_character(character, 0, character.clips[0].seconds / 4, mesh);  // The walk's second frame.
-  // On the spot and scaled, so all but a shift and a factor: distances tell.
+  // On the spot and scaled: equal but for a shift and a factor, so distances are compared.
   const auto& t0 = character.triangles.front();
   const auto& m0 = model->triangles.front();
   const auto posed = [&](uint32_t v) { return model->poses[model->vertices + v]; };

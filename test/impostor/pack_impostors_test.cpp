@@ -103,7 +103,7 @@ bool in_picture(const EyeCamera& camera, Vec3d p) {
          std::fabs(dot(d, axes.right)) <= depth * up * camera.aspect;
 }
 
-TEST(PackImpostors, NobodyWhoIsSeenIsLeftOutAndFewWhoAreNotAreKept) {
+TEST(PackImpostors, NoVisibleAvatarIsLeftOutAndFewInvisibleOnesAreKept) {
   const Atlas atlas = atlas_of(16, 8);
   const Avatars avatars = random_avatars(4000, 60);
   size_t seen = 0, kept = 0;
@@ -151,8 +151,8 @@ TEST(PackImpostors, SameBytesForAnyNumberOfWorkersAndNoAvatarsAtAll) {
   EXPECT_TRUE(pack(atlas, Avatars{}, config).empty());
 }
 
-// Each level against a look at every avatar by itself.
-TEST(PackImpostors, EachIsDrawnAsWhatItsDistanceSays) {
+// Each level, compared with a test of every avatar on its own.
+TEST(PackImpostors, EachIsDrawnAtTheLevelOfItsDistance) {
   const Atlas atlas = atlas_of(16, 8);
   const Avatars avatars = random_avatars(20'000, 60);
   const size_t count = avatars.x.size();
@@ -250,7 +250,7 @@ TEST(PackImpostors, FromTheSunAllShowTheSideThatItSees) {
   for (uint16_t& heading : avatars.heading) heading = 0;
   PackConfig config;
   config.camera.eye = {0, 5, 30};
-  config.from_direction = Vec3d{1, 1, 0};  // From +X, half way up.
+  config.from_direction = Vec3d{1, 1, 0};  // From +X, at 45 degrees.
   for (const ImpostorInstance& i : pack(atlas, avatars, config)) {
     const uint32_t view = i.view & 0xfffff;
     EXPECT_EQ(view % 16, 8U);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Rgb kBlack{0, 0, 0};
 
-// How much ink lies on the canvas, in pixels.
+// The amount of ink on the canvas, in pixels.
 double ink(const Canvas& canvas) {
   double sum = 0;
   for (int32_t y = 0; y < canvas.height(); ++y) {

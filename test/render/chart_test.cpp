@@ -61,7 +61,7 @@ TEST(Chart, ABandIsAsWideAsTheSpreadAndHighValuesAreCutOff) {
   }
   EXPECT_NEAR(tinted, 0.2 * 520, 6);
   EXPECT_TRUE(rows_of(*image, 600, kSecond).empty());
-  // The third one leaves at the top half way along: the plot is 1070 pixels wide, from 90.
+  // The third one leaves at the top in the middle: the plot is 1070 pixels wide, from 90.
   constexpr Colour kThird{0, 158, 115};
   EXPECT_FALSE(rows_of(*image, 90 + 520, kThird).empty());
   EXPECT_TRUE(rows_of(*image, 90 + 550, kThird).empty());

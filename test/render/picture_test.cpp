@@ -18,14 +18,14 @@ namespace {
 // Two storeys of 40 x 20 m, 3 m apart, and a ramp between them along the middle.
 Scene two_storeys_scene() {
   Scene scene;
-  const auto sheet = [&](double x0, double z0, double x1, double z1, double y0, double y1) {
+  const auto floor_quad = [&](double x0, double z0, double x1, double z1, double y0, double y1) {
     scene.add_quad({x0, y0, z0}, {x0, y0, z1}, {x1, y1, z1}, {x1, y1, z0});
   };
-  sheet(0, 0, 40, 20, 0, 0);
-  sheet(0, 0, 40, 8, 3, 3);
-  sheet(0, 12, 40, 20, 3, 3);
-  sheet(28, 8, 40, 12, 3, 3);
-  sheet(10, 8, 28, 12, 0, 3);
+  floor_quad(0, 0, 40, 20, 0, 0);
+  floor_quad(0, 0, 40, 8, 3, 3);
+  floor_quad(0, 12, 40, 20, 3, 3);
+  floor_quad(28, 8, 40, 12, 3, 3);
+  floor_quad(10, 8, 28, 12, 0, 3);
   return scene;
 }
 World two_storeys() {
@@ -53,7 +53,7 @@ TEST(Storeys, AFloorStaysOneStoreyAlthoughARampLeadsToTheNext) {
   EXPECT_EQ(cells.rbegin()->first, (std::pair{1, 3000}));
 }
 
-TEST(NodePicture, DrawsNodesAndAWayFromFarBeyondThem) {
+TEST(NodePicture, DrawsNodesAndAPathThatStartsFarBeyondThem) {
   Context context;
   const auto nodes = Nodes::make(two_storeys(), two_storeys_scene(), {}, context);
   ASSERT_TRUE(nodes) << nodes.error().message;
@@ -61,11 +61,11 @@ TEST(NodePicture, DrawsNodesAndAWayFromFarBeyondThem) {
   const auto all = draw_nodes(*nodes, config);
   ASSERT_TRUE(all) << all.error().message;
   config.path = {{-1e13, 1, 10}, {1e13, 1, 10}};
-  const auto with_way = draw_nodes(*nodes, config);
-  ASSERT_TRUE(with_way);
-  ASSERT_EQ(with_way->rgb.size(), all->rgb.size());
+  const auto with_path = draw_nodes(*nodes, config);
+  ASSERT_TRUE(with_path);
+  ASSERT_EQ(with_path->rgb.size(), all->rgb.size());
   size_t changed = 0;
-  for (size_t i = 0; i < all->rgb.size(); i += 3) changed += with_way->rgb[i] != all->rgb[i];
+  for (size_t i = 0; i < all->rgb.size(); i += 3) changed += with_path->rgb[i] != all->rgb[i];
   EXPECT_GT(changed, 1000u);  // from side to side
   config.path.clear();
   config.storey = 1;
@@ -75,7 +75,7 @@ TEST(NodePicture, DrawsNodesAndAWayFromFarBeyondThem) {
   config.storey = 7;
   EXPECT_EQ(draw_nodes(*nodes, config).error().code, Errc::kNotFound);
   config.storey = -1;
-  config.avatar_class = 3;  // Giants keep farther from the rims.
+  config.avatar_class = 3;  // Giants stay farther from the rims.
   const auto giants = draw_nodes(*nodes, config);
   ASSERT_TRUE(giants) << giants.error().message;
   EXPECT_NE(giants->rgb, all->rgb);
@@ -88,7 +88,7 @@ struct Pixels {
   int32_t first_row = INT32_MAX, last_row = -1;
 };
 
-// Below the letters at the top.
+// Below the text at the top.
 template <class Accept>
 Pixels pixels(const Image& image, Accept accept) {
   Pixels found;
@@ -138,7 +138,7 @@ TEST(NodePicture, LevelFloorBesideWallsIsGreen) {
   }
 }
 
-// At the rim of the ground corners of ragged nodes' blocks have no floor.
+// At the rim of the ground, corners of the blocks of partial nodes have no floor.
 TEST(NodePicture, GroundFillsThePicture) {
   Context context;
   const Scene scene = test::builtin({.name = "stairs"});
@@ -149,8 +149,9 @@ TEST(NodePicture, GroundFillsThePicture) {
   EXPECT_LT(pixels(*image, is_level).first_row, 64 + 24);
 }
 
-// Where a picture's pixel is metres, the rim of a way that leads away lies nearer than the way.
-TEST(NodePicture, AWayOverAWideMapIsBlueAllAlongAlsoUnderLinks) {
+// If a pixel spans metres, the rim of a path that leads away from the eye lies nearer than the
+// path.
+TEST(NodePicture, APathOverAWideMapIsBlueEverywhereAlsoUnderLinks) {
   Context context;
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 300}, {300, 0, 300}, {300, 0, 0});
@@ -170,7 +171,7 @@ TEST(NodePicture, AWayOverAWideMapIsBlueAllAlongAlsoUnderLinks) {
   }
 }
 
-TEST(NodePicture, AWayIsDrawnOnTheMapOnly) {
+TEST(NodePicture, APathIsDrawnOnTheMapOnly) {
   Context context;
   const auto nodes = Nodes::make(two_storeys(), two_storeys_scene(), {}, context);
   ASSERT_TRUE(nodes) << nodes.error().message;

@@ -70,7 +70,7 @@ int32_t house_ceiling(int32_t level, int32_t x, int32_t z) {
   return level == 0 && covered ? 2800 : kOpenSky;
 }
 
-TEST(StoreyRaster, WallsShaftsAndTheOutsideAreToldApart) {
+TEST(StoreyRaster, WallsShaftsAndTheOutsideAreDistinguished) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
   const auto storeys = house.rasters(64);
   ASSERT_EQ(storeys.size(), 2u);
@@ -88,7 +88,7 @@ TEST(StoreyRaster, WallsShaftsAndTheOutsideAreToldApart) {
 TEST(StoreyRaster, ReducingAveragesHeightsAndShares) {
   const HandMade ramp(2, 1, 1,
                       [](int32_t, int32_t x, int32_t z) { return z == 1 ? kNoFloor : x * 100; });
-  const auto storeys = ramp.rasters(32);  // 128 x 64 cells, four cells a texel each way
+  const auto storeys = ramp.rasters(32);  // 128 x 64 cells, 4 x 4 cells a texel
   ASSERT_EQ(storeys.size(), 1u);
   EXPECT_EQ(storeys[0].width, 32);
   EXPECT_EQ(storeys[0].height, 16);
@@ -99,7 +99,7 @@ TEST(StoreyRaster, ReducingAveragesHeightsAndShares) {
   EXPECT_EQ(storeys[0].clearance[5], 128);
 }
 
-TEST(StoreyRaster, APieceOfAnotherStoreyInALevelTileGoesHome) {
+TEST(StoreyRaster, APieceOfAnotherStoreyInALevelTileIsAssignedToIt) {
   // In the middle tile of five the two levels have swapped a piece.
   const HandMade mixed(5, 1, 2, [](int32_t level, int32_t x, int32_t z) {
     const bool swapped = in(x, 130, 170) && in(z, 20, 40);
@@ -112,7 +112,7 @@ TEST(StoreyRaster, APieceOfAnotherStoreyInALevelTileGoesHome) {
   }
 }
 
-TEST(StoreyRaster, CrumbsAreLeftOutUnlessTheyAreAskedFor) {
+TEST(StoreyRaster, CrumbsAreLeftOutUnlessTheyAreRequested) {
   const HandMade crumbs(2, 2, 3, [](int32_t level, int32_t x, int32_t z) {
     return level == 1 && (x > 3 || z > 3) ? kNoFloor : level * 3000;
   });
@@ -139,7 +139,7 @@ TEST(StoreyRaster, CrumbsJoinAStoreyThatIsNearAndFreeThere) {
   EXPECT_EQ(rasters.left_out_area, 4);
 }
 
-TEST(Views, AvatarsGoToTheNearestFloor) {
+TEST(Views, AvatarsAreDrawnOnTheNearestFloor) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
   const auto storeys = house.rasters(64);
   const RasterGrid grid = make_raster_grid(house.world, 64, 64);
@@ -155,17 +155,17 @@ TEST(Views, AvatarsGoToTheNearestFloor) {
   EXPECT_EQ(placed[2].storey, 0u);
 }
 
-TEST(Views, TheSectionSeesWhatIsThere) {
+TEST(Views, TheSectionShowsFreeSpansAndFloors) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
   const RasterGrid grid = make_raster_grid(house.world, 64, 64);
   const Section section = cut_section(house.world, grid, 35, 64);
   EXPECT_DOUBLE_EQ(section.z, 17.75);
-  ASSERT_EQ(section.gaps[20].size(), 2u);
-  EXPECT_EQ(section.gaps[20][0].ceiling, 2.8);
-  EXPECT_EQ(section.gaps[20][1].floor, 3);
-  EXPECT_TRUE(std::isinf(section.gaps[20][1].ceiling));
-  EXPECT_EQ(section.gaps[35].size(), 1u) << "the shaft";
-  EXPECT_TRUE(section.gaps[20][0].stands);
+  ASSERT_EQ(section.free_spans[20].size(), 2u);
+  EXPECT_EQ(section.free_spans[20][0].ceiling, 2.8);
+  EXPECT_EQ(section.free_spans[20][1].floor, 3);
+  EXPECT_TRUE(std::isinf(section.free_spans[20][1].ceiling));
+  EXPECT_EQ(section.free_spans[35].size(), 1u) << "the shaft";
+  EXPECT_TRUE(section.free_spans[20][0].stands);
 }
 
 TEST(Views, TheSectionLeavesTheMiddleOnlyForMuchMoreFloor) {
@@ -206,7 +206,7 @@ TEST(Poster, ShowsFloorsWallsAndAvatars) {
   EXPECT_EQ(again->rgb, image->rgb) << "the same bytes each time";
 }
 
-TEST(Poster, DrawsAWayOnTheStoreyWhoseFloorItIsOn) {
+TEST(Poster, DrawsAPathOnTheStoreyWhoseFloorItIsOn) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
   const auto count_on = [&](int32_t storey, double height) {
     PictureConfig config;
@@ -215,7 +215,7 @@ TEST(Poster, DrawsAWayOnTheStoreyWhoseFloorItIsOn) {
     config.path = {{4, height, 4}, {20, height, 4}, {20, height, 12}};
     const auto image = draw_poster(house.world, {}, {}, config);
     EXPECT_TRUE(image);
-    return image ? count_colour(*image, kWay) : 0;
+    return image ? count_colour(*image, kPath) : 0;
   };
   const size_t in_legend = count_on(0, 3);
   EXPECT_GT(in_legend, 0u);

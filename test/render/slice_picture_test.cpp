@@ -100,7 +100,7 @@ TEST(Png, IsWrittenCompleteOrNotAtAll) {
                 "/missing/a.png: cannot write: No such file or directory; check the folder, its "
                 "rights and the free space");
   std::filesystem::create_directories(folder + "/taken.png");
-  EXPECT_FALSE(write_png(image, folder + "/taken.png")) << "a folder is in the way";
+  EXPECT_FALSE(write_png(image, folder + "/taken.png")) << "a folder has that name";
   EXPECT_FALSE(std::filesystem::exists(folder + "/taken.png.part"));
 }
 

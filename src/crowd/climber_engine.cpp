@@ -179,9 +179,9 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
       up = flights_[other.slot].rise;
     }
     // Who has arrived makes way for those who would pass, were he not there.
-    const bool yields = body.has(Body::kArrived) && other.climbs && !other.has(Body::kArrived);
-    const Space velocity = yields ? Space{other.preferred.x, preferred_up, other.preferred.z}
-                                  : Space{other.velocity.x, up, other.velocity.z};
+    const bool is_passed = body.has(Body::kArrived) && other.climbs && !other.has(Body::kArrived);
+    const Space velocity = is_passed ? Space{other.preferred.x, preferred_up, other.preferred.z}
+                                     : Space{other.velocity.x, up, other.velocity.z};
     situation.near[n] = {{apart.x, static_cast<float>(other.y - body.y) * 1e-3f, apart.z},
                          velocity,
                          static_cast<float>(body.radius + other.radius) * units.unit,

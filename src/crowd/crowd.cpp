@@ -21,9 +21,9 @@
 namespace throng {
 namespace {
 
-constexpr double kMaxSpeed = 100;   // [m/s]
-constexpr double kMaxRadius = 100;  // [m]
-constexpr double kMaxHeight = 65;   // [m]
+constexpr double kMaxSpeed = 100;      // [m/s]
+constexpr double kMaxRadius = 100;     // [m]
+constexpr double kMaxBodyHeight = 65;  // [m]
 constexpr int32_t kMaxSubSteps = 1000;
 constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
@@ -185,7 +185,7 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   if (!(spawn.speed >= 0 && speed <= kMaxSpeed)) {
     return bad_config("speed must be 0 (the class's) to 100 m/s");
   }
-  if (avatar.height > kMaxHeight) {
+  if (avatar.height > kMaxBodyHeight) {
     return bad_config("class " + avatar.name + " is higher than 65 m");
   }
   Body body;

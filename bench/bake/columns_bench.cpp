@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bake/gaps.h"
+#include "bake/free_spans.h"
 #include "throng/builtin_worlds.h"
 
 namespace {

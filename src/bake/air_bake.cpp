@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "bake/air_room.h"
+#include "bake/air_clearance.h"
 #include "bake/columns.h"
 #include "core/hash.h"
 #include "core/parallel.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 #include "bake/zone_builder.h"
 #include "core/hash.h"
 #include "core/parallel.h"

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "bake/sheet_kernels.h"
-#include "bake/sheets.h"
+#include "bake/layer_kernels.h"
+#include "bake/layers.h"
 
 /// Where a class may stand: one bit per cell of a sheet.
 namespace throng {

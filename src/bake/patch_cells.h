@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bake/body_sweep.h"
-#include "bake/own_ground.h"
+#include "bake/self_support.h"
 #include "bake/surface_bound.h"
 #include "bake/triangle_filter.h"
 #include "graph/node_width.h"

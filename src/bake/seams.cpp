@@ -3,8 +3,8 @@
 #include <bit>
 #include <cstdlib>
 
+#include "bake/layer_kernels.h"
 #include "bake/legality.h"
-#include "bake/sheet_kernels.h"
 
 // Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its sheet
 // is cut, and near the cut a window may have followed the lower floor where the body walks on the

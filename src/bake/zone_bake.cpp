@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "bake/clearance.h"
-#include "bake/gaps.h"
-#include "bake/sheet_kernels.h"
+#include "bake/free_spans.h"
+#include "bake/layer_kernels.h"
 #include "bake/surface_planes.h"
 #include "bake/wall_parts.h"
 #include "bake/zone_builder.h"

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/layers.h"
 #include "bake/legality.h"
-#include "bake/sheets.h"
 #include "bake/triangles.h"
 #include "throng/bake.h"
 #include "throng/context.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "bake/cell_packer.h"
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "world/zone_data.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/clearance.h"
-#include "bake/sheets.h"
+#include "bake/layers.h"
 #include "world/zone_generated.h"
 
 /// Packs the sheets of a zone into a zone file's arrays: constants and planes where they serve, and

@@ -7,7 +7,7 @@
 #include "bake/graph_bake.h"
 #include "bake/world_bake.h"
 #include "bake/world_folder.h"
-#include "cluster/deal.h"
+#include "cluster/job_assignment.h"
 #include "core/stopwatch.h"
 #include "throng/cluster.h"
 

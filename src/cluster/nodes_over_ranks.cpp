@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "bake/node_bake.h"
-#include "cluster/deal.h"
+#include "cluster/job_assignment.h"
 #include "core/stopwatch.h"
 #include "throng/cluster.h"
 

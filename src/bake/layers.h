@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/gaps.h"
+#include "bake/free_spans.h"
 #include "bake/grid.h"
 #include "bake/triangles.h"
 #include "throng/avatar_class.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/sheets.h"
+#include "bake/layers.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 
 // Gaps of neighbouring columns belong together when a step leads from one to the other. Runs of
 // linked gaps in a row are the units; they are joined with union-find in one raster pass (after

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bake/sheet_kernels.cpp"
+#define HWY_TARGET_INCLUDE "bake/layer_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 

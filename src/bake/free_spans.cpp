@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/gaps.h"
+#include "bake/free_spans.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 // network.
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bake/gaps.cpp"
+#define HWY_TARGET_INCLUDE "bake/free_spans.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 

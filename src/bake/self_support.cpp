@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/own_ground.h"
+#include "bake/self_support.h"
 
 #include <algorithm>
 #include <array>

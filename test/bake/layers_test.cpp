@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/sheets.h"
+#include "bake/layers.h"
 
 #include <gtest/gtest.h>
 

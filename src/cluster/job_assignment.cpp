@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "cluster/deal.h"
+#include "cluster/job_assignment.h"
 
 #include <unistd.h>
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "bake/sheets.h"
+#include "bake/layers.h"
 #include "world/cell_blocks.h"
 
 /// The vector loops of sheets. Rows of 64 cells are words of bits: bit x is cell x.

@@ -119,7 +119,7 @@ std::vector<Trip> draw_trips(const World& world, const dtNavMesh& mesh, const Op
 // What is told of a crowd.
 struct Account {
   std::vector<double> seconds;  // that each simulated one takes
-  uint64_t with_way = 0;        // after the first
+  uint64_t with_path = 0;       // after the first
   uint64_t partial = 0;         // of these, leading elsewhere
   uint64_t overlaps = 0, deep = 0;
   double deepest = 0;
@@ -147,7 +147,7 @@ struct Account {
     return {{"us_an_update", sum / static_cast<double>(seconds.size()) * each},
             {"us_median", sorted[sorted.size() / 2] * each},
             {"first_second", seconds.front()},
-            {"with_way_after_1_s", with_way},
+            {"with_way_after_1_s", with_path},
             {"partial", partial},
             {"speed_at_end", walked / o.avatars / o.speed},
             {"overlaps", overlaps},
@@ -177,7 +177,7 @@ class Ours {
   void update() {
     const CrowdReport report = crowd_.step();
     // All ask in their first step, and whoever asks again later has an answer within it.
-    if (report.step == 1) with_way_ = report.planned - report.no_path;
+    if (report.step == 1) with_path_ = report.planned - report.no_path;
     planned_ += report.planned;
     progress_ = report.progress;
     contested_ += report.contested;
@@ -194,7 +194,7 @@ class Ours {
     }
     return all;
   }
-  void count_ways(Account& account) const { account.with_way = with_way_; }
+  void count_paths(Account& account) const { account.with_path = with_path_; }
   [[nodiscard]] uint64_t wall_entries() const { return crowd_.check().wall_entries; }
   // Where the time goes, of an update. [us]
   [[nodiscard]] Json phases(const Options& o) const {
@@ -220,7 +220,7 @@ class Ours {
   std::vector<AvatarId> ids_;
   std::vector<Place> goals_;
   std::vector<AvatarState> states_;
-  uint64_t with_way_ = 0, planned_ = 0, contested_ = 0;
+  uint64_t with_path_ = 0, planned_ = 0, contested_ = 0;
   double progress_ = 0;
   std::array<double, 5> phases_{};
 };
@@ -265,10 +265,10 @@ class Theirs {
     }
     return all;
   }
-  void count_ways(Account& account) const {
+  void count_paths(Account& account) const {
     for (size_t i = 0; i < trips_.size(); ++i) {
       const bool has = agent(i).targetState == DT_CROWDAGENT_TARGET_VALID;
-      account.with_way += has;
+      account.with_path += has;
       account.partial += has && agent(i).partial;
     }
   }
@@ -291,7 +291,7 @@ void go_on(SomeCrowd& crowd, int second, const Options& o, Account& account) {
     if (last) account.walk_on(crowd.look());
   }
   account.seconds.push_back(taken);
-  if (second == 0) crowd.count_ways(account);
+  if (second == 0) crowd.count_paths(account);
   if (!last) account.bodies = crowd.look();
   account.judge();
 }

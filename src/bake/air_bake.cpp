@@ -185,9 +185,9 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                             own_part(grid_z, zone_z)};
   const uint64_t key = hash_span(std::span<const uint64_t>(words));
   if (folder_ != nullptr) {
-    if (auto kept = folder_->keep_air(zone_x, zone_z, key)) {
-      ++kept_;
-      return slot_of(zone_x, zone_z, kept->bytes(), nullptr);
+    if (auto reused = folder_->reuse_air(zone_x, zone_z, key)) {
+      ++reused_;
+      return slot_of(zone_x, zone_z, reused->bytes(), nullptr);
     }
   }
   const int32_t first_x = zone_x * tiles - 1, first_z = zone_z * tiles - 1;
@@ -268,7 +268,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                              .largest = AirTree::kMaxSide,
                              .free_beyond = true};
   AirTreeData tree = build_air_tree(source);
-  measure_room(source, apron, workers, tree);
+  measure_clearance(source, apron, workers, tree);
   auto bytes = air_zone_bytes(zone_x, zone_z, key, tree);
   const std::span<const uint8_t> view(bytes.data(), bytes.size());
   if (folder_ != nullptr) {
@@ -278,8 +278,8 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   }
   auto zone = AirZone::from_bytes(std::move(bytes), air_file_name(zone_x, zone_z));
   if (!zone) return zone.error();
-  const auto kept = (*zone)->bytes();
-  return slot_of(zone_x, zone_z, kept, std::move(*zone));
+  const auto reused = (*zone)->bytes();
+  return slot_of(zone_x, zone_z, reused, std::move(*zone));
 }
 
 std::shared_ptr<AirData> gather_air(const AirShape& shape, const WorldData& world,

@@ -40,7 +40,7 @@ class AirBaker {
                                               std::span<const uint32_t> triangles, uint64_t input,
                                               Context& context);
   /// Zones whose files were kept, for their input has not changed.
-  [[nodiscard]] uint64_t kept() const { return kept_; }
+  [[nodiscard]] uint64_t reused() const { return reused_; }
 
  private:
   struct Worker;
@@ -53,7 +53,7 @@ class AirBaker {
   const WorldFolder* folder_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<CellTriangle> triangles_;
-  uint64_t kept_ = 0;
+  uint64_t reused_ = 0;
 };
 
 /// What came of all zones of a world, in their order; null ones are passed over.

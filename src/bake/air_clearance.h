@@ -12,6 +12,7 @@ namespace throng {
 /// `apron` cells beyond the zone on all sides: no width is promised beyond what they show. The
 /// highest layer of the rows has no matter. A height is that over the cube grown by its width.
 /// Time: the cells, and 15 layers over each cube.
-void measure_room(const AirTreeSource& source, int32_t apron, int32_t workers, AirTreeData& tree);
+void measure_clearance(const AirTreeSource& source, int32_t apron, int32_t workers,
+                       AirTreeData& tree);
 
 }  // namespace throng

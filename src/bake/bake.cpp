@@ -29,7 +29,7 @@ class ZoneBaker {
       : bake_(bake),
         context_(context),
         folder_(folder),
-        groups_(deal_workers(bake.zones().size(), config.workers)),
+        groups_(assign_workers(bake.zones().size(), config.workers)),
         scratch_(static_cast<size_t>(groups_.groups)),
         facts_(bake.zones().size()),
         zones_(folder == nullptr ? facts_.size() : 0) {}
@@ -65,8 +65,8 @@ class ZoneBaker {
   Result<void> bake(size_t i, ZoneScratch& scratch) {
     const format::ZoneInput& input = bake_.zones()[i];
     if (folder_ != nullptr) {
-      if (const auto kept = folder_->keep(input.x(), input.z(), input.hash())) {
-        facts_[i] = bake_.facts_of(*kept);
+      if (const auto reused = folder_->keep(input.x(), input.z(), input.hash())) {
+        facts_[i] = bake_.facts_of(*reused);
         return {};
       }
     }

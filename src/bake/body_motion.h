@@ -31,24 +31,24 @@ class MotionJudge {
 
   /// True if there is a surface that is not blocked within `reach` above or below the straight line
   /// between two points, everywhere up to `spacing`.
-  [[nodiscard]] bool is_carried(Vec3d from, Vec3d to, double reach, double spacing);
+  [[nodiscard]] bool is_supported(Vec3d from, Vec3d to, double reach, double spacing);
 
  private:
   // Triangles in a box.
   struct Surroundings {
     Box3d box;
-    SieveList list;
+    FilterList list;
   };
 
-  void list_triangles(const Box3d& box, Vec3d around, SieveList& out);
+  void list_triangles(const Box3d& box, Vec3d around, FilterList& out);
   [[nodiscard]] bool is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to,
-                             double way, double t0, double t1);
+                             double move, double t0, double t1);
 
   const TriangleSquares* triangles_;
   std::vector<uint32_t> found_;
   Surroundings around_, closer_;
-  SieveList near_;
-  SieveHits hits_;
+  FilterList near_;
+  FilterHits hits_;
 };
 
 }  // namespace throng

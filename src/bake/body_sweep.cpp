@@ -58,7 +58,7 @@ double distance2(const Clipped& polygon) {
 }
 
 // Squared distance between the segments from a to b and from the axis to p, seen along it.
-double distance2_to_way(Vec3d a, Vec3d b, Vec3d p) {
+double distance2_to_move(Vec3d a, Vec3d b, Vec3d p) {
   const auto side = [](Vec3d u, Vec3d v) { return u.x * v.y - u.y * v.x; };
   const Vec3d ab = b - a, ap = p - a, ao = a * -1;
   if (side(p, a) * side(p, b) < 0 && side(ab, ao) * side(ab, ap) < 0) return 0;
@@ -95,7 +95,7 @@ double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep) {
   return lowest;
 }
 
-bool enters_on_way(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d along) {
+bool enters_on_move(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d along) {
   const auto& [a, b, c] = triangle;
   const double low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});
   if (low > sweep.high || high < sweep.low) return false;
@@ -113,7 +113,7 @@ bool enters_on_way(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d 
   if (distance2(polygon) == 0) return true;  // The way begins in it.
   for (size_t i = 0; i < polygon.count; ++i) {
     const Vec3d p = polygon.corners[i], q = polygon.corners[(i + 1) % polygon.count];
-    if (distance2_to_way(p, q, along) <= r * r) return true;
+    if (distance2_to_move(p, q, along) <= r * r) return true;
   }
   return false;
 }

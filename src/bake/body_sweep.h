@@ -39,8 +39,8 @@ using LocalTriangle = std::array<Vec3d, 3>;
 [[nodiscard]] double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep);
 
 /// Does a triangle come into a sweep while that goes straight across its axis, by `along`? [m]
-[[nodiscard]] bool enters_on_way(const LocalTriangle& triangle, const BodySweep& sweep,
-                                 Vec3d along);
+[[nodiscard]] bool enters_on_move(const LocalTriangle& triangle, const BodySweep& sweep,
+                                  Vec3d along);
 
 /// The box that holds a sweep.
 [[nodiscard]] Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep);

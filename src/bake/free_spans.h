@@ -13,7 +13,7 @@
 namespace throng {
 
 /// Free space over solid matter, up to one per cell. Heights from the columns' base.
-struct GapLayer {
+struct FreeSpanLayer {
   alignas(64) std::array<int32_t, kTileArea> top;      // of the matter below
   alignas(64) std::array<int32_t, kTileArea> ceiling;  // kOpenSkyMm where nothing is above
   alignas(64) std::array<int32_t, kTileArea> support;  // as in SpanLayer
@@ -21,23 +21,23 @@ struct GapLayer {
 
 inline constexpr int32_t kOpenSkyMm = INT32_MAX;
 
-struct TileGaps {
+struct TileFreeSpans {
   int32_t base = 0;
   int32_t max_count = 0;
   uint64_t spans = 0;  // after joining
   alignas(64) std::array<int32_t, kTileArea> count;
-  std::vector<std::unique_ptr<GapLayer>>
+  std::vector<std::unique_ptr<FreeSpanLayer>>
       layers;  // ascending; layer k of cell c holds if k < count[c]
 };
 
 /// Bit x of row z: column (x, z) of the tile has no matter at all.
-std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps);
+std::array<uint64_t, kTileSide> bare_columns(const TileFreeSpans& free_spans);
 
-/// Joins spans that are less than `min_gap` apart and lists what is free above each run.
-void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps);
+/// Joins spans that are less than `min_free_span` apart and lists what is free above each run.
+void find_free_spans(const TileColumns& columns, int32_t min_free_span, TileFreeSpans& free_spans);
 
 /// Where matter under a gap supports nobody, gives the gap the support of the nearest gap below
 /// that has one.
-void lend_supports(TileGaps& gaps);
+void lend_supports(TileFreeSpans& free_spans);
 
 }  // namespace throng

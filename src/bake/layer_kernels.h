@@ -13,49 +13,50 @@
 namespace throng {
 
 /// Which gaps of one layer continue each other, row by row.
-struct LayerLinks {
+struct FreeSpanLinks {
   std::array<uint64_t, kTileSide> has;   // the cell has a gap in this layer
   std::array<uint64_t, kTileSide> left;  // it continues the same layer's gap at x - 1
   std::array<uint64_t, kTileSide> up;    // and at z - 1
 };
 
 /// Gaps of neighbouring columns continue each other if their tops are at most `step` apart and the
-/// room over both is at least `gap`.
+/// room over both is at least `free_span`.
 struct LinkRule {
-  int32_t step, gap;  // [mm]
+  int32_t step, free_span;  // [mm]
 };
 
 /// `only`, unless null: the gaps of the layer that count.
-void link_layer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const CellRows* only,
-                LayerLinks& links);
+void link_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, const LinkRule& rule,
+                     const CellRows* only, FreeSpanLinks& links);
 
 /// Cells of a layer whose gap has less room than that.
-void low_rooms(const TileGaps& gaps, int32_t layer, int32_t room, CellRows& rows);
+void low_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t room,
+                    CellRows& rows);
 
 /// Lowest and highest top over the cells of a layer that have a gap.
 struct TopRange {
   int32_t low = INT32_MAX, high = INT32_MIN;
 };
-TopRange layer_range(const TileGaps& gaps, int32_t layer);
+TopRange free_span_range(const TileFreeSpans& free_spans, int32_t free_layer);
 /// The same over the cells of row z whose bits are set.
-TopRange run_range(const GapLayer& layer, int32_t z, uint64_t cells);
+TopRange run_range(const FreeSpanLayer& free_layer, int32_t z, uint64_t cells);
 
 /// Sets every cell to "no gap".
-void clear_sheet(Sheet& sheet);
+void clear_layer(Layer& layer);
 
-/// Copies the gaps of `layer` in row z whose bits are set into the sheet, whose base is set.
-void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet);
+/// Copies the gaps of `free_layer` in row z whose bits are set into the sheet, whose base is set.
+void write_free_spans(const FreeSpanLayer& free_layer, int32_t z, uint64_t cells, Layer& layer);
 
 /// Fills the sheet's counts and extremes.
-void summarise(Sheet& sheet);
+void summarise(Layer& layer);
 
 /// Could the feet be a plane? Quick and sure when it says no: differences of neighbours must agree
 /// to within 2 mm.
-bool may_be_plane(const Sheet& sheet);
+bool may_be_plane(const Layer& layer);
 
 /// Half of what the feet may rise or fall over each cell, see world/surface.h; rows in which nobody
 /// may stand are left as they are. [mm]
-void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt);
+void make_tilt(const Layer& layer, std::array<uint16_t, kTileArea>& tilt);
 
 /// What the column of a body's feet must have: matter at most this far above them, room over them,
 /// and another surface.
@@ -65,22 +66,22 @@ struct BodyNeed {
 };
 
 /// Cells with feet whose own columns have that, whatever is around. False if there are none.
-bool useful_cells(const Sheet& sheet, const BodyNeed& need, CellRows& rows);
+bool useful_cells(const Layer& layer, const BodyNeed& need, CellRows& rows);
 
 /// Takes the feet of all other cells away, and counts feet again.
-void keep_feet(const CellRows& rows, Sheet& sheet);
+void keep_feet(const CellRows& rows, Layer& layer);
 
 /// Which cells have feet: 64 rows of 64 bits.
-void present_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows);
+void present_bits(const Layer& layer, std::array<uint64_t, kTileSide>& rows);
 
 /// Lowest and highest ceiling over the cells that have feet.
 struct HeightRange {
   uint16_t low = kNone16, high = 0;
 };
-HeightRange ceiling_range(const Sheet& sheet);
+HeightRange ceiling_range(const Layer& layer);
 
 /// One sheet's gaps along a line of 64 cells.
-struct GapLine {
+struct FreeSpanLine {
   const uint16_t* top;
   const uint16_t* ceiling;
   int32_t shift;  // from the sheet's base to the one that is asked for [mm]
@@ -88,7 +89,8 @@ struct GapLine {
 
 /// For each of 64 cells the gap whose top is nearest to `near`, which becomes that top; where no
 /// sheet has a gap, kNone16 under a ceiling of 0, and `near` stays. [mm]
-void choose_gaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling);
+void choose_free_spans(std::span<const FreeSpanLine> lines, int32_t* near, uint16_t* top,
+                       uint16_t* ceiling);
 
 /// True if the plane meets all feet to within 1 mm. Heights as LevelView::sample.
 struct LevelPlane {
@@ -96,23 +98,23 @@ struct LevelPlane {
   int32_t part = 0;                  // [1/1024 mm]
   int32_t slope_x = 0, slope_z = 0;  // [1/1024 mm per cell]
 };
-bool plane_fits(const Sheet& sheet, const LevelPlane& plane);
+bool plane_fits(const Layer& layer, const LevelPlane& plane);
 
 /// Puts all feet on the plane.
-void put_on_plane(const LevelPlane& plane, Sheet& sheet);
+void put_on_plane(const LevelPlane& plane, Layer& layer);
 
 /// Which cells have a gap, and which of them continue their neighbour's on the same sheet: tops
 /// within `step` of the cell to the right, and of the one below.
 struct TopLinks {
   std::array<uint64_t, kTileSide> has, right, down;
 };
-void link_tops(const Sheet& sheet, int32_t step, TopLinks& links);
+void link_tops(const Layer& layer, int32_t step, TopLinks& links);
 
 /// Bit x of row z: both it and the next cell have a gap, tops are at most `rule.step` apart, and
-/// there is `rule.gap` of room over both.
-void even_runs(const Sheet& sheet, const LinkRule& rule, CellRows& rows);
+/// there is `rule.free_span` of room over both.
+void even_runs(const Layer& layer, const LinkRule& rule, CellRows& rows);
 
 /// Adds the cells that have a gap to `rows`.
-void add_gap_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows);
+void add_free_span_bits(const Layer& layer, std::array<uint64_t, kTileSide>& rows);
 
 }  // namespace throng

@@ -23,7 +23,7 @@ inline constexpr uint16_t kHighCeiling16 = 65534;  // a ceiling that high or mor
 
 /// One gap per cell. Heights are [mm] from `base`, which lies kBelow under the lowest top so that
 /// lower neighbours can still be told apart.
-struct Sheet {
+struct Layer {
   static constexpr int32_t kBelow = 4000;     // [mm]
   static constexpr int32_t kHighest = 60000;  // tops above base + this go to another sheet
 
@@ -34,7 +34,7 @@ struct Sheet {
   uint16_t low_feet = 0, high_feet = 0;  // over cells with feet
   uint16_t low_ceiling = 0;              // over cells with a gap
   bool seams = false;                    // others of the tile go on where it was cut
-  bool is_low = false;                   // for classes who get through less than kHighGap
+  bool is_low = false;                   // for classes who get through less than kHighFreeSpan
   bool one_code = false;                 // all feet have the code of the first of them
   uint8_t some_code = 0;
   alignas(64) std::array<uint16_t, kTileArea> top;      // matter below the gap; kNone16: no gap
@@ -55,17 +55,17 @@ struct Sheet {
 /// sheets of a floor must not change with who else walks in the world. Gaps that grown people get
 /// through are dealt by themselves, so that who needs no lower ones does not pay for them. [mm]
 struct BodyLimits {
-  static constexpr int32_t kHighGap = 1300;   // less room is for those of lower classes
-  static constexpr int32_t kLowGap = 300;     // less is matter, unless a class gets through less
-  static constexpr double kMinRadius = 0.16;  // unless a class is narrower [m]
+  static constexpr int32_t kHighFreeSpan = 1300;  // less room is for those of lower classes
+  static constexpr int32_t kLowFreeSpan = 300;  // less is matter, unless a class gets through less
+  static constexpr double kMinRadius = 0.16;    // unless a class is narrower [m]
 
-  int32_t min_gap = 0;            // less room than this is matter: kHighGap if all need as much
-  int32_t low_gap = 0;            // the same, if some class needs less than kHighGap
-  int32_t link_step = 500;        // tops this far apart at most are one floor
-  int32_t min_height = 0;         // smallest height
-  int32_t min_footprint = 0;      // a smaller floor holds nobody [cells]
-  int32_t max_bottom = 0;         // largest bottom = how far matter may top the feet
-  int32_t blocked_code = 0;       // of the surface that no class may stand on
+  int32_t min_free_span = 0;  // less room than this is matter: kHighFreeSpan if all need as much
+  int32_t low_free_span = 0;  // the same, if some class needs less than kHighFreeSpan
+  int32_t link_step = 500;    // tops this far apart at most are one floor
+  int32_t min_height = 0;     // smallest height
+  int32_t min_footprint = 0;  // a smaller floor holds nobody [cells]
+  int32_t max_bottom = 0;     // largest bottom = how far matter may top the feet
+  int32_t blocked_code = 0;   // of the surface that no class may stand on
   std::vector<uint32_t> allowed;  // per surface code: which classes may stand there
 };
 
@@ -73,42 +73,42 @@ BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes&
                        double cell);
 
 /// The least room over matter that a class can use: its height less its bottom. [mm, > 0]
-int32_t min_gap_of(const AvatarClass& avatar);
+int32_t min_free_span_of(const AvatarClass& avatar);
 
 /// Bottom of a class's body in whole mm, rounded down; height rounded up.
 int32_t bottom_mm(const AvatarClass& avatar);
 int32_t height_mm(const AvatarClass& avatar);
 
 /// Finds where some class may stand: `useful` and the borders, from the feet.
-void find_useful(const BodyLimits& limits, Sheet& sheet);
+void find_useful(const BodyLimits& limits, Layer& layer);
 
 /// Fills the borders from the feet and `useful`.
-void set_borders(Sheet& sheet);
+void set_borders(Layer& layer);
 
 /// Recycles sheets: a zone makes and drops thousands.
-class SheetPool {
+class LayerPool {
  public:
-  std::unique_ptr<Sheet> take();
-  void give(std::unique_ptr<Sheet> sheet);
+  std::unique_ptr<Layer> take();
+  void give(std::unique_ptr<Layer> layer);
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Sheet>> free_;
+  std::vector<std::unique_ptr<Layer>> free_;
 };
 
 /// The sheets of one tile, by their lowest tops.
-using TileSheets = std::vector<std::unique_ptr<Sheet>>;
+using TileLayers = std::vector<std::unique_ptr<Layer>>;
 
-/// The gaps of a tile of kHighGap and more; all of BodyLimits::min_gap and more too, if that is
-/// less.
-struct GapsToDeal {
-  const TileGaps& high;
-  const TileGaps* all = nullptr;
+/// The gaps of a tile of kHighFreeSpan and more; all of BodyLimits::min_free_span and more too, if
+/// that is less.
+struct FreeSpansToAssign {
+  const TileFreeSpans& high;
+  const TileFreeSpans* all = nullptr;
 };
 
 /// Deals the gaps of a tile to sheets, which are cleared first: all but what is useful of them.
 /// Linear in the gaps.
-void deal_gaps(const GapsToDeal& gaps, const BodyLimits& limits, SheetPool& pool,
-               TileSheets& sheets);
+void assign_free_spans(const FreeSpansToAssign& free_spans, const BodyLimits& limits,
+                       LayerPool& pool, TileLayers& layers);
 
 }  // namespace throng

@@ -41,30 +41,30 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
                        bool fine = false);
 
 /// Sheets of a tile that some classes see, all or the high ones, by their lowest tops.
-struct SheetList {
-  std::vector<const Sheet*> sheets;
+struct LayerList {
+  std::vector<const Layer*> layers;
   bool seams = false;  // some of them continue each other inside the tile
 
-  void add(const Sheet* sheet) {
-    sheets.push_back(sheet);
-    seams |= sheet->seams;
+  void add(const Layer* layer) {
+    layers.push_back(layer);
+    seams |= layer->seams;
   }
-  [[nodiscard]] size_t size() const { return sheets.size(); }
-  [[nodiscard]] bool empty() const { return sheets.empty(); }
-  [[nodiscard]] const Sheet* operator[](size_t i) const { return sheets[i]; }
-  [[nodiscard]] auto begin() const { return sheets.begin(); }
-  [[nodiscard]] auto end() const { return sheets.end(); }
+  [[nodiscard]] size_t size() const { return layers.size(); }
+  [[nodiscard]] bool empty() const { return layers.empty(); }
+  [[nodiscard]] const Layer* operator[](size_t i) const { return layers[i]; }
+  [[nodiscard]] auto begin() const { return layers.begin(); }
+  [[nodiscard]] auto end() const { return layers.end(); }
 };
 
 /// Sheets of a tile and its eight neighbours, row by row from (-1, -1); null: no tile there.
-using Neighbourhood = std::array<const SheetList*, 9>;
+using Neighbourhood = std::array<const LayerList*, 9>;
 
 /// Matter and room around one sheet, with the neighbours' cells filled in. [mm from the sheet's
 /// base]
-class SheetWindow {
+class LayerWindow {
  public:
   /// `reach` is the largest of all classes. [cells, <= 64]
-  void assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach, const BodyLimits& limits);
+  void assemble(const Neighbourhood& tiles, size_t layer, int32_t reach, const BodyLimits& limits);
 
   [[nodiscard]] int32_t reach() const { return reach_; }
   [[nodiscard]] int32_t pad() const { return pad_; }
@@ -77,22 +77,22 @@ class SheetWindow {
   std::vector<uint16_t> ceiling;
 
  private:
-  void copy_own(const Sheet& own);
-  void fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach);
-  void fill_side(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
-  void fill_corner(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz, int32_t reach);
-  void fill_holes(const SheetList& tile, size_t sheet, const BodyLimits& limits);
+  void copy_own(const Layer& own);
+  void fill_apron(const Neighbourhood& tiles, const Layer& own, int32_t reach);
+  void fill_side(const LayerList& tile, const Layer& own, int32_t dx, int32_t dz, int32_t reach);
+  void fill_corner(const LayerList& tile, const Layer& own, int32_t dx, int32_t dz, int32_t reach);
+  void fill_holes(const LayerList& tile, size_t layer, const BodyLimits& limits);
 
   int32_t reach_ = 0;
   int32_t pad_ = 0;
   int32_t stride_ = 0;
-  std::vector<GapLine> lines_;     // of one line of cells, per sheet
-  std::vector<uint16_t> columns_;  // of the sheets, where a line is one
+  std::vector<FreeSpanLine> lines_;  // of one line of cells, per sheet
+  std::vector<uint16_t> columns_;    // of the sheets, where a line is one
 };
 
 /// Scratch of one worker for legal_cells.
 struct LegalityScratch {
-  SheetWindow window;
+  LayerWindow window;
   std::vector<uint16_t> rows;                        // horizontal extremes
   alignas(64) std::array<uint16_t, kTileArea> tilt;  // half of the feet's rise over a cell
 };
@@ -108,22 +108,22 @@ struct LegalCells {
 
 /// True if nothing in sight can stop this class anywhere on the sheet, judged by the sheets'
 /// extremes alone: the common case of open flat ground.
-bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+bool all_legal(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                const BodyLimits& limits);
 
 /// Cells where the class has a surface that it may stand on and room over it, whatever is around:
 /// the only ones that can be legal. False if there are none.
-bool may_stand(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+bool may_stand(const Layer& layer, const BodyWindow& body, const BodyLimits& limits,
                BitPlane& cells);
 
 /// The test of docs/design/000-house.md, "legality is tested by value", for one class. `cells` are
 /// those of may_stand; `scratch` holds the window (assembled) and the tilt (from make_tilt).
-void legal_cells(const Sheet& sheet, const BodyWindow& body, const BitPlane& cells,
+void legal_cells(const Layer& layer, const BodyWindow& body, const BitPlane& cells,
                  LegalityScratch& scratch, LegalCells& out);
 
 /// The same test, relative to the plane of the feet, for cells that failed it only for the matter's
 /// height: on a slope whole cells look higher than the part of them that the body reaches.
-void recheck_slopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
+void recheck_slopes(const Layer& layer, const BodyWindow& body, const LegalityScratch& scratch,
                     LegalCells& cells);
 
 /// Absolute heights of a gap that a body on one cell needs. [mm]
@@ -133,15 +133,15 @@ struct ColumnNeed {
 };
 
 /// True if one of the gaps of a tile's column holds the body.
-bool column_is_free(const SheetList& tile, size_t cell, const ColumnNeed& need);
+bool column_is_free(const LayerList& tile, size_t cell, const ColumnNeed& need);
 
 /// The same test for cells that failed it near a seam, where the window may have followed the wrong
 /// sheet: each column around may show any of its gaps. Slow, exact, for few cells. Those
 /// that fail outside of the core become hemmed.
-void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+void recheck_seams(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                    const BodyLimits& limits, const LegalityScratch& scratch, LegalCells& cells);
 
 /// True if any two legal neighbours on the sheet differ by at most the step.
-bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step);
+bool step_safe(const Layer& layer, const BitPlane& legal, int32_t step);
 
 }  // namespace throng

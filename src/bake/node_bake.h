@@ -42,7 +42,7 @@ class NodeBaker {
   /// Of all that zones depend on: processes that make nodes together have the same.
   [[nodiscard]] uint64_t input() const;
   /// Takes over zones of earlier bakes.
-  Result<void> keep_zones();
+  Result<void> reuse_zones();
   /// Those that are left, in batches of at most about so much memory each. [bytes] At least one.
   [[nodiscard]] std::vector<std::vector<uint32_t>> batches(uint64_t max_bytes) const;
   /// What all of them would take at once, about, and a batch with what lies near it. [bytes]
@@ -78,7 +78,7 @@ class NodeBaker {
   std::optional<TriangleSquares> triangles_;
   std::vector<uint8_t> is_done_;  // by zone of the plan
   NodeSlots slots_;               // likewise
-  uint64_t kept_ = 0;
+  uint64_t reused_ = 0;
 };
 
 }  // namespace throng

@@ -260,7 +260,7 @@ class DropFinder {
     for (size_t i = 0; i < near_.size(); ++i) {
       LocalTriangle below = near_[i];
       for (Vec3d& p : below) p = p - along;
-      if (lowest_entry(below, down) == kNever && !enters_on_way(near_[i], out, along)) continue;
+      if (lowest_entry(below, down) == kNever && !enters_on_move(near_[i], out, along)) continue;
       std::swap(near_[0], near_[i]);  // What stops one stops the next, mostly.
       return false;
     }

@@ -22,12 +22,12 @@ class OldNodes {
   explicit OldNodes(const std::string& world_path);
 
   /// A zone's nodes that need not be made: `slot` is null if it has none, else mapped, from `file`.
-  struct Kept {
+  struct Reused {
     std::unique_ptr<NodeData::Slot> slot;
     std::string file;
   };
   /// If they were made from this input and their file is whole.
-  [[nodiscard]] std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input) const;
+  [[nodiscard]] std::optional<Reused> keep(int32_t x, int32_t z, uint64_t input) const;
 
  private:
   std::vector<std::shared_ptr<const NodeData>> folders_;  // their indexes

@@ -248,9 +248,9 @@ void PatchJudge::add_posture(size_t posture, Pending& cell) const {
 // these. Where no triangle is left but spared ones, a block is done.
 void PatchJudge::judge_region(int32_t level, int32_t s, int32_t t, BezierCells& out) {
   const int32_t side = 256 >> level;
-  const OwnGround own(set_->patches[patch_],
-                      {static_cast<uint8_t>(s * side), static_cast<uint8_t>((s + 1) * side - 1),
-                       static_cast<uint8_t>(t * side), static_cast<uint8_t>((t + 1) * side - 1)});
+  const SelfSupport own(set_->patches[patch_],
+                        {static_cast<uint8_t>(s * side), static_cast<uint8_t>((s + 1) * side - 1),
+                         static_cast<uint8_t>(t * side), static_cast<uint8_t>((t + 1) * side - 1)});
   const size_t blocks = block_at_.size() - 1;
   block_boxes_.assign(blocks, {});
   if (blocks > 1) {
@@ -357,7 +357,7 @@ uint32_t PatchJudge::bodies_on(const Bounded& cell) const {
 }
 
 // The triangles near a box, but those of the patch's own ground that no body can meet.
-void PatchJudge::gather(const Box3d& box, const OwnGround& own) {
+void PatchJudge::gather(const Box3d& box, const SelfSupport& own) {
   const Vec3d middle = (box.min + box.max) * 0.5;
   all_.region.clear(middle);
   others_.region.clear(middle);
@@ -397,17 +397,17 @@ void PatchJudge::gather(const Box3d& box, const OwnGround& own) {
     narrow(found_others_, box, others_.region);
     foreign_.close();
   }
-  if (known) set_spared(own, own.gap(span_s, span_t) + scene.patch_off[patch_]);
+  if (known) set_spared(own, own.deviation(span_s, span_t) + scene.patch_off[patch_]);
 }
 
 // Which bodies and heights no triangle of the part comes up to.
-void PatchJudge::set_spared(const OwnGround& own, double gap) {
+void PatchJudge::set_spared(const SelfSupport& own, double deviation) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    const double rise = own.rise(!bodies_[b].climbs, bodies_[b].radius, gap);
+    const double rise = own.rise(!bodies_[b].climbs, bodies_[b].radius, deviation);
     if (rise + kRiseMargin < bodies_[b].bottom) spared_ |= 1u << b;
   }
   for (size_t posture = 0; posture < 2; ++posture) {
-    spares_height_[posture] = own.rise(posture == 1, 0, gap) + kRiseMargin < greatest_bottom_;
+    spares_height_[posture] = own.rise(posture == 1, 0, deviation) + kRiseMargin < greatest_bottom_;
   }
 }
 
@@ -431,10 +431,10 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
   for (const Pending& cell : cells) {
     const BodyFrame& frame = cell.surface(0).frame;
     const BodySweep sweep = surface_sweep(cell.surface(0));
-    const SieveTube tube{.whole = sweep, .decisive = {.radius = 0}};
-    (void)sieve(maker_,
-                {.frame = frame, .first = sweep, .second = sweep, .tubes = std::span(&tube, 1)},
-                hits_);
+    const FilterTube tube{.whole = sweep, .decisive = {.radius = 0}};
+    (void)filter(maker_,
+                 {.frame = frame, .first = sweep, .second = sweep, .tubes = std::span(&tube, 1)},
+                 hits_);
     for (size_t i = 0; i < hits_.count; ++i) {
       const uint32_t triangle = hits_.triangle[i];
       const uint32_t patch = triangles_->scene().patch_of_triangle[triangle];
@@ -496,7 +496,7 @@ void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& pro
 }
 
 // Those bodies of sweeps_ that a triangle enters.
-uint32_t PatchJudge::judge_against(const SieveList& list, const Pending& cell, size_t posture,
+uint32_t PatchJudge::judge_against(const FilterList& list, const Pending& cell, size_t posture,
                                    uint32_t asked, Promise& promise) {
   if (list.count == 0) return 0;
   const BodyFrame& frame = cell.surface(posture).frame;
@@ -522,7 +522,7 @@ uint32_t PatchJudge::judge_against(const SieveList& list, const Pending& cell, s
 }
 
 // Those of sweeps_ that a plane comes into; returns those that a triangle does.
-uint32_t PatchJudge::judge_met(const SieveList& list, const Pending& cell, size_t posture,
+uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size_t posture,
                                uint32_t met, Promise& promise) {
   const SurfaceBound& surface = cell.surface(posture);
   const BodyFrame& frame = surface.frame;
@@ -534,9 +534,9 @@ uint32_t PatchJudge::judge_met(const SieveList& list, const Pending& cell, size_
     const BodySweep decisive = b == 0 ? low_room(cell, posture) : sweeps_[b];
     tubes_.push_back({.whole = sweeps_[b], .decisive = decisive});
   }
-  const uint32_t answered =
-      sieve(list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
-            hits_);
+  const uint32_t answered = filter(
+      list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
+      hits_);
   const uint32_t room = met & 1;  // bit 0, if it is asked for
   const uint32_t all = (1u << tubes_.size()) - 1;
   uint32_t entered = answered;  // no height; then bodies that matter has stopped

@@ -98,15 +98,15 @@ class PatchJudge {
   [[nodiscard]] Pending pending(const Bounded& cell) const;
   [[nodiscard]] Box3d box_of(const CellBounds& block) const;
   [[nodiscard]] uint32_t bodies_on(const Bounded& cell) const;
-  void gather(const Box3d& box, const OwnGround& own);
+  void gather(const Box3d& box, const SelfSupport& own);
   void fill_all();
   void stand_on(const Bounded& cell, BezierCells& out) const;
-  void set_spared(const OwnGround& own, double gap);
+  void set_spared(const SelfSupport& own, double deviation);
   void find_makers(std::span<const Pending> cells, BezierCells& out);
   void judge_posture(const Pending& cell, size_t posture, Promise& promise);
-  uint32_t judge_against(const SieveList& list, const Pending& cell, size_t posture, uint32_t asked,
-                         Promise& promise);
-  uint32_t judge_met(const SieveList& list, const Pending& cell, size_t posture, uint32_t met,
+  uint32_t judge_against(const FilterList& list, const Pending& cell, size_t posture,
+                         uint32_t asked, Promise& promise);
+  uint32_t judge_met(const FilterList& list, const Pending& cell, size_t posture, uint32_t met,
                      Promise& promise);
   [[nodiscard]] uint32_t too_steep(const Pending& cell) const;
   /// Matter in here leaves no height.
@@ -134,19 +134,19 @@ class PatchJudge {
   std::vector<Box3d> block_boxes_;
   /// Triangles near a region, a block and a square of cells.
   struct NearLists {
-    SieveList region, block, square;
+    FilterList region, block, square;
   };
-  NearLists others_, all_;     // without those of its own that are spared, and with them
-  SieveList foreign_, maker_;  // those of other patches, not beside; near a square
-  SieveList found_others_;     // before their boxes are looked at
+  NearLists others_, all_;      // without those of its own that are spared, and with them
+  FilterList foreign_, maker_;  // those of other patches, not beside; near a square
+  FilterList found_others_;     // before their boxes are looked at
   bool all_is_filled_ = false, all_is_asked_ = false;
   uint32_t spared_ = 0;                  // bodies that the patch's own triangles here do not reach
   std::array<bool, 2> spares_height_{};  // along the normal and upright
   std::vector<uint32_t> found_, other_ids_;
-  SieveHits hits_;
+  FilterHits hits_;
   std::vector<BodySweep> sweeps_;   // where a height ends, then bodies of the posture
   std::vector<uint16_t> tube_bit_;  // by body of the posture: its class
-  std::vector<SieveTube> tubes_;    // of these, those that matter may enter
+  std::vector<FilterTube> tubes_;   // of these, those that matter may enter
 };
 
 }  // namespace throng

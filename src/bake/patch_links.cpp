@@ -36,7 +36,7 @@ BodyPose pose_on(const PatchLinkInput& input, const PatchBody& body, uint32_t pa
 // Can a body go straight from one pose to another?
 bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const BodyPose& to,
           double step) {
-  if (!body.climbs && !judge.is_carried(from.feet, to.feet, step, kWalkSpacing)) return false;
+  if (!body.climbs && !judge.is_supported(from.feet, to.feet, step, kWalkSpacing)) return false;
   return judge.is_free(body, from, to);
 }
 

@@ -27,7 +27,7 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
       const int32_t cx = x + nth(k), cz = z + dz;
       const int32_t side =
           (cz < 0 ? 0 : (cz > kLast ? 6 : 3)) + (cx < 0 ? 0 : (cx > kLast ? 2 : 1));
-      const SheetList* tile = tiles[static_cast<size_t>(side)];
+      const LayerList* tile = tiles[static_cast<size_t>(side)];
       const size_t cell = static_cast<size_t>((cz & kLast) * kTileSide + (cx & kLast));
       if (tile != nullptr && column_is_free(*tile, cell, need)) continue;
       const auto d = static_cast<size_t>(std::abs(dz));
@@ -38,17 +38,17 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
 }
 
 // Cells of a sheet whose neighbour is continued by another sheet of the tile.
-BitPlane seam_cells(const SheetList& tile, const Sheet& own, int32_t max_step) {
+BitPlane seam_cells(const LayerList& tile, const Layer& own, int32_t max_step) {
   // Most of the other sheets are other storeys, which continue nothing.
-  const auto is_near = [&](const Sheet& other) {
+  const auto is_near = [&](const Layer& other) {
     return &other != &own && other.base + other.low_top <= own.base + own.high_top + max_step &&
            other.base + other.high_top >= own.base + own.low_top - max_step;
   };
   BitPlane others{}, seams{};
   bool any = false;
-  for (const Sheet* other : tile) {
+  for (const Layer* other : tile) {
     if (!is_near(*other)) continue;
-    add_gap_bits(*other, others);
+    add_free_span_bits(*other, others);
     any = true;
   }
   if (!any) return seams;
@@ -59,7 +59,7 @@ BitPlane seam_cells(const SheetList& tile, const Sheet& own, int32_t max_step) {
       const int32_t x = std::countr_zero(cells);
       const int32_t top = own.base + own.top[static_cast<size_t>(z * kTileSide + x)];
       const auto next = static_cast<size_t>((z + dz) * kTileSide + x + dx);
-      for (const Sheet* other : tile) {
+      for (const Layer* other : tile) {
         if (!is_near(*other) || other->top[next] == kNone16) continue;
         if (std::abs(other->base + other->top[next] - top) > max_step) continue;
         seams[static_cast<size_t>(z)] |= 1ULL << x;
@@ -95,25 +95,25 @@ BitPlane widened(const BitPlane& plane, int32_t reach) {
 
 }  // namespace
 
-bool column_is_free(const SheetList& tile, size_t cell, const ColumnNeed& need) {
-  for (const Sheet* sheet : tile) {
+bool column_is_free(const LayerList& tile, size_t cell, const ColumnNeed& need) {
+  for (const Layer* layer : tile) {
     // Most sheets are other storeys: their extremes tell without a look at the cell.
-    if (sheet->base + sheet->low_top > need.high_top ||
-        sheet->base + sheet->high_top < need.low_top || sheet->top[cell] == kNone16) {
+    if (layer->base + layer->low_top > need.high_top ||
+        layer->base + layer->high_top < need.low_top || layer->top[cell] == kNone16) {
       continue;
     }
-    const int32_t top = sheet->base + sheet->top[cell];
+    const int32_t top = layer->base + layer->top[cell];
     const bool room =
-        sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;
+        layer->ceiling[cell] == kNone16 || layer->base + layer->ceiling[cell] >= need.ceiling;
     if (top <= need.high_top && top >= need.low_top && room) return true;
   }
   return false;
 }
 
-void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+void recheck_seams(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                    const BodyLimits& limits, const LegalityScratch& scratch, LegalCells& cells) {
-  const SheetList& tile = *tiles[4];
-  const Sheet& own = *tile[sheet];
+  const LayerList& tile = *tiles[4];
+  const Layer& own = *tile[layer];
   BitPlane doubtful{};
   if (tile.size() > 1 && (tile.seams || body.bottom > limits.link_step)) {
     doubtful = widened(seam_cells(tile, own, body.bottom), body.reach);

@@ -61,13 +61,13 @@ struct RowPlanes {
   alignas(64) int32_t between_x[kTileSide + 32], between_z[kTileSide + 32];
   uint64_t creased;  // cells with feet on all four sides
 
-  void make(const Sheet& sheet, int32_t z) {
+  void make(const Layer& layer, int32_t z) {
     const DI di;
     const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
     const VI none = hn::Set(di, kNone16);
-    const uint16_t* row = &sheet.feet[static_cast<size_t>(z * kTileSide)];
+    const uint16_t* row = &layer.feet[static_cast<size_t>(z * kTileSide)];
     const uint16_t* centre =
-        &sheet.feet[static_cast<size_t>(std::clamp(z, 1, kTileSide - 2) * kTileSide)];
+        &layer.feet[static_cast<size_t>(std::clamp(z, 1, kTileSide - 2) * kTileSide)];
     uint64_t beside = 0, around = 0;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       // Written for x + 1: rows are read from their first cell on, never before the array.
@@ -91,7 +91,7 @@ struct RowPlanes {
 // Of cells (x, z) and on, one vector: those whose body is free when judged by the given planes,
 // which may err by `owed`. All in half millimetres: centres of cells lie half a cell from their
 // corners.
-HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body, int32_t x,
+HWY_INLINE uint64_t free_lanes(const LayerWindow& window, const BodyWindow& body, int32_t x,
                                int32_t z, VI height, VI feet_tilt, VI gx, VI gz, VI owed) {
   const DI di;
   const hn::RebindToFloat<DI> df;
@@ -127,7 +127,7 @@ HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body
   return bits_of(di, hn::Not(bad));
 }
 
-void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
+void RecheckSlopes(const Layer& layer, const BodyWindow& body, const LegalityScratch& scratch,
                    LegalCells& cells) {
   const DI di;
   const hn::Rebind<uint16_t, DI> dh;
@@ -137,12 +137,12 @@ void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScr
   for (int32_t z = 0; z < kTileSide; ++z) {
     const uint64_t row = cells.slanted[static_cast<size_t>(z)];
     if (row == 0) continue;
-    planes.make(sheet, z);
+    planes.make(layer, z);
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const uint64_t asked = (row >> x) & ((uint64_t{1} << lanes) - 1);
       if (asked == 0) continue;
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
-      const VI height = load_feet(&sheet.feet[cell]);
+      const VI height = load_feet(&layer.feet[cell]);
       const VI tilt = hn::PromoteTo(di, hn::LoadU(dh, &scratch.tilt[cell]));
       const VI gx = hn::Load(di, planes.gx + x), gz = hn::Load(di, planes.gz + x);
       const uint64_t sloped = asked & bits_of(di, hn::Ne(hn::Or(gx, gz), zero));
@@ -181,7 +181,7 @@ HWY_INLINE VF half_apart(VF ax, VF az, VF bx, VF bz) {
   return hn::Mul(apart, hn::Set(df, 0.5f));
 }
 
-HWY_INLINE uint64_t free_by_planes(const SheetWindow& window, const CellPlanes& planes,
+HWY_INLINE uint64_t free_by_planes(const LayerWindow& window, const CellPlanes& planes,
                                    const BodyWindow& body, int32_t x, int32_t z, uint64_t asked,
                                    VI feet_mm, VI feet_tilt, VF ax, VF az) {
   const DI di;
@@ -234,7 +234,7 @@ HWY_INLINE uint64_t free_by_planes(const SheetWindow& window, const CellPlanes& 
   return asked;
 }
 
-void RecheckPlanes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& surface,
+void RecheckPlanes(const Layer& layer, const BodyWindow& body, const CellPlanes& surface,
                    const LegalityScratch& scratch, LegalCells& cells) {
   const DI di;
   const DF df;
@@ -245,13 +245,13 @@ void RecheckPlanes(const Sheet& sheet, const BodyWindow& body, const CellPlanes&
     const size_t r = static_cast<size_t>(z);
     const uint64_t row = cells.slanted[r] & ~cells.legal[r];
     if (row == 0) continue;
-    planes.make(sheet, z);
+    planes.make(layer, z);
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const uint64_t asked = (row >> x) & ((uint64_t{1} << lanes) - 1);
       if (asked == 0) continue;
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const uint64_t free =
-          free_by_planes(scratch.window, surface, body, x, z, asked, load_feet(&sheet.feet[cell]),
+          free_by_planes(scratch.window, surface, body, x, z, asked, load_feet(&layer.feet[cell]),
                          hn::PromoteTo(di, hn::LoadU(dh, &scratch.tilt[cell])),
                          hn::ConvertTo(df, hn::Load(di, planes.gx + x)),
                          hn::ConvertTo(df, hn::Load(di, planes.gz + x)));
@@ -270,14 +270,14 @@ namespace throng {
 HWY_EXPORT(RecheckSlopes);
 HWY_EXPORT(RecheckPlanes);
 
-void recheck_slopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
+void recheck_slopes(const Layer& layer, const BodyWindow& body, const LegalityScratch& scratch,
                     LegalCells& cells) {
-  HWY_DYNAMIC_DISPATCH(RecheckSlopes)(sheet, body, scratch, cells);
+  HWY_DYNAMIC_DISPATCH(RecheckSlopes)(layer, body, scratch, cells);
 }
 
-void recheck_planes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& planes,
+void recheck_planes(const Layer& layer, const BodyWindow& body, const CellPlanes& planes,
                     const LegalityScratch& scratch, LegalCells& cells) {
-  HWY_DYNAMIC_DISPATCH(RecheckPlanes)(sheet, body, planes, scratch, cells);
+  HWY_DYNAMIC_DISPATCH(RecheckPlanes)(layer, body, planes, scratch, cells);
 }
 
 }  // namespace throng

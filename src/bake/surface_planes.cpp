@@ -34,7 +34,7 @@ struct CellRun {
 
 // The part of the window that one of the nine tiles covers, in the frame of the middle one.
 struct SurfaceSide {
-  const SheetWindow* window;
+  const LayerWindow* window;
   CellPlanes* cells;
   const CellRun* runs;     // of cells that are looked at, by row
   int32_t x0, x1, z0, z1;  // the last included
@@ -321,7 +321,7 @@ void clear(SurfaceSide& side, int32_t reach) {
 
 }  // namespace
 
-void find_surface_planes(const SheetWindow& window, int32_t base, const BitPlane& asked,
+void find_surface_planes(const LayerWindow& window, int32_t base, const BitPlane& asked,
                          const BodyWindow& body, const TileTriangles& triangles,
                          CellPlanes& cells) {
   const std::vector<CellRun> runs = runs_around(asked, body.reach);

@@ -14,7 +14,7 @@
 /// body that barely clears its own slope needs, which whole millimetres of whole cells cannot tell.
 namespace throng {
 
-/// Per cell, at SheetWindow::index: the highest surface below the gap at the cell's centre, and its
+/// Per cell, at LayerWindow::index: the highest surface below the gap at the cell's centre, and its
 /// plane. Where no triangle is under the centre: a level plane at the window's top.
 struct CellPlanes {
   std::vector<float> height;            // [mm from the sheet's base]
@@ -35,13 +35,13 @@ struct TileTriangles {
 
 /// Finds the planes of all cells that a body on one of `asked` reaches. `base` is what the window's
 /// heights are from. [mm] Linear in the triangles near, and the cells that they touch.
-void find_surface_planes(const SheetWindow& window, int32_t base, const BitPlane& asked,
+void find_surface_planes(const LayerWindow& window, int32_t base, const BitPlane& asked,
                          const BodyWindow& body, const TileTriangles& triangles, CellPlanes& cells);
 
 /// legal_cells' test for cells that failed it, and the recheck of slopes, for how high or low the
 /// matter around is: it is compared with the plane of the feet's surface, or with its own,
 /// whichever proves more.
-void recheck_planes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& planes,
+void recheck_planes(const Layer& layer, const BodyWindow& body, const CellPlanes& planes,
                     const LegalityScratch& scratch, LegalCells& cells);
 
 }  // namespace throng

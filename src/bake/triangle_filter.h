@@ -18,7 +18,7 @@ namespace throng {
 /// corner[(3 * c + k) * stride + i]; its normal is plane[k * stride + i], along which it lies from
 /// plane[3 * stride + i] to plane[4 * stride + i]; then come the middle and the radius of a ball
 /// around it.
-struct SieveList {
+struct FilterList {
   Vec3d origin;
   double extent = 0;  ///< No coordinate is larger. [m]
   size_t count = 0;
@@ -35,42 +35,43 @@ struct SieveList {
 
 /// Replaces `out` by those triangles of `list` whose balls may come as near to `box` as to be in
 /// its way: none that overlaps it is lost. Linear.
-void narrow(const SieveList& list, const Box3d& box, SieveList& out);
+void narrow(const FilterList& list, const Box3d& box, FilterList& out);
 
 /// A cylinder around a question's axis. Matter that enters `decisive`, which is a part of it,
 /// answers all that is asked about it.
-struct SieveTube {
+struct FilterTube {
   BodySweep whole, decisive;
 };
 
 /// What is asked of a list. Nothing outside of `first` and `second` enters any tube.
-struct SieveQuestion {
+struct FilterQuery {
   BodyFrame frame;
   BodySweep first, second;
-  std::span<const SieveTube> tubes;  ///< [at most 31]
+  std::span<const FilterTube> tubes;  ///< [at most 31]
 };
 
 /// Bit i: some triangle's plane and ball come into tube i; all triangles stay outside of the other
 /// tubes of which `asked` has the bits. It costs a fraction of sieve(). [at most 31 tubes] Linear.
-[[nodiscard]] uint32_t glance(const SieveList& list, const BodyFrame& frame,
+[[nodiscard]] uint32_t glance(const FilterList& list, const BodyFrame& frame,
                               std::span<const BodySweep> tubes, uint32_t asked);
 
 /// True only if a triangle enters an upright tube; most that do are noticed. Linear.
-[[nodiscard]] bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube);
+[[nodiscard]] bool surely_enters(const FilterList& list, Vec3d centre, const BodySweep& tube);
 
 /// Bit i: tube i, which is upright, is asked about, and a triangle surely enters it uphill from its
 /// axis, as ground does on which a body stands too steep. [at most 31 tubes] Linear.
-[[nodiscard]] uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre,
+[[nodiscard]] uint32_t surely_enters_uphill(const FilterList& list, Vec3d centre,
                                             std::span<const BodySweep> tubes, uint32_t asked);
 
 /// Triangles that may enter tubes: hit i those of which tubes[i] has the bits.
-struct SieveHits {
+struct FilterHits {
   size_t count = 0;
   std::vector<uint32_t> triangle, tubes;  ///< With room for more than `count`.
 };
 
 /// Replaces `hits` by what may enter tubes that are not answered. Returns those that are: bit i, if
 /// a corner is surely inside tubes[i].decisive. If all are, hits are missing. Linear.
-[[nodiscard]] uint32_t sieve(const SieveList& list, const SieveQuestion& question, SieveHits& hits);
+[[nodiscard]] uint32_t filter(const FilterList& list, const FilterQuery& question,
+                              FilterHits& hits);
 
 }  // namespace throng

@@ -181,7 +181,7 @@ void FillParts(const PlanPart& polygon, const WallScratch::Near& near, const Bit
 // Of the wanted cells of a tile, keeps those that the window finds closed to a body in the slab.
 // `first` is the tile's first cell. Only vectors that hold a wanted cell are looked at: others may
 // lie outside of the window.
-void KeepClosed(const SheetWindow& window, ptrdiff_t first, WallScratch::Slab slab,
+void KeepClosed(const LayerWindow& window, ptrdiff_t first, WallScratch::Slab slab,
                 WallScratch::Side& side) {
   const hn::CappedTag<uint16_t, 32> du;
   constexpr uint64_t kAll = ~uint64_t{0};
@@ -213,21 +213,21 @@ void KeepClosed(const SheetWindow& window, ptrdiff_t first, WallScratch::Slab sl
 // Of some rows of a tile, marks the columns in which one gap holds the whole slab, but begins below
 // its floor: drops. `base` is what the slab's heights are from.
 // Nonzero if there are any.
-uint64_t MarkDrops(const SheetList& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
+uint64_t MarkDrops(const LayerList& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
                    BitPlane& drops) {
   uint64_t any = 0;
   const hn::CappedTag<uint16_t, 32> du;
   const size_t lanes = hn::Lanes(du);
-  for (const Sheet* sheet : tile) {
-    const int32_t floor = slab.floor + base - sheet->base, high = slab.high + base - sheet->base;
-    if (floor <= sheet->low_top) continue;
+  for (const Layer* layer : tile) {
+    const int32_t floor = slab.floor + base - layer->base, high = slab.high + base - layer->base;
+    if (floor <= layer->low_top) continue;
     const auto floors = hn::Set(du, static_cast<uint16_t>(std::min<int32_t>(floor, kNone16)));
     const auto ceilings = hn::Set(du, static_cast<uint16_t>(std::clamp<int32_t>(high, 0, kNone16)));
     for (uint64_t left = rows; left != 0; left &= left - 1) {
       const auto z = static_cast<size_t>(std::countr_zero(left));
       for (size_t x = 0; x < kTileSide; x += lanes) {
-        const auto top = hn::Load(du, &sheet->top[z * kTileSide + x]);
-        const auto ceiling = hn::Load(du, &sheet->ceiling[z * kTileSide + x]);
+        const auto top = hn::Load(du, &layer->top[z * kTileSide + x]);
+        const auto ceiling = hn::Load(du, &layer->ceiling[z * kTileSide + x]);
         const auto low = hn::Ne(hn::Max(top, floors), top);
         const uint64_t found =
             bits_of(du, hn::And(low, hn::Eq(hn::Max(ceiling, ceilings), ceiling))) << x;
@@ -241,7 +241,7 @@ uint64_t MarkDrops(const SheetList& tile, uint64_t rows, int32_t base, WallScrat
 
 // Makes legal the asked cells from where the body, anywhere on its cell, touches no part that is
 // filled. True if there are any.
-bool PassFree(std::span<const WallScratch::Asked> asked, const SheetWindow& window,
+bool PassFree(std::span<const WallScratch::Asked> asked, const LayerWindow& window,
               const BodyWindow& body, const uint64_t* parts, BitPlane& legal) {
   const DW dw;
   const auto lanes = static_cast<int32_t>(hn::Lanes(dw));
@@ -355,10 +355,10 @@ std::pair<int32_t, int32_t> bands_of(const std::vector<WallScratch::Asked>& aske
 
 class WallCheck {
  public:
-  WallCheck(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+  WallCheck(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
             const TileTriangles& triangles, const LegalityScratch& legality, WallScratch& scratch)
       : tiles_(tiles),
-        sheet_(*(*tiles[4])[sheet]),
+        layer_(*(*tiles[4])[layer]),
         body_(body),
         triangles_(triangles),
         window_(legality.window),
@@ -388,10 +388,10 @@ class WallCheck {
   [[nodiscard]] Slab slab_of(int32_t first_band, int32_t last_band) const;
 
   const Neighbourhood& tiles_;
-  const Sheet& sheet_;
+  const Layer& layer_;
   const BodyWindow& body_;
   const TileTriangles& triangles_;
-  const SheetWindow& window_;
+  const LayerWindow& window_;
   const std::array<uint16_t, kTileArea>& tilt_;
   WallScratch& scratch_;
   int32_t band_ = std::max(1, body_.bottom / 4);  // of feet that share a filling [mm]
@@ -403,9 +403,9 @@ void WallCheck::list(const LegalCells& cells) {
     uint64_t row = cells.hemmed[static_cast<size_t>(z)] & ~cells.legal[static_cast<size_t>(z)];
     for (; row != 0; row &= row - 1) {
       const auto cell = static_cast<size_t>(z * kTileSide + std::countr_zero(row));
-      const int32_t feet = sheet_.feet[cell], tilt = tilt_[cell];
+      const int32_t feet = layer_.feet[cell], tilt = tilt_[cell];
       if (tilt > body_.gentle) continue;  // On steeper ground the slab meets the ground.
-      const int32_t band = (sheet_.base + feet - tilt + kBandZero) / band_;
+      const int32_t band = (layer_.base + feet - tilt + kBandZero) / band_;
       scratch_.asked.push_back({band, static_cast<int32_t>(cell)});
     }
   }
@@ -446,7 +446,7 @@ void WallCheck::leave_out_hopeless() {
       any |= drops[z];
     }
     if (tiles_[s] == nullptr) continue;
-    any |= HWY_DYNAMIC_DISPATCH(MarkDrops)(*tiles_[s], near_rows[s / 3], sheet_.base, slab, drops);
+    any |= HWY_DYNAMIC_DISPATCH(MarkDrops)(*tiles_[s], near_rows[s / 3], layer_.base, slab, drops);
   }
   if (any == 0) return;
   BitPlane hopeless{};
@@ -479,8 +479,8 @@ void WallCheck::leave_out_hopeless() {
 
 // What bodies need whose feet are in one of the bands, anywhere on their cells.
 WallCheck::Slab WallCheck::slab_of(int32_t first_band, int32_t last_band) const {
-  const int32_t lowest = first_band * band_ - kBandZero - sheet_.base;
-  const int32_t highest = (last_band + 1) * band_ - 1 - kBandZero - sheet_.base + 2 * body_.gentle;
+  const int32_t lowest = first_band * band_ - kBandZero - layer_.base;
+  const int32_t highest = (last_band + 1) * band_ - 1 - kBandZero - layer_.base + 2 * body_.gentle;
   return {highest - body_.bottom, lowest + body_.bottom, highest + body_.height};
 }
 
@@ -561,7 +561,7 @@ void WallCheck::list_around(size_t side) {
 // Lists those that may touch a wanted cell, at some height between.
 void WallCheck::gather(Slab slab) {
   scratch_.near.clear();
-  const int32_t low = sheet_.base + slab.low, high = sheet_.base + slab.high;
+  const int32_t low = layer_.base + slab.low, high = layer_.base + slab.high;
   for (size_t s = 0; s < 9; ++s) {
     if (scratch_.sides[s].rows == 0) continue;
     if ((scratch_.known >> s & 1) == 0) list_around(s);
@@ -590,7 +590,7 @@ void WallCheck::for_wanted(Visit visit) {
 
 // Fills the parts of the wanted cells. All others stay empty.
 void WallCheck::fill(Slab slab) {
-  const double low = sheet_.base + slab.low + kShallow, high = sheet_.base + slab.high - kShallow;
+  const double low = layer_.base + slab.low + kShallow, high = layer_.base + slab.high - kShallow;
   for (const WallScratch::Near& near : scratch_.near) {
     const WallScratch::Side& side = scratch_.sides[near.side];
     if (near.high < low || near.low > high || !touches_wanted(side, near)) continue;
@@ -603,10 +603,10 @@ void WallCheck::fill(Slab slab) {
   }
   // A cell that is closed, but not by matter at the body's height, is no floor; or the window
   // follows the wrong sheet there.
-  const ColumnNeed need{sheet_.base + slab.floor, sheet_.base + slab.low, sheet_.base + slab.high};
+  const ColumnNeed need{layer_.base + slab.floor, layer_.base + slab.low, layer_.base + slab.high};
   for_wanted([&](size_t side, size_t cell, uint64_t& parts) {
     if (parts != 0) return;
-    const SheetList* tile = tiles_[side];
+    const LayerList* tile = tiles_[side];
     if (tile == nullptr || !column_is_free(*tile, cell, need)) parts = ~uint64_t{0};
   });
 }
@@ -645,10 +645,10 @@ bool WallCheck::run(LegalCells& cells) {
 
 }  // namespace
 
-bool recheck_walls(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+bool recheck_walls(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                    const TileTriangles& triangles, const LegalityScratch& legality,
                    WallScratch& scratch, LegalCells& cells) {
-  return WallCheck(tiles, sheet, body, triangles, legality, scratch).run(cells);
+  return WallCheck(tiles, layer, body, triangles, legality, scratch).run(cells);
 }
 
 }  // namespace throng

@@ -41,14 +41,14 @@ struct WallScratch {
   std::vector<Near> near;                   // those of them that the cells asked for may touch
   std::array<Side, 9> sides;
   std::array<BitPlane, 9> drops;  // columns that surely stop every body within reach
-  std::vector<uint64_t> parts;    // at SheetWindow::index; bit 8 j + i is part (i, j)
+  std::vector<uint64_t> parts;    // at LayerWindow::index; bit 8 j + i is part (i, j)
 };
 
 /// legal_cells' test for its `hemmed` cells that are not legal yet: no part of a cell that the body
 /// can touch, from anywhere on its own, holds matter at its height, by the triangles themselves.
 /// `scratch.known` must be 0 for the first sheet of a tile. True if any cell passed. Linear in the
 /// triangles near, and the cells that they touch.
-bool recheck_walls(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+bool recheck_walls(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                    const TileTriangles& triangles, const LegalityScratch& legality,
                    WallScratch& scratch, LegalCells& cells);
 

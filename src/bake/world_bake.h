@@ -28,8 +28,8 @@ Result<void> check_bake(const Scene& scene, const BakeConfig& config);
 /// send it as it is.
 struct ZoneFacts {
   format::ZoneEntry entry;
-  uint32_t plain_levels = 0;
-  bool kept = false;
+  uint32_t flat_levels = 0;
+  bool reused = false;
   uint64_t spans = 0;
   std::array<uint64_t, kMaxAvatarClasses> legal_cells{};
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0, seconds_write = 0;
@@ -57,7 +57,7 @@ class WorldBake {
   /// False if the context was cancelled. `bytes` are empty where nobody can stand.
   bool bake(size_t zone, ZoneScratch& scratch, Context& context, ZoneFacts& facts,
             flatbuffers::DetachedBuffer& bytes) const;
-  [[nodiscard]] ZoneFacts facts_of(const WorldFolder::Kept& kept) const;
+  [[nodiscard]] ZoneFacts facts_of(const WorldFolder::Reused& reused) const;
 
   /// The world of all zones, in their order, and what its bake did but for the time it took. Fails
   /// with kLimit.

@@ -173,13 +173,13 @@ Result<void> WorldFolder::read_part() {
       name, {reinterpret_cast<const uint8_t*>(records.data()), records.size() * sizeof(Done)});
 }
 
-std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_t input) const {
+std::optional<WorldFolder::Reused> WorldFolder::keep(int32_t x, int32_t z, uint64_t input) const {
   const auto [first, last] = sources_.equal_range({z, x});
   for (auto source = last; source != first;) {
     --source;
     const format::ZoneEntry& entry = source->second.entry;
     if (source->second.input != input) continue;
-    if (entry.bytes() == 0) return Kept{nullptr, entry};
+    if (entry.bytes() == 0) return Reused{nullptr, entry};
     const std::string file = zone_file_name(x, z);
     const fs::path from = (source->second.is_part ? part_ : fs::path(path_)) / file;
     auto map = FileMap::open(from.string());
@@ -195,7 +195,7 @@ std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_
       fs::create_hard_link(from, part_ / file, error);
       if (error && !write_file((part_ / file).string(), (*zone)->bytes())) continue;
     }
-    return Kept{std::move(*zone), entry};
+    return Reused{std::move(*zone), entry};
   }
   return std::nullopt;
 }
@@ -227,7 +227,7 @@ Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
 }
 
 template <class File>
-std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t input) const {
+std::unique_ptr<File> WorldFolder::reuse_file(const std::string& name, uint64_t input) const {
   for (const bool is_part : {true, false}) {
     if (!is_part && old_ == nullptr) continue;  // Nothing of it is to be kept.
     const fs::path from = (is_part ? part_ : fs::path(path_)) / name;
@@ -246,16 +246,16 @@ std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t i
   return nullptr;
 }
 
-std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) const {
-  return keep_file<AirZone>(air_file_name(x, z), input);
+std::unique_ptr<AirZone> WorldFolder::reuse_air(int32_t x, int32_t z, uint64_t input) const {
+  return reuse_file<AirZone>(air_file_name(x, z), input);
 }
 
-std::unique_ptr<RegionZone> WorldFolder::keep_regions(int32_t x, int32_t z, uint64_t input) const {
-  return keep_file<RegionZone>(region_file_name(x, z), input);
+std::unique_ptr<RegionZone> WorldFolder::reuse_regions(int32_t x, int32_t z, uint64_t input) const {
+  return reuse_file<RegionZone>(region_file_name(x, z), input);
 }
 
-std::unique_ptr<LinkZone> WorldFolder::keep_links(int32_t x, int32_t z, uint64_t input) const {
-  return keep_file<LinkZone>(link_file_name(x, z), input);
+std::unique_ptr<LinkZone> WorldFolder::reuse_links(int32_t x, int32_t z, uint64_t input) const {
+  return reuse_file<LinkZone>(link_file_name(x, z), input);
 }
 
 Result<void> WorldFolder::write_file_of_zone(const std::string& name,

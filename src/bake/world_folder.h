@@ -51,18 +51,18 @@ class WorldFolder {
 
   /// A zone that need not be baked; it is then in the new world. `zone` is null where nobody
   /// stands.
-  struct Kept {
+  struct Reused {
     std::unique_ptr<Zone> zone;
     format::ZoneEntry entry;
   };
-  std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input) const;
+  std::optional<Reused> keep(int32_t x, int32_t z, uint64_t input) const;
 
   /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake
   /// or the old world; it is then in the new world. These files carry their input and a sum, so no
   /// journal tells of them. Null if there is none with this input.
-  std::unique_ptr<AirZone> keep_air(int32_t x, int32_t z, uint64_t input) const;
-  std::unique_ptr<RegionZone> keep_regions(int32_t x, int32_t z, uint64_t input) const;
-  std::unique_ptr<LinkZone> keep_links(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<AirZone> reuse_air(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) const;
   /// Adds such a file. Fails with kIo.
   Result<void> write_file_of_zone(const std::string& name, std::span<const uint8_t> bytes) const;
   /// The folder of the world in the making: the files of all zones added are there.
@@ -88,7 +88,7 @@ class WorldFolder {
   void read_old();
   Result<void> read_part();
   template <class File>
-  std::unique_ptr<File> keep_file(const std::string& name, uint64_t input) const;
+  std::unique_ptr<File> reuse_file(const std::string& name, uint64_t input) const;
 
   std::string path_;
   std::filesystem::path part_;  // empty: finished or moved from

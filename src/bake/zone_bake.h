@@ -27,7 +27,7 @@ struct BakePlan {
   SurfaceCodes codes;
   const SurfaceCoder* coder = nullptr;
   BodyLimits limits;
-  std::vector<bool> is_tall;  // classes that need gaps of BodyLimits::kHighGap
+  std::vector<bool> is_tall;  // classes that need gaps of BodyLimits::kHighFreeSpan
   std::vector<BodyWindow> bodies;
   int32_t reach = 0;     // of the widest body [cells]
   int32_t max_step = 0;  // [mm]
@@ -41,7 +41,7 @@ struct BakePlan {
 struct ZoneResult {
   flatbuffers::DetachedBuffer bytes;  // empty: nobody can stand in this zone
   uint32_t levels = 0;
-  uint32_t plain_levels = 0;
+  uint32_t flat_levels = 0;
   uint32_t tiles = 0;
   uint64_t spans = 0;
   std::vector<uint64_t> legal_cells;  // per class
@@ -63,7 +63,7 @@ class ZoneScratch {
   ~ZoneScratch();
   struct Worker;
 
-  SheetPool pool;
+  LayerPool pool;
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<CellTriangle> triangles;
 };

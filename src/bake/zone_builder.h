@@ -22,7 +22,7 @@ struct FloorPlane {
   int32_t part = 0;                  // of the base below 1 mm [1/1024 mm]
   int32_t slope_x = 0, slope_z = 0;  // [1/1024 mm per cell]
 };
-FloorPlane fit_plane(Sheet& sheet);
+FloorPlane fit_plane(Layer& layer);
 
 /// The levels of one tile. Their offsets count the tile's runs until the zone's words are laid out.
 struct TilePack {
@@ -39,7 +39,7 @@ struct TilePack {
 };
 
 /// Adds one level of tile `tile` to its pack.
-void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
+void pack_level(uint32_t tile, const Layer& layer, const FloorPlane& plane,
                 std::span<const ClearancePlanes> clearance, std::span<const uint8_t> step_safe,
                 const SurfaceCodes& codes, TilePack& pack);
 

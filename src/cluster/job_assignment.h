@@ -33,20 +33,21 @@ struct RankJobs {
 
 /// What rank 0 has to hand out, in this order, and what it does with what comes back, on its own
 /// thread.
-struct DealtJobs {
+struct JobsToAssign {
   std::vector<RankBytes> jobs;
-  std::function<Result<void>(size_t job, std::span<const uint8_t> told)> enter;
+  std::function<Result<void>(size_t job, std::span<const uint8_t> result)> enter;
   std::function<void()> on_progress;  ///< After one or more were entered.
   std::function<void()> on_cancel;
 };
 
 /// Rank 0: hands out all jobs, does some itself, and waits for the others. Fails with the first
 /// error of any rank, or with kCancelled; no job is begun after that.
-Result<void> deal_jobs(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Context& context);
+Result<void> assign_jobs(Ranks& ranks, const RankJobs& what, JobsToAssign assigned,
+                         Context& context);
 
 /// The others: does what rank 0 says, until it says no more. Fails with its own error, which rank 0
 /// knows then, or with kCancelled.
-Result<void> do_dealt_jobs(Ranks& ranks, const RankJobs& what, Context& context);
+Result<void> do_assigned_jobs(Ranks& ranks, const RankJobs& what, Context& context);
 
 /// Fails with kBadInput on every rank if a rank has another input than rank 0: it "has <read
 /// another scene>, or other options".
@@ -59,7 +60,7 @@ Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context);
 int32_t workers_of_rank(int32_t asked, const Ranks& ranks);
 
 /// What a rank says when its context is cancelled.
-Error told_to_stop(const Ranks& ranks, const RankJobs& what);
+Error stopped_error(const Ranks& ranks, const RankJobs& what);
 
 /// A value as the bytes of a message, and back.
 template <class T>

@@ -58,21 +58,21 @@ RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
               }};
 }
 
-Result<NodeSummary> deal_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
-                               const std::string& path, NodeFolder& folder, Context& context) {
+Result<NodeSummary> assign_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
+                                 const std::string& path, NodeFolder& folder, Context& context) {
   const auto batches = choose_batches(baker, config, ranks.size());
-  DealtJobs dealt;
-  for (const auto& zones : batches) dealt.jobs.push_back(bytes_of(zones));
-  dealt.enter = [&](size_t, std::span<const uint8_t> told) {
-    baker.enter(values_of<NodeBaker::Made>(told));
+  JobsToAssign assigned;
+  for (const auto& zones : batches) assigned.jobs.push_back(bytes_of(zones));
+  assigned.enter = [&](size_t, std::span<const uint8_t> result) {
+    baker.enter(values_of<NodeBaker::Made>(result));
     return baker.list();
   };
-  dealt.on_progress = [&] {
+  assigned.on_progress = [&] {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
   };
-  dealt.on_cancel = [&] { folder.leave(); };
+  assigned.on_cancel = [&] { folder.leave(); };
   if (auto ok = baker.list(); !ok) return ok.error();
-  if (auto ok = deal_jobs(ranks, jobs_of(baker, path), std::move(dealt), context); !ok) {
+  if (auto ok = assign_jobs(ranks, jobs_of(baker, path), std::move(assigned), context); !ok) {
     return ok.error();
   }
   const auto nodes = baker.finish();
@@ -110,13 +110,13 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
     return ok.error();
   }
   // Rank 0 looks through what is there.
-  const Result<void> kept = ranks.rank() == 0 ? baker.keep_zones() : Result<void>();
-  if (auto ok = meet(ranks, kept, context); !ok) return ok.error();
+  const Result<void> reused = ranks.rank() == 0 ? baker.reuse_zones() : Result<void>();
+  if (auto ok = meet(ranks, reused, context); !ok) return ok.error();
   if (ranks.rank() != 0) {
-    if (auto ok = do_dealt_jobs(ranks, jobs_of(baker, path), context); !ok) return ok.error();
+    if (auto ok = do_assigned_jobs(ranks, jobs_of(baker, path), context); !ok) return ok.error();
     return NodeSummary{};
   }
-  auto made = deal_nodes(ranks, baker, config, path, *folder, context);
+  auto made = assign_nodes(ranks, baker, config, path, *folder, context);
   if (made) made->seconds = seconds_since(start);
   return made;
 }

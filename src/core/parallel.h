@@ -41,7 +41,7 @@ struct WorkerGroups {
   int32_t groups = 1;
   int32_t workers = 1;  ///< Of each.
 };
-WorkerGroups deal_workers(size_t tasks, int32_t workers);
+WorkerGroups assign_workers(size_t tasks, int32_t workers);
 
 /// Calls body(index, group) for every index in [0, count), begun in order, from a thread of each of
 /// `groups`. What is called in it with several workers runs on threads of that group's own. Throws

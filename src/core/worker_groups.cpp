@@ -16,7 +16,7 @@ thread_local int32_t t_group = 0;  // of this thread
 
 int32_t worker_group() { return t_group; }
 
-WorkerGroups deal_workers(size_t tasks, int32_t workers) {
+WorkerGroups assign_workers(size_t tasks, int32_t workers) {
   constexpr int32_t kFew = 4;  // Fewer seldom wait for each other.
   const int32_t threads = worker_count(workers);
   const auto most = static_cast<int32_t>(std::clamp<size_t>(tasks, 1, 1024));

@@ -46,7 +46,7 @@ class Passes {
   Passes(const WorldData& world, GraphFiles* files, int32_t workers, Context& context)
       : world_(world),
         files_(files),
-        groups_(deal_workers(world.slots.size(), workers)),
+        groups_(assign_workers(world.slots.size(), workers)),
         context_(context) {
     made_.graph = std::make_shared<GraphData>();
     made_.graph->slots.resize(world.slots.size());
@@ -138,7 +138,7 @@ Result<void> Passes::find_regions(size_t slot) {
   inputs_[slot] = input;
   std::unique_ptr<RegionZone> zone;
   if (files_ != nullptr) {
-    zone = files_->keep_regions(entry.x(), entry.z(), input);
+    zone = files_->reuse_regions(entry.x(), entry.z(), input);
     if (zone && !is_of_slot(*zone, world_, slot)) zone = nullptr;
   }
   if (zone == nullptr) {
@@ -227,7 +227,7 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
   };
   std::unique_ptr<LinkZone> links;
   if (files_ != nullptr) {
-    links = files_->keep_links(entry.x(), entry.z(), input);
+    links = files_->reuse_links(entry.x(), entry.z(), input);
     if (links && !fits(*links)) links = nullptr;
   }
   if (links == nullptr) {

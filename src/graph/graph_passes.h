@@ -20,8 +20,8 @@ class GraphFiles {
   virtual ~GraphFiles() = default;
   /// The file made from the same input, which is then among those of the new world; null if there
   /// is none.
-  virtual std::unique_ptr<RegionZone> keep_regions(int32_t x, int32_t z, uint64_t input) = 0;
-  virtual std::unique_ptr<LinkZone> keep_links(int32_t x, int32_t z, uint64_t input) = 0;
+  virtual std::unique_ptr<RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) = 0;
+  virtual std::unique_ptr<LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) = 0;
   virtual Result<void> write(const std::string& name, std::span<const uint8_t> bytes) = 0;
 };
 

@@ -69,12 +69,12 @@ void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, 
                                        bool backward) {
     for (const uint32_t f : from) {
       const Promise& promise = node(from_patch, f).promise;
-      const uint16_t both_ways = promise.classes & classes;
-      if (both_ways == 0) continue;
+      const uint16_t mutual = promise.classes & classes;
+      if (mutual == 0) continue;
       for (size_t k = to.size(); k-- > 0;) {  // The largest first.
         if (!covers(node(to_patch, to[k]).promise, promise)) continue;
-        backward ? add(to[k], f, both_ways, kind) : add(f, to[k], both_ways, kind);
-        linked |= both_ways;
+        backward ? add(to[k], f, mutual, kind) : add(f, to[k], mutual, kind);
+        linked |= mutual;
         break;
       }
     }
@@ -96,10 +96,10 @@ void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, 
       left &= ~bit;
       continue;
     }
-    const auto both_ways = static_cast<uint16_t>(node(patch_a, a).promise.classes &
-                                                 node(patch_b, b).promise.classes & classes);
-    add(a, b, both_ways, kind);
-    left &= ~uint32_t{both_ways};
+    const auto mutual = static_cast<uint16_t>(node(patch_a, a).promise.classes &
+                                              node(patch_b, b).promise.classes & classes);
+    add(a, b, mutual, kind);
+    left &= ~uint32_t{mutual};
   }
 }
 

@@ -38,9 +38,9 @@ void append_all(std::vector<std::vector<T>>& lists, std::vector<T>& all) {
 }  // namespace
 
 double portal_length(const NodePortal& portal, Vec3d out, Vec3d in) {
-  const Vec3d way = in - out;
-  if (portal.kind != LinkKind::kDrop) return length(way);
-  return std::sqrt(way.x * way.x + way.z * way.z) + std::fabs(way.y);
+  const Vec3d hop = in - out;
+  if (portal.kind != LinkKind::kDrop) return length(hop);
+  return std::sqrt(hop.x * hop.x + hop.z * hop.z) + std::fabs(hop.y);
 }
 
 Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_t workers,

@@ -27,18 +27,18 @@ CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches, int32_t 
   }
   for (size_t p = 0; p < patches; ++p) first_[p + 1] += first_[p];
   using Entry = std::pair<uint32_t, Cell>;
-  std::vector<Entry> dealt(2 * pairs.size());
+  std::vector<Entry> assigned(2 * pairs.size());
   std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
   for (const CellPair& p : pairs) {
-    dealt[next[p.patch_a]++] = {p.cell_a, {p.patch_b, p.cell_b, p.classes, p.side_a}};
-    dealt[next[p.patch_b]++] = {p.cell_b, {p.patch_a, p.cell_a, p.classes, p.side_b}};
+    assigned[next[p.patch_a]++] = {p.cell_a, {p.patch_b, p.cell_b, p.classes, p.side_a}};
+    assigned[next[p.patch_b]++] = {p.cell_b, {p.patch_a, p.cell_a, p.classes, p.side_b}};
   }
   parallel_for(patches, workers, [&](size_t p) {
-    std::stable_sort(dealt.begin() + first_[p], dealt.begin() + first_[p + 1],
+    std::stable_sort(assigned.begin() + first_[p], assigned.begin() + first_[p + 1],
                      [](const Entry& a, const Entry& b) { return a.first < b.first; });
     for (size_t i = first_[p]; i < first_[p + 1]; ++i) {
-      key_[i] = dealt[i].first;
-      cell_[i] = dealt[i].second;
+      key_[i] = assigned[i].first;
+      cell_[i] = assigned[i].second;
     }
   });
 }

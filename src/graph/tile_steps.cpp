@@ -35,13 +35,14 @@ bool is_step(const LevelView& a, int32_t x, int32_t z, const LevelView& b, int32
   if (rise <= limits.step + kRounding) return false;
   const int32_t dx = z == nz ? 1 : 0, dz = 1 - dx, sign = next > here ? 1 : -1;
   // By how much the floor rises on from a cell to the next of its level, away from the border.
-  const auto goes_on = [&](const LevelView& level, int32_t from_x, int32_t from_z, int32_t way) {
-    const int32_t to_x = from_x + way * dx, to_z = from_z + way * dz;
+  const auto goes_on = [&](const LevelView& level, int32_t from_x, int32_t from_z,
+                           int32_t direction) {
+    const int32_t to_x = from_x + direction * dx, to_z = from_z + direction * dz;
     const auto is_there = [&](int32_t i, int32_t k) {
       return i >= 0 && k >= 0 && i < 64 && k < 64 && level.has(i, k);
     };
     if (!is_there(from_x, from_z) || !is_there(to_x, to_z)) return limits.slope;
-    return sign * way * (level.sample(to_x, to_z) - level.sample(from_x, from_z));
+    return sign * direction * (level.sample(to_x, to_z) - level.sample(from_x, from_z));
   };
   const int32_t before = goes_on(a, x, z, -1), after = goes_on(b, nx, nz, 1);
   const int32_t before2 = goes_on(a, x - dx, z - dz, -1);

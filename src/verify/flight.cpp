@@ -67,13 +67,14 @@ class Judge {
         if (meets(low, air.y + avatar_.height, record)) ++record.entered;
         continue;
       }
-      const Vec3d way = b - a;
-      const double length = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+      const Vec3d segment = b - a;
+      const double length =
+          std::sqrt(segment.x * segment.x + segment.y * segment.y + segment.z * segment.z);
       const auto steps = static_cast<uint64_t>(std::ceil(length / spacing_)) + 1;
       bool entered = false;
       for (uint64_t s = 0; s <= steps; ++s) {
         const double t = static_cast<double>(s) / static_cast<double>(steps);
-        const Vec3d feet{a.x + t * way.x, a.y + t * way.y, a.z + t * way.z};
+        const Vec3d feet{a.x + t * segment.x, a.y + t * segment.y, a.z + t * segment.z};
         ++record.positions;
         entered = entered || meets(feet, feet.y + avatar_.height, record);
       }

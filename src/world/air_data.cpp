@@ -108,8 +108,8 @@ bool AirData::is_legal(const AirBody& body, int32_t x, int32_t y, int32_t z) con
     // A cube with room around it answers at once.
     const auto place = air.tree->find(x - zx * zone_side, y, z - zz * zone_side);
     if (air_kind(place.word) == AirKind::kFree) {
-      const AirRoom room = air_room(air_number(place.word));
-      if (room.width >= body.reach && room.height >= body.up) return true;
+      const AirClearance clearance = air_clearance(air_number(place.word));
+      if (clearance.width >= body.reach && clearance.height >= body.up) return true;
     }
   }
   for (int32_t dy = 0; dy <= body.up; ++dy) {

@@ -88,15 +88,15 @@ class ChangedNodes : public testing::Test {
   // Bakes a scene into the world that is there and into a fresh one: the same bytes?
   NodeSummary compare(const Scene& scene, const BakeConfig& bake_config, const NodeConfig& config,
                       const std::string& what) {
-    const NodeSummary kept = bake("w", scene, bake_config, config, false);
+    const NodeSummary reused = bake("w", scene, bake_config, config, false);
     const NodeSummary fresh = bake("fresh", scene, bake_config, config, true);
     EXPECT_EQ(fresh.zones_reused, 0u);
-    EXPECT_EQ(kept.zones_made + kept.zones_reused, fresh.zones_made);
-    EXPECT_EQ(kept.nodes, fresh.nodes);
-    EXPECT_EQ(kept.arcs, fresh.arcs);
-    EXPECT_EQ(kept.bytes, fresh.bytes);
+    EXPECT_EQ(reused.zones_made + reused.zones_reused, fresh.zones_made);
+    EXPECT_EQ(reused.nodes, fresh.nodes);
+    EXPECT_EQ(reused.arcs, fresh.arcs);
+    EXPECT_EQ(reused.bytes, fresh.bytes);
     EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == folder_bytes(at("fresh") + "/nodes")) << what;
-    return kept;
+    return reused;
   }
   [[nodiscard]] std::string at(const std::string& name) const {
     return folder_.path() + "/" + name;
@@ -112,7 +112,7 @@ TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
   const Vec3d corner = bare.patches.patches[0].bounds().min;
   add_crate(bare, corner + Vec3d{40, 10, 40}, {2, 2, 2});  // There are level tiles, from now on.
   Draw draw(1);
-  uint64_t kept = 0, made = 0;
+  uint64_t reused = 0, made = 0;
   compare(bare, config, {.size = 2}, "bare");
   Scene scene = bare;
   for (int i = 0; i < 6; ++i) {
@@ -120,10 +120,10 @@ TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
     add_crate(scene, {corner.x + draw(5, 180), draw(-5, 12), corner.z + draw(5, 180)},
               {draw(0.3, 6), draw(0.3, 6), draw(0.3, 6)});
     const NodeSummary summary = compare(scene, config, {.size = 2}, std::to_string(i));
-    kept += summary.zones_reused;
+    reused += summary.zones_reused;
     made += summary.zones_made;
   }
-  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(reused, made / 4);
   EXPECT_GT(made, 10u);
 }
 
@@ -134,7 +134,7 @@ TEST_F(ChangedNodes, PatchesThatMoveAreSeenByThoseAroundThem) {
   PatchSet net =
       test::make_net({.side = 20, .cell = 3, .relief = 0.3, .sideways = 0.2, .split_some = false});
   Draw draw(2);
-  uint64_t kept = 0, made = 0;
+  uint64_t reused = 0, made = 0;
   compare(test::patch_scene(net), config, {.size = 0.5}, "as it was");
   for (int i = 0; i < 4; ++i) {
     // An inner control point: no border moves with it.
@@ -143,10 +143,10 @@ TEST_F(ChangedNodes, PatchesThatMoveAreSeenByThoseAroundThem) {
         draw(-0.4, 0.4);
     const NodeSummary summary =
         compare(test::patch_scene(net), config, {.size = 0.5}, std::to_string(i));
-    kept += summary.zones_reused;
+    reused += summary.zones_reused;
     made += summary.zones_made;
   }
-  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(reused, made / 4);
   EXPECT_GT(made, 10u);
 }
 
@@ -168,7 +168,7 @@ TEST_F(ChangedNodes, LevelTilesDropsAndJumpsAreMadeWhereSomethingBearsOnThem) {
   const Scene bare = field();
   Draw draw(3);
   NodeConfig nodes;
-  uint64_t kept = 0, made = 0;
+  uint64_t reused = 0, made = 0;
   compare(bare, config, nodes, "bare");
   Scene scene = bare;
   for (int i = 0; i < 16; ++i) {
@@ -184,11 +184,11 @@ TEST_F(ChangedNodes, LevelTilesDropsAndJumpsAreMadeWhereSomethingBearsOnThem) {
                 {draw(0.2, 3), draw(0.2, 2), draw(0.2, 3)});
     }
     const NodeSummary summary = compare(scene, config, nodes, std::to_string(i));
-    kept += summary.zones_reused;
+    reused += summary.zones_reused;
     made += summary.zones_made;
     if (i % 7 == 6) nodes.off_mesh_links.erase(nodes.off_mesh_links.begin());
   }
-  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(reused, made / 4);
   EXPECT_GT(made, 20u);
 }
 

@@ -30,7 +30,7 @@ constexpr int32_t kBlockedCode = 2;
 // The gaps of one tile with what the definitions say of them.
 struct Node {
   int32_t cell;
-  naive::Gap gap;
+  naive::FreeSpan free_span;
   bool usable;         // some class may stand here
   int32_t group = -1;  // of gaps that a step joins
 };
@@ -45,21 +45,22 @@ struct Expected {
   std::vector<Group> groups;
 };
 
-bool joined(const naive::Gap& a, const naive::Gap& b, const BodyLimits& limits) {
+bool joined(const naive::FreeSpan& a, const naive::FreeSpan& b, const BodyLimits& limits) {
   const int64_t step = std::abs(int64_t{a.top} - b.top);
   const int64_t room = int64_t{std::min(a.ceiling, b.ceiling)} - std::max(a.top, b.top);
-  const int32_t least =
-      limits.min_gap < BodyLimits::kHighGap ? limits.low_gap : BodyLimits::kHighGap;
+  const int32_t least = limits.min_free_span < BodyLimits::kHighFreeSpan
+                            ? limits.low_free_span
+                            : BodyLimits::kHighFreeSpan;
   return step <= limits.link_step && room >= least;
 }
 
 // The high gaps, and the others of `all`.
-naive::GapBlock by_height(const naive::GapBlock& high, const naive::GapBlock& all) {
-  naive::GapBlock out = all;
+naive::FreeSpanBlock by_height(const naive::FreeSpanBlock& high, const naive::FreeSpanBlock& all) {
+  naive::FreeSpanBlock out = all;
   for (size_t c = 0; c < out.cells.size(); ++c) {
-    for (naive::Gap& gap : out.cells[c]) {
-      for (const naive::Gap& like : high.cells[c]) {
-        if (like.top == gap.top) gap = like;
+    for (naive::FreeSpan& free_span : out.cells[c]) {
+      for (const naive::FreeSpan& like : high.cells[c]) {
+        if (like.top == free_span.top) free_span = like;
       }
     }
   }
@@ -68,16 +69,17 @@ naive::GapBlock by_height(const naive::GapBlock& high, const naive::GapBlock& al
 
 // Every gap of the middle tile, and which of them hang together: a flood fill over all pairs of
 // gaps in neighbouring columns.
-Expected expect(const naive::GapBlock& block, const BodyLimits& limits) {
+Expected expect(const naive::FreeSpanBlock& block, const BodyLimits& limits) {
   Expected out;
   std::vector<std::vector<size_t>> of_cell(kTileArea);
   for (int32_t c = 0; c < kTileArea; ++c) {
-    for (const naive::Gap& gap : block.at(c % 64, c / 64)) {
-      const bool surface = gap.support != kNoSupport && gap.code != kBlockedCode;
-      const bool usable = surface && int64_t{gap.top} - gap.support <= limits.max_bottom &&
-                          int64_t{gap.ceiling} - gap.support >= limits.min_height;
+    for (const naive::FreeSpan& free_span : block.at(c % 64, c / 64)) {
+      const bool surface = free_span.support != kNoSupport && free_span.code != kBlockedCode;
+      const bool usable = surface &&
+                          int64_t{free_span.top} - free_span.support <= limits.max_bottom &&
+                          int64_t{free_span.ceiling} - free_span.support >= limits.min_height;
       of_cell[static_cast<size_t>(c)].push_back(out.nodes.size());
-      out.nodes.push_back({c, gap, usable});
+      out.nodes.push_back({c, free_span, usable});
     }
   }
   for (size_t seed = 0; seed < out.nodes.size(); ++seed) {
@@ -95,7 +97,8 @@ Expected expect(const naive::GapBlock& block, const BodyLimits& limits) {
       for (const auto& [nx, nz] : {std::pair{x - 1, z}, {x + 1, z}, {x, z - 1}, {x, z + 1}}) {
         if (nx < 0 || nz < 0 || nx > 63 || nz > 63) continue;
         for (const size_t other : of_cell[static_cast<size_t>(nz * 64 + nx)]) {
-          if (out.nodes[other].group >= 0 || !joined(node.gap, out.nodes[other].gap, limits))
+          if (out.nodes[other].group >= 0 ||
+              !joined(node.free_span, out.nodes[other].free_span, limits))
             continue;
           out.nodes[other].group = group;
           open.push_back(other);
@@ -107,73 +110,75 @@ Expected expect(const naive::GapBlock& block, const BodyLimits& limits) {
 }
 
 // What a deal must be, whatever its choices.
-void expect_good_deal(const naive::GapBlock& block, const BodyLimits& limits,
-                      const std::string& what) {
-  SheetPool pool;
-  TileSheets sheets;
-  naive::deal_tile(block, 0, 0, limits, pool, sheets);
-  const naive::GapBlock high = naive::high_gaps(block), lent = naive::with_lent_supports(block);
-  const Expected expected =
-      expect(limits.min_gap < BodyLimits::kHighGap ? by_height(high, lent) : high, limits);
+void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& limits,
+                        const std::string& what) {
+  LayerPool pool;
+  TileLayers layers;
+  naive::assign_tile(block, 0, 0, limits, pool, layers);
+  const naive::FreeSpanBlock high = naive::high_free_spans(block),
+                             lent = naive::with_lent_supports(block);
+  const Expected expected = expect(
+      limits.min_free_span < BodyLimits::kHighFreeSpan ? by_height(high, lent) : high, limits);
 
-  std::map<std::pair<int32_t, int32_t>, int32_t> dealt;  // cell and top: how often
-  for (size_t s = 0; s < sheets.size(); ++s) {
-    const Sheet& sheet = *sheets[s];
+  std::map<std::pair<int32_t, int32_t>, int32_t> assigned;  // cell and top: how often
+  for (size_t s = 0; s < layers.size(); ++s) {
+    const Layer& layer = *layers[s];
     int32_t cells = 0, present = 0, low_feet = INT32_MAX, high_feet = INT32_MIN;
     for (int32_t c = 0; c < kTileArea; ++c) {
       const auto cell = static_cast<size_t>(c);
-      if (sheet.top[cell] == kNone16) {
-        ASSERT_EQ(sheet.feet[cell], kNone16) << what;
-        ASSERT_EQ(sheet.ceiling[cell], 0) << what << ": room where there is no gap";
+      if (layer.top[cell] == kNone16) {
+        ASSERT_EQ(layer.feet[cell], kNone16) << what;
+        ASSERT_EQ(layer.ceiling[cell], 0) << what << ": room where there is no gap";
         continue;
       }
       ++cells;
-      const int32_t top = sheet.base + sheet.top[cell];
-      ++dealt[{c, top}];
-      const auto& column = (sheet.is_low ? lent : high).at(c % 64, c / 64);
-      const auto gap = std::find_if(column.begin(), column.end(),
-                                    [&](const naive::Gap& g) { return g.top == top; });
-      ASSERT_NE(gap, column.end()) << what << ": sheet " << s << " invents a top";
-      ASSERT_GE(sheet.top[cell], Sheet::kBelow) << what;
-      ASSERT_LE(sheet.top[cell], Sheet::kHighest) << what;
-      if (gap->ceiling == kOpenSkyMm) {
-        ASSERT_EQ(sheet.ceiling[cell], kNone16) << what;
+      const int32_t top = layer.base + layer.top[cell];
+      ++assigned[{c, top}];
+      const auto& column = (layer.is_low ? lent : high).at(c % 64, c / 64);
+      const auto free_span = std::find_if(column.begin(), column.end(),
+                                          [&](const naive::FreeSpan& g) { return g.top == top; });
+      ASSERT_NE(free_span, column.end()) << what << ": sheet " << s << " invents a top";
+      ASSERT_GE(layer.top[cell], Layer::kBelow) << what;
+      ASSERT_LE(layer.top[cell], Layer::kHighest) << what;
+      if (free_span->ceiling == kOpenSkyMm) {
+        ASSERT_EQ(layer.ceiling[cell], kNone16) << what;
       } else {  // exact, or as high as 16 bits tell
-        ASSERT_EQ(sheet.ceiling[cell], std::min(gap->ceiling - sheet.base, 65534)) << what;
+        ASSERT_EQ(layer.ceiling[cell], std::min(free_span->ceiling - layer.base, 65534)) << what;
       }
-      const bool surface = gap->support != kNoSupport;
-      const bool deep = surface && int64_t{gap->top} - gap->support > limits.max_bottom;
-      const bool low = surface && int64_t{gap->ceiling} - gap->support < limits.min_height;
-      const bool useful = surface && gap->code != kBlockedCode && !deep && !low;
-      ASSERT_EQ(sheet.useful[cell / 64] >> cell % 64 & 1, useful ? 1u : 0u) << what;
-      if (!surface || gap->support < sheet.base) {  // nothing to stand on, or out of range
-        ASSERT_EQ(sheet.feet[cell], kNone16) << what;
+      const bool surface = free_span->support != kNoSupport;
+      const bool deep = surface && int64_t{free_span->top} - free_span->support > limits.max_bottom;
+      const bool low =
+          surface && int64_t{free_span->ceiling} - free_span->support < limits.min_height;
+      const bool useful = surface && free_span->code != kBlockedCode && !deep && !low;
+      ASSERT_EQ(layer.useful[cell / 64] >> cell % 64 & 1, useful ? 1u : 0u) << what;
+      if (!surface || free_span->support < layer.base) {  // nothing to stand on, or out of range
+        ASSERT_EQ(layer.feet[cell], kNone16) << what;
         continue;
       }
       ++present;
-      ASSERT_EQ(sheet.base + sheet.feet[cell], gap->support) << what;
-      ASSERT_EQ(sheet.code[cell], gap->code) << what;
-      low_feet = std::min(low_feet, gap->support);
-      high_feet = std::max(high_feet, gap->support);
+      ASSERT_EQ(layer.base + layer.feet[cell], free_span->support) << what;
+      ASSERT_EQ(layer.code[cell], free_span->code) << what;
+      low_feet = std::min(low_feet, free_span->support);
+      high_feet = std::max(high_feet, free_span->support);
     }
-    ASSERT_EQ(sheet.cells, cells) << what;
-    ASSERT_EQ(sheet.present, present) << what;
+    ASSERT_EQ(layer.cells, cells) << what;
+    ASSERT_EQ(layer.present, present) << what;
     ASSERT_GT(present, 0) << what << ": a sheet without feet";
-    ASSERT_EQ(sheet.base + sheet.low_feet, low_feet) << what;
-    ASSERT_EQ(sheet.base + sheet.high_feet, high_feet) << what;
+    ASSERT_EQ(layer.base + layer.low_feet, low_feet) << what;
+    ASSERT_EQ(layer.base + layer.high_feet, high_feet) << what;
     if (s > 0) {
-      ASSERT_LE(sheets[s - 1]->base, sheet.base) << what << ": order";
+      ASSERT_LE(layers[s - 1]->base, layer.base) << what << ": order";
     }
   }
   for (const Node& node : expected.nodes) {
-    const auto found = dealt.find({node.cell, node.gap.top});
-    const int32_t times = found == dealt.end() ? 0 : found->second;
+    const auto found = assigned.find({node.cell, node.free_span.top});
+    const int32_t times = found == assigned.end() ? 0 : found->second;
     ASSERT_LE(times, 1) << what << ": a gap in two sheets";
     const Group& group = expected.groups[static_cast<size_t>(node.group)];
     const bool crumb = group.count < limits.min_footprint && !group.reaches_border;
     if (node.usable && !crumb) {
       ASSERT_EQ(times, 1) << what << ": a gap is lost at " << node.cell % 64 << " "
-                          << node.cell / 64 << " top " << node.gap.top;
+                          << node.cell / 64 << " top " << node.free_span.top;
     }
   }
 }
@@ -191,15 +196,15 @@ TEST(Sheets, EveryGapThatSomebodyCanUseIsInExactlyOneSheetButCrumbs) {
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const auto classes = default_classes();
     const BodyLimits limits = limits_of(classes, seed % 2 == 0 ? 0.1 : 0.3);
-    const naive::GapBlock block =
-        naive::gaps_of(naive::random_solids(random_block(seed)), limits.min_gap);
-    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, "seed " + std::to_string(seed)));
+    const naive::FreeSpanBlock block =
+        naive::free_spans_of(naive::random_solids(random_block(seed)), limits.min_free_span);
+    ASSERT_NO_FATAL_FAILURE(expect_good_layers(block, limits, "seed " + std::to_string(seed)));
   }
 }
 
 // Gaps at random heights, as many as there is room for: no floor goes on anywhere for long.
-naive::GapBlock noise(uint64_t seed, const BodyLimits& limits, int32_t layers, double spread) {
-  naive::GapBlock block;
+naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t layers, double spread) {
+  naive::FreeSpanBlock block;
   for (int32_t c = 0; c < kTileArea; ++c) {
     uint64_t n = 0;
     const auto unit = [&] { return random_unit(seed, static_cast<uint64_t>(c), n++); };
@@ -207,12 +212,13 @@ naive::GapBlock noise(uint64_t seed, const BodyLimits& limits, int32_t layers, d
     int64_t top = -static_cast<int64_t>(1000 * unit());
     const auto count = static_cast<int32_t>(unit() * (layers + 1));
     for (int32_t k = 0; k < count; ++k) {
-      const auto room = limits.min_gap + static_cast<int32_t>(unit() * spread);
-      naive::Gap gap{static_cast<int32_t>(top), static_cast<int32_t>(top + room)};
-      if (k + 1 == count) gap.ceiling = kOpenSkyMm;
-      if (unit() < 0.8) gap.support = gap.top - static_cast<int32_t>(unit() * unit() * 1000);
-      gap.code = static_cast<int32_t>(unit() * 3);
-      column.push_back(gap);
+      const auto room = limits.min_free_span + static_cast<int32_t>(unit() * spread);
+      naive::FreeSpan free_span{static_cast<int32_t>(top), static_cast<int32_t>(top + room)};
+      if (k + 1 == count) free_span.ceiling = kOpenSkyMm;
+      if (unit() < 0.8)
+        free_span.support = free_span.top - static_cast<int32_t>(unit() * unit() * 1000);
+      free_span.code = static_cast<int32_t>(unit() * 3);
+      column.push_back(free_span);
       top += room + 1 + static_cast<int64_t>(unit() * spread * 0.3);
     }
   }
@@ -223,15 +229,15 @@ TEST(Sheets, NoiseOfManyLayersIsDealtWithoutLoss) {
   const BodyLimits limits = limits_of(default_classes());
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const double spread = seed % 2 == 0 ? 300 : 3000;
-    const naive::GapBlock block = noise(seed, limits, 2 + static_cast<int32_t>(seed), spread);
-    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, std::to_string(seed)));
+    const naive::FreeSpanBlock block = noise(seed, limits, 2 + static_cast<int32_t>(seed), spread);
+    ASSERT_NO_FATAL_FAILURE(expect_good_layers(block, limits, std::to_string(seed)));
   }
 }
 
 TEST(Sheets, HeightsKilometresApartAreExactAndTakeMoreSheets) {
   const BodyLimits limits = limits_of(default_classes());
   for (uint64_t seed = 1; seed <= 6; ++seed) {
-    naive::GapBlock block;
+    naive::FreeSpanBlock block;
     for (int32_t c = 0; c < kTileArea; ++c) {
       const int32_t x = c % 64, z = c / 64;
       auto& column = block.at(x, z);
@@ -243,11 +249,11 @@ TEST(Sheets, HeightsKilometresApartAreExactAndTakeMoreSheets) {
       column.push_back({1'000'000 + rough, 1'999'000, 1'000'000, 0});
       column.push_back({2'000'000 + rough, kOpenSkyMm, 2'000'000, 1});
     }
-    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, std::to_string(seed)));
-    SheetPool pool;
-    TileSheets sheets;
-    naive::deal_tile(block, 0, 0, limits, pool, sheets);
-    EXPECT_EQ(sheets.size(), 4u);
+    ASSERT_NO_FATAL_FAILURE(expect_good_layers(block, limits, std::to_string(seed)));
+    LayerPool pool;
+    TileLayers layers;
+    naive::assign_tile(block, 0, 0, limits, pool, layers);
+    EXPECT_EQ(layers.size(), 4u);
   }
 }
 
@@ -255,84 +261,85 @@ TEST(Sheets, AStairOfMoreHeightThanSixteenBitsHoldIsCutNotBent) {
   // 4096 cells along a line that winds through the tile, a step up at each: one component, 120 m.
   const BodyLimits limits = limits_of({AvatarClass{}});
   for (const int32_t rise : {13, 14, 15, 30, 90, 390}) {
-    naive::GapBlock block;
+    naive::FreeSpanBlock block;
     for (int32_t z = 0; z < 64; ++z) {
       for (int32_t i = 0; i < 64; ++i) {
         const int32_t top = (z * 64 + i) * rise;
         block.at(z % 2 == 0 ? i : 63 - i, z).push_back({top, kOpenSkyMm, top, 0});
       }
     }
-    ASSERT_NO_FATAL_FAILURE(expect_good_deal(block, limits, std::to_string(rise)));
+    ASSERT_NO_FATAL_FAILURE(expect_good_layers(block, limits, std::to_string(rise)));
   }
 }
 
 TEST(Sheets, ALevelFloorUnderALevelFloorIsTwoSheetsLowestFirst) {
   const BodyLimits limits = limits_of(default_classes());
-  naive::GapBlock block;
+  naive::FreeSpanBlock block;
   for (int32_t c = 0; c < kTileArea; ++c) {
     block.at(c % 64, c / 64) = {{0, 2800, 0, 0}, {3000, kOpenSkyMm, 3000, 1}};
   }
-  SheetPool pool;
-  TileSheets sheets;
-  naive::deal_tile(block, 0, 0, limits, pool, sheets);
-  ASSERT_EQ(sheets.size(), 2u);
+  LayerPool pool;
+  TileLayers layers;
+  naive::assign_tile(block, 0, 0, limits, pool, layers);
+  ASSERT_EQ(layers.size(), 2u);
   for (size_t s = 0; s < 2; ++s) {
-    EXPECT_EQ(sheets[s]->present, kTileArea);
-    EXPECT_EQ(sheets[s]->base + sheets[s]->low_feet, s == 0 ? 0 : 3000);
-    EXPECT_FALSE(sheets[s]->seams);
-    EXPECT_TRUE(sheets[s]->one_code);
+    EXPECT_EQ(layers[s]->present, kTileArea);
+    EXPECT_EQ(layers[s]->base + layers[s]->low_feet, s == 0 ? 0 : 3000);
+    EXPECT_FALSE(layers[s]->seams);
+    EXPECT_TRUE(layers[s]->one_code);
   }
 }
 
 TEST(Sheets, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
   const BodyLimits limits = limits_of({AvatarClass{}});
-  naive::GapBlock block;
+  naive::FreeSpanBlock block;
   for (int32_t c = 0; c < kTileArea; ++c) block.at(c % 64, c / 64) = {{0, kOpenSkyMm, 0, 0}};
   block.at(20, 20) = {{1500, kOpenSkyMm, 1500, 0}};
   block.at(63, 40) = {{1500, kOpenSkyMm, 1500, 0}};
   for (const auto& [x, z] : {std::pair{20, 20}, {63, 40}})
     block.at(x, z).insert(block.at(x, z).begin(), {-9000, -7000, kNoSupport, 0});
-  SheetPool pool;
-  TileSheets sheets;
-  naive::deal_tile(block, 0, 0, limits, pool, sheets);
+  LayerPool pool;
+  TileLayers layers;
+  naive::assign_tile(block, 0, 0, limits, pool, layers);
   int32_t inside = 0, border = 0;
-  for (const auto& sheet : sheets) {
-    inside += sheet->top[20 * 64 + 20] != kNone16 ? 1 : 0;
-    border += sheet->top[40 * 64 + 63] != kNone16 ? 1 : 0;
+  for (const auto& layer : layers) {
+    inside += layer->top[20 * 64 + 20] != kNone16 ? 1 : 0;
+    border += layer->top[40 * 64 + 63] != kNone16 ? 1 : 0;
   }
   EXPECT_EQ(inside, 0);
   EXPECT_EQ(border, 1);
 }
 
 TEST(Sheets, AnEmptyTileHasNone) {
-  SheetPool pool;
-  TileSheets sheets;
-  naive::deal_tile({}, 0, 0, limits_of(default_classes()), pool, sheets);
-  EXPECT_TRUE(sheets.empty());
+  LayerPool pool;
+  TileLayers layers;
+  naive::assign_tile({}, 0, 0, limits_of(default_classes()), pool, layers);
+  EXPECT_TRUE(layers.empty());
 }
 
 TEST(Sheets, SameSheetsForEverySimdWidth) {
   const auto hash_all = [] {
     uint64_t hash = 0;
     const BodyLimits limits = limits_of(default_classes());
-    SheetPool pool;
+    LayerPool pool;
     for (uint64_t seed = 1; seed <= 12; ++seed) {
-      const naive::GapBlock block =
+      const naive::FreeSpanBlock block =
           seed % 3 == 0 ? noise(seed, limits, 5, 1000)
-                        : naive::gaps_of(naive::random_solids(random_block(seed)), limits.min_gap);
-      TileSheets sheets;
-      naive::deal_tile(block, 0, 0, limits, pool, sheets);
-      for (auto& sheet : sheets) {
-        hash = hash_span(std::span<const uint16_t>(sheet->top), hash);
-        hash = hash_span(std::span<const uint16_t>(sheet->ceiling), hash);
-        hash = hash_span(std::span<const uint16_t>(sheet->feet), hash);
-        const int32_t numbers[] = {sheet->base, sheet->cells, sheet->present, sheet->some_code,
-                                   sheet->one_code};
+                        : naive::free_spans_of(naive::random_solids(random_block(seed)),
+                                               limits.min_free_span);
+      TileLayers layers;
+      naive::assign_tile(block, 0, 0, limits, pool, layers);
+      for (auto& layer : layers) {
+        hash = hash_span(std::span<const uint16_t>(layer->top), hash);
+        hash = hash_span(std::span<const uint16_t>(layer->ceiling), hash);
+        hash = hash_span(std::span<const uint16_t>(layer->feet), hash);
+        const int32_t numbers[] = {layer->base, layer->cells, layer->present, layer->some_code,
+                                   layer->one_code};
         hash = hash_bytes(numbers, sizeof numbers, hash);
         for (size_t c = 0; c < kTileArea; ++c) {
-          if (sheet->feet[c] != kNone16) hash = hash_bytes(&sheet->code[c], 1, hash);
+          if (layer->feet[c] != kNone16) hash = hash_bytes(&layer->code[c], 1, hash);
         }
-        pool.give(std::move(sheet));
+        pool.give(std::move(layer));
       }
     }
     return hash;

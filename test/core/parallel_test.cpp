@@ -95,11 +95,11 @@ TEST(Parallel, WhatAGroupThrowsIsThrownOnceTheOthersHaveEnded) {
 TEST(Parallel, WorkersAreDealtSoThatNoneIsLeft) {
   for (int32_t workers = 1; workers <= 33; ++workers) {
     for (const size_t tasks : {size_t{0}, size_t{1}, size_t{3}, size_t{10}, size_t{5000}}) {
-      const WorkerGroups dealt = deal_workers(tasks, workers);
-      EXPECT_GE(dealt.groups * dealt.workers, workers);
-      EXPECT_LT((dealt.groups - 1) * dealt.workers, 2 * workers);
-      EXPECT_LE(dealt.groups, std::max<size_t>(tasks, 1));
-      EXPECT_TRUE(workers >= 4 || dealt.groups == 1);
+      const WorkerGroups assigned = assign_workers(tasks, workers);
+      EXPECT_GE(assigned.groups * assigned.workers, workers);
+      EXPECT_LT((assigned.groups - 1) * assigned.workers, 2 * workers);
+      EXPECT_LE(assigned.groups, std::max<size_t>(tasks, 1));
+      EXPECT_TRUE(workers >= 4 || assigned.groups == 1);
     }
   }
 }

@@ -187,16 +187,17 @@ TEST(Air, NoCubePromisesMoreRoomThanThereIs) {
     const int32_t x0 = slot->entry.x() * air.zone_side, z0 = slot->entry.z() * air.zone_side;
     slot->zone->tree().for_each([&](const AirCube& cube, uint32_t word) {
       if (air_kind(word) != AirKind::kFree || cube.side > 8) return;
-      const AirRoom room = air_room(air_number(word));
-      wide += room.width > 0 && room.height > 0 ? 1 : 0;
-      for (int32_t y = cube.y; y < cube.y + cube.side + room.height; ++y) {
+      const AirClearance clearance = air_clearance(air_number(word));
+      wide += clearance.width > 0 && clearance.height > 0 ? 1 : 0;
+      for (int32_t y = cube.y; y < cube.y + cube.side + clearance.height; ++y) {
         if (y < air.shape.floor || y >= air.shape.ceiling) continue;
-        for (int32_t z = cube.z - room.width; z < cube.z + cube.side + room.width; ++z) {
-          for (int32_t x = cube.x - room.width; x < cube.x + cube.side + room.width; ++x) {
+        for (int32_t z = cube.z - clearance.width; z < cube.z + cube.side + clearance.width; ++z) {
+          for (int32_t x = cube.x - clearance.width; x < cube.x + cube.side + clearance.width;
+               ++x) {
             ASSERT_TRUE(air.is_free(x0 + x, y, z0 + z))
                 << "cube " << x0 + cube.x << "," << cube.y << "," << z0 + cube.z << " of "
-                << cube.side << " with " << room.width << ", " << room.height << ": " << x0 + x
-                << "," << y << "," << z0 + z;
+                << cube.side << " with " << clearance.width << ", " << clearance.height << ": "
+                << x0 + x << "," << y << "," << z0 + z;
           }
         }
       }

@@ -19,8 +19,8 @@ namespace {
 // Keeps the bytes of the zones' files.
 class FilesInMemory : public GraphFiles {
  public:
-  std::unique_ptr<RegionZone> keep_regions(int32_t, int32_t, uint64_t) override { return nullptr; }
-  std::unique_ptr<LinkZone> keep_links(int32_t, int32_t, uint64_t) override { return nullptr; }
+  std::unique_ptr<RegionZone> reuse_regions(int32_t, int32_t, uint64_t) override { return nullptr; }
+  std::unique_ptr<LinkZone> reuse_links(int32_t, int32_t, uint64_t) override { return nullptr; }
   Result<void> write(const std::string& name, std::span<const uint8_t> bytes) override {
     files.emplace_back(name, std::vector<uint8_t>(bytes.begin(), bytes.end()));
     return write_file(folder.path() + "/" + name, bytes);

@@ -13,14 +13,14 @@
 #include "world/air_rows.h"
 
 // Columns are filled again, as for the ground, and what of a column lies in an air cell fills it:
-// an air cell is free only if no matter, over-covered as it is, touches it anywhere. A ring of
-// tiles around the zone shows how wide its free cubes are.
+// an air cell is free only if no solid, over-covered as it is, touches it anywhere. A ring of tiles
+// around the zone shows how wide its free cubes are.
 namespace throng {
 namespace {
 
 constexpr int32_t kAirBakeVersion = 1;
 constexpr double kLayerPhase = kGridPhase;
-constexpr int32_t kSkyLayers = 16;             // flown in over the highest matter
+constexpr int32_t kSkyLayers = 16;             // flown in over the highest solid
 constexpr double kDefaultAirCell = 0.4;        // least for flyers if nothing is asked for [m]
 constexpr size_t kMaxBytes = size_t{1} << 31;  // of the rows of one zone
 
@@ -106,7 +106,7 @@ struct AirBaker::Worker {
   std::vector<Layers> here;  // over one air cell's square
 };
 
-// Layers with matter over each air cell's square of a tile, merged, ascending.
+// Layers with a solid over each air cell's square of a tile, merged, ascending.
 struct AirBaker::TileAir {
   std::vector<uint32_t> first;
   std::vector<Layers> layers;
@@ -173,7 +173,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   const int32_t grid_x = (plan_.grid.width + shape_.multiple - 1) / shape_.multiple;
   const int32_t grid_z = (plan_.grid.depth + shape_.multiple - 1) / shape_.multiple;
   // How much of what is looked at is the world's: a world may grow within its last tiles, and no
-  // triangle of this zone tell of it.
+  // triangle of this zone show it.
   const auto own_part = [&](int32_t grid, int32_t zone) {
     return static_cast<uint64_t>(std::clamp(grid - zone * side, 0, side + known));
   };
@@ -213,7 +213,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   });
   if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
 
-  int32_t low = INT32_MAX, high = INT32_MIN;  // of the matter here and around
+  int32_t low = INT32_MAX, high = INT32_MIN;  // of the solids here and around
   bool own = false;
   for (int32_t i = 0; i < ring * ring; ++i) {
     const bool beside =
@@ -225,7 +225,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
     }
   }
   if (!own) return std::unique_ptr<AirData::Slot>();  // nothing but air
-  // The highest layer stays free of matter: it stands for all that is higher or lower.
+  // The highest layer stays free: it stands for all that is higher or lower.
   const int32_t base = low & -4, height = ((high - base + 2) + 3) & -4;
   if (static_cast<double>(height) * across * across / 8 > static_cast<double>(kMaxBytes)) {
     return Error{Errc::kLimit, "bake: the air of zone " + std::to_string(zone_x) + ", " +

@@ -35,11 +35,12 @@ class AirBaker {
   ~AirBaker();
 
   /// One zone, from the triangles that may touch it or its apron, in order; null: there is nothing
-  /// but air. `input` tells what its ground was baked from. Fails with kIo, kLimit or kCancelled.
+  /// but air. `input` is the hash of what its ground was baked from. Fails with kIo, kLimit or
+  /// kCancelled.
   Result<std::unique_ptr<AirData::Slot>> bake(int32_t zone_x, int32_t zone_z,
                                               std::span<const uint32_t> triangles, uint64_t input,
                                               Context& context);
-  /// Zones whose files were kept, for their input has not changed.
+  /// Zones whose files were reused, because their input has not changed.
   [[nodiscard]] uint64_t reused() const { return reused_; }
 
  private:

@@ -9,15 +9,15 @@
 #include "core/parallel.h"
 
 // Distances in the plane count rows and columns alike (the larger of the two): a cell is at most r
-// from matter if the square of r cells around it holds some. So matter that grows by a cell all
-// around, 64 cells at a time, tells them one after the other; squares of 4 x 4 cells keep the
-// smallest, as no cube is smaller or lies across them. The same distances as the sweeps of [RP66],
-// which go from cell to cell.
+// from a solid if the square of r cells around it holds some. So solids grow by a cell all around,
+// 64 cells at a time, and reach the cells in order of distance; squares of 4 x 4 cells keep the
+// smallest, as no air box is smaller or lies across them. The same distances as the sweeps of
+// [RP66], which go from cell to cell.
 namespace throng {
 namespace {
 
 // Per layer and square: the distance from its cells to the nearest one that is not free; 0 if one
-// of them is not, 1 if one beside them. At most 1 more than the room that can be promised.
+// of them is not, 1 if one beside them. At most 1 more than the clearance that can be promised.
 class Distances {
  public:
   Distances(const AirTreeSource& source, int32_t apron, int32_t workers)
@@ -34,8 +34,8 @@ class Distances {
     });
   }
 
-  /// Over all cells of a cube's footprint, in one layer of the world. Layers over and under the
-  /// rows are like the highest of them: without matter, but no wider than what is known.
+  /// Over all cells of an air box's footprint, in one layer of the world. Layers over and under the
+  /// rows are like the highest of them: without a solid, but no wider than what is known.
   [[nodiscard]] int32_t distance(const AirCube& cube, int32_t y) const {
     const int32_t row = y < base_ || y >= base_ + height_ ? height_ - 1 : y - base_;
     int32_t least = max_distance_ + 1;
@@ -54,14 +54,14 @@ class Distances {
            static_cast<size_t>(x);
   }
 
-  // Matter of one layer as bits, `rows_` by `words_`: the zone and `max_distance_` rows around, and
+  // Solids of one layer as bits, `rows_` by `words_`: the zone and `max_distance_` rows around, and
   // so many columns that its squares stay within half bytes.
   struct Layer {
     std::vector<uint64_t> solid, wide;
     std::vector<uint64_t> known;  // by row of squares, a bit for each: its distance is written
   };
 
-  // 64 columns from x on; what lies beside the rows is no matter.
+  // 64 columns from x on; what lies beside the rows is free.
   static uint64_t solid_at(const AirRows& rows, const uint64_t* row, int32_t x) {
     const auto word = [&](int32_t w) {
       if (w < 0 || w >= rows.words) return uint64_t{0};
@@ -116,7 +116,7 @@ class Distances {
     }
   }
 
-  // Writes the distance of squares that matter has come to. Returns how many.
+  // Writes the distance of squares that solids have grown into. Returns how many.
   size_t note(int32_t r, int32_t y, Layer& layer) {
     size_t found = 0;
     for (int32_t z = 0; z < side_; ++z) {

@@ -65,7 +65,7 @@ class ZoneBaker {
   Result<void> bake(size_t i, ZoneScratch& scratch) {
     const format::ZoneInput& input = bake_.zones()[i];
     if (folder_ != nullptr) {
-      if (const auto reused = folder_->keep(input.x(), input.z(), input.hash())) {
+      if (const auto reused = folder_->reuse(input.x(), input.z(), input.hash())) {
         facts_[i] = bake_.facts_of(*reused);
         return {};
       }

@@ -10,8 +10,8 @@ namespace throng {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kGrowth = 0.03;  // How little bodies are grown between poses at the end. [m]
-constexpr int kMaxSteps = 256;    // of a walker's way
+constexpr double kGrowth = 0.03;  // The least growth of a body between poses. [m]
+constexpr int kMaxSteps = 256;    // of a walker's move
 
 // Height of a triangle on the vertical line through (x, z), if it is there.
 bool supports(const LocalTriangle& t, Vec3d at, double reach) {
@@ -66,9 +66,9 @@ void MotionJudge::look_closer(const Box3d& box) {
 }
 
 bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to) {
-  if (dot(from.axis, to.axis) < -0.5) return false;  // Which way it turns would be a guess.
+  if (dot(from.axis, to.axis) < -0.5) return false;  // The direction of the turn is ambiguous.
   const double far = farthest_of(body), around = reach_of(body);
-  // The turning axis moves fastest half way, by the angle's tangent: twice the chord holds it.
+  // The turning axis moves fastest at t = 1/2, by the angle's tangent: twice the chord bounds it.
   const double move = length(to.feet - from.feet) + 2 * far * length(to.axis - from.axis);
   Box3d box;
   for (const BodyPose& pose : {from, to}) {
@@ -96,7 +96,7 @@ bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const Bod
   const BodySweep exact{.radius = body.radius, .low = body.bottom, .high = body.height};
   const BodySweep grown{
       .radius = body.radius + growth, .low = body.bottom - growth, .high = body.height + growth};
-  // At the end there is no room to give.
+  // The least growth is not halved any more.
   const bool last = growth <= kGrowth;
   const std::array<FilterTube, 2> tubes{
       {{.whole = exact, .decisive = exact}, {.whole = grown, .decisive = grown}}};

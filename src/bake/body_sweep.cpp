@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// A convex polygon with room for a triangle cut twice.
+// A convex polygon with space for a triangle cut twice.
 struct Clipped {
   std::array<Vec3d, 6> corners;
   size_t count = 0;
@@ -110,7 +110,7 @@ bool enters_on_move(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d
   if (low < sweep.low) polygon = clip(polygon, sweep.low, 1);
   if (high > sweep.high) polygon = clip(polygon, sweep.high, -1);
   if (polygon.count == 0) return false;
-  if (distance2(polygon) == 0) return true;  // The way begins in it.
+  if (distance2(polygon) == 0) return true;  // The move begins in it.
   for (size_t i = 0; i < polygon.count; ++i) {
     const Vec3d p = polygon.corners[i], q = polygon.corners[(i + 1) % polygon.count];
     if (distance2_to_move(p, q, along) <= r * r) return true;
@@ -157,7 +157,7 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   squares_z_ = bins.squares_z;
   first_.assign(bins.first.begin(), bins.first.end());
   items_ = std::make_unique_for_overwrite<Item[]>(bins.items.size());
-  // The first square of each, which boxes that only touch a border do not tell.
+  // The first square of each: boxes that only touch a border do not show it.
   struct Place {
     int32_t x = -1, z = 0;
   };

@@ -61,7 +61,7 @@ class TriangleSquares {
     uint32_t first = 0, last = 0;  ///< of order_
   };
 
-  /// A cluster in one of its squares. All are set by many threads, and by nobody before.
+  /// A cluster in one of its squares. Unset at first; many threads set all of them.
   struct Item {
     std::array<float, 6> box;
     uint32_t first;  ///< of order_

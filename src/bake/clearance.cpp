@@ -17,7 +17,7 @@ using Row = unsigned __int128;  // bit x + kApronBits is column x
 
 constexpr std::array<bool, kMaxMargin> kSquare{true, true, true, false, false, true, false};
 
-// A row of a sheet with up to 8 columns of the sheets to its left and right.
+// A row of a layer with up to 8 columns of the layers to its left and right.
 Row wide_row(const TileLegality* left, const TileLegality* right, const LayerLegality& layer,
              size_t avatar_class, int32_t step, size_t z) {
   Row row = static_cast<Row>(layer.classes[avatar_class].legal[z]) << kApronBits;
@@ -34,7 +34,7 @@ Row wide_row(const TileLegality* left, const TileLegality* right, const LayerLeg
   return row;
 }
 
-// Adds the rows of the tile above or below: columns go to whichever sheet continues them.
+// Adds the rows of the tile above or below: columns go to the layer that continues them.
 void add_rows(const std::array<const TileLegality*, 3>& tiles, const LayerLegality& layer,
               size_t side, size_t avatar_class, int32_t step, size_t first_z, Row* rows) {
   const TileLegality* tile = tiles[1];
@@ -115,7 +115,7 @@ void erode(const std::array<const TileLegality*, 9>& tiles, size_t layer, size_t
   out.legal = own.classes[avatar_class].legal;
   for (const uint64_t row : out.legal) out.cells += std::popcount(row);
   bool full = out.cells == kTileArea;
-  // Rows from first to last have cells: many sheets are a storey of a few rows.
+  // Rows from first to last have cells: many layers are a storey of a few rows.
   size_t first = 0, last = kRows - 1;
   for (int32_t k = 0; k < kMaxMargin; ++k) {
     while (first < last && rows[first] == 0) ++first;

@@ -11,7 +11,7 @@
 #include "world/zone_data.h"
 
 // Cells that say themselves where a point may be need no columns and no legality: each tile is one
-// level sheet whose legal cells are the passable ones. From there on it is a world like any other.
+// level layer whose legal cells are the passable ones. From there on it is a world like any other.
 namespace throng {
 namespace {
 

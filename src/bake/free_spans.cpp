@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-// Spans come by blocks of cells and unsorted; gaps leave by rows and ascending. A run of blocks
-// side by side is turned into rows as it is loaded, and each vector of a row is sorted by a
-// network.
+// Lists the free spans of a tile's columns. Spans come by blocks of cells and unsorted; free spans
+// leave by rows and ascending. A run of blocks side by side is turned into rows as it is loaded,
+// and each vector of a row is sorted by a network.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/free_spans.cpp"
@@ -61,7 +61,7 @@ HWY_INLINE FreeSpanLayer& free_span_layer_at(TileFreeSpans& free_spans, int32_t 
   return *free_spans.layers[static_cast<size_t>(k)];
 }
 
-// One deep column, by plain sorting.
+// One deep column, by std::sort.
 void free_spans_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_free_span,
                                TileFreeSpans& free_spans, std::vector<TileColumns::Spill>& spans) {
   const auto c = static_cast<size_t>(cell);
@@ -101,7 +101,7 @@ void free_spans_of_deep_column(const TileColumns& columns, int32_t cell, int32_t
   free_spans.spans += static_cast<uint64_t>(found);
 }
 
-// Writes one gap to each lane of `mask`, into the layer that the lane has reached.
+// Writes one free span to each lane of `mask`, into the free-span layer that the lane has reached.
 HWY_INLINE void emit(TileFreeSpans& free_spans, size_t c, MI mask, VI found, int32_t deepest,
                      VI top, VI ceiling, VI support) {
   const DI di;
@@ -140,7 +140,7 @@ HWY_INLINE void blocks_to_rows(VI (&v)[kMaxBlocks]) {
 #endif
 }
 
-// Gaps of one vector of columns, of n sorted spans each.
+// Free spans of one vector of columns, of n sorted spans each.
 HWY_INLINE VI list_free_spans(const SpanVectors& spans, size_t c, size_t n, int32_t min_free_span,
                               TileFreeSpans& free_spans) {
   static_assert(kNoSpan == kOpenSkyMm);  // A span that is not there sorts last, as the sky.
@@ -257,7 +257,7 @@ void FindFreeSpans(const TileColumns& columns, int32_t min_free_span, TileFreeSp
   free_spans.max_count = std::max(free_spans.max_count, hn::GetLane(hn::MaxOfLanes(di, most)));
 }
 
-// Matter has at least the sky above it.
+// A column with a solid has at least the sky above it.
 void BareColumns(const TileFreeSpans& free_spans, std::array<uint64_t, kTileSide>& bare) {
   const DI di;
   for (size_t z = 0; z < kTileSide; ++z) {

@@ -12,9 +12,9 @@
 /// What is free above the solid spans of a tile's columns.
 namespace throng {
 
-/// Free space over solid matter, up to one per cell. Heights from the columns' base.
+/// The free spans of one rank, at most one per cell. Heights from the columns' base.
 struct FreeSpanLayer {
-  alignas(64) std::array<int32_t, kTileArea> top;      // of the matter below
+  alignas(64) std::array<int32_t, kTileArea> top;      // of the solid below
   alignas(64) std::array<int32_t, kTileArea> ceiling;  // kOpenSkyMm where nothing is above
   alignas(64) std::array<int32_t, kTileArea> support;  // as in SpanLayer
 };
@@ -30,14 +30,14 @@ struct TileFreeSpans {
       layers;  // ascending; layer k of cell c holds if k < count[c]
 };
 
-/// Bit x of row z: column (x, z) of the tile has no matter at all.
+/// Bit x of row z: column (x, z) of the tile has no solid.
 std::array<uint64_t, kTileSide> bare_columns(const TileFreeSpans& free_spans);
 
-/// Joins spans that are less than `min_free_span` apart and lists what is free above each run.
+/// Joins spans that are less than `min_free_span` apart and lists the free span above each run.
 void find_free_spans(const TileColumns& columns, int32_t min_free_span, TileFreeSpans& free_spans);
 
-/// Where matter under a gap supports nobody, gives the gap the support of the nearest gap below
-/// that has one.
+/// Where the solid under a free span supports no body, gives the free span the support of the
+/// nearest free span below that has one.
 void lend_supports(TileFreeSpans& free_spans);
 
 }  // namespace throng

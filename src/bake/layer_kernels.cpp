@@ -22,7 +22,7 @@ using DB = hn::Rebind<uint8_t, DI>;
 using DU = hn::CappedTag<uint16_t, 32>;
 using DC = hn::Rebind<uint8_t, DU>;
 
-// Gaps a and b continue each other: a small step, and room over both.
+// Free spans a and b continue each other: a small step, and enough free over both.
 HWY_INLINE hn::Mask<DI> linked(hn::Vec<DI> top_a, hn::Vec<DI> ceiling_a, hn::Vec<DI> top_b,
                                hn::Vec<DI> ceiling_b, hn::Vec<DI> max_step,
                                hn::Vec<DI> min_free_span) {
@@ -75,11 +75,12 @@ void LinkFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, const Li
   }
 }
 
-void LowFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t room,
+void LowFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t height,
                   CellRows& rows) {
   const DI di;
   const FreeSpanLayer& g = *free_spans.layers[static_cast<size_t>(free_layer)];
-  const auto k = hn::Set(di, free_layer), least = hn::Set(di, room), sky = hn::Set(di, kOpenSkyMm);
+  const auto k = hn::Set(di, free_layer), least = hn::Set(di, height),
+             sky = hn::Set(di, kOpenSkyMm);
   for (size_t z = 0; z < kTileSide; ++z) {
     rows[z] = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(di)) {
@@ -525,9 +526,9 @@ void link_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, const 
   HWY_DYNAMIC_DISPATCH(LinkFreeSpans)(free_spans, free_layer, rule, only, links);
 }
 
-void low_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t room,
+void low_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t height,
                     CellRows& rows) {
-  HWY_DYNAMIC_DISPATCH(LowFreeSpans)(free_spans, free_layer, room, rows);
+  HWY_DYNAMIC_DISPATCH(LowFreeSpans)(free_spans, free_layer, height, rows);
 }
 
 TopRange free_span_range(const TileFreeSpans& free_spans, int32_t free_layer) {

@@ -6,14 +6,14 @@
 
 #include "bake/legality.h"
 
-// The window of a sheet: its own cells, and around them the cells of whichever neighbouring sheets
-// continue it. Which sheet a cell is taken from decides how much is found to be legal, never
-// whether what is found is safe: any gap that holds the body proves its column free.
+// The window of a layer: its own cells, and around them the cells of the neighbouring layers that
+// continue it. Which layer a cell is taken from decides how much is found to be legal, never
+// whether what is found is safe: any free span that holds the body proves its column free.
 namespace throng {
 namespace {
 
-// The top of another sheet on this sheet's scale. Out of range is no gap: were it drawn to the
-// range's end, a class that may step far down would take a deep drop for a shallow one.
+// The top of another layer on this layer's scale. Out of range is no free span: were it drawn to
+// the range's end, a class that may step far down would take a deep drop for a shallow one.
 uint16_t rebased_top(uint16_t value, int32_t shift) {
   const int32_t moved = value + shift;
   return value == kNone16 || moved < 0 || moved > kNone16 ? kNone16 : static_cast<uint16_t>(moved);
@@ -33,7 +33,7 @@ void rebase_row(const uint16_t* from, int32_t count, int32_t shift, uint16_t* to
   for (int32_t i = 0; i < count; ++i) to[i] = rebase(from[i], shift);
 }
 
-// The sheet of a tile whose gap at `cell` is nearest to `near_top` (absolute), or null.
+// The layer of a tile whose free span at `cell` is nearest to `near_top` (absolute), or null.
 const Layer* nearest_layer(const LayerList& tile, size_t cell, int32_t near_top) {
   const Layer* best = nullptr;
   int32_t best_distance = INT32_MAX;
@@ -48,11 +48,11 @@ const Layer* nearest_layer(const LayerList& tile, size_t cell, int32_t near_top)
   return best;
 }
 
-// Adds the holes of a sheet that another one's gaps continue by a step. Returns 0 if there are
-// none.
+// Adds the holes of a layer that another one's free spans continue by a step. Returns 0 if there
+// are none.
 uint64_t add_steps(const Layer& own, const CellRows& own_free_spans, const Layer& other,
                    const CellRows& other_free_spans, int32_t step, CellRows& holes) {
-  // Most of the other sheets are other storeys.
+  // Most of the other layers are other storeys.
   if (own.base + own.low_top - step > other.base + other.high_top ||
       own.base + own.high_top + step < other.base + other.low_top) {
     return 0;
@@ -157,7 +157,7 @@ void LayerWindow::copy_own(const Layer& own) {
 }
 
 void LayerWindow::fill_apron(const Neighbourhood& tiles, const Layer& own, int32_t reach) {
-  // Only where a body on the sheet reaches: many sheets are a storey in the middle of the tile.
+  // Only where a body on the layer reaches: many layers are a storey in the middle of the tile.
   const uint64_t beside = (uint64_t{1} << reach) - 1;  // Bodies reach at most 49 cells.
   const auto is_reached = [&](int32_t dx, int32_t dz) {
     const uint64_t columns =
@@ -200,7 +200,7 @@ void LayerWindow::fill_apron(const Neighbourhood& tiles, const Layer& own, int32
   }
 }
 
-// Several sheets beside the tile: lines of cells from the tile outward, each cell continuing the
+// Several layers beside the tile: lines of cells from the tile outward, each cell continuing the
 // one before it.
 void LayerWindow::fill_side(const LayerList& tile, const Layer& own, int32_t dx, int32_t dz,
                             int32_t reach) {
@@ -267,7 +267,8 @@ void LayerWindow::fill_corner(const LayerList& tile, const Layer& own, int32_t d
   }
 }
 
-// Where the sheet has no gap but another sheet of the tile continues it (a seam), takes that one's.
+// Where the layer has no free span but another layer of the tile continues it (a seam), takes that
+// one's.
 void LayerWindow::fill_holes(const LayerList& tile, size_t layer, const BodyLimits& limits) {
   const Layer& own = *tile[layer];
   if (own.cells == kTileArea) return;
@@ -282,9 +283,9 @@ void LayerWindow::fill_holes(const LayerList& tile, size_t layer, const BodyLimi
     any |= add_steps(own, filled, *other, free_spans, limits.link_step, hopeful);
   }
   if (any == 0) return;
-  // Which sheet has the gap nearest to a top, if it lies within a step. Gaps of a column have tops
-  // at least low_free_span apart, so one that is nearer than half of that is the nearest: mostly
-  // the sheet's that the last hole was filled from.
+  // Which layer has the free span nearest to a top, if it lies within a step. Free spans of a
+  // column have tops at least low_free_span apart, so one that is nearer than half of that is the
+  // nearest: mostly the layer's that the last hole was filled from.
   size_t last = layer == 0 ? 1 : 0;
   const int32_t surely_nearest = (limits.low_free_span - 1) / 2;
   const auto next_floor = [&](size_t cell, int32_t near_top) {
@@ -337,7 +338,7 @@ void LayerWindow::fill_holes(const LayerList& tile, size_t layer, const BodyLimi
   const auto fill_on = [&](int32_t x, int32_t z, uint64_t open) {
     const Layer& other = *tile[last];
     const int32_t shift = other.base - own.base;
-    // All heights are told on this sheet's scale, too.
+    // All heights are on this layer's scale, too.
     if (other.low_top + shift < 0 ||
         other.high_top + shift + limits.low_free_span > kHighCeiling16) {
       return uint64_t{0};

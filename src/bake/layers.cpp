@@ -10,17 +10,18 @@
 
 #include "bake/layer_kernels.h"
 
-// Gaps of neighbouring columns belong together when a step leads from one to the other. Runs of
-// linked gaps in a row are the units; they are joined with union-find in one raster pass (after
-// Rosenfeld, Pfaltz. Sequential operations in digital picture processing. 1966). Most gaps continue
-// the gap of the same rank beside them, which vectors find; only where ranks shift, at walls and
-// edges, are columns compared one by one. A component that lies over itself, like a spiral ramp, is
-// split along its breadth-first order; then components are packed first-fit into sheets.
+// Free spans of neighbouring columns belong together when a step leads from one to the other. Runs
+// of linked free spans in a row are the units; they are joined with union-find in one raster pass
+// (after Rosenfeld, Pfaltz. Sequential operations in digital picture processing. 1966). Most free
+// spans continue that of the same rank beside them, which vectors find; only where ranks shift, at
+// walls and edges, are columns compared one by one. A component that lies over itself, like a
+// spiral ramp, is split along its breadth-first order; then components are packed first-fit into
+// layers.
 namespace throng {
 namespace {
 
 constexpr int32_t kSide = kTileSide;
-constexpr int32_t kMaxRange = Layer::kHighest - Layer::kBelow;  // of tops in a sheet [mm]
+constexpr int32_t kMaxRange = Layer::kHighest - Layer::kBelow;  // of tops in a layer [mm]
 
 using Rows = CellRows;
 
@@ -28,7 +29,7 @@ uint64_t run_mask(int32_t first, int32_t last) {
   return (~uint64_t{0} >> (63 - (last - first))) << first;
 }
 
-// A run of linked gaps of one layer in one row.
+// A run of linked free spans of one free-span layer in one row.
 struct Run {
   int32_t free_layer, z;
   uint64_t cells;
@@ -44,7 +45,7 @@ struct Component {
   bool is_piece = false;  // of one that was split
 };
 
-// What goes into a sheet: gaps of a layer in a row.
+// What goes into a layer: free spans of a free-span layer in a row.
 struct Piece {
   int32_t free_layer, z;
   uint64_t cells;
@@ -53,7 +54,7 @@ struct Piece {
 
 class LayerBuilder {
  public:
-  // `only`, if it is not empty: of each layer, the gaps to deal. They go on in the others.
+  // `only`, if it is not empty: of each free-span layer, those to assign. They may continue others.
   LayerBuilder(const TileFreeSpans& free_spans, const BodyLimits& limits,
                std::span<const Rows> only = {})
       : free_spans_(free_spans), limits_(limits), only_(only) {
@@ -62,7 +63,7 @@ class LayerBuilder {
 
   void build(LayerPool& pool, TileLayers& layers);
 
-  // What has gone to no sheet, because it is too small for anybody.
+  // What is in no layer, because it is too small for any class.
   [[nodiscard]] const std::vector<Piece>& crumbs() const { return crumbs_; }
 
  private:
@@ -78,7 +79,7 @@ class LayerBuilder {
     const int32_t high = std::max(top_a, top_b), low = std::min(top_a, top_b);
     return high - low <= rule_.step && std::min(ceiling_a, ceiling_b) - high >= rule_.free_span;
   }
-  // Is the gap one of those to deal?
+  // Is the free span one of those to assign?
   [[nodiscard]] bool is_ours(size_t cell, int32_t k) const {
     return only_.empty() ||
            (only_[static_cast<size_t>(k)][cell / kTileSide] >> cell % kTileSide & 1) != 0;
@@ -117,7 +118,8 @@ void LayerBuilder::unite(int32_t a, int32_t b) {
   runs_[static_cast<size_t>(std::max(a, b))].parent = std::min(a, b);
 }
 
-// Joins gaps of different ranks in two neighbouring columns. `runs` hold the run of each layer.
+// Joins free spans of different ranks in two neighbouring columns. `runs` holds the run of each
+// free-span layer.
 void LayerBuilder::join_ranks(size_t cell, size_t other, const int32_t* runs,
                               const int32_t* other_runs) {
   int32_t from = 0;
@@ -140,7 +142,7 @@ void LayerBuilder::find_runs() {
     const auto l = static_cast<size_t>(k);
     link_free_spans(free_spans_, k, rule_, only_.empty() ? nullptr : &only_[l], links[l]);
   }
-  // Run of each layer and column, in this row and the one above.
+  // Run of each free-span layer and column, in this row and the one above.
   std::vector<int32_t> now(static_cast<size_t>(free_layers * kSide)), above(now.size());
   for (int32_t z = 0; z < kSide; ++z) {
     const size_t row = static_cast<size_t>(z);
@@ -152,7 +154,7 @@ void LayerBuilder::find_runs() {
       if (z > 0) odd_up |= (has | l.has[row - 1]) & ~l.up[row];
       if (has == 0) continue;
       odd_left |= (has | has << 1) & ~l.left[row];
-      // A run begins where a gap does not continue its left neighbour.
+      // A run begins where a free span does not continue its left neighbour.
       uint64_t starts = has & ~l.left[row];
       for (; starts != 0; starts &= starts - 1) {
         const int32_t first = std::countr_zero(starts);
@@ -211,21 +213,22 @@ void LayerBuilder::make_components() {
   }
 }
 
-// Cuts a component into pieces that lie over themselves nowhere, breadth first from its first gap.
+// Cuts a component into pieces that lie over themselves nowhere, breadth first from its first free
+// span.
 void LayerBuilder::split(int32_t index) {
   const auto free_layers = static_cast<size_t>(free_spans_.max_count);
   struct FreeSpan {
     uint16_t cell, free_layer;
   };
-  std::vector<Rows> pending(free_layers, Rows{});  // gaps that are in no piece yet
+  std::vector<Rows> pending(free_layers, Rows{});  // free spans that are in no piece yet
   for (const Run& run : runs_) {
     if (run.component != index) continue;
     pending[static_cast<size_t>(run.free_layer)][static_cast<size_t>(run.z)] |= run.cells;
   }
   std::array<FreeSpan, kTileArea> queue;
   std::vector<Rows> rows(free_layers);
-  // Row z + 1: columns with gaps that are pending, but not those where the piece has one. Most of
-  // what a gap has around is its own piece, and a few operations tell.
+  // Row z + 1: columns with free spans that are pending, but not those where the piece has one.
+  // Most neighbours of a free span are in its own piece, which a few operations show.
   std::array<uint64_t, kTileSide + 2> open{};
   const auto grow_piece = [&](int32_t seed_cell, int32_t seed_free_layer) {
     const auto piece = static_cast<int32_t>(components_.size());
@@ -285,7 +288,7 @@ void LayerBuilder::split(int32_t index) {
       }
     }
   };
-  components_[static_cast<size_t>(index)].count = 0;  // its number is used no more
+  components_[static_cast<size_t>(index)].count = 0;  // its number is not used again
   for (size_t i = 0; i < runs_.size(); ++i) {
     const Run run = runs_[i];
     if (run.component != index) continue;
@@ -296,8 +299,9 @@ void LayerBuilder::split(int32_t index) {
   }
 }
 
-// True if no body of any class has room on the component: it is smaller than the smallest footprint
-// and ends inside the tile. Tops of pillars and rails go this way. A piece goes on in another one.
+// True if no body of any class fits on the component: it is smaller than the smallest footprint and
+// ends inside the tile. This removes the tops of pillars and rails. A piece continues in another
+// one.
 bool LayerBuilder::is_crumb(size_t component) const {
   const Component& c = components_[component];
   if (c.is_piece) return false;
@@ -307,7 +311,7 @@ bool LayerBuilder::is_crumb(size_t component) const {
   return (columns & 0x8000000000000001u) == 0 && (only_.empty() || !goes_on(component));
 }
 
-// True if a component goes on in gaps that are in sheets already.
+// True if free spans that are in layers already continue a component.
 bool LayerBuilder::goes_on(size_t component) const {
   for (const Run& run : runs_) {
     if (run.component != static_cast<int32_t>(component)) continue;
@@ -325,9 +329,9 @@ bool LayerBuilder::goes_on(size_t component) const {
   return false;
 }
 
-// Deals components to sheets, larger first, each to the first sheet of about its height whose
-// columns are free: floors stay constant when a crate's top goes elsewhere. Many sheets are worse
-// than mixed ones, so after kManyLayers any free columns do.
+// Assigns components to layers, larger first, each to the first layer of about its height whose
+// columns are free: floors stay constant when a crate's top is in another layer. Many layers are
+// worse than mixed ones, so after kManyLayers the height does not count.
 int32_t LayerBuilder::pack(std::vector<int32_t>& layer_of) const {
   constexpr size_t kManyLayers = 24;
   constexpr int32_t kSameHeight = 500;  // [mm]
@@ -418,8 +422,8 @@ void LayerBuilder::build(LayerPool& pool, TileLayers& layers) {
   }
 }
 
-// Per layer, the gaps that are too low for high sheets or were too few for one; empty if there are
-// none. High gaps are found among all by their tops.
+// Per free-span layer, the free spans that are too low for high layers, and the crumbs of these;
+// empty if there are none. High free spans are found among all by their tops.
 std::vector<Rows> free_spans_to_add(const TileFreeSpans& all, const TileFreeSpans& high,
                                     const std::vector<Piece>& crumbs) {
   std::vector<Rows> rows(static_cast<size_t>(all.max_count));
@@ -445,7 +449,7 @@ std::vector<Rows> free_spans_to_add(const TileFreeSpans& all, const TileFreeSpan
   return rows;
 }
 
-// A tile of single gaps that fit 16 bits needs no runs: any deal is as safe as any other.
+// A tile of single free spans that fit 16 bits needs no runs: they are one layer.
 bool build_single_layer(const TileFreeSpans& free_spans, LayerPool& pool, TileLayers& layers) {
   const TopRange range = free_span_range(free_spans, 0);
   if (static_cast<int64_t>(range.high) - range.low > kMaxRange) return false;
@@ -536,7 +540,7 @@ void set_borders(Layer& layer) {
 }
 
 void find_useful(const BodyLimits& limits, Layer& layer) {
-  // Most sheets are so even that their extremes tell.
+  // Most layers are so even that their extremes suffice.
   layer.all_useful =
       layer.one_code && layer.some_code != limits.blocked_code &&
       layer.high_top <= layer.low_feet + limits.max_bottom &&

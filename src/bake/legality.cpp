@@ -60,7 +60,7 @@ struct RowTable {
   }
 };
 
-// Of the matter and room over some cells.
+// Of the solids and free spans over some cells.
 struct Extremes {
   VU high_top, low_top, low_ceiling;
 };

@@ -10,7 +10,7 @@
 #include "bake/layer_kernels.h"
 #include "bake/layers.h"
 
-/// Where a class may stand: one bit per cell of a sheet.
+/// Where a class may stand: one bit per cell of a layer.
 namespace throng {
 
 /// 64 rows of 64 bits; bit x of row z is cell (x, z).
@@ -21,14 +21,14 @@ struct BodyWindow {
   int32_t bottom = 0;  // [mm]
   int32_t height = 0;
   int32_t step = 0;
-  int32_t hope = 0;            // matter further from the feet, up or down, no recheck can pass
+  int32_t hope = 0;            // no recheck passes a solid further from the feet
   bool barely = false;         // its slope's rise under the rim takes all of the bottom
-  bool fine = false;           // looked at by less than a cell: it reaches all of the next cells
-  int32_t gentle = 0;          // a fine body is not looked at on ground of a larger tilt [mm]
+  bool fine = false;           // tested by parts of cells: it reaches all of the next cells
+  int32_t gentle = 0;          // on ground of a larger tilt it is not tested by parts [mm]
   double radius = 0;           // [cells]
   int32_t reach = 0;           // rows that a body on a cell can touch beyond it
   std::vector<int32_t> width;  // per row distance 0..reach: columns on either side
-  std::vector<int32_t> core;   // likewise, of cells that any matter in them is in reach of
+  std::vector<int32_t> core;   // likewise, of cells in which it reaches any solid
   /// Per cell that it can touch, row by row: the parts that it can touch, from anywhere on its
   /// cell; bit 8 j + i is part (i, j) of 8 x 8. Rows are padded with empty cells.
   std::vector<uint64_t> near_parts;
@@ -40,7 +40,7 @@ struct BodyWindow {
 BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double cell,
                        bool fine = false);
 
-/// Sheets of a tile that some classes see, all or the high ones, by their lowest tops.
+/// Layers of a tile that some classes use, all or the high ones, by their lowest tops.
 struct LayerList {
   std::vector<const Layer*> layers;
   bool seams = false;  // some of them continue each other inside the tile
@@ -56,11 +56,11 @@ struct LayerList {
   [[nodiscard]] auto end() const { return layers.end(); }
 };
 
-/// Sheets of a tile and its eight neighbours, row by row from (-1, -1); null: no tile there.
+/// Layers of a tile and its eight neighbours, row by row from (-1, -1); null: no tile there.
 using Neighbourhood = std::array<const LayerList*, 9>;
 
-/// Matter and room around one sheet, with the neighbours' cells filled in. [mm from the sheet's
-/// base]
+/// Solids and free spans around one layer, with the neighbours' cells filled in. [mm from the
+/// layer's base]
 class LayerWindow {
  public:
   /// `reach` is the largest of all classes. [cells, <= 64]
@@ -86,8 +86,8 @@ class LayerWindow {
   int32_t reach_ = 0;
   int32_t pad_ = 0;
   int32_t stride_ = 0;
-  std::vector<FreeSpanLine> lines_;  // of one line of cells, per sheet
-  std::vector<uint16_t> columns_;    // of the sheets, where a line is one
+  std::vector<FreeSpanLine> lines_;  // of one line of cells, per layer
+  std::vector<uint16_t> columns_;    // of the layers, where a line is one
 };
 
 /// Scratch of one worker for legal_cells.
@@ -101,17 +101,17 @@ struct LegalityScratch {
 struct LegalCells {
   BitPlane legal{};
   BitPlane stands{};   // may_stand
-  BitPlane slanted{};  // of those, failed only for how high or low the matter around is
+  BitPlane slanted{};  // of those, failed only for how high or low the solids around are
   BitPlane hemmed{};  // of those, on gentle ground, failed only for cells that a fine body may just
                       // miss matter in
 };
 
-/// True if nothing in sight can stop this class anywhere on the sheet, judged by the sheets'
+/// True if nothing in reach can stop this class anywhere on the layer, judged by the layers'
 /// extremes alone: the common case of open flat ground.
 bool all_legal(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                const BodyLimits& limits);
 
-/// Cells where the class has a surface that it may stand on and room over it, whatever is around:
+/// Cells where the class has a surface that it may stand on and fits over it, whatever is around:
 /// the only ones that can be legal. False if there are none.
 bool may_stand(const Layer& layer, const BodyWindow& body, const BodyLimits& limits,
                BitPlane& cells);
@@ -121,27 +121,27 @@ bool may_stand(const Layer& layer, const BodyWindow& body, const BodyLimits& lim
 void legal_cells(const Layer& layer, const BodyWindow& body, const BitPlane& cells,
                  LegalityScratch& scratch, LegalCells& out);
 
-/// The same test, relative to the plane of the feet, for cells that failed it only for the matter's
-/// height: on a slope whole cells look higher than the part of them that the body reaches.
+/// The same test, relative to the plane of the feet, for cells that failed it only for a solid's
+/// height: on a slope a whole cell is higher than the part of it that the body reaches.
 void recheck_slopes(const Layer& layer, const BodyWindow& body, const LegalityScratch& scratch,
                     LegalCells& cells);
 
-/// Absolute heights of a gap that a body on one cell needs. [mm]
+/// Absolute heights of a free span that a body on one cell needs. [mm]
 struct ColumnNeed {
-  int32_t low_top, high_top;  // of the matter below
+  int32_t low_top, high_top;  // of the solid below
   int32_t ceiling;
 };
 
-/// True if one of the gaps of a tile's column holds the body.
+/// True if one of the free spans of a tile's column holds the body.
 bool column_is_free(const LayerList& tile, size_t cell, const ColumnNeed& need);
 
 /// The same test for cells that failed it near a seam, where the window may have followed the wrong
-/// sheet: each column around may show any of its gaps. Slow, exact, for few cells. Those
+/// layer: each column around may show any of its free spans. Slow, exact, for few cells. Those
 /// that fail outside of the core become hemmed.
 void recheck_seams(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                    const BodyLimits& limits, const LegalityScratch& scratch, LegalCells& cells);
 
-/// True if any two legal neighbours on the sheet differ by at most the step.
+/// True if any two legal neighbours on the layer differ by at most the step.
 bool step_safe(const Layer& layer, const BitPlane& legal, int32_t step);
 
 }  // namespace throng

@@ -84,7 +84,7 @@ Result<void> NodeBaker::reuse_zones() {
   std::vector<std::optional<Error>> failed(plan_.zones.size());
   parallel_for(plan_.zones.size(), config_.workers, [&](size_t z) {
     const NodePlanZone& zone = plan_.zones[z];
-    auto reused = old.keep(zone.x, zone.z, zone.input);
+    auto reused = old.reuse(zone.x, zone.z, zone.input);
     if (!reused) return;
     is_done_[z] = 1;
     slots_[z] = std::move(reused->slot);
@@ -206,7 +206,7 @@ Result<std::shared_ptr<NodeData>> make_all(const World& world, const Scene& scen
   const auto batches = baker.batches(config.working_bytes);
   for (size_t b = 0; b < batches.size(); ++b) {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
-    // What is there is told before what is left is begun.
+    // The journal names what is there before the rest is begun.
     if (auto ok = baker.list(); !ok) return ok.error();
     auto slots = baker.make(batches[b], b + 1 == batches.size(), context);
     if (!slots) return slots.error();

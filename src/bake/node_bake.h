@@ -59,7 +59,7 @@ class NodeBaker {
   Result<std::vector<Made>> write(std::span<const uint32_t> zones, NodeSlots& made) const;
   /// Enters what was made by this process, with `slots`, or by another.
   void enter(std::span<const Made> made, NodeSlots* slots = nullptr);
-  /// Tells the next bake what is in the folder so far.
+  /// Writes for the next bake what is in the folder so far.
   Result<void> list();
   /// All of them, once they are made. Fails with kLimit: too many.
   Result<std::shared_ptr<NodeData>> finish();

@@ -68,7 +68,7 @@ class NodeBatch {
     add_drops();
     if (auto ok = add_off_mesh_links(); !ok) return ok.error();
     if (context_.cancel) return cancelled();
-    if (is_last_) triangles_.reset();  // Nobody asks them again, and links need the room.
+    if (is_last_) triangles_.reset();  // They are not needed again, and links need the memory.
     link();
     measure();
     if (context_.cancel) return cancelled();
@@ -314,7 +314,7 @@ class NodeBatch {
   }
 
   void link() {
-    // Beyond what any walker stands on, a way is climbed.
+    // Where no walker stands, a link is a climb.
     double steepest = 0;
     for (const AvatarClass& avatar : data_.summary.classes) {
       steepest = std::max(steepest, avatar.max_slope);

@@ -18,9 +18,10 @@
 #include "world/node_data.h"
 #include "world/place.h"
 
-// A body that goes level and upright sweeps a prism over a stadium, one that falls a cylinder: both
-// are compared with the triangles as they are, so nothing is lost to growth between poses. Only who
-// has to turn, a climber on a Bezier patch, is proved pose by pose.
+// Finds drop links: from each node's rim out over the edge and down to the ground below. A body
+// that moves level and upright sweeps a prism over a stadium, one that falls a cylinder: both are
+// compared with the triangles as they are, so nothing is lost to growth between poses. Only a body
+// that has to turn, a climber on a Bezier patch, is proved pose by pose.
 namespace throng {
 namespace {
 

@@ -40,7 +40,7 @@ OldNodes::OldNodes(const std::string& world_path) {
   }
 }
 
-std::optional<OldNodes::Reused> OldNodes::keep(int32_t x, int32_t z, uint64_t input) const {
+std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t input) const {
   for (const auto& index : folders_) {
     const auto& inputs = index->inputs;
     const auto found =
@@ -81,7 +81,7 @@ NodeFolder::~NodeFolder() {
   if (is_own_ && !part_.empty()) fs::remove_all(part_, error);
 }
 
-// The world's folder is shared: whoever puts another world in its place wants it alone.
+// The world's folder is locked as shared: to replace its world, the lock must be exclusive.
 Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
   auto world_lock = FolderLock::take(world_path, FolderLock::Kind::kShared, world_path);
   if (!world_lock) return world_lock.error();

@@ -27,14 +27,15 @@ class OldNodes {
     std::string file;
   };
   /// If they were made from this input and their file is whole.
-  [[nodiscard]] std::optional<Reused> keep(int32_t x, int32_t z, uint64_t input) const;
+  [[nodiscard]] std::optional<Reused> reuse(int32_t x, int32_t z, uint64_t input) const;
 
  private:
   std::vector<std::shared_ptr<const NodeData>> folders_;  // their indexes
 };
 
 /// The folder that takes the place of a world's nodes in one go, once all are in it. Until then it
-/// lies beside them, and its index tells the next bake what is there. Every call may fail with kIo.
+/// lies beside them, and its index names what is there for the next bake. Every call may fail with
+/// kIo.
 class NodeFolder {
  public:
   /// Of a world in its folder, held against other bakes. What a killed bake has left there stays

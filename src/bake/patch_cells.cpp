@@ -26,7 +26,7 @@ constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for tr
 constexpr int32_t kBlockHalvings = 2;   // of a block's, that choose among these together
 constexpr size_t kBlock = size_t{1} << (2 * kBlockHalvings);
 constexpr size_t kSquare = 4;          // cells of a block that choose again
-constexpr double kRiseMargin = 1e-6;   // for rounding; everything else is told by a bound [m]
+constexpr double kRiseMargin = 1e-6;   // for rounding; all else is bounded [m]
 constexpr double kSlopeMargin = 1e-6;  // a plane at exactly a limit keeps it
 
 inline void join(Box3d& box, const Box3d& other) {
@@ -169,7 +169,7 @@ void PatchJudge::cut_region(const BezierPatch& part, int32_t halvings) {
   }
 }
 
-// What the surfaces alone tell.
+// What the surfaces alone give.
 void PatchJudge::bound_cells(BezierCells& out) {
   bounds_.resize(parts_.count);
   bound_cells_of(parts_, bounds_);
@@ -207,7 +207,8 @@ void PatchJudge::bound_cells(BezierCells& out) {
       promise.inclination = bin_of(steepest);
     }
     promise.height = static_cast<uint8_t>(bins_->height.size());
-    // What may lean over is its own ceiling, and where nobody stands upright nobody asks.
+    // Ground that may lean over is its own ceiling, and is not queried where no body stands
+    // upright.
     const bool upright = bound.frame.up.y > bound.sine && steepest >= steepest_walk_;
     promise.headroom = upright ? promise.height : uint8_t{0};
     bounded_.push_back(
@@ -337,7 +338,7 @@ void PatchJudge::judge_block(std::span<const Bounded> cells, const Box3d& box, B
   }
 }
 
-// Nothing is in the way of what a cell's inclination allows.
+// Nothing blocks what a cell's inclination allows.
 void PatchJudge::stand_on(const Bounded& cell, BezierCells& out) const {
   uint16_t& classes = out.promise.cells[cell.cell].classes;
   for (uint32_t left = bodies_on(cell); left != 0; left &= left - 1) {
@@ -356,7 +357,7 @@ uint32_t PatchJudge::bodies_on(const Bounded& cell) const {
   return bodies;
 }
 
-// The triangles near a box, but those of the patch's own ground that no body can meet.
+// The triangles near a box, except those of the patch itself that no body can meet.
 void PatchJudge::gather(const Box3d& box, const SelfSupport& own) {
   const Vec3d middle = (box.min + box.max) * 0.5;
   all_.region.clear(middle);
@@ -537,9 +538,9 @@ uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size
   const uint32_t answered = filter(
       list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
       hits_);
-  const uint32_t room = met & 1;  // bit 0, if it is asked for
+  const uint32_t room = met & 1;  // bit 0, if it is queried
   const uint32_t all = (1u << tubes_.size()) - 1;
-  uint32_t entered = answered;  // no height; then bodies that matter has stopped
+  uint32_t entered = answered;  // no height; then bodies that a solid blocks
   double free = (answered & room) != 0 ? surface.high : kNever;
   for (size_t i = 0; i < hits_.count && entered != all; ++i) {
     uint32_t asked = hits_.tubes[i] & ~entered;

@@ -23,7 +23,7 @@ namespace throng {
 /// One class's body on a patch. A climber's axis is the surface's normal, a walker's straight up.
 struct PatchBody {
   double radius = 0;
-  double bottom = 0;  ///< Matter up to here above the feet is climbed over. [m]
+  double bottom = 0;  ///< A solid up to here above the feet is climbed over. [m]
   double height = 0;
   double steepest = 0;  ///< Cosine of the steepest surface, with a margin for rounding.
   bool climbs = false;
@@ -41,7 +41,7 @@ void find_patches_around(const PatchSet& set, uint32_t patch, std::vector<uint32
 /// How often a patch is halved until its cells are of a size. [m]
 [[nodiscard]] int32_t patch_depth(const BezierPatch& patch, double size);
 
-/// Does a scene tell which part of its patch each triangle covers?
+/// Does a scene state which part of its patch each triangle covers?
 [[nodiscard]] inline bool knows_parts(const Scene& scene) {
   return scene.patch_part.size() == scene.triangles.size() &&
          scene.patch_off.size() == scene.patches.size();
@@ -75,7 +75,7 @@ class PatchJudge {
     size_t cell = 0;
     double steepest = 0;
     const CellBounds* bounds = nullptr;
-    std::array<BodySweep, 2> prism;   ///< What tells the height, along the normal and upright.
+    std::array<BodySweep, 2> prism;   ///< Prisms for the height, along the normal and upright.
     std::array<BodySweep, 2> bodies;  ///< All that may stand there, by their inclination.
     Box3d box;                        ///< Of these, and of the surface.
     int32_t postures = 0;
@@ -109,7 +109,7 @@ class PatchJudge {
   uint32_t judge_met(const FilterList& list, const Pending& cell, size_t posture, uint32_t met,
                      Promise& promise);
   [[nodiscard]] uint32_t too_steep(const Pending& cell) const;
-  /// Matter in here leaves no height.
+  /// A solid in here leaves no height.
   [[nodiscard]] BodySweep low_room(const Pending& cell, size_t posture) const;
 
   const TriangleSquares* triangles_;
@@ -146,7 +146,7 @@ class PatchJudge {
   FilterHits hits_;
   std::vector<BodySweep> sweeps_;   // where a height ends, then bodies of the posture
   std::vector<uint16_t> tube_bit_;  // by body of the posture: its class
-  std::vector<FilterTube> tubes_;   // of these, those that matter may enter
+  std::vector<FilterTube> tubes_;   // of these, those that a solid may enter
 };
 
 }  // namespace throng

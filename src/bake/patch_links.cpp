@@ -15,9 +15,9 @@ namespace throng {
 namespace {
 
 constexpr double kSmooth = 0.9962;    // cosine of 5 degrees: no crease
-constexpr double kWalkSpacing = 0.1;  // between the points where a walker's way is looked at [m]
+constexpr double kWalkSpacing = 0.1;  // between the tested points of a walker's move [m]
 constexpr size_t kTries = 6;          // cells of a patch that are tried for one link
-constexpr size_t kBoxedCells = 8;     // of a patch, told to be far away together
+constexpr size_t kBoxedCells = 8;     // of a patch, found to be far away together
 
 const CellShape& shape_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
   return input.cells[patch].shape[cell];

@@ -6,9 +6,10 @@
 #include "bake/layer_kernels.h"
 #include "bake/legality.h"
 
-// Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its sheet
+// Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its layer
 // is cut, and near the cut a window may have followed the lower floor where the body walks on the
-// upper. Any gap that holds the body proves a column free, so there all gaps are asked.
+// upper. Any free span that holds the body proves a column free, so there all free spans are
+// tested.
 namespace throng {
 namespace {
 
@@ -16,7 +17,7 @@ constexpr int32_t kLast = kTileSide - 1;
 
 enum class Fit { kYes, kPerhaps, kNo };
 
-// kPerhaps: it does not where the body may just miss what is in the way.
+// kPerhaps: it does not where the body may just miss the blocker.
 Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int32_t z,
               const ColumnNeed& need) {
   // From the middle outward: 0, -1, 1, -2 and so on. What fails mostly does so near by.
@@ -37,9 +38,9 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
   return Fit::kYes;
 }
 
-// Cells of a sheet whose neighbour is continued by another sheet of the tile.
+// Cells of a layer whose neighbour is continued by another layer of the tile.
 BitPlane seam_cells(const LayerList& tile, const Layer& own, int32_t max_step) {
-  // Most of the other sheets are other storeys, which continue nothing.
+  // Most of the other layers are other storeys, which continue nothing.
   const auto is_near = [&](const Layer& other) {
     return &other != &own && other.base + other.low_top <= own.base + own.high_top + max_step &&
            other.base + other.high_top >= own.base + own.low_top - max_step;
@@ -97,7 +98,7 @@ BitPlane widened(const BitPlane& plane, int32_t reach) {
 
 bool column_is_free(const LayerList& tile, size_t cell, const ColumnNeed& need) {
   for (const Layer* layer : tile) {
-    // Most sheets are other storeys: their extremes tell without a look at the cell.
+    // Most layers are other storeys: their extremes suffice.
     if (layer->base + layer->low_top > need.high_top ||
         layer->base + layer->high_top < need.low_top || layer->top[cell] == kNone16) {
       continue;
@@ -118,7 +119,7 @@ void recheck_seams(const Neighbourhood& tiles, size_t layer, const BodyWindow& b
   if (tile.size() > 1 && (tile.seams || body.bottom > limits.link_step)) {
     doubtful = widened(seam_cells(tile, own, body.bottom), body.reach);
   }
-  // Along the border of a tile of several sheets the window may have followed the wrong one too.
+  // Along the border of a tile of several layers the window may have followed the wrong one too.
   const auto several = [&](size_t side) {
     return tiles[side] != nullptr && tiles[side]->size() > 1;
   };

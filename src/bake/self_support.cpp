@@ -8,15 +8,15 @@
 #include <limits>
 
 // Between two points of a part, S(s, t) and S(s + ds, t + dt), lies a ds + b dt, where a and b are
-// means of the derivatives along the straight way between their parameters. Means lie in the hulls
+// means of the derivatives along the straight line between their parameters. Means lie in the hulls
 // of the derivatives' control points, so a x b lies in the hull of the products of these. Where all
-// of these lie in a cone narrower than a half space, so does a x b: the way between the points is
+// of these lie in a cone narrower than a half space, so does a x b: the line between the points is
 // no steeper than the cone's steepest plane, and leaves the plane across a normal of the part by at
 // most twice the cone's half angle. This holds for parts of any outline, and all pairs of their
 // points.
 //
 // A triangle's point is at most `deviation` from the surface's at the same parameters, by the bound
-// that is told in patch_steps.cpp and because its corners are that near to the surface.
+// of import/patch_steps.cpp and because its corners are that near to the surface.
 namespace throng {
 namespace {
 
@@ -78,7 +78,7 @@ void SelfSupport::bound_slopes(const BezierPatch& piece) {
   const Vec3d mean = cross(mean_t, mean_s);
   if (!(length(mean) > 0)) return;
   const Vec3d middle = mean * (1 / length(mean));
-  double up = 1, along = 1;  // least cosines, of the angles to the vertical and to the middle
+  double up = 1, along = 1;  // minimum cosines, of the angles to the vertical and to the middle
   for (const Vec3d& t : along_t) {
     for (const Vec3d& s : along_s) {
       const Vec3d normal = cross(t, s);

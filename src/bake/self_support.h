@@ -9,11 +9,11 @@
 /// How far a patch's own triangles may come up towards bodies that stand on it.
 namespace throng {
 
-/// A part of a Bezier patch around some of its cells. Whatever stands on it can do without a test
-/// against the triangles of the same part, as long as these rise by less than its bottom.
+/// A part of a Bezier patch around some of its cells. A body that stands on it need not be tested
+/// against the triangles of the same part if these rise by less than its bottom.
 class SelfSupport {
  public:
-  /// What covers `cells`, and as much beside it as bodies reach as a rule.
+  /// The part that covers `cells`, and as much beside it as most bodies reach.
   SelfSupport(const BezierPatch& whole, const PatchPart& cells);
 
   /// Does a triangle of the patch that covers `part` belong to it?

@@ -6,14 +6,14 @@
 #include "bake/legality.h"
 #include "bake/surface_planes.h"
 
-// Feet on a cell lie on a plane p with gradient g. For a body at P and matter at Q within its
+// Feet on a cell lie on a plane p with gradient g. For a body at P and a solid at Q within its
 // radius r,
-//   y(Q) - p(P) = (y(Q) - p(Q)) + g (Q - P) <= (y(Q) - p(Q)) + |g| r,
-// and over a cell B whose matter tops out at top, y(Q) - p(Q) <= top - min over B of p. So the body
-// is free if, for the highest of these over all cells that it reaches, the sum stays below its
-// bottom. Whole cells are compared with the plane where they are, not with one height. At creases,
-// where the feet's slope is the gentler one, a plane between the two may prove what theirs
-// cannot; it then owes how far the feet can be from it on the cell.
+// y(Q) - p(P) = (y(Q) - p(Q)) + g (Q - P) <= (y(Q) - p(Q)) + |g| r, and over a cell B whose solid
+// tops out at top, y(Q) - p(Q) <= top - min over B of p. So the body is free if, for the highest of
+// these over all cells that it reaches, the sum stays below its bottom. Whole cells are compared
+// with the plane where they are, not with one height. At creases, where the feet's slope is the
+// gentler one, a plane between the two may prove what theirs cannot; it then owes how far the feet
+// can be from it on the cell.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/slopes.cpp"
@@ -216,7 +216,7 @@ HWY_INLINE uint64_t free_by_planes(const LayerWindow& window, const CellPlanes& 
       const VF highest = hn::Add(hn::Add(over_own, own_apart), excess);
       const auto own_low = hn::Le(highest, own_up);
       const auto own_high = hn::Le(hn::Sub(own_apart, over_own), own_down);
-      // Mostly the slope goes on, and A's plane tells all.
+      // Mostly the slope continues, and A's plane suffices.
       if ((asked & ~bits_of(df, hn::And(own_low, own_high))) == 0) continue;
       const VF over_theirs =
           hn::Sub(hn::Sub(hn::Sub(height, hn::Mul(bx, fx)), hn::Mul(bz, fz)), feet);

@@ -175,7 +175,7 @@ uint32_t HoldsRim(const FilterList& list, const FilterAxis& axis, const FilterCy
         nz, hn::Set(df, axis.centre[2]),
         hn::MulAdd(ny, hn::Set(df, axis.centre[1]), hn::Mul(nx, hn::Set(df, axis.centre[0]))));
     const VF from = hn::Sub(hn::Sub(row(3), at), m), to = hn::Add(hn::Sub(row(4), at), m);
-    // Upward; too steep a triangle tells too little.
+    // Upward; too steep a triangle bounds too little.
     const MF turned = hn::Lt(ny, zero);
     nx = hn::IfThenElse(turned, hn::Neg(nx), nx);
     ny = hn::Abs(ny);
@@ -308,8 +308,9 @@ struct Ball {
   }
 };
 
-// How far a triangle reaches towards a cylinder's axis, from the side where its ball lies: that way
-// is `length` long, not 1, and across the axis but for rounding, for which there is `give`.
+// How far a triangle reaches towards a cylinder's axis, from the side where its ball lies. The
+// direction from the axis to it is `length` long, not 1, and normal to the axis up to rounding,
+// which `give` bounds.
 struct Flank {
   VF nearest, length, give;
 
@@ -430,7 +431,7 @@ uint32_t Filter(const FilterList& list, const FilterView& view, FilterHits& hits
     const MF near =
         hn::And(close, hn::Or(outline.may_enter(view.first), outline.may_enter(view.second)));
     if (hn::AllFalse(df, near)) continue;
-    // Points of the triangle that tell much: its corners, the middles of its edges and its own.
+    // Points of the triangle that decide much: its corners, the middles of its edges and its own.
     VF height[7], far2[7];
     for (size_t c = 0; c < 7; ++c) {
       const auto point = [&](const VF(&v)[3]) HWY_ATTR {

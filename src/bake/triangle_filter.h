@@ -9,9 +9,9 @@
 
 #include "bake/body_sweep.h"
 
-/// Triangles near some bodies in single precision, looked at a vector at a time: which of them
-/// surely stay outside, and which bodies are surely entered. Each comparison gives way by more than
-/// its rounding, so whoever looks at the rest exactly finds the same as if all had been looked at.
+/// Triangles near some bodies in single precision, tested a vector at a time: which of them surely
+/// stay outside, and which bodies are surely entered. Each comparison allows more than its rounding
+/// error, so an exact test of the rest finds the same as one of all.
 namespace throng {
 
 /// Triangles around an origin. Coordinate k of corner c of triangle i is
@@ -22,7 +22,7 @@ struct FilterList {
   Vec3d origin;
   double extent = 0;  ///< No coordinate is larger. [m]
   size_t count = 0;
-  size_t stride = 0;  ///< Room for `count` and a vector.
+  size_t stride = 0;  ///< Space for `count` and a vector.
   std::vector<float> corner;
   std::vector<float> plane;  ///< Known after close().
   std::vector<uint32_t> triangle;
@@ -30,20 +30,20 @@ struct FilterList {
   void clear(Vec3d around);
   void add(uint32_t id, const LocalTriangle& corners);
   void add(const Scene& scene, std::span<const uint32_t> ids);
-  void close();  ///< After the last was added, before anything is asked.
+  void close();  ///< After the last was added, before any query.
 };
 
-/// Replaces `out` by those triangles of `list` whose balls may come as near to `box` as to be in
-/// its way: none that overlaps it is lost. Linear.
+/// Replaces `out` by those triangles of `list` whose balls may touch `box`: none that overlaps it
+/// is lost. Linear.
 void narrow(const FilterList& list, const Box3d& box, FilterList& out);
 
-/// A cylinder around a question's axis. Matter that enters `decisive`, which is a part of it,
-/// answers all that is asked about it.
+/// A cylinder around a query's axis. A solid that enters `decisive`, which is a part of it, answers
+/// the query for it.
 struct FilterTube {
   BodySweep whole, decisive;
 };
 
-/// What is asked of a list. Nothing outside of `first` and `second` enters any tube.
+/// A query of a list. Nothing outside of `first` and `second` enters any tube.
 struct FilterQuery {
   BodyFrame frame;
   BodySweep first, second;
@@ -51,7 +51,7 @@ struct FilterQuery {
 };
 
 /// Bit i: some triangle's plane and ball come into tube i; all triangles stay outside of the other
-/// tubes of which `asked` has the bits. It costs a fraction of sieve(). [at most 31 tubes] Linear.
+/// tubes of which `asked` has the bits. It costs a fraction of filter(). [at most 31 tubes] Linear.
 [[nodiscard]] uint32_t glance(const FilterList& list, const BodyFrame& frame,
                               std::span<const BodySweep> tubes, uint32_t asked);
 
@@ -66,7 +66,7 @@ struct FilterQuery {
 /// Triangles that may enter tubes: hit i those of which tubes[i] has the bits.
 struct FilterHits {
   size_t count = 0;
-  std::vector<uint32_t> triangle, tubes;  ///< With room for more than `count`.
+  std::vector<uint32_t> triangle, tubes;  ///< With space for more than `count`.
 };
 
 /// Replaces `hits` by what may enter tubes that are not answered. Returns those that are: bit i, if

@@ -36,7 +36,7 @@ struct SurfaceCode {
 };
 
 struct SurfaceCodes {
-  std::vector<SurfaceCode> codes;  // at most 256; the last is "nobody stands here"
+  std::vector<SurfaceCode> codes;  // at most 256; the last is "no class stands here"
   std::vector<uint32_t> allowed;   // per code: bit c is set if class c may stand on it
 };
 

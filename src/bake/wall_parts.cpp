@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-// Cells that are asked stand near matter that may or may not reach into the body. What a triangle
+// The cells in question lie near solids that may or may not reach into the body. What a triangle
 // has at the body's height is a convex polygon; its plan is filled, conservatively, into the parts
 // of those cells around that the window finds closed, and each asked cell is tested against the
 // parts that lie nearer to it than the radius. Cells whose feet are about as high share a filling.
@@ -210,9 +210,8 @@ void KeepClosed(const LayerWindow& window, ptrdiff_t first, WallScratch::Slab sl
   }
 }
 
-// Of some rows of a tile, marks the columns in which one gap holds the whole slab, but begins below
-// its floor: drops. `base` is what the slab's heights are from.
-// Nonzero if there are any.
+// Of some rows of a tile, marks the columns in which one free span holds the whole slab, but begins
+// below its floor: drops. `base` is what the slab's heights are from. Nonzero if there are any.
 uint64_t MarkDrops(const LayerList& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
                    BitPlane& drops) {
   uint64_t any = 0;
@@ -282,7 +281,7 @@ namespace {
 
 constexpr int32_t kLast = kTileSide - 1;
 constexpr int32_t kBandZero = 1 << 29;  // Heights are far above its negative. [mm]
-constexpr double kShallow = 1e-4;       // Matter that enters a body by less is not in its way. [mm]
+constexpr double kShallow = 1e-4;  // A solid that enters a body by less does not block it. [mm]
 
 // Where the triangle lies between two heights, in the frame of the tile at (cell_x, cell_z).
 PlanPart cut_slab(const CellTriangle& t, double cell_x, double cell_z, double low, double high) {
@@ -411,7 +410,7 @@ void WallCheck::list(const LegalCells& cells) {
   }
 }
 
-// Takes off the list what is within reach of a column without matter at the height of any body
+// Takes off the list what is within reach of a column without a solid at the height of any body
 // asked for, and without a floor: nothing will excuse that one.
 void WallCheck::leave_out_hopeless() {
   const auto [low, high] = bands_of(scratch_.asked);
@@ -529,7 +528,7 @@ void WallCheck::want(std::span<const Asked> asked, Slab slab) {
 }
 
 // Lists the triangles of one of the nine tiles that some body on the middle one may touch, once for
-// all sheets and classes.
+// all layers and classes.
 void WallCheck::list_around(size_t side) {
   const auto s = static_cast<int32_t>(side);
   std::vector<WallScratch::Near>& around = scratch_.around[side];
@@ -601,8 +600,8 @@ void WallCheck::fill(Slab slab) {
     HWY_DYNAMIC_DISPATCH(FillParts)
     (part, near, side.wanted, scratch_.parts.data(), first_of(near.side), window_.stride());
   }
-  // A cell that is closed, but not by matter at the body's height, is no floor; or the window
-  // follows the wrong sheet there.
+  // A cell that is closed, but not by a solid at the body's height, is no floor; or the window
+  // follows the wrong layer there.
   const ColumnNeed need{layer_.base + slab.floor, layer_.base + slab.low, layer_.base + slab.high};
   for_wanted([&](size_t side, size_t cell, uint64_t& parts) {
     if (parts != 0) return;

@@ -125,7 +125,7 @@ struct ZoneInputs {
   }
 };
 
-// In memory, where no zone is ever kept, nobody asks for the hashes: they are left 0.
+// In memory no zone is ever reused, so the hashes are not needed: they are left 0.
 ZoneInputs find_inputs(const BakePlan& plan, bool hashed) {
   ZoneInputs found{.bins = bin_zones(plan), .inputs = {}};
   for (int32_t z = 0; z < plan.zones_z; ++z) {
@@ -347,14 +347,14 @@ Result<void> WorldBake::add_air(WorldFolder* folder, WorldData& world, Context& 
   if (!wants_air(*plan.config)) return {};
   const auto start = std::chrono::steady_clock::now();
   const AirShape shape = air_shape(plan, plan_->bounds);
-  const WorkerGroups dealt = assign_workers(zones().size(), plan.config->workers);
+  const WorkerGroups assigned = assign_workers(zones().size(), plan.config->workers);
   std::vector<AirBaker> air;
-  for (int32_t group = 0; group < dealt.groups; ++group) {
-    air.emplace_back(plan, shape, folder, dealt.workers);
+  for (int32_t group = 0; group < assigned.groups; ++group) {
+    air.emplace_back(plan, shape, folder, assigned.workers);
   }
   std::vector<std::unique_ptr<AirData::Slot>> slots(zones().size());
   const auto baked = side_by_side(
-      zones().size(), dealt, context,
+      zones().size(), assigned, context,
       [&](size_t zone) {
         if (context.on_progress) context.on_progress({"air", zone, zones().size()});
       },

@@ -24,8 +24,8 @@ namespace throng {
 /// Fails with kBadConfig or kBadInput.
 Result<void> check_bake(const Scene& scene, const BakeConfig& config);
 
-/// What the world wants to know of a zone that was baked or kept, without its bytes. Trivial: ranks
-/// send it as it is.
+/// What the world needs of a zone that was baked or reused, without its bytes. Trivial: ranks send
+/// it as it is.
 struct ZoneFacts {
   format::ZoneEntry entry;
   uint32_t flat_levels = 0;
@@ -54,7 +54,7 @@ class WorldBake {
   /// Of all zones' inputs and the grid: equal where two processes bake the same.
   [[nodiscard]] uint64_t input_hash() const;
 
-  /// False if the context was cancelled. `bytes` are empty where nobody can stand.
+  /// False if the context was cancelled. `bytes` are empty where no class can stand.
   bool bake(size_t zone, ZoneScratch& scratch, Context& context, ZoneFacts& facts,
             flatbuffers::DetachedBuffer& bytes) const;
   [[nodiscard]] ZoneFacts facts_of(const WorldFolder::Reused& reused) const;

@@ -36,30 +36,30 @@ class WorldFolder {
   /// The world at `path`, without its zones; null if there is none that can be read. For ranks that
   /// do not own the folder.
   static std::shared_ptr<WorldData> read_world(const std::string& path);
-  /// Writes the file of a baked zone, if anybody stands there; `add` makes it count.
+  /// Writes the file of a baked zone, if a class can stand there; `add` makes it count.
   static Result<void> write_zone(const std::string& path, const format::ZoneEntry& entry,
                                  std::span<const uint8_t> bytes);
   /// Adds a zone whose file is written. From one thread at a time. Fails with kIo.
   Result<void> add(const format::ZoneEntry& entry, uint64_t input);
-  /// Leaves what was begun to the next bake.
+  /// Leaves what was begun for the next bake.
   void leave() { part_.clear(); }
 
   /// The world that is there, without its zones; null if there is none that can be read.
   [[nodiscard]] const WorldData* old_world() const { return old_.get(); }
 
-  // What is kept and files of zones: from several threads, of different zones.
+  // Reused zones and files of zones: from several threads, of different zones.
 
-  /// A zone that need not be baked; it is then in the new world. `zone` is null where nobody
+  /// A zone that need not be baked; it is then in the new world. `zone` is null where no class
   /// stands.
   struct Reused {
     std::unique_ptr<Zone> zone;
     format::ZoneEntry entry;
   };
-  std::optional<Reused> keep(int32_t x, int32_t z, uint64_t input) const;
+  std::optional<Reused> reuse(int32_t x, int32_t z, uint64_t input) const;
 
-  /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake
-  /// or the old world; it is then in the new world. These files carry their input and a sum, so no
-  /// journal tells of them. Null if there is none with this input.
+  /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake or
+  /// the old world; it is then in the new world. These files carry their input and a sum, so no
+  /// journal names them. Null if there is none with this input.
   std::unique_ptr<AirZone> reuse_air(int32_t x, int32_t z, uint64_t input) const;
   std::unique_ptr<RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) const;
   std::unique_ptr<LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) const;

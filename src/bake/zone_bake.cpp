@@ -16,8 +16,8 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 
-// A zone is baked in bands of tile rows, so that only a few rows of sheets are alive at a time:
-// while a band's columns are dealt to sheets, legality is judged one row behind it, because it
+// A zone is baked in bands of tile rows, so that only a few rows of layers are alive at a time:
+// while a band's columns are assigned to layers, legality is judged one row behind it, because it
 // looks into the next tiles, and clearance is eroded one row behind that. A ring of tiles around
 // the zone is rasterised as far as the zone looks, so that no zone depends on another's result.
 namespace throng {
@@ -27,9 +27,9 @@ constexpr int32_t kBand = 8;  // tile rows
 
 struct TileState {
   TileLayers layers;
-  LayerList all, high;             // the sheets, and those of them that are not low
-  std::vector<size_t> high_of;     // which sheet of the tile each of the high ones is
-  std::unique_ptr<BitPlane> bare;  // columns without any matter; of fine bakes
+  LayerList all, high;             // the layers, and those of them that are not low
+  std::vector<size_t> high_of;     // which layer of the tile each of the high ones is
+  std::unique_ptr<BitPlane> bare;  // columns without a solid; of fine bakes
   std::vector<FloorPlane> planes;
   TileLegality legality;
 
@@ -66,7 +66,7 @@ class ZoneJob {
   void for_tiles(int32_t row0, int32_t row1, Body body);
 
   void make_layers(int32_t column, int32_t row, ZoneScratch::Worker& worker);
-  void deal(TileState& tile, ZoneScratch::Worker& worker);
+  void assign(TileState& tile, ZoneScratch::Worker& worker);
   void give_back(TileState& tile);
   void judge(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void judge_alike(int32_t column, int32_t row, const Neighbourhood& around,
@@ -95,14 +95,14 @@ struct ZoneScratch::Worker {
   TileColumns columns;
   TileFreeSpans free_spans,
       high;  // all, and those of BodyLimits::kHighFreeSpan, if these are not all
-  std::vector<size_t> low, tall;  // classes that see all sheets of a tile, or high ones only
+  std::vector<size_t> low, tall;  // classes that use all layers of a tile, or high ones only
   uint32_t beside_walls = 0;      // bit c: walls of the tile were looked at for class c
   LegalityScratch legality;
   CellPlanes planes;
   WallScratch walls;
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
   uint64_t spans = 0;
-  std::vector<ClearancePlanes> clearance;  // of one sheet, per class
+  std::vector<ClearancePlanes> clearance;  // of one layer, per class
   std::vector<uint8_t> step_safe;
   std::vector<uint64_t> legal_cells;  // of the zone, per class
 };
@@ -161,14 +161,14 @@ void ZoneJob::make_layers(int32_t column, int32_t row, ZoneScratch::Worker& work
   if (plan_.config->fine) {
     tile.bare = std::make_unique<BitPlane>(bare_columns(worker.free_spans));
   }
-  deal(tile, worker);
+  assign(tile, worker);
   worker.seconds_levels += seconds_since(assign_start);
 }
 
-// What another class may stand on below or above must not change what a class reaches. So how gaps
-// are dealt does not depend on classes, and those who need high gaps see no others: in a bake for
-// them alone there are none.
-void ZoneJob::deal(TileState& tile, ZoneScratch::Worker& worker) {
+// What another class may stand on below or above must not change what a class reaches. So how free
+// spans are assigned does not depend on classes, and classes that need high free spans use no
+// others: in a bake for them alone there are none.
+void ZoneJob::assign(TileState& tile, ZoneScratch::Worker& worker) {
   const bool low_too =
       plan_.limits.min_free_span < BodyLimits::kHighFreeSpan && worker.free_spans.max_count > 1;
   if (low_too) {
@@ -255,8 +255,8 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       }
       verdict.any = any != 0;
       verdict.all = all == ~uint64_t{0};
-      // A window that fits within a step makes neighbours safe, but only where the sheet is the
-      // only one: at a seam the neighbour that fits is another sheet's, and this one's may be a
+      // A window that fits within a step makes neighbours safe, but only where the layer is the
+      // only one: at a seam the neighbour that fits is another layer's, and this one's may be a
       // storey off. Beside walls, a neighbour need not fit as a whole.
       const bool window_is_enough = tile.layers.size() == 1 && body.bottom <= body.step &&
                                     (worker.beside_walls & body.class_bit) == 0;
@@ -267,7 +267,7 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
   worker.seconds_clearance += seconds_since(start);
 }
 
-// Judges a tile for classes that see the same sheets in it and around it.
+// Judges a tile for classes that use the same layers in it and around it.
 void ZoneJob::judge_alike(int32_t column, int32_t row, const Neighbourhood& around,
                           std::span<const size_t> classes, ZoneScratch::Worker& worker) {
   TileState& tile = at(column, row);
@@ -333,7 +333,7 @@ void ZoneJob::recheck_near_limit(const Layer& layer, const FloorPlane& floor,
   recheck_planes(layer, body, worker.planes, worker.legality, cells);
 }
 
-// True if this tile and all around it are single sheets, legal everywhere, without a step between.
+// True if this tile and all around it are single layers, legal everywhere, without a step between.
 bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
   int32_t low = INT32_MAX, high = INT32_MIN;
   for (int32_t i = 0; i < 9; ++i) {
@@ -348,8 +348,8 @@ bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
   return high - low <= plan_.bodies[avatar_class].step;
 }
 
-// Feet of a sheet that are stored: where someone may stand, and beside the cells where a class is
-// legal, whose tilt comes from there (world/surface.h).
+// Feet of a layer that are stored: where some class may stand, and beside the cells where a class
+// is legal, whose tilt comes from there (world/surface.h).
 void forget_feet(const CellRows& legal, Layer& layer) {
   if (layer.all_useful) return;
   // Nor is anything forgotten where a class may stand everywhere; those around such a tile look at
@@ -463,7 +463,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
   }
   for (const TilePack& pack : packs_) {
     result.levels += static_cast<uint32_t>(pack.levels.size());
-    result.flat_levels += pack.plain;
+    result.flat_levels += pack.flat;
     result.tiles += pack.levels.empty() ? 0 : 1;
   }
   if (result.levels > 0) {

@@ -27,7 +27,7 @@ struct BakePlan {
   SurfaceCodes codes;
   const SurfaceCoder* coder = nullptr;
   BodyLimits limits;
-  std::vector<bool> is_tall;  // classes that need gaps of BodyLimits::kHighFreeSpan
+  std::vector<bool> is_tall;  // classes that need free spans of BodyLimits::kHighFreeSpan
   std::vector<BodyWindow> bodies;
   int32_t reach = 0;     // of the widest body [cells]
   int32_t max_step = 0;  // [mm]
@@ -39,7 +39,7 @@ struct BakePlan {
 };
 
 struct ZoneResult {
-  flatbuffers::DetachedBuffer bytes;  // empty: nobody can stand in this zone
+  flatbuffers::DetachedBuffer bytes;  // empty: no class can stand in this zone
   uint32_t levels = 0;
   uint32_t flat_levels = 0;
   uint32_t tiles = 0;

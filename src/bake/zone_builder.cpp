@@ -23,7 +23,7 @@ FloorPlane fit_plane(Layer& layer) {
     return plane;
   }
   if (!may_be_plane(layer)) return plane;
-  // Neighbours differ alike, so the ends of rows and columns tell the slopes.
+  // Neighbours differ alike, so the ends of rows and columns give the slopes.
   const auto feet = [&](int32_t x, int32_t z) {
     return layer.feet[static_cast<size_t>(z * kTileSide + x)];
   };
@@ -140,7 +140,7 @@ void pack_level(uint32_t tile, const Layer& layer, const FloorPlane& plane,
     const bool flat = (plane.slope_x | plane.slope_z) == 0;
     floor_kind = flat ? format::HeightKind::Constant : format::HeightKind::Plane;
     floor_base = plane.base;
-    ++pack.plain;
+    ++pack.flat;
   } else {
     floor_offset = add_values(layer.feet.data(), layer, has, layer.low_feet, pack);
   }

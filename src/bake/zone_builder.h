@@ -10,11 +10,11 @@
 #include "bake/layers.h"
 #include "world/zone_generated.h"
 
-/// Packs the sheets of a zone into a zone file's arrays: constants and planes where they serve, and
+/// Packs the layers of a zone into a zone file's arrays: constants and planes where they serve, and
 /// blocks of cells (world/cell_blocks.h), of which the zone holds each only once.
 namespace throng {
 
-/// Replaces a sheet's feet by a plane if that changes no height by more than 1 mm. Run before
+/// Replaces a layer's feet by a plane if that changes no height by more than 1 mm. Run before
 /// legality is judged, so that everything after sees the feet that the moves will see.
 struct FloorPlane {
   bool found = false;
@@ -35,7 +35,7 @@ struct TilePack {
   std::vector<format::Clearance> clearance;  // per level and class
   std::vector<uint64_t> words;
   std::vector<Run> runs;
-  uint32_t plain = 0;  // levels whose floor is a constant or a plane
+  uint32_t flat = 0;  // levels whose floor is a constant or a plane
 };
 
 /// Adds one level of tile `tile` to its pack.

@@ -77,7 +77,7 @@ Result<std::vector<ZoneFacts>> ZoneJobs::assign(Ranks& ranks, WorldFolder& folde
   facts_.resize(zones.size());
   std::vector<uint64_t> open;
   for (size_t i = 0; i < zones.size() && !context.cancel; ++i) {
-    if (const auto reused = folder.keep(zones[i].x(), zones[i].z(), zones[i].hash())) {
+    if (const auto reused = folder.reuse(zones[i].x(), zones[i].z(), zones[i].hash())) {
       facts_[i] = bake_.facts_of(*reused);
       ++done_;
     } else {

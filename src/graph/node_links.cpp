@@ -54,7 +54,7 @@ void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, 
     --count_a;
     --count_b;
   }
-  // (Of ragged nodes others may lie between.)
+  // (Of partial nodes others may lie between.)
   for (uint32_t i = 0; i < count_a; ++i) {
     const auto same = std::find(chain_b.begin(), chain_b.begin() + count_b, chain_a[i]);
     if (same == chain_b.begin() + count_b) continue;
@@ -108,7 +108,7 @@ void NodeLinker::link_inside(uint32_t patch, const PatchCells& cells) {
   if (tree.leaf.empty() || tree.nodes.empty()) return;
   const auto visit = [&](size_t here, size_t next, bool along_s) {
     const uint32_t a = tree.leaf_of(here), b = tree.leaf_of(next);
-    // (One ragged node may be the first around both, and others around one.)
+    // (One partial node may be the first around both, and others around one.)
     if (a == kNoNode || b == kNoNode || (a == b && tree.nodes[a].cells == 0)) return;
     const std::vector<uint16_t>& cuts = along_s ? cells.cut_s : cells.cut_t;
     const uint16_t together = cells.cells[here].classes & cells.cells[next].classes;

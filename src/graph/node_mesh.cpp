@@ -151,7 +151,8 @@ class BlockCutter {
     return block;
   }
 
-  // All ragged nodes of one block, which follow each other from `first` on. Returns where they end.
+  // All partial nodes of one block, which follow each other from `first` on. Returns where they
+  // end.
   uint32_t cut_partial(uint32_t first, uint32_t end) {
     const format::Node& node = zone_.nodes()[first];
     pieces_.clear();
@@ -229,7 +230,7 @@ class BlockCutter {
     uint32_t node = 0;
   };
 
-  std::vector<Piece> pieces_;  // of the class, of the ragged nodes of one block
+  std::vector<Piece> pieces_;  // of the class, of the partial nodes of one block
   std::optional<GroundLevel> ground_;
   std::optional<StepCuts> cuts_;
   std::vector<NodeBlock> blocks_;

@@ -112,7 +112,7 @@ class Flood {
                         : size_t{1} << (2 * forest.trees[home].depth),
                     0) {}
 
-  // A ragged node has a more restrictive cell in its block, so it promises none.
+  // A partial node has a more restrictive cell in its block, so it promises none.
   double width(const PatchNode& node) {
     if (node.cells != 0) return 0;
     const uint32_t patch = home_;

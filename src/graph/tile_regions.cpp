@@ -14,14 +14,14 @@
 #include "world/place.h"
 
 // The parts of every level for every class are found; parts of several classes that are the same
-// place share a region; and parts of different levels of the tile are linked where sheets meet.
-// Tiles are linked over their borders by what each part shows there.
+// place share a region; and parts of different levels of the tile are linked where level tiles
+// meet. Tiles are linked over their borders by what each part shows there.
 namespace throng {
 namespace {
 
 using Part = PartList::Part;
 
-// Cells of a row of a list's part that are not taken.
+// Cells of a row of a list's part that are not occupied.
 uint64_t row_without(const PartList& list, const Part& part, size_t z, const CellRows* occupied) {
   if (z < part.begin || z >= part.end) return 0;
   return list.row(part, z) & ~(occupied != nullptr ? (*occupied)[z] : 0);
@@ -155,8 +155,8 @@ void add_link(std::vector<RegionLink>& links, const RegionLink& link) {
   links.push_back(link);
 }
 
-// One side of a border: who may stand where, and heights along it, each read once, and only if
-// somebody asks.
+// One side of a border: which classes may stand where, and heights along it, each read once, and
+// only if it is needed.
 class BorderLevels {
  public:
   BorderLevels(const WorldData::TileLevels& levels, const TileParts& tile, TileSide side,
@@ -183,7 +183,7 @@ class BorderLevels {
   }
 
   [[nodiscard]] uint64_t any_class(uint32_t l) const { return kept_.any_class[l]; }
-  // Cells over which somebody may stand on several levels.
+  // Cells over which some class may stand on several levels.
   [[nodiscard]] uint64_t crowded() const { return crowded_; }
   [[nodiscard]] uint64_t legal(uint32_t l, size_t c) const { return kept_.legal[l * classes_ + c]; }
 
@@ -303,7 +303,7 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
       if ((here.any_class(a) & there.any_class(b)) == 0) continue;
       if (!from.heights[a].is_near(to.heights[b], longest_)) continue;
       // Cells where it is known if the step is low enough for any class, if so, and if for each of
-      // them, with no other level to step onto: whoever stands there goes.
+      // them, with no other level to step onto: any class that stands there crosses.
       uint64_t known = 0, low = 0, open = 0;
       const auto any = [&](uint64_t cells, size_t c) {
         for (; cells != 0; cells &= cells - 1) {
@@ -419,14 +419,14 @@ bool TileRegions::steps_in_both_directions(size_t c, const GroundLevel& a, const
   return back && back->world_level == a.world_level;
 }
 
-// Links a class's parts of two levels of one tile where their sheets meet.
+// Links a class's parts of two levels of one tile where these meet.
 void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const {
   const size_t c = seam.c;
   const size_t at_a = seam.a * steps_.size() + c, at_b = seam.b * steps_.size() + c;
   const TileParts::ClassParts as = tile.classes[at_a], bs = tile.classes[at_b];
   if (as.first == as.last || bs.first == bs.last) return;
   const GroundLevel &level_a = scratch.grounds[at_a], &level_b = scratch.grounds[at_b];
-  // A body stays on its level where that goes on: it changes to the other only over cells where
+  // A body stays on its level where that continues: it changes to the other only over cells where
   // its own has nothing, unless a step may be too high.
   const CellRows &all_a = scratch.legal[at_a], &all_b = scratch.legal[at_b];
   const CellRows* occupied_a = level_a.step_safe ? &all_a : nullptr;

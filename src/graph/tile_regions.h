@@ -51,9 +51,9 @@ struct TileParts {
   std::vector<RegionLink> links;  // a < b, maybe several for a pair
 };
 
-/// What finding takes beside its results, kept from tile to tile: one for each worker.
+/// Scratch memory of finding, kept from tile to tile: one for each worker.
 struct TileScratch {
-  // What is known of steps from cells of one level to those beside them of another, whoever goes.
+  // What is known of steps from cells of one level to those beside them of another, for any class.
   struct Rises {
     std::array<CellRows, 4> known, low;  // per direction; low: no higher than any class's step
   };
@@ -81,7 +81,7 @@ struct TileScratch {
 };
 
 /// Finds regions and links tile by tile. The world must outlive it, and the zones of the tiles
-/// asked for must be usable.
+/// given must be usable.
 class TileRegions {
  public:
   explicit TileRegions(const WorldData& world);

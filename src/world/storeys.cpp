@@ -13,7 +13,7 @@
 #include "world/place.h"
 #include "world/zone_data.h"
 
-// Storeys: sheets of neighbouring tiles that continue each other are joined into groups, the surest
+// Storeys: layers of neighbouring tiles that continue each other are joined into groups, the surest
 // first (Kruskal), never two that lie over each other; groups of like height that do not overlap
 // then share a number.
 namespace throng {

@@ -78,7 +78,7 @@ struct Spot {
   auto operator<=>(const Spot&) const = default;
 };
 
-// By cell of the world and height, whatever sheets and zones it is stored in.
+// By cell of the world and height, whatever layers and zones it is stored in.
 using Spots = std::map<std::tuple<int32_t, int32_t, int32_t>, Spot>;
 
 // Without `margins` it is only told who may stand there.

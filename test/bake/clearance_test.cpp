@@ -18,7 +18,7 @@ bool bit(const BitPlane& plane, int32_t x, int32_t z) {
   return ((plane[static_cast<size_t>(z)] >> x) & 1) != 0;
 }
 
-// One class on 3 x 3 tiles of any number of sheets.
+// One class on 3 x 3 tiles of any number of layers.
 struct Tiles {
   std::array<TileLegality, 9> of;
   std::array<const TileLegality*, 9> around;
@@ -40,7 +40,7 @@ int32_t tile_of(int32_t x, int32_t z) {
   return (z < 0 ? 0 : (z > kLast ? 6 : 3)) + (x < 0 ? 0 : (x > kLast ? 2 : 1));
 }
 
-// Is cell (x, z), counted from the middle tile, legal on a world of one sheet a tile?
+// Is cell (x, z), counted from the middle tile, legal on a world of one layer a tile?
 bool legal_at(const Tiles& tiles, int32_t x, int32_t z) {
   const TileLegality* tile = tiles.around[static_cast<size_t>(tile_of(x, z))];
   return tile != nullptr && !tile->empty() &&
@@ -194,8 +194,8 @@ TEST(Clearance, AllMeansTheFullMarginEverywhere) {
   }
 }
 
-TEST(Clearance, AMarginThroughAStackOfSheetsFollowsTheLinkedOne) {
-  // Two sheets a tile; sheet 0 goes on in sheet 1 next door for z < 32, in sheet 0 beyond.
+TEST(Clearance, AMarginThroughAStackOfLayersFollowsTheLinkedOne) {
+  // Two layers a tile; layer 0 goes on in layer 1 next door for z < 32, in layer 0 beyond.
   Tiles tiles(2);
   for (TileLegality& tile : tiles.of) {
     tile[0].classes[0].legal.fill(~uint64_t{0});
@@ -210,12 +210,12 @@ TEST(Clearance, AMarginThroughAStackOfSheetsFollowsTheLinkedOne) {
   EXPECT_EQ(margin_of(planes, kLast, 50), 0);
   EXPECT_EQ(margin_of(planes, kLast, 30), 7);
   EXPECT_EQ(margin_of(planes, kLast - 1, 10), 1);
-  erode(tiles.around, 1, 0, 400, planes);  // Layer 1 goes on in sheet 0.
+  erode(tiles.around, 1, 0, 400, planes);  // Layer 1 goes on in layer 0.
   EXPECT_EQ(margin_of(planes, kLast, 10), 7);
   EXPECT_EQ(margin_of(planes, kLast, 50), 0);
 }
 
-// Links: for each border cell the sheet across it whose feet are nearest, if within the step.
+// Links: for each border cell the layer across it whose feet are nearest, if within the step.
 bool is_useful(const Layer& layer, size_t cell) {
   return (layer.useful[cell / 64] >> cell % 64 & 1) != 0;
 }

@@ -27,12 +27,12 @@ BodyLimits limits_of(const std::vector<AvatarClass>& classes, double cell = 0.1)
 
 constexpr int32_t kBlockedCode = 2;
 
-// The gaps of one tile with what the definitions say of them.
+// The free spans of one tile with what the definitions say of them.
 struct Node {
   int32_t cell;
   naive::FreeSpan free_span;
   bool usable;         // some class may stand here
-  int32_t group = -1;  // of gaps that a step joins
+  int32_t group = -1;  // of free spans that a step joins
 };
 
 struct Group {
@@ -54,7 +54,7 @@ bool joined(const naive::FreeSpan& a, const naive::FreeSpan& b, const BodyLimits
   return step <= limits.link_step && room >= least;
 }
 
-// The high gaps, and the others of `all`.
+// The high free spans, and the others of `all`.
 naive::FreeSpanBlock by_height(const naive::FreeSpanBlock& high, const naive::FreeSpanBlock& all) {
   naive::FreeSpanBlock out = all;
   for (size_t c = 0; c < out.cells.size(); ++c) {
@@ -67,8 +67,8 @@ naive::FreeSpanBlock by_height(const naive::FreeSpanBlock& high, const naive::Fr
   return out;
 }
 
-// Every gap of the middle tile, and which of them hang together: a flood fill over all pairs of
-// gaps in neighbouring columns.
+// Every free span of the middle tile, and which of them hang together: a flood fill over all pairs
+// of free spans in neighbouring columns.
 Expected expect(const naive::FreeSpanBlock& block, const BodyLimits& limits) {
   Expected out;
   std::vector<std::vector<size_t>> of_cell(kTileArea);
@@ -128,7 +128,7 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& lim
       const auto cell = static_cast<size_t>(c);
       if (layer.top[cell] == kNone16) {
         ASSERT_EQ(layer.feet[cell], kNone16) << what;
-        ASSERT_EQ(layer.ceiling[cell], 0) << what << ": room where there is no gap";
+        ASSERT_EQ(layer.ceiling[cell], 0) << what << ": room where there is no free span";
         continue;
       }
       ++cells;
@@ -137,7 +137,7 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& lim
       const auto& column = (layer.is_low ? lent : high).at(c % 64, c / 64);
       const auto free_span = std::find_if(column.begin(), column.end(),
                                           [&](const naive::FreeSpan& g) { return g.top == top; });
-      ASSERT_NE(free_span, column.end()) << what << ": sheet " << s << " invents a top";
+      ASSERT_NE(free_span, column.end()) << what << ": layer " << s << " invents a top";
       ASSERT_GE(layer.top[cell], Layer::kBelow) << what;
       ASSERT_LE(layer.top[cell], Layer::kHighest) << what;
       if (free_span->ceiling == kOpenSkyMm) {
@@ -163,7 +163,7 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& lim
     }
     ASSERT_EQ(layer.cells, cells) << what;
     ASSERT_EQ(layer.present, present) << what;
-    ASSERT_GT(present, 0) << what << ": a sheet without feet";
+    ASSERT_GT(present, 0) << what << ": a layer without feet";
     ASSERT_EQ(layer.base + layer.low_feet, low_feet) << what;
     ASSERT_EQ(layer.base + layer.high_feet, high_feet) << what;
     if (s > 0) {
@@ -173,11 +173,11 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& lim
   for (const Node& node : expected.nodes) {
     const auto found = assigned.find({node.cell, node.free_span.top});
     const int32_t times = found == assigned.end() ? 0 : found->second;
-    ASSERT_LE(times, 1) << what << ": a gap in two sheets";
+    ASSERT_LE(times, 1) << what << ": a free span in two layers";
     const Group& group = expected.groups[static_cast<size_t>(node.group)];
     const bool crumb = group.count < limits.min_footprint && !group.reaches_border;
     if (node.usable && !crumb) {
-      ASSERT_EQ(times, 1) << what << ": a gap is lost at " << node.cell % 64 << " "
+      ASSERT_EQ(times, 1) << what << ": a free span is lost at " << node.cell % 64 << " "
                           << node.cell / 64 << " top " << node.free_span.top;
     }
   }
@@ -192,7 +192,7 @@ naive::RandomBlock random_block(uint64_t seed) {
           .codes = seed % 5 == 0 ? 1 : 3};
 }
 
-TEST(Sheets, EveryGapThatSomebodyCanUseIsInExactlyOneSheetButCrumbs) {
+TEST(Layers, EveryGapThatSomebodyCanUseIsInExactlyOneLayerButCrumbs) {
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const auto classes = default_classes();
     const BodyLimits limits = limits_of(classes, seed % 2 == 0 ? 0.1 : 0.3);
@@ -202,7 +202,7 @@ TEST(Sheets, EveryGapThatSomebodyCanUseIsInExactlyOneSheetButCrumbs) {
   }
 }
 
-// Gaps at random heights, as many as there is room for: no floor goes on anywhere for long.
+// Free spans at random heights, as many as there is room for: no floor goes on anywhere for long.
 naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t layers, double spread) {
   naive::FreeSpanBlock block;
   for (int32_t c = 0; c < kTileArea; ++c) {
@@ -225,7 +225,7 @@ naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t laye
   return block;
 }
 
-TEST(Sheets, NoiseOfManyLayersIsDealtWithoutLoss) {
+TEST(Layers, NoiseOfManyLayersIsDealtWithoutLoss) {
   const BodyLimits limits = limits_of(default_classes());
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const double spread = seed % 2 == 0 ? 300 : 3000;
@@ -234,7 +234,7 @@ TEST(Sheets, NoiseOfManyLayersIsDealtWithoutLoss) {
   }
 }
 
-TEST(Sheets, HeightsKilometresApartAreExactAndTakeMoreSheets) {
+TEST(Layers, HeightsKilometresApartAreExactAndTakeMoreLayers) {
   const BodyLimits limits = limits_of(default_classes());
   for (uint64_t seed = 1; seed <= 6; ++seed) {
     naive::FreeSpanBlock block;
@@ -257,7 +257,7 @@ TEST(Sheets, HeightsKilometresApartAreExactAndTakeMoreSheets) {
   }
 }
 
-TEST(Sheets, AStairOfMoreHeightThanSixteenBitsHoldIsCutNotBent) {
+TEST(Layers, AStairOfMoreHeightThanSixteenBitsHoldIsCutNotBent) {
   // 4096 cells along a line that winds through the tile, a step up at each: one component, 120 m.
   const BodyLimits limits = limits_of({AvatarClass{}});
   for (const int32_t rise : {13, 14, 15, 30, 90, 390}) {
@@ -272,7 +272,7 @@ TEST(Sheets, AStairOfMoreHeightThanSixteenBitsHoldIsCutNotBent) {
   }
 }
 
-TEST(Sheets, ALevelFloorUnderALevelFloorIsTwoSheetsLowestFirst) {
+TEST(Layers, ALevelFloorUnderALevelFloorIsTwoLayersLowestFirst) {
   const BodyLimits limits = limits_of(default_classes());
   naive::FreeSpanBlock block;
   for (int32_t c = 0; c < kTileArea; ++c) {
@@ -290,7 +290,7 @@ TEST(Sheets, ALevelFloorUnderALevelFloorIsTwoSheetsLowestFirst) {
   }
 }
 
-TEST(Sheets, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
+TEST(Layers, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
   const BodyLimits limits = limits_of({AvatarClass{}});
   naive::FreeSpanBlock block;
   for (int32_t c = 0; c < kTileArea; ++c) block.at(c % 64, c / 64) = {{0, kOpenSkyMm, 0, 0}};
@@ -310,14 +310,14 @@ TEST(Sheets, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
   EXPECT_EQ(border, 1);
 }
 
-TEST(Sheets, AnEmptyTileHasNone) {
+TEST(Layers, AnEmptyTileHasNone) {
   LayerPool pool;
   TileLayers layers;
   naive::assign_tile({}, 0, 0, limits_of(default_classes()), pool, layers);
   EXPECT_TRUE(layers.empty());
 }
 
-TEST(Sheets, SameSheetsForEverySimdWidth) {
+TEST(Layers, SameLayersForEverySimdWidth) {
   const auto hash_all = [] {
     uint64_t hash = 0;
     const BodyLimits limits = limits_of(default_classes());

@@ -13,8 +13,8 @@
 #include "simd_targets.h"
 
 // What a legal cell promises is said in docs/algorithms.md. The oracle looks at columns, never at
-// sheets: a body at a point P of the cell, feet on the plane that the floor's samples suggest,
-// touches the columns nearer than its radius, and each of them needs any gap that holds it.
+// layers: a body at a point P of the cell, feet on the plane that the floor's samples suggest,
+// touches the columns nearer than its radius, and each of them needs any free span that holds it.
 namespace throng {
 namespace {
 
@@ -26,7 +26,7 @@ SurfaceCodes make_codes(uint32_t all) {
           .allowed = {all, all & ~1u, 0}};
 }
 
-// A block dealt to sheets, with what legality needs around it.
+// A block dealt to layers, with what legality needs around it.
 struct AssignedBlock {
   AssignedBlock(const naive::SolidBlock& solids, std::vector<AvatarClass> of, double cell_size)
       : classes(std::move(of)), cell(cell_size) {
@@ -95,7 +95,7 @@ int32_t count(const BitPlane& plane) {
   return cells;
 }
 
-// Feet of a sheet, absolute, or nothing.
+// Feet of a layer, absolute, or nothing.
 constexpr double kNowhere = 1e18;
 double sample(const Layer& layer, int32_t x, int32_t z) {
   const uint16_t feet = layer.feet[static_cast<size_t>(z * kTileSide + x)];
@@ -141,7 +141,7 @@ double distance(double px, double pz, int32_t bx, int32_t bz) {
   return std::sqrt(dx * dx + dz * dz);
 }
 
-// Does column B have a gap that holds a body whose feet lie in [low, high]?
+// Does column B have a free span that holds a body whose feet lie in [low, high]?
 bool column_holds(const naive::FreeSpanBlock& free_spans, int32_t x, int32_t z, double low,
                   double high, double bottom, double height) {
   if (!free_spans.inside(x, z)) return false;
@@ -185,7 +185,7 @@ bool body_is_safe(const AssignedBlock& world, const Layer& layer, size_t c, int3
   return true;
 }
 
-// The gap of the cell's own column on which the sheet stands, if the class may stand there.
+// The free span of the cell's own column on which the layer stands, if the class may stand there.
 bool stands(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
   const double feet = sample(layer, x, z);
   for (const naive::FreeSpan& free_span : world.free_spans.at(x, z)) {
@@ -196,7 +196,7 @@ bool stands(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x,
   return false;
 }
 
-// The rule of the window, word by word, on columns of one gap each.
+// The rule of the window, word by word, on columns of one free span each.
 bool window_rule(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
   if (sample(layer, x, z) == kNowhere || !stands(world, layer, c, x, z)) return false;
   const AvatarClass& avatar = world.classes[c];
@@ -218,7 +218,7 @@ bool window_rule(const AssignedBlock& world, const Layer& layer, size_t c, int32
   return true;
 }
 
-// What was found over all sheets of the middle tile, and how much of it the window alone knew.
+// What was found over all layers of the middle tile, and how much of it the window alone knew.
 struct Tally {
   int64_t legal = 0, rechecked = 0, layers = 0;
 };
@@ -237,7 +237,7 @@ void expect_safe(const AssignedBlock& world, const std::string& what, Tally& tal
           ASSERT_TRUE(stands(world, layer, c, x, z))
               << what << ": " << world.classes[c].name << " has no floor at " << x << " " << z;
           ASSERT_TRUE(body_is_safe(world, layer, c, x, z))
-              << what << ": " << world.classes[c].name << " on sheet " << s << " at " << x << " "
+              << what << ": " << world.classes[c].name << " on layer " << s << " at " << x << " "
               << z;
         }
       }
@@ -287,7 +287,7 @@ TEST(Legality, BodiesOfAllSizesAndCellsAreSafe) {
   EXPECT_GT(tally.legal, 10000);
 }
 
-TEST(Legality, OnASingleSheetTheWindowFindsExactlyWhatTheDefinitionSays) {
+TEST(Legality, OnASingleLayerTheWindowFindsExactlyWhatTheDefinitionSays) {
   int64_t legal = 0;
   for (uint64_t seed = 1; seed <= 32; ++seed) {
     const naive::RandomBlock block{.seed = seed + 200,
@@ -295,11 +295,11 @@ TEST(Legality, OnASingleSheetTheWindowFindsExactlyWhatTheDefinitionSays) {
                                    .holes = seed % 2 == 0,
                                    .codes = seed % 3 == 0 ? 3 : 1};
     naive::SolidBlock solids = naive::random_solids(block);
-    for (auto& column : solids.cells) {  // one gap each; some under a ceiling
+    for (auto& column : solids.cells) {  // one free span each; some under a ceiling
       if (column.size() > 1) column.resize(1);
     }
     AssignedBlock plain(solids, default_classes(), 0.1);
-    if (seed % 4 == 1) {  // ceilings without gaps above them: nobody ever is there
+    if (seed % 4 == 1) {  // ceilings without free spans above them: nobody ever is there
       for (int32_t z = -64; z < 128; ++z) {
         for (int32_t x = -64; x < 128; ++x) {
           for (naive::FreeSpan& free_span : plain.free_spans.at(x, z)) {
@@ -484,14 +484,14 @@ TEST(Legality, ATallBodyUnderAFarCeilingOfATallTileKeepsItsHead) {
 }
 
 TEST(Legality, ABodyThatStepsFarDownStillSeesADeeperDrop) {
-  // bottom is 5 m; beside the tile the ground lies 12 m lower, in another tile's sheet.
+  // bottom is 5 m; beside the tile the ground lies 12 m lower, in another tile's layer.
   const AvatarClass wide{.name = "wide", .height = 20, .radius = 1, .step = 5};
   for (const int32_t drop : {3000, 5500, 12000, 40000}) {
     naive::SolidBlock solids = flat_block(0);
     for (int32_t z = -64; z < 128; ++z) {
       for (int32_t x = 64; x < 128; ++x) {
         solids.at(x, z)[0] = {-drop - 500, -drop, -drop, 0};
-        // A second floor there, so that its sheets are chosen line by line.
+        // A second floor there, so that its layers are chosen line by line.
         if (drop == 40000) solids.at(x, z).push_back({-drop - 61000, -drop - 60500, kNoSupport, 0});
       }
     }

@@ -30,7 +30,7 @@ std::vector<AvatarClass> six_classes() {
           {.name = "porter", .height = 2.1, .radius = 0.35, .step = 0.3, .max_slope = 20}};
 }
 
-// Places of a class: cell and feet, without the tile and sheet they are stored in.
+// Places of a class: cell and feet, without the tile and layer they are stored in.
 using Places = std::map<std::pair<int32_t, int32_t>, std::vector<int32_t>>;
 
 Places places_of(const World& world, size_t avatar_class) {
@@ -97,7 +97,7 @@ TEST(ManyClasses, EachStandsWhereItDoesAlone) {
   RecordProperty("places", std::to_string(places));
 }
 
-// Six bodies of any size that does not change how gaps are dealt.
+// Six bodies of any size that does not change how free spans are dealt.
 std::vector<AvatarClass> random_classes(uint64_t seed) {
   std::vector<AvatarClass> classes;
   for (uint64_t n = 0; n < 6; ++n) {

@@ -113,7 +113,7 @@ TEST(Quadtree, EveryClassHasTheCellsThatItHasAlone) {
   }
 }
 
-// The cells of a ragged node on which a class stands.
+// The cells of a partial node on which a class stands.
 uint64_t own_cells(const PatchCells& cells, const PatchNode& node, uint16_t bit) {
   uint64_t own = 0;
   for (uint64_t left = node.cells; left != 0; left &= left - 1) {
@@ -147,9 +147,9 @@ uint64_t first_piece(const PatchCells& cells, const PatchNode& node, uint64_t ow
   return piece;
 }
 
-// Each class alone has as many ragged nodes in a block as its cells there have pieces, and together
-// with others it has one node for each.
-TEST(Quadtree, RaggedNodesAreThePiecesOfEachClass) {
+// Each class alone has as many partial nodes in a block as its cells there have pieces, and
+// together with others it has one node for each.
+TEST(Quadtree, PartialNodesAreThePiecesOfEachClass) {
   size_t tested = 0, shared = 0;
   for (uint64_t seed = 1; seed <= 120; ++seed) {
     PatchCells cells = random_cells(4 + static_cast<int32_t>(seed % 3), seed, seed % 2 == 0);
@@ -221,7 +221,7 @@ TEST(Quadtree, RaggedNodesAreThePiecesOfEachClass) {
     for (auto* cuts : {&alone.cut_s, &alone.cut_t}) {
       for (uint16_t& cut : *cuts) cut &= 1;
     }
-    // (A class that goes anywhere in a block has a node there that is not ragged.)
+    // (A class that goes anywhere in a block has a node there that is not partial.)
     const auto pieces = [&](const PatchTree& of) {
       size_t count = 0;
       for (const PatchNode& node : of.nodes) {

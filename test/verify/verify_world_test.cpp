@@ -66,7 +66,7 @@ TEST(VerifyWorld, BakedHallHoldsForEveryClass) {
   }
 }
 
-// Floors above each other in one tile, close enough that sheets meet: where a step was once taken
+// Floors above each other in one tile, close enough that layers meet: where a step was once taken
 // from a floor to the one above it.
 TEST(VerifyWorld, BuiltInWorldsHoldForEveryClass) {
   for (const char* name : {"stairs", "church", "garage"}) {

@@ -58,10 +58,10 @@ uint64_t add_steps(const Layer& own, const CellRows& own_free_spans, const Layer
     return 0;
   }
   uint64_t any = 0;
-  const auto look = [&](uint64_t cells, size_t z, ptrdiff_t way) {
+  const auto add = [&](uint64_t cells, size_t z, ptrdiff_t offset) {
     for (; cells != 0; cells &= cells - 1) {
       const size_t cell = z * kTileSide + static_cast<size_t>(std::countr_zero(cells));
-      const int32_t own_top = own.top[static_cast<size_t>(static_cast<ptrdiff_t>(cell) + way)];
+      const int32_t own_top = own.top[static_cast<size_t>(static_cast<ptrdiff_t>(cell) + offset)];
       if (std::abs(other.base + other.top[cell] - own.base - own_top) > step) continue;
       any |= holes[z] |= uint64_t{1} << cell % kTileSide;
     }
@@ -69,10 +69,10 @@ uint64_t add_steps(const Layer& own, const CellRows& own_free_spans, const Layer
   for (size_t z = 0; z < kTileSide; ++z) {
     const uint64_t open = other_free_spans[z] & ~own_free_spans[z];
     if (open == 0) continue;
-    look(open & own_free_spans[z] << 1, z, -1);
-    look(open & own_free_spans[z] >> 1, z, 1);
-    if (z > 0) look(open & own_free_spans[z - 1], z, -kTileSide);
-    if (z + 1 < kTileSide) look(open & own_free_spans[z + 1], z, kTileSide);
+    add(open & own_free_spans[z] << 1, z, -1);
+    add(open & own_free_spans[z] >> 1, z, 1);
+    if (z > 0) add(open & own_free_spans[z - 1], z, -kTileSide);
+    if (z + 1 < kTileSide) add(open & own_free_spans[z + 1], z, kTileSide);
   }
   return any;
 }

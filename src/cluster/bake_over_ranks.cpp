@@ -87,19 +87,19 @@ Result<std::vector<ZoneFacts>> ZoneJobs::assign(Ranks& ranks, WorldFolder& folde
   std::stable_sort(open.begin(), open.end(), [&](uint64_t a, uint64_t b) {
     return bake_.triangle_count(a) > bake_.triangle_count(b);
   });
-  JobsToAssign assigned;
-  for (const uint64_t zone : open) assigned.jobs.push_back(bytes_of(zone));
-  assigned.enter = [&](size_t job, std::span<const uint8_t> result) {
+  JobsToAssign to_assign;
+  for (const uint64_t zone : open) to_assign.jobs.push_back(bytes_of(zone));
+  to_assign.enter = [&](size_t job, std::span<const uint8_t> result) {
     const auto zone = static_cast<size_t>(open[job]);
     facts_[zone] = value_of<ZoneFacts>(result);
     ++done_;
     return folder.add(facts_[zone].entry, zones[zone].hash());
   };
-  assigned.on_progress = [&] {
+  to_assign.on_progress = [&] {
     if (context.on_progress) context.on_progress({"bake", done_, facts_.size()});
   };
-  assigned.on_cancel = [&] { folder.leave(); };
-  if (auto ok = assign_jobs(ranks, jobs(), std::move(assigned), context); !ok) return ok.error();
+  to_assign.on_cancel = [&] { folder.leave(); };
+  if (auto ok = assign_jobs(ranks, jobs(), std::move(to_assign), context); !ok) return ok.error();
   return std::move(facts_);
 }
 

@@ -23,9 +23,9 @@ namespace {
 
 enum Tag : int32_t {
   kFree,   // a rank wants work; empty
-  kDone,   // uint64_t: the job, and what there is to tell
+  kDone,   // uint64_t: the job, and its result
   kFail,   // the code of an error as a byte, and its message
-  kWork,   // uint64_t: the job, and what is said of it
+  kWork,   // uint64_t: the job, and its description
   kNoMore  // nothing is left, or the bake has failed elsewhere; empty
 };
 
@@ -76,8 +76,8 @@ Result<RankBytes> work_on(const RankJobs& what, std::span<const uint8_t> job,
 
 class JobAssigner {
  public:
-  JobAssigner(Ranks& ranks, const RankJobs& what, JobsToAssign assigned, Context& context)
-      : ranks_(ranks), what_(what), jobs_(std::move(assigned)), context_(context) {}
+  JobAssigner(Ranks& ranks, const RankJobs& what, JobsToAssign to_assign, Context& context)
+      : ranks_(ranks), what_(what), jobs_(std::move(to_assign)), context_(context) {}
 
   Result<void> run();
 
@@ -93,7 +93,7 @@ class JobAssigner {
   JobsToAssign jobs_;
   Context& context_;
   size_t done_ = 0;     // jobs
-  int32_t parted_ = 1;  // ranks that ask for nothing any more: this one never did
+  int32_t parted_ = 1;  // ranks that take no more jobs: this one never did
   std::optional<Error> error_;
 
   std::mutex mutex_;  // of what the working thread shares
@@ -191,13 +191,13 @@ Error stopped_error(const Ranks& ranks, const RankJobs& what) {
   return {Errc::kCancelled,
           std::string(what.stage) + ": rank " + std::to_string(ranks.rank()) + " of " +
               std::to_string(ranks.size()) +
-              " was told to stop, because another rank has died or mpirun was interrupted; " +
+              " was stopped, because another rank has died or mpirun was interrupted; " +
               what.finished(ranks.rank() == 0)};
 }
 
-Result<void> assign_jobs(Ranks& ranks, const RankJobs& what, JobsToAssign assigned,
+Result<void> assign_jobs(Ranks& ranks, const RankJobs& what, JobsToAssign to_assign,
                          Context& context) {
-  return JobAssigner(ranks, what, std::move(assigned), context).run();
+  return JobAssigner(ranks, what, std::move(to_assign), context).run();
 }
 
 Result<void> do_assigned_jobs(Ranks& ranks, const RankJobs& what, Context& context) {
@@ -225,7 +225,7 @@ Result<void> do_assigned_jobs(Ranks& ranks, const RankJobs& what, Context& conte
 }
 
 int32_t workers_of_rank(int32_t asked, const Ranks& ranks) {
-  // Unless mpirun has dealt the cores already.
+  // Unless mpirun has assigned the cores already.
   if (asked > 0) return asked;
   const auto cores = static_cast<int32_t>(sysconf(_SC_NPROCESSORS_ONLN));
   return std::clamp(cores / ranks.local_size(), 1, worker_count(0));

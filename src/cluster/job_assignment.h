@@ -24,7 +24,7 @@ using RankBytes = std::vector<uint8_t>;
 /// What all ranks were started for.
 struct RankJobs {
   const char* stage = "";  ///< As progress and errors name it.
-  /// Does a job, given by what rank 0 has said of it, and tells what rank 0 wants to know. On any
+  /// Does a job, given by rank 0's description of it, and returns the result for rank 0. On any
   /// rank, one call at a time.
   std::function<Result<RankBytes>(std::span<const uint8_t> job, Context& context)> work;
   /// What is finished, and that the next bake goes on from there, as a part of a sentence.
@@ -42,7 +42,7 @@ struct JobsToAssign {
 
 /// Rank 0: hands out all jobs, does some itself, and waits for the others. Fails with the first
 /// error of any rank, or with kCancelled; no job is begun after that.
-Result<void> assign_jobs(Ranks& ranks, const RankJobs& what, JobsToAssign assigned,
+Result<void> assign_jobs(Ranks& ranks, const RankJobs& what, JobsToAssign to_assign,
                          Context& context);
 
 /// The others: does what rank 0 says, until it says no more. Fails with its own error, which rank 0

@@ -8,9 +8,9 @@
 #include "core/stopwatch.h"
 #include "throng/cluster.h"
 
-// Rank 0 keeps what need not be made and deals out batches of zones; whoever has made one writes
-// its files and tells what the index wants to know of them. The bytes of a zone do not depend on
-// what it is made together with, so they do not depend on the ranks either.
+// Rank 0 reuses what need not be made and assigns batches of zones to the ranks. A rank that has
+// made one writes its files and returns what the index needs of them. The bytes of a zone do not
+// depend on what it is made together with, so they do not depend on the ranks either.
 namespace throng {
 namespace {
 
@@ -61,18 +61,18 @@ RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
 Result<NodeSummary> assign_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
                                  const std::string& path, NodeFolder& folder, Context& context) {
   const auto batches = choose_batches(baker, config, ranks.size());
-  JobsToAssign assigned;
-  for (const auto& zones : batches) assigned.jobs.push_back(bytes_of(zones));
-  assigned.enter = [&](size_t, std::span<const uint8_t> result) {
+  JobsToAssign to_assign;
+  for (const auto& zones : batches) to_assign.jobs.push_back(bytes_of(zones));
+  to_assign.enter = [&](size_t, std::span<const uint8_t> result) {
     baker.enter(values_of<NodeBaker::Made>(result));
     return baker.list();
   };
-  assigned.on_progress = [&] {
+  to_assign.on_progress = [&] {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
   };
-  assigned.on_cancel = [&] { folder.leave(); };
+  to_assign.on_cancel = [&] { folder.leave(); };
   if (auto ok = baker.list(); !ok) return ok.error();
-  if (auto ok = assign_jobs(ranks, jobs_of(baker, path), std::move(assigned), context); !ok) {
+  if (auto ok = assign_jobs(ranks, jobs_of(baker, path), std::move(to_assign), context); !ok) {
     return ok.error();
   }
   const auto nodes = baker.finish();

@@ -11,7 +11,7 @@ namespace {
 
 bool g_abandoned = false;
 
-// MPI is begun once in a process, and ended by whoever began it.
+// MPI is begun once in a process. What has begun it ends it.
 MPI_Comm g_meetings = MPI_COMM_NULL;
 
 MPI_Comm comm_of(Ranks::Channel channel) {

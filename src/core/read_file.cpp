@@ -29,7 +29,7 @@ Result<std::string> read_file(const std::string& path) {
   char piece[1 << 16];
   while (const size_t got = std::fread(piece, 1, sizeof piece, file.get()))
     bytes.append(piece, got);
-  if (std::ferror(file.get()) != 0) return Error{Errc::kIo, path + ": reading it failed half-way"};
+  if (std::ferror(file.get()) != 0) return Error{Errc::kIo, path + ": reading it failed before its end"};
   return bytes;
 }
 

@@ -8,8 +8,8 @@
 namespace throng {
 namespace {
 
-// Fills up and down from the seeds by doubling; `up` and `down` tell which bits may be entered from
-// the bit below and from the bit above. (The occluded fill of chess programs.)
+// Fills up and down from the seeds by doubling; `up` and `down` are the bits that may be entered
+// from the bit below and from the bit above. (The occluded fill of chess programs.)
 uint64_t spread(uint64_t seed, uint64_t up, uint64_t down) {
   uint64_t high = seed, low = seed;
   for (int shift = 1; shift < 64; shift *= 2) {

@@ -27,7 +27,7 @@ constexpr uint64_t kMaxZoneBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuff
 
 Error cancelled() { return {Errc::kCancelled, "graph: cancelled"}; }
 
-// What an entry tells once its links are known.
+// What is known of an entry once its links are.
 struct LinksOfZone {
   uint64_t count = 0;  // within the zone too
   uint64_t bytes = 0, hash = 0;
@@ -237,7 +237,7 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
     auto made = LinkZone::from_bytes(*std::move(bytes), name);
     if (!made) return made.error();
     links = std::move(*made);
-    // Regions that were kept may be others than those of today, if their file is forged.
+    // Reused regions may differ from those of today if their file is forged.
     if (!fits(*links)) {
       return bad_file(region_file_name(entry.x(), entry.z()),
                       "or one beside it, is not of this zone", "bake the world again with --fresh");

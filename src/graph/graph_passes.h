@@ -27,12 +27,12 @@ class GraphFiles {
 
 struct GraphMade {
   std::shared_ptr<GraphData> graph;  // without its world
-  uint64_t zones_relinked = 0;       // whose links into the next zones were made, not kept
+  uint64_t zones_relinked = 0;       // whose links into the next zones were made, not reused
 };
 
 /// Makes the graph of a world whose zones can be used. With `files`, they are in the world's
 /// folder; null: all of it stays in memory, but for the links over borders, which are only counted.
-/// A zone of which everything is kept is not touched. The same bytes for any number of workers.
+/// A zone of which everything is reused is not touched. The same bytes for any number of workers.
 /// Fails with kBadFile (a zone cannot be used, by name), kIo, kLimit or kCancelled.
 Result<GraphMade> make_graph(const WorldData& world, GraphFiles* files, int32_t workers,
                              Context& context);

@@ -15,11 +15,11 @@
 #include "world/place.h"
 
 // The class's largest nodes tile all that it can stand on: of the nodes around a cell that hold its
-// bit, the outermost. Inside one nothing is in the way, so what is left to know is where two of
+// bit, the outermost. Inside one nothing blocks the class, so what is left to find is where two of
 // them touch. Within a patch that follows from the squares (and the tile's steps), over the edges
 // of Bezier patches from the doors that the bake proved, over tiles from the moves' own rule, and
-// across gaps from the leaps. The arcs between nodes are not read for that; that both tell the
-// same is a test.
+// over holes from the leaps. The arcs between nodes are not read for that; a test proves that both
+// agree.
 namespace throng {
 namespace {
 
@@ -122,8 +122,8 @@ class BlockCutter {
             .inclination = static_cast<uint8_t>(node.surface() >> 4)};
   }
 
-  // Quarters, quarters of quarters ... until a block is small enough. Flat or bent, its diagonals
-  // tell: a patch that comes back to where it began is cut by its depth.
+  // Quarters, quarters of quarters ... until a block is small enough. Its diagonals measure it,
+  // flat or curved: a patch that comes back to where it began is cut by its depth.
   void cut_block(NodeBlock block) {
     if (block.level >= surface_.depth) {
       blocks_.push_back(block);

@@ -18,7 +18,7 @@ uint64_t key_of(uint32_t patch, uint32_t cell) { return uint64_t{patch} << 32 | 
 
 }  // namespace
 
-// Dealt to their patches, then sorted there; of one cell they keep the order of the pairs.
+// Assigned to their patches, then sorted there; of one cell they keep the order of the pairs.
 CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches, int32_t workers)
     : first_(patches + 1, 0), key_(2 * pairs.size()), cell_(2 * pairs.size()) {
   for (const CellPair& p : pairs) {
@@ -154,9 +154,9 @@ class Flood {
   }
 
  private:
-  // Of a level tile rows of bits tell the nearest cell that is more restrictive, and a straight
-  // line there leads over none that is. Is that nearer than the tile's rim, where the flood must
-  // tell? The middle is the corner before cell (s, t). [0 < s, t < 64]
+  // Of a level tile, rows of bits give the nearest cell that is more restrictive, and a straight
+  // line there crosses none that is. Is that nearer than the tile's rim, beyond which only the
+  // flood finds it? The middle is the corner before cell (s, t). [0 < s, t < 64]
   bool ends_on_tile(const PatchTree& tree, int32_t s, int32_t t) {
     const CellRows& open = open_rows(tree);
     for (int32_t beyond = 0; beyond < 64; ++beyond) {
@@ -281,7 +281,7 @@ class Flood {
 
   const NodeForest& forest_;
   uint32_t home_;               // the patch whose nodes are measured
-  bool is_home_known_ = false;  // the nearest cell in it was told without a flood
+  bool is_home_known_ = false;  // the nearest cell in it was found without a flood
   const CrossCells& cross_;
   double most_;
   std::span<const CellBalls> balls_;

@@ -47,8 +47,8 @@ class CrossCells {
 
   struct Cell {
     uint32_t patch = 0, cell = 0;
-    uint16_t classes = 0;  ///< Who can step there.
-    uint8_t side = 0;      ///< Of the cell that was asked about.
+    uint16_t classes = 0;  ///< Classes that can step there.
+    uint8_t side = 0;      ///< Of the cell in question.
   };
   [[nodiscard]] std::span<const Cell> beside(uint32_t patch, uint32_t cell) const;
 

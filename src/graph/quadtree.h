@@ -33,7 +33,7 @@ inline Promise both(const Promise& a, const Promise& b) {
 /// True if `a` promises all that `b` does: it is no more restrictive.
 inline bool covers(const Promise& a, const Promise& b) { return both(a, b) == b; }
 
-/// The least blocks of patches with partial nodes have 2^kPartialDepth cells along a side.
+/// The smallest blocks of patches with partial nodes have 2^kPartialDepth cells along a side.
 inline constexpr int32_t kPartialDepth = 3;
 
 /// The finest sub-patches of one patch: 2^depth x 2^depth cells, cell = t * side + s.
@@ -47,7 +47,7 @@ struct PatchCells {
   /// from one to the other. Empty: none.
   std::vector<uint16_t> cut_s, cut_t;
   /// Per row of cells, bit s: the ground steps up or down to the next cell along s (along t). No
-  /// node lies on both sides, whoever goes over. Both are empty: nowhere.
+  /// node lies on both sides, for any class. Both are empty: nowhere.
   std::vector<uint64_t> step_s = {}, step_t = {};
 
   [[nodiscard]] int32_t side() const { return 1 << depth; }
@@ -71,8 +71,8 @@ struct PatchCells {
 inline constexpr uint32_t kNoNode = UINT32_MAX;
 
 /// A block of cells on which a promise holds that is better than its parent's; or a *partial* node:
-/// some cells of a block of 8 x 8. Its classes stand on some of these cells, each on cells that
-/// hold together by its steps, and the rest of the promise holds on all of them.
+/// some cells of a block of 8 x 8. Its classes stand on some of these cells, each on cells that its
+/// steps connect, and the rest of the promise holds on all of them.
 struct PatchNode {
   Promise promise;
   uint64_t cells = 0;  ///< Partial: which of the block's, bit 8 t + s. 0: all, for all its classes.
@@ -92,11 +92,12 @@ inline uint32_t partial_bit(size_t cell, int32_t depth) {
 struct PatchTree {
   int32_t depth = 0;
   std::vector<PatchNode> nodes;  ///< Parents first.
-  /// Per cell the smallest node that holds it, or kNoNode. Of a partial patch per least block: its
-  /// first partial node, if it has any; the others follow. Empty: node 0 for all.
+  /// Per cell the smallest node that holds it, or kNoNode. Of a patch with partial nodes per
+  /// smallest block: its first partial node, if it has any; the others follow. Empty: node 0 for
+  /// all.
   std::vector<uint32_t> leaf;
   int32_t leaf_depth = 0;  ///< Of the blocks in `leaf`, as halvings of a side.
-  /// Who may stand on each cell of the blocks that have partial nodes.
+  /// The classes that may stand on each cell of the blocks that have partial nodes.
   std::vector<std::array<uint16_t, 64>> partial;
 
   /// The smallest node that holds a cell, the first of them if they are partial; or kNoNode.
@@ -118,7 +119,7 @@ struct PatchTree {
     return node != kNoNode && nodes[node].cells != 0;
   }
 
-  /// Who may stand on a cell.
+  /// The classes that may stand on a cell.
   [[nodiscard]] uint16_t classes_on(size_t cell) const {
     const uint32_t node = nodes.empty() ? kNoNode : first_of(cell);
     if (node == kNoNode) return 0;
@@ -150,10 +151,10 @@ struct PatchTree {
 };
 
 /// A block gets a node if everything in it lets some class stand, and if it promises more than the
-/// node around it: those who can do more can do less, so a steep or low block keeps one node as a
-/// whole, and what is better inside it nodes of its own. Of partial patches the least blocks on
-/// which some class stands in part have partial nodes for all that no larger node holds: as few as
-/// each class's cells in one hold together. Linear in the cells.
+/// node around it: classes that can do more can do less, so a steep or low block keeps one node as
+/// a whole, and what is better inside it nodes of its own. Of patches with partial nodes the
+/// smallest blocks on which some class stands in part have partial nodes for all that no larger
+/// node holds: as few as possible, with each class's cells in one connected. Linear in the cells.
 [[nodiscard]] PatchTree build_tree(const PatchCells& cells);
 
 }  // namespace throng

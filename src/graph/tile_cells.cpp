@@ -34,8 +34,8 @@ std::vector<uint8_t> inclination_by_class(const std::vector<AvatarClass>& classe
 
 namespace {
 
-// Rows of what each class may stand on, told together: calls visit(first cell, count, classes) for
-// runs of cells on which the same ones stand.
+// Rows of what each class may stand on, merged: calls visit(first cell, count, classes) for runs of
+// cells on which the same ones stand.
 template <class Visit>
 void for_runs(const std::array<CellRows, kMaxAvatarClasses>& legal, size_t classes, Visit visit) {
   for (size_t z = 0; z < 64; ++z) {
@@ -145,10 +145,10 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
 
 namespace {
 
-// The cells along one side of a level: who may stand there, and how high.
+// The cells along one side of a level: which classes may stand there, and how high.
 struct Rim {
   std::array<uint16_t, 64> classes{};
-  std::array<int32_t, 64> feet{};  // of cells where somebody may [mm]
+  std::array<int32_t, 64> feet{};  // of cells where some class may [mm]
 };
 
 Rim rim_of(const WorldData& world, GroundLevel level, uint32_t zone_level, TileSide side) {
@@ -323,7 +323,7 @@ class PairFinder {
     const uint32_t to = to_level(feet, nx, nz);
     if (to == kNoNode || to == from) return;
     const int32_t there = here_[to].ground.view.sample(nx, nz);
-    // Its level may go on to the first cell; then nobody comes back.
+    // Its level may continue to the first cell; then no class comes back.
     if ((legal_[to][static_cast<size_t>(z)] >> x & 1) != 0 &&
         (safe_[to] != 0 || std::abs(here_[to].ground.view.sample(x, z) - there) <= steps_[c])) {
       return;

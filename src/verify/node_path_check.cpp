@@ -16,8 +16,8 @@
 #include "verify/claims.h"
 #include "verify/turned_body.h"
 
-// Every way that the finder tells is gone: along each leg by the parameters of its patch, or
-// straight and turning evenly where it crosses from one to the next, and everywhere the class's
+// Every path that the finder returns is walked: along each segment by the parameters of its patch,
+// or straight and turning evenly where it crosses from one to the next, and everywhere the class's
 // exact cylinder stands along the axis against all triangles.
 namespace throng {
 namespace {
@@ -28,7 +28,7 @@ constexpr size_t kFaultsOfAKind = 8;
 constexpr size_t kBatch = 256;       // pairs between two looks at `cancel`
 constexpr double kSame = 1e-6;       // [m]
 constexpr double kSeam = 0.12;       // between neighbours' edges [m]
-constexpr double kMaxPoses = 20000;  // of a leg
+constexpr double kMaxPoses = 20000;  // of a segment
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -101,13 +101,13 @@ class Follower {
     const auto start = Clock::now();
     finder.find(from, to, path);
     walked.seconds = seconds_since(start);
-    // Who would stand in what was put up is nowhere.
+    // A place inside an added obstacle is no place.
     if (!config_.obstacles.empty() && path.end == PathEnd::kNoPlace) {
       walked.exists = false;
       return walked;
     }
     walked.reached = path.end == PathEnd::kReached;
-    // Where there is none, the way to where it stops must be one, too.
+    // A path that ends short of the goal must be legal, too.
     walked.length = walked.reached ? path.length : 0;
     walked.straight = walked.reached ? length(to.feet - from.feet) : 0;
     if (path.points.empty()) return walked;
@@ -138,7 +138,7 @@ class Follower {
   }
 
  private:
-  // Do arcs lead from one part to another, both ways or one?
+  // Do arcs lead from one part to another, in their directions?
   [[nodiscard]] bool leads(uint32_t from, uint32_t to) const {
     std::vector<uint32_t> reached{from};
     for (size_t i = 0; i < reached.size(); ++i) {
@@ -207,7 +207,7 @@ class Follower {
         }
         entered = true;
       }
-      // (A climber that leaps goes over a gap.)
+      // (A climber on a link over a hole has no ground there.)
       if (!leaps && !verify::turned_support(tree_, avatar_, pose.feet)) {
         if (walked.unsupported == 0 && !unsupported) walked.unsupported_at = pose.feet;
         unsupported = true;

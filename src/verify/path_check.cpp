@@ -16,19 +16,19 @@
 #include "verify/triangle_tree.h"
 #include "verify/world_claims.h"
 
-// Every way that the finder of level tiles tells is gone: each leg by the world's own moves, and
-// with the exact body against all triangles. The finder searches over rectangles; what it is held
-// against are cells (moves), triangles, and the graph's components, which nothing of it has made.
+// Every path that the finder of level tiles returns is walked: each segment by the world's own
+// moves, and with the exact body against all triangles. The finder searches over rectangles; it is
+// compared with cells (moves), triangles, and the graph's components, which do not come from it.
 namespace throng {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 256;     // pairs between two looks at `cancel`
-constexpr uint64_t kDraws = 16;    // of a goal that holds together with its start
+constexpr size_t kBatch = 256;     // pairs between two tests of `cancel`
+constexpr uint64_t kDraws = 16;    // of a goal in the component of its start
 constexpr double kSame = 1e-6;     // [m]
-constexpr double kSlack = 1.0001;  // of a way's length, for what its points are rounded to
+constexpr double kSlack = 1.0001;  // of a path's length, for the rounding of its points
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -85,7 +85,7 @@ class Walker {
       if (move.end != MoveEnd::kArrived || !same(move.place, b)) refuse(walked, a.position);
       verify::check_segment(claims_, body_, a, b, spacing_, walked.body);
     }
-    // The length is that of the way, which is no shorter than a straight line.
+    // The length is that of the points, which is no shorter than a straight line.
     if (std::fabs(along - walked.length) > (kSlack - 1) * along + claims_.cell / 100 ||
         walked.length * kSlack + claims_.cell / 100 < walked.straight) {
       refuse(walked, from.position);

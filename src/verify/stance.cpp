@@ -127,7 +127,7 @@ WalkEnd Stance::walk(Vec3d start, double spacing, size_t max_points,
     double y;
   };
   // A lattice point may be met on two floors of a spiral; they are further apart than the body is
-  // high, so half a height tells them apart, and a point taken twice only costs time.
+  // high, so half a height distinguishes them, and a point visited twice only costs time.
   std::set<std::tuple<int32_t, int32_t, int64_t>> seen;
   const auto is_new = [&](const Point& p) {
     const double band = std::max(shape_.height / 2, kSameSurface);

@@ -17,7 +17,7 @@
 #include "world/air_tree.h"
 #include "world/zone_file.h"
 
-/// The air of a world: which cells over and between its zones' matter are free.
+/// The air of a world: which cells over and between its zones' solids are free.
 namespace throng {
 
 struct WorldData;

@@ -28,7 +28,7 @@ AirRows litter(int32_t side, int32_t height, int32_t apron, uint64_t seed) {
   return rows;
 }
 
-// Cell by cell: how far matter is from a cube's footprint in a layer of the world.
+// Cell by cell: how far a solid is from an air box's footprint in a layer of the world.
 int32_t distance(const AirTreeSource& source, int32_t max_value, const AirCube& cube, int32_t y) {
   const int32_t height = source.rows->height;
   const int32_t row = y < source.base || y >= source.base + height ? height - 1 : y - source.base;
@@ -42,7 +42,7 @@ int32_t distance(const AirTreeSource& source, int32_t max_value, const AirCube& 
   return max_value + 1;
 }
 
-TEST(AirClearance, IsWhatALookAtEveryCellFinds) {
+TEST(AirClearance, IsWhatATestOfEveryCellFinds) {
   size_t cubes = 0, wide = 0, high = 0;
   for (uint64_t seed = 1; seed <= 24; ++seed) {
     const int32_t apron = seed % 3 == 0 ? 16 : seed % 3 == 1 ? 4 : 7;

@@ -161,7 +161,7 @@ TEST(Columns, DeepColumnsSpillAndStaySorted) {
   EXPECT_EQ(gaps->layers[299]->ceiling[17], kOpenSkyMm);
 }
 
-TEST(Columns, GapsAreWhatJoinedSpansLeaveFree) {
+TEST(Columns, FreeSpansAreWhatJoinedSpansLeave) {
   for (uint64_t seed = 1; seed <= 100; ++seed) {
     const Soup soup = random_soup(seed, 0.2, static_cast<int32_t>(seed % 60) + 2);
     const int32_t min_free_span = 700 + static_cast<int32_t>(seed) * 10;
@@ -184,7 +184,7 @@ TEST(Columns, GapsAreWhatJoinedSpansLeaveFree) {
         ASSERT_EQ(layer.top[c] + gaps->base, expected[k].first);
         const int32_t ceiling = layer.ceiling[c];
         ASSERT_EQ(ceiling == kOpenSkyMm ? ceiling : ceiling + gaps->base, expected[k].second);
-        // The support is no higher than the matter, and not below the run's lowest span.
+        // The support is no higher than the solid, and not below the run's lowest span.
         if (layer.support[c] != kNoSupport) {
           ASSERT_LE(layer.support[c] >> 8, layer.top[c]);
         }

@@ -67,7 +67,7 @@ naive::FreeSpanBlock by_height(const naive::FreeSpanBlock& high, const naive::Fr
   return out;
 }
 
-// Every free span of the middle tile, and which of them hang together: a flood fill over all pairs
+// Every free span of the middle tile, and which of them are connected: a flood fill over all pairs
 // of free spans in neighbouring columns.
 Expected expect(const naive::FreeSpanBlock& block, const BodyLimits& limits) {
   Expected out;
@@ -109,7 +109,7 @@ Expected expect(const naive::FreeSpanBlock& block, const BodyLimits& limits) {
   return out;
 }
 
-// What a deal must be, whatever its choices.
+// What an assignment must be, whatever its choices.
 void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& limits,
                         const std::string& what) {
   LayerPool pool;
@@ -128,7 +128,7 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& lim
       const auto cell = static_cast<size_t>(c);
       if (layer.top[cell] == kNone16) {
         ASSERT_EQ(layer.feet[cell], kNone16) << what;
-        ASSERT_EQ(layer.ceiling[cell], 0) << what << ": room where there is no free span";
+        ASSERT_EQ(layer.ceiling[cell], 0) << what << ": a ceiling where there is no free span";
         continue;
       }
       ++cells;
@@ -142,7 +142,7 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& lim
       ASSERT_LE(layer.top[cell], Layer::kHighest) << what;
       if (free_span->ceiling == kOpenSkyMm) {
         ASSERT_EQ(layer.ceiling[cell], kNone16) << what;
-      } else {  // exact, or as high as 16 bits tell
+      } else {  // exact, or the highest of 16 bits
         ASSERT_EQ(layer.ceiling[cell], std::min(free_span->ceiling - layer.base, 65534)) << what;
       }
       const bool surface = free_span->support != kNoSupport;
@@ -192,7 +192,7 @@ naive::RandomBlock random_block(uint64_t seed) {
           .codes = seed % 5 == 0 ? 1 : 3};
 }
 
-TEST(Layers, EveryGapThatSomebodyCanUseIsInExactlyOneLayerButCrumbs) {
+TEST(Layers, EveryFreeSpanThatAClassCanUseIsInExactlyOneLayerButCrumbs) {
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const auto classes = default_classes();
     const BodyLimits limits = limits_of(classes, seed % 2 == 0 ? 0.1 : 0.3);
@@ -202,7 +202,7 @@ TEST(Layers, EveryGapThatSomebodyCanUseIsInExactlyOneLayerButCrumbs) {
   }
 }
 
-// Free spans at random heights, as many as there is room for: no floor goes on anywhere for long.
+// Free spans at random heights, as many as fit: no floor continues for long.
 naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t layers, double spread) {
   naive::FreeSpanBlock block;
   for (int32_t c = 0; c < kTileArea; ++c) {
@@ -225,7 +225,7 @@ naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t laye
   return block;
 }
 
-TEST(Layers, NoiseOfManyLayersIsDealtWithoutLoss) {
+TEST(Layers, NoiseOfManyLayersIsAssignedWithoutLoss) {
   const BodyLimits limits = limits_of(default_classes());
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const double spread = seed % 2 == 0 ? 300 : 3000;

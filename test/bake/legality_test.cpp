@@ -21,12 +21,12 @@ namespace {
 constexpr int32_t kLast = kTileSide - 1;
 
 SurfaceCodes make_codes(uint32_t all) {
-  // Everybody's, everybody's but the first class's, nobody's.
+  // All classes', all but the first class's, no class's.
   return {.codes = {{0, kAreaWalkable}, {1, kAreaWalkable}, {2, kAreaBlocked}},
           .allowed = {all, all & ~1u, 0}};
 }
 
-// A block dealt to layers, with what legality needs around it.
+// A block assigned to layers, with what legality needs around it.
 struct AssignedBlock {
   AssignedBlock(const naive::SolidBlock& solids, std::vector<AvatarClass> of, double cell_size)
       : classes(std::move(of)), cell(cell_size) {
@@ -299,7 +299,7 @@ TEST(Legality, OnASingleLayerTheWindowFindsExactlyWhatTheDefinitionSays) {
       if (column.size() > 1) column.resize(1);
     }
     AssignedBlock plain(solids, default_classes(), 0.1);
-    if (seed % 4 == 1) {  // ceilings without free spans above them: nobody ever is there
+    if (seed % 4 == 1) {  // ceilings without free spans above them
       for (int32_t z = -64; z < 128; ++z) {
         for (int32_t x = -64; x < 128; ++x) {
           for (naive::FreeSpan& free_span : plain.free_spans.at(x, z)) {
@@ -397,7 +397,7 @@ TEST(Legality, WhatAllLegalPassesEveryCellPasses) {
       const auto room = 900 + static_cast<int32_t>(random_below(seed, 7, 0, 2500));
       solids.cells[at].push_back({1000 + room, 1000 + room + 50, kNoSupport, 0});
     }
-    if (seed % 2 == 0) {  // A neighbour that could be in the way, or just not.
+    if (seed % 2 == 0) {  // A neighbour that could block, or just not.
       const auto at = static_cast<size_t>(random_below(seed, 4, 0, solids.cells.size()));
       solids.cells[at][0].high += static_cast<int32_t>(random_below(seed, 5, 0, 800));
     }
@@ -483,7 +483,7 @@ TEST(Legality, ATallBodyUnderAFarCeilingOfATallTileKeepsItsHead) {
   EXPECT_GT(tally.legal, 1000);
 }
 
-TEST(Legality, ABodyThatStepsFarDownStillSeesADeeperDrop) {
+TEST(Legality, ABodyThatStepsFarDownDoesNotStepOverADeeperEdge) {
   // bottom is 5 m; beside the tile the ground lies 12 m lower, in another tile's layer.
   const AvatarClass wide{.name = "wide", .height = 20, .radius = 1, .step = 5};
   for (const int32_t drop : {3000, 5500, 12000, 40000}) {

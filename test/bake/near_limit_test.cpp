@@ -55,7 +55,7 @@ Height rough(double spacing, double percent, uint64_t seed) {
   };
 }
 
-TEST(NearLimit, NobodyEntersCreasesKerbsAndPosts) {
+TEST(NearLimit, NoBodyEntersCreasesKerbsAndPosts) {
   std::vector<AvatarClass> classes = default_classes();
   // One that clears its slope by nothing, on more than one cell in height; one thinner than a cell.
   classes.push_back({.name = "steep", .height = 1, .radius = 0.27, .step = 0, .max_slope = 21});
@@ -167,7 +167,7 @@ struct Soup {
   TileTriangles of_tiles;
 };
 
-TEST(SurfacePlanes, NoMatterBelowTheGapStandsAboveThePlaneByMoreThanTheExcess) {
+TEST(SurfacePlanes, NoSolidBelowTheFreeSpanIsAboveThePlaneByMoreThanTheExcess) {
   int64_t points = 0, planes = 0, raised = 0;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     const Soup soup(seed);

@@ -15,10 +15,10 @@
 namespace throng {
 namespace {
 
-// Points of the patch's triangles, from feet anywhere on a part: none rises higher than is told.
-TEST(SelfSupport, NoTriangleRisesHigherThanIsTold) {
+// Points of the patch's triangles, from feet anywhere on a part: none rises above the bound.
+TEST(SelfSupport, NoTriangleRisesAboveTheBound) {
   size_t seen = 0, known = 0;
-  double closest = 0;  // of what is told, the greatest share that was met
+  double closest = 0;  // the greatest share of the bound that was reached
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const Scene scene = test::net_scene({.side = 2,
                                          .cell = 8 + static_cast<double>(seed % 5) * 4,
@@ -73,7 +73,7 @@ TEST(SelfSupport, NoTriangleRisesHigherThanIsTold) {
   EXPECT_GT(closest, 0.7);  // The bound is no idle one.
 }
 
-// A patch that turns over itself tells nothing of itself.
+// For a patch that turns over itself there is no bound.
 TEST(SelfSupport, NothingIsKnownOfWhatFolds) {
   BezierPatch patch;
   for (size_t k = 0; k < 16; ++k) {

@@ -134,7 +134,7 @@ TEST(TriangleFilter, AGlanceOverlooksNoTubeThatATriangleEnters) {
       for (const FilterTube& tube : c.tubes) tubes.push_back(tube.whole);
       const uint32_t all = (1u << tubes.size()) - 1, some = static_cast<uint32_t>(round) & all;
       const uint32_t found = glance(list, c.frame, tubes, all);
-      // Others may grow the margin, but who is not asked about is not answered.
+      // Others may grow the margin, but a tube that is not queried gets no answer.
       ASSERT_EQ(glance(list, c.frame, tubes, some) & ~(found & some), 0u) << "round " << round;
       for (size_t b = 0; b < tubes.size(); ++b) {
         bool enters = false;

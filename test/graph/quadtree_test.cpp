@@ -124,7 +124,7 @@ uint64_t own_cells(const PatchCells& cells, const PatchNode& node, uint16_t bit)
   return own;
 }
 
-// Those of some cells of a block that hold together with the first, step by step.
+// Those of some cells of a block that are connected to the first, step by step.
 uint64_t first_piece(const PatchCells& cells, const PatchNode& node, uint64_t own, uint16_t bit) {
   std::vector<int32_t> reached{std::countr_zero(own)};
   uint64_t piece = own & (~own + 1);
@@ -267,15 +267,15 @@ class Sets {
 };
 
 // Two patches beside each other, some pairs of their border cells joined for some classes: cells
-// hold together for a class exactly if the nodes that hold them do.
-TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
+// are connected for a class exactly if the nodes that hold them are.
+TEST(NodeLinks, NodesConnectWhatCellsConnect) {
   size_t tested = 0, steps = 0;
   for (uint64_t seed = 1; seed <= 160; ++seed) {
     std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
                                        random_cells(3, seed + 1000, seed % 3 == 0)};
     cells[0].partial = seed % 4 > 1;
     cells[1].partial = seed % 8 > 3;
-    // Steps divide nodes, but not whoever goes over them.
+    // Steps divide nodes, but no class's paths.
     for (uint64_t p = 0; p < 2 && seed % 5 > 1; ++p) {
       const auto side = static_cast<uint64_t>(cells[p].side());
       for (uint64_t t = 0; t < side; ++t) {
@@ -308,7 +308,7 @@ TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
       EXPECT_LT(links[i].a, links[i].b);
       steps += links[i].kind == LinkKind::kStep ? 1 : 0;
       if (i == 0 || links[i - 1].a != links[i].a || links[i - 1].b != links[i].b) continue;
-      EXPECT_EQ(links[i - 1].classes & links[i].classes, 0) << "who walks needs no step";
+      EXPECT_EQ(links[i - 1].classes & links[i].classes, 0) << "a class that walks needs no step";
     }
 
     for (uint32_t c = 0; c < 4; ++c) {

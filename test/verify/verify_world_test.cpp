@@ -66,8 +66,8 @@ TEST(VerifyWorld, BakedHallHoldsForEveryClass) {
   }
 }
 
-// Floors above each other in one tile, close enough that layers meet: where a step was once taken
-// from a floor to the one above it.
+// Floors above each other in one tile, close enough that level tiles meet: where a step was once
+// taken from a floor to the one above it.
 TEST(VerifyWorld, BuiltInWorldsHoldForEveryClass) {
   for (const char* name : {"stairs", "church", "garage"}) {
     const auto scene = make_builtin_world({.name = name});
@@ -131,7 +131,7 @@ PathReport walk_paths(const World& world, const Scene& source, int32_t avatar_cl
   return report ? *report : PathReport{};
 }
 
-TEST(VerifyPaths, EveryWayIsGoneByLegalMovesAndItsBody) {
+TEST(VerifyPaths, EveryPathIsWalkedByLegalMovesAndItsBody) {
   for (const char* name : {"stairs", "church", "garage", "maze"}) {
     const auto scene = make_builtin_world({.name = name});
     ASSERT_TRUE(scene) << scene.error().message;
@@ -153,7 +153,7 @@ TEST(VerifyPaths, EveryWayIsGoneByLegalMovesAndItsBody) {
   }
 }
 
-TEST(VerifyPaths, WaysThroughAnotherModelAreFoundOut) {
+TEST(VerifyPaths, PathsThroughAnotherModelAreDetected) {
   Scene more = hall();
   more.add_box({0, 0, 3.8}, {20, 2, 4});
   const PathReport entered = walk_paths(hall_world(), more, 0, 100);

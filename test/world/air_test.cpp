@@ -129,7 +129,7 @@ TEST(Air, CellsAreFreeWhereNoTriangleTouchesThemAndOnlyThere) {
   }
 }
 
-// The body by its own measures, cell by cell, against both ways of asking the octree.
+// The body by its own measures, cell by cell, against both queries of the octree.
 TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
   for (const double cell : {0.1, 0.2, 0.8}) {
     const World world = bake(litter(7), cell, 6.4);
@@ -179,7 +179,7 @@ TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
   }
 }
 
-TEST(Air, NoCubePromisesMoreRoomThanThereIs) {
+TEST(Air, NoAirBoxPromisesMoreClearanceThanThereIs) {
   const World world = bake(litter(3), 0.2, 6.4);
   const AirData& air = *world.data()->air;
   uint64_t wide = 0;
@@ -331,7 +331,7 @@ TEST_F(DamagedAir, IsOpenedAgainAsItWasBaked) {
   }
 }
 
-TEST_F(DamagedAir, IsKeptByTheNextBakeAndLeftOutOfOneWithoutAir) {
+TEST_F(DamagedAir, IsReusedByTheNextBakeAndLeftOutOfOneWithoutAir) {
   const std::string before = read(air_file_);
   Context context;
   BakeConfig config{.cell = 0.1, .air = 0.4, .zone = 6.4, .classes = flyers()};
@@ -347,7 +347,7 @@ TEST_F(DamagedAir, IsKeptByTheNextBakeAndLeftOutOfOneWithoutAir) {
   EXPECT_EQ(air_summary(*World::open(path_)).error().code, Errc::kNotFound);
 }
 
-TEST_F(DamagedAir, OldFilesAreNotTakenOverWhereAllIsBakedAgain) {
+TEST_F(DamagedAir, OldFilesAreNotReusedWhereAllIsBakedAgain) {
   const std::string before = read(air_file_);
   const auto long_ago = std::filesystem::last_write_time(air_file_) - std::chrono::hours(1);
   std::filesystem::last_write_time(air_file_, long_ago);
@@ -378,7 +378,7 @@ TEST_F(DamagedAir, IsBakedAgainWhereTheWorldEndsElsewhere) {
   }
 }
 
-// Whoever only walks needs none of them.
+// Classes that only walk need none of them.
 TEST_F(DamagedAir, DoesNotConcernTheGround) {
   write(air_file_, read(air_file_).substr(0, 100));
   const auto world = World::open(path_);

@@ -189,7 +189,7 @@ TEST(FalseRegions, ChangedBytesAndCutFilesAreRefusedByTheSum) {
     }
   }
   EXPECT_GT(refused, 1500u);
-  EXPECT_LT(filling, 80u);  // What fills up words, or makes another way to the same numbers.
+  EXPECT_LT(filling, 80u);  // What fills up words, or encodes the same numbers differently.
   EXPECT_FALSE(RegionZone::from_bytes(owned(made.links[0]), "it"));
   EXPECT_FALSE(LinkZone::from_bytes(owned(made.regions[0]), "it"));
 }

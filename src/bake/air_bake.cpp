@@ -21,7 +21,7 @@ namespace {
 constexpr int32_t kAirBakeVersion = 1;
 constexpr double kLayerPhase = kGridPhase;
 constexpr int32_t kSkyLayers = 16;             // flown in over the highest solid
-constexpr double kDefaultAirCell = 0.4;        // least for flyers if nothing is asked for [m]
+constexpr double kDefaultAirCell = 0.4;        // minimum for flyers by default [m]
 constexpr size_t kMaxBytes = size_t{1} << 31;  // of the rows of one zone
 
 int32_t floor_div(int64_t a, int64_t b) {
@@ -172,7 +172,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   const int32_t side = tiles * per_tile, across = side + 2 * apron;
   const int32_t grid_x = (plan_.grid.width + shape_.multiple - 1) / shape_.multiple;
   const int32_t grid_z = (plan_.grid.depth + shape_.multiple - 1) / shape_.multiple;
-  // How much of what is looked at is the world's: a world may grow within its last tiles, and no
+  // How much of what is read is the world's: a world may grow within its last tiles, and no
   // triangle of this zone show it.
   const auto own_part = [&](int32_t grid, int32_t zone) {
     return static_cast<uint64_t>(std::clamp(grid - zone * side, 0, side + known));
@@ -203,7 +203,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
     const auto items = bins.square(i);
     if (items.empty() || context.cancel) return;
     const int32_t column = static_cast<int32_t>(i) % ring, row = static_cast<int32_t>(i) / ring;
-    TileRect rect;  // of a ring tile only what is looked at
+    TileRect rect;  // of a ring tile only what is read
     if (column == 0) rect.x0 = kTileSide - apron * shape_.multiple;
     if (column == ring - 1) rect.x1 = apron * shape_.multiple;
     if (row == 0) rect.z0 = kTileSide - apron * shape_.multiple;

@@ -21,7 +21,7 @@ AirShape air_shape(const BakePlan& plan, const Box3d& bounds);
 /// Why a bake with this config can have no air, or nothing.
 Result<void> check_air(const BakeConfig& config);
 
-/// True if the config asks for air: a cell for it, or a class that flies.
+/// True if the config requires air: a cell for it, or a class that flies.
 bool wants_air(const BakeConfig& config);
 
 /// Bakes air files one zone after the other. Several may bake different zones of one plan at a

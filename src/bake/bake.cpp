@@ -17,6 +17,8 @@
 #include "core/stopwatch.h"
 #include "world/zone_data.h"
 
+// bake_world and bake_world_to: bake the zones of a scene, several side by side, then the graph, in
+// memory or into a world's folder.
 namespace throng {
 namespace {
 

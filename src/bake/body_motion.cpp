@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 
+// Proves that a body may move between two poses: the body, grown by as far as any of its points
+// moves, enters no triangle; where it does, the motion is halved. Cost: triangles near, times
+// halvings.
 namespace throng {
 namespace {
 

@@ -9,6 +9,9 @@
 
 #include "core/parallel.h"
 
+// Exact tests of one triangle against an upright cylinder, a prism or a cylinder that moves: the
+// triangle is clipped to the heights, then its distance to the axis is compared. Also clusters of a
+// scene's triangles by squares of the ground, to find those near a box.
 namespace throng {
 namespace {
 
@@ -202,7 +205,7 @@ struct CubeKey {
   friend auto operator<=>(const CubeKey&, const CubeKey&) = default;
 };
 
-// std::floor() is a call where the oldest of machines must be able to go on.
+// std::floor() is a function call in code for the oldest machines.
 int64_t floor_of(double v) {
   const auto whole = static_cast<int64_t>(v);
   return whole - (static_cast<double>(whole) > v ? 1 : 0);

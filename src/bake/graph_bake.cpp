@@ -6,10 +6,12 @@
 
 #include "graph/graph_passes.h"
 
+// Runs the passes of graph/graph_passes.h on a world's folder, which lends their files of an
+// earlier bake.
 namespace throng {
 namespace {
 
-constexpr uint64_t kResident = uint64_t{8} << 20;  // of zones looked at [bytes]
+constexpr uint64_t kResident = uint64_t{8} << 20;  // of zones in use [bytes]
 
 class FilesInFolder : public GraphFiles {
  public:

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+// Linear passes over the 64 x 64 cells of a layer or a free-span layer, 16 to 32 cells a vector;
+// results are rows of bits.
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/layer_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

@@ -167,7 +167,7 @@ void LayerWindow::fill_apron(const Neighbourhood& tiles, const Layer& own, int32
     for (int32_t z = z0; z < z1; ++z) any |= own.useful[static_cast<size_t>(z)] & columns;
     return any != 0;
   };
-  // Corners last: they look at the sides.
+  // Corners last: they read the sides.
   for (const int32_t side : {1, 3, 5, 7, 0, 2, 6, 8}) {
     if (tiles[static_cast<size_t>(side)] == nullptr) continue;
     const LayerList& tile = *tiles[static_cast<size_t>(side)];

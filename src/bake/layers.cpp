@@ -12,11 +12,10 @@
 
 // Free spans of neighbouring columns belong together when a step leads from one to the other. Runs
 // of linked free spans in a row are the units; they are joined with union-find in one raster pass
-// (after Rosenfeld, Pfaltz. Sequential operations in digital picture processing. 1966). Most free
-// spans continue that of the same rank beside them, which vectors find; only where ranks shift, at
-// walls and edges, are columns compared one by one. A component that lies over itself, like a
-// spiral ramp, is split along its breadth-first order; then components are packed first-fit into
-// layers.
+// [RP66]. Most free spans continue that of the same rank beside them, which vectors find; only
+// where ranks shift, at walls and edges, are columns compared one by one. A component that lies
+// over itself, like a spiral ramp, is split along its breadth-first order; then components are
+// packed first-fit into layers.
 namespace throng {
 namespace {
 

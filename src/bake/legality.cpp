@@ -112,7 +112,7 @@ void LegalCellsOf(const Layer& layer, const BodyWindow& body, const BitPlane& gr
   uint16_t* aligned = scratch.rows.data();
   aligned += (64 - reinterpret_cast<uintptr_t>(aligned) % 64) % 64 / sizeof(uint16_t);
   const RowTable table{aligned, count};
-  // Rows that no allowed cell looks at are left out.
+  // Rows that no allowed cell reads are left out.
   const auto is_asked = [&](int32_t z) {
     const int32_t from = std::max(z - reach, 0), to = std::min(z + reach, kTileSide - 1);
     return std::any_of(&ground[static_cast<size_t>(from)], &ground[static_cast<size_t>(to)] + 1,

@@ -14,6 +14,8 @@
 #include "graph/node_bins.h"
 #include "throng/scene.h"
 
+// Makes nodes zone by zone in batches, reuses those whose input is unchanged, and collects what the
+// index needs of them.
 namespace throng {
 namespace {
 
@@ -202,7 +204,7 @@ Result<std::shared_ptr<NodeData>> make_all(const World& world, const Scene& scen
   NodeBaker baker(world, scene, config, folder);
   baker.plan();
   if (auto ok = baker.reuse_zones(); !ok) return ok.error();
-  // Jumps are looked at even if nothing has to be made.
+  // Off-mesh links are checked even if nothing has to be made.
   const auto batches = baker.batches(config.working_bytes);
   for (size_t b = 0; b < batches.size(); ++b) {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});

@@ -32,8 +32,8 @@ class NodeBaker {
   /// Can nodes be made of this at all?
   [[nodiscard]] static Result<void> check(const World& world, const Scene& scene,
                                           const NodeConfig& config);
-  /// Do all jumps given by hand begin and end at places of the world? Looks at the zones around
-  /// them only. Fails with kBadInput, kBadFile or kCancelled.
+  /// Do all off-mesh links begin and end at places of the world? Reads the zones around them only.
+  /// Fails with kBadInput, kBadFile or kCancelled.
   [[nodiscard]] static Result<void> check_off_mesh_links(const World& world, const Scene& scene,
                                                          const NodeConfig& config,
                                                          Context& context);

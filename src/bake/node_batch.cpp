@@ -269,7 +269,7 @@ class NodeBatch {
     return best;
   }
 
-  // Does a jump begin and end in or near zones none of which is made here?
+  // Does an off-mesh link begin and end in or near zones none of which is made here?
   [[nodiscard]] bool is_elsewhere(uint32_t off_mesh_link) const {
     bool is_near = false;
     for (uint32_t z = 0; z < plan_.zones.size(); ++z) {

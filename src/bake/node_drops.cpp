@@ -280,7 +280,7 @@ class DropFinder {
   std::vector<Lower> lower_;
   std::vector<uint32_t> found_;
   std::vector<LocalTriangle> near_;
-  bool near_found_ = false;  // for the place that is looked at
+  bool near_found_ = false;  // for the current place
 };
 
 // Is there a side of a patch's cell over which the class has no neighbour?

@@ -12,6 +12,8 @@
 #include "core/hash.h"
 #include "world/sealed_file.h"
 
+// The nodes' folder of a world: files of earlier bakes that can be reused, and a folder of new ones
+// that replaces it at once.
 namespace throng {
 namespace fs = std::filesystem;
 namespace {

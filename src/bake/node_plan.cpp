@@ -130,7 +130,7 @@ NodeReaches reaches(const WorldData& world, const Scene& scene, const NodeConfig
     farthest = std::max(farthest, across);
     reach.triangles.push_back(leap + 2 * body + 4 * across + kMargin);
   }
-  // A flood looks at cells that come as near, and at those beside them.
+  // A flood visits cells that come as near, and those beside them.
   const double widest = make_bins(world.summary.classes).width.back();
   reach.nodes = std::max(widest, leap) + farthest + kMargin;
   return reach;
@@ -160,7 +160,7 @@ void find_near(double reach, std::vector<NodePlanZone>& zones) {
   }
 }
 
-// A jump makes the zones around both its ends depend on each other.
+// An off-mesh link makes the zones around both its ends depend on each other.
 void find_off_mesh_links(const NodeConfig& config, std::vector<NodePlanZone>& zones) {
   for (uint32_t j = 0; j < config.off_mesh_links.size(); ++j) {
     std::vector<uint32_t> touched;

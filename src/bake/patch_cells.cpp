@@ -531,7 +531,7 @@ uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size
   tubes_.clear();
   for (uint32_t left = met; left != 0; left &= left - 1) {
     const auto b = static_cast<size_t>(std::countr_zero(left));
-    // What is deeper than any height asks for leaves none.
+    // What is deeper than any height needs leaves none.
     const BodySweep decisive = b == 0 ? low_room(cell, posture) : sweeps_[b];
     tubes_.push_back({.whole = sweeps_[b], .decisive = decisive});
   }

@@ -122,7 +122,7 @@ class PatchJudge {
   double steepest_walk_ = 0;  // cosine of what any walker may stand on
 
   uint32_t patch_ = 0;              // that is judged
-  std::vector<uint32_t> beside_;    // patches that go on from this one
+  std::vector<uint32_t> beside_;    // patches that continue this one
   std::vector<uint8_t> is_beside_;  // by patch; and those known to pierce it
   PatchParts parts_, coarser_;      // so many cells of the patch
   PatchParts blocks_;               // the same in blocks
@@ -138,7 +138,7 @@ class PatchJudge {
   };
   NearLists others_, all_;      // without those of its own that are spared, and with them
   FilterList foreign_, maker_;  // those of other patches, not beside; near a square
-  FilterList found_others_;     // before their boxes are looked at
+  FilterList found_others_;     // before their boxes are tested
   bool all_is_filled_ = false, all_is_asked_ = false;
   uint32_t spared_ = 0;                  // bodies that the patch's own triangles here do not reach
   std::array<bool, 2> spares_height_{};  // along the normal and upright

@@ -11,6 +11,8 @@
 #include "world/node_data.h"
 #include "world/place.h"
 
+// Links between cells of Bezier patches: over shared edges where bodies pass, over a hole from a
+// cell to those near that a body can move to. Every link is proved by body_motion.
 namespace throng {
 namespace {
 
@@ -144,7 +146,7 @@ bool lacks_neighbour(const PatchCells& cells, uint32_t cell, uint16_t bit) {
   });
 }
 
-// How far from a cell's middle the motions of a leap look at triangles. [m]
+// How far from a cell's middle the motions of a link over a hole test triangles. [m]
 double motion_reach(const PatchBody& body, double size) {
   constexpr double kRounded = 0.01;  // cells' middles are kept in floats
   return patch_leap(body.radius, size) + MotionJudge::reach_of(body) + kRounded;
@@ -257,7 +259,7 @@ class HoleLinker {
   uint32_t patch_;
   const BezierCells& here_;
   MotionJudge judge_;
-  double farthest_ = 0;  // from a cell's middle, that any leap looks at triangles [m]
+  double farthest_ = 0;  // from a cell's middle, that any such link tests triangles [m]
   std::vector<Target> targets_;
   std::vector<std::pair<double, uint32_t>> nearest_;
   bool looked_closer_ = false;  // at the cell whose leaps are tried

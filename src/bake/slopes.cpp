@@ -172,7 +172,7 @@ void RecheckSlopes(const Layer& layer, const BodyWindow& body, const LegalityScr
 using DF = hn::RebindToFloat<DI>;
 using VF = hn::Vec<DF>;
 
-// Feet are rounded to whole mm when they are asked for; the rest is for the arithmetic. [mm]
+// Feet are rounded to whole mm when they are read; the rest is for the arithmetic. [mm]
 constexpr float kFeetRounding = 0.6f;
 
 HWY_INLINE VF half_apart(VF ax, VF az, VF bx, VF bz) {

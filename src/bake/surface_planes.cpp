@@ -36,7 +36,7 @@ struct CellRun {
 struct SurfaceSide {
   const LayerWindow* window;
   CellPlanes* cells;
-  const CellRun* runs;     // of cells that are looked at, by row
+  const CellRun* runs;     // of cells in question, by row
   int32_t x0, x1, z0, z1;  // the last included
   float limit;             // of excesses that matter [mm]
   float lowest, highest;   // tops that matter, the lowest less the limit
@@ -65,7 +65,7 @@ using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
 
 constexpr float kHalf = 0.51f;    // of a difference over a cell, and more than floats err
-constexpr float kNegligible = 1;  // an excess that is not looked at closer [mm]
+constexpr float kNegligible = 1;  // an excess that is not refined [mm]
 constexpr double kFar = 1000;     // beyond, floats do not resolve how high a plane is [cells]
 
 HWY_INLINE VF set(double value) { return hn::Set(DF(), static_cast<float>(value)); }

@@ -7,6 +7,9 @@
 #include <bit>
 #include <cmath>
 
+// Tests triangles against cylinders a vector at a time, with margins for rounding in single
+// precision: a sure answer either way, or an exact test later. Linear in the triangles.
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/triangle_filter.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

@@ -58,7 +58,7 @@ struct FilterQuery {
 /// True only if a triangle enters an upright tube; most that do are noticed. Linear.
 [[nodiscard]] bool surely_enters(const FilterList& list, Vec3d centre, const BodySweep& tube);
 
-/// Bit i: tube i, which is upright, is asked about, and a triangle surely enters it uphill from its
+/// Bit i: tube i, which is upright, is queried, and a triangle surely enters it uphill from its
 /// axis, as ground does on which a body stands too steep. [at most 31 tubes] Linear.
 [[nodiscard]] uint32_t surely_enters_uphill(const FilterList& list, Vec3d centre,
                                             std::span<const BodySweep> tubes, uint32_t asked);

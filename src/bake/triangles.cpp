@@ -8,6 +8,8 @@
 
 #include "core/parallel.h"
 
+// Puts a scene's triangles on the grid and gives each its surface code: slope bin and area kind,
+// ordered by how much they restrict.
 namespace throng {
 namespace {
 

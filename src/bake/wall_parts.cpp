@@ -179,8 +179,8 @@ void FillParts(const PlanPart& polygon, const WallScratch::Near& near, const Bit
 }
 
 // Of the wanted cells of a tile, keeps those that the window finds closed to a body in the slab.
-// `first` is the tile's first cell. Only vectors that hold a wanted cell are looked at: others may
-// lie outside of the window.
+// `first` is the tile's first cell. Only vectors that hold a wanted cell are tested: others may lie
+// outside of the window.
 void KeepClosed(const LayerWindow& window, ptrdiff_t first, WallScratch::Slab slab,
                 WallScratch::Side& side) {
   const hn::CappedTag<uint16_t, 32> du;
@@ -346,7 +346,7 @@ bool touches_wanted(const WallScratch::Side& side, const WallScratch::Near& near
   return false;
 }
 
-// The lowest and the highest band of some that are asked for.
+// The lowest and the highest band of some wanted ones.
 std::pair<int32_t, int32_t> bands_of(const std::vector<WallScratch::Asked>& asked) {
   const auto [low, high] = std::minmax_element(asked.begin(), asked.end());  // bands come first
   return {low->band, high->band};

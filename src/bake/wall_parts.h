@@ -38,7 +38,7 @@ struct WallScratch {
   std::vector<Asked> asked;
   uint32_t known = 0;                       // bit s: around[s] is; to be cleared for another tile
   std::array<std::vector<Near>, 9> around;  // triangles that bodies on the tile may touch
-  std::vector<Near> near;                   // those of them that the cells asked for may touch
+  std::vector<Near> near;                   // those of them that the wanted cells may touch
   std::array<Side, 9> sides;
   std::array<BitPlane, 9> drops;  // columns that surely stop every body within reach
   std::vector<uint64_t> parts;    // at LayerWindow::index; bit 8 j + i is part (i, j)

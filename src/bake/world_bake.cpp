@@ -19,6 +19,8 @@
 #include "core/side_by_side.h"
 #include "world/zone_data.h"
 
+// Plans a bake: checks it, lays the grid, sorts triangles into zones, hashes each zone's input, and
+// puts baked zones together into a world.
 namespace throng {
 namespace {
 

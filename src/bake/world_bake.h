@@ -63,7 +63,7 @@ class WorldBake {
   /// with kLimit.
   [[nodiscard]] Result<std::shared_ptr<WorldData>> world(std::span<const ZoneFacts> facts,
                                                          BakeReport& report) const;
-  /// The air of a world of all zones, if the config asks for any: into the folder, or into memory
+  /// The air of a world of all zones, if the config requires any: into the folder, or into memory
   /// if it is null. Fails with kIo, kLimit or kCancelled.
   Result<void> add_air(WorldFolder* folder, WorldData& world, Context& context,
                        BakeReport& report) const;

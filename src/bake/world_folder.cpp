@@ -30,7 +30,7 @@ namespace {
 constexpr const char* kManifest = "manifest.thm";
 constexpr const char* kJournal = "journal";
 
-// NAME.part and NAME swap their names, or, where that cannot be done in one go, NAME.old.
+// NAME.part and NAME swap their names, or, where that cannot be done at once, NAME.old.
 bool exchange(const fs::path& part, const fs::path& target, const fs::path& old) {
   std::error_code error;
   if (!fs::exists(target, error)) {

@@ -20,7 +20,7 @@
 #include "world/zone_data.h"
 
 /// The folder of a world while it is baked: zones are taken over from the world that is there and
-/// from a bake that was killed, and the new world replaces the old one in one go.
+/// from a bake that was killed, and the new world replaces the old one at once.
 namespace throng {
 
 class WorldFolder {

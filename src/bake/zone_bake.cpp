@@ -96,7 +96,7 @@ struct ZoneScratch::Worker {
   TileFreeSpans free_spans,
       high;  // all, and those of BodyLimits::kHighFreeSpan, if these are not all
   std::vector<size_t> low, tall;  // classes that use all layers of a tile, or high ones only
-  uint32_t beside_walls = 0;      // bit c: walls of the tile were looked at for class c
+  uint32_t beside_walls = 0;      // bit c: walls of the tile were tested for class c
   LegalityScratch legality;
   CellPlanes planes;
   WallScratch walls;
@@ -143,7 +143,7 @@ void ZoneJob::make_layers(int32_t column, int32_t row, ZoneScratch::Worker& work
   const uint32_t begin = bins_.first[bin], end = bins_.first[bin + 1];
   if (begin == end) return;
   const auto start = Clock::now();
-  TileRect rect;  // of a ring tile only what the zone looks at
+  TileRect rect;  // of a ring tile only what the zone reads
   const int32_t apron = plan_.apron(), last = side_ - 1;
   if (column == 0) rect.x0 = std::max(0, kTileSide - apron);
   if (column == last) rect.x1 = std::min(kTileSide, apron);
@@ -352,8 +352,8 @@ bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
 // is legal, whose tilt comes from there (world/surface.h).
 void forget_feet(const CellRows& legal, Layer& layer) {
   if (layer.all_useful) return;
-  // Nor is anything forgotten where a class may stand everywhere; those around such a tile look at
-  // its heights meanwhile (is_open).
+  // Nor is anything forgotten where a class may stand everywhere; those around such a tile read its
+  // heights meanwhile (is_open).
   if (std::all_of(legal.begin(), legal.end(), [](uint64_t row) { return ~row == 0; })) return;
   CellRows kept = layer.useful;
   const auto keep = [&](size_t z, uint64_t row) {
@@ -436,7 +436,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
   for (int32_t row = 0; row < side_ + 2; row += kBand) {
     if (context.cancel) return false;
     const int32_t end = row + kBand;
-    // Once cancelled, no pass looks at what the one before it has left out.
+    // Once cancelled, no pass reads what the one before it has left out.
     const auto pass = [&](int32_t behind, auto&& work) {
       for_tiles(row - behind, end - behind, [&](int32_t x, int32_t z, Worker& w) {
         if (!context.cancel) work(x, z, w);
@@ -445,7 +445,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
     pass(0, [&](int32_t x, int32_t z, Worker& w) { make_layers(x, z, w); });
     pass(1, [&](int32_t x, int32_t z, Worker& w) { judge(x, z, w); });
     pass(2, [&](int32_t x, int32_t z, Worker& w) { clear(x, z, w); });
-    // Rows that nothing will look at again.
+    // Rows that are not read again.
     for (int32_t z = std::max(row - 4, 0); z < std::min(end - 4, side_); ++z) {
       for (int32_t x = 0; x < side_; ++x) give_back(at(x, z));
     }

@@ -13,6 +13,8 @@
 #include "core/parallel.h"
 #include "world/zone_data.h"
 
+// Packs finished layers into a zone file: constants, planes or blocks of values for floors, and
+// sets of bits for the classes. Equal runs of words are stored once.
 namespace throng {
 FloorPlane fit_plane(Layer& layer) {
   FloorPlane plane;

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "world/zone_data.h"
 
+// The XXH3 hash of all that a zone's bytes depend on. Linear in its triangles.
 namespace throng {
 namespace {
 

@@ -12,8 +12,8 @@
 #include "throng/cluster.h"
 
 // Rank 0 owns the folder: it takes over what need not be baked and hands out the rest, the largest
-// zones first. The others write their zones' files and send what the manifest wants to know of
-// them, which rank 0 enters into the journal.
+// zones first. The others write their zones' files and send what the manifest needs of them, which
+// rank 0 enters into the journal.
 namespace throng {
 namespace {
 

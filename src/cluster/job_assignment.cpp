@@ -15,8 +15,8 @@
 #include "core/parallel.h"
 #include "throng/cluster.h"
 
-// Rank 0 hands out jobs and enters what comes back, so that the next bake can go on where a rank
-// has died. It works too, on a thread beside the one that listens. All of them poll: MPI waits by
+// Rank 0 assigns jobs and enters their results, so that the next bake can continue where a rank has
+// died. It works too, on a thread beside the one that listens. All of them poll: MPI waits by
 // spinning, which would take a core from those that work.
 namespace throng {
 namespace {

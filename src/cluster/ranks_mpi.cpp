@@ -6,6 +6,7 @@
 
 #include "cluster/ranks.h"
 
+// Messages between ranks over MPI. MPI is started once in a process and ended at its exit.
 namespace throng {
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include <new>
 
+// Zeroed pages from mmap, huge ones on request.
 namespace throng {
 
 void UnmapPages::operator()(void* p) const { munmap(p, bytes); }

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <utility>
 
+// parallel_for and its kin on TBB arenas.
 namespace throng {
 namespace {
 

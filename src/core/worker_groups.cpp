@@ -7,6 +7,8 @@
 
 #include "core/parallel.h"
 
+// Runs tasks side by side in groups of workers: one group per task at a time, with all workers of a
+// group in it.
 namespace throng {
 namespace {
 

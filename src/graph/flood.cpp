@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <bit>
 
+// Connected parts of rows of bits. From one cell: fills of whole rows until nothing changes. All
+// parts: runs of a row are joined with those of the row above by union-find [RP66]. Linear in the
+// runs.
 namespace throng {
 namespace {
 

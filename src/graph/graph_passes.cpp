@@ -15,11 +15,11 @@
 #include "world/graph_index.h"
 #include "world/place.h"
 
-// Pass 1 looks at one zone at a time, pass 2 at a zone and the two behind its eastern and southern
+// Pass 1 reads one zone at a time, pass 2 at a zone and the two behind its eastern and southern
 // border: each border belongs to one zone, so a zone that changes costs its own links and those of
 // its western and northern neighbours. A step leads over sides of cells only, so zones that touch
 // at a corner have no link; and a zone is as high as the world, so there is none over or under it.
-// Components are joined over borders from those within zones: pass 2 never looks at single parts.
+// Components are joined over borders from those within zones: pass 2 reads no single parts.
 namespace throng {
 namespace {
 
@@ -86,7 +86,7 @@ class Passes {
   std::mutex mutex_;
   GraphMade made_;
   std::vector<uint64_t> inputs_;    // of the slots' regions
-  std::vector<LinksOfZone> links_;  // of the slots, while others still look at their entries
+  std::vector<LinksOfZone> links_;  // of the slots, while others still read their entries
   uint32_t components_ = 0;         // of zones
 };
 

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
+// Chooses the edges of the bins of slopes, heights and widths: the classes' limits first.
 namespace throng {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+// Makes links of nodes from pairs of cells that touch: for each class between the nodes that hold
+// the two cells. Linear, after sorting.
 namespace throng {
 namespace {
 
@@ -226,8 +228,8 @@ void merge_node_links(std::vector<NodeLink>& links) {
     }
     // A leap that serves no class that an earlier one does not serve is left out.
     uint16_t served = 0;
-    // (Jumps are given one by one, and some lead one way: all are kept. Of drops one from each spot
-    // is: a ledge may be long.)
+    // (Off-mesh links are given one by one, and some are one-way: all are kept. Of drops one from
+    // each spot is: a ledge may be long.)
     for (size_t k = group; k < kept && link.kind != LinkKind::kOffMesh; ++k) {
       const bool same = links[k].spot == link.spot && links[k].turned == link.turned;
       if (same || link.kind != LinkKind::kDrop) served |= links[k].classes;

@@ -11,6 +11,8 @@
 #include "core/parallel.h"
 #include "world/cell_blocks.h"
 
+// The width of a node: how far its middle is from the nearest cell that is more restrictive, by a
+// flood over cells from its middle.
 namespace throng {
 namespace {
 
@@ -181,7 +183,7 @@ class Flood {
     return nearest_ <= distance(home_, cell_of(tree, s - rim, t));  // as far off as its nearest
   }
 
-  // The flood goes on over the tile's rim.
+  // The flood continues over the tile's rim.
   void enter_rim(const PatchTree& tree) {
     for (int32_t i = 0; i < 64; ++i) {
       for (const uint32_t cell :

@@ -16,6 +16,7 @@
 #include "world/sealed_file.h"
 #include "world/zone_data.h"
 
+// The public queries of nodes: places, arcs, components, reachable sets.
 namespace throng {
 namespace {
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+// Pairs of finest sub-patches that touch over the edges of Bezier patches: one to one, or one to
+// two or four. Linear in the sub-patches along the edges.
 namespace throng {
 namespace {
 

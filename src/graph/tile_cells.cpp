@@ -12,6 +12,8 @@
 #include "graph/tile_steps.h"
 #include "world/place.h"
 
+// The cells of a level tile as those of a patch: what bodies may rely on in each, steps between
+// them, and pairs over the tile's borders. Linear in the cells and classes.
 namespace throng {
 namespace {
 
@@ -261,7 +263,7 @@ class PairFinder {
     }
   }
 
-  // Within a tile a body changes its level only where its own does not go on and another does.
+  // Within a tile a body changes its level only where its own ends and another continues.
   void find_seams() {
     legal_.resize(here_.size());
     safe_.resize(here_.size());
@@ -310,7 +312,7 @@ class PairFinder {
     }
   }
 
-  // From a cell beyond which its own level does not go on.
+  // From a cell beyond which its own level ends.
   void cross_seam(uint32_t from, size_t c, int32_t x, int32_t z, bool east) {
     const int32_t nx = x + (east ? 1 : 0), nz = z + (east ? 0 : 1);
     const auto to_level = [&](int32_t feet, int32_t at_x, int32_t at_z) {

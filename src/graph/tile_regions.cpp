@@ -242,7 +242,7 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
   scratch.shapes_of.resize(std::max(scratch.shapes_of.size(), tile.classes.size()));
   scratch.shapes.clear();
   tile.heights.reserve(tile.levels);
-  // Nearly half the time to unpack a set was the wait for its first word: ask for all in time.
+  // Nearly half the time to unpack a set was the wait for its first word: prefetch all in time.
   for (uint32_t l = 0; l < tile.levels; ++l) {
     const uint32_t zone_level = levels.zone_first + l;
     GroundLevel ground = ground_level(*levels.zone, zone_level, levels.first + l, 0);

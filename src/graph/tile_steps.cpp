@@ -9,6 +9,7 @@
 
 #include "world/place.h"
 
+// Distinguishes steps from slopes by the rises of three cells in a row. Constant time.
 namespace throng {
 namespace {
 
@@ -60,7 +61,7 @@ std::optional<TileSteps> tile_steps(const LevelView& view, const StepLimits& lim
     if (!steps) steps.emplace();
     (x != nx ? steps->across : steps->along)[static_cast<size_t>(z)] |= uint64_t{1} << x;
   };
-  // Most floors have no rise anywhere: rows are asked as a whole first, cells without floor too.
+  // Most floors have no rise anywhere: rows are tested as a whole first, cells without floor too.
   const auto any_rise = [&](const uint16_t* low, const uint16_t* high, int32_t count) {
     int32_t most = 0;
     for (int32_t i = 0; i < count; ++i) most = std::max(most, std::abs(high[i] - low[i]));

@@ -25,7 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 256;       // pairs between two looks at `cancel`
+constexpr size_t kBatch = 256;       // pairs between two tests of `cancel`
 constexpr double kSame = 1e-6;       // [m]
 constexpr double kSeam = 0.12;       // between neighbours' edges [m]
 constexpr double kMaxPoses = 20000;  // of a segment
@@ -130,7 +130,7 @@ class Follower {
       if (linked && path.links[next].kind == LinkKind::kDrop) {
         check_drop(path.points, i, walked);
       }
-      // What a jump crosses is the user's own.
+      // What an off-mesh link crosses is not tested.
       if (linked && path.links[next].kind == LinkKind::kOffMesh) continue;
       segment(path.points[i - 1], path.points[i], leaps, walked);
     }

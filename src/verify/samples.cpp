@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 
+// Draws places, moves and points of the surface, and tests each with the exact body.
 namespace throng::verify {
 namespace {
 

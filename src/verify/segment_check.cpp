@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+// Tests the exact body at equal distances along one segment of a path.
 namespace throng::verify {
 namespace {
 

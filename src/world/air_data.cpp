@@ -11,6 +11,7 @@
 #include "core/hash.h"
 #include "world/zone_data.h"
 
+// Reads and checks files of air, and queries them: is a cell free, and may a body be in it.
 namespace throng {
 namespace {
 

@@ -9,6 +9,8 @@
 #include "core/var_number.h"
 #include "throng/avatar_class.h"
 
+// Packs the components of a world into bytes: 7 bits a byte, as differences from the one before.
+// Linear.
 namespace throng {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <utility>
 
+// Ground of one class on a level, the range of a floor's heights, and floors unpacked row by row.
 namespace throng {
 namespace {
 

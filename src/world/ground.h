@@ -7,7 +7,7 @@
 #include "world/walk.h"
 #include "world/zone_data.h"
 
-/// The ground of a mapped world for one class, as world/walk.h wants it.
+/// The ground of a mapped world for one class, as world/walk.h needs it.
 namespace throng {
 
 /// One level of the world with what a class needs to walk on it.

@@ -108,7 +108,7 @@ struct NodeData {
   /// A node's zone and its number there; null if the zone cannot be used.
   [[nodiscard]] std::pair<const NodeZone*, uint32_t> find(uint32_t node) const;
   /// For a class, the nodes that share out its area (those whose parents it cannot stand on), and
-  /// the area up to and with each. Made when first asked for.
+  /// the area up to and with each. Made at the first use.
   [[nodiscard]] const AreaList& areas_before(int32_t avatar_class) const;
   /// Where an arc of a slot's zone leads to, as a node of all.
   [[nodiscard]] uint32_t target(size_t slot, const NodeZone& zone, const format::Arc& arc) const {

@@ -13,9 +13,9 @@
 #include "world/place.h"
 #include "world/zone_data.h"
 
-// Storeys: layers of neighbouring tiles that continue each other are joined into groups, the surest
-// first (Kruskal), never two that lie over each other; groups of like height that do not overlap
-// then share a number.
+// Storeys: level tiles of neighbouring tiles that continue each other are joined into groups, the
+// surest first (Kruskal), never two that lie over each other; groups of like height that do not
+// overlap then share a number.
 namespace throng {
 namespace {
 
@@ -58,8 +58,8 @@ int32_t shared_cells(const LevelView& a, const LevelView& b, int32_t side, int32
 }
 
 // Two levels of neighbouring tiles that continue each other. The more cells, the closer their
-// heights and the larger they are, the heavier: a floor goes on as a floor before it turns into the
-// ramp to the next one, or into what is left of it under the ramp's low end.
+// heights and the larger they are, the heavier: a floor continues as a floor before it turns into
+// the ramp to the next one, or into what is left of it under the ramp's low end.
 struct Seam {
   uint32_t a = 0, b = 0;
   double weight = 0;

@@ -9,6 +9,8 @@
 #include "core/hash.h"
 #include "world/cell_blocks.h"
 
+// Opens and checks zone files, and keeps those in memory that are in use: a clock removes others at
+// their second pass.
 namespace throng {
 namespace {
 

@@ -38,13 +38,13 @@ class Distances {
   /// rows are like the highest of them: without a solid, but no wider than what is known.
   [[nodiscard]] int32_t distance(const AirCube& cube, int32_t y) const {
     const int32_t row = y < base_ || y >= base_ + height_ ? height_ - 1 : y - base_;
-    int32_t least = max_distance_ + 1;
+    int32_t min_distance = max_distance_ + 1;
     for (int32_t z = cube.z / 4; z < (cube.z + cube.side) / 4; ++z) {
       for (int32_t x = cube.x / 4; x < (cube.x + cube.side) / 4; ++x) {
-        least = std::min<int32_t>(least, distances_[index(x, row, z)]);
+        min_distance = std::min<int32_t>(min_distance, distances_[index(x, row, z)]);
       }
     }
-    return least;
+    return min_distance;
   }
 
  private:

@@ -225,7 +225,7 @@ void FindFreeSpans(const TileColumns& columns, int32_t min_free_span, TileFreeSp
   std::vector<TileColumns::Spill> scratch;
   SpanVectors rows[kMaxBlocks];
   VI total = hn::Zero(di);
-  VI most = hn::Zero(di);
+  VI max_found = hn::Zero(di);
   for (int32_t z = 0; z < kTileSide; z += block_height()) {
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const BlockRun run = run_of_blocks(columns, x, z);
@@ -239,7 +239,7 @@ void FindFreeSpans(const TileColumns& columns, int32_t min_free_span, TileFreeSp
         }
         hn::Store(found, di, &free_spans.count[c]);
         total = hn::Add(total, found);
-        most = hn::Max(most, found);
+        max_found = hn::Max(max_found, found);
       }
       if (HWY_LIKELY(!run.any_too_deep)) continue;
       for (int32_t row = 0; row < block_height(); ++row) {
@@ -254,7 +254,7 @@ void FindFreeSpans(const TileColumns& columns, int32_t min_free_span, TileFreeSp
     }
   }
   free_spans.spans += static_cast<uint64_t>(hn::GetLane(hn::SumOfLanes(di, total)));
-  free_spans.max_count = std::max(free_spans.max_count, hn::GetLane(hn::MaxOfLanes(di, most)));
+  free_spans.max_count = std::max(free_spans.max_count, hn::GetLane(hn::MaxOfLanes(di, max_found)));
 }
 
 // A column with a solid has at least the sky above it.

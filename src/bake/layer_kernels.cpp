@@ -30,8 +30,8 @@ HWY_INLINE hn::Mask<DI> linked(hn::Vec<DI> top_a, hn::Vec<DI> ceiling_a, hn::Vec
                                hn::Vec<DI> ceiling_b, hn::Vec<DI> max_step,
                                hn::Vec<DI> min_free_span) {
   const auto high = hn::Max(top_a, top_b), low = hn::Min(top_a, top_b);
-  const auto room = hn::Sub(hn::Min(ceiling_a, ceiling_b), high);
-  return hn::Not(hn::Or(hn::Gt(hn::Sub(high, low), max_step), hn::Lt(room, min_free_span)));
+  const auto headroom = hn::Sub(hn::Min(ceiling_a, ceiling_b), high);
+  return hn::Not(hn::Or(hn::Gt(hn::Sub(high, low), max_step), hn::Lt(headroom, min_free_span)));
 }
 
 void LinkFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, const LinkRule& rule,
@@ -333,8 +333,9 @@ bool UsefulCells(const Layer& layer, const BodyNeed& need, CellRows& rows) {
       const auto stands = hn::And(hn::Ne(feet, none), hn::Ne(code, barred));
       const auto low = at_most(hn::Load(du, &layer.top[c]), hn::SaturatedAdd(feet, bottom));
       // Saturated, a head passes under the open sky only.
-      const auto room = at_most(hn::SaturatedAdd(feet, height), hn::Load(du, &layer.ceiling[c]));
-      row |= bits_of(du, hn::And(stands, hn::And(low, room))) << x;
+      const auto headroom =
+          at_most(hn::SaturatedAdd(feet, height), hn::Load(du, &layer.ceiling[c]));
+      row |= bits_of(du, hn::And(stands, hn::And(low, headroom))) << x;
     }
     any |= rows[z] = row;
   }
@@ -382,14 +383,14 @@ void ChooseFreeSpans(std::span<const FreeSpanLine> lines, int32_t* near, uint16_
       const auto own_ceiling = hn::PromoteTo(di, hn::LoadU(dh, line.ceiling + i));
       const auto moved = hn::Add(own_top, shift);
       const auto height = hn::IfThenElse(hn::Lt(moved, zero), none, hn::Min(moved, none));
-      const auto room =
+      const auto headroom =
           hn::IfThenElse(hn::Eq(own_ceiling, none), none,
                          hn::Min(hn::Max(hn::Add(own_ceiling, shift), zero), highest));
       const auto distance = hn::Abs(hn::Sub(moved, wanted));
       const auto better = hn::And(hn::Ne(own_top, none), hn::Lt(distance, least));
       least = hn::IfThenElse(better, distance, least);
       best_top = hn::IfThenElse(better, height, best_top);
-      best_ceiling = hn::IfThenElse(better, room, best_ceiling);
+      best_ceiling = hn::IfThenElse(better, headroom, best_ceiling);
     }
     hn::StoreU(narrow(best_top), dh, top + i);
     hn::StoreU(narrow(best_ceiling), dh, ceiling + i);

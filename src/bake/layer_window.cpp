@@ -320,8 +320,9 @@ void LayerWindow::fill_holes(const LayerList& tile, size_t layer, const BodyLimi
       const int32_t shift = other.base - own.base;
       const uint16_t other_top = rebased_top(other.top[cell], shift);
       const uint16_t other_ceiling = rebased_ceiling(other.ceiling[cell], shift);
-      const int32_t room = std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]);
-      if (std::abs(other_top - top[next]) > limits.link_step || room < limits.low_free_span) {
+      const int32_t headroom =
+          std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]);
+      if (std::abs(other_top - top[next]) > limits.link_step || headroom < limits.low_free_span) {
         continue;
       }
       top[at] = other_top;

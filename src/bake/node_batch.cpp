@@ -379,11 +379,11 @@ class NodeBatch {
       balls.push_back({.listed = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
     }
     const CrossCells cross(pairs_, sources_.size(), config_.workers);
-    const double most = bins_.width.back();
+    const double max_width = bins_.width.back();
     widths_.resize(forest_.trees.size());
     parallel_for(widths_.size(), config_.workers, [&](size_t p) {
       if (context_.cancel) return;
-      widths_[p] = node_widths(forest_, static_cast<uint32_t>(p), cross, most, balls);
+      widths_[p] = node_widths(forest_, static_cast<uint32_t>(p), cross, max_width, balls);
     });
   }
 

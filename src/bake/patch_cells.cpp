@@ -449,10 +449,10 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
   }
 }
 
-BodySweep PatchJudge::low_room(const Pending& cell, size_t posture) const {
-  BodySweep room = cell.prism[posture];
-  room.high = std::min(room.high, cell.surface(posture).high + bins_->height.front());
-  return room;
+BodySweep PatchJudge::headroom_sweep(const Pending& cell, size_t posture) const {
+  BodySweep sweep = cell.prism[posture];
+  sweep.high = std::min(sweep.high, cell.surface(posture).high + bins_->height.front());
+  return sweep;
 }
 
 // Those of sweeps_ into which a plane through the cell's middle, as steep as the surface there,
@@ -504,7 +504,7 @@ uint32_t PatchJudge::judge_against(const FilterList& list, const Pending& cell, 
   uint32_t stopped = 0, steep = 0;
   if (posture == 1) {
     // Upright, ground may be its own ceiling: that is seen at once.
-    if ((asked & 1) != 0 && surely_enters(list, frame.centre, low_room(cell, 1))) {
+    if ((asked & 1) != 0 && surely_enters(list, frame.centre, headroom_sweep(cell, 1))) {
       promise.headroom = bins_->height_code(0);
       asked &= ~1u;
     }
@@ -532,22 +532,22 @@ uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size
   for (uint32_t left = met; left != 0; left &= left - 1) {
     const auto b = static_cast<size_t>(std::countr_zero(left));
     // What is deeper than any height needs leaves none.
-    const BodySweep decisive = b == 0 ? low_room(cell, posture) : sweeps_[b];
+    const BodySweep decisive = b == 0 ? headroom_sweep(cell, posture) : sweeps_[b];
     tubes_.push_back({.whole = sweeps_[b], .decisive = decisive});
   }
   const uint32_t answered = filter(
       list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
       hits_);
-  const uint32_t room = met & 1;  // bit 0, if it is queried
+  const uint32_t height_bit = met & 1;  // bit 0, if it is queried
   const uint32_t all = (1u << tubes_.size()) - 1;
   uint32_t entered = answered;  // no height; then bodies that a solid blocks
-  double free = (answered & room) != 0 ? surface.high : kNever;
+  double free = (answered & height_bit) != 0 ? surface.high : kNever;
   for (size_t i = 0; i < hits_.count && entered != all; ++i) {
     uint32_t asked = hits_.tubes[i] & ~entered;
     if (asked == 0) continue;
     LocalTriangle local = triangles_->corners(hits_.triangle[i]);
     for (Vec3d& corner : local) corner = frame.local(corner);
-    if ((asked & room) != 0) {
+    if ((asked & height_bit) != 0) {
       const double low = std::min({local[0].z, local[1].z, local[2].z});
       if (low < free) free = std::min(free, lowest_entry(local, prism));
       if (free < kNever && bins_->height_code(std::max(0.0, free - surface.high)) == 0) {
@@ -562,7 +562,7 @@ uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size
   }
   uint32_t stopped = 0;
   uint32_t bodies = met & ~1u;
-  for (size_t b = room; bodies != 0; ++b, bodies &= bodies - 1) {
+  for (size_t b = height_bit; bodies != 0; ++b, bodies &= bodies - 1) {
     if ((entered >> b & 1) != 0) stopped |= bodies & (0 - bodies);
   }
   // The highest feet have the least.

@@ -110,7 +110,7 @@ class PatchJudge {
                      Promise& promise);
   [[nodiscard]] uint32_t too_steep(const Pending& cell) const;
   /// A solid in here leaves no height.
-  [[nodiscard]] BodySweep low_room(const Pending& cell, size_t posture) const;
+  [[nodiscard]] BodySweep headroom_sweep(const Pending& cell, size_t posture) const;
 
   const TriangleSquares* triangles_;
   const PatchSet* set_;

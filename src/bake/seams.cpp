@@ -104,9 +104,9 @@ bool column_is_free(const LayerList& tile, size_t cell, const ColumnNeed& need) 
       continue;
     }
     const int32_t top = layer->base + layer->top[cell];
-    const bool room =
+    const bool headroom =
         layer->ceiling[cell] == kNone16 || layer->base + layer->ceiling[cell] >= need.ceiling;
-    if (top <= need.high_top && top >= need.low_top && room) return true;
+    if (top <= need.high_top && top >= need.low_top && headroom) return true;
   }
   return false;
 }

@@ -108,7 +108,7 @@ HWY_INLINE uint64_t free_lanes(const LayerWindow& window, const BodyWindow& body
   // A column may also pass as in the window: its whole top against the lowest and highest feet.
   const VI level_high = hn::ShiftLeft<1>(hn::Add(hn::Sub(height, feet_tilt), bottom));
   const VI level_low = hn::ShiftLeft<1>(hn::Sub(hn::Add(height, feet_tilt), bottom));
-  const VI most = hn::Sub(budget, tilt);  // by which a top may pass the plane, up or down
+  const VI max_above = hn::Sub(budget, tilt);  // by which a top may pass the plane, up or down
   auto bad = hn::Lt(budget, hn::Zero(di));
   for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
     const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
@@ -117,8 +117,8 @@ HWY_INLINE uint64_t free_lanes(const LayerWindow& window, const BodyWindow& body
     for (int32_t dx = -w; dx <= w; ++dx, ++tops) {
       const VI top = hn::ShiftLeft<1>(hn::PromoteTo(di, hn::LoadU(dh, tops)));
       const VI above = hn::Sub(top, hn::ShiftLeft<1>(middle));
-      const auto high = hn::And(hn::Gt(top, level_high), hn::Gt(above, most));
-      const auto low = hn::And(hn::Lt(top, level_low), hn::Gt(hn::Neg(above), most));
+      const auto high = hn::And(hn::Gt(top, level_high), hn::Gt(above, max_above));
+      const auto low = hn::And(hn::Lt(top, level_low), hn::Gt(hn::Neg(above), max_above));
       bad = hn::Or(bad, hn::Or(high, low));
       middle = hn::Add(middle, gx);
     }

@@ -82,7 +82,7 @@ HWY_INLINE V clamped(V v, V low, V high) {
 // from which part to which. [parts, the last included; -1 to 512]
 struct PartRows {
   alignas(32) int32_t first[8], last[8];
-  int32_t least = 511, most = 0;  // that lie in the row of tiles
+  int32_t min_part = 511, max_part = 0;  // that lie in the row of tiles
 
   HWY_INLINE PartRows(const PlanPart& polygon, size_t z) {
     const DF df;
@@ -114,11 +114,11 @@ struct PartRows {
       const VI to = part_of(hn::Add(high, hn::Set(df, kWiden)));
       hn::Store(from, di, first + j);
       hn::Store(to, di, last + j);
-      least = std::min(least, hn::GetLane(hn::MinOfLanes(di, from)));
-      most = std::max(most, hn::GetLane(hn::MaxOfLanes(di, to)));
+      min_part = std::min(min_part, hn::GetLane(hn::MinOfLanes(di, from)));
+      max_part = std::max(max_part, hn::GetLane(hn::MaxOfLanes(di, to)));
     }
-    least = std::max(least, 0);
-    most = std::min(most, 511);
+    min_part = std::max(min_part, 0);
+    max_part = std::min(max_part, 511);
   }
 
   // The parts of the row's cell x.
@@ -170,8 +170,9 @@ void FillParts(const PlanPart& polygon, const WallScratch::Near& near, const Bit
       continue;
     }
     const PartRows rows(polygon, static_cast<size_t>(z));
-    if (rows.least > rows.most) continue;
-    for (cells &= bits_between(rows.least / 8, rows.most / 8); cells != 0; cells &= cells - 1) {
+    if (rows.min_part > rows.max_part) continue;
+    for (cells &= bits_between(rows.min_part / 8, rows.max_part / 8); cells != 0;
+         cells &= cells - 1) {
       const int32_t x = std::countr_zero(cells);
       parts[row + x] |= rows.of_cell(x);
     }
@@ -186,8 +187,8 @@ void KeepClosed(const LayerWindow& window, ptrdiff_t first, WallScratch::Slab sl
   const hn::CappedTag<uint16_t, 32> du;
   constexpr uint64_t kAll = ~uint64_t{0};
   const size_t lanes = hn::Lanes(du);
-  const auto set = [&](int32_t v, int32_t most) {
-    return hn::Set(du, static_cast<uint16_t>(std::clamp(v, 0, most)));
+  const auto set = [&](int32_t v, int32_t highest) {
+    return hn::Set(du, static_cast<uint16_t>(std::clamp(v, 0, highest)));
   };
   const auto floor = set(slab.floor, kNone16 - 1), low = set(slab.low, kNone16 - 1);
   const auto high = set(slab.high, kNone16);
@@ -200,8 +201,8 @@ void KeepClosed(const LayerWindow& window, ptrdiff_t first, WallScratch::Slab sl
       if ((wanted >> x & kAll >> (64 - lanes)) == 0) continue;
       const auto top = hn::LoadU(du, &window.top[static_cast<size_t>(row) + x]);
       const auto ceiling = hn::LoadU(du, &window.ceiling[static_cast<size_t>(row) + x]);
-      const auto room = hn::Eq(hn::Max(ceiling, high), ceiling);
-      const auto fits = hn::And(room, hn::Eq(hn::Min(hn::Max(top, floor), low), top));
+      const auto headroom = hn::Eq(hn::Max(ceiling, high), ceiling);
+      const auto fits = hn::And(headroom, hn::Eq(hn::Min(hn::Max(top, floor), low), top));
       open |= bits_of(du, fits) << x;
     }
     wanted &= ~open;

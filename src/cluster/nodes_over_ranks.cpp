@@ -19,7 +19,7 @@ namespace {
 std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const NodeConfig& config,
                                                   int32_t ranks) {
   std::vector<std::vector<uint32_t>> best;
-  uint64_t least = UINT64_MAX;
+  uint64_t min_time = UINT64_MAX;
   for (const uint64_t a_rank : {4, 2, 1, 0}) {
     const uint64_t parts = std::max<uint64_t>(a_rank * static_cast<uint64_t>(ranks), 1);
     auto batches = baker.batches(std::min(config.working_bytes, baker.working_bytes() / parts + 1));
@@ -31,8 +31,8 @@ std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const 
     }
     const uint64_t at_once = std::min<uint64_t>(static_cast<uint64_t>(ranks), batches.size());
     const uint64_t time = std::max(most, sum / std::max<uint64_t>(at_once, 1));
-    if (time >= least) continue;
-    least = time;
+    if (time >= min_time) continue;
+    min_time = time;
     best = std::move(batches);
   }
   return best;

@@ -21,8 +21,8 @@ int32_t worker_group() { return t_group; }
 WorkerGroups assign_workers(size_t tasks, int32_t workers) {
   constexpr int32_t kFew = 4;  // Fewer seldom wait for each other.
   const int32_t threads = worker_count(workers);
-  const auto most = static_cast<int32_t>(std::clamp<size_t>(tasks, 1, 1024));
-  const int32_t groups = threads < kFew ? 1 : std::min(threads, most);
+  const auto max_groups = static_cast<int32_t>(std::clamp<size_t>(tasks, 1, 1024));
+  const int32_t groups = threads < kFew ? 1 : std::min(threads, max_groups);
   return {groups, (threads + groups - 1) / groups};
 }
 

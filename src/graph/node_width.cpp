@@ -102,12 +102,12 @@ class KeySet {
 
 class Flood {
  public:
-  Flood(const NodeForest& forest, uint32_t home, const CrossCells& cross, double most,
+  Flood(const NodeForest& forest, uint32_t home, const CrossCells& cross, double max_width,
         std::span<const CellBalls> balls)
       : forest_(forest),
         home_(home),
         cross_(cross),
-        most_(most),
+        max_width_(max_width),
         balls_(balls),
         round_seen_(forest.trees[home].leaf_depth < forest.trees[home].depth
                         ? 0
@@ -132,7 +132,7 @@ class Flood {
     }
     middle_ = {middle_.x / count, middle_.y / count, middle_.z / count, 0};
     promise_ = node.promise;
-    nearest_ = most_;
+    nearest_ = max_width_;
     is_home_known_ = tree.leaf_depth < tree.depth;
     if (is_home_known_ && ends_on_tile(tree, s0 + size / 2, t0 + size / 2)) return nearest_;
     seen_.clear();
@@ -285,7 +285,7 @@ class Flood {
   uint32_t home_;               // the patch whose nodes are measured
   bool is_home_known_ = false;  // the nearest cell in it was found without a flood
   const CrossCells& cross_;
-  double most_;
+  double max_width_;
   std::span<const CellBalls> balls_;
   std::vector<std::pair<Promise, CellRows>> open_;  // by what is promised
   CellBall middle_;
@@ -300,8 +300,8 @@ class Flood {
 }  // namespace
 
 std::vector<double> node_widths(const NodeForest& forest, uint32_t patch, const CrossCells& cross,
-                                double most, std::span<const CellBalls> balls) {
-  Flood flood(forest, patch, cross, most, balls);
+                                double max_width, std::span<const CellBalls> balls) {
+  Flood flood(forest, patch, cross, max_width, balls);
   std::vector<double> widths;
   widths.reserve(forest.trees[patch].nodes.size());
   for (const PatchNode& node : forest.trees[patch].nodes) {

@@ -59,9 +59,9 @@ class CrossCells {
 };
 
 /// Widths of the nodes of one patch, by a flood over cells from each node's middle that ends
-/// at `most`. `balls` are those of every patch. [m]
+/// at `max_width`. `balls` are those of every patch. [m]
 [[nodiscard]] std::vector<double> node_widths(const NodeForest& forest, uint32_t patch,
-                                              const CrossCells& cross, double most,
+                                              const CrossCells& cross, double max_width,
                                               std::span<const CellBalls> balls);
 
 }  // namespace throng

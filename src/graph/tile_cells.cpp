@@ -119,7 +119,7 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
   const std::vector<uint8_t> inclination = inclination_by_class(classes, bins);
   const auto open = static_cast<uint8_t>(bins.height.size());
   // A body on a level tile stands upright: its height is the headroom.
-  const auto room_over = [&](size_t cell) {
+  const auto headroom_over = [&](size_t cell) {
     if (!is_flat && (!ceilings || (*ceilings)[cell] == kNoValue)) return open;
     const int32_t ceiling = record.ceiling_base() + (is_flat ? 0 : (*ceilings)[cell]);
     // Feet slant evenly over a cell: the highest are at a corner.
@@ -138,8 +138,8 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
       steepest = std::min(steepest, inclination[static_cast<size_t>(std::countr_zero(left))]);
     }
     for (size_t i = first; i < first + static_cast<size_t>(count); ++i) {
-      const uint8_t room = room_over(i);
-      patch.cells[i] = {stands, steepest, room, room};
+      const uint8_t free_height = headroom_over(i);
+      patch.cells[i] = {stands, steepest, free_height, free_height};
     }
   });
   return patch;
@@ -217,11 +217,11 @@ class PairFinder {
   template <class Rise>
   static uint32_t nearest(size_t levels, int32_t step, Rise rise) {
     uint32_t best = kNoNode;
-    int32_t least = INT32_MAX;
+    int32_t min_rise = INT32_MAX;
     for (uint32_t l = 0; l < levels; ++l) {
       const int32_t r = rise(l);
-      if (r > step || r >= least) continue;
-      least = r;
+      if (r > step || r >= min_rise) continue;
+      min_rise = r;
       best = l;
     }
     return best;

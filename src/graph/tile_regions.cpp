@@ -109,7 +109,7 @@ class LevelRegions {
  private:
   [[nodiscard]] size_t best_region(const Part& part, uint32_t class_bit) const {
     size_t best = common_.parts.size();
-    uint32_t most = 0;  // 0: not counted, as only one is there to choose
+    uint32_t max_shared = 0;  // 0: not counted, as only one is there to choose
     for (size_t r = 0; r < common_.parts.size(); ++r) {
       if ((tile_.regions[begin_ + r].classes & class_bit) != 0) continue;
       if (!share_cells(common_, common_.parts[r], shapes_, part)) continue;
@@ -117,11 +117,11 @@ class LevelRegions {
         best = r;
         continue;
       }
-      if (most == 0) most = shared_cells(common_, common_.parts[best], shapes_, part);
-      if (most == part.cells) break;
+      if (max_shared == 0) max_shared = shared_cells(common_, common_.parts[best], shapes_, part);
+      if (max_shared == part.cells) break;
       const uint32_t shared = shared_cells(common_, common_.parts[r], shapes_, part);
-      if (shared <= most) continue;
-      most = shared;
+      if (shared <= max_shared) continue;
+      max_shared = shared;
       best = r;
     }
     return best;

@@ -63,9 +63,9 @@ std::optional<TileSteps> tile_steps(const LevelView& view, const StepLimits& lim
   };
   // Most floors have no rise anywhere: rows are tested as a whole first, cells without floor too.
   const auto any_rise = [&](const uint16_t* low, const uint16_t* high, int32_t count) {
-    int32_t most = 0;
-    for (int32_t i = 0; i < count; ++i) most = std::max(most, std::abs(high[i] - low[i]));
-    return most > limits.step;
+    int32_t max_rise = 0;
+    for (int32_t i = 0; i < count; ++i) max_rise = std::max(max_rise, std::abs(high[i] - low[i]));
+    return max_rise > limits.step;
   };
   for (int32_t z = 0; z < 64; ++z) {
     const uint16_t* row = view.samples + z * 64;

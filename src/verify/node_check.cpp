@@ -77,15 +77,15 @@ class NodeJudge {
     sample.entered = true;
   }
 
-  // Free height from `from` above the feet, up to `most`. [m]
-  [[nodiscard]] double free_height(const Pose& pose, double from, double most) const {
-    double least = most;
-    verify::for_each_turned(tree_, pose, 0.01, most, [&](uint32_t, const Corners& corners) {
+  // Free height from `from` above the feet, up to `max_height`. [m]
+  [[nodiscard]] double free_height(const Pose& pose, double from, double max_height) const {
+    double lowest = max_height;
+    verify::for_each_turned(tree_, pose, 0.01, max_height, [&](uint32_t, const Corners& corners) {
       const auto height = verify::height_at(corners, 0, 0);
-      if (height && *height > from && *height < least) least = *height;
+      if (height && *height > from && *height < lowest) lowest = *height;
       return false;
     });
-    return least;
+    return lowest;
   }
 
   void check_promises(const NodePlace& place, Sample& sample) const {

@@ -228,12 +228,12 @@ std::vector<int32_t> World::storeys() const {
     for (const uint32_t level : members[g]) mean += levels[level].mean * levels[level].cells;
     mean /= std::max(1.0, sizes[g]);
     size_t best = storeys.size(), nearest = storeys.size();
-    double best_distance = 1500, least = best_distance;  // [mm]
+    double best_distance = 1500, min_distance = best_distance;  // [mm]
     for (size_t s = 0; s < storeys.size(); ++s) {
       const double distance = std::fabs(storeys[s].mean - mean);
-      if (distance < least && sizes[g] < kRemnant * storeys[s].cells) {
+      if (distance < min_distance && sizes[g] < kRemnant * storeys[s].cells) {
         nearest = s;
-        least = distance;
+        min_distance = distance;
       }
       if (distance >= best_distance) continue;
       bool clash = false;

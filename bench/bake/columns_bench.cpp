@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bake/gaps.h"
+#include "bake/free_spans.h"
 #include "throng/builtin_worlds.h"
 
 namespace {
@@ -50,17 +50,17 @@ void rasterise(benchmark::State& state, const char* name) {
                           kTileArea);
 }
 
-void rasterise_and_find_gaps(benchmark::State& state, const char* name) {
+void rasterise_and_find_free_spans(benchmark::State& state, const char* name) {
   const auto scene = make_builtin_world({.name = name});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   const Tiles tiles(*scene);
   TileColumns columns;
-  TileGaps gaps;
+  TileFreeSpans free_spans;
   for (auto _ : state) {
     for (size_t tile = 0; tile + 1 < tiles.bins.first.size(); ++tile) {
       tiles.rasterise(tile, columns);
-      find_gaps(columns, 500, gaps);
-      benchmark::DoNotOptimize(gaps.count.data());
+      find_free_spans(columns, 500, free_spans);
+      benchmark::DoNotOptimize(free_spans.count.data());
     }
   }
   state.SetItemsProcessed(state.iterations() * (static_cast<int64_t>(tiles.bins.first.size()) - 1) *
@@ -69,7 +69,7 @@ void rasterise_and_find_gaps(benchmark::State& state, const char* name) {
 
 BENCHMARK_CAPTURE(rasterise, garage, "garage");
 BENCHMARK_CAPTURE(rasterise, stairs, "stairs");
-BENCHMARK_CAPTURE(rasterise_and_find_gaps, garage, "garage");
-BENCHMARK_CAPTURE(rasterise_and_find_gaps, stairs, "stairs");
+BENCHMARK_CAPTURE(rasterise_and_find_free_spans, garage, "garage");
+BENCHMARK_CAPTURE(rasterise_and_find_free_spans, stairs, "stairs");
 
 }  // namespace

@@ -16,9 +16,9 @@
 #include "throng/bake.h"
 #include "throng/path.h"
 
-// Our ways beside Detour's on one world: the same pairs of places, the same body, one thread, in
-// alternating runs. A query is the whole of it: Detour's corridor and straight path, our way with
-// all its legs. Finding the polygon, or the level, of an end is outside.
+// Our paths beside Detour's on one world: the same pairs of places, the same body, one thread, in
+// alternating runs. A query is the whole of it: Detour's corridor and straight path, our path with
+// all its segments. Finding the polygon, or the level, of an end is outside.
 namespace throng::bench {
 namespace {
 
@@ -147,7 +147,7 @@ Json compare(const Scene& scene, const Options& options) {
     pairs.push_back(pair);
   }
 
-  // What both find, and how long it is; and whether Detour's way is a legal one.
+  // What both find, and how long it is; and whether Detour's path is legal.
   Path path;
   uint64_t detour_reached = 0, ours_reached = 0, both = 0, detour_legal = 0, missed_legal = 0;
   double detour_length = 0, our_length = 0, worst = 0;
@@ -228,7 +228,7 @@ Json compare(const Scene& scene, const Options& options) {
 int main(int argc, char** argv) {
   using namespace throng;
   using namespace throng::bench;
-  CLI::App parser{"Our ways beside Detour's", "bench_detour"};
+  CLI::App parser{"Our paths beside Detour's", "bench_detour"};
   Options options;
   parser.add_option("file", options.file, "Model")->required();
   parser.add_option("--cell", options.cell, "Side of our cells [m]")->capture_default_str();

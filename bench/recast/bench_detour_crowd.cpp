@@ -22,16 +22,16 @@
 #include "throng/crowd.h"
 #include "throng/graph.h"
 
-// Our crowd beside DetourCrowd in one world: the same bodies at the same places, bound for the same
-// far goals at the same speed, one thread each, turn about every simulated second. An update's time
-// is the whole of it: ways, avoidance, moves.
+// Our crowd beside DetourCrowd in one world: the same bodies at the same places, heading to the
+// same far goals at the same speed, one thread each, alternating every simulated second. An
+// update's time is the whole of it: paths, avoidance, moves.
 namespace throng::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr int kUpdates = 20;  // a second, as Recast's demo makes them
 constexpr double kDt = 1.0 / kUpdates;
-constexpr uint32_t kMaxOfDetour = 16000;  // Its grid has room for 65536 / 4, then it hangs.
+constexpr uint32_t kMaxOfDetour = 16000;  // Its grid holds 65536 / 4, then it hangs.
 
 struct Options {
   std::string file;
@@ -54,7 +54,7 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The ends of somebody's way, and Detour's polygons there.
+// The ends of a trip, and Detour's polygons there.
 struct Trip {
   Place from, to;
   dtPolyRef from_polygon = 0, to_polygon = 0;
@@ -64,8 +64,8 @@ std::array<float, 3> floats(const Vec3d& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-// Places of both worlds; the ends of each trip are far apart, and of the largest part that holds
-// together. Nobody touches anybody at the start.
+// Places of both worlds; the ends of each trip are far apart, and of the largest component. No two
+// avatars touch at the start.
 std::vector<Trip> draw_trips(const World& world, const dtNavMesh& mesh, const Options& o) {
   Context context;
   const auto graph = Graph::make(world, {}, context);
@@ -116,10 +116,10 @@ std::vector<Trip> draw_trips(const World& world, const dtNavMesh& mesh, const Op
   return trips;
 }
 
-// What is told of a crowd.
+// What is reported of a crowd.
 struct Account {
   std::vector<double> seconds;  // that each simulated one takes
-  uint64_t with_way = 0;        // after the first
+  uint64_t with_path = 0;       // after the first
   uint64_t partial = 0;         // of these, leading elsewhere
   uint64_t overlaps = 0, deep = 0;
   double deepest = 0;
@@ -147,7 +147,7 @@ struct Account {
     return {{"us_an_update", sum / static_cast<double>(seconds.size()) * each},
             {"us_median", sorted[sorted.size() / 2] * each},
             {"first_second", seconds.front()},
-            {"with_way_after_1_s", with_way},
+            {"with_way_after_1_s", with_path},
             {"partial", partial},
             {"speed_at_end", walked / o.avatars / o.speed},
             {"overlaps", overlaps},
@@ -156,7 +156,7 @@ struct Account {
   }
 };
 
-// A crowd as the comparison needs it: `update` once, and where everybody stands.
+// A crowd as the comparison needs it: `update` once, and where all avatars stand.
 class Ours {
  public:
   Ours(const World& world, const std::vector<Trip>& trips, const Options& o)
@@ -170,14 +170,14 @@ class Ours {
     if (!ids) stop(ids.error().message);
     ids_ = std::move(*ids);
     for (const AvatarId id : ids_) {
-      if (!id) stop("somebody of ours cannot stand where he should");
+      if (!id) stop("an avatar of ours cannot stand at its place");
     }
   }
   void give_goals() { crowd_.set_goals(ids_, goals_); }
   void update() {
     const CrowdReport report = crowd_.step();
-    // All ask in their first step, and whoever asks again later has an answer within it.
-    if (report.step == 1) with_way_ = report.planned - report.no_path;
+    // All avatars query in their first step; a later query is answered within its step.
+    if (report.step == 1) with_path_ = report.planned - report.no_path;
     planned_ += report.planned;
     progress_ = report.progress;
     contested_ += report.contested;
@@ -194,7 +194,7 @@ class Ours {
     }
     return all;
   }
-  void count_ways(Account& account) const { account.with_way = with_way_; }
+  void count_paths(Account& account) const { account.with_path = with_path_; }
   [[nodiscard]] uint64_t wall_entries() const { return crowd_.check().wall_entries; }
   // Where the time goes, of an update. [us]
   [[nodiscard]] Json phases(const Options& o) const {
@@ -220,7 +220,7 @@ class Ours {
   std::vector<AvatarId> ids_;
   std::vector<Place> goals_;
   std::vector<AvatarState> states_;
-  uint64_t with_way_ = 0, planned_ = 0, contested_ = 0;
+  uint64_t with_path_ = 0, planned_ = 0, contested_ = 0;
   double progress_ = 0;
   std::array<double, 5> phases_{};
 };
@@ -265,10 +265,10 @@ class Theirs {
     }
     return all;
   }
-  void count_ways(Account& account) const {
+  void count_paths(Account& account) const {
     for (size_t i = 0; i < trips_.size(); ++i) {
       const bool has = agent(i).targetState == DT_CROWDAGENT_TARGET_VALID;
-      account.with_way += has;
+      account.with_path += has;
       account.partial += has && agent(i).partial;
     }
   }
@@ -285,13 +285,13 @@ template <class SomeCrowd>
 void go_on(SomeCrowd& crowd, int second, const Options& o, Account& account) {
   const bool last = second + 1 == o.seconds;
   if (last) account.bodies = crowd.look();
-  double taken = second == 0 ? seconds_of([&] { crowd.give_goals(); }) : 0;
+  double spent = second == 0 ? seconds_of([&] { crowd.give_goals(); }) : 0;
   for (int n = 0; n < kUpdates; ++n) {
-    taken += seconds_of([&] { crowd.update(); });
+    spent += seconds_of([&] { crowd.update(); });
     if (last) account.walk_on(crowd.look());
   }
-  account.seconds.push_back(taken);
-  if (second == 0) crowd.count_ways(account);
+  account.seconds.push_back(spent);
+  if (second == 0) crowd.count_paths(account);
   if (!last) account.bodies = crowd.look();
   account.judge();
 }

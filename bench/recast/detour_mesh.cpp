@@ -20,7 +20,7 @@ struct Freed {
 template <class T, void (*Free)(T*)>
 using Owned = std::unique_ptr<T, Freed<T, Free>>;
 
-// One tile's navigation data, in memory that Detour will own; null where nobody can walk.
+// One tile's navigation data, in memory that Detour will own; null where no agent can walk.
 unsigned char* make_tile(const RecastInput& input, const std::vector<int>& triangles,
                          const RecastConfig& config, int x, int z, int& size) {
   rcContext context(false);

@@ -6,22 +6,22 @@
 #include <array>
 #include <cmath>
 
-#include "bake/air_room.h"
+#include "bake/air_clearance.h"
 #include "bake/columns.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "world/air_rows.h"
 
 // Columns are filled again, as for the ground, and what of a column lies in an air cell fills it:
-// an air cell is free only if no matter, over-covered as it is, touches it anywhere. A ring of
-// tiles around the zone shows how wide its free cubes are.
+// an air cell is free only if no solid, over-covered as it is, touches it anywhere. A ring of tiles
+// around the zone shows how wide its free cubes are.
 namespace throng {
 namespace {
 
 constexpr int32_t kAirBakeVersion = 1;
 constexpr double kLayerPhase = kGridPhase;
-constexpr int32_t kSkyLayers = 16;             // flown in over the highest matter
-constexpr double kDefaultAirCell = 0.4;        // least for flyers if nothing is asked for [m]
+constexpr int32_t kSkyLayers = 16;             // flown in over the highest solid
+constexpr double kDefaultAirCell = 0.4;        // minimum for flyers by default [m]
 constexpr size_t kMaxBytes = size_t{1} << 31;  // of the rows of one zone
 
 int32_t floor_div(int64_t a, int64_t b) {
@@ -106,7 +106,7 @@ struct AirBaker::Worker {
   std::vector<Layers> here;  // over one air cell's square
 };
 
-// Layers with matter over each air cell's square of a tile, merged, ascending.
+// Layers with a solid over each air cell's square of a tile, merged, ascending.
 struct AirBaker::TileAir {
   std::vector<uint32_t> first;
   std::vector<Layers> layers;
@@ -172,8 +172,8 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   const int32_t side = tiles * per_tile, across = side + 2 * apron;
   const int32_t grid_x = (plan_.grid.width + shape_.multiple - 1) / shape_.multiple;
   const int32_t grid_z = (plan_.grid.depth + shape_.multiple - 1) / shape_.multiple;
-  // How much of what is looked at is the world's: a world may grow within its last tiles, and no
-  // triangle of this zone tell of it.
+  // How much of what is read is the world's: a world may grow within its last tiles, and no
+  // triangle of this zone show it.
   const auto own_part = [&](int32_t grid, int32_t zone) {
     return static_cast<uint64_t>(std::clamp(grid - zone * side, 0, side + known));
   };
@@ -185,9 +185,9 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                             own_part(grid_z, zone_z)};
   const uint64_t key = hash_span(std::span<const uint64_t>(words));
   if (folder_ != nullptr) {
-    if (auto kept = folder_->keep_air(zone_x, zone_z, key)) {
-      ++kept_;
-      return slot_of(zone_x, zone_z, kept->bytes(), nullptr);
+    if (auto reused = folder_->reuse_air(zone_x, zone_z, key)) {
+      ++reused_;
+      return slot_of(zone_x, zone_z, reused->bytes(), nullptr);
     }
   }
   const int32_t first_x = zone_x * tiles - 1, first_z = zone_z * tiles - 1;
@@ -203,7 +203,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
     const auto items = bins.square(i);
     if (items.empty() || context.cancel) return;
     const int32_t column = static_cast<int32_t>(i) % ring, row = static_cast<int32_t>(i) / ring;
-    TileRect rect;  // of a ring tile only what is looked at
+    TileRect rect;  // of a ring tile only what is read
     if (column == 0) rect.x0 = kTileSide - apron * shape_.multiple;
     if (column == ring - 1) rect.x1 = apron * shape_.multiple;
     if (row == 0) rect.z0 = kTileSide - apron * shape_.multiple;
@@ -213,7 +213,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   });
   if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
 
-  int32_t low = INT32_MAX, high = INT32_MIN;  // of the matter here and around
+  int32_t low = INT32_MAX, high = INT32_MIN;  // of the solids here and around
   bool own = false;
   for (int32_t i = 0; i < ring * ring; ++i) {
     const bool beside =
@@ -225,7 +225,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
     }
   }
   if (!own) return std::unique_ptr<AirData::Slot>();  // nothing but air
-  // The highest layer stays free of matter: it stands for all that is higher or lower.
+  // The highest layer stays free: it stands for all that is higher or lower.
   const int32_t base = low & -4, height = ((high - base + 2) + 3) & -4;
   if (static_cast<double>(height) * across * across / 8 > static_cast<double>(kMaxBytes)) {
     return Error{Errc::kLimit, "bake: the air of zone " + std::to_string(zone_x) + ", " +
@@ -268,7 +268,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                              .largest = AirTree::kMaxSide,
                              .free_beyond = true};
   AirTreeData tree = build_air_tree(source);
-  measure_room(source, apron, workers, tree);
+  measure_clearance(source, apron, workers, tree);
   auto bytes = air_zone_bytes(zone_x, zone_z, key, tree);
   const std::span<const uint8_t> view(bytes.data(), bytes.size());
   if (folder_ != nullptr) {
@@ -278,8 +278,8 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
   }
   auto zone = AirZone::from_bytes(std::move(bytes), air_file_name(zone_x, zone_z));
   if (!zone) return zone.error();
-  const auto kept = (*zone)->bytes();
-  return slot_of(zone_x, zone_z, kept, std::move(*zone));
+  const auto reused = (*zone)->bytes();
+  return slot_of(zone_x, zone_z, reused, std::move(*zone));
 }
 
 std::shared_ptr<AirData> gather_air(const AirShape& shape, const WorldData& world,

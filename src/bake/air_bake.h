@@ -21,7 +21,7 @@ AirShape air_shape(const BakePlan& plan, const Box3d& bounds);
 /// Why a bake with this config can have no air, or nothing.
 Result<void> check_air(const BakeConfig& config);
 
-/// True if the config asks for air: a cell for it, or a class that flies.
+/// True if the config requires air: a cell for it, or a class that flies.
 bool wants_air(const BakeConfig& config);
 
 /// Bakes air files one zone after the other. Several may bake different zones of one plan at a
@@ -35,12 +35,13 @@ class AirBaker {
   ~AirBaker();
 
   /// One zone, from the triangles that may touch it or its apron, in order; null: there is nothing
-  /// but air. `input` tells what its ground was baked from. Fails with kIo, kLimit or kCancelled.
+  /// but air. `input` is the hash of what its ground was baked from. Fails with kIo, kLimit or
+  /// kCancelled.
   Result<std::unique_ptr<AirData::Slot>> bake(int32_t zone_x, int32_t zone_z,
                                               std::span<const uint32_t> triangles, uint64_t input,
                                               Context& context);
-  /// Zones whose files were kept, for their input has not changed.
-  [[nodiscard]] uint64_t kept() const { return kept_; }
+  /// Zones whose files were reused, because their input has not changed.
+  [[nodiscard]] uint64_t reused() const { return reused_; }
 
  private:
   struct Worker;
@@ -53,7 +54,7 @@ class AirBaker {
   const WorldFolder* folder_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<CellTriangle> triangles_;
-  uint64_t kept_ = 0;
+  uint64_t reused_ = 0;
 };
 
 /// What came of all zones of a world, in their order; null ones are passed over.

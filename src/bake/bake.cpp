@@ -17,6 +17,8 @@
 #include "core/stopwatch.h"
 #include "world/zone_data.h"
 
+// bake_world and bake_world_to: bake the zones of a scene, several side by side, then the graph, in
+// memory or into a world's folder.
 namespace throng {
 namespace {
 
@@ -29,7 +31,7 @@ class ZoneBaker {
       : bake_(bake),
         context_(context),
         folder_(folder),
-        groups_(deal_workers(bake.zones().size(), config.workers)),
+        groups_(assign_workers(bake.zones().size(), config.workers)),
         scratch_(static_cast<size_t>(groups_.groups)),
         facts_(bake.zones().size()),
         zones_(folder == nullptr ? facts_.size() : 0) {}
@@ -65,8 +67,8 @@ class ZoneBaker {
   Result<void> bake(size_t i, ZoneScratch& scratch) {
     const format::ZoneInput& input = bake_.zones()[i];
     if (folder_ != nullptr) {
-      if (const auto kept = folder_->keep(input.x(), input.z(), input.hash())) {
-        facts_[i] = bake_.facts_of(*kept);
+      if (const auto reused = folder_->reuse(input.x(), input.z(), input.hash())) {
+        facts_[i] = bake_.facts_of(*reused);
         return {};
       }
     }

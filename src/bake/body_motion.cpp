@@ -6,15 +6,18 @@
 #include <cmath>
 #include <limits>
 
+// Proves that a body may move between two poses: the body, grown by as far as any of its points
+// moves, enters no triangle; where it does, the motion is halved. Cost: triangles near, times
+// halvings.
 namespace throng {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kGrowth = 0.03;  // How little bodies are grown between poses at the end. [m]
-constexpr int kMaxSteps = 256;    // of a walker's way
+constexpr double kGrowth = 0.03;  // The least growth of a body between poses. [m]
+constexpr int kMaxSteps = 256;    // of a walker's move
 
 // Height of a triangle on the vertical line through (x, z), if it is there.
-bool carries(const LocalTriangle& t, Vec3d at, double reach) {
+bool supports(const LocalTriangle& t, Vec3d at, double reach) {
   double height = 0, sum = 0;
   std::array<double, 3> weight;
   for (size_t i = 0; i < 3; ++i) {
@@ -44,7 +47,7 @@ double farthest_of(const PatchBody& body) {
 
 double MotionJudge::reach_of(const PatchBody& body) { return farthest_of(body) + kGrowth; }
 
-void MotionJudge::list_triangles(const Box3d& box, Vec3d around, SieveList& out) {
+void MotionJudge::list_triangles(const Box3d& box, Vec3d around, FilterList& out) {
   found_.clear();
   triangles_->find(box, found_);
   out.clear(around);
@@ -66,10 +69,10 @@ void MotionJudge::look_closer(const Box3d& box) {
 }
 
 bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to) {
-  if (dot(from.axis, to.axis) < -0.5) return false;  // Which way it turns would be a guess.
+  if (dot(from.axis, to.axis) < -0.5) return false;  // The direction of the turn is ambiguous.
   const double far = farthest_of(body), around = reach_of(body);
-  // The turning axis moves fastest half way, by the angle's tangent: twice the chord holds it.
-  const double way = length(to.feet - from.feet) + 2 * far * length(to.axis - from.axis);
+  // The turning axis moves fastest at t = 1/2, by the angle's tangent: twice the chord bounds it.
+  const double move = length(to.feet - from.feet) + 2 * far * length(to.axis - from.axis);
   Box3d box;
   for (const BodyPose& pose : {from, to}) {
     const Vec3d reach{around, around, around};
@@ -83,25 +86,25 @@ bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const Bod
   } else {
     list_triangles(box, from.feet, near_);
   }
-  return is_free(body, from, to, way, 0, 1);
+  return is_free(body, from, to, move, 0, 1);
 }
 
 // The part of a motion from t0 to t1, halved until the grown body is free.
 bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const BodyPose& to,
-                          double way, double t0, double t1) {
-  const double t = (t0 + t1) / 2, growth = way * (t1 - t0) / 2;
+                          double move, double t0, double t1) {
+  const double t = (t0 + t1) / 2, growth = move * (t1 - t0) / 2;
   const Vec3d axis = from.axis * (1 - t) + to.axis * t;
   const BodyFrame frame =
       BodyFrame::around(from.feet * (1 - t) + to.feet * t, axis * (1 / length(axis)));
   const BodySweep exact{.radius = body.radius, .low = body.bottom, .high = body.height};
   const BodySweep grown{
       .radius = body.radius + growth, .low = body.bottom - growth, .high = body.height + growth};
-  // At the end there is no room to give.
+  // The least growth is not halved any more.
   const bool last = growth <= kGrowth;
-  const std::array<SieveTube, 2> tubes{
+  const std::array<FilterTube, 2> tubes{
       {{.whole = exact, .decisive = exact}, {.whole = grown, .decisive = grown}}};
   const uint32_t answered =
-      sieve(near_, {.frame = frame, .first = grown, .second = grown, .tubes = tubes}, hits_);
+      filter(near_, {.frame = frame, .first = grown, .second = grown, .tubes = tubes}, hits_);
   if ((answered & (last ? 3 : 1)) != 0) return false;
   bool free = (answered & 2) == 0;
   for (size_t i = 0; i < hits_.count; ++i) {
@@ -113,10 +116,10 @@ bool MotionJudge::is_free(const PatchBody& body, const BodyPose& from, const Bod
     }
     if ((hits_.tubes[i] & 1) != 0 && lowest_entry(local, exact) < kNever) return false;
   }
-  return free || (is_free(body, from, to, way, t0, t) && is_free(body, from, to, way, t, t1));
+  return free || (is_free(body, from, to, move, t0, t) && is_free(body, from, to, move, t, t1));
 }
 
-bool MotionJudge::is_carried(Vec3d from, Vec3d to, double reach, double spacing) {
+bool MotionJudge::is_supported(Vec3d from, Vec3d to, double reach, double spacing) {
   Box3d box;
   box.add(from);
   box.add(to);
@@ -131,10 +134,10 @@ bool MotionJudge::is_carried(Vec3d from, Vec3d to, double reach, double spacing)
   for (int k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) / steps;
     const Vec3d at = from * (1 - t) + to * t;
-    const bool carried = std::any_of(found_.begin(), found_.end(), [&](uint32_t triangle) {
-      return carries(triangles_->corners(triangle), at, reach);
+    const bool supported = std::any_of(found_.begin(), found_.end(), [&](uint32_t triangle) {
+      return supports(triangles_->corners(triangle), at, reach);
     });
-    if (!carried) return false;
+    if (!supported) return false;
   }
   return true;
 }

@@ -9,12 +9,15 @@
 
 #include "core/parallel.h"
 
+// Exact tests of one triangle against an upright cylinder, a prism or a cylinder that moves: the
+// triangle is clipped to the heights, then its distance to the axis is compared. Also clusters of a
+// scene's triangles by squares of the ground, to find those near a box.
 namespace throng {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// A convex polygon with room for a triangle cut twice.
+// A convex polygon with space for a triangle cut twice.
 struct Clipped {
   std::array<Vec3d, 6> corners;
   size_t count = 0;
@@ -58,7 +61,7 @@ double distance2(const Clipped& polygon) {
 }
 
 // Squared distance between the segments from a to b and from the axis to p, seen along it.
-double distance2_to_way(Vec3d a, Vec3d b, Vec3d p) {
+double distance2_to_move(Vec3d a, Vec3d b, Vec3d p) {
   const auto side = [](Vec3d u, Vec3d v) { return u.x * v.y - u.y * v.x; };
   const Vec3d ab = b - a, ap = p - a, ao = a * -1;
   if (side(p, a) * side(p, b) < 0 && side(ab, ao) * side(ab, ap) < 0) return 0;
@@ -95,7 +98,7 @@ double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep) {
   return lowest;
 }
 
-bool enters_on_way(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d along) {
+bool enters_on_move(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d along) {
   const auto& [a, b, c] = triangle;
   const double low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});
   if (low > sweep.high || high < sweep.low) return false;
@@ -110,10 +113,10 @@ bool enters_on_way(const LocalTriangle& triangle, const BodySweep& sweep, Vec3d 
   if (low < sweep.low) polygon = clip(polygon, sweep.low, 1);
   if (high > sweep.high) polygon = clip(polygon, sweep.high, -1);
   if (polygon.count == 0) return false;
-  if (distance2(polygon) == 0) return true;  // The way begins in it.
+  if (distance2(polygon) == 0) return true;  // The move begins in it.
   for (size_t i = 0; i < polygon.count; ++i) {
     const Vec3d p = polygon.corners[i], q = polygon.corners[(i + 1) % polygon.count];
-    if (distance2_to_way(p, q, along) <= r * r) return true;
+    if (distance2_to_move(p, q, along) <= r * r) return true;
   }
   return false;
 }
@@ -157,7 +160,7 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
   squares_z_ = bins.squares_z;
   first_.assign(bins.first.begin(), bins.first.end());
   items_ = std::make_unique_for_overwrite<Item[]>(bins.items.size());
-  // The first square of each, which boxes that only touch a border do not tell.
+  // The first square of each: boxes that only touch a border do not show it.
   struct Place {
     int32_t x = -1, z = 0;
   };
@@ -206,7 +209,7 @@ struct CubeKey {
   }
 };
 
-// std::floor() is a call where the oldest of machines must be able to go on.
+// std::floor() is a function call in code for the oldest machines.
 int64_t floor_of(double v) {
   const auto whole = static_cast<int64_t>(v);
   return whole - (static_cast<double>(whole) > v ? 1 : 0);

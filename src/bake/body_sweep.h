@@ -39,8 +39,8 @@ using LocalTriangle = std::array<Vec3d, 3>;
 [[nodiscard]] double lowest_entry(const LocalTriangle& triangle, const BodySweep& sweep);
 
 /// Does a triangle come into a sweep while that goes straight across its axis, by `along`? [m]
-[[nodiscard]] bool enters_on_way(const LocalTriangle& triangle, const BodySweep& sweep,
-                                 Vec3d along);
+[[nodiscard]] bool enters_on_move(const LocalTriangle& triangle, const BodySweep& sweep,
+                                  Vec3d along);
 
 /// The box that holds a sweep.
 [[nodiscard]] Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep);
@@ -61,7 +61,7 @@ class TriangleSquares {
     uint32_t first = 0, last = 0;  ///< of order_
   };
 
-  /// A cluster in one of its squares. All are set by many threads, and by nobody before.
+  /// A cluster in one of its squares. Unset at first; many threads set all of them.
   struct Item {
     std::array<float, 6> box;
     uint32_t first;  ///< of order_

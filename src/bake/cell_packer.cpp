@@ -230,9 +230,9 @@ class Strip {
   BlockRow& row_;
 };
 
-// Bits a cell that numbers up to `most` take, one more number if some cells have none.
-HWY_INLINE uint32_t width_for(uint32_t most, bool hole) {
-  const auto bits = static_cast<uint32_t>(std::bit_width(most + (hole ? 1 : 0)));
+// Bits a cell that numbers up to `max_value` take, one more number if some cells have none.
+HWY_INLINE uint32_t width_for(uint32_t max_value, bool hole) {
+  const auto bits = static_cast<uint32_t>(std::bit_width(max_value + (hole ? 1 : 0)));
   return bits == 0 ? 0 : std::bit_ceil(bits);
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/sheets.h"
+#include "bake/layers.h"
 #include "world/cell_blocks.h"
 
 /// Packs the cells of a level tile into the blocks of a zone file (world/cell_blocks.h).

@@ -17,32 +17,32 @@ using Row = unsigned __int128;  // bit x + kApronBits is column x
 
 constexpr std::array<bool, kMaxMargin> kSquare{true, true, true, false, false, true, false};
 
-// A row of a sheet with up to 8 columns of the sheets to its left and right.
-Row wide_row(const TileLegality* left, const TileLegality* right, const SheetLegality& sheet,
+// A row of a layer with up to 8 columns of the layers to its left and right.
+Row wide_row(const TileLegality* left, const TileLegality* right, const LayerLegality& layer,
              size_t avatar_class, int32_t step, size_t z) {
-  Row row = static_cast<Row>(sheet.classes[avatar_class].legal[z]) << kApronBits;
-  const int16_t l = sheet.link[0][z];
-  if (l >= 0 && left != nullptr && sheet.rise[0][z] <= step) {
+  Row row = static_cast<Row>(layer.classes[avatar_class].legal[z]) << kApronBits;
+  const int16_t l = layer.link[0][z];
+  if (l >= 0 && left != nullptr && layer.rise[0][z] <= step) {
     row |=
         (*left)[static_cast<size_t>(l)].classes[avatar_class].legal[z] >> (kTileSide - kApronBits);
   }
-  const int16_t r = sheet.link[1][z];
-  if (r >= 0 && right != nullptr && sheet.rise[1][z] <= step) {
+  const int16_t r = layer.link[1][z];
+  if (r >= 0 && right != nullptr && layer.rise[1][z] <= step) {
     const uint64_t bits = (*right)[static_cast<size_t>(r)].classes[avatar_class].legal[z] & 0xff;
     row |= static_cast<Row>(bits) << (kApronBits + kTileSide);
   }
   return row;
 }
 
-// Adds the rows of the tile above or below: columns go to whichever sheet continues them.
-void add_rows(const std::array<const TileLegality*, 3>& tiles, const SheetLegality& sheet,
+// Adds the rows of the tile above or below: columns go to the layer that continues them.
+void add_rows(const std::array<const TileLegality*, 3>& tiles, const LayerLegality& layer,
               size_t side, size_t avatar_class, int32_t step, size_t first_z, Row* rows) {
   const TileLegality* tile = tiles[1];
   if (tile == nullptr) return;
   for (size_t s = 0; s < tile->size(); ++s) {
     Row columns = 0;
     for (size_t x = 0; x < kTileSide; ++x) {
-      if (sheet.link[side][x] == static_cast<int16_t>(s) && sheet.rise[side][x] <= step) {
+      if (layer.link[side][x] == static_cast<int16_t>(s) && layer.rise[side][x] <= step) {
         columns |= static_cast<Row>(1) << (x + kApronBits);
       }
     }
@@ -61,26 +61,26 @@ void add_rows(const std::array<const TileLegality*, 3>& tiles, const SheetLegali
 
 }  // namespace
 
-void link_sheet(const Sheet& sheet, const std::array<const TileSheets*, 4>& sides, int32_t max_step,
-                SheetLegality& out) {
+void link_layer(const Layer& layer, const std::array<const TileLayers*, 4>& sides, int32_t max_step,
+                LayerLegality& out) {
   constexpr std::array<size_t, 4> kAcross{1, 0, 3, 2};
   constexpr int32_t kFar = 1 << 28;
   for (size_t side = 0; side < 4; ++side) {
     out.link[side].fill(-1);
     out.rise[side].fill(0);
-    const TileSheets* tile = sides[side];
-    if (tile == nullptr || !sheet.has_border[side]) continue;
+    const TileLayers* tile = sides[side];
+    if (tile == nullptr || !layer.has_border[side]) continue;
     std::array<int32_t, kTileSide> best, link;
     best.fill(max_step + 1);
     link.fill(-1);
-    const auto& own = sheet.border[side];
+    const auto& own = layer.border[side];
     for (size_t s = 0; s < tile->size(); ++s) {
-      const Sheet& other = *(*tile)[s];
-      const int32_t shift = other.base - sheet.base;
+      const Layer& other = *(*tile)[s];
+      const int32_t shift = other.base - layer.base;
       // Most are other storeys. (Feet may have moved by a millimetre since they were ranged.)
       if (!other.has_border[kAcross[side]] ||
-          other.low_feet + shift > sheet.high_feet + max_step + 2 ||
-          other.high_feet + shift < sheet.low_feet - max_step - 2) {
+          other.low_feet + shift > layer.high_feet + max_step + 2 ||
+          other.high_feet + shift < layer.low_feet - max_step - 2) {
         continue;
       }
       const auto& across = other.border[kAcross[side]];
@@ -98,9 +98,9 @@ void link_sheet(const Sheet& sheet, const std::array<const TileSheets*, 4>& side
   }
 }
 
-void erode(const std::array<const TileLegality*, 9>& tiles, size_t sheet, size_t avatar_class,
+void erode(const std::array<const TileLegality*, 9>& tiles, size_t layer, size_t avatar_class,
            int32_t step, ClearancePlanes& out) {
-  const SheetLegality& own = (*tiles[4])[sheet];
+  const LayerLegality& own = (*tiles[4])[layer];
   constexpr size_t kRows = kTileSide + 2 * kApronBits;
   std::array<Row, kRows> rows{};
   for (size_t z = 0; z < kTileSide; ++z) {
@@ -115,7 +115,7 @@ void erode(const std::array<const TileLegality*, 9>& tiles, size_t sheet, size_t
   out.legal = own.classes[avatar_class].legal;
   for (const uint64_t row : out.legal) out.cells += std::popcount(row);
   bool full = out.cells == kTileArea;
-  // Rows from first to last have cells: many sheets are a storey of a few rows.
+  // Rows from first to last have cells: many layers are a storey of a few rows.
   size_t first = 0, last = kRows - 1;
   for (int32_t k = 0; k < kMaxMargin; ++k) {
     while (first < last && rows[first] == 0) ++first;

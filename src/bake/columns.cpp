@@ -9,8 +9,8 @@
 // so over a cell its heights are bounded by the lines of its edges, the same lines for all rows but
 // two: a vector of cells takes them in a few instructions, and one rule serves border cells, inner
 // cells and vertical walls. Rows and cells are widened by kWiden, far more than the arithmetic can
-// err, so rounding only ever adds matter. After Hasselgren, Akenine-Moeller, Ohlsson. Conservative
-// rasterization. GPU Gems 2, 2005.
+// err, so rounding only ever adds to the solid. After Hasselgren, Akenine-Moeller, Ohlsson.
+// Conservative rasterization. GPU Gems 2, 2005.
 //
 // A span goes to the first layer of its column that it touches, or to a new one: no lists, no
 // second pass.
@@ -259,7 +259,7 @@ class RowCutter {
 // A row's cut is a convex polygon, so over a cell its highest point is the least of what the lines
 // above it reach there, or the row's highest point if that is less; likewise the lowest. The lines
 // are the triangle's sides and the two that cut the row out; a line reaches highest at the end of
-// the cell towards which it rises. A line that is left out only adds matter.
+// the cell towards which it rises. A line that is left out only adds to the solid.
 constexpr double kUnbound = 1e30;
 // How far beyond a cell's low end a line that rises reaches highest; one that falls.
 constexpr double kRisingEnd = 1 + kWiden, kFallingEnd = -kWiden;
@@ -436,7 +436,8 @@ class TriangleGroup {
     // From a point near the tile on: a far one would cost the float its precision.
     const V x = hn::Min(hn::Max(x_a, set(-1)), set(kTileSide + 1));
     const V y = hn::Add(y_a, hn::Mul(slope, hn::Sub(x, x_a)));
-    // Of a triangle seen edge-on, thinner than the floats tell, each side bounds both ways.
+    // Of a triangle seen edge-on, thinner than floats resolve, each side is a lower and an upper
+    // bound.
     constexpr double kThin = 0.01;  // mm
     const M is_above = hn::And(sloped, hn::Gt(over, set(-kThin)));
     const M is_below = hn::And(sloped, hn::Lt(over, set(kThin)));
@@ -575,7 +576,7 @@ HWY_INLINE void fill_blocks(TileColumns& columns, const TileTriangle& t, const R
         const VI above = hn::Min(tri_tall, hn::Max(hn::Zero(di), hn::NearestInt(y)));
         height = hn::Add(tri_low, above);
       }
-      // Over 8 km above the tile's lowest matter there is nothing to stand on.
+      // Over 8 km above the tile's lowest solid there is nothing to stand on.
       const MI near = hn::And(covered, hn::Lt(height, hn::Set(di, 1 << 23)));
       const VI packed = hn::Or(hn::ShiftLeft<8>(height), hn::Set(di, t.code));
       support = hn::IfThenElse(near, packed, support);

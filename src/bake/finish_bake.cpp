@@ -9,6 +9,8 @@
 #include "throng/nodes.h"
 #include "throng/world.h"
 
+// Replaces the old world by the complete one in NAME.part, after a check of the off-mesh links of
+// its nodes.
 namespace throng {
 
 Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const GraphData& graph,

@@ -12,8 +12,8 @@
 namespace throng {
 
 /// Puts a world whose zones, air and graph are all in the folder into its place, if what will be
-/// made of it can be: else nothing of the old world is lost. Fails with kIo, kBadInput (jumps),
-/// kBadFile or kCancelled.
+/// made of it can be: else nothing of the old world is lost. Fails with kIo, kBadInput (off-mesh
+/// links), kBadFile or kCancelled.
 Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const GraphData& graph,
                          const Scene& scene, const BakeConfig& config, Context& context,
                          BakeReport& report);

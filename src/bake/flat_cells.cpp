@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 #include "bake/zone_builder.h"
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -11,7 +11,7 @@
 #include "world/zone_data.h"
 
 // Cells that say themselves where a point may be need no columns and no legality: each tile is one
-// level sheet whose legal cells are the passable ones. From there on it is a world like any other.
+// level layer whose legal cells are the passable ones. From there on it is a world like any other.
 namespace throng {
 namespace {
 
@@ -35,18 +35,18 @@ uint64_t pack_tile(uint32_t tile, const BitPlane& rows, const SurfaceCodes& code
   planes.legal = rows;
   for (const uint64_t row : rows) planes.cells += std::popcount(row);
   if (planes.cells == 0) return 0;
-  Sheet sheet;
-  clear_sheet(sheet);
-  sheet.base = kFloor - Sheet::kBelow;
+  Layer layer;
+  clear_layer(layer);
+  layer.base = kFloor - Layer::kBelow;
   for (size_t c = 0; c < kTileArea; ++c) {
     if ((rows[c / kTileSide] >> (c % kTileSide) & 1) == 0) continue;
-    sheet.top[c] = sheet.feet[c] = static_cast<uint16_t>(Sheet::kBelow);
-    sheet.ceiling[c] = kNone16;
-    sheet.code[c] = 0;
+    layer.top[c] = layer.feet[c] = static_cast<uint16_t>(Layer::kBelow);
+    layer.ceiling[c] = kNone16;
+    layer.code[c] = 0;
   }
-  summarise(sheet);
+  summarise(layer);
   const uint8_t step_safe = 1;
-  pack_level(tile, sheet, fit_plane(sheet), {&planes, 1}, {&step_safe, 1}, codes, pack);
+  pack_level(tile, layer, fit_plane(layer), {&planes, 1}, {&step_safe, 1}, codes, pack);
   return static_cast<uint64_t>(planes.cells);
 }
 

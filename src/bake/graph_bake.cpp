@@ -6,19 +6,21 @@
 
 #include "graph/graph_passes.h"
 
+// Runs the passes of graph/graph_passes.h on a world's folder, which lends their files of an
+// earlier bake.
 namespace throng {
 namespace {
 
-constexpr uint64_t kResident = uint64_t{8} << 20;  // of zones looked at [bytes]
+constexpr uint64_t kResident = uint64_t{8} << 20;  // of zones in use [bytes]
 
 class FilesInFolder : public GraphFiles {
  public:
   explicit FilesInFolder(WorldFolder& folder) : folder_(folder) {}
-  std::unique_ptr<RegionZone> keep_regions(int32_t x, int32_t z, uint64_t input) override {
-    return folder_.keep_regions(x, z, input);
+  std::unique_ptr<RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) override {
+    return folder_.reuse_regions(x, z, input);
   }
-  std::unique_ptr<LinkZone> keep_links(int32_t x, int32_t z, uint64_t input) override {
-    return folder_.keep_links(x, z, input);
+  std::unique_ptr<LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) override {
+    return folder_.reuse_links(x, z, input);
   }
   Result<void> write(const std::string& name, std::span<const uint8_t> bytes) override {
     return folder_.write_file_of_zone(name, bytes);

@@ -60,26 +60,26 @@ struct RowTable {
   }
 };
 
-// Of the matter and room over some cells.
+// Of the solids and free spans over some cells.
 struct Extremes {
   VU high_top, low_top, low_ceiling;
 };
 
-bool GroundOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+bool GroundOf(const Layer& layer, const BodyWindow& body, const BodyLimits& limits,
               BitPlane& ground) {
   const hn::CappedTag<uint8_t, 64> dc;
   ground.fill(0);
-  if (sheet.one_code) {
-    if ((limits.allowed[sheet.some_code] & body.class_bit) == 0) return false;
+  if (layer.one_code) {
+    if ((limits.allowed[layer.some_code] & body.class_bit) == 0) return false;
     ground.fill(~uint64_t{0});
     return true;
   }
   uint64_t any = 0;
-  for (int32_t code = 0; code <= sheet.some_code; ++code) {
+  for (int32_t code = 0; code <= layer.some_code; ++code) {
     if ((limits.allowed[static_cast<size_t>(code)] & body.class_bit) == 0) continue;
     const auto wanted = hn::Set(dc, static_cast<uint8_t>(code));
     for (size_t c = 0; c < kTileArea; c += hn::Lanes(dc)) {
-      const uint64_t same = bits_of(dc, hn::Eq(hn::Load(dc, &sheet.code[c]), wanted));
+      const uint64_t same = bits_of(dc, hn::Eq(hn::Load(dc, &layer.code[c]), wanted));
       ground[c / kTileSide] |= same << c % kTileSide;
       any |= same;
     }
@@ -87,7 +87,7 @@ bool GroundOf(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limi
   return any != 0;
 }
 
-void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BitPlane& ground,
+void LegalCellsOf(const Layer& layer, const BodyWindow& body, const BitPlane& ground,
                   LegalityScratch& scratch, LegalCells& out) {
   out = {};
   const DU du;
@@ -112,7 +112,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BitPlane& gr
   uint16_t* aligned = scratch.rows.data();
   aligned += (64 - reinterpret_cast<uintptr_t>(aligned) % 64) % 64 / sizeof(uint16_t);
   const RowTable table{aligned, count};
-  // Rows that no allowed cell looks at are left out.
+  // Rows that no allowed cell reads are left out.
   const auto is_asked = [&](int32_t z) {
     const int32_t from = std::max(z - reach, 0), to = std::min(z + reach, kTileSide - 1);
     return std::any_of(&ground[static_cast<size_t>(from)], &ground[static_cast<size_t>(to)] + 1,
@@ -146,7 +146,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BitPlane& gr
     if (allowed == 0) continue;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
-      const VU feet = hn::Load(du, &sheet.feet[cell]);
+      const VU feet = hn::Load(du, &layer.feet[cell]);
       const MU stands = mask_of(du, allowed >> x);
       if (hn::AllFalse(du, stands)) continue;
       const VU tilt = hn::Load(du, &scratch.tilt[cell]);
@@ -203,7 +203,7 @@ void LegalCellsOf(const Sheet& sheet, const BodyWindow& body, const BitPlane& gr
 }
 
 // Bits of cells whose feet differ from the next cell's (in x, and in z) by more than the step.
-bool StepSafe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
+bool StepSafe(const Layer& layer, const BitPlane& legal, int32_t step) {
   const DU du;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
   const VU limit = hn::Set(du, static_cast<uint16_t>(std::min(step, 65535)));
@@ -211,14 +211,14 @@ bool StepSafe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
     uint64_t across = 0, along = 0;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
-      const VU feet = hn::Load(du, &sheet.feet[cell]);
+      const VU feet = hn::Load(du, &layer.feet[cell]);
       // Past the row's end this reads the next row or, at the very end, the array that follows:
       // masked.
-      const VU right = hn::LoadU(du, &sheet.feet[0] + cell + 1);
+      const VU right = hn::LoadU(du, &layer.feet[0] + cell + 1);
       const VU dx = hn::Sub(hn::Max(feet, right), hn::Min(feet, right));
       across |= bits_of(du, hn::Not(at_most(dx, limit))) << x;
       if (z + 1 == kTileSide) continue;
-      const VU below = hn::Load(du, &sheet.feet[cell + kTileSide]);
+      const VU below = hn::Load(du, &layer.feet[cell + kTileSide]);
       const VU dz = hn::Sub(hn::Max(feet, below), hn::Min(feet, below));
       along |= bits_of(du, hn::Not(at_most(dz, limit))) << x;
     }
@@ -240,26 +240,26 @@ HWY_EXPORT(GroundOf);
 HWY_EXPORT(LegalCellsOf);
 HWY_EXPORT(StepSafe);
 
-bool may_stand(const Sheet& sheet, const BodyWindow& body, const BodyLimits& limits,
+bool may_stand(const Layer& layer, const BodyWindow& body, const BodyLimits& limits,
                BitPlane& cells) {
   // Of the surface, whether there are feet or not.
-  if (!HWY_DYNAMIC_DISPATCH(GroundOf)(sheet, body, limits, cells)) return false;
-  BitPlane useful = sheet.useful;
+  if (!HWY_DYNAMIC_DISPATCH(GroundOf)(layer, body, limits, cells)) return false;
+  BitPlane useful = layer.useful;
   if (body.bottom != limits.max_bottom || body.height != limits.min_height) {
-    useful_cells(sheet, {body.bottom, body.height, limits.blocked_code}, useful);
+    useful_cells(layer, {body.bottom, body.height, limits.blocked_code}, useful);
   }
   uint64_t any = 0;
   for (size_t z = 0; z < kTileSide; ++z) any |= cells[z] &= useful[z];
   return any != 0;
 }
 
-void legal_cells(const Sheet& sheet, const BodyWindow& body, const BitPlane& cells,
+void legal_cells(const Layer& layer, const BodyWindow& body, const BitPlane& cells,
                  LegalityScratch& scratch, LegalCells& out) {
-  HWY_DYNAMIC_DISPATCH(LegalCellsOf)(sheet, body, cells, scratch, out);
+  HWY_DYNAMIC_DISPATCH(LegalCellsOf)(layer, body, cells, scratch, out);
 }
 
-bool step_safe(const Sheet& sheet, const BitPlane& legal, int32_t step) {
-  return HWY_DYNAMIC_DISPATCH(StepSafe)(sheet, legal, step);
+bool step_safe(const Layer& layer, const BitPlane& legal, int32_t step) {
+  return HWY_DYNAMIC_DISPATCH(StepSafe)(layer, legal, step);
 }
 
 }  // namespace throng

@@ -14,6 +14,8 @@
 #include "graph/node_bins.h"
 #include "throng/scene.h"
 
+// Makes nodes zone by zone in batches, reuses those whose input is unchanged, and collects what the
+// index needs of them.
 namespace throng {
 namespace {
 
@@ -78,21 +80,21 @@ uint64_t NodeBaker::input() const {
   return hash_span<uint64_t>(inputs);
 }
 
-Result<void> NodeBaker::keep_zones() {
+Result<void> NodeBaker::reuse_zones() {
   if (data_.path.empty() || config_.fresh) return {};
   const OldNodes old(data_.path);
   std::vector<std::optional<Error>> failed(plan_.zones.size());
   parallel_for(plan_.zones.size(), config_.workers, [&](size_t z) {
     const NodePlanZone& zone = plan_.zones[z];
-    auto kept = old.keep(zone.x, zone.z, zone.input);
-    if (!kept) return;
+    auto reused = old.reuse(zone.x, zone.z, zone.input);
+    if (!reused) return;
     is_done_[z] = 1;
-    slots_[z] = std::move(kept->slot);
+    slots_[z] = std::move(reused->slot);
     if (folder_ == nullptr || slots_[z] == nullptr) return;
-    if (auto ok = folder_->take_over(*slots_[z]->zone, kept->file); !ok) failed[z] = ok.error();
+    if (auto ok = folder_->take_over(*slots_[z]->zone, reused->file); !ok) failed[z] = ok.error();
     slots_[z]->zone.reset();
   });
-  kept_ = zones_done();
+  reused_ = zones_done();
   return first_failure(failed);
 }
 
@@ -125,19 +127,19 @@ Result<NodeSlots> NodeBaker::make(std::span<const uint32_t> zones, bool is_last,
 
 Result<std::vector<NodeBaker::Made>> NodeBaker::write(std::span<const uint32_t> zones,
                                                       NodeSlots& made) const {
-  std::vector<Made> told(zones.size());
+  std::vector<Made> made_entries(zones.size());
   std::vector<std::optional<Error>> failed(zones.size());
   parallel_for(zones.size(), config_.workers, [&](size_t i) {
-    told[i].zone = zones[i];
+    made_entries[i].zone = zones[i];
     if (made[i] == nullptr) return;
-    told[i].has_nodes = 1;
-    told[i].entry = made[i]->entry;
+    made_entries[i].has_nodes = 1;
+    made_entries[i].entry = made[i]->entry;
     if (folder_ == nullptr) return;
     if (auto ok = folder_->write(*made[i]->zone); !ok) failed[i] = ok.error();
     made[i]->zone.reset();
   });
   if (auto ok = first_failure(failed); !ok) return ok.error();
-  return told;
+  return made_entries;
 }
 
 void NodeBaker::enter(std::span<const Made> made, NodeSlots* slots) {
@@ -157,8 +159,8 @@ Result<void> NodeBaker::list() {
 Result<std::shared_ptr<NodeData>> NodeBaker::finish() {
   auto nodes = gather();
   if (nodes->node_count >= kFarNode) return too_many_nodes();
-  nodes->summary.zones_reused = kept_;
-  nodes->summary.zones_made = plan_.zones.size() - kept_;
+  nodes->summary.zones_reused = reused_;
+  nodes->summary.zones_made = plan_.zones.size() - reused_;
   return nodes;
 }
 
@@ -201,12 +203,12 @@ Result<std::shared_ptr<NodeData>> make_all(const World& world, const Scene& scen
   const auto start = Clock::now();
   NodeBaker baker(world, scene, config, folder);
   baker.plan();
-  if (auto ok = baker.keep_zones(); !ok) return ok.error();
-  // Jumps are looked at even if nothing has to be made.
+  if (auto ok = baker.reuse_zones(); !ok) return ok.error();
+  // Off-mesh links are checked even if nothing has to be made.
   const auto batches = baker.batches(config.working_bytes);
   for (size_t b = 0; b < batches.size(); ++b) {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
-    // What is there is told before what is left is begun.
+    // The journal names what is there before the rest is begun.
     if (auto ok = baker.list(); !ok) return ok.error();
     auto slots = baker.make(batches[b], b + 1 == batches.size(), context);
     if (!slots) return slots.error();

@@ -32,8 +32,8 @@ class NodeBaker {
   /// Can nodes be made of this at all?
   [[nodiscard]] static Result<void> check(const World& world, const Scene& scene,
                                           const NodeConfig& config);
-  /// Do all jumps given by hand begin and end at places of the world? Looks at the zones around
-  /// them only. Fails with kBadInput, kBadFile or kCancelled.
+  /// Do all off-mesh links begin and end at places of the world? Reads the zones around them only.
+  /// Fails with kBadInput, kBadFile or kCancelled.
   [[nodiscard]] static Result<void> check_off_mesh_links(const World& world, const Scene& scene,
                                                          const NodeConfig& config,
                                                          Context& context);
@@ -42,7 +42,7 @@ class NodeBaker {
   /// Of all that zones depend on: processes that make nodes together have the same.
   [[nodiscard]] uint64_t input() const;
   /// Takes over zones of earlier bakes.
-  Result<void> keep_zones();
+  Result<void> reuse_zones();
   /// Those that are left, in batches of at most about so much memory each. [bytes] At least one.
   [[nodiscard]] std::vector<std::vector<uint32_t>> batches(uint64_t max_bytes) const;
   /// What all of them would take at once, about, and a batch with what lies near it. [bytes]
@@ -59,7 +59,7 @@ class NodeBaker {
   Result<std::vector<Made>> write(std::span<const uint32_t> zones, NodeSlots& made) const;
   /// Enters what was made by this process, with `slots`, or by another.
   void enter(std::span<const Made> made, NodeSlots* slots = nullptr);
-  /// Tells the next bake what is in the folder so far.
+  /// Writes for the next bake what is in the folder so far.
   Result<void> list();
   /// All of them, once they are made. Fails with kLimit: too many.
   Result<std::shared_ptr<NodeData>> finish();
@@ -78,7 +78,7 @@ class NodeBaker {
   std::optional<TriangleSquares> triangles_;
   std::vector<uint8_t> is_done_;  // by zone of the plan
   NodeSlots slots_;               // likewise
-  uint64_t kept_ = 0;
+  uint64_t reused_ = 0;
 };
 
 }  // namespace throng

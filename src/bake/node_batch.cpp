@@ -68,7 +68,7 @@ class NodeBatch {
     add_drops();
     if (auto ok = add_off_mesh_links(); !ok) return ok.error();
     if (context_.cancel) return cancelled();
-    if (is_last_) triangles_.reset();  // Nobody asks them again, and links need the room.
+    if (is_last_) triangles_.reset();  // They are not needed again, and links need the memory.
     link();
     measure();
     if (context_.cancel) return cancelled();
@@ -269,7 +269,7 @@ class NodeBatch {
     return best;
   }
 
-  // Does a jump begin and end in or near zones none of which is made here?
+  // Does an off-mesh link begin and end in or near zones none of which is made here?
   [[nodiscard]] bool is_elsewhere(uint32_t off_mesh_link) const {
     bool is_near = false;
     for (uint32_t z = 0; z < plan_.zones.size(); ++z) {
@@ -314,7 +314,7 @@ class NodeBatch {
   }
 
   void link() {
-    // Beyond what any walker stands on, a way is climbed.
+    // Where no walker stands, a link is a climb.
     double steepest = 0;
     for (const AvatarClass& avatar : data_.summary.classes) {
       steepest = std::max(steepest, avatar.max_slope);
@@ -379,11 +379,11 @@ class NodeBatch {
       balls.push_back({.listed = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
     }
     const CrossCells cross(pairs_, sources_.size(), config_.workers);
-    const double most = bins_.width.back();
+    const double max_width = bins_.width.back();
     widths_.resize(forest_.trees.size());
     parallel_for(widths_.size(), config_.workers, [&](size_t p) {
       if (context_.cancel) return;
-      widths_[p] = node_widths(forest_, static_cast<uint32_t>(p), cross, most, balls);
+      widths_[p] = node_widths(forest_, static_cast<uint32_t>(p), cross, max_width, balls);
     });
   }
 

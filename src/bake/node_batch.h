@@ -34,12 +34,13 @@ struct NodeBatchInput {
 using NodeSlots = std::vector<std::unique_ptr<NodeData::Slot>>;
 
 /// Makes the nodes of some zones of the plan, given in ascending order, and returns them in it.
-/// What lies near these is looked at, so they come out the same whichever are made together. Fails
-/// with kBadInput (jumps), kBadFile (a zone of the ground), kLimit or kCancelled.
+/// What lies near these is read, so the results do not depend on which are made together. Fails
+/// with kBadInput (off-mesh links), kBadFile (a zone of the ground), kLimit or kCancelled.
 [[nodiscard]] Result<NodeSlots> make_node_batch(const NodeBatchInput& input,
                                                 std::span<const uint32_t> zones);
 
-/// Only whether the jumps of these zones begin and end at places; fails as make_node_batch does.
+/// Only whether the off-mesh links of these zones begin and end at places; fails as make_node_batch
+/// does.
 [[nodiscard]] Result<void> check_batch_links(const NodeBatchInput& input,
                                              std::span<const uint32_t> zones);
 

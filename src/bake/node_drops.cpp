@@ -18,9 +18,10 @@
 #include "world/node_data.h"
 #include "world/place.h"
 
-// A body that goes level and upright sweeps a prism over a stadium, one that falls a cylinder: both
-// are compared with the triangles as they are, so nothing is lost to growth between poses. Only who
-// has to turn, a climber on a Bezier patch, is proved pose by pose.
+// Finds drop links: from each node's rim out over the edge and down to the ground below. A body
+// that moves level and upright sweeps a prism over a stadium, one that falls a cylinder: both are
+// compared with the triangles as they are, so nothing is lost to growth between poses. Only a body
+// that has to turn, a climber on a Bezier patch, is proved pose by pose.
 namespace throng {
 namespace {
 
@@ -260,7 +261,7 @@ class DropFinder {
     for (size_t i = 0; i < near_.size(); ++i) {
       LocalTriangle below = near_[i];
       for (Vec3d& p : below) p = p - along;
-      if (lowest_entry(below, down) == kNever && !enters_on_way(near_[i], out, along)) continue;
+      if (lowest_entry(below, down) == kNever && !enters_on_move(near_[i], out, along)) continue;
       std::swap(near_[0], near_[i]);  // What stops one stops the next, mostly.
       return false;
     }
@@ -279,7 +280,7 @@ class DropFinder {
   std::vector<Lower> lower_;
   std::vector<uint32_t> found_;
   std::vector<LocalTriangle> near_;
-  bool near_found_ = false;  // for the place that is looked at
+  bool near_found_ = false;  // for the current place
 };
 
 // Is there a side of a patch's cell over which the class has no neighbour?

@@ -41,7 +41,7 @@ inline constexpr double kDropCells = 3;
 struct DropInput {
   PatchLinkInput links;
   std::span<const CellPair> edges;   ///< Over the edges of Bezier patches, by patch of the scene.
-  bool tiles = false;                ///< Whether level tiles carry anybody.
+  bool tiles = false;                ///< Whether level tiles carry a class.
   std::span<const uint32_t> levels;  ///< Of the world: those from which drops are looked for.
   uint16_t wanted = 0xffff;          ///< Classes.
 };

@@ -7,6 +7,8 @@
 
 #include "core/hash.h"
 
+// Packs the nodes of one zone, their arcs and what these need into a NodeZone buffer. Linear, after
+// sorting.
 namespace throng {
 
 ZoneArcs arcs_of(std::span<const NodeLink> links, const ZoneRange& zone) {

@@ -12,6 +12,8 @@
 #include "core/hash.h"
 #include "world/sealed_file.h"
 
+// The nodes' folder of a world: files of earlier bakes that can be reused, and a folder of new ones
+// that replaces it at once.
 namespace throng {
 namespace fs = std::filesystem;
 namespace {
@@ -40,7 +42,7 @@ OldNodes::OldNodes(const std::string& world_path) {
   }
 }
 
-std::optional<OldNodes::Kept> OldNodes::keep(int32_t x, int32_t z, uint64_t input) const {
+std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t input) const {
   for (const auto& index : folders_) {
     const auto& inputs = index->inputs;
     const auto found =
@@ -52,7 +54,7 @@ std::optional<OldNodes::Kept> OldNodes::keep(int32_t x, int32_t z, uint64_t inpu
       continue;
     }
     const size_t place = index->slot_at(x, z);
-    if (place == index->slots.size()) return Kept{};
+    if (place == index->slots.size()) return Reused{};
     const format::NodeZoneEntry& entry = index->slots[place]->entry;
     const std::string file = index->path + "/" + node_file_name(x, z);
     auto zone = open_listed<NodeZone>(
@@ -61,7 +63,7 @@ std::optional<OldNodes::Kept> OldNodes::keep(int32_t x, int32_t z, uint64_t inpu
     auto slot = std::make_unique<NodeData::Slot>();
     slot->entry = entry;
     slot->zone = std::move(*zone);
-    return Kept{std::move(slot), file};
+    return Reused{std::move(slot), file};
   }
   return std::nullopt;
 }
@@ -81,7 +83,7 @@ NodeFolder::~NodeFolder() {
   if (is_own_ && !part_.empty()) fs::remove_all(part_, error);
 }
 
-// The world's folder is shared: whoever puts another world in its place wants it alone.
+// The world's folder is locked as shared: to replace its world, the lock must be exclusive.
 Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
   auto world_lock = FolderLock::take(world_path, FolderLock::Kind::kShared, world_path);
   if (!world_lock) return world_lock.error();
@@ -142,7 +144,7 @@ Result<void> NodeFolder::finish(const NodeData& nodes) {
 namespace {
 
 // If it has any nodes.
-bool carry_folder(const fs::path& source, const fs::path& target) {
+bool reuse_folder(const fs::path& source, const fs::path& target) {
   std::error_code error;
   if (!fs::exists(source / kNodeIndexName, error)) return false;
   fs::remove_all(target, error);
@@ -157,11 +159,11 @@ bool carry_folder(const fs::path& source, const fs::path& target) {
 
 void carry_nodes(const std::string& from, const std::string& to, bool is_same_world) {
   const fs::path source(from), target(to);
-  carry_folder(source / kPartNodeFolder, target / kPartNodeFolder);
-  if (carry_folder(source / kNodeFolder, target / (is_same_world ? kNodeFolder : kOldNodeFolder))) {
+  reuse_folder(source / kPartNodeFolder, target / kPartNodeFolder);
+  if (reuse_folder(source / kNodeFolder, target / (is_same_world ? kNodeFolder : kOldNodeFolder))) {
     return;
   }
-  carry_folder(source / kOldNodeFolder, target / kOldNodeFolder);
+  reuse_folder(source / kOldNodeFolder, target / kOldNodeFolder);
 }
 
 }  // namespace throng

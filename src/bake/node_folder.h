@@ -22,19 +22,19 @@ class OldNodes {
   explicit OldNodes(const std::string& world_path);
 
   /// A zone's nodes that need not be made: `slot` is null if it has none, else mapped, from `file`.
-  struct Kept {
+  struct Reused {
     std::unique_ptr<NodeData::Slot> slot;
     std::string file;
   };
   /// If they were made from this input and their file is whole.
-  [[nodiscard]] std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input) const;
+  [[nodiscard]] std::optional<Reused> reuse(int32_t x, int32_t z, uint64_t input) const;
 
  private:
   std::vector<std::shared_ptr<const NodeData>> folders_;  // their indexes
 };
 
-/// The folder that takes the place of a world's nodes in one go, once all are in it. Until then it
-/// lies beside them, and its index tells the next bake what is there. Every call may fail with kIo.
+/// The folder that replaces a world's nodes at once, when all are in it. Until then it lies beside
+/// them, and its index names what is there for the next bake. Every call may fail with kIo.
 class NodeFolder {
  public:
   /// Of a world in its folder, held against other bakes. What a killed bake has left there stays
@@ -67,8 +67,8 @@ class NodeFolder {
   FolderLock world_lock_, part_lock_;
 };
 
-/// Carries the nodes of the world in `from` over to `to`, which takes its place, as far as that can
-/// be done: as its own if it is the same world.
+/// Reuses the nodes of the world in `from` for `to`, which takes its place, as far as possible: as
+/// its own if it is the same world.
 void carry_nodes(const std::string& from, const std::string& to, bool is_same_world);
 
 }  // namespace throng

@@ -16,7 +16,7 @@
 #include "world/node_data.h"
 
 // A zone's own input is what its patches are made of: their control points and neighbours, the
-// ground's files for its level tiles, and every triangle that a body on one of them, or on the way
+// ground's files for its level tiles, and every triangle that a body on one of them, or in a move
 // from it, could meet. Its trees depend on nothing else. Its links, and how they number the nodes
 // of other zones, depend also on the trees of the zones around it, and so do its widths: the sum of
 // the inputs of all zones near is what its file depends on.
@@ -24,12 +24,12 @@ namespace throng {
 namespace {
 
 constexpr uint64_t kNodeBakeVersion = 2;  // To be raised when equal inputs give other nodes.
-constexpr double kJumpReach = 1;          // Places are as near to a jump's ends. [m]
+constexpr double kLinkEndRadius = 1;      // Places that an off-mesh link's ends may be at. [m]
 constexpr double kMargin = 1;             // for rounding, and then some [m]
 constexpr double kHighest = 1e7;          // above and below all [m]
 
-// Bezier patches carry everybody where all ground is made of them; where there is other ground too,
-// level tiles carry those who walk, and patches those who climb.
+// Where all ground is Bezier patches, they carry all classes. Where there is other ground too,
+// level tiles carry walkers and patches carry climbers.
 void choose_layers(const WorldData& world, const Scene& scene, const NodeConfig& config,
                    NodePlan& plan) {
   const auto& classes = world.summary.classes;
@@ -91,7 +91,7 @@ void list_zones(const WorldData& world, const Scene& scene, NodePlan& plan) {
   }
 }
 
-// The longest way across a cell of a patch: what its control points allow.
+// An upper bound of the length across a cell of a patch, from its control points.
 double cell_across(const BezierPatch& patch, double size) {
   double along_s = 0, along_t = 0;
   const auto& p = patch.points;
@@ -130,7 +130,7 @@ NodeReaches reaches(const WorldData& world, const Scene& scene, const NodeConfig
     farthest = std::max(farthest, across);
     reach.triangles.push_back(leap + 2 * body + 4 * across + kMargin);
   }
-  // A flood looks at cells that come as near, and at those beside them.
+  // A flood visits cells that come as near, and those beside them.
   const double widest = make_bins(world.summary.classes).width.back();
   reach.nodes = std::max(widest, leap) + farthest + kMargin;
   return reach;
@@ -160,13 +160,13 @@ void find_near(double reach, std::vector<NodePlanZone>& zones) {
   }
 }
 
-// A jump makes the zones around both its ends depend on each other.
+// An off-mesh link makes the zones around both its ends depend on each other.
 void find_off_mesh_links(const NodeConfig& config, std::vector<NodePlanZone>& zones) {
   for (uint32_t j = 0; j < config.off_mesh_links.size(); ++j) {
     std::vector<uint32_t> touched;
     for (uint32_t z = 0; z < zones.size(); ++z) {
       for (const Vec3d at : {config.off_mesh_links[j].from, config.off_mesh_links[j].to}) {
-        if (!holds(zones[z].box, at, kJumpReach + kMargin)) continue;
+        if (!holds(zones[z].box, at, kLinkEndRadius + kMargin)) continue;
         touched.push_back(z);
         break;
       }
@@ -223,7 +223,7 @@ uint64_t common_input(const WorldData& world, const Scene& scene, const NodeConf
 void add_patch(const PatchSet& set, uint32_t patch, Words& words) {
   words.add(uint64_t{patch});
   for (const Vec3d& p : set.patches[patch].points) words.add(p);
-  // Those around it too, which are not in its way as others are.
+  // Those around it too: they are tested differently from others.
   std::vector<uint32_t> around;
   find_patches_around(set, patch, around);
   for (const uint32_t beside : around) words.add(uint64_t{beside});
@@ -337,19 +337,19 @@ uint64_t working_bytes(const Scene& scene, const NodeConfig& config, const NodeP
 }
 
 // Halves zones along their longer side until each part is small enough.
-class BatchDealer {
+class BatchSplitter {
  public:
-  BatchDealer(const NodePlan& plan, std::vector<uint64_t> bytes, uint64_t most)
-      : zones_(plan.zones), bytes_(std::move(bytes)), most_(most) {}
+  BatchSplitter(const NodePlan& plan, std::vector<uint64_t> bytes, uint64_t max_bytes)
+      : zones_(plan.zones), bytes_(std::move(bytes)), max_bytes_(max_bytes) {}
 
-  void deal(std::vector<uint32_t> zones) {
+  void split(std::vector<uint32_t> zones) {
     uint64_t sum = 0;
     Box3d box;
     for (const uint32_t z : zones) {
       sum += bytes_[z];
       box.add({static_cast<double>(zones_[z].x), 0, static_cast<double>(zones_[z].z)});
     }
-    if (sum <= most_ || zones.size() < 2) {
+    if (sum <= max_bytes_ || zones.size() < 2) {
       batches_.push_back(std::move(zones));
       return;
     }
@@ -368,7 +368,7 @@ class BatchDealer {
       std::vector<uint32_t> part(zones.begin() + static_cast<ptrdiff_t>(from),
                                  zones.begin() + static_cast<ptrdiff_t>(to));
       std::sort(part.begin(), part.end());
-      deal(std::move(part));
+      split(std::move(part));
     }
   }
   [[nodiscard]] std::vector<std::vector<uint32_t>> take() { return std::move(batches_); }
@@ -376,7 +376,7 @@ class BatchDealer {
  private:
   const std::vector<NodePlanZone>& zones_;
   const std::vector<uint64_t> bytes_;  // by zone
-  const uint64_t most_;
+  const uint64_t max_bytes_;
   std::vector<std::vector<uint32_t>> batches_;
 };
 
@@ -389,9 +389,9 @@ std::vector<std::vector<uint32_t>> node_batches(const Scene& scene, const NodeCo
   for (const NodePlanZone& zone : plan.zones) {
     bytes.push_back(working_bytes(scene, config, plan, zone));
   }
-  BatchDealer dealer(plan, std::move(bytes), max_bytes);
-  dealer.deal(std::move(zones));
-  return dealer.take();
+  BatchSplitter splitter(plan, std::move(bytes), max_bytes);
+  splitter.split(std::move(zones));
+  return splitter.take();
 }
 
 uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config, const NodePlan& plan) {

@@ -36,14 +36,14 @@ struct NodePlanZone {
 };
 
 struct NodePlan {
-  bool has_patches = false;  ///< Do Bezier patches carry anybody,
+  bool has_patches = false;  ///< Do Bezier patches carry a class,
   bool has_tiles = false;    ///< do level tiles?
   bool drops = false;        ///< Does a class drop?
   uint16_t on_patches = 0;   ///< Classes that patches carry.
   std::vector<PatchSource> sources;
   std::vector<NodePlanZone> zones;  ///< By z, then x.
 
-  /// Do nodes ask for triangles at all?
+  /// Do nodes need triangles at all?
   [[nodiscard]] bool needs_triangles() const { return has_patches || drops; }
 };
 
@@ -52,13 +52,13 @@ struct NodePlan {
                                   const NodeConfig& config);
 
 /// Finds which zones depend on which, and `input` of each: equal inputs give equal bytes. Needs the
-/// triangles if the plan does. Where a zone has to be made, its `near` are what is looked at.
+/// triangles if the plan does. A zone that has to be made reads its `near` zones.
 void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConfig& config,
                       const TriangleSquares* triangles, NodePlan& plan);
 
-/// Deals zones, given in ascending order, to batches whose nodes are made together: squares, as far
-/// as may be, of about `max_bytes` each, as what is near is made for company. At least one, and
-/// none but that is empty.
+/// Splits zones, given in ascending order, into batches whose nodes are made together: nearly
+/// square, of about `max_bytes` each, because zones near a batch are made for it too. At least one;
+/// only a single batch may be empty.
 [[nodiscard]] std::vector<std::vector<uint32_t>> node_batches(const Scene& scene,
                                                               const NodeConfig& config,
                                                               const NodePlan& plan,

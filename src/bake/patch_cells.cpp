@@ -26,7 +26,7 @@ constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for tr
 constexpr int32_t kBlockHalvings = 2;   // of a block's, that choose among these together
 constexpr size_t kBlock = size_t{1} << (2 * kBlockHalvings);
 constexpr size_t kSquare = 4;          // cells of a block that choose again
-constexpr double kRiseMargin = 1e-6;   // for rounding; everything else is told by a bound [m]
+constexpr double kRiseMargin = 1e-6;   // for rounding; all else is bounded [m]
 constexpr double kSlopeMargin = 1e-6;  // a plane at exactly a limit keeps it
 
 inline void join(Box3d& box, const Box3d& other) {
@@ -169,7 +169,7 @@ void PatchJudge::cut_region(const BezierPatch& part, int32_t halvings) {
   }
 }
 
-// What the surfaces alone tell.
+// What the surfaces alone give.
 void PatchJudge::bound_cells(BezierCells& out) {
   bounds_.resize(parts_.count);
   bound_cells_of(parts_, bounds_);
@@ -207,7 +207,8 @@ void PatchJudge::bound_cells(BezierCells& out) {
       promise.inclination = bin_of(steepest);
     }
     promise.height = static_cast<uint8_t>(bins_->height.size());
-    // What may lean over is its own ceiling, and where nobody stands upright nobody asks.
+    // Ground that may lean over is its own ceiling, and is not queried where no body stands
+    // upright.
     const bool upright = bound.frame.up.y > bound.sine && steepest >= steepest_walk_;
     promise.headroom = upright ? promise.height : uint8_t{0};
     bounded_.push_back(
@@ -248,9 +249,9 @@ void PatchJudge::add_posture(size_t posture, Pending& cell) const {
 // these. Where no triangle is left but spared ones, a block is done.
 void PatchJudge::judge_region(int32_t level, int32_t s, int32_t t, BezierCells& out) {
   const int32_t side = 256 >> level;
-  const OwnGround own(set_->patches[patch_],
-                      {static_cast<uint8_t>(s * side), static_cast<uint8_t>((s + 1) * side - 1),
-                       static_cast<uint8_t>(t * side), static_cast<uint8_t>((t + 1) * side - 1)});
+  const SelfSupport own(set_->patches[patch_],
+                        {static_cast<uint8_t>(s * side), static_cast<uint8_t>((s + 1) * side - 1),
+                         static_cast<uint8_t>(t * side), static_cast<uint8_t>((t + 1) * side - 1)});
   const size_t blocks = block_at_.size() - 1;
   block_boxes_.assign(blocks, {});
   if (blocks > 1) {
@@ -337,7 +338,7 @@ void PatchJudge::judge_block(std::span<const Bounded> cells, const Box3d& box, B
   }
 }
 
-// Nothing is in the way of what a cell's inclination allows.
+// Nothing blocks what a cell's inclination allows.
 void PatchJudge::stand_on(const Bounded& cell, BezierCells& out) const {
   uint16_t& classes = out.promise.cells[cell.cell].classes;
   for (uint32_t left = bodies_on(cell); left != 0; left &= left - 1) {
@@ -356,8 +357,8 @@ uint32_t PatchJudge::bodies_on(const Bounded& cell) const {
   return bodies;
 }
 
-// The triangles near a box, but those of the patch's own ground that no body can meet.
-void PatchJudge::gather(const Box3d& box, const OwnGround& own) {
+// The triangles near a box, except those of the patch itself that no body can meet.
+void PatchJudge::gather(const Box3d& box, const SelfSupport& own) {
   const Vec3d middle = (box.min + box.max) * 0.5;
   all_.region.clear(middle);
   others_.region.clear(middle);
@@ -397,17 +398,17 @@ void PatchJudge::gather(const Box3d& box, const OwnGround& own) {
     narrow(found_others_, box, others_.region);
     foreign_.close();
   }
-  if (known) set_spared(own, own.gap(span_s, span_t) + scene.patch_off[patch_]);
+  if (known) set_spared(own, own.deviation(span_s, span_t) + scene.patch_off[patch_]);
 }
 
 // Which bodies and heights no triangle of the part comes up to.
-void PatchJudge::set_spared(const OwnGround& own, double gap) {
+void PatchJudge::set_spared(const SelfSupport& own, double deviation) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    const double rise = own.rise(!bodies_[b].climbs, bodies_[b].radius, gap);
+    const double rise = own.rise(!bodies_[b].climbs, bodies_[b].radius, deviation);
     if (rise + kRiseMargin < bodies_[b].bottom) spared_ |= 1u << b;
   }
   for (size_t posture = 0; posture < 2; ++posture) {
-    spares_height_[posture] = own.rise(posture == 1, 0, gap) + kRiseMargin < greatest_bottom_;
+    spares_height_[posture] = own.rise(posture == 1, 0, deviation) + kRiseMargin < greatest_bottom_;
   }
 }
 
@@ -431,10 +432,10 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
   for (const Pending& cell : cells) {
     const BodyFrame& frame = cell.surface(0).frame;
     const BodySweep sweep = surface_sweep(cell.surface(0));
-    const SieveTube tube{.whole = sweep, .decisive = {.radius = 0}};
-    (void)sieve(maker_,
-                {.frame = frame, .first = sweep, .second = sweep, .tubes = std::span(&tube, 1)},
-                hits_);
+    const FilterTube tube{.whole = sweep, .decisive = {.radius = 0}};
+    (void)filter(maker_,
+                 {.frame = frame, .first = sweep, .second = sweep, .tubes = std::span(&tube, 1)},
+                 hits_);
     for (size_t i = 0; i < hits_.count; ++i) {
       const uint32_t triangle = hits_.triangle[i];
       const uint32_t patch = triangles_->scene().patch_of_triangle[triangle];
@@ -448,10 +449,10 @@ void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
   }
 }
 
-BodySweep PatchJudge::low_room(const Pending& cell, size_t posture) const {
-  BodySweep room = cell.prism[posture];
-  room.high = std::min(room.high, cell.surface(posture).high + bins_->height.front());
-  return room;
+BodySweep PatchJudge::headroom_sweep(const Pending& cell, size_t posture) const {
+  BodySweep sweep = cell.prism[posture];
+  sweep.high = std::min(sweep.high, cell.surface(posture).high + bins_->height.front());
+  return sweep;
 }
 
 // Those of sweeps_ into which a plane through the cell's middle, as steep as the surface there,
@@ -496,14 +497,14 @@ void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& pro
 }
 
 // Those bodies of sweeps_ that a triangle enters.
-uint32_t PatchJudge::judge_against(const SieveList& list, const Pending& cell, size_t posture,
+uint32_t PatchJudge::judge_against(const FilterList& list, const Pending& cell, size_t posture,
                                    uint32_t asked, Promise& promise) {
   if (list.count == 0) return 0;
   const BodyFrame& frame = cell.surface(posture).frame;
   uint32_t stopped = 0, steep = 0;
   if (posture == 1) {
     // Upright, ground may be its own ceiling: that is seen at once.
-    if ((asked & 1) != 0 && surely_enters(list, frame.centre, low_room(cell, 1))) {
+    if ((asked & 1) != 0 && surely_enters(list, frame.centre, headroom_sweep(cell, 1))) {
       promise.headroom = bins_->height_code(0);
       asked &= ~1u;
     }
@@ -522,7 +523,7 @@ uint32_t PatchJudge::judge_against(const SieveList& list, const Pending& cell, s
 }
 
 // Those of sweeps_ that a plane comes into; returns those that a triangle does.
-uint32_t PatchJudge::judge_met(const SieveList& list, const Pending& cell, size_t posture,
+uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size_t posture,
                                uint32_t met, Promise& promise) {
   const SurfaceBound& surface = cell.surface(posture);
   const BodyFrame& frame = surface.frame;
@@ -530,23 +531,23 @@ uint32_t PatchJudge::judge_met(const SieveList& list, const Pending& cell, size_
   tubes_.clear();
   for (uint32_t left = met; left != 0; left &= left - 1) {
     const auto b = static_cast<size_t>(std::countr_zero(left));
-    // What is deeper than any height asks for leaves none.
-    const BodySweep decisive = b == 0 ? low_room(cell, posture) : sweeps_[b];
+    // What is deeper than any height needs leaves none.
+    const BodySweep decisive = b == 0 ? headroom_sweep(cell, posture) : sweeps_[b];
     tubes_.push_back({.whole = sweeps_[b], .decisive = decisive});
   }
-  const uint32_t answered =
-      sieve(list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
-            hits_);
-  const uint32_t room = met & 1;  // bit 0, if it is asked for
+  const uint32_t answered = filter(
+      list, {.frame = frame, .first = prism, .second = cell.bodies[posture], .tubes = tubes_},
+      hits_);
+  const uint32_t height_bit = met & 1;  // bit 0, if it is queried
   const uint32_t all = (1u << tubes_.size()) - 1;
-  uint32_t entered = answered;  // no height; then bodies that matter has stopped
-  double free = (answered & room) != 0 ? surface.high : kNever;
+  uint32_t entered = answered;  // no height; then bodies that a solid blocks
+  double free = (answered & height_bit) != 0 ? surface.high : kNever;
   for (size_t i = 0; i < hits_.count && entered != all; ++i) {
     uint32_t asked = hits_.tubes[i] & ~entered;
     if (asked == 0) continue;
     LocalTriangle local = triangles_->corners(hits_.triangle[i]);
     for (Vec3d& corner : local) corner = frame.local(corner);
-    if ((asked & room) != 0) {
+    if ((asked & height_bit) != 0) {
       const double low = std::min({local[0].z, local[1].z, local[2].z});
       if (low < free) free = std::min(free, lowest_entry(local, prism));
       if (free < kNever && bins_->height_code(std::max(0.0, free - surface.high)) == 0) {
@@ -561,7 +562,7 @@ uint32_t PatchJudge::judge_met(const SieveList& list, const Pending& cell, size_
   }
   uint32_t stopped = 0;
   uint32_t bodies = met & ~1u;
-  for (size_t b = room; bodies != 0; ++b, bodies &= bodies - 1) {
+  for (size_t b = height_bit; bodies != 0; ++b, bodies &= bodies - 1) {
     if ((entered >> b & 1) != 0) stopped |= bodies & (0 - bodies);
   }
   // The highest feet have the least.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bake/body_sweep.h"
-#include "bake/own_ground.h"
+#include "bake/self_support.h"
 #include "bake/surface_bound.h"
 #include "bake/triangle_filter.h"
 #include "graph/node_width.h"
@@ -23,7 +23,7 @@ namespace throng {
 /// One class's body on a patch. A climber's axis is the surface's normal, a walker's straight up.
 struct PatchBody {
   double radius = 0;
-  double bottom = 0;  ///< Matter up to here above the feet is climbed over. [m]
+  double bottom = 0;  ///< A solid up to here above the feet is climbed over. [m]
   double height = 0;
   double steepest = 0;  ///< Cosine of the steepest surface, with a margin for rounding.
   bool climbs = false;
@@ -41,7 +41,7 @@ void find_patches_around(const PatchSet& set, uint32_t patch, std::vector<uint32
 /// How often a patch is halved until its cells are of a size. [m]
 [[nodiscard]] int32_t patch_depth(const BezierPatch& patch, double size);
 
-/// Does a scene tell which part of its patch each triangle covers?
+/// Does a scene state which part of its patch each triangle covers?
 [[nodiscard]] inline bool knows_parts(const Scene& scene) {
   return scene.patch_part.size() == scene.triangles.size() &&
          scene.patch_off.size() == scene.patches.size();
@@ -75,7 +75,7 @@ class PatchJudge {
     size_t cell = 0;
     double steepest = 0;
     const CellBounds* bounds = nullptr;
-    std::array<BodySweep, 2> prism;   ///< What tells the height, along the normal and upright.
+    std::array<BodySweep, 2> prism;   ///< Prisms for the height, along the normal and upright.
     std::array<BodySweep, 2> bodies;  ///< All that may stand there, by their inclination.
     Box3d box;                        ///< Of these, and of the surface.
     int32_t postures = 0;
@@ -98,19 +98,19 @@ class PatchJudge {
   [[nodiscard]] Pending pending(const Bounded& cell) const;
   [[nodiscard]] Box3d box_of(const CellBounds& block) const;
   [[nodiscard]] uint32_t bodies_on(const Bounded& cell) const;
-  void gather(const Box3d& box, const OwnGround& own);
+  void gather(const Box3d& box, const SelfSupport& own);
   void fill_all();
   void stand_on(const Bounded& cell, BezierCells& out) const;
-  void set_spared(const OwnGround& own, double gap);
+  void set_spared(const SelfSupport& own, double deviation);
   void find_makers(std::span<const Pending> cells, BezierCells& out);
   void judge_posture(const Pending& cell, size_t posture, Promise& promise);
-  uint32_t judge_against(const SieveList& list, const Pending& cell, size_t posture, uint32_t asked,
-                         Promise& promise);
-  uint32_t judge_met(const SieveList& list, const Pending& cell, size_t posture, uint32_t met,
+  uint32_t judge_against(const FilterList& list, const Pending& cell, size_t posture,
+                         uint32_t asked, Promise& promise);
+  uint32_t judge_met(const FilterList& list, const Pending& cell, size_t posture, uint32_t met,
                      Promise& promise);
   [[nodiscard]] uint32_t too_steep(const Pending& cell) const;
-  /// Matter in here leaves no height.
-  [[nodiscard]] BodySweep low_room(const Pending& cell, size_t posture) const;
+  /// A solid in here leaves no height.
+  [[nodiscard]] BodySweep headroom_sweep(const Pending& cell, size_t posture) const;
 
   const TriangleSquares* triangles_;
   const PatchSet* set_;
@@ -122,7 +122,7 @@ class PatchJudge {
   double steepest_walk_ = 0;  // cosine of what any walker may stand on
 
   uint32_t patch_ = 0;              // that is judged
-  std::vector<uint32_t> beside_;    // patches that go on from this one
+  std::vector<uint32_t> beside_;    // patches that continue this one
   std::vector<uint8_t> is_beside_;  // by patch; and those known to pierce it
   PatchParts parts_, coarser_;      // so many cells of the patch
   PatchParts blocks_;               // the same in blocks
@@ -134,19 +134,19 @@ class PatchJudge {
   std::vector<Box3d> block_boxes_;
   /// Triangles near a region, a block and a square of cells.
   struct NearLists {
-    SieveList region, block, square;
+    FilterList region, block, square;
   };
-  NearLists others_, all_;     // without those of its own that are spared, and with them
-  SieveList foreign_, maker_;  // those of other patches, not beside; near a square
-  SieveList found_others_;     // before their boxes are looked at
+  NearLists others_, all_;      // without those of its own that are spared, and with them
+  FilterList foreign_, maker_;  // those of other patches, not beside; near a square
+  FilterList found_others_;     // before their boxes are tested
   bool all_is_filled_ = false, all_is_asked_ = false;
   uint32_t spared_ = 0;                  // bodies that the patch's own triangles here do not reach
   std::array<bool, 2> spares_height_{};  // along the normal and upright
   std::vector<uint32_t> found_, other_ids_;
-  SieveHits hits_;
+  FilterHits hits_;
   std::vector<BodySweep> sweeps_;   // where a height ends, then bodies of the posture
   std::vector<uint16_t> tube_bit_;  // by body of the posture: its class
-  std::vector<SieveTube> tubes_;    // of these, those that matter may enter
+  std::vector<FilterTube> tubes_;   // of these, those that a solid may enter
 };
 
 }  // namespace throng

@@ -11,13 +11,15 @@
 #include "world/node_data.h"
 #include "world/place.h"
 
+// Links between cells of Bezier patches: over shared edges where bodies pass, over a hole from a
+// cell to those near that a body can move to. Every link is proved by body_motion.
 namespace throng {
 namespace {
 
 constexpr double kSmooth = 0.9962;    // cosine of 5 degrees: no crease
-constexpr double kWalkSpacing = 0.1;  // between the points where a walker's way is looked at [m]
+constexpr double kWalkSpacing = 0.1;  // between the tested points of a walker's move [m]
 constexpr size_t kTries = 6;          // cells of a patch that are tried for one link
-constexpr size_t kBoxedCells = 8;     // of a patch, told to be far away together
+constexpr size_t kBoxedCells = 8;     // of a patch, found to be far away together
 
 const CellShape& shape_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
   return input.cells[patch].shape[cell];
@@ -36,7 +38,7 @@ BodyPose pose_on(const PatchLinkInput& input, const PatchBody& body, uint32_t pa
 // Can a body go straight from one pose to another?
 bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const BodyPose& to,
           double step) {
-  if (!body.climbs && !judge.is_carried(from.feet, to.feet, step, kWalkSpacing)) return false;
+  if (!body.climbs && !judge.is_supported(from.feet, to.feet, step, kWalkSpacing)) return false;
   return judge.is_free(body, from, to);
 }
 
@@ -144,7 +146,7 @@ bool lacks_neighbour(const PatchCells& cells, uint32_t cell, uint16_t bit) {
   });
 }
 
-// How far from a cell's middle the motions of a leap look at triangles. [m]
+// How far from a cell's middle the motions of a link over a hole test triangles. [m]
 double motion_reach(const PatchBody& body, double size) {
   constexpr double kRounded = 0.01;  // cells' middles are kept in floats
   return patch_leap(body.radius, size) + MotionJudge::reach_of(body) + kRounded;
@@ -257,7 +259,7 @@ class HoleLinker {
   uint32_t patch_;
   const BezierCells& here_;
   MotionJudge judge_;
-  double farthest_ = 0;  // from a cell's middle, that any leap looks at triangles [m]
+  double farthest_ = 0;  // from a cell's middle, that any such link tests triangles [m]
   std::vector<Target> targets_;
   std::vector<std::pair<double, uint32_t>> nearest_;
   bool looked_closer_ = false;  // at the cell whose leaps are tried

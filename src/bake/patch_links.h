@@ -25,7 +25,7 @@ struct PatchLinkInput {
 };
 
 /// A part of an edge over which the same classes go to the patch beyond and back, in 256ths of the
-/// edges: `first` meets `to_first`, and the edge beyond runs the opposite way.
+/// edges: `first` meets `to_first`, and the edge beyond runs in the opposite direction.
 struct PatchDoor {
   uint32_t patch = 0, to_patch = 0;
   uint8_t edge = 0, to_edge = 0;
@@ -38,7 +38,7 @@ struct EdgeLinks {
   std::vector<PatchDoor> doors;  ///< By patch.
 };
 
-/// How far a class goes at most over a gap between patches, from cell to cell. [m]
+/// The farthest that a class goes over a hole between patches, from cell to cell. [m]
 [[nodiscard]] inline double patch_leap(double radius, double size) { return 3 * size + 2 * radius; }
 
 /// Pairs of cells over all edges that patches share, and where exactly they touch. Where the

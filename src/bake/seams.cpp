@@ -3,12 +3,13 @@
 #include <bit>
 #include <cstdlib>
 
+#include "bake/layer_kernels.h"
 #include "bake/legality.h"
-#include "bake/sheet_kernels.h"
 
-// Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its sheet
+// Where a floor lies over itself inside a tile (a ramp over the ground that leads to it), its layer
 // is cut, and near the cut a window may have followed the lower floor where the body walks on the
-// upper. Any gap that holds the body proves a column free, so there all gaps are asked.
+// upper. Any free span that holds the body proves a column free, so there all free spans are
+// tested.
 namespace throng {
 namespace {
 
@@ -16,7 +17,7 @@ constexpr int32_t kLast = kTileSide - 1;
 
 enum class Fit { kYes, kPerhaps, kNo };
 
-// kPerhaps: it does not where the body may just miss what is in the way.
+// kPerhaps: it does not where the body may just miss the blocker.
 Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int32_t z,
               const ColumnNeed& need) {
   // From the middle outward: 0, -1, 1, -2 and so on. What fails mostly does so near by.
@@ -27,7 +28,7 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
       const int32_t cx = x + nth(k), cz = z + dz;
       const int32_t side =
           (cz < 0 ? 0 : (cz > kLast ? 6 : 3)) + (cx < 0 ? 0 : (cx > kLast ? 2 : 1));
-      const SheetList* tile = tiles[static_cast<size_t>(side)];
+      const LayerList* tile = tiles[static_cast<size_t>(side)];
       const size_t cell = static_cast<size_t>((cz & kLast) * kTileSide + (cx & kLast));
       if (tile != nullptr && column_is_free(*tile, cell, need)) continue;
       const auto d = static_cast<size_t>(std::abs(dz));
@@ -37,18 +38,18 @@ Fit body_fits(const Neighbourhood& tiles, const BodyWindow& body, int32_t x, int
   return Fit::kYes;
 }
 
-// Cells of a sheet whose neighbour is continued by another sheet of the tile.
-BitPlane seam_cells(const SheetList& tile, const Sheet& own, int32_t max_step) {
-  // Most of the other sheets are other storeys, which continue nothing.
-  const auto is_near = [&](const Sheet& other) {
+// Cells of a layer whose neighbour is continued by another layer of the tile.
+BitPlane seam_cells(const LayerList& tile, const Layer& own, int32_t max_step) {
+  // Most of the other layers are other storeys, which continue nothing.
+  const auto is_near = [&](const Layer& other) {
     return &other != &own && other.base + other.low_top <= own.base + own.high_top + max_step &&
            other.base + other.high_top >= own.base + own.low_top - max_step;
   };
   BitPlane others{}, seams{};
   bool any = false;
-  for (const Sheet* other : tile) {
+  for (const Layer* other : tile) {
     if (!is_near(*other)) continue;
-    add_gap_bits(*other, others);
+    add_free_span_bits(*other, others);
     any = true;
   }
   if (!any) return seams;
@@ -59,7 +60,7 @@ BitPlane seam_cells(const SheetList& tile, const Sheet& own, int32_t max_step) {
       const int32_t x = std::countr_zero(cells);
       const int32_t top = own.base + own.top[static_cast<size_t>(z * kTileSide + x)];
       const auto next = static_cast<size_t>((z + dz) * kTileSide + x + dx);
-      for (const Sheet* other : tile) {
+      for (const Layer* other : tile) {
         if (!is_near(*other) || other->top[next] == kNone16) continue;
         if (std::abs(other->base + other->top[next] - top) > max_step) continue;
         seams[static_cast<size_t>(z)] |= 1ULL << x;
@@ -95,30 +96,30 @@ BitPlane widened(const BitPlane& plane, int32_t reach) {
 
 }  // namespace
 
-bool column_is_free(const SheetList& tile, size_t cell, const ColumnNeed& need) {
-  for (const Sheet* sheet : tile) {
-    // Most sheets are other storeys: their extremes tell without a look at the cell.
-    if (sheet->base + sheet->low_top > need.high_top ||
-        sheet->base + sheet->high_top < need.low_top || sheet->top[cell] == kNone16) {
+bool column_is_free(const LayerList& tile, size_t cell, const ColumnNeed& need) {
+  for (const Layer* layer : tile) {
+    // Most layers are other storeys: their extremes suffice.
+    if (layer->base + layer->low_top > need.high_top ||
+        layer->base + layer->high_top < need.low_top || layer->top[cell] == kNone16) {
       continue;
     }
-    const int32_t top = sheet->base + sheet->top[cell];
-    const bool room =
-        sheet->ceiling[cell] == kNone16 || sheet->base + sheet->ceiling[cell] >= need.ceiling;
-    if (top <= need.high_top && top >= need.low_top && room) return true;
+    const int32_t top = layer->base + layer->top[cell];
+    const bool headroom =
+        layer->ceiling[cell] == kNone16 || layer->base + layer->ceiling[cell] >= need.ceiling;
+    if (top <= need.high_top && top >= need.low_top && headroom) return true;
   }
   return false;
 }
 
-void recheck_seams(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+void recheck_seams(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                    const BodyLimits& limits, const LegalityScratch& scratch, LegalCells& cells) {
-  const SheetList& tile = *tiles[4];
-  const Sheet& own = *tile[sheet];
+  const LayerList& tile = *tiles[4];
+  const Layer& own = *tile[layer];
   BitPlane doubtful{};
   if (tile.size() > 1 && (tile.seams || body.bottom > limits.link_step)) {
     doubtful = widened(seam_cells(tile, own, body.bottom), body.reach);
   }
-  // Along the border of a tile of several sheets the window may have followed the wrong one too.
+  // Along the border of a tile of several layers the window may have followed the wrong one too.
   const auto several = [&](size_t side) {
     return tiles[side] != nullptr && tiles[side]->size() > 1;
   };

@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 
+// [ML06] algorithm 1 on slices: a move to the next cell reads two slices. Constant time, after a
+// search for the slice.
 namespace throng {
 
 size_t find_slice(const SliceSet& slices, int32_t head) {

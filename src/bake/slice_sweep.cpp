@@ -93,7 +93,8 @@ class TileState {
     row_max_[row] = highest;
   }
 
-  // Cells whose span goes on below the cut show the cut itself. Tells whether other cells are left.
+  // Cells whose span continues below the cut record the cut itself. Returns whether other cells are
+  // left.
   bool cut_row(size_t row, int32_t height) {
     int32_t* value = value_.data() + row * kRow;
     const int32_t* low = low_.data() + row * kRow;

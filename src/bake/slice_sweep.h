@@ -38,7 +38,7 @@ struct SweepConfig {
   int32_t depth = 0;
   int32_t avatar_height = 1750;  ///< [> 0]
   int32_t resolution = 100;      ///< [> 0]
-  int32_t min_y = 0;             ///< Bounds of all matter in the tiles.
+  int32_t min_y = 0;             ///< Bounds of all solids in the tiles.
   int32_t max_y = 0;
   int32_t far_plane = 0;  ///< What an empty cell records. [< min_y]
   std::span<const int32_t>

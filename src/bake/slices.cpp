@@ -114,8 +114,8 @@ class Counter {
   std::mutex mutex_;
 };
 
-// Columns of all tiles that hold matter, in order. `low` and `high` bound the scene: the rasteriser
-// may add a millimetre, which must not reach beyond the world.
+// Columns of all tiles that hold a solid, in order. `low` and `high` bound the scene: the
+// rasteriser may add a millimetre, which must not reach beyond the world.
 std::vector<SliceTile> fill_tiles(std::span<const CellTriangle> triangles, const Grid& grid,
                                   int32_t low, int32_t high, int32_t workers, Context& context) {
   const TriangleBins bins =

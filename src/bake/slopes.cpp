@@ -6,14 +6,14 @@
 #include "bake/legality.h"
 #include "bake/surface_planes.h"
 
-// Feet on a cell lie on a plane p with gradient g. For a body at P and matter at Q within its
+// Feet on a cell lie on a plane p with gradient g. For a body at P and a solid at Q within its
 // radius r,
-//   y(Q) - p(P) = (y(Q) - p(Q)) + g (Q - P) <= (y(Q) - p(Q)) + |g| r,
-// and over a cell B whose matter tops out at top, y(Q) - p(Q) <= top - min over B of p. So the body
-// is free if, for the highest of these over all cells that it reaches, the sum stays below its
-// bottom. Whole cells are compared with the plane where they are, not with one height. At creases,
-// where the feet's slope is the gentler one, a plane between the two may prove what theirs
-// cannot; it then owes how far the feet can be from it on the cell.
+// y(Q) - p(P) = (y(Q) - p(Q)) + g (Q - P) <= (y(Q) - p(Q)) + |g| r, and over a cell B whose solid
+// tops out at top, y(Q) - p(Q) <= top - min over B of p. So the body is free if, for the highest of
+// these over all cells that it reaches, the sum stays below its bottom. Whole cells are compared
+// with the plane where they are, not with one height. At creases, where the feet's slope is the
+// gentler one, a plane between the two may prove what theirs cannot; it then owes how far the feet
+// can be from it on the cell.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/slopes.cpp"
@@ -61,13 +61,13 @@ struct RowPlanes {
   alignas(64) int32_t between_x[kTileSide + 32], between_z[kTileSide + 32];
   uint64_t creased;  // cells with feet on all four sides
 
-  void make(const Sheet& sheet, int32_t z) {
+  void make(const Layer& layer, int32_t z) {
     const DI di;
     const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
     const VI none = hn::Set(di, kNone16);
-    const uint16_t* row = &sheet.feet[static_cast<size_t>(z * kTileSide)];
+    const uint16_t* row = &layer.feet[static_cast<size_t>(z * kTileSide)];
     const uint16_t* centre =
-        &sheet.feet[static_cast<size_t>(std::clamp(z, 1, kTileSide - 2) * kTileSide)];
+        &layer.feet[static_cast<size_t>(std::clamp(z, 1, kTileSide - 2) * kTileSide)];
     uint64_t beside = 0, around = 0;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       // Written for x + 1: rows are read from their first cell on, never before the array.
@@ -91,7 +91,7 @@ struct RowPlanes {
 // Of cells (x, z) and on, one vector: those whose body is free when judged by the given planes,
 // which may err by `owed`. All in half millimetres: centres of cells lie half a cell from their
 // corners.
-HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body, int32_t x,
+HWY_INLINE uint64_t free_lanes(const LayerWindow& window, const BodyWindow& body, int32_t x,
                                int32_t z, VI height, VI feet_tilt, VI gx, VI gz, VI owed) {
   const DI di;
   const hn::RebindToFloat<DI> df;
@@ -108,7 +108,7 @@ HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body
   // A column may also pass as in the window: its whole top against the lowest and highest feet.
   const VI level_high = hn::ShiftLeft<1>(hn::Add(hn::Sub(height, feet_tilt), bottom));
   const VI level_low = hn::ShiftLeft<1>(hn::Sub(hn::Add(height, feet_tilt), bottom));
-  const VI most = hn::Sub(budget, tilt);  // by which a top may pass the plane, up or down
+  const VI max_above = hn::Sub(budget, tilt);  // by which a top may pass the plane, up or down
   auto bad = hn::Lt(budget, hn::Zero(di));
   for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
     const int32_t w = body.width[static_cast<size_t>(std::abs(dz))];
@@ -117,8 +117,8 @@ HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body
     for (int32_t dx = -w; dx <= w; ++dx, ++tops) {
       const VI top = hn::ShiftLeft<1>(hn::PromoteTo(di, hn::LoadU(dh, tops)));
       const VI above = hn::Sub(top, hn::ShiftLeft<1>(middle));
-      const auto high = hn::And(hn::Gt(top, level_high), hn::Gt(above, most));
-      const auto low = hn::And(hn::Lt(top, level_low), hn::Gt(hn::Neg(above), most));
+      const auto high = hn::And(hn::Gt(top, level_high), hn::Gt(above, max_above));
+      const auto low = hn::And(hn::Lt(top, level_low), hn::Gt(hn::Neg(above), max_above));
       bad = hn::Or(bad, hn::Or(high, low));
       middle = hn::Add(middle, gx);
     }
@@ -127,7 +127,7 @@ HWY_INLINE uint64_t free_lanes(const SheetWindow& window, const BodyWindow& body
   return bits_of(di, hn::Not(bad));
 }
 
-void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
+void RecheckSlopes(const Layer& layer, const BodyWindow& body, const LegalityScratch& scratch,
                    LegalCells& cells) {
   const DI di;
   const hn::Rebind<uint16_t, DI> dh;
@@ -137,12 +137,12 @@ void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScr
   for (int32_t z = 0; z < kTileSide; ++z) {
     const uint64_t row = cells.slanted[static_cast<size_t>(z)];
     if (row == 0) continue;
-    planes.make(sheet, z);
+    planes.make(layer, z);
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const uint64_t asked = (row >> x) & ((uint64_t{1} << lanes) - 1);
       if (asked == 0) continue;
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
-      const VI height = load_feet(&sheet.feet[cell]);
+      const VI height = load_feet(&layer.feet[cell]);
       const VI tilt = hn::PromoteTo(di, hn::LoadU(dh, &scratch.tilt[cell]));
       const VI gx = hn::Load(di, planes.gx + x), gz = hn::Load(di, planes.gz + x);
       const uint64_t sloped = asked & bits_of(di, hn::Ne(hn::Or(gx, gz), zero));
@@ -172,7 +172,7 @@ void RecheckSlopes(const Sheet& sheet, const BodyWindow& body, const LegalityScr
 using DF = hn::RebindToFloat<DI>;
 using VF = hn::Vec<DF>;
 
-// Feet are rounded to whole mm when they are asked for; the rest is for the arithmetic. [mm]
+// Feet are rounded to whole mm when they are read; the rest is for the arithmetic. [mm]
 constexpr float kFeetRounding = 0.6f;
 
 HWY_INLINE VF half_apart(VF ax, VF az, VF bx, VF bz) {
@@ -181,7 +181,7 @@ HWY_INLINE VF half_apart(VF ax, VF az, VF bx, VF bz) {
   return hn::Mul(apart, hn::Set(df, 0.5f));
 }
 
-HWY_INLINE uint64_t free_by_planes(const SheetWindow& window, const CellPlanes& planes,
+HWY_INLINE uint64_t free_by_planes(const LayerWindow& window, const CellPlanes& planes,
                                    const BodyWindow& body, int32_t x, int32_t z, uint64_t asked,
                                    VI feet_mm, VI feet_tilt, VF ax, VF az) {
   const DI di;
@@ -216,7 +216,7 @@ HWY_INLINE uint64_t free_by_planes(const SheetWindow& window, const CellPlanes& 
       const VF highest = hn::Add(hn::Add(over_own, own_apart), excess);
       const auto own_low = hn::Le(highest, own_up);
       const auto own_high = hn::Le(hn::Sub(own_apart, over_own), own_down);
-      // Mostly the slope goes on, and A's plane tells all.
+      // Mostly the slope continues, and A's plane suffices.
       if ((asked & ~bits_of(df, hn::And(own_low, own_high))) == 0) continue;
       const VF over_theirs =
           hn::Sub(hn::Sub(hn::Sub(height, hn::Mul(bx, fx)), hn::Mul(bz, fz)), feet);
@@ -234,7 +234,7 @@ HWY_INLINE uint64_t free_by_planes(const SheetWindow& window, const CellPlanes& 
   return asked;
 }
 
-void RecheckPlanes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& surface,
+void RecheckPlanes(const Layer& layer, const BodyWindow& body, const CellPlanes& surface,
                    const LegalityScratch& scratch, LegalCells& cells) {
   const DI di;
   const DF df;
@@ -245,13 +245,13 @@ void RecheckPlanes(const Sheet& sheet, const BodyWindow& body, const CellPlanes&
     const size_t r = static_cast<size_t>(z);
     const uint64_t row = cells.slanted[r] & ~cells.legal[r];
     if (row == 0) continue;
-    planes.make(sheet, z);
+    planes.make(layer, z);
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const uint64_t asked = (row >> x) & ((uint64_t{1} << lanes) - 1);
       if (asked == 0) continue;
       const size_t cell = static_cast<size_t>(z * kTileSide + x);
       const uint64_t free =
-          free_by_planes(scratch.window, surface, body, x, z, asked, load_feet(&sheet.feet[cell]),
+          free_by_planes(scratch.window, surface, body, x, z, asked, load_feet(&layer.feet[cell]),
                          hn::PromoteTo(di, hn::LoadU(dh, &scratch.tilt[cell])),
                          hn::ConvertTo(df, hn::Load(di, planes.gx + x)),
                          hn::ConvertTo(df, hn::Load(di, planes.gz + x)));
@@ -270,14 +270,14 @@ namespace throng {
 HWY_EXPORT(RecheckSlopes);
 HWY_EXPORT(RecheckPlanes);
 
-void recheck_slopes(const Sheet& sheet, const BodyWindow& body, const LegalityScratch& scratch,
+void recheck_slopes(const Layer& layer, const BodyWindow& body, const LegalityScratch& scratch,
                     LegalCells& cells) {
-  HWY_DYNAMIC_DISPATCH(RecheckSlopes)(sheet, body, scratch, cells);
+  HWY_DYNAMIC_DISPATCH(RecheckSlopes)(layer, body, scratch, cells);
 }
 
-void recheck_planes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& planes,
+void recheck_planes(const Layer& layer, const BodyWindow& body, const CellPlanes& planes,
                     const LegalityScratch& scratch, LegalCells& cells) {
-  HWY_DYNAMIC_DISPATCH(RecheckPlanes)(sheet, body, planes, scratch, cells);
+  HWY_DYNAMIC_DISPATCH(RecheckPlanes)(layer, body, planes, scratch, cells);
 }
 
 }  // namespace throng

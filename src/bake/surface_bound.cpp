@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-// One cell's bounds are plain code. Many cells' are the same steps in the same order on vectors,
+// One cell's bounds are scalar code. Many cells' are the same steps in the same order on vectors,
 // one cell in each lane, without fused multiplications: hence the same bits.
 
 #undef HWY_TARGET_INCLUDE
@@ -264,7 +264,7 @@ std::optional<SurfaceBound> bound_surface(const BezierPatch& patch) {
 }
 
 // The normals' heights lie in the hull of those of all products: a wall that bends sideways is
-// nowhere steeper than a wall, which the cone cannot tell.
+// nowhere steeper than a wall, which the cone cannot show.
 double steepest_cosine(const BezierPatch& patch, const SurfaceBound& bound) {
   const auto& p = patch.points;
   double least = kNever;

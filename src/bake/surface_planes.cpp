@@ -34,9 +34,9 @@ struct CellRun {
 
 // The part of the window that one of the nine tiles covers, in the frame of the middle one.
 struct SurfaceSide {
-  const SheetWindow* window;
+  const LayerWindow* window;
   CellPlanes* cells;
-  const CellRun* runs;     // of cells that are looked at, by row
+  const CellRun* runs;     // of cells in question, by row
   int32_t x0, x1, z0, z1;  // the last included
   float limit;             // of excesses that matter [mm]
   float lowest, highest;   // tops that matter, the lowest less the limit
@@ -65,8 +65,8 @@ using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
 
 constexpr float kHalf = 0.51f;    // of a difference over a cell, and more than floats err
-constexpr float kNegligible = 1;  // an excess that is not looked at closer [mm]
-constexpr double kFar = 1000;     // beyond, floats do not tell how high a plane is [cells]
+constexpr float kNegligible = 1;  // an excess that is not refined [mm]
+constexpr double kFar = 1000;     // beyond, floats do not resolve how high a plane is [cells]
 
 HWY_INLINE VF set(double value) { return hn::Set(DF(), static_cast<float>(value)); }
 
@@ -115,13 +115,14 @@ struct PlaneRow {
   }
 };
 
-// Keeps, of the triangles under each centre, the highest that lies below the gap.
+// Keeps, of the triangles under each centre, the highest that lies below the free span.
 void FindPlanes(const SurfaceSide& side) {
   const DF df;
   for (const SurfaceTriangle& t : side.triangles) {
     if (!t.is_plane) continue;
     const double steepness = std::sqrt(t.slope_x * t.slope_x + t.slope_z * t.slope_z);
-    // A steeper plane carries nobody, and would reach below the matter that make() leaves out.
+    // On a steeper plane no class stands, and it would reach below the solid that make() leaves
+    // out.
     if (steepness > side.limit) continue;
     const int32_t first = floor_in(std::ceil(t.corner[0].z - 0.5), side.z0, side.z1 + 1);
     const int32_t last = floor_in(t.corner[2].z - 0.5, side.z0 - 1, side.z1);
@@ -152,7 +153,8 @@ void FindPlanes(const SurfaceSide& side) {
   }
 }
 
-// By how much the triangle may stand above the planes of the cells, where it lies below their gap.
+// By how much the triangle may stand above the planes of the cells, where it lies below their free
+// span.
 struct Excess {
   VF most;
   MF below;
@@ -217,11 +219,11 @@ void widen_excess(const SurfacePart& strip, const PlaneRow& row, int32_t x, int3
     most =
         std::max(most, p.y - row.slope_x[x] * (p.x - x - 0.5) - row.slope_z[x] * (p.z - z - 0.5));
   }
-  if (lowest > row.top[x] + kPlaneMargin) return;  // It hangs above the gap.
+  if (lowest > row.top[x] + kPlaneMargin) return;  // It hangs above the free span.
   row.excess[x] = std::max(row.excess[x], static_cast<float>(most - row.height[x] + kPlaneMargin));
 }
 
-// Widens the excess of each cell by all matter below its gap.
+// Widens the excess of each cell by all solids below its free span.
 void FindExcess(const SurfaceSide& side) {
   const DF df;
   for (const SurfaceTriangle& t : side.triangles) {
@@ -321,7 +323,7 @@ void clear(SurfaceSide& side, int32_t reach) {
 
 }  // namespace
 
-void find_surface_planes(const SheetWindow& window, int32_t base, const BitPlane& asked,
+void find_surface_planes(const LayerWindow& window, int32_t base, const BitPlane& asked,
                          const BodyWindow& body, const TileTriangles& triangles,
                          CellPlanes& cells) {
   const std::vector<CellRun> runs = runs_around(asked, body.reach);
@@ -344,7 +346,7 @@ void find_surface_planes(const SheetWindow& window, int32_t base, const BitPlane
     side.triangles.clear();
     for (const uint32_t item : triangles.items[static_cast<size_t>(i)]) {
       const CellTriangle& t = triangles.all[item];
-      // So far below, it stands above no plane; so far above, it is below no gap.
+      // So far below, it stands above no plane; so far above, it is below no free span.
       if (t.high < base + lowest || t.low > base + highest) continue;
       const auto [x_low, x_high] = std::minmax({t.x[0], t.x[1], t.x[2]});
       const double cell_x = triangles.cell_x, cell_z = triangles.cell_z;

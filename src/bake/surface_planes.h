@@ -10,18 +10,18 @@
 #include "bake/legality.h"
 #include "bake/triangles.h"
 
-/// The ground around a sheet as one plane per cell, taken from the triangles themselves: what a
-/// body that barely clears its own slope needs, which whole millimetres of whole cells cannot tell.
+/// The ground around a layer as one plane per cell, taken from the triangles themselves: what a
+/// body that barely clears its own slope needs, which whole millimetres of whole cells cannot show.
 namespace throng {
 
-/// Per cell, at SheetWindow::index: the highest surface below the gap at the cell's centre, and its
-/// plane. Where no triangle is under the centre: a level plane at the window's top.
+/// Per cell, at LayerWindow::index: the highest surface below the free span at the cell's centre,
+/// and its plane. Where no triangle is under the centre: a level plane at the window's top.
 struct CellPlanes {
-  std::vector<float> height;            // [mm from the sheet's base]
+  std::vector<float> height;            // [mm from the layer's base]
   std::vector<float> slope_x, slope_z;  // [mm per cell]
   std::vector<float> steepness;         // length of the slope, rounded up
-  /// How far matter below the gap may stand above the plane in the cell, rounded up; of level
-  /// planes for want of a triangle: negative. [mm]
+  /// How far a solid below the free span may stand above the plane in the cell, rounded up; of
+  /// level planes for want of a triangle: negative. [mm]
   std::vector<float> excess;
 };
 
@@ -29,19 +29,19 @@ struct CellPlanes {
 struct TileTriangles {
   std::span<const CellTriangle> all;
   std::array<std::span<const uint32_t>, 9> items;  // of `all`, that may touch the tile
-  std::array<const BitPlane*, 9> bare{};           // columns without any matter; null: not known
+  std::array<const BitPlane*, 9> bare{};           // columns without a solid; null: not known
   int32_t cell_x = 0, cell_z = 0;                  // first cell of the middle tile
 };
 
 /// Finds the planes of all cells that a body on one of `asked` reaches. `base` is what the window's
 /// heights are from. [mm] Linear in the triangles near, and the cells that they touch.
-void find_surface_planes(const SheetWindow& window, int32_t base, const BitPlane& asked,
+void find_surface_planes(const LayerWindow& window, int32_t base, const BitPlane& asked,
                          const BodyWindow& body, const TileTriangles& triangles, CellPlanes& cells);
 
 /// legal_cells' test for cells that failed it, and the recheck of slopes, for how high or low the
-/// matter around is: it is compared with the plane of the feet's surface, or with its own,
+/// solids around are: it is compared with the plane of the feet's surface, or with its own,
 /// whichever proves more.
-void recheck_planes(const Sheet& sheet, const BodyWindow& body, const CellPlanes& planes,
+void recheck_planes(const Layer& layer, const BodyWindow& body, const CellPlanes& planes,
                     const LegalityScratch& scratch, LegalCells& cells);
 
 }  // namespace throng

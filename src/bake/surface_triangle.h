@@ -53,7 +53,7 @@ struct Interval {
   }
 };
 
-/// In a tile's frame: cells, and mm from the sheet's base.
+/// In a tile's frame: cells, and mm from the layer's base.
 struct SurfaceTriangle {
   std::array<SurfacePoint, 3> corner;  // by ascending z
   double lowest, highest;

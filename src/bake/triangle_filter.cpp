@@ -7,6 +7,9 @@
 #include <bit>
 #include <cmath>
 
+// Tests triangles against cylinders a vector at a time, with margins for rounding in single
+// precision: a sure answer either way, or an exact test later. Linear in the triangles.
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/triangle_filter.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -14,29 +17,29 @@
 
 #include "bake/vector_bits-inl.h"
 
-#ifndef THRONG_TRIANGLE_SIEVE_ONCE
-#define THRONG_TRIANGLE_SIEVE_ONCE
+#ifndef THRONG_TRIANGLE_FILTER_ONCE
+#define THRONG_TRIANGLE_FILTER_ONCE
 namespace throng {
 
-constexpr size_t kSieveLanes = 16;  // at most, in a vector
+constexpr size_t kFilterLanes = 16;  // at most, in a vector
 
 // A cylinder around an axis, grown or shrunk by the margin.
-struct SieveCylinder {
+struct FilterCylinder {
   float radius, low, high;
 };
 
 // A cylinders' axis, from the list's origin.
-struct SieveAxis {
+struct FilterAxis {
   std::array<float, 3> centre, up;
   float margin, reach;  // of numbers here; of the cylinders
 };
 
 // A question in single precision.
-struct SieveView {
-  SieveAxis axis;
+struct FilterView {
+  FilterAxis axis;
   std::array<float, 3> side, front;
-  SieveCylinder first, second;
-  std::array<SieveCylinder, 31> whole, decisive;
+  FilterCylinder first, second;
+  std::array<FilterCylinder, 31> whole, decisive;
   size_t count;
 };
 
@@ -48,7 +51,7 @@ namespace throng {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using DF = hn::CappedTag<float, kSieveLanes>;
+using DF = hn::CappedTag<float, kFilterLanes>;
 using DI = hn::Rebind<uint32_t, DF>;
 using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
@@ -65,7 +68,7 @@ HWY_INLINE MF lanes_of(size_t left) {
 // A unit normal of each triangle, and from where to where its corners lie along it. Whatever
 // rounding does to the normal, these are that direction's; a triangle of no area may have none.
 // And a ball around it.
-void FindPlanes(SieveList& list, float margin) {
+void FindPlanes(FilterList& list, float margin) {
   const DF df;
   const VF one = hn::Set(df, 1.0F), least = hn::Set(df, 1e-30F), m = hn::Set(df, margin);
   for (size_t i = 0; i < list.count; i += hn::Lanes(df)) {
@@ -111,10 +114,10 @@ void FindPlanes(SieveList& list, float margin) {
   }
 }
 
-size_t Narrow(const SieveList& list, const float* middle, const float* half, SieveList& out) {
+size_t Narrow(const FilterList& list, const float* middle, const float* half, FilterList& out) {
   const DF df;
   const DI di;
-  // Kept apart from the lists, which stores of vectors might change for all that the compiler
+  // Reused apart from the lists, which stores of vectors might change for all that the compiler
   // knows.
   const float* const corners = list.corner.data();
   const float* const planes = list.plane.data();
@@ -162,7 +165,7 @@ size_t Narrow(const SieveList& list, const float* middle, const float* half, Sie
 // Where the planes of triangles come highest into upright tubes: uphill, at the rim. If such a
 // point is in the triangle, as seen from above and by more than the margin, the triangle is there
 // between the heights of its slab.
-uint32_t HoldsRim(const SieveList& list, const SieveAxis& axis, const SieveCylinder* tubes,
+uint32_t HoldsRim(const FilterList& list, const FilterAxis& axis, const FilterCylinder* tubes,
                   uint32_t all) {
   const DF df;
   const VF m = hn::Set(df, axis.margin), zero = hn::Zero(df);
@@ -175,7 +178,7 @@ uint32_t HoldsRim(const SieveList& list, const SieveAxis& axis, const SieveCylin
         nz, hn::Set(df, axis.centre[2]),
         hn::MulAdd(ny, hn::Set(df, axis.centre[1]), hn::Mul(nx, hn::Set(df, axis.centre[0]))));
     const VF from = hn::Sub(hn::Sub(row(3), at), m), to = hn::Add(hn::Sub(row(4), at), m);
-    // Upward; too steep a triangle tells too little.
+    // Upward; too steep a triangle bounds too little.
     const MF turned = hn::Lt(ny, zero);
     nx = hn::IfThenElse(turned, hn::Neg(nx), nx);
     ny = hn::Abs(ny);
@@ -238,7 +241,7 @@ struct Outline {
     right_back = max_of(off);
   }
 
-  [[nodiscard]] HWY_INLINE MF may_enter(const SieveCylinder& tube) const {
+  [[nodiscard]] HWY_INLINE MF may_enter(const FilterCylinder& tube) const {
     const DF df;
     const VF r = hn::Set(df, tube.radius), d = hn::Set(df, tube.radius * 1.41422F);
     const VF nr = hn::Neg(r), nd = hn::Neg(d);
@@ -257,7 +260,7 @@ struct Outline {
 struct Slab {
   VF height, across, low, high;
 
-  HWY_INLINE Slab(const SieveList& list, size_t i, const SieveAxis& axis) {
+  HWY_INLINE Slab(const FilterList& list, size_t i, const FilterAxis& axis) {
     const DF df;
     VF n[3];
     for (size_t k = 0; k < 3; ++k) n[k] = hn::LoadU(df, &list.plane[k * list.stride + i]);
@@ -273,7 +276,7 @@ struct Slab {
     across = hn::Sqrt(hn::Add(hn::Max(left, hn::Zero(df)), hn::Set(df, 2e-6F)));
   }
 
-  [[nodiscard]] HWY_INLINE MF may_enter(const SieveCylinder& tube) const {
+  [[nodiscard]] HWY_INLINE MF may_enter(const FilterCylinder& tube) const {
     const DF df;
     const VF reach = hn::Mul(across, hn::Set(df, tube.radius));
     const VF bottom = hn::Mul(height, hn::Set(df, tube.low));
@@ -288,7 +291,7 @@ struct Slab {
 struct Ball {
   VF d[3], height, d2, far2, radius;
 
-  HWY_INLINE Ball(const SieveList& list, size_t i, const SieveAxis& axis) {
+  HWY_INLINE Ball(const FilterList& list, size_t i, const FilterAxis& axis) {
     const DF df;
     for (size_t k = 0; k < 3; ++k) {
       d[k] = hn::Sub(hn::LoadU(df, &list.plane[(5 + k) * list.stride + i]),
@@ -302,45 +305,46 @@ struct Ball {
     radius = hn::LoadU(df, &list.plane[8 * list.stride + i]);
   }
 
-  [[nodiscard]] HWY_INLINE MF may_enter(const SieveCylinder& tube) const {
+  [[nodiscard]] HWY_INLINE MF may_enter(const FilterCylinder& tube) const {
     const VF near = hn::Add(radius, hn::Set(DF(), tube.radius));
     return hn::Le(far2, hn::Mul(near, near));
   }
 };
 
-// How far a triangle reaches towards a cylinder's axis, from the side where its ball lies: that way
-// is `length` long, not 1, and across the axis but for rounding, for which there is `give`.
+// How far a triangle reaches towards a cylinder's axis, from the side where its ball lies. The
+// direction from the axis to it is `length` long, not 1, and normal to the axis up to rounding,
+// which `give` bounds.
 struct Flank {
   VF nearest, length, give;
 
-  HWY_INLINE Flank(const SieveList& list, size_t i, const SieveAxis& axis, const Ball& ball) {
+  HWY_INLINE Flank(const FilterList& list, size_t i, const FilterAxis& axis, const Ball& ball) {
     const DF df;
-    VF way[3];
+    VF offset[3];
     for (size_t k = 0; k < 3; ++k) {
-      way[k] = hn::NegMulAdd(ball.height, hn::Set(df, axis.up[k]), ball.d[k]);
+      offset[k] = hn::NegMulAdd(ball.height, hn::Set(df, axis.up[k]), ball.d[k]);
     }
     VF along[3];
     for (size_t c = 0; c < 3; ++c) {
       along[c] = hn::Zero(df);
       for (size_t k = 0; k < 3; ++k) {
         const VF at = hn::LoadU(df, &list.corner[(3 * c + k) * list.stride + i]);
-        along[c] = hn::MulAdd(way[k], hn::Sub(at, hn::Set(df, axis.centre[k])), along[c]);
+        along[c] = hn::MulAdd(offset[k], hn::Sub(at, hn::Set(df, axis.centre[k])), along[c]);
       }
     }
     nearest = min_of(along);
-    length =
-        hn::Sqrt(hn::MulAdd(way[2], way[2], hn::MulAdd(way[1], way[1], hn::Mul(way[0], way[0]))));
+    length = hn::Sqrt(hn::MulAdd(offset[2], offset[2],
+                                 hn::MulAdd(offset[1], offset[1], hn::Mul(offset[0], offset[0]))));
     const VF size2 = hn::Add(hn::MulAdd(ball.radius, ball.radius, ball.d2),
                              hn::Set(df, axis.reach * axis.reach));
     give = hn::Mul(size2, hn::Set(df, 4e-6F));
   }
 
-  [[nodiscard]] HWY_INLINE MF may_enter(const SieveCylinder& tube) const {
+  [[nodiscard]] HWY_INLINE MF may_enter(const FilterCylinder& tube) const {
     return hn::Le(nearest, hn::MulAdd(hn::Set(DF(), tube.radius * (1 + 1e-6F)), length, give));
   }
 };
 
-uint32_t Glance(const SieveList& list, const SieveAxis& axis, const SieveCylinder* tubes,
+uint32_t Glance(const FilterList& list, const FilterAxis& axis, const FilterCylinder* tubes,
                 uint32_t left) {
   const DF df;
   uint32_t met = 0;
@@ -366,7 +370,7 @@ uint32_t Glance(const SieveList& list, const SieveAxis& axis, const SieveCylinde
 }
 
 // Looks at corners, the middles of edges and of triangles; doubled and trebled, so is the tube.
-bool Holds(const SieveList& list, const std::array<float, 3>& centre, const SieveCylinder& tube) {
+bool Holds(const FilterList& list, const std::array<float, 3>& centre, const FilterCylinder& tube) {
   const DF df;
   const VF low = hn::Set(df, tube.low), low2 = hn::Add(low, low), low3 = hn::Add(low2, low);
   const VF high = hn::Set(df, tube.high), high2 = hn::Add(high, high), high3 = hn::Add(high2, high);
@@ -400,7 +404,7 @@ bool Holds(const SieveList& list, const std::array<float, 3>& centre, const Siev
   return false;
 }
 
-uint32_t Sieve(const SieveList& list, const SieveView& view, SieveHits& hits) {
+uint32_t Filter(const FilterList& list, const FilterView& view, FilterHits& hits) {
   const DF df;
   const DI di;
   const uint32_t all = (1u << view.count) - 1;
@@ -430,7 +434,7 @@ uint32_t Sieve(const SieveList& list, const SieveView& view, SieveHits& hits) {
     const MF near =
         hn::And(close, hn::Or(outline.may_enter(view.first), outline.may_enter(view.second)));
     if (hn::AllFalse(df, near)) continue;
-    // Points of the triangle that tell much: its corners, the middles of its edges and its own.
+    // Points of the triangle that decide much: its corners, the middles of its edges and its own.
     VF height[7], far2[7];
     for (size_t c = 0; c < 7; ++c) {
       const auto point = [&](const VF(&v)[3]) HWY_ATTR {
@@ -445,7 +449,7 @@ uint32_t Sieve(const SieveList& list, const SieveView& view, SieveHits& hits) {
     auto entered = hn::Zero(di);
     for (uint32_t left = all & ~answered; left != 0; left &= left - 1) {
       const auto b = static_cast<size_t>(__builtin_ctz(left));
-      const SieveCylinder& tube = view.decisive[b];
+      const FilterCylinder& tube = view.decisive[b];
       const MF may =
           hn::And(near, hn::And(outline.may_enter(view.whole[b]), slab.may_enter(view.whole[b])));
       if (hn::AllFalse(df, may)) continue;
@@ -485,7 +489,7 @@ HWY_EXPORT(Glance);
 HWY_EXPORT(Holds);
 HWY_EXPORT(HoldsRim);
 HWY_EXPORT(Narrow);
-HWY_EXPORT(Sieve);
+HWY_EXPORT(Filter);
 
 namespace {
 
@@ -500,20 +504,20 @@ std::array<float, 3> to_floats(Vec3d v) {
 double largest(Vec3d v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
 // The share is for the rounding of squares and limits.
-SieveCylinder grown(const BodySweep& sweep, double margin) {
+FilterCylinder grown(const BodySweep& sweep, double margin) {
   return {static_cast<float>(sweep.radius * (1 + 1e-6) + 2 * margin),
           static_cast<float>(sweep.low - margin - 1e-6 * std::fabs(sweep.low)),
           static_cast<float>(sweep.high + margin + 1e-6 * std::fabs(sweep.high))};
 }
 
-SieveCylinder shrunk(const BodySweep& sweep, double margin) {
+FilterCylinder shrunk(const BodySweep& sweep, double margin) {
   return {static_cast<float>(std::max(0.0, sweep.radius * (1 - 1e-6) - 2 * margin)),
           static_cast<float>(sweep.low + margin + 1e-6 * std::fabs(sweep.low)),
           static_cast<float>(sweep.high - margin - 1e-6 * std::fabs(sweep.high))};
 }
 
 // Heights up to `reach` are multiplied with a normal's share, which is rounded.
-SieveAxis axis_of(const BodyFrame& frame, Vec3d centre, double margin, double reach) {
+FilterAxis axis_of(const BodyFrame& frame, Vec3d centre, double margin, double reach) {
   return {.centre = to_floats(centre),
           .up = to_floats(frame.up),
           .margin = static_cast<float>(margin + 1e-6 * reach),
@@ -524,9 +528,9 @@ double reach_of(const BodySweep& sweep) {
   return std::max({sweep.radius, std::fabs(sweep.low), std::fabs(sweep.high)});
 }
 
-void make_room(SieveList& list, size_t count) {
-  if (list.stride >= count + kSieveLanes) return;
-  const size_t stride = std::max<size_t>(2 * list.stride, count + 4 * kSieveLanes);
+void make_room(FilterList& list, size_t count) {
+  if (list.stride >= count + kFilterLanes) return;
+  const size_t stride = std::max<size_t>(2 * list.stride, count + 4 * kFilterLanes);
   std::vector<float> corner(9 * stride);
   for (size_t k = 0; k < 9; ++k) {
     std::copy_n(list.corner.data() + k * list.stride, list.count, corner.data() + k * stride);
@@ -539,13 +543,13 @@ void make_room(SieveList& list, size_t count) {
 
 }  // namespace
 
-void SieveList::clear(Vec3d around) {
+void FilterList::clear(Vec3d around) {
   origin = around;
   extent = 0;
   count = 0;
 }
 
-void SieveList::add(uint32_t id, const LocalTriangle& corners) {
+void FilterList::add(uint32_t id, const LocalTriangle& corners) {
   make_room(*this, count + 1);
   for (size_t c = 0; c < 3; ++c) {
     const Vec3d at = corners[c] - origin;
@@ -556,7 +560,7 @@ void SieveList::add(uint32_t id, const LocalTriangle& corners) {
   triangle[count++] = id;
 }
 
-void SieveList::add(const Scene& scene, std::span<const uint32_t> ids) {
+void FilterList::add(const Scene& scene, std::span<const uint32_t> ids) {
   make_room(*this, count + ids.size());
   Vec3d most{extent, extent, extent};
   for (const uint32_t id : ids) {
@@ -575,11 +579,11 @@ void SieveList::add(const Scene& scene, std::span<const uint32_t> ids) {
   extent = largest(most);
 }
 
-void SieveList::close() {
+void FilterList::close() {
   if (count > 0) HWY_DYNAMIC_DISPATCH(FindPlanes)(*this, static_cast<float>(margin_of(extent)));
 }
 
-void narrow(const SieveList& list, const Box3d& box, SieveList& out) {
+void narrow(const FilterList& list, const Box3d& box, FilterList& out) {
   out.clear(list.origin);
   make_room(out, list.count);
   out.extent = list.extent;
@@ -590,11 +594,11 @@ void narrow(const SieveList& list, const Box3d& box, SieveList& out) {
                                            to_floats((high - low) * 0.5 + give).data(), out);
 }
 
-uint32_t glance(const SieveList& list, const BodyFrame& frame, std::span<const BodySweep> tubes,
+uint32_t glance(const FilterList& list, const BodyFrame& frame, std::span<const BodySweep> tubes,
                 uint32_t asked) {
   const Vec3d centre = frame.centre - list.origin;
   const double margin = margin_of(list.extent + largest(centre));
-  std::array<SieveCylinder, 31> cylinders;
+  std::array<FilterCylinder, 31> cylinders;
   double reach = 0;
   for (uint32_t left = asked; left != 0; left &= left - 1) {
     const auto i = static_cast<size_t>(std::countr_zero(left));
@@ -605,17 +609,17 @@ uint32_t glance(const SieveList& list, const BodyFrame& frame, std::span<const B
                                       asked);
 }
 
-bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube) {
+bool surely_enters(const FilterList& list, Vec3d centre, const BodySweep& tube) {
   const Vec3d at = centre - list.origin;
   const double margin = margin_of(list.extent + largest(at));
   return HWY_DYNAMIC_DISPATCH(Holds)(list, to_floats(at), shrunk(tube, margin));
 }
 
-uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre, std::span<const BodySweep> tubes,
-                              uint32_t asked) {
+uint32_t surely_enters_uphill(const FilterList& list, Vec3d centre,
+                              std::span<const BodySweep> tubes, uint32_t asked) {
   const Vec3d at = centre - list.origin;
   const double margin = margin_of(list.extent + largest(at));
-  std::array<SieveCylinder, 31> cylinders;
+  std::array<FilterCylinder, 31> cylinders;
   double reach = 0;
   for (uint32_t left = asked; left != 0; left &= left - 1) {
     const auto i = static_cast<size_t>(std::countr_zero(left));
@@ -627,8 +631,8 @@ uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre, std::span<con
       cylinders.data(), asked);
 }
 
-uint32_t sieve(const SieveList& list, const SieveQuestion& question, SieveHits& hits) {
-  SieveView view;
+uint32_t filter(const FilterList& list, const FilterQuery& question, FilterHits& hits) {
+  FilterView view;
   const Vec3d centre = question.frame.centre - list.origin;
   const double margin = margin_of(list.extent + largest(centre));
   view.axis = axis_of(question.frame, centre, margin,
@@ -647,7 +651,7 @@ uint32_t sieve(const SieveList& list, const SieveQuestion& question, SieveHits& 
     hits.triangle.resize(list.stride);
     hits.tubes.resize(list.stride);
   }
-  return HWY_DYNAMIC_DISPATCH(Sieve)(list, view, hits);
+  return HWY_DYNAMIC_DISPATCH(Filter)(list, view, hits);
 }
 
 }  // namespace throng

@@ -9,20 +9,20 @@
 
 #include "bake/body_sweep.h"
 
-/// Triangles near some bodies in single precision, looked at a vector at a time: which of them
-/// surely stay outside, and which bodies are surely entered. Each comparison gives way by more than
-/// its rounding, so whoever looks at the rest exactly finds the same as if all had been looked at.
+/// Triangles near some bodies in single precision, tested a vector at a time: which of them surely
+/// stay outside, and which bodies are surely entered. Each comparison allows more than its rounding
+/// error, so an exact test of the rest finds the same as one of all.
 namespace throng {
 
 /// Triangles around an origin. Coordinate k of corner c of triangle i is
 /// corner[(3 * c + k) * stride + i]; its normal is plane[k * stride + i], along which it lies from
 /// plane[3 * stride + i] to plane[4 * stride + i]; then come the middle and the radius of a ball
 /// around it.
-struct SieveList {
+struct FilterList {
   Vec3d origin;
   double extent = 0;  ///< No coordinate is larger. [m]
   size_t count = 0;
-  size_t stride = 0;  ///< Room for `count` and a vector.
+  size_t stride = 0;  ///< Space for `count` and a vector.
   std::vector<float> corner;
   std::vector<float> plane;  ///< Known after close().
   std::vector<uint32_t> triangle;
@@ -30,47 +30,48 @@ struct SieveList {
   void clear(Vec3d around);
   void add(uint32_t id, const LocalTriangle& corners);
   void add(const Scene& scene, std::span<const uint32_t> ids);
-  void close();  ///< After the last was added, before anything is asked.
+  void close();  ///< After the last was added, before any query.
 };
 
-/// Replaces `out` by those triangles of `list` whose balls may come as near to `box` as to be in
-/// its way: none that overlaps it is lost. Linear.
-void narrow(const SieveList& list, const Box3d& box, SieveList& out);
+/// Replaces `out` by those triangles of `list` whose balls may touch `box`: none that overlaps it
+/// is lost. Linear.
+void narrow(const FilterList& list, const Box3d& box, FilterList& out);
 
-/// A cylinder around a question's axis. Matter that enters `decisive`, which is a part of it,
-/// answers all that is asked about it.
-struct SieveTube {
+/// A cylinder around a query's axis. A solid that enters `decisive`, which is a part of it, answers
+/// the query for it.
+struct FilterTube {
   BodySweep whole, decisive;
 };
 
-/// What is asked of a list. Nothing outside of `first` and `second` enters any tube.
-struct SieveQuestion {
+/// A query of a list. Nothing outside of `first` and `second` enters any tube.
+struct FilterQuery {
   BodyFrame frame;
   BodySweep first, second;
-  std::span<const SieveTube> tubes;  ///< [at most 31]
+  std::span<const FilterTube> tubes;  ///< [at most 31]
 };
 
 /// Bit i: some triangle's plane and ball come into tube i; all triangles stay outside of the other
-/// tubes of which `asked` has the bits. It costs a fraction of sieve(). [at most 31 tubes] Linear.
-[[nodiscard]] uint32_t glance(const SieveList& list, const BodyFrame& frame,
+/// tubes of which `asked` has the bits. It costs a fraction of filter(). [at most 31 tubes] Linear.
+[[nodiscard]] uint32_t glance(const FilterList& list, const BodyFrame& frame,
                               std::span<const BodySweep> tubes, uint32_t asked);
 
 /// True only if a triangle enters an upright tube; most that do are noticed. Linear.
-[[nodiscard]] bool surely_enters(const SieveList& list, Vec3d centre, const BodySweep& tube);
+[[nodiscard]] bool surely_enters(const FilterList& list, Vec3d centre, const BodySweep& tube);
 
-/// Bit i: tube i, which is upright, is asked about, and a triangle surely enters it uphill from its
+/// Bit i: tube i, which is upright, is queried, and a triangle surely enters it uphill from its
 /// axis, as ground does on which a body stands too steep. [at most 31 tubes] Linear.
-[[nodiscard]] uint32_t surely_enters_uphill(const SieveList& list, Vec3d centre,
+[[nodiscard]] uint32_t surely_enters_uphill(const FilterList& list, Vec3d centre,
                                             std::span<const BodySweep> tubes, uint32_t asked);
 
 /// Triangles that may enter tubes: hit i those of which tubes[i] has the bits.
-struct SieveHits {
+struct FilterHits {
   size_t count = 0;
-  std::vector<uint32_t> triangle, tubes;  ///< With room for more than `count`.
+  std::vector<uint32_t> triangle, tubes;  ///< With space for more than `count`.
 };
 
 /// Replaces `hits` by what may enter tubes that are not answered. Returns those that are: bit i, if
 /// a corner is surely inside tubes[i].decisive. If all are, hits are missing. Linear.
-[[nodiscard]] uint32_t sieve(const SieveList& list, const SieveQuestion& question, SieveHits& hits);
+[[nodiscard]] uint32_t filter(const FilterList& list, const FilterQuery& question,
+                              FilterHits& hits);
 
 }  // namespace throng

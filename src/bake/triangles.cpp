@@ -8,6 +8,8 @@
 
 #include "core/parallel.h"
 
+// Puts a scene's triangles on the grid and gives each its surface code: slope bin and area kind,
+// ordered by how much they restrict.
 namespace throng {
 namespace {
 
@@ -39,7 +41,7 @@ SurfaceCoder::SurfaceCoder(const Scene& scene, std::span<const AvatarClass> clas
   bins.erase(std::unique(bins.begin(), bins.end()), bins.end());
 
   // A key orders surfaces by how much they restrict: steeper, then area; blocked comes last. What
-  // faces down is nobody's floor, but takes none from one at its height that is as steep (the same
+  // faces down is no floor, but does not replace one at its height that is as steep (the same
   // floor, modelled from both sides): it comes right before these, as kAreaBlocked of their bin.
   static_assert(kAreaBlocked == 0);
   constexpr size_t kKinds = size_t{kAreaLast} + 1;

@@ -16,7 +16,7 @@
 #include "throng/math.h"
 #include "throng/scene.h"
 
-/// Triangles as the rasteriser wants them: in cells and millimetres, corners sorted by z.
+/// Triangles as the rasteriser needs them: in cells and millimetres, corners sorted by z.
 namespace throng {
 
 struct CellTriangle {
@@ -36,7 +36,7 @@ struct SurfaceCode {
 };
 
 struct SurfaceCodes {
-  std::vector<SurfaceCode> codes;  // at most 256; the last is "nobody stands here"
+  std::vector<SurfaceCode> codes;  // at most 256; the last is "no class stands here"
   std::vector<uint32_t> allowed;   // per code: bit c is set if class c may stand on it
 };
 
@@ -110,7 +110,7 @@ TriangleBins bin_boxes(size_t count, Box box, int32_t cell_x, int32_t cell_z, in
       }
     }
   };
-  // Boxes are looked at once, since triangles and corners lie far apart; what they touch is kept.
+  // Boxes are tested once, since triangles and corners lie far apart; what they touch is kept.
   struct Touch {
     uint32_t square, item;
   };

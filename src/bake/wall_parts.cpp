@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-// Cells that are asked stand near matter that may or may not reach into the body. What a triangle
+// The cells in question lie near solids that may or may not reach into the body. What a triangle
 // has at the body's height is a convex polygon; its plan is filled, conservatively, into the parts
 // of those cells around that the window finds closed, and each asked cell is tested against the
 // parts that lie nearer to it than the radius. Cells whose feet are about as high share a filling.
@@ -82,7 +82,7 @@ HWY_INLINE V clamped(V v, V low, V high) {
 // from which part to which. [parts, the last included; -1 to 512]
 struct PartRows {
   alignas(32) int32_t first[8], last[8];
-  int32_t least = 511, most = 0;  // that lie in the row of tiles
+  int32_t min_part = 511, max_part = 0;  // that lie in the row of tiles
 
   HWY_INLINE PartRows(const PlanPart& polygon, size_t z) {
     const DF df;
@@ -114,11 +114,11 @@ struct PartRows {
       const VI to = part_of(hn::Add(high, hn::Set(df, kWiden)));
       hn::Store(from, di, first + j);
       hn::Store(to, di, last + j);
-      least = std::min(least, hn::GetLane(hn::MinOfLanes(di, from)));
-      most = std::max(most, hn::GetLane(hn::MaxOfLanes(di, to)));
+      min_part = std::min(min_part, hn::GetLane(hn::MinOfLanes(di, from)));
+      max_part = std::max(max_part, hn::GetLane(hn::MaxOfLanes(di, to)));
     }
-    least = std::max(least, 0);
-    most = std::min(most, 511);
+    min_part = std::max(min_part, 0);
+    max_part = std::min(max_part, 511);
   }
 
   // The parts of the row's cell x.
@@ -170,8 +170,9 @@ void FillParts(const PlanPart& polygon, const WallScratch::Near& near, const Bit
       continue;
     }
     const PartRows rows(polygon, static_cast<size_t>(z));
-    if (rows.least > rows.most) continue;
-    for (cells &= bits_between(rows.least / 8, rows.most / 8); cells != 0; cells &= cells - 1) {
+    if (rows.min_part > rows.max_part) continue;
+    for (cells &= bits_between(rows.min_part / 8, rows.max_part / 8); cells != 0;
+         cells &= cells - 1) {
       const int32_t x = std::countr_zero(cells);
       parts[row + x] |= rows.of_cell(x);
     }
@@ -179,15 +180,15 @@ void FillParts(const PlanPart& polygon, const WallScratch::Near& near, const Bit
 }
 
 // Of the wanted cells of a tile, keeps those that the window finds closed to a body in the slab.
-// `first` is the tile's first cell. Only vectors that hold a wanted cell are looked at: others may
-// lie outside of the window.
-void KeepClosed(const SheetWindow& window, ptrdiff_t first, WallScratch::Slab slab,
+// `first` is the tile's first cell. Only vectors that hold a wanted cell are tested: others may lie
+// outside of the window.
+void KeepClosed(const LayerWindow& window, ptrdiff_t first, WallScratch::Slab slab,
                 WallScratch::Side& side) {
   const hn::CappedTag<uint16_t, 32> du;
   constexpr uint64_t kAll = ~uint64_t{0};
   const size_t lanes = hn::Lanes(du);
-  const auto set = [&](int32_t v, int32_t most) {
-    return hn::Set(du, static_cast<uint16_t>(std::clamp(v, 0, most)));
+  const auto set = [&](int32_t v, int32_t highest) {
+    return hn::Set(du, static_cast<uint16_t>(std::clamp(v, 0, highest)));
   };
   const auto floor = set(slab.floor, kNone16 - 1), low = set(slab.low, kNone16 - 1);
   const auto high = set(slab.high, kNone16);
@@ -200,8 +201,8 @@ void KeepClosed(const SheetWindow& window, ptrdiff_t first, WallScratch::Slab sl
       if ((wanted >> x & kAll >> (64 - lanes)) == 0) continue;
       const auto top = hn::LoadU(du, &window.top[static_cast<size_t>(row) + x]);
       const auto ceiling = hn::LoadU(du, &window.ceiling[static_cast<size_t>(row) + x]);
-      const auto room = hn::Eq(hn::Max(ceiling, high), ceiling);
-      const auto fits = hn::And(room, hn::Eq(hn::Min(hn::Max(top, floor), low), top));
+      const auto headroom = hn::Eq(hn::Max(ceiling, high), ceiling);
+      const auto fits = hn::And(headroom, hn::Eq(hn::Min(hn::Max(top, floor), low), top));
       open |= bits_of(du, fits) << x;
     }
     wanted &= ~open;
@@ -210,24 +211,23 @@ void KeepClosed(const SheetWindow& window, ptrdiff_t first, WallScratch::Slab sl
   }
 }
 
-// Of some rows of a tile, marks the columns in which one gap holds the whole slab, but begins below
-// its floor: drops. `base` is what the slab's heights are from.
-// Nonzero if there are any.
-uint64_t MarkDrops(const SheetList& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
+// Of some rows of a tile, marks the columns in which one free span holds the whole slab, but begins
+// below its floor: drops. `base` is what the slab's heights are from. Nonzero if there are any.
+uint64_t MarkDrops(const LayerList& tile, uint64_t rows, int32_t base, WallScratch::Slab slab,
                    BitPlane& drops) {
   uint64_t any = 0;
   const hn::CappedTag<uint16_t, 32> du;
   const size_t lanes = hn::Lanes(du);
-  for (const Sheet* sheet : tile) {
-    const int32_t floor = slab.floor + base - sheet->base, high = slab.high + base - sheet->base;
-    if (floor <= sheet->low_top) continue;
+  for (const Layer* layer : tile) {
+    const int32_t floor = slab.floor + base - layer->base, high = slab.high + base - layer->base;
+    if (floor <= layer->low_top) continue;
     const auto floors = hn::Set(du, static_cast<uint16_t>(std::min<int32_t>(floor, kNone16)));
     const auto ceilings = hn::Set(du, static_cast<uint16_t>(std::clamp<int32_t>(high, 0, kNone16)));
     for (uint64_t left = rows; left != 0; left &= left - 1) {
       const auto z = static_cast<size_t>(std::countr_zero(left));
       for (size_t x = 0; x < kTileSide; x += lanes) {
-        const auto top = hn::Load(du, &sheet->top[z * kTileSide + x]);
-        const auto ceiling = hn::Load(du, &sheet->ceiling[z * kTileSide + x]);
+        const auto top = hn::Load(du, &layer->top[z * kTileSide + x]);
+        const auto ceiling = hn::Load(du, &layer->ceiling[z * kTileSide + x]);
         const auto low = hn::Ne(hn::Max(top, floors), top);
         const uint64_t found =
             bits_of(du, hn::And(low, hn::Eq(hn::Max(ceiling, ceilings), ceiling))) << x;
@@ -241,7 +241,7 @@ uint64_t MarkDrops(const SheetList& tile, uint64_t rows, int32_t base, WallScrat
 
 // Makes legal the asked cells from where the body, anywhere on its cell, touches no part that is
 // filled. True if there are any.
-bool PassFree(std::span<const WallScratch::Asked> asked, const SheetWindow& window,
+bool PassFree(std::span<const WallScratch::Asked> asked, const LayerWindow& window,
               const BodyWindow& body, const uint64_t* parts, BitPlane& legal) {
   const DW dw;
   const auto lanes = static_cast<int32_t>(hn::Lanes(dw));
@@ -282,7 +282,7 @@ namespace {
 
 constexpr int32_t kLast = kTileSide - 1;
 constexpr int32_t kBandZero = 1 << 29;  // Heights are far above its negative. [mm]
-constexpr double kShallow = 1e-4;       // Matter that enters a body by less is not in its way. [mm]
+constexpr double kShallow = 1e-4;  // A solid that enters a body by less does not block it. [mm]
 
 // Where the triangle lies between two heights, in the frame of the tile at (cell_x, cell_z).
 PlanPart cut_slab(const CellTriangle& t, double cell_x, double cell_z, double low, double high) {
@@ -347,7 +347,7 @@ bool touches_wanted(const WallScratch::Side& side, const WallScratch::Near& near
   return false;
 }
 
-// The lowest and the highest band of some that are asked for.
+// The lowest and the highest band of some wanted ones.
 std::pair<int32_t, int32_t> bands_of(const std::vector<WallScratch::Asked>& asked) {
   const auto [low, high] = std::minmax_element(asked.begin(), asked.end());  // bands come first
   return {low->band, high->band};
@@ -355,10 +355,10 @@ std::pair<int32_t, int32_t> bands_of(const std::vector<WallScratch::Asked>& aske
 
 class WallCheck {
  public:
-  WallCheck(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+  WallCheck(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
             const TileTriangles& triangles, const LegalityScratch& legality, WallScratch& scratch)
       : tiles_(tiles),
-        sheet_(*(*tiles[4])[sheet]),
+        layer_(*(*tiles[4])[layer]),
         body_(body),
         triangles_(triangles),
         window_(legality.window),
@@ -388,10 +388,10 @@ class WallCheck {
   [[nodiscard]] Slab slab_of(int32_t first_band, int32_t last_band) const;
 
   const Neighbourhood& tiles_;
-  const Sheet& sheet_;
+  const Layer& layer_;
   const BodyWindow& body_;
   const TileTriangles& triangles_;
-  const SheetWindow& window_;
+  const LayerWindow& window_;
   const std::array<uint16_t, kTileArea>& tilt_;
   WallScratch& scratch_;
   int32_t band_ = std::max(1, body_.bottom / 4);  // of feet that share a filling [mm]
@@ -403,15 +403,15 @@ void WallCheck::list(const LegalCells& cells) {
     uint64_t row = cells.hemmed[static_cast<size_t>(z)] & ~cells.legal[static_cast<size_t>(z)];
     for (; row != 0; row &= row - 1) {
       const auto cell = static_cast<size_t>(z * kTileSide + std::countr_zero(row));
-      const int32_t feet = sheet_.feet[cell], tilt = tilt_[cell];
+      const int32_t feet = layer_.feet[cell], tilt = tilt_[cell];
       if (tilt > body_.gentle) continue;  // On steeper ground the slab meets the ground.
-      const int32_t band = (sheet_.base + feet - tilt + kBandZero) / band_;
+      const int32_t band = (layer_.base + feet - tilt + kBandZero) / band_;
       scratch_.asked.push_back({band, static_cast<int32_t>(cell)});
     }
   }
 }
 
-// Takes off the list what is within reach of a column without matter at the height of any body
+// Takes off the list what is within reach of a column without a solid at the height of any body
 // asked for, and without a floor: nothing will excuse that one.
 void WallCheck::leave_out_hopeless() {
   const auto [low, high] = bands_of(scratch_.asked);
@@ -446,7 +446,7 @@ void WallCheck::leave_out_hopeless() {
       any |= drops[z];
     }
     if (tiles_[s] == nullptr) continue;
-    any |= HWY_DYNAMIC_DISPATCH(MarkDrops)(*tiles_[s], near_rows[s / 3], sheet_.base, slab, drops);
+    any |= HWY_DYNAMIC_DISPATCH(MarkDrops)(*tiles_[s], near_rows[s / 3], layer_.base, slab, drops);
   }
   if (any == 0) return;
   BitPlane hopeless{};
@@ -479,8 +479,8 @@ void WallCheck::leave_out_hopeless() {
 
 // What bodies need whose feet are in one of the bands, anywhere on their cells.
 WallCheck::Slab WallCheck::slab_of(int32_t first_band, int32_t last_band) const {
-  const int32_t lowest = first_band * band_ - kBandZero - sheet_.base;
-  const int32_t highest = (last_band + 1) * band_ - 1 - kBandZero - sheet_.base + 2 * body_.gentle;
+  const int32_t lowest = first_band * band_ - kBandZero - layer_.base;
+  const int32_t highest = (last_band + 1) * band_ - 1 - kBandZero - layer_.base + 2 * body_.gentle;
   return {highest - body_.bottom, lowest + body_.bottom, highest + body_.height};
 }
 
@@ -529,7 +529,7 @@ void WallCheck::want(std::span<const Asked> asked, Slab slab) {
 }
 
 // Lists the triangles of one of the nine tiles that some body on the middle one may touch, once for
-// all sheets and classes.
+// all layers and classes.
 void WallCheck::list_around(size_t side) {
   const auto s = static_cast<int32_t>(side);
   std::vector<WallScratch::Near>& around = scratch_.around[side];
@@ -561,7 +561,7 @@ void WallCheck::list_around(size_t side) {
 // Lists those that may touch a wanted cell, at some height between.
 void WallCheck::gather(Slab slab) {
   scratch_.near.clear();
-  const int32_t low = sheet_.base + slab.low, high = sheet_.base + slab.high;
+  const int32_t low = layer_.base + slab.low, high = layer_.base + slab.high;
   for (size_t s = 0; s < 9; ++s) {
     if (scratch_.sides[s].rows == 0) continue;
     if ((scratch_.known >> s & 1) == 0) list_around(s);
@@ -590,7 +590,7 @@ void WallCheck::for_wanted(Visit visit) {
 
 // Fills the parts of the wanted cells. All others stay empty.
 void WallCheck::fill(Slab slab) {
-  const double low = sheet_.base + slab.low + kShallow, high = sheet_.base + slab.high - kShallow;
+  const double low = layer_.base + slab.low + kShallow, high = layer_.base + slab.high - kShallow;
   for (const WallScratch::Near& near : scratch_.near) {
     const WallScratch::Side& side = scratch_.sides[near.side];
     if (near.high < low || near.low > high || !touches_wanted(side, near)) continue;
@@ -601,12 +601,12 @@ void WallCheck::fill(Slab slab) {
     HWY_DYNAMIC_DISPATCH(FillParts)
     (part, near, side.wanted, scratch_.parts.data(), first_of(near.side), window_.stride());
   }
-  // A cell that is closed, but not by matter at the body's height, is no floor; or the window
-  // follows the wrong sheet there.
-  const ColumnNeed need{sheet_.base + slab.floor, sheet_.base + slab.low, sheet_.base + slab.high};
+  // A cell that is closed, but not by a solid at the body's height, is no floor; or the window
+  // follows the wrong layer there.
+  const ColumnNeed need{layer_.base + slab.floor, layer_.base + slab.low, layer_.base + slab.high};
   for_wanted([&](size_t side, size_t cell, uint64_t& parts) {
     if (parts != 0) return;
-    const SheetList* tile = tiles_[side];
+    const LayerList* tile = tiles_[side];
     if (tile == nullptr || !column_is_free(*tile, cell, need)) parts = ~uint64_t{0};
   });
 }
@@ -645,10 +645,10 @@ bool WallCheck::run(LegalCells& cells) {
 
 }  // namespace
 
-bool recheck_walls(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+bool recheck_walls(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                    const TileTriangles& triangles, const LegalityScratch& legality,
                    WallScratch& scratch, LegalCells& cells) {
-  return WallCheck(tiles, sheet, body, triangles, legality, scratch).run(cells);
+  return WallCheck(tiles, layer, body, triangles, legality, scratch).run(cells);
 }
 
 }  // namespace throng

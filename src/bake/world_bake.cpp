@@ -19,6 +19,8 @@
 #include "core/side_by_side.h"
 #include "world/zone_data.h"
 
+// Plans a bake: checks it, lays the grid, sorts triangles into zones, hashes each zone's input, and
+// puts baked zones together into a world.
 namespace throng {
 namespace {
 
@@ -88,7 +90,7 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
   plan.codes = coder.codes();
   plan.limits = body_limits(config.classes, plan.codes, config.cell);
   for (const AvatarClass& avatar : config.classes) {
-    plan.is_tall.push_back(min_gap_of(avatar) >= BodyLimits::kHighGap);
+    plan.is_tall.push_back(min_free_span_of(avatar) >= BodyLimits::kHighFreeSpan);
   }
   for (size_t c = 0; c < config.classes.size(); ++c) {
     plan.bodies.push_back(
@@ -125,7 +127,7 @@ struct ZoneInputs {
   }
 };
 
-// In memory, where no zone is ever kept, nobody asks for the hashes: they are left 0.
+// In memory no zone is ever reused, so the hashes are not needed: they are left 0.
 ZoneInputs find_inputs(const BakePlan& plan, bool hashed) {
   ZoneInputs found{.bins = bin_zones(plan), .inputs = {}};
   for (int32_t z = 0; z < plan.zones_z; ++z) {
@@ -255,7 +257,7 @@ bool WorldBake::bake(size_t zone, ZoneScratch& scratch, Context& context, ZoneFa
   const uint64_t hash =
       result.levels > 0 ? hash_bytes(result.bytes.data(), result.bytes.size()) : 0;
   facts.entry = {x, z, result.levels, result.tiles, result.bytes.size(), hash};
-  facts.plain_levels = result.plain_levels;
+  facts.flat_levels = result.flat_levels;
   facts.spans = result.spans;
   std::copy(result.legal_cells.begin(), result.legal_cells.end(), facts.legal_cells.begin());
   facts.seconds_columns = result.seconds_columns;
@@ -265,14 +267,14 @@ bool WorldBake::bake(size_t zone, ZoneScratch& scratch, Context& context, ZoneFa
   return true;
 }
 
-ZoneFacts WorldBake::facts_of(const WorldFolder::Kept& kept) const {
+ZoneFacts WorldBake::facts_of(const WorldFolder::Reused& reused) const {
   ZoneFacts facts;
-  facts.kept = true;
-  facts.entry = kept.entry;
-  for (uint32_t i = 0; i < kept.entry.levels(); ++i) {
-    facts.plain_levels += kept.zone->level(i).floor_kind() != format::HeightKind::Blocks ? 1 : 0;
+  facts.reused = true;
+  facts.entry = reused.entry;
+  for (uint32_t i = 0; i < reused.entry.levels(); ++i) {
+    facts.flat_levels += reused.zone->level(i).floor_kind() != format::HeightKind::Blocks ? 1 : 0;
     for (size_t c = 0; c < plan_->plan.bodies.size(); ++c) {
-      facts.legal_cells[c] += kept.zone->clearance(i, static_cast<uint32_t>(c)).legal_cells();
+      facts.legal_cells[c] += reused.zone->clearance(i, static_cast<uint32_t>(c)).legal_cells();
     }
   }
   return facts;
@@ -312,11 +314,11 @@ Result<std::shared_ptr<WorldData>> WorldBake::world(std::span<const ZoneFacts> f
       ++report.zones_empty;
       continue;
     }
-    ++(f.kept ? report.zones_reused : report.zones_baked);
+    ++(f.reused ? report.zones_reused : report.zones_baked);
     for (size_t c = 0; c < legal_cells.size(); ++c) legal_cells[c] += f.legal_cells[c];
     report.tiles += f.entry.tiles();
     report.level_tiles += levels;
-    report.constant_level_tiles += f.plain_levels;
+    report.constant_level_tiles += f.flat_levels;
     report.bytes += f.entry.bytes();
     ++report.zones;
     auto slot = std::make_unique<WorldData::Slot>();
@@ -347,14 +349,14 @@ Result<void> WorldBake::add_air(WorldFolder* folder, WorldData& world, Context& 
   if (!wants_air(*plan.config)) return {};
   const auto start = std::chrono::steady_clock::now();
   const AirShape shape = air_shape(plan, plan_->bounds);
-  const WorkerGroups dealt = deal_workers(zones().size(), plan.config->workers);
+  const WorkerGroups assigned = assign_workers(zones().size(), plan.config->workers);
   std::vector<AirBaker> air;
-  for (int32_t group = 0; group < dealt.groups; ++group) {
-    air.emplace_back(plan, shape, folder, dealt.workers);
+  for (int32_t group = 0; group < assigned.groups; ++group) {
+    air.emplace_back(plan, shape, folder, assigned.workers);
   }
   std::vector<std::unique_ptr<AirData::Slot>> slots(zones().size());
   const auto baked = side_by_side(
-      zones().size(), dealt, context,
+      zones().size(), assigned, context,
       [&](size_t zone) {
         if (context.on_progress) context.on_progress({"air", zone, zones().size()});
       },
@@ -370,7 +372,7 @@ Result<void> WorldBake::add_air(WorldFolder* folder, WorldData& world, Context& 
   if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
   world.air = gather_air(shape, world, std::move(slots));
   report.air_zones = world.air->slots.size();
-  for (const AirBaker& baker : air) report.air_zones_reused += baker.kept();
+  for (const AirBaker& baker : air) report.air_zones_reused += baker.reused();
   report.air_bytes = world.air->bytes;
   report.seconds_air =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

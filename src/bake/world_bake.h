@@ -24,12 +24,12 @@ namespace throng {
 /// Fails with kBadConfig or kBadInput.
 Result<void> check_bake(const Scene& scene, const BakeConfig& config);
 
-/// What the world wants to know of a zone that was baked or kept, without its bytes. Trivial: ranks
-/// send it as it is.
+/// What the world needs of a zone that was baked or reused, without its bytes. Trivial: ranks send
+/// it as it is.
 struct ZoneFacts {
   format::ZoneEntry entry;
-  uint32_t plain_levels = 0;
-  bool kept = false;
+  uint32_t flat_levels = 0;
+  bool reused = false;
   uint64_t spans = 0;
   std::array<uint64_t, kMaxAvatarClasses> legal_cells{};
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0, seconds_write = 0;
@@ -54,16 +54,16 @@ class WorldBake {
   /// Of all zones' inputs and the grid: equal where two processes bake the same.
   [[nodiscard]] uint64_t input_hash() const;
 
-  /// False if the context was cancelled. `bytes` are empty where nobody can stand.
+  /// False if the context was cancelled. `bytes` are empty where no class can stand.
   bool bake(size_t zone, ZoneScratch& scratch, Context& context, ZoneFacts& facts,
             flatbuffers::DetachedBuffer& bytes) const;
-  [[nodiscard]] ZoneFacts facts_of(const WorldFolder::Kept& kept) const;
+  [[nodiscard]] ZoneFacts facts_of(const WorldFolder::Reused& reused) const;
 
   /// The world of all zones, in their order, and what its bake did but for the time it took. Fails
   /// with kLimit.
   [[nodiscard]] Result<std::shared_ptr<WorldData>> world(std::span<const ZoneFacts> facts,
                                                          BakeReport& report) const;
-  /// The air of a world of all zones, if the config asks for any: into the folder, or into memory
+  /// The air of a world of all zones, if the config requires any: into the folder, or into memory
   /// if it is null. Fails with kIo, kLimit or kCancelled.
   Result<void> add_air(WorldFolder* folder, WorldData& world, Context& context,
                        BakeReport& report) const;

@@ -19,10 +19,10 @@
 #include "core/hash.h"
 #include "world/sealed_file.h"
 
-// NAME.part is a whole world in the making: baked zones are written there and those that are kept
-// are linked there, so the world NAME stays as it is until both change names. What has been
-// baked is told by a journal in NAME.part, one record a zone, written after the zone's file. A
-// record that was cut short or a file that is not what its record says is as good as none.
+// NAME.part is a whole world in the making: baked zones are written there and those that are reused
+// are linked there, so the world NAME stays as it is until both change names. What has been baked
+// is listed by a journal in NAME.part, one record a zone, written after the zone's file. A record
+// that was cut short or a file that is not what its record says is as good as none.
 namespace throng {
 namespace fs = std::filesystem;
 namespace {
@@ -30,8 +30,7 @@ namespace {
 constexpr const char* kManifest = "manifest.thm";
 constexpr const char* kJournal = "journal";
 
-// NAME.part becomes NAME and the other way round, or, where that cannot be done in one go,
-// NAME.old.
+// NAME.part and NAME swap their names, or, where that cannot be done at once, NAME.old.
 bool exchange(const fs::path& part, const fs::path& target, const fs::path& old) {
   std::error_code error;
   if (!fs::exists(target, error)) {
@@ -151,7 +150,7 @@ void WorldFolder::read_old() {
   }
 }
 
-// The journal is written anew with what is whole of it, so that records are appended in step.
+// The journal is rewritten with its whole records, so that further ones are aligned.
 Result<void> WorldFolder::read_part() {
   const std::string name = (part_ / kJournal).string();
   std::vector<Done> records;
@@ -173,13 +172,13 @@ Result<void> WorldFolder::read_part() {
       name, {reinterpret_cast<const uint8_t*>(records.data()), records.size() * sizeof(Done)});
 }
 
-std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_t input) const {
+std::optional<WorldFolder::Reused> WorldFolder::reuse(int32_t x, int32_t z, uint64_t input) const {
   const auto [first, last] = sources_.equal_range({z, x});
   for (auto source = last; source != first;) {
     --source;
     const format::ZoneEntry& entry = source->second.entry;
     if (source->second.input != input) continue;
-    if (entry.bytes() == 0) return Kept{nullptr, entry};
+    if (entry.bytes() == 0) return Reused{nullptr, entry};
     const std::string file = zone_file_name(x, z);
     const fs::path from = (source->second.is_part ? part_ : fs::path(path_)) / file;
     auto map = FileMap::open(from.string());
@@ -195,7 +194,7 @@ std::optional<WorldFolder::Kept> WorldFolder::keep(int32_t x, int32_t z, uint64_
       fs::create_hard_link(from, part_ / file, error);
       if (error && !write_file((part_ / file).string(), (*zone)->bytes())) continue;
     }
-    return Kept{std::move(*zone), entry};
+    return Reused{std::move(*zone), entry};
   }
   return std::nullopt;
 }
@@ -227,9 +226,9 @@ Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
 }
 
 template <class File>
-std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t input) const {
+std::unique_ptr<File> WorldFolder::reuse_file(const std::string& name, uint64_t input) const {
   for (const bool is_part : {true, false}) {
-    if (!is_part && old_ == nullptr) continue;  // Nothing of it is to be kept.
+    if (!is_part && old_ == nullptr) continue;  // Nothing of it is to be reused.
     const fs::path from = (is_part ? part_ : fs::path(path_)) / name;
     auto map = FileMap::open(from.string());
     if (!map) continue;
@@ -246,16 +245,16 @@ std::unique_ptr<File> WorldFolder::keep_file(const std::string& name, uint64_t i
   return nullptr;
 }
 
-std::unique_ptr<AirZone> WorldFolder::keep_air(int32_t x, int32_t z, uint64_t input) const {
-  return keep_file<AirZone>(air_file_name(x, z), input);
+std::unique_ptr<AirZone> WorldFolder::reuse_air(int32_t x, int32_t z, uint64_t input) const {
+  return reuse_file<AirZone>(air_file_name(x, z), input);
 }
 
-std::unique_ptr<RegionZone> WorldFolder::keep_regions(int32_t x, int32_t z, uint64_t input) const {
-  return keep_file<RegionZone>(region_file_name(x, z), input);
+std::unique_ptr<RegionZone> WorldFolder::reuse_regions(int32_t x, int32_t z, uint64_t input) const {
+  return reuse_file<RegionZone>(region_file_name(x, z), input);
 }
 
-std::unique_ptr<LinkZone> WorldFolder::keep_links(int32_t x, int32_t z, uint64_t input) const {
-  return keep_file<LinkZone>(link_file_name(x, z), input);
+std::unique_ptr<LinkZone> WorldFolder::reuse_links(int32_t x, int32_t z, uint64_t input) const {
+  return reuse_file<LinkZone>(link_file_name(x, z), input);
 }
 
 Result<void> WorldFolder::write_file_of_zone(const std::string& name,

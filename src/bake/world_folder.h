@@ -20,7 +20,7 @@
 #include "world/zone_data.h"
 
 /// The folder of a world while it is baked: zones are taken over from the world that is there and
-/// from a bake that was killed, and the new world replaces the old one in one go.
+/// from a bake that was killed, and the new world replaces the old one at once.
 namespace throng {
 
 class WorldFolder {
@@ -36,33 +36,33 @@ class WorldFolder {
   /// The world at `path`, without its zones; null if there is none that can be read. For ranks that
   /// do not own the folder.
   static std::shared_ptr<WorldData> read_world(const std::string& path);
-  /// Writes the file of a baked zone, if anybody stands there; `add` makes it count.
+  /// Writes the file of a baked zone, if a class can stand there; `add` makes it count.
   static Result<void> write_zone(const std::string& path, const format::ZoneEntry& entry,
                                  std::span<const uint8_t> bytes);
   /// Adds a zone whose file is written. From one thread at a time. Fails with kIo.
   Result<void> add(const format::ZoneEntry& entry, uint64_t input);
-  /// Leaves what was begun to the next bake.
+  /// Leaves what was begun for the next bake.
   void leave() { part_.clear(); }
 
   /// The world that is there, without its zones; null if there is none that can be read.
   [[nodiscard]] const WorldData* old_world() const { return old_.get(); }
 
-  // What is kept and files of zones: from several threads, of different zones.
+  // Reused zones and files of zones: from several threads, of different zones.
 
-  /// A zone that need not be baked; it is then in the new world. `zone` is null where nobody
+  /// A zone that need not be baked; it is then in the new world. `zone` is null where no class
   /// stands.
-  struct Kept {
+  struct Reused {
     std::unique_ptr<Zone> zone;
     format::ZoneEntry entry;
   };
-  std::optional<Kept> keep(int32_t x, int32_t z, uint64_t input) const;
+  std::optional<Reused> reuse(int32_t x, int32_t z, uint64_t input) const;
 
-  /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake
-  /// or the old world; it is then in the new world. These files carry their input and a sum, so no
-  /// journal tells of them. Null if there is none with this input.
-  std::unique_ptr<AirZone> keep_air(int32_t x, int32_t z, uint64_t input) const;
-  std::unique_ptr<RegionZone> keep_regions(int32_t x, int32_t z, uint64_t input) const;
-  std::unique_ptr<LinkZone> keep_links(int32_t x, int32_t z, uint64_t input) const;
+  /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake or
+  /// the old world; it is then in the new world. These files carry their input and a sum, so no
+  /// journal names them. Null if there is none with this input.
+  std::unique_ptr<AirZone> reuse_air(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) const;
   /// Adds such a file. Fails with kIo.
   Result<void> write_file_of_zone(const std::string& name, std::span<const uint8_t> bytes) const;
   /// The folder of the world in the making: the files of all zones added are there.
@@ -88,7 +88,7 @@ class WorldFolder {
   void read_old();
   Result<void> read_part();
   template <class File>
-  std::unique_ptr<File> keep_file(const std::string& name, uint64_t input) const;
+  std::unique_ptr<File> reuse_file(const std::string& name, uint64_t input) const;
 
   std::string path_;
   std::filesystem::path part_;  // empty: finished or moved from

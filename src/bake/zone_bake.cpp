@@ -8,16 +8,16 @@
 #include <cmath>
 
 #include "bake/clearance.h"
-#include "bake/gaps.h"
-#include "bake/sheet_kernels.h"
+#include "bake/free_spans.h"
+#include "bake/layer_kernels.h"
 #include "bake/surface_planes.h"
 #include "bake/wall_parts.h"
 #include "bake/zone_builder.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 
-// A zone is baked in bands of tile rows, so that only a few rows of sheets are alive at a time:
-// while a band's columns are dealt to sheets, legality is judged one row behind it, because it
+// A zone is baked in bands of tile rows, so that only a few rows of layers are alive at a time:
+// while a band's columns are assigned to layers, legality is judged one row behind it, because it
 // looks into the next tiles, and clearance is eroded one row behind that. A ring of tiles around
 // the zone is rasterised as far as the zone looks, so that no zone depends on another's result.
 namespace throng {
@@ -26,10 +26,10 @@ namespace {
 constexpr int32_t kBand = 8;  // tile rows
 
 struct TileState {
-  TileSheets sheets;
-  SheetList all, high;             // the sheets, and those of them that are not low
-  std::vector<size_t> high_of;     // which sheet of the tile each of the high ones is
-  std::unique_ptr<BitPlane> bare;  // columns without any matter; of fine bakes
+  TileLayers layers;
+  LayerList all, high;             // the layers, and those of them that are not low
+  std::vector<size_t> high_of;     // which layer of the tile each of the high ones is
+  std::unique_ptr<BitPlane> bare;  // columns without a solid; of fine bakes
   std::vector<FloorPlane> planes;
   TileLegality legality;
 
@@ -65,8 +65,8 @@ class ZoneJob {
   template <class Body>
   void for_tiles(int32_t row0, int32_t row1, Body body);
 
-  void make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker);
-  void deal(TileState& tile, ZoneScratch::Worker& worker);
+  void make_layers(int32_t column, int32_t row, ZoneScratch::Worker& worker);
+  void assign(TileState& tile, ZoneScratch::Worker& worker);
   void give_back(TileState& tile);
   void judge(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   void judge_alike(int32_t column, int32_t row, const Neighbourhood& around,
@@ -74,7 +74,7 @@ class ZoneJob {
   [[nodiscard]] Neighbourhood seen_around(int32_t column, int32_t row, bool low_too);
   void clear(int32_t column, int32_t row, ZoneScratch::Worker& worker);
   [[nodiscard]] TileTriangles triangles_around(int32_t column, int32_t row) const;
-  void recheck_near_limit(const Sheet& sheet, const FloorPlane& floor, const BodyWindow& body,
+  void recheck_near_limit(const Layer& layer, const FloorPlane& floor, const BodyWindow& body,
                           const TileTriangles& triangles, ZoneScratch::Worker& worker,
                           LegalCells& cells);
   bool is_open(int32_t column, int32_t row, size_t avatar_class) const;
@@ -93,15 +93,16 @@ class ZoneJob {
 
 struct ZoneScratch::Worker {
   TileColumns columns;
-  TileGaps gaps, high;            // all, and those of BodyLimits::kHighGap, if these are not all
-  std::vector<size_t> low, tall;  // classes that see all sheets of a tile, or high ones only
-  uint32_t beside_walls = 0;      // bit c: walls of the tile were looked at for class c
+  TileFreeSpans free_spans,
+      high;  // all, and those of BodyLimits::kHighFreeSpan, if these are not all
+  std::vector<size_t> low, tall;  // classes that use all layers of a tile, or high ones only
+  uint32_t beside_walls = 0;      // bit c: walls of the tile were tested for class c
   LegalityScratch legality;
   CellPlanes planes;
   WallScratch walls;
   double seconds_columns = 0, seconds_levels = 0, seconds_clearance = 0;
   uint64_t spans = 0;
-  std::vector<ClearancePlanes> clearance;  // of one sheet, per class
+  std::vector<ClearancePlanes> clearance;  // of one layer, per class
   std::vector<uint8_t> step_safe;
   std::vector<uint64_t> legal_cells;  // of the zone, per class
 };
@@ -137,12 +138,12 @@ void ZoneJob::for_tiles(int32_t row0, int32_t row1, Body body) {
                       });
 }
 
-void ZoneJob::make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
+void ZoneJob::make_layers(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
   const size_t bin = static_cast<size_t>(row * side_ + column);
   const uint32_t begin = bins_.first[bin], end = bins_.first[bin + 1];
   if (begin == end) return;
   const auto start = Clock::now();
-  TileRect rect;  // of a ring tile only what the zone looks at
+  TileRect rect;  // of a ring tile only what the zone reads
   const int32_t apron = plan_.apron(), last = side_ - 1;
   if (column == 0) rect.x0 = std::max(0, kTileSide - apron);
   if (column == last) rect.x1 = std::min(kTileSide, apron);
@@ -150,48 +151,49 @@ void ZoneJob::make_sheets(int32_t column, int32_t row, ZoneScratch::Worker& work
   if (row == last) rect.z1 = std::min(kTileSide, apron);
   rasterise_tile(scratch_.triangles, {&bins_.items[begin], end - begin},
                  (first_x_ + column) * kTileSide, (first_z_ + row) * kTileSide, rect,
-                 plan_.limits.min_gap - 1, worker.columns);
-  find_gaps(worker.columns, plan_.limits.min_gap, worker.gaps);
+                 plan_.limits.min_free_span - 1, worker.columns);
+  find_free_spans(worker.columns, plan_.limits.min_free_span, worker.free_spans);
   worker.seconds_columns += seconds_since(start);
-  if (column > 0 && row > 0 && column < last && row < last) worker.spans += worker.gaps.spans;
+  if (column > 0 && row > 0 && column < last && row < last) worker.spans += worker.free_spans.spans;
 
-  const auto deal_start = Clock::now();
+  const auto assign_start = Clock::now();
   TileState& tile = at(column, row);
   if (plan_.config->fine) {
-    tile.bare = std::make_unique<BitPlane>(bare_columns(worker.gaps));
+    tile.bare = std::make_unique<BitPlane>(bare_columns(worker.free_spans));
   }
-  deal(tile, worker);
-  worker.seconds_levels += seconds_since(deal_start);
+  assign(tile, worker);
+  worker.seconds_levels += seconds_since(assign_start);
 }
 
-// What another class may stand on below or above must not change what a class reaches. So how gaps
-// are dealt does not depend on classes, and those who need high gaps see no others: in a bake for
-// them alone there are none.
-void ZoneJob::deal(TileState& tile, ZoneScratch::Worker& worker) {
-  const bool low_too = plan_.limits.min_gap < BodyLimits::kHighGap && worker.gaps.max_count > 1;
+// What another class may stand on below or above must not change what a class reaches. So how free
+// spans are assigned does not depend on classes, and classes that need high free spans use no
+// others: in a bake for them alone there are none.
+void ZoneJob::assign(TileState& tile, ZoneScratch::Worker& worker) {
+  const bool low_too =
+      plan_.limits.min_free_span < BodyLimits::kHighFreeSpan && worker.free_spans.max_count > 1;
   if (low_too) {
-    find_gaps(worker.columns, BodyLimits::kHighGap, worker.high);
-    lend_supports(worker.gaps);
+    find_free_spans(worker.columns, BodyLimits::kHighFreeSpan, worker.high);
+    lend_supports(worker.free_spans);
   }
-  const GapsToDeal gaps{.high = low_too ? worker.high : worker.gaps,
-                        .all = low_too ? &worker.gaps : nullptr};
-  deal_gaps(gaps, plan_.limits, scratch_.pool, tile.sheets);
-  if (tile.sheets.empty()) return;
-  for (auto& sheet : tile.sheets) {
-    tile.planes.push_back(fit_plane(*sheet));
-    find_useful(plan_.limits, *sheet);  // A plane may move feet by a millimetre.
+  const FreeSpansToAssign free_spans{.high = low_too ? worker.high : worker.free_spans,
+                                     .all = low_too ? &worker.free_spans : nullptr};
+  assign_free_spans(free_spans, plan_.limits, scratch_.pool, tile.layers);
+  if (tile.layers.empty()) return;
+  for (auto& layer : tile.layers) {
+    tile.planes.push_back(fit_plane(*layer));
+    find_useful(plan_.limits, *layer);  // A plane may move feet by a millimetre.
   }
-  for (size_t i = 0; i < tile.sheets.size(); ++i) {
-    const Sheet* sheet = tile.sheets[i].get();
-    tile.all.add(sheet);
-    if (sheet->is_low) continue;
-    tile.high.add(sheet);
+  for (size_t i = 0; i < tile.layers.size(); ++i) {
+    const Layer* layer = tile.layers[i].get();
+    tile.all.add(layer);
+    if (layer->is_low) continue;
+    tile.high.add(layer);
     tile.high_of.push_back(i);
   }
 }
 
 void ZoneJob::give_back(TileState& tile) {
-  for (auto& sheet : tile.sheets) scratch_.pool.give(std::move(sheet));
+  for (auto& layer : tile.layers) scratch_.pool.give(std::move(layer));
   tile = {};
 }
 
@@ -208,18 +210,18 @@ Neighbourhood ZoneJob::seen_around(int32_t column, int32_t row, bool low_too) {
 
 void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
   TileState& tile = at(column, row);
-  if (tile.sheets.empty()) return;
+  if (tile.layers.empty()) return;
   const auto start = Clock::now();
-  tile.legality.resize(tile.sheets.size());
-  std::array<const TileSheets*, 4> sides{};
+  tile.legality.resize(tile.layers.size());
+  std::array<const TileLayers*, 4> sides{};
   constexpr std::array<std::array<int32_t, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   for (size_t i = 0; i < 4; ++i) {
     const int32_t x = column + kSides[i][0], z = row + kSides[i][1];
-    if (in_world(x, z)) sides[i] = &at(x, z).sheets;
+    if (in_world(x, z)) sides[i] = &at(x, z).layers;
   }
-  for (size_t s = 0; s < tile.sheets.size(); ++s) {
+  for (size_t s = 0; s < tile.layers.size(); ++s) {
     tile.legality[s].classes.resize(plan_.bodies.size());
-    link_sheet(*tile.sheets[s], sides, plan_.max_step, tile.legality[s]);
+    link_layer(*tile.layers[s], sides, plan_.max_step, tile.legality[s]);
   }
   worker.walls.known = 0;
   worker.beside_walls = 0;
@@ -241,10 +243,10 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
     judge_alike(column, row, seen_around(column, row, false), worker.tall, worker);
   }
 
-  for (size_t s = 0; s < tile.sheets.size(); ++s) {
+  for (size_t s = 0; s < tile.layers.size(); ++s) {
     for (size_t c = 0; c < classes; ++c) {
       const BodyWindow& body = plan_.bodies[c];
-      SheetLegality::PerClass& verdict = tile.legality[s].classes[c];
+      LayerLegality::PerClass& verdict = tile.legality[s].classes[c];
       if (verdict.all) continue;
       uint64_t any = 0, all = ~uint64_t{0};
       for (const uint64_t bits : verdict.legal) {
@@ -253,26 +255,26 @@ void ZoneJob::judge(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       }
       verdict.any = any != 0;
       verdict.all = all == ~uint64_t{0};
-      // A window that fits within a step makes neighbours safe, but only where the sheet is the
-      // only one: at a seam the neighbour that fits is another sheet's, and this one's may be a
+      // A window that fits within a step makes neighbours safe, but only where the layer is the
+      // only one: at a seam the neighbour that fits is another layer's, and this one's may be a
       // storey off. Beside walls, a neighbour need not fit as a whole.
-      const bool window_is_enough = tile.sheets.size() == 1 && body.bottom <= body.step &&
+      const bool window_is_enough = tile.layers.size() == 1 && body.bottom <= body.step &&
                                     (worker.beside_walls & body.class_bit) == 0;
       verdict.step_safe =
-          any == 0 || window_is_enough || step_safe(*tile.sheets[s], verdict.legal, body.step);
+          any == 0 || window_is_enough || step_safe(*tile.layers[s], verdict.legal, body.step);
     }
   }
   worker.seconds_clearance += seconds_since(start);
 }
 
-// Judges a tile for classes that see the same sheets in it and around it.
+// Judges a tile for classes that use the same layers in it and around it.
 void ZoneJob::judge_alike(int32_t column, int32_t row, const Neighbourhood& around,
                           std::span<const size_t> classes, ZoneScratch::Worker& worker) {
   TileState& tile = at(column, row);
   const TileTriangles triangles = triangles_around(column, row);
-  const SheetList& seen = *around[4];
+  const LayerList& seen = *around[4];
   for (size_t i = 0; i < seen.size(); ++i) {
-    const Sheet& sheet = *seen[i];
+    const Layer& layer = *seen[i];
     const size_t s = &seen == &tile.high ? tile.high_of[i] : i;
     bool assembled = false;
     for (const size_t c : classes) {
@@ -281,16 +283,16 @@ void ZoneJob::judge_alike(int32_t column, int32_t row, const Neighbourhood& arou
       BitPlane may;
       if (all_legal(around, i, body, plan_.limits)) {
         cells.legal.fill(~uint64_t{0});
-      } else if (may_stand(sheet, body, plan_.limits, may)) {
+      } else if (may_stand(layer, body, plan_.limits, may)) {
         if (!assembled) {
           worker.legality.window.assemble(around, i, plan_.reach, plan_.limits);
-          make_tilt(sheet, worker.legality.tilt);
+          make_tilt(layer, worker.legality.tilt);
           assembled = true;
         }
-        legal_cells(sheet, body, may, worker.legality, cells);
-        recheck_slopes(sheet, body, worker.legality, cells);
+        legal_cells(layer, body, may, worker.legality, cells);
+        recheck_slopes(layer, body, worker.legality, cells);
         if (body.barely) {
-          recheck_near_limit(sheet, tile.planes[s], body, triangles, worker, cells);
+          recheck_near_limit(layer, tile.planes[s], body, triangles, worker, cells);
         }
         recheck_seams(around, i, body, plan_.limits, worker.legality, cells);
         if (body.fine &&
@@ -319,7 +321,7 @@ TileTriangles ZoneJob::triangles_around(int32_t column, int32_t row) const {
 }
 
 // The last word on cells of a slope that is near what a class can climb, from the triangles.
-void ZoneJob::recheck_near_limit(const Sheet& sheet, const FloorPlane& floor,
+void ZoneJob::recheck_near_limit(const Layer& layer, const FloorPlane& floor,
                                  const BodyWindow& body, const TileTriangles& triangles,
                                  ZoneScratch::Worker& worker, LegalCells& cells) {
   if (floor.found && (floor.slope_x | floor.slope_z) == 0) return;
@@ -327,11 +329,11 @@ void ZoneJob::recheck_near_limit(const Sheet& sheet, const FloorPlane& floor,
   uint64_t any = 0;
   for (size_t z = 0; z < kTileSide; ++z) any |= asked[z] = cells.slanted[z] & ~cells.legal[z];
   if (any == 0) return;
-  find_surface_planes(worker.legality.window, sheet.base, asked, body, triangles, worker.planes);
-  recheck_planes(sheet, body, worker.planes, worker.legality, cells);
+  find_surface_planes(worker.legality.window, layer.base, asked, body, triangles, worker.planes);
+  recheck_planes(layer, body, worker.planes, worker.legality, cells);
 }
 
-// True if this tile and all around it are single sheets, legal everywhere, without a step between.
+// True if this tile and all around it are single layers, legal everywhere, without a step between.
 bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
   int32_t low = INT32_MAX, high = INT32_MIN;
   for (int32_t i = 0; i < 9; ++i) {
@@ -339,21 +341,21 @@ bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
     if (!in_world(x, z)) return false;
     const TileState& tile = tiles_[static_cast<size_t>(z * side_ + x)];
     if (tile.legality.size() != 1 || !tile.legality[0].classes[avatar_class].all) return false;
-    const Sheet& sheet = *tile.sheets[0];
-    low = std::min(low, sheet.base + sheet.low_feet);
-    high = std::max(high, sheet.base + sheet.high_feet);
+    const Layer& layer = *tile.layers[0];
+    low = std::min(low, layer.base + layer.low_feet);
+    high = std::max(high, layer.base + layer.high_feet);
   }
   return high - low <= plan_.bodies[avatar_class].step;
 }
 
-// Feet of a sheet that are stored: where someone may stand, and beside the cells where a class is
-// legal, whose tilt comes from there (world/surface.h).
-void forget_feet(const CellRows& legal, Sheet& sheet) {
-  if (sheet.all_useful) return;
-  // Nor is anything forgotten where a class may stand everywhere; those around such a tile look at
-  // its heights meanwhile (is_open).
+// Feet of a layer that are stored: where some class may stand, and beside the cells where a class
+// is legal, whose tilt comes from there (world/surface.h).
+void forget_feet(const CellRows& legal, Layer& layer) {
+  if (layer.all_useful) return;
+  // Nor is anything forgotten where a class may stand everywhere; those around such a tile read its
+  // heights meanwhile (is_open).
   if (std::all_of(legal.begin(), legal.end(), [](uint64_t row) { return ~row == 0; })) return;
-  CellRows kept = sheet.useful;
+  CellRows kept = layer.useful;
   const auto keep = [&](size_t z, uint64_t row) {
     const uint64_t rims = (row & 1) << 2 | (row & uint64_t{1} << 63) >> 2;
     kept[z] |= row | row << 1 | row >> 1 | rims;
@@ -366,13 +368,13 @@ void forget_feet(const CellRows& legal, Sheet& sheet) {
   }
   kept[2] |= legal[0];
   kept[kLast - 2] |= legal[kLast];
-  keep_feet(kept, sheet);
+  keep_feet(kept, layer);
 }
 
 void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
   if (column == 0 || row == 0 || column == side_ - 1 || row == side_ - 1) return;
   TileState& tile = at(column, row);
-  if (tile.sheets.empty()) return;
+  if (tile.layers.empty()) return;
   const auto start = Clock::now();
   std::array<const TileLegality*, 9> around{};
   for (int32_t i = 0; i < 9; ++i) {
@@ -383,8 +385,8 @@ void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
   const size_t classes = plan_.bodies.size();
   worker.clearance.resize(classes);
   worker.step_safe.resize(classes);
-  for (size_t s = 0; s < tile.sheets.size(); ++s) {
-    const SheetLegality& legality = tile.legality[s];
+  for (size_t s = 0; s < tile.layers.size(); ++s) {
+    const LayerLegality& legality = tile.legality[s];
     const bool used = std::any_of(legality.classes.begin(), legality.classes.end(),
                                   [](const auto& verdict) { return verdict.any; });
     if (!used) continue;
@@ -404,8 +406,8 @@ void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
       if (!legality.classes[c].any) continue;
       for (size_t z = 0; z < kTileSide; ++z) needed[z] |= legality.classes[c].legal[z];
     }
-    forget_feet(needed, *tile.sheets[s]);
-    pack_level(index, *tile.sheets[s], tile.planes[s], worker.clearance, worker.step_safe,
+    forget_feet(needed, *tile.layers[s]);
+    pack_level(index, *tile.layers[s], tile.planes[s], worker.clearance, worker.step_safe,
                plan_.codes, packs_[index]);
   }
   worker.seconds_clearance += seconds_since(start);
@@ -434,16 +436,16 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
   for (int32_t row = 0; row < side_ + 2; row += kBand) {
     if (context.cancel) return false;
     const int32_t end = row + kBand;
-    // Once cancelled, no pass looks at what the one before it has left out.
+    // Once cancelled, no pass reads what the one before it has left out.
     const auto pass = [&](int32_t behind, auto&& work) {
       for_tiles(row - behind, end - behind, [&](int32_t x, int32_t z, Worker& w) {
         if (!context.cancel) work(x, z, w);
       });
     };
-    pass(0, [&](int32_t x, int32_t z, Worker& w) { make_sheets(x, z, w); });
+    pass(0, [&](int32_t x, int32_t z, Worker& w) { make_layers(x, z, w); });
     pass(1, [&](int32_t x, int32_t z, Worker& w) { judge(x, z, w); });
     pass(2, [&](int32_t x, int32_t z, Worker& w) { clear(x, z, w); });
-    // Rows that nothing will look at again.
+    // Rows that are not read again.
     for (int32_t z = std::max(row - 4, 0); z < std::min(end - 4, side_); ++z) {
       for (int32_t x = 0; x < side_; ++x) give_back(at(x, z));
     }
@@ -461,7 +463,7 @@ bool ZoneJob::run(std::span<const uint32_t> triangles, int32_t zone_x, int32_t z
   }
   for (const TilePack& pack : packs_) {
     result.levels += static_cast<uint32_t>(pack.levels.size());
-    result.plain_levels += pack.plain;
+    result.flat_levels += pack.flat;
     result.tiles += pack.levels.empty() ? 0 : 1;
   }
   if (result.levels > 0) {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/layers.h"
 #include "bake/legality.h"
-#include "bake/sheets.h"
 #include "bake/triangles.h"
 #include "throng/bake.h"
 #include "throng/context.h"
@@ -27,7 +27,7 @@ struct BakePlan {
   SurfaceCodes codes;
   const SurfaceCoder* coder = nullptr;
   BodyLimits limits;
-  std::vector<bool> is_tall;  // classes that need gaps of BodyLimits::kHighGap
+  std::vector<bool> is_tall;  // classes that need free spans of BodyLimits::kHighFreeSpan
   std::vector<BodyWindow> bodies;
   int32_t reach = 0;     // of the widest body [cells]
   int32_t max_step = 0;  // [mm]
@@ -39,9 +39,9 @@ struct BakePlan {
 };
 
 struct ZoneResult {
-  flatbuffers::DetachedBuffer bytes;  // empty: nobody can stand in this zone
+  flatbuffers::DetachedBuffer bytes;  // empty: no class can stand in this zone
   uint32_t levels = 0;
-  uint32_t plain_levels = 0;
+  uint32_t flat_levels = 0;
   uint32_t tiles = 0;
   uint64_t spans = 0;
   std::vector<uint64_t> legal_cells;  // per class
@@ -63,7 +63,7 @@ class ZoneScratch {
   ~ZoneScratch();
   struct Worker;
 
-  SheetPool pool;
+  LayerPool pool;
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<CellTriangle> triangles;
 };

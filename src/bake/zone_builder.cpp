@@ -8,24 +8,26 @@
 #include <cmath>
 
 #include "bake/cell_packer.h"
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "world/zone_data.h"
 
+// Packs finished layers into a zone file: constants, planes or blocks of values for floors, and
+// sets of bits for the classes. Equal runs of words are stored once.
 namespace throng {
-FloorPlane fit_plane(Sheet& sheet) {
+FloorPlane fit_plane(Layer& layer) {
   FloorPlane plane;
-  if (sheet.present == 0) return plane;
-  if (sheet.low_feet == sheet.high_feet) {
+  if (layer.present == 0) return plane;
+  if (layer.low_feet == layer.high_feet) {
     plane.found = true;
-    plane.base = sheet.base + sheet.low_feet;
+    plane.base = layer.base + layer.low_feet;
     return plane;
   }
-  if (!may_be_plane(sheet)) return plane;
-  // Neighbours differ alike, so the ends of rows and columns tell the slopes.
+  if (!may_be_plane(layer)) return plane;
+  // Neighbours differ alike, so the ends of rows and columns give the slopes.
   const auto feet = [&](int32_t x, int32_t z) {
-    return sheet.feet[static_cast<size_t>(z * kTileSide + x)];
+    return layer.feet[static_cast<size_t>(z * kTileSide + x)];
   };
   double rise_x = 0, run_x = 0, rise_z = 0, run_z = 0;
   for (int32_t i = 0; i < kTileSide; ++i) {
@@ -64,11 +66,11 @@ FloorPlane fit_plane(Sheet& sheet) {
   level.part = static_cast<int32_t>(base & 1023);
   level.slope_x = static_cast<int32_t>(std::lround(gx * 1024));
   level.slope_z = static_cast<int32_t>(std::lround(gz * 1024));
-  if (!plane_fits(sheet, level)) return plane;
-  put_on_plane(level, sheet);
-  summarise(sheet);
+  if (!plane_fits(layer, level)) return plane;
+  put_on_plane(level, layer);
+  summarise(layer);
   plane.found = true;
-  plane.base = sheet.base + level.base;
+  plane.base = layer.base + level.base;
   plane.part = level.part;
   plane.slope_x = level.slope_x;
   plane.slope_z = level.slope_z;
@@ -92,18 +94,18 @@ uint32_t add_bits(const BitPlane& bits, TilePack& pack) {
   return close_run(first, pack);
 }
 
-uint32_t add_values(const uint16_t* values, const Sheet& sheet, const CellRows* has, uint16_t low,
+uint32_t add_values(const uint16_t* values, const Layer& layer, const CellRows* has, uint16_t low,
                     TilePack& pack) {
   const size_t first = pack.words.size();
-  pack_values(values, sheet.feet.data(), has, low, pack.words);
+  pack_values(values, layer.feet.data(), has, low, pack.words);
   return close_run(first, pack);
 }
 
-bool has_one_area(const Sheet& sheet, const SurfaceCodes& codes) {
-  if (sheet.one_code) return true;
-  const AreaKind area = codes.codes[sheet.some_code].area;
+bool has_one_area(const Layer& layer, const SurfaceCodes& codes) {
+  if (layer.one_code) return true;
+  const AreaKind area = codes.codes[layer.some_code].area;
   for (size_t c = 0; c < kTileArea; ++c) {
-    if (sheet.feet[c] != kNone16 && codes.codes[sheet.code[c]].area != area) return false;
+    if (layer.feet[c] != kNone16 && codes.codes[layer.code[c]].area != area) return false;
   }
   return true;
 }
@@ -120,52 +122,52 @@ format::Clearance pack_clearance(const ClearancePlanes& planes, uint8_t step_saf
 
 }  // namespace
 
-void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
+void pack_level(uint32_t tile, const Layer& layer, const FloorPlane& plane,
                 std::span<const ClearancePlanes> clearance, std::span<const uint8_t> step_safe,
                 const SurfaceCodes& codes, TilePack& pack) {
   pack.words.reserve(2048);  // Most tiles take less; growing to it by halves copies it all again.
-  const bool all_present = sheet.present == kTileArea;
+  const bool all_present = layer.present == kTileArea;
   uint32_t present_offset = 0;
   BitPlane present;
   const CellRows* has = all_present ? nullptr : &present;
   if (!all_present) {
-    present_bits(sheet, present);
+    present_bits(layer, present);
     present_offset = add_bits(present, pack);
   }
 
   format::HeightKind floor_kind = format::HeightKind::Blocks;
   uint32_t floor_offset = 0;
-  int32_t floor_base = sheet.base + sheet.low_feet;
+  int32_t floor_base = layer.base + layer.low_feet;
   if (plane.found) {
     const bool flat = (plane.slope_x | plane.slope_z) == 0;
     floor_kind = flat ? format::HeightKind::Constant : format::HeightKind::Plane;
     floor_base = plane.base;
-    ++pack.plain;
+    ++pack.flat;
   } else {
-    floor_offset = add_values(sheet.feet.data(), sheet, has, sheet.low_feet, pack);
+    floor_offset = add_values(layer.feet.data(), layer, has, layer.low_feet, pack);
   }
 
-  const HeightRange ceiling = ceiling_range(sheet);
+  const HeightRange ceiling = ceiling_range(layer);
   format::HeightKind ceiling_kind = format::HeightKind::Blocks;
   uint32_t ceiling_offset = 0;
-  int32_t ceiling_base = sheet.base + ceiling.low;
+  int32_t ceiling_base = layer.base + ceiling.low;
   if (ceiling.low == kNone16) {
     ceiling_kind = format::HeightKind::None;
     ceiling_base = 0;
   } else if (ceiling.low == ceiling.high) {
     ceiling_kind = format::HeightKind::Constant;
   } else {
-    ceiling_offset = add_values(sheet.ceiling.data(), sheet, has, ceiling.low, pack);
+    ceiling_offset = add_values(layer.ceiling.data(), layer, has, ceiling.low, pack);
   }
 
-  const bool one_area = has_one_area(sheet, codes);
+  const bool one_area = has_one_area(layer, codes);
   uint32_t area_offset = 0;
   if (!one_area) {
     std::array<uint16_t, kTileArea + 32> areas{};
     for (size_t c = 0; c < kTileArea; ++c) {
-      if (sheet.feet[c] != kNone16) areas[c] = codes.codes[sheet.code[c]].area;
+      if (layer.feet[c] != kNone16) areas[c] = codes.codes[layer.code[c]].area;
     }
-    area_offset = add_values(areas.data(), sheet, has, 0, pack);
+    area_offset = add_values(areas.data(), layer, has, 0, pack);
   }
 
   pack.levels.emplace_back(static_cast<uint16_t>(tile), floor_kind, ceiling_kind, floor_base,
@@ -174,7 +176,7 @@ void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
                            static_cast<int16_t>(plane.found ? plane.part : 0),
                            all_present ? format::CellsKind::All : format::CellsKind::Blocks,
                            one_area ? format::CellsKind::All : format::CellsKind::Blocks,
-                           codes.codes[sheet.some_code].area, present_offset, area_offset);
+                           codes.codes[layer.some_code].area, present_offset, area_offset);
   for (size_t c = 0; c < clearance.size(); ++c) {
     pack.clearance.push_back(pack_clearance(clearance[c], step_safe[c], pack));
   }

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "bake/clearance.h"
-#include "bake/sheets.h"
+#include "bake/layers.h"
 #include "world/zone_generated.h"
 
-/// Packs the sheets of a zone into a zone file's arrays: constants and planes where they serve, and
+/// Packs the layers of a zone into a zone file's arrays: constants and planes where they serve, and
 /// blocks of cells (world/cell_blocks.h), of which the zone holds each only once.
 namespace throng {
 
-/// Replaces a sheet's feet by a plane if that changes no height by more than 1 mm. Run before
+/// Replaces a layer's feet by a plane if that changes no height by more than 1 mm. Run before
 /// legality is judged, so that everything after sees the feet that the moves will see.
 struct FloorPlane {
   bool found = false;
@@ -22,7 +22,7 @@ struct FloorPlane {
   int32_t part = 0;                  // of the base below 1 mm [1/1024 mm]
   int32_t slope_x = 0, slope_z = 0;  // [1/1024 mm per cell]
 };
-FloorPlane fit_plane(Sheet& sheet);
+FloorPlane fit_plane(Layer& layer);
 
 /// The levels of one tile. Their offsets count the tile's runs until the zone's words are laid out.
 struct TilePack {
@@ -35,11 +35,11 @@ struct TilePack {
   std::vector<format::Clearance> clearance;  // per level and class
   std::vector<uint64_t> words;
   std::vector<Run> runs;
-  uint32_t plain = 0;  // levels whose floor is a constant or a plane
+  uint32_t flat = 0;  // levels whose floor is a constant or a plane
 };
 
 /// Adds one level of tile `tile` to its pack.
-void pack_level(uint32_t tile, const Sheet& sheet, const FloorPlane& plane,
+void pack_level(uint32_t tile, const Layer& layer, const FloorPlane& plane,
                 std::span<const ClearancePlanes> clearance, std::span<const uint8_t> step_safe,
                 const SurfaceCodes& codes, TilePack& pack);
 

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "world/zone_data.h"
 
+// The XXH3 hash of all that a zone's bytes depend on. Linear in its triangles.
 namespace throng {
 namespace {
 
@@ -48,7 +49,7 @@ uint64_t zone_input(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
     hashes[chunk] = hash_bytes(words.data(), part.size() * sizeof(TriangleWords));
   });
 
-  // Tiles of the ring around the zone that lie beyond the world's last ones are nobody's neighbour.
+  // Tiles of the ring around the zone that lie beyond the world's last ones have no neighbour.
   const int32_t side = plan.tiles_per_zone;
   const auto end = [&](int32_t zone, int32_t tiles) {
     return std::min((zone + 1) * side + 1, tiles);

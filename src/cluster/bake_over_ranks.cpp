@@ -7,13 +7,13 @@
 #include "bake/graph_bake.h"
 #include "bake/world_bake.h"
 #include "bake/world_folder.h"
-#include "cluster/deal.h"
+#include "cluster/job_assignment.h"
 #include "core/stopwatch.h"
 #include "throng/cluster.h"
 
 // Rank 0 owns the folder: it takes over what need not be baked and hands out the rest, the largest
-// zones first. The others write their zones' files and send what the manifest wants to know of
-// them, which rank 0 enters into the journal.
+// zones first. The others write their zones' files and send what the manifest needs of them, which
+// rank 0 enters into the journal.
 namespace throng {
 namespace {
 
@@ -56,7 +56,7 @@ class ZoneJobs {
   }
 
   // Of rank 0: the facts of all zones, in their order.
-  Result<std::vector<ZoneFacts>> deal(Ranks& ranks, WorldFolder& folder, Context& context);
+  Result<std::vector<ZoneFacts>> assign(Ranks& ranks, WorldFolder& folder, Context& context);
 
  private:
   [[nodiscard]] std::string so_far() const {
@@ -71,13 +71,14 @@ class ZoneJobs {
   size_t done_ = 0;
 };
 
-Result<std::vector<ZoneFacts>> ZoneJobs::deal(Ranks& ranks, WorldFolder& folder, Context& context) {
+Result<std::vector<ZoneFacts>> ZoneJobs::assign(Ranks& ranks, WorldFolder& folder,
+                                                Context& context) {
   const auto zones = bake_.zones();
   facts_.resize(zones.size());
   std::vector<uint64_t> open;
   for (size_t i = 0; i < zones.size() && !context.cancel; ++i) {
-    if (const auto kept = folder.keep(zones[i].x(), zones[i].z(), zones[i].hash())) {
-      facts_[i] = bake_.facts_of(*kept);
+    if (const auto reused = folder.reuse(zones[i].x(), zones[i].z(), zones[i].hash())) {
+      facts_[i] = bake_.facts_of(*reused);
       ++done_;
     } else {
       open.push_back(i);
@@ -86,19 +87,19 @@ Result<std::vector<ZoneFacts>> ZoneJobs::deal(Ranks& ranks, WorldFolder& folder,
   std::stable_sort(open.begin(), open.end(), [&](uint64_t a, uint64_t b) {
     return bake_.triangle_count(a) > bake_.triangle_count(b);
   });
-  DealtJobs dealt;
-  for (const uint64_t zone : open) dealt.jobs.push_back(bytes_of(zone));
-  dealt.enter = [&](size_t job, std::span<const uint8_t> told) {
+  JobsToAssign to_assign;
+  for (const uint64_t zone : open) to_assign.jobs.push_back(bytes_of(zone));
+  to_assign.enter = [&](size_t job, std::span<const uint8_t> result) {
     const auto zone = static_cast<size_t>(open[job]);
-    facts_[zone] = value_of<ZoneFacts>(told);
+    facts_[zone] = value_of<ZoneFacts>(result);
     ++done_;
     return folder.add(facts_[zone].entry, zones[zone].hash());
   };
-  dealt.on_progress = [&] {
+  to_assign.on_progress = [&] {
     if (context.on_progress) context.on_progress({"bake", done_, facts_.size()});
   };
-  dealt.on_cancel = [&] { folder.leave(); };
-  if (auto ok = deal_jobs(ranks, jobs(), std::move(dealt), context); !ok) return ok.error();
+  to_assign.on_cancel = [&] { folder.leave(); };
+  if (auto ok = assign_jobs(ranks, jobs(), std::move(to_assign), context); !ok) return ok.error();
   return std::move(facts_);
 }
 
@@ -141,9 +142,9 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
   BakeReport report;
   ZoneJobs zones(*bake, path, own.workers);
   if (ranks.rank() != 0) {
-    if (auto ok = do_dealt_jobs(ranks, zones.jobs(), context); !ok) return ok.error();
+    if (auto ok = do_assigned_jobs(ranks, zones.jobs(), context); !ok) return ok.error();
   } else {
-    const auto facts = zones.deal(ranks, *folder, context);
+    const auto facts = zones.assign(ranks, *folder, context);
     if (!facts) return facts.error();
     const auto world = bake->world(*facts, report);
     if (!world) return world.error();
@@ -154,7 +155,7 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
       folder->leave();
       RankJobs rest = zones.jobs();
       rest.finished = [&](bool) { return zones.finished(finished); };
-      return told_to_stop(ranks, rest);
+      return stopped_error(ranks, rest);
     };
     if (auto ok = bake->add_air(&*folder, **world, context, report); !ok) {
       return failed(ok.error(), "all zones' ground and some of their air are finished");

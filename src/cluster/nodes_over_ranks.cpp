@@ -4,13 +4,13 @@
 #include <optional>
 
 #include "bake/node_bake.h"
-#include "cluster/deal.h"
+#include "cluster/job_assignment.h"
 #include "core/stopwatch.h"
 #include "throng/cluster.h"
 
-// Rank 0 keeps what need not be made and deals out batches of zones; whoever has made one writes
-// its files and tells what the index wants to know of them. The bytes of a zone do not depend on
-// what it is made together with, so they do not depend on the ranks either.
+// Rank 0 reuses what need not be made and assigns batches of zones to the ranks. A rank that has
+// made one writes its files and returns what the index needs of them. The bytes of a zone do not
+// depend on what it is made together with, so they do not depend on the ranks either.
 namespace throng {
 namespace {
 
@@ -19,7 +19,7 @@ namespace {
 std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const NodeConfig& config,
                                                   int32_t ranks) {
   std::vector<std::vector<uint32_t>> best;
-  uint64_t least = UINT64_MAX;
+  uint64_t min_time = UINT64_MAX;
   for (const uint64_t a_rank : {4, 2, 1, 0}) {
     const uint64_t parts = std::max<uint64_t>(a_rank * static_cast<uint64_t>(ranks), 1);
     auto batches = baker.batches(std::min(config.working_bytes, baker.working_bytes() / parts + 1));
@@ -31,8 +31,8 @@ std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const 
     }
     const uint64_t at_once = std::min<uint64_t>(static_cast<uint64_t>(ranks), batches.size());
     const uint64_t time = std::max(most, sum / std::max<uint64_t>(at_once, 1));
-    if (time >= least) continue;
-    least = time;
+    if (time >= min_time) continue;
+    min_time = time;
     best = std::move(batches);
   }
   return best;
@@ -58,21 +58,21 @@ RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
               }};
 }
 
-Result<NodeSummary> deal_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
-                               const std::string& path, NodeFolder& folder, Context& context) {
+Result<NodeSummary> assign_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
+                                 const std::string& path, NodeFolder& folder, Context& context) {
   const auto batches = choose_batches(baker, config, ranks.size());
-  DealtJobs dealt;
-  for (const auto& zones : batches) dealt.jobs.push_back(bytes_of(zones));
-  dealt.enter = [&](size_t, std::span<const uint8_t> told) {
-    baker.enter(values_of<NodeBaker::Made>(told));
+  JobsToAssign to_assign;
+  for (const auto& zones : batches) to_assign.jobs.push_back(bytes_of(zones));
+  to_assign.enter = [&](size_t, std::span<const uint8_t> result) {
+    baker.enter(values_of<NodeBaker::Made>(result));
     return baker.list();
   };
-  dealt.on_progress = [&] {
+  to_assign.on_progress = [&] {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
   };
-  dealt.on_cancel = [&] { folder.leave(); };
+  to_assign.on_cancel = [&] { folder.leave(); };
   if (auto ok = baker.list(); !ok) return ok.error();
-  if (auto ok = deal_jobs(ranks, jobs_of(baker, path), std::move(dealt), context); !ok) {
+  if (auto ok = assign_jobs(ranks, jobs_of(baker, path), std::move(to_assign), context); !ok) {
     return ok.error();
   }
   const auto nodes = baker.finish();
@@ -110,13 +110,13 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
     return ok.error();
   }
   // Rank 0 looks through what is there.
-  const Result<void> kept = ranks.rank() == 0 ? baker.keep_zones() : Result<void>();
-  if (auto ok = meet(ranks, kept, context); !ok) return ok.error();
+  const Result<void> reused = ranks.rank() == 0 ? baker.reuse_zones() : Result<void>();
+  if (auto ok = meet(ranks, reused, context); !ok) return ok.error();
   if (ranks.rank() != 0) {
-    if (auto ok = do_dealt_jobs(ranks, jobs_of(baker, path), context); !ok) return ok.error();
+    if (auto ok = do_assigned_jobs(ranks, jobs_of(baker, path), context); !ok) return ok.error();
     return NodeSummary{};
   }
-  auto made = deal_nodes(ranks, baker, config, path, *folder, context);
+  auto made = assign_nodes(ranks, baker, config, path, *folder, context);
   if (made) made->seconds = seconds_since(start);
   return made;
 }

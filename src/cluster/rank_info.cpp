@@ -6,6 +6,7 @@
 
 #include "throng/cluster.h"
 
+// Rank and number of ranks, from the environment that mpirun sets, without starting MPI.
 namespace throng {
 namespace {
 

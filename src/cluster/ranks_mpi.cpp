@@ -6,12 +6,13 @@
 
 #include "cluster/ranks.h"
 
+// Messages between ranks over MPI. MPI is started once in a process and ended at its exit.
 namespace throng {
 namespace {
 
 bool g_abandoned = false;
 
-// MPI is begun once in a process, and ended by whoever began it.
+// MPI is begun once in a process. What has begun it ends it.
 MPI_Comm g_meetings = MPI_COMM_NULL;
 
 MPI_Comm comm_of(Ranks::Channel channel) {

@@ -13,6 +13,7 @@
 #include "core/config_file.h"
 #include "core/read_file.h"
 
+// Limits of avatar classes, the default classes, and lists of classes in TOML and JSON files.
 namespace throng {
 namespace {
 

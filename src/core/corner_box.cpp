@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 
+// The bounding box of a scene's used corners, in parallel blocks. Linear.
 namespace throng {
 
 Box3d corner_box(std::span<const Vec3d> positions,

@@ -12,6 +12,7 @@
 
 #include "core/part_file.h"
 
+// Maps files read-only, and writes files whole: to NAME.part, then renamed.
 namespace throng {
 namespace {
 

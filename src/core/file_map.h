@@ -35,7 +35,7 @@ class FileMap {
   std::span<const uint8_t> data_;
 };
 
-/// Writes `path` by way of `path`.part and a rename. Fails with kIo; then nothing is left behind.
+/// Writes `path`.part and renames it to `path`. Fails with kIo; then nothing is left behind.
 Result<void> write_file(const std::string& path, std::span<const uint8_t> bytes);
 
 }  // namespace throng

@@ -13,7 +13,7 @@
 #include <utility>
 
 // The folder itself is locked, not a file in it or beside it: a lock on it goes with it when it
-// gets another name, and there is no file that somebody has to clear away.
+// gets another name, and no file is left to clear away.
 namespace throng {
 namespace {
 
@@ -53,7 +53,7 @@ Result<FolderLock> FolderLock::take(const std::string& path, Kind kind, const st
   }
 }
 
-// Whoever held the folder may have taken it away in the meantime: then it is made again.
+// Another process may have removed the folder before it was locked: then it is made again.
 Result<FolderLock> FolderLock::make(const std::string& path, const std::string& world) {
   while (true) {
     std::error_code error;

@@ -8,8 +8,9 @@
 
 namespace throng {
 
-/// Whoever writes a folder holds this of it, alone or among others that go on side by side. The
-/// system lets it go when the process ends, however it ends, and nothing is written for it.
+/// The lock of a folder, to hold while writing in it: exclusive, or shared with others that write
+/// side by side. The system releases it when the process ends, however it ends, and nothing is
+/// written for it.
 class FolderLock {
  public:
   enum class Kind { kAlone, kShared };
@@ -20,7 +21,7 @@ class FolderLock {
   ~FolderLock();
 
   /// Takes the folder that is at `path` now, also if it gets another name later. Never waits: fails
-  /// with kIo and a sentence about `world` if somebody else holds it, in this process or another.
+  /// with kIo and a sentence about `world` if another lock is on it, in this process or another.
   /// Holds nothing where no folder is, or on a file system that cannot lock.
   static Result<FolderLock> take(const std::string& path, Kind kind, const std::string& world);
   /// Makes the folder if it is not there, and takes it alone.

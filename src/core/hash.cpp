@@ -4,6 +4,7 @@
 
 #include <xxhash.h>
 
+// XXH3, 64 bits.
 namespace throng {
 
 uint64_t hash_bytes(const void* data, size_t size, uint64_t seed) {

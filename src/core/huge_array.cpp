@@ -6,6 +6,7 @@
 
 #include <new>
 
+// Zeroed pages from mmap, huge ones on request.
 namespace throng {
 
 void UnmapPages::operator()(void* p) const { munmap(p, bytes); }
@@ -17,7 +18,7 @@ ZeroedBytes::ZeroedBytes(size_t bytes, Pages pages) {
   if (data == MAP_FAILED) throw std::bad_alloc();
   data_ = {data, UnmapPages{bytes}};
 #ifdef MADV_HUGEPAGE
-  // A wish: where the system has no huge pages, the array works as well, only slower.
+  // A request only: where the system has no huge pages, the array works as well, only slower.
   if (pages == Pages::kHuge) madvise(data, bytes, MADV_HUGEPAGE);
 #else
   static_cast<void>(pages);

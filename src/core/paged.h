@@ -9,7 +9,7 @@
 namespace throng {
 
 /// A long array of which little is touched: its pages are made, of zero-initialised elements, when
-/// they are first asked for. They stay.
+/// they are first used. They stay.
 template <class T>
 class Paged {
  public:

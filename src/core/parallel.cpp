@@ -14,12 +14,13 @@
 #include <mutex>
 #include <utility>
 
+// parallel_for and its kin on TBB arenas.
 namespace throng {
 namespace {
 
 // One arena per thread count and group for the life of the process: starting threads for each call
-// costs more than a whole step of a small crowd. More threads than cores are allowed when asked for
-// (results do not depend on it, and tests prove that), which TBB must be told, or it complains on
+// costs more than a whole step of a small crowd. More threads than cores are allowed if requested
+// (results do not depend on it, and tests prove that); without a global_control TBB warns of it on
 // standard error.
 tbb::task_arena& arena_for(int32_t threads) {
   static std::mutex mutex;

@@ -30,18 +30,19 @@ void parallel_for(size_t count, int32_t workers, Body&& body) {
   });
 }
 
-/// Like parallel_for, but also tells the body which worker it runs on: [0, worker_count(workers)).
-/// For scratch memory only; the result must not depend on it.
+/// Like parallel_for, but also gives the body the worker that it runs on: [0,
+/// worker_count(workers)). For scratch memory only; the result must not depend on it.
 void parallel_for_worker(size_t count, int32_t workers,
                          const std::function<void(size_t index, int32_t worker)>& body);
 
-/// How workers are dealt to tasks of which each could use some: where there are many, each task has
-/// one, and as many are done side by side, with the memory of as many. Few do one after the other.
+/// How workers are assigned to tasks of which each could use several: where there are many, each
+/// task has one, and as many are done side by side, with the memory of as many. Few do one after
+/// the other.
 struct WorkerGroups {
   int32_t groups = 1;
   int32_t workers = 1;  ///< Of each.
 };
-WorkerGroups deal_workers(size_t tasks, int32_t workers);
+WorkerGroups assign_workers(size_t tasks, int32_t workers);
 
 /// Calls body(index, group) for every index in [0, count), begun in order, from a thread of each of
 /// `groups`. What is called in it with several workers runs on threads of that group's own. Throws
@@ -52,8 +53,8 @@ void parallel_groups(size_t count, int32_t groups,
 /// The group of parallel_groups that this thread belongs to, from 1; 0: none.
 int32_t worker_group();
 
-/// A thread for work that must not hold up its owner, who waits for it with join(), at the latest
-/// when it goes.
+/// A thread for work that must not hold up its owner, which waits for it with join(), at the latest
+/// when it is destroyed.
 class SideThread {
  public:
   explicit SideThread(std::function<void()> body)

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+// Writes a file under the name NAME.part and renames it when it is whole.
 namespace throng {
 
 PartFile::PartFile(std::string path)

@@ -9,7 +9,7 @@ namespace throng {
 /// A point of the ground's plane: x, z. [m]
 using PlanPoint = std::array<double, 2>;
 
-/// Twice the area of a triangle; its sign tells which way round the corners go.
+/// Twice the area of a triangle; its sign is the orientation of the corners.
 inline double turn(PlanPoint a, PlanPoint b, PlanPoint c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }

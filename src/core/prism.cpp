@@ -8,6 +8,7 @@
 #include "core/plan_point.h"
 #include "core/trig.h"
 
+// Upright convex prisms: circles, containment, checks.
 namespace throng {
 
 Prism Prism::circle(Vec3d middle, double radius, double height, int corners) {

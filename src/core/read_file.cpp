@@ -7,6 +7,7 @@
 #include <memory>
 #include <system_error>
 
+// Reads a whole file into memory.
 namespace throng {
 
 Result<std::string> read_file(const std::string& path) {
@@ -29,7 +30,8 @@ Result<std::string> read_file(const std::string& path) {
   char piece[1 << 16];
   while (const size_t got = std::fread(piece, 1, sizeof piece, file.get()))
     bytes.append(piece, got);
-  if (std::ferror(file.get()) != 0) return Error{Errc::kIo, path + ": reading it failed half-way"};
+  if (std::ferror(file.get()) != 0)
+    return Error{Errc::kIo, path + ": reading it failed before its end"};
   return bytes;
 }
 

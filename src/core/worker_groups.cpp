@@ -7,6 +7,8 @@
 
 #include "core/parallel.h"
 
+// Runs tasks side by side in groups of workers: one group per task at a time, with all workers of a
+// group in it.
 namespace throng {
 namespace {
 
@@ -16,11 +18,11 @@ thread_local int32_t t_group = 0;  // of this thread
 
 int32_t worker_group() { return t_group; }
 
-WorkerGroups deal_workers(size_t tasks, int32_t workers) {
+WorkerGroups assign_workers(size_t tasks, int32_t workers) {
   constexpr int32_t kFew = 4;  // Fewer seldom wait for each other.
   const int32_t threads = worker_count(workers);
-  const auto most = static_cast<int32_t>(std::clamp<size_t>(tasks, 1, 1024));
-  const int32_t groups = threads < kFew ? 1 : std::min(threads, most);
+  const auto max_groups = static_cast<int32_t>(std::clamp<size_t>(tasks, 1, 1024));
+  const int32_t groups = threads < kFew ? 1 : std::min(threads, max_groups);
   return {groups, (threads + groups - 1) / groups};
 }
 

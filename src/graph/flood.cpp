@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <bit>
 
+// Connected parts of rows of bits. From one cell: fills of whole rows until nothing changes. All
+// parts: runs of a row are joined with those of the row above by union-find [RP66]. Linear in the
+// runs.
 namespace throng {
 namespace {
 
-// Fills up and down from the seeds by doubling; `up` and `down` tell which bits may be entered from
-// the bit below and from the bit above. (The occluded fill of chess programs.)
+// Fills up and down from the seeds by doubling; `up` and `down` are the bits that may be entered
+// from the bit below and from the bit above. (The occluded fill of chess programs.)
 uint64_t spread(uint64_t seed, uint64_t up, uint64_t down) {
   uint64_t high = seed, low = seed;
   for (int shift = 1; shift < 64; shift *= 2) {

@@ -18,7 +18,7 @@ struct StepCuts {
   CellRows across{}, along{};
 };
 
-/// The cells of `open` that hold together with cell (x, z), which must be open. Neighbours share a
+/// The cells of `open` that are connected to cell (x, z), which must be open. Neighbours share a
 /// side. `cuts` may be null.
 CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z);
 
@@ -71,8 +71,8 @@ class PartFinder {
 
   std::array<Band, 65> bands_{};  // one more at the end
   size_t band_count_ = 0;
-  // Runs of cells of all bands, band by band; those that hold together are trees whose roots are
-  // the first of them.
+  // Runs of cells of all bands, band by band; connected ones are trees whose roots are the first of
+  // them.
   std::vector<uint64_t> cells_;
   std::vector<uint16_t> parent_;
   std::vector<uint32_t> part_;  // of the roots

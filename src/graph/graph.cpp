@@ -12,6 +12,7 @@
 #include "world/region_data.h"
 #include "world/sealed_file.h"
 
+// The public queries of a graph: components, and the component of a place.
 namespace throng {
 namespace {
 

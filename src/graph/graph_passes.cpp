@@ -15,11 +15,11 @@
 #include "world/graph_index.h"
 #include "world/place.h"
 
-// Pass 1 looks at one zone at a time, pass 2 at a zone and the two behind its eastern and southern
+// Pass 1 reads one zone at a time, pass 2 at a zone and the two behind its eastern and southern
 // border: each border belongs to one zone, so a zone that changes costs its own links and those of
 // its western and northern neighbours. A step leads over sides of cells only, so zones that touch
 // at a corner have no link; and a zone is as high as the world, so there is none over or under it.
-// Components are joined over borders from those within zones: pass 2 never looks at single parts.
+// Components are joined over borders from those within zones: pass 2 reads no single parts.
 namespace throng {
 namespace {
 
@@ -27,7 +27,7 @@ constexpr uint64_t kMaxZoneBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuff
 
 Error cancelled() { return {Errc::kCancelled, "graph: cancelled"}; }
 
-// What an entry tells once its links are known.
+// What is known of an entry once its links are.
 struct LinksOfZone {
   uint64_t count = 0;  // within the zone too
   uint64_t bytes = 0, hash = 0;
@@ -46,7 +46,7 @@ class Passes {
   Passes(const WorldData& world, GraphFiles* files, int32_t workers, Context& context)
       : world_(world),
         files_(files),
-        groups_(deal_workers(world.slots.size(), workers)),
+        groups_(assign_workers(world.slots.size(), workers)),
         context_(context) {
     made_.graph = std::make_shared<GraphData>();
     made_.graph->slots.resize(world.slots.size());
@@ -86,7 +86,7 @@ class Passes {
   std::mutex mutex_;
   GraphMade made_;
   std::vector<uint64_t> inputs_;    // of the slots' regions
-  std::vector<LinksOfZone> links_;  // of the slots, while others still look at their entries
+  std::vector<LinksOfZone> links_;  // of the slots, while others still read their entries
   uint32_t components_ = 0;         // of zones
 };
 
@@ -138,7 +138,7 @@ Result<void> Passes::find_regions(size_t slot) {
   inputs_[slot] = input;
   std::unique_ptr<RegionZone> zone;
   if (files_ != nullptr) {
-    zone = files_->keep_regions(entry.x(), entry.z(), input);
+    zone = files_->reuse_regions(entry.x(), entry.z(), input);
     if (zone && !is_of_slot(*zone, world_, slot)) zone = nullptr;
   }
   if (zone == nullptr) {
@@ -227,7 +227,7 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
   };
   std::unique_ptr<LinkZone> links;
   if (files_ != nullptr) {
-    links = files_->keep_links(entry.x(), entry.z(), input);
+    links = files_->reuse_links(entry.x(), entry.z(), input);
     if (links && !fits(*links)) links = nullptr;
   }
   if (links == nullptr) {
@@ -237,7 +237,7 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
     auto made = LinkZone::from_bytes(*std::move(bytes), name);
     if (!made) return made.error();
     links = std::move(*made);
-    // Regions that were kept may be others than those of today, if their file is forged.
+    // Reused regions may differ from those of today if their file is forged.
     if (!fits(*links)) {
       return bad_file(region_file_name(entry.x(), entry.z()),
                       "or one beside it, is not of this zone", "bake the world again with --fresh");

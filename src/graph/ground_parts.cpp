@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstdlib>
 
+// Unpacks where a class may stand on a level, and finds steps between its cells. Linear in the
+// cells.
 namespace throng {
 
 CellRows legal_rows(const GroundLevel& level) {

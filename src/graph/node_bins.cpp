@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
+// Chooses the edges of the bins of slopes, heights and widths: the classes' limits first.
 namespace throng {
 namespace {
 
@@ -49,7 +50,7 @@ NodeBins make_bins(std::span<const AvatarClass> classes) {
   }
   const double tallest = *std::max_element(heights.begin(), heights.end());
   const double widest = *std::max_element(widths.begin(), widths.end());
-  // Heights beyond the tallest class's serve nobody, and looking for them costs most.
+  // Heights beyond the tallest class's serve no class, and finding them costs most.
   return {edges(std::move(slopes), {45, 90, 25, 120, 65}),
           edges(std::move(heights), {std::min(1.0, tallest), std::min(2.0, tallest)}),
           edges(std::move(widths), {2 * widest, 4 * widest})};

@@ -6,11 +6,11 @@
 
 #include "throng/nodes.h"
 
-/// Which bins promises are kept in.
+/// The bins in which promises are stored.
 namespace throng {
 
 /// Every class's own limits, so that no class loses anything by rounding, and a few edges between
-/// them so that costs and pictures can tell slopes apart. At most 15 of each.
+/// them so that costs and pictures can distinguish slopes. At most 15 of each.
 [[nodiscard]] NodeBins make_bins(std::span<const AvatarClass> classes);
 
 }  // namespace throng

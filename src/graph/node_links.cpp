@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+// Makes links of nodes from pairs of cells that touch: for each class between the nodes that hold
+// the two cells. Linear, after sorting.
 namespace throng {
 namespace {
 
@@ -54,7 +56,7 @@ void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, 
     --count_a;
     --count_b;
   }
-  // (Of ragged nodes others may lie between.)
+  // (Of partial nodes others may lie between.)
   for (uint32_t i = 0; i < count_a; ++i) {
     const auto same = std::find(chain_b.begin(), chain_b.begin() + count_b, chain_a[i]);
     if (same == chain_b.begin() + count_b) continue;
@@ -69,12 +71,12 @@ void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, 
                                        bool backward) {
     for (const uint32_t f : from) {
       const Promise& promise = node(from_patch, f).promise;
-      const uint16_t both_ways = promise.classes & classes;
-      if (both_ways == 0) continue;
+      const uint16_t mutual = promise.classes & classes;
+      if (mutual == 0) continue;
       for (size_t k = to.size(); k-- > 0;) {  // The largest first.
         if (!covers(node(to_patch, to[k]).promise, promise)) continue;
-        backward ? add(to[k], f, both_ways, kind) : add(f, to[k], both_ways, kind);
-        linked |= both_ways;
+        backward ? add(to[k], f, mutual, kind) : add(f, to[k], mutual, kind);
+        linked |= mutual;
         break;
       }
     }
@@ -96,10 +98,10 @@ void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, 
       left &= ~bit;
       continue;
     }
-    const auto both_ways = static_cast<uint16_t>(node(patch_a, a).promise.classes &
-                                                 node(patch_b, b).promise.classes & classes);
-    add(a, b, both_ways, kind);
-    left &= ~uint32_t{both_ways};
+    const auto mutual = static_cast<uint16_t>(node(patch_a, a).promise.classes &
+                                              node(patch_b, b).promise.classes & classes);
+    add(a, b, mutual, kind);
+    left &= ~uint32_t{mutual};
   }
 }
 
@@ -108,7 +110,7 @@ void NodeLinker::link_inside(uint32_t patch, const PatchCells& cells) {
   if (tree.leaf.empty() || tree.nodes.empty()) return;
   const auto visit = [&](size_t here, size_t next, bool along_s) {
     const uint32_t a = tree.leaf_of(here), b = tree.leaf_of(next);
-    // (One ragged node may be the first around both, and others around one.)
+    // (One partial node may be the first around both, and others around one.)
     if (a == kNoNode || b == kNoNode || (a == b && tree.nodes[a].cells == 0)) return;
     const std::vector<uint16_t>& cuts = along_s ? cells.cut_s : cells.cut_t;
     const uint16_t together = cells.cells[here].classes & cells.cells[next].classes;
@@ -226,8 +228,8 @@ void merge_node_links(std::vector<NodeLink>& links) {
     }
     // A leap that serves no class that an earlier one does not serve is left out.
     uint16_t served = 0;
-    // (Jumps are given one by one, and some lead one way: all are kept. Of drops one from each spot
-    // is: a ledge may be long.)
+    // (Off-mesh links are given one by one, and some are one-way: all are kept. Of drops one from
+    // each spot is: a ledge may be long.)
     for (size_t k = group; k < kept && link.kind != LinkKind::kOffMesh; ++k) {
       const bool same = links[k].spot == link.spot && links[k].turned == link.turned;
       if (same || link.kind != LinkKind::kDrop) served |= links[k].classes;

@@ -39,14 +39,14 @@ struct CellPair {
   uint32_t spot = 0;               ///< Of a drop: where it begins, to some cells.
 };
 
-/// A link between two nodes of all, a < b: every class in `classes` goes both ways.
+/// A link between two nodes of all, a < b: undirected for every class in `classes`.
 struct NodeLink {
   uint32_t a = 0, b = 0;
   uint16_t classes = 0;
   LinkKind kind = LinkKind::kWalk;
   uint32_t leap1 = 0;    ///< As of the pair of cells; 0: the nodes touch.
   bool turned = false;   ///< The leap leads from b to a.
-  bool one_way = false;  ///< Only the way that the leap leads.
+  bool one_way = false;  ///< Only in the leap's direction.
   uint32_t spot = 0;     ///< As of the pair of cells.
 };
 

@@ -15,11 +15,11 @@
 #include "world/place.h"
 
 // The class's largest nodes tile all that it can stand on: of the nodes around a cell that hold its
-// bit, the outermost. Inside one nothing is in the way, so what is left to know is where two of
+// bit, the outermost. Inside one nothing blocks the class, so what is left to find is where two of
 // them touch. Within a patch that follows from the squares (and the tile's steps), over the edges
 // of Bezier patches from the doors that the bake proved, over tiles from the moves' own rule, and
-// across gaps from the leaps. The arcs between nodes are not read for that; that both tell the
-// same is a test.
+// over holes from the leaps. The arcs between nodes are not read for that; a test proves that both
+// agree.
 namespace throng {
 namespace {
 
@@ -38,9 +38,9 @@ void append_all(std::vector<std::vector<T>>& lists, std::vector<T>& all) {
 }  // namespace
 
 double portal_length(const NodePortal& portal, Vec3d out, Vec3d in) {
-  const Vec3d way = in - out;
-  if (portal.kind != LinkKind::kDrop) return length(way);
-  return std::sqrt(way.x * way.x + way.z * way.z) + std::fabs(way.y);
+  const Vec3d hop = in - out;
+  if (portal.kind != LinkKind::kDrop) return length(hop);
+  return std::sqrt(hop.x * hop.x + hop.z * hop.z) + std::fabs(hop.y);
 }
 
 Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_t workers,
@@ -122,8 +122,8 @@ class BlockCutter {
             .inclination = static_cast<uint8_t>(node.surface() >> 4)};
   }
 
-  // Quarters, quarters of quarters ... until a block is small enough. Flat or bent, its diagonals
-  // tell: a patch that comes back to where it began is cut by its depth.
+  // Quarters, quarters of quarters ... until a block is small enough. Its diagonals measure it,
+  // flat or curved: a patch that comes back to where it began is cut by its depth.
   void cut_block(NodeBlock block) {
     if (block.level >= surface_.depth) {
       blocks_.push_back(block);
@@ -151,7 +151,8 @@ class BlockCutter {
     return block;
   }
 
-  // All ragged nodes of one block, which follow each other from `first` on. Returns where they end.
+  // All partial nodes of one block, which follow each other from `first` on. Returns where they
+  // end.
   uint32_t cut_partial(uint32_t first, uint32_t end) {
     const format::Node& node = zone_.nodes()[first];
     pieces_.clear();
@@ -229,7 +230,7 @@ class BlockCutter {
     uint32_t node = 0;
   };
 
-  std::vector<Piece> pieces_;  // of the class, of the ragged nodes of one block
+  std::vector<Piece> pieces_;  // of the class, of the partial nodes of one block
   std::optional<GroundLevel> ground_;
   std::optional<StepCuts> cuts_;
   std::vector<NodeBlock> blocks_;

@@ -19,8 +19,8 @@
 namespace throng {
 
 /// A square of a patch on all of which the class may stand, and go straight by parameters: one of
-/// the largest nodes that hold the class, or a part of it no larger than kLargestBlock; of a ragged
-/// node one of the largest squares of its quadtree on which it can.
+/// the largest nodes that hold the class, or a part of it no larger than kLargestBlock; of a
+/// partial node one of the largest squares of its quadtree on which it can.
 struct NodeBlock {
   uint32_t patch = 0;
   uint32_t node = 0;

@@ -7,6 +7,7 @@
 #include "throng/patch.h"
 #include "world/place.h"
 
+// Points and normals of a patch: of the Bezier surface, or of a level tile's floor.
 namespace throng {
 namespace {
 

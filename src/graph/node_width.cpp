@@ -11,6 +11,8 @@
 #include "core/parallel.h"
 #include "world/cell_blocks.h"
 
+// The width of a node: how far its middle is from the nearest cell that is more restrictive, by a
+// flood over cells from its middle.
 namespace throng {
 namespace {
 
@@ -18,7 +20,7 @@ uint64_t key_of(uint32_t patch, uint32_t cell) { return uint64_t{patch} << 32 | 
 
 }  // namespace
 
-// Dealt to their patches, then sorted there; of one cell they keep the order of the pairs.
+// Assigned to their patches, then sorted there; of one cell they keep the order of the pairs.
 CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches, int32_t workers)
     : first_(patches + 1, 0), key_(2 * pairs.size()), cell_(2 * pairs.size()) {
   for (const CellPair& p : pairs) {
@@ -27,18 +29,18 @@ CrossCells::CrossCells(std::span<const CellPair> pairs, size_t patches, int32_t 
   }
   for (size_t p = 0; p < patches; ++p) first_[p + 1] += first_[p];
   using Entry = std::pair<uint32_t, Cell>;
-  std::vector<Entry> dealt(2 * pairs.size());
+  std::vector<Entry> assigned(2 * pairs.size());
   std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
   for (const CellPair& p : pairs) {
-    dealt[next[p.patch_a]++] = {p.cell_a, {p.patch_b, p.cell_b, p.classes, p.side_a}};
-    dealt[next[p.patch_b]++] = {p.cell_b, {p.patch_a, p.cell_a, p.classes, p.side_b}};
+    assigned[next[p.patch_a]++] = {p.cell_a, {p.patch_b, p.cell_b, p.classes, p.side_a}};
+    assigned[next[p.patch_b]++] = {p.cell_b, {p.patch_a, p.cell_a, p.classes, p.side_b}};
   }
   parallel_for(patches, workers, [&](size_t p) {
-    std::stable_sort(dealt.begin() + first_[p], dealt.begin() + first_[p + 1],
+    std::stable_sort(assigned.begin() + first_[p], assigned.begin() + first_[p + 1],
                      [](const Entry& a, const Entry& b) { return a.first < b.first; });
     for (size_t i = first_[p]; i < first_[p + 1]; ++i) {
-      key_[i] = dealt[i].first;
-      cell_[i] = dealt[i].second;
+      key_[i] = assigned[i].first;
+      cell_[i] = assigned[i].second;
     }
   });
 }
@@ -100,19 +102,19 @@ class KeySet {
 
 class Flood {
  public:
-  Flood(const NodeForest& forest, uint32_t home, const CrossCells& cross, double most,
+  Flood(const NodeForest& forest, uint32_t home, const CrossCells& cross, double max_width,
         std::span<const CellBalls> balls)
       : forest_(forest),
         home_(home),
         cross_(cross),
-        most_(most),
+        max_width_(max_width),
         balls_(balls),
         round_seen_(forest.trees[home].leaf_depth < forest.trees[home].depth
                         ? 0
                         : size_t{1} << (2 * forest.trees[home].depth),
                     0) {}
 
-  // A ragged node has a more restrictive cell in its block, so it promises none.
+  // A partial node has a more restrictive cell in its block, so it promises none.
   double width(const PatchNode& node) {
     if (node.cells != 0) return 0;
     const uint32_t patch = home_;
@@ -130,7 +132,7 @@ class Flood {
     }
     middle_ = {middle_.x / count, middle_.y / count, middle_.z / count, 0};
     promise_ = node.promise;
-    nearest_ = most_;
+    nearest_ = max_width_;
     is_home_known_ = tree.leaf_depth < tree.depth;
     if (is_home_known_ && ends_on_tile(tree, s0 + size / 2, t0 + size / 2)) return nearest_;
     seen_.clear();
@@ -154,9 +156,9 @@ class Flood {
   }
 
  private:
-  // Of a level tile rows of bits tell the nearest cell that is more restrictive, and a straight
-  // line there leads over none that is. Is that nearer than the tile's rim, where the flood must
-  // tell? The middle is the corner before cell (s, t). [0 < s, t < 64]
+  // Of a level tile, rows of bits give the nearest cell that is more restrictive, and a straight
+  // line there crosses none that is. Is that nearer than the tile's rim, beyond which only the
+  // flood finds it? The middle is the corner before cell (s, t). [0 < s, t < 64]
   bool ends_on_tile(const PatchTree& tree, int32_t s, int32_t t) {
     const CellRows& open = open_rows(tree);
     for (int32_t beyond = 0; beyond < 64; ++beyond) {
@@ -181,7 +183,7 @@ class Flood {
     return nearest_ <= distance(home_, cell_of(tree, s - rim, t));  // as far off as its nearest
   }
 
-  // The flood goes on over the tile's rim.
+  // The flood continues over the tile's rim.
   void enter_rim(const PatchTree& tree) {
     for (int32_t i = 0; i < 64; ++i) {
       for (const uint32_t cell :
@@ -281,9 +283,9 @@ class Flood {
 
   const NodeForest& forest_;
   uint32_t home_;               // the patch whose nodes are measured
-  bool is_home_known_ = false;  // the nearest cell in it was told without a flood
+  bool is_home_known_ = false;  // the nearest cell in it was found without a flood
   const CrossCells& cross_;
-  double most_;
+  double max_width_;
   std::span<const CellBalls> balls_;
   std::vector<std::pair<Promise, CellRows>> open_;  // by what is promised
   CellBall middle_;
@@ -298,8 +300,8 @@ class Flood {
 }  // namespace
 
 std::vector<double> node_widths(const NodeForest& forest, uint32_t patch, const CrossCells& cross,
-                                double most, std::span<const CellBalls> balls) {
-  Flood flood(forest, patch, cross, most, balls);
+                                double max_width, std::span<const CellBalls> balls) {
+  Flood flood(forest, patch, cross, max_width, balls);
   std::vector<double> widths;
   widths.reserve(forest.trees[patch].nodes.size());
   for (const PatchNode& node : forest.trees[patch].nodes) {

@@ -47,8 +47,8 @@ class CrossCells {
 
   struct Cell {
     uint32_t patch = 0, cell = 0;
-    uint16_t classes = 0;  ///< Who can step there.
-    uint8_t side = 0;      ///< Of the cell that was asked about.
+    uint16_t classes = 0;  ///< Classes that can step there.
+    uint8_t side = 0;      ///< Of the cell in question.
   };
   [[nodiscard]] std::span<const Cell> beside(uint32_t patch, uint32_t cell) const;
 
@@ -59,9 +59,9 @@ class CrossCells {
 };
 
 /// Widths of the nodes of one patch, by a flood over cells from each node's middle that ends
-/// at `most`. `balls` are those of every patch. [m]
+/// at `max_width`. `balls` are those of every patch. [m]
 [[nodiscard]] std::vector<double> node_widths(const NodeForest& forest, uint32_t patch,
-                                              const CrossCells& cross, double most,
+                                              const CrossCells& cross, double max_width,
                                               std::span<const CellBalls> balls);
 
 }  // namespace throng

@@ -16,6 +16,7 @@
 #include "world/sealed_file.h"
 #include "world/zone_data.h"
 
+// The public queries of nodes: places, arcs, components, reachable sets.
 namespace throng {
 namespace {
 
@@ -48,7 +49,7 @@ bool touches(uint64_t cells, double s, double t) {
   return false;
 }
 
-// Drops lead one way, and jumps may; no two places hold together by one that does.
+// Drop links are one-way, and off-mesh links may be; a one-way link connects no component.
 bool goes_back(const NodeData& data, uint32_t from, uint32_t to, const format::Arc& arc) {
   if (arc.kind() == static_cast<uint8_t>(LinkKind::kDrop)) return false;
   if (arc.kind() != static_cast<uint8_t>(LinkKind::kOffMesh)) return true;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+// Pairs of finest sub-patches that touch over the edges of Bezier patches: one to one, or one to
+// two or four. Linear in the sub-patches along the edges.
 namespace throng {
 namespace {
 
@@ -50,14 +52,15 @@ std::vector<EdgePair> edge_pairs(const PatchSet& set, std::span<const int32_t> d
     for (uint32_t k = 0; k < parts; ++k) {
       const PatchSide other = edge.next[k];
       const PatchSide self{patch, e};
-      // One to one: the first of the two sides tells.
+      // One to one: only from the first of the two sides.
       if (parts == 1 && std::pair(other.patch, other.edge) < std::pair(self.patch, self.edge)) {
         continue;
       }
       const uint32_t ours = 1u << depth[patch], theirs = 1u << depth[other.patch];
       const uint32_t steps = std::max({theirs, ours / parts, 1u});
       for (uint32_t i = 0; i < steps; ++i) {
-        const double at_b = (i + 0.5) / steps;  // The neighbour's edge runs the opposite way.
+        const double at_b =
+            (i + 0.5) / steps;  // The neighbour's edge runs in the opposite direction.
         const double at_a = (k + 1 - at_b) / parts;
         const auto cell_a = static_cast<uint32_t>(at_a * ours);
         const auto cell_b = static_cast<uint32_t>(at_b * theirs);

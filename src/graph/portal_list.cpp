@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+// Portals packed to 20 bytes where their ends are multiples of 1/128; others are stored in full.
 namespace throng {
 
 bool PortalList::pack(const std::array<double, 4>& line, std::array<uint8_t, 4>& at,

@@ -25,7 +25,7 @@ struct NodePortal {
   bool inside = false;   ///< Within one node: no link.
 };
 
-/// What of a portal most ask for.
+/// The part of a portal that most callers need.
 struct PortalSides {
   uint32_t a = 0, b = 0;
   bool one_way = false;

@@ -79,7 +79,7 @@ class PartialBlock {
     return here | ((east | west | south | north) & stands_[c]);
   }
 
-  // What holds together with some cells, by the steps of any of the classes.
+  // What is connected to some cells, by the steps of any of the classes.
   [[nodiscard]] uint64_t flood(uint64_t from, uint16_t classes) const {
     for (uint64_t last = 0; from != last;) {
       last = from;
@@ -90,8 +90,8 @@ class PartialBlock {
     return from;
   }
 
-  // What holds together of some classes is one part for all of them whose cells in it do. The
-  // others are divided again without these; where each falls into pieces, each piece is a part.
+  // A connected part of some classes is one part for all of them whose cells in it are connected.
+  // The others are divided again without these; where each falls into pieces, each piece is a part.
   void divide(uint16_t classes, uint64_t cells) {
     while (cells != 0) {
       const uint64_t part = flood(cells & (~cells + 1), classes);
@@ -257,7 +257,7 @@ class TreeBuilder {
     if (block.any == 0) return;
     const uint16_t above = parent == kNoNode ? uint16_t{0} : tree_.nodes[parent].promise.classes;
     if (cells_.partial && level == last_level_ && block.promise.classes != block.any) {
-      // Those who stand on all of it go with those who stand on a part.
+      // Classes that stand on all of it go with those that stand on a part.
       fill(level, s, t, parent);
       add_partial(level, s, t, parent, static_cast<uint16_t>(block.any & ~above));
       return;

@@ -33,21 +33,21 @@ inline Promise both(const Promise& a, const Promise& b) {
 /// True if `a` promises all that `b` does: it is no more restrictive.
 inline bool covers(const Promise& a, const Promise& b) { return both(a, b) == b; }
 
-/// The least blocks of patches with ragged nodes have 2^kPartialDepth cells along a side.
+/// The smallest blocks of patches with partial nodes have 2^kPartialDepth cells along a side.
 inline constexpr int32_t kPartialDepth = 3;
 
 /// The finest sub-patches of one patch: 2^depth x 2^depth cells, cell = t * side + s.
 struct PatchCells {
   int32_t depth = 0;
   /// Blocks of 2^kPartialDepth cells along a side are divided no further: what is left of them are
-  /// ragged nodes. [depth >= kPartialDepth]
+  /// partial nodes. [depth >= kPartialDepth]
   bool partial = false;
   std::vector<Promise> cells;
   /// Per cell, classes that may stand on it and on the next cell along s (along t), but cannot step
   /// from one to the other. Empty: none.
   std::vector<uint16_t> cut_s, cut_t;
   /// Per row of cells, bit s: the ground steps up or down to the next cell along s (along t). No
-  /// node lies on both sides, whoever goes over. Both are empty: nowhere.
+  /// node lies on both sides, for any class. Both are empty: nowhere.
   std::vector<uint64_t> step_s = {}, step_t = {};
 
   [[nodiscard]] int32_t side() const { return 1 << depth; }
@@ -70,20 +70,20 @@ struct PatchCells {
 
 inline constexpr uint32_t kNoNode = UINT32_MAX;
 
-/// A block of cells on which a promise holds that is better than its parent's; or a *ragged* node:
-/// some cells of a block of 8 x 8. Its classes stand on some of these cells, each on cells that
-/// hold together by its steps, and the rest of the promise holds on all of them.
+/// A block of cells on which a promise holds that is better than its parent's; or a *partial* node:
+/// some cells of a block of 8 x 8. Its classes stand on some of these cells, each on cells that its
+/// steps connect, and the rest of the promise holds on all of them.
 struct PatchNode {
   Promise promise;
-  uint64_t cells = 0;  ///< Ragged: which of the block's, bit 8 t + s. 0: all, for all its classes.
-  uint32_t partial = 0;       ///< Of such a node: which of the tree's ragged blocks it lies in.
+  uint64_t cells = 0;  ///< Partial: which of the block's, bit 8 t + s. 0: all, for all its classes.
+  uint32_t partial = 0;       ///< Of such a node: which of the tree's partial blocks it lies in.
   uint8_t level = 0;          ///< Halvings from the whole patch: 2^level blocks along a side.
   uint8_t s = 0, t = 0;       ///< Which block of its level.
   bool terminal = true;       ///< No smaller node lies in it.
   uint32_t parent = kNoNode;  ///< The smallest node around it, of this patch.
 };
 
-/// Which bit of a ragged node's mask a cell is. [cell of a patch of that depth]
+/// Which bit of a partial node's mask a cell is. [cell of a patch of that depth]
 inline uint32_t partial_bit(size_t cell, int32_t depth) {
   constexpr size_t kIn = (size_t{1} << kPartialDepth) - 1;
   return static_cast<uint32_t>(((cell >> depth) & kIn) << kPartialDepth | (cell & kIn));
@@ -92,14 +92,15 @@ inline uint32_t partial_bit(size_t cell, int32_t depth) {
 struct PatchTree {
   int32_t depth = 0;
   std::vector<PatchNode> nodes;  ///< Parents first.
-  /// Per cell the smallest node that holds it, or kNoNode. Of a ragged patch per least block: its
-  /// first ragged node, if it has any; the others follow. Empty: node 0 for all.
+  /// Per cell the smallest node that holds it, or kNoNode. Of a patch with partial nodes per
+  /// smallest block: its first partial node, if it has any; the others follow. Empty: node 0 for
+  /// all.
   std::vector<uint32_t> leaf;
   int32_t leaf_depth = 0;  ///< Of the blocks in `leaf`, as halvings of a side.
-  /// Who may stand on each cell of the blocks that have ragged nodes.
+  /// The classes that may stand on each cell of the blocks that have partial nodes.
   std::vector<std::array<uint16_t, 64>> partial;
 
-  /// The smallest node that holds a cell, the first of them if they are ragged; or kNoNode.
+  /// The smallest node that holds a cell, the first of them if they are partial; or kNoNode.
   [[nodiscard]] uint32_t leaf_of(size_t cell) const {
     const uint32_t node = first_of(cell);
     return node == kNoNode || nodes[node].cells == 0 ? node : first_from(node, cell);
@@ -112,13 +113,13 @@ struct PatchTree {
     return is_beside(node + 1, n) ? first_from(node + 1, cell) : n.parent;
   }
 
-  /// Does a cell lie in a block that has ragged nodes?
+  /// Does a cell lie in a block that has partial nodes?
   [[nodiscard]] bool is_partial(size_t cell) const {
     const uint32_t node = nodes.empty() ? kNoNode : first_of(cell);
     return node != kNoNode && nodes[node].cells != 0;
   }
 
-  /// Who may stand on a cell.
+  /// The classes that may stand on a cell.
   [[nodiscard]] uint16_t classes_on(size_t cell) const {
     const uint32_t node = nodes.empty() ? kNoNode : first_of(cell);
     if (node == kNoNode) return 0;
@@ -134,12 +135,12 @@ struct PatchTree {
     return leaf[(t >> up) << leaf_depth | s >> up];
   }
 
-  // Is it another ragged node of the same block?
+  // Is it another partial node of the same block?
   [[nodiscard]] bool is_beside(uint32_t node, const PatchNode& one) const {
     return node < nodes.size() && nodes[node].cells != 0 && nodes[node].partial == one.partial;
   }
 
-  // Of a block's ragged nodes from one on the first that holds a cell; else the node around them.
+  // Of a block's partial nodes from one on the first that holds a cell; else the node around them.
   [[nodiscard]] uint32_t first_from(uint32_t node, size_t cell) const {
     const PatchNode& one = nodes[node];
     for (; is_beside(node, one); ++node) {
@@ -150,10 +151,10 @@ struct PatchTree {
 };
 
 /// A block gets a node if everything in it lets some class stand, and if it promises more than the
-/// node around it: those who can do more can do less, so a steep or low block keeps one node as a
-/// whole, and what is better inside it nodes of its own. Of ragged patches the least blocks on
-/// which some class stands in part have ragged nodes for all that no larger node holds: as few as
-/// each class's cells in one hold together. Linear in the cells.
+/// node around it: classes that can do more can do less, so a steep or low block keeps one node as
+/// a whole, and what is better inside it nodes of its own. Of patches with partial nodes the
+/// smallest blocks on which some class stands in part have partial nodes for all that no larger
+/// node holds: as few as possible, with each class's cells in one connected. Linear in the cells.
 [[nodiscard]] PatchTree build_tree(const PatchCells& cells);
 
 }  // namespace throng

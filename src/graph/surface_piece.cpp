@@ -32,19 +32,19 @@ SurfacePiece surface_piece(const NodeSurface& surface, double s0, double t0, dou
       by_t[3 * j + i] = patch.points[4 * (i + 1) + j] - patch.points[4 * i + j];
     }
   }
-  double least = 1;
+  double min_cosine = 1;
   for (const Vec3d& s : by_s) {
     for (const Vec3d& t : by_t) {
       const Vec3d normal = cross(t, s);
       const double size = length(normal);
-      if (size > 0) least = std::min(least, dot(normal, piece.normal) / size);
+      if (size > 0) min_cosine = std::min(min_cosine, dot(normal, piece.normal) / size);
     }
   }
   constexpr double kRounding = 1e-9;
-  least -= kRounding;
-  piece.leans = least > 0;
-  piece.cosine = least;
-  piece.sine = std::sqrt(std::max(0.0, 1 - least * least));
+  min_cosine -= kRounding;
+  piece.leans = min_cosine > 0;
+  piece.cosine = min_cosine;
+  piece.sine = std::sqrt(std::max(0.0, 1 - min_cosine * min_cosine));
   return piece;
 }
 

@@ -12,6 +12,8 @@
 #include "graph/tile_steps.h"
 #include "world/place.h"
 
+// The cells of a level tile as those of a patch: what bodies may rely on in each, steps between
+// them, and pairs over the tile's borders. Linear in the cells and classes.
 namespace throng {
 namespace {
 
@@ -34,8 +36,8 @@ std::vector<uint8_t> inclination_by_class(const std::vector<AvatarClass>& classe
 
 namespace {
 
-// Rows of what each class may stand on, told together: calls visit(first cell, count, classes) for
-// runs of cells on which the same ones stand.
+// Rows of what each class may stand on, merged: calls visit(first cell, count, classes) for runs of
+// cells on which the same ones stand.
 template <class Visit>
 void for_runs(const std::array<CellRows, kMaxAvatarClasses>& legal, size_t classes, Visit visit) {
   for (size_t z = 0; z < 64; ++z) {
@@ -117,7 +119,7 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
   const std::vector<uint8_t> inclination = inclination_by_class(classes, bins);
   const auto open = static_cast<uint8_t>(bins.height.size());
   // A body on a level tile stands upright: its height is the headroom.
-  const auto room_over = [&](size_t cell) {
+  const auto headroom_over = [&](size_t cell) {
     if (!is_flat && (!ceilings || (*ceilings)[cell] == kNoValue)) return open;
     const int32_t ceiling = record.ceiling_base() + (is_flat ? 0 : (*ceilings)[cell]);
     // Feet slant evenly over a cell: the highest are at a corner.
@@ -136,8 +138,8 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
       steepest = std::min(steepest, inclination[static_cast<size_t>(std::countr_zero(left))]);
     }
     for (size_t i = first; i < first + static_cast<size_t>(count); ++i) {
-      const uint8_t room = room_over(i);
-      patch.cells[i] = {stands, steepest, room, room};
+      const uint8_t free_height = headroom_over(i);
+      patch.cells[i] = {stands, steepest, free_height, free_height};
     }
   });
   return patch;
@@ -145,10 +147,10 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
 
 namespace {
 
-// The cells along one side of a level: who may stand there, and how high.
+// The cells along one side of a level: which classes may stand there, and how high.
 struct Rim {
   std::array<uint16_t, 64> classes{};
-  std::array<int32_t, 64> feet{};  // of cells where somebody may [mm]
+  std::array<int32_t, 64> feet{};  // of cells where some class may [mm]
 };
 
 Rim rim_of(const WorldData& world, GroundLevel level, uint32_t zone_level, TileSide side) {
@@ -215,11 +217,11 @@ class PairFinder {
   template <class Rise>
   static uint32_t nearest(size_t levels, int32_t step, Rise rise) {
     uint32_t best = kNoNode;
-    int32_t least = INT32_MAX;
+    int32_t min_rise = INT32_MAX;
     for (uint32_t l = 0; l < levels; ++l) {
       const int32_t r = rise(l);
-      if (r > step || r >= least) continue;
-      least = r;
+      if (r > step || r >= min_rise) continue;
+      min_rise = r;
       best = l;
     }
     return best;
@@ -261,7 +263,7 @@ class PairFinder {
     }
   }
 
-  // Within a tile a body changes its level only where its own does not go on and another does.
+  // Within a tile a body changes its level only where its own ends and another continues.
   void find_seams() {
     legal_.resize(here_.size());
     safe_.resize(here_.size());
@@ -310,7 +312,7 @@ class PairFinder {
     }
   }
 
-  // From a cell beyond which its own level does not go on.
+  // From a cell beyond which its own level ends.
   void cross_seam(uint32_t from, size_t c, int32_t x, int32_t z, bool east) {
     const int32_t nx = x + (east ? 1 : 0), nz = z + (east ? 0 : 1);
     const auto to_level = [&](int32_t feet, int32_t at_x, int32_t at_z) {
@@ -323,7 +325,7 @@ class PairFinder {
     const uint32_t to = to_level(feet, nx, nz);
     if (to == kNoNode || to == from) return;
     const int32_t there = here_[to].ground.view.sample(nx, nz);
-    // Its level may go on to the first cell; then nobody comes back.
+    // Its level may continue to the first cell; then no class comes back.
     if ((legal_[to][static_cast<size_t>(z)] >> x & 1) != 0 &&
         (safe_[to] != 0 || std::abs(here_[to].ground.view.sample(x, z) - there) <= steps_[c])) {
       return;

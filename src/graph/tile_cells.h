@@ -20,9 +20,9 @@ inline constexpr int32_t kTileDepth = 6;
 [[nodiscard]] PatchCells tile_cells(const World& world, uint32_t level, uint16_t classes,
                                     const NodeBins& bins);
 
-/// Cells of different levels between which a class steps both ways, by the moves' own rule: over
-/// the east and south borders of a tile, and over the seams of its sheets. Levels count as patches:
-/// level l is patch l.
+/// Cells of different levels between which a class steps there and back, by the rule of moves: over
+/// the east and south borders of a tile, and over the seams of its level tiles. Levels count as
+/// patches: level l is patch l.
 [[nodiscard]] std::vector<CellPair> tile_pairs(const WorldData& world, int32_t tile_x,
                                                int32_t tile_z);
 

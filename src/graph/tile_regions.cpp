@@ -14,17 +14,17 @@
 #include "world/place.h"
 
 // The parts of every level for every class are found; parts of several classes that are the same
-// place share a region; and parts of different levels of the tile are linked where sheets meet.
-// Tiles are linked over their borders by what each part shows there.
+// place share a region; and parts of different levels of the tile are linked where level tiles
+// meet. Tiles are linked over their borders by what each part shows there.
 namespace throng {
 namespace {
 
 using Part = PartList::Part;
 
-// Cells of a row of a list's part that are not taken.
-uint64_t row_without(const PartList& list, const Part& part, size_t z, const CellRows* taken) {
+// Cells of a row of a list's part that are not occupied.
+uint64_t row_without(const PartList& list, const Part& part, size_t z, const CellRows* occupied) {
   if (z < part.begin || z >= part.end) return 0;
-  return list.row(part, z) & ~(taken != nullptr ? (*taken)[z] : 0);
+  return list.row(part, z) & ~(occupied != nullptr ? (*occupied)[z] : 0);
 }
 
 // The rows that both parts have.
@@ -53,8 +53,8 @@ uint32_t shared_cells(const PartList& a, const Part& p, const PartList& b, const
   return count;
 }
 
-CellRows without(CellRows cells, const CellRows& taken) {
-  for (size_t z = 0; z < 64; ++z) cells[z] &= ~taken[z];
+CellRows without(CellRows cells, const CellRows& occupied) {
+  for (size_t z = 0; z < 64; ++z) cells[z] &= ~occupied[z];
   return cells;
 }
 
@@ -109,7 +109,7 @@ class LevelRegions {
  private:
   [[nodiscard]] size_t best_region(const Part& part, uint32_t class_bit) const {
     size_t best = common_.parts.size();
-    uint32_t most = 0;  // 0: not counted, as only one is there to choose
+    uint32_t max_shared = 0;  // 0: not counted, as only one is there to choose
     for (size_t r = 0; r < common_.parts.size(); ++r) {
       if ((tile_.regions[begin_ + r].classes & class_bit) != 0) continue;
       if (!share_cells(common_, common_.parts[r], shapes_, part)) continue;
@@ -117,11 +117,11 @@ class LevelRegions {
         best = r;
         continue;
       }
-      if (most == 0) most = shared_cells(common_, common_.parts[best], shapes_, part);
-      if (most == part.cells) break;
+      if (max_shared == 0) max_shared = shared_cells(common_, common_.parts[best], shapes_, part);
+      if (max_shared == part.cells) break;
       const uint32_t shared = shared_cells(common_, common_.parts[r], shapes_, part);
-      if (shared <= most) continue;
-      most = shared;
+      if (shared <= max_shared) continue;
+      max_shared = shared;
       best = r;
     }
     return best;
@@ -155,8 +155,8 @@ void add_link(std::vector<RegionLink>& links, const RegionLink& link) {
   links.push_back(link);
 }
 
-// One side of a border: who may stand where, and heights along it, each read once, and only if
-// somebody asks.
+// One side of a border: which classes may stand where, and heights along it, each read once, and
+// only if it is needed.
 class BorderLevels {
  public:
   BorderLevels(const WorldData::TileLevels& levels, const TileParts& tile, TileSide side,
@@ -169,21 +169,21 @@ class BorderLevels {
     kept.known.assign(levels_, 0);
     kept.heights.resize(std::max<size_t>(kept.heights.size(), levels_));
     kept.legal.assign(tile.classes.size(), 0);
-    kept.anyone.assign(levels_, 0);
+    kept.any_class.assign(levels_, 0);
     for (size_t at = 0; at < tile.classes.size(); ++at) {
       const TileParts::ClassParts of = tile.classes[at];
       for (uint32_t p = of.first; p < of.last; ++p) kept.legal[at] |= tile.parts[p].side[side];
-      kept.anyone[at / classes] |= kept.legal[at];
+      kept.any_class[at / classes] |= kept.legal[at];
     }
     uint64_t once = 0;
-    for (const uint64_t anyone : kept.anyone) {
-      crowded_ |= once & anyone;
-      once |= anyone;
+    for (const uint64_t any_class : kept.any_class) {
+      crowded_ |= once & any_class;
+      once |= any_class;
     }
   }
 
-  [[nodiscard]] uint64_t anyone(uint32_t l) const { return kept_.anyone[l]; }
-  // Cells over which somebody may stand on several levels.
+  [[nodiscard]] uint64_t any_class(uint32_t l) const { return kept_.any_class[l]; }
+  // Cells over which some class may stand on several levels.
   [[nodiscard]] uint64_t crowded() const { return crowded_; }
   [[nodiscard]] uint64_t legal(uint32_t l, size_t c) const { return kept_.legal[l * classes_ + c]; }
 
@@ -242,7 +242,7 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
   scratch.shapes_of.resize(std::max(scratch.shapes_of.size(), tile.classes.size()));
   scratch.shapes.clear();
   tile.heights.reserve(tile.levels);
-  // Nearly half the time to unpack a set was the wait for its first word: ask for all in time.
+  // Nearly half the time to unpack a set was the wait for its first word: prefetch all in time.
   for (uint32_t l = 0; l < tile.levels; ++l) {
     const uint32_t zone_level = levels.zone_first + l;
     GroundLevel ground = ground_level(*levels.zone, zone_level, levels.first + l, 0);
@@ -266,16 +266,16 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
 TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const {
   TileParts tile = parts(tile_x, tile_z, scratch);
   if (tile.levels < 2) return tile;
-  scratch.anyone.assign(tile.levels, {});
+  scratch.any_class.assign(tile.levels, {});
   for (size_t at = 0; at < tile.classes.size(); ++at) {
     if (tile.classes[at].first == tile.classes[at].last || scratch.alike[at] != 0) continue;
-    CellRows& anyone = scratch.anyone[at / steps_.size()];
-    for (size_t z = 0; z < 64; ++z) anyone[z] |= scratch.legal[at][z];
+    CellRows& any_class = scratch.any_class[at / steps_.size()];
+    for (size_t z = 0; z < 64; ++z) any_class[z] |= scratch.legal[at][z];
   }
   for (uint32_t a = 0; a < tile.levels; ++a) {
     for (uint32_t b = a + 1; b < tile.levels; ++b) {
       if (!tile.heights[a].is_near(tile.heights[b], longest_)) continue;
-      if (!is_beside(scratch.anyone[a], scratch.anyone[b])) continue;
+      if (!is_beside(scratch.any_class[a], scratch.any_class[b])) continue;
       for (CellRows& rows : scratch.rises.known) rows.fill(0);
       for (size_t c = 0; c < steps_.size(); ++c) {
         link_seam({tile_x, tile_z, c, a, b}, tile, scratch);
@@ -300,10 +300,10 @@ std::vector<RegionLink> TileRegions::border(int32_t tile_x, int32_t tile_z, Tile
   const uint64_t crowded = here.crowded() | there.crowded();
   for (uint32_t a = 0; a < from.levels; ++a) {
     for (uint32_t b = 0; b < to.levels; ++b) {
-      if ((here.anyone(a) & there.anyone(b)) == 0) continue;
+      if ((here.any_class(a) & there.any_class(b)) == 0) continue;
       if (!from.heights[a].is_near(to.heights[b], longest_)) continue;
       // Cells where it is known if the step is low enough for any class, if so, and if for each of
-      // them, with no other level to step onto: whoever stands there goes.
+      // them, with no other level to step onto: any class that stands there crosses.
       uint64_t known = 0, low = 0, open = 0;
       const auto any = [&](uint64_t cells, size_t c) {
         for (; cells != 0; cells &= cells - 1) {
@@ -410,8 +410,8 @@ void TileRegions::find_level(uint32_t l, TileParts& tile, TileScratch& scratch) 
 
 // True if a class steps from cell (x, z) of the grid on level `a` to (nx, nz) on level `b`, and
 // back.
-bool TileRegions::steps_both_ways(size_t c, const GroundLevel& a, const GroundLevel& b, int32_t x,
-                                  int32_t z, int32_t nx, int32_t nz) const {
+bool TileRegions::steps_in_both_directions(size_t c, const GroundLevel& a, const GroundLevel& b,
+                                           int32_t x, int32_t z, int32_t nx, int32_t nz) const {
   const WorldGround ground{world_, static_cast<int32_t>(c)};
   const auto there = step_to(ground, a, x, z, nx, nz, steps_[c]);
   if (!there || there->world_level != b.world_level) return false;
@@ -419,20 +419,20 @@ bool TileRegions::steps_both_ways(size_t c, const GroundLevel& a, const GroundLe
   return back && back->world_level == a.world_level;
 }
 
-// Links a class's parts of two levels of one tile where their sheets meet.
+// Links a class's parts of two levels of one tile where these meet.
 void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const {
   const size_t c = seam.c;
   const size_t at_a = seam.a * steps_.size() + c, at_b = seam.b * steps_.size() + c;
   const TileParts::ClassParts as = tile.classes[at_a], bs = tile.classes[at_b];
   if (as.first == as.last || bs.first == bs.last) return;
   const GroundLevel &level_a = scratch.grounds[at_a], &level_b = scratch.grounds[at_b];
-  // A body stays on its level where that goes on: it changes to the other only over cells where
+  // A body stays on its level where that continues: it changes to the other only over cells where
   // its own has nothing, unless a step may be too high.
   const CellRows &all_a = scratch.legal[at_a], &all_b = scratch.legal[at_b];
-  const CellRows* taken_a = level_a.step_safe ? &all_a : nullptr;
-  const CellRows* taken_b = level_b.step_safe ? &all_b : nullptr;
-  const CellRows from_any = taken_b != nullptr ? without(all_a, *taken_b) : all_a;
-  const CellRows to_any = taken_a != nullptr ? without(all_b, *taken_a) : all_b;
+  const CellRows* occupied_a = level_a.step_safe ? &all_a : nullptr;
+  const CellRows* occupied_b = level_b.step_safe ? &all_b : nullptr;
+  const CellRows from_any = occupied_b != nullptr ? without(all_a, *occupied_b) : all_a;
+  const CellRows to_any = occupied_a != nullptr ? without(all_b, *occupied_a) : all_b;
   if (!is_beside(from_any, to_any)) return;
 
   const PartList& shapes = scratch.shapes;
@@ -454,7 +454,7 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
       }
       if ((low & bit) == 0) continue;
       const int32_t gx = seam.tile_x * 64 + x, gz = seam.tile_z * 64 + row;
-      if (steps_both_ways(c, level_a, level_b, gx, gz, gx + dx, gz + dz)) return true;
+      if (steps_in_both_directions(c, level_a, level_b, gx, gz, gx + dx, gz + dz)) return true;
     }
     return false;
   };
@@ -462,12 +462,12 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
     const size_t begin = std::max<size_t>(p.begin, q.begin > 0 ? q.begin - 1 : 0);
     const size_t end = std::min<size_t>(p.end, q.end + 1);
     for (size_t z = begin; z < end; ++z) {
-      const uint64_t from = row_without(shapes, p, z, taken_b);
+      const uint64_t from = row_without(shapes, p, z, occupied_b);
       if (from == 0) continue;
-      const uint64_t beside = row_without(shapes, q, z, taken_a);
+      const uint64_t beside = row_without(shapes, q, z, occupied_a);
       if (any(from & (beside >> 1), 0, z) || any(from & (beside << 1), 1, z)) return true;
-      if (z < 63 && any(from & row_without(shapes, q, z + 1, taken_a), 2, z)) return true;
-      if (z > 0 && any(from & row_without(shapes, q, z - 1, taken_a), 3, z)) return true;
+      if (z < 63 && any(from & row_without(shapes, q, z + 1, occupied_a), 2, z)) return true;
+      if (z > 0 && any(from & row_without(shapes, q, z - 1, occupied_a), 3, z)) return true;
     }
     return false;
   };

@@ -51,9 +51,9 @@ struct TileParts {
   std::vector<RegionLink> links;  // a < b, maybe several for a pair
 };
 
-/// What finding takes beside its results, kept from tile to tile: one for each worker.
+/// Scratch memory of finding, kept from tile to tile: one for each worker.
 struct TileScratch {
-  // What is known of steps from cells of one level to those beside them of another, whoever goes.
+  // What is known of steps from cells of one level to those beside them of another, for any class.
   struct Rises {
     std::array<CellRows, 4> known, low;  // per direction; low: no higher than any class's step
   };
@@ -63,7 +63,7 @@ struct TileScratch {
     std::vector<uint64_t> known;                   // per level: bit per cell whose height is known
     std::vector<std::array<int32_t, 64>> heights;  // [mm]
     std::vector<uint64_t> legal;                   // per level and class
-    std::vector<uint64_t> anyone;                  // per level
+    std::vector<uint64_t> any_class;               // per level
   };
 
   PartFinder finder;
@@ -72,16 +72,16 @@ struct TileScratch {
   std::vector<TileParts::ClassParts> shapes_of;  // per level and class: which of them
   std::vector<size_t> together;                  // sets of a level that are left to find in lanes
   std::vector<GroundLevel> grounds;              // per level and class
-  std::vector<uint32_t> alike;   // the same: classes before it that may stand on the same cells
-  std::vector<CellRows> legal;   // per level and class
-  std::vector<CellRows> anyone;  // per level: legal for any class
-  PartList common;               // per region of a level: cells that all its classes' parts share
+  std::vector<uint32_t> alike;      // the same: classes before it that may stand on the same cells
+  std::vector<CellRows> legal;      // per level and class
+  std::vector<CellRows> any_class;  // per level: legal for any class
+  PartList common;  // per region of a level: cells that all its classes' parts share
   Rises rises;
   Border from, to;
 };
 
 /// Finds regions and links tile by tile. The world must outlive it, and the zones of the tiles
-/// asked for must be usable.
+/// given must be usable.
 class TileRegions {
  public:
   explicit TileRegions(const WorldData& world);
@@ -106,8 +106,8 @@ class TileRegions {
 
   void find_shapes(uint32_t l, TileScratch& scratch) const;
   void find_level(uint32_t l, TileParts& tile, TileScratch& scratch) const;
-  [[nodiscard]] bool steps_both_ways(size_t c, const GroundLevel& a, const GroundLevel& b,
-                                     int32_t x, int32_t z, int32_t nx, int32_t nz) const;
+  [[nodiscard]] bool steps_in_both_directions(size_t c, const GroundLevel& a, const GroundLevel& b,
+                                              int32_t x, int32_t z, int32_t nx, int32_t nz) const;
   void link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const;
 
   const WorldData& world_;

@@ -21,8 +21,9 @@ struct StepLimits {
 
 /// Is there a step between a cell of one level and the next to the east or south, of the same or
 /// another level? What the floor rises by from the middle of one to the middle of the other is a
-/// slope as far as it goes on so for three cells, of which these may be any. Where that cannot be
-/// told, because the floor or the tile ends, a slope that somebody walks on is taken for one.
+/// slope as far as it continues for three cells, of which these may be any. Where that is not
+/// known, because the floor or the tile ends, a slope that some class walks on is assumed to be
+/// one.
 [[nodiscard]] bool is_step(const LevelView& a, int32_t x, int32_t z, const LevelView& b, int32_t nx,
                            int32_t nz, const StepLimits& limits);
 

@@ -8,7 +8,7 @@
 
 #include "world/region_data.h"
 
-/// What links hold together within a zone.
+/// The connected components within a zone, by its links.
 namespace throng {
 
 /// The parts of a zone's regions: one for each class that a region has, region by region, in order

@@ -10,6 +10,8 @@
 #include "graph/zone_components.h"
 #include "world/place.h"
 
+// Runs tile_regions over a zone's tiles and over the borders between zones, in parallel; numbers
+// regions in order of tiles.
 namespace throng {
 namespace {
 

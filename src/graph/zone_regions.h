@@ -11,8 +11,8 @@
 /// What the two passes make of zones: regions and links within one, then links into the next ones.
 namespace throng {
 
-/// Pass 1: the regions of a zone, their links and what holds together by these. The zone must be
-/// usable; no other is looked at. None if the context was cancelled. The same for any number of
+/// Pass 1: the regions of a zone, their links and the connected components of these. The zone must
+/// be usable; no other is read. None if the context was cancelled. The same for any number of
 /// workers.
 std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slot, int32_t workers,
                                               const Context& context);

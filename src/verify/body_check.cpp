@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+// Tests one claimed place against the triangles: what enters the body, and the distance from its
+// feet to the surface.
 namespace throng::verify {
 namespace {
 

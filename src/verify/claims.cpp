@@ -21,7 +21,7 @@
 namespace throng::verify {
 namespace {
 
-constexpr size_t kBatch = 8192;  ///< Samples between two looks at `cancel`.
+constexpr size_t kBatch = 8192;  ///< Samples between two tests of `cancel`.
 constexpr size_t kFaultsOfAKind = 8;
 constexpr uint64_t kSurfaceSalt = 0x73757266;  ///< Not the stream of the world's places.
 

@@ -8,7 +8,7 @@
 #include "throng/math.h"
 
 /// The exact tests of the oracle, in double precision: an upright cylinder, and a vertical line,
-/// against one triangle. Triangles may be degenerate (a segment, a point): they are still matter.
+/// against one triangle. Triangles may be degenerate (a segment, a point): they are still solid.
 namespace throng::verify {
 
 using Corners = std::array<Vec3d, 3>;
@@ -35,8 +35,8 @@ inline constexpr double kTouch = 1e-6;
 /// that the line could only meet edge-on has no height.
 [[nodiscard]] std::optional<double> height_at(const Corners& triangle, double x, double z);
 
-/// Cosine of the angle between the triangle and the ground plane, whichever way it faces; 0 for
-/// degenerate triangles, which nobody can stand on.
+/// Cosine of the angle between the triangle and the ground plane, wherever it faces; 0 for
+/// degenerate triangles, on which no body can stand.
 [[nodiscard]] double levelness(const Corners& triangle);
 
 }  // namespace throng::verify

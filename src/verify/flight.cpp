@@ -14,7 +14,7 @@
 #include "verify/triangle_tree.h"
 
 // The oracle of flyers: whole cylinders, from the feet to the head, where the world says that a
-// body may fly and wherever it is on the ways that the finder gives.
+// body may fly and wherever it is on the paths that the finder returns.
 namespace throng {
 namespace {
 
@@ -37,7 +37,7 @@ class Judge {
   Judge(const verify::TriangleTree& tree, const AvatarClass& avatar)
       : tree_(tree), avatar_(avatar), spacing_(std::min(avatar.radius / 2, avatar.height / 4)) {}
 
-  // Does matter meet the body whose feet go from `low` to `high` at one place?
+  // Does a solid meet the body whose feet go from `low` to `high` at one place?
   bool meets(Vec3d low, double high, Record& record) const {
     const Cylinder body{
         .x = low.x, .z = low.z, .low = low.y, .high = high, .radius = avatar_.radius};
@@ -57,7 +57,7 @@ class Judge {
     for (size_t i = 1; i < path.points.size(); ++i) {
       const Vec3d a = path.points[i - 1], b = path.points[i];
       const SegmentKind kind = path.segments[i - 1];
-      if (kind == SegmentKind::kWalk) continue;  // legal moves: verify_world's matter
+      if (kind == SegmentKind::kWalk) continue;  // legal moves: verify_world tests these
       ++record.segments;
       if (kind != SegmentKind::kFly) {  // straight up or down: all that it passes at once
         const Vec3d& ground = kind == SegmentKind::kTakeOff ? a : b;
@@ -67,13 +67,14 @@ class Judge {
         if (meets(low, air.y + avatar_.height, record)) ++record.entered;
         continue;
       }
-      const Vec3d way = b - a;
-      const double length = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+      const Vec3d segment = b - a;
+      const double length =
+          std::sqrt(segment.x * segment.x + segment.y * segment.y + segment.z * segment.z);
       const auto steps = static_cast<uint64_t>(std::ceil(length / spacing_)) + 1;
       bool entered = false;
       for (uint64_t s = 0; s <= steps; ++s) {
         const double t = static_cast<double>(s) / static_cast<double>(steps);
-        const Vec3d feet{a.x + t * way.x, a.y + t * way.y, a.z + t * way.z};
+        const Vec3d feet{a.x + t * segment.x, a.y + t * segment.y, a.z + t * segment.z};
         ++record.positions;
         entered = entered || meets(feet, feet.y + avatar_.height, record);
       }

@@ -28,8 +28,8 @@ using verify::Pose;
 using verify::TriangleTree;
 
 constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 4096;        // samples between two looks at `cancel`
-constexpr int kLeapParts = 24;         // poses looked at on a leap
+constexpr size_t kBatch = 4096;        // samples between two tests of `cancel`
+constexpr int kLeapParts = 24;         // poses tested on a link over a hole
 constexpr double kAngleMargin = 1e-3;  // of slopes, for planes at exactly a limit [degrees]
 
 struct Sample {
@@ -77,15 +77,15 @@ class NodeJudge {
     sample.entered = true;
   }
 
-  // Free height from `from` above the feet, up to `most`. [m]
-  [[nodiscard]] double free_height(const Pose& pose, double from, double most) const {
-    double least = most;
-    verify::for_each_turned(tree_, pose, 0.01, most, [&](uint32_t, const Corners& corners) {
+  // Free height from `from` above the feet, up to `max_height`. [m]
+  [[nodiscard]] double free_height(const Pose& pose, double from, double max_height) const {
+    double lowest = max_height;
+    verify::for_each_turned(tree_, pose, 0.01, max_height, [&](uint32_t, const Corners& corners) {
       const auto height = verify::height_at(corners, 0, 0);
-      if (height && *height > from && *height < least) least = *height;
+      if (height && *height > from && *height < lowest) lowest = *height;
       return false;
     });
-    return least;
+    return lowest;
   }
 
   void check_promises(const NodePlace& place, Sample& sample) const {
@@ -108,7 +108,8 @@ class NodeJudge {
     }
   }
 
-  // One arc of the node, drawn at random, and its leap if it has one. Jumps are the user's own.
+  // One arc of the node, drawn at random, and its leap if it has one. Off-mesh links are not
+  // tested.
   void check_arcs(uint32_t node, uint64_t n, Sample& sample) const {
     std::vector<NodeArc> arcs = nodes_.arcs(node);
     std::erase_if(arcs, [&](const NodeArc& a) {
@@ -142,7 +143,7 @@ class NodeJudge {
     const Pose over{{end.feet.x, begin.feet.y, end.feet.z}, {0, 1, 0}};
     look_between(begin, over, sample);
     look_between(over, end, sample);
-    // What the class asked for, and no more.
+    // What the class needs, and no more.
     const double down = begin.feet.y - end.feet.y;
     if (!(down > 0 && down <= avatar_.max_drop + 1e-9)) sample.one_way = 1;
   }

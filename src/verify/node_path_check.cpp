@@ -16,8 +16,8 @@
 #include "verify/claims.h"
 #include "verify/turned_body.h"
 
-// Every way that the finder tells is gone: along each leg by the parameters of its patch, or
-// straight and turning evenly where it crosses from one to the next, and everywhere the class's
+// Every path that the finder returns is walked: along each segment by the parameters of its patch,
+// or straight and turning evenly where it crosses from one to the next, and everywhere the class's
 // exact cylinder stands along the axis against all triangles.
 namespace throng {
 namespace {
@@ -25,16 +25,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 256;       // pairs between two looks at `cancel`
+constexpr size_t kBatch = 256;       // pairs between two tests of `cancel`
 constexpr double kSame = 1e-6;       // [m]
 constexpr double kSeam = 0.12;       // between neighbours' edges [m]
-constexpr double kMaxPoses = 20000;  // of a leg
+constexpr double kMaxPoses = 20000;  // of a segment
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-struct Gone {
+struct Walked {
   bool exists = false, reached = false, together = false;
   uint64_t segments = 0, links = 0, leaps = 0, poses = 0, entered = 0, unsupported = 0, torn = 0;
   std::array<uint64_t, kLinkKinds> kinds{};
@@ -90,35 +90,35 @@ class Follower {
     }
   }
 
-  Gone go(NodePathFinder& finder, NodePath& path, uint64_t n) const {
-    Gone gone;
+  Walked go(NodePathFinder& finder, NodePath& path, uint64_t n) const {
+    Walked walked;
     const NodePlace from = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n);
     const NodePlace to = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n + 1);
-    if (!from || !to) return gone;
-    gone.exists = true;
-    gone.at = from.feet;
-    gone.together = leads(part_[from.node1 - 1], part_[to.node1 - 1]);
+    if (!from || !to) return walked;
+    walked.exists = true;
+    walked.at = from.feet;
+    walked.together = leads(part_[from.node1 - 1], part_[to.node1 - 1]);
     const auto start = Clock::now();
     finder.find(from, to, path);
-    gone.seconds = seconds_since(start);
-    // Who would stand in what was put up is nowhere.
+    walked.seconds = seconds_since(start);
+    // A place inside an added obstacle is no place.
     if (!config_.obstacles.empty() && path.end == PathEnd::kNoPlace) {
-      gone.exists = false;
-      return gone;
+      walked.exists = false;
+      return walked;
     }
-    gone.reached = path.end == PathEnd::kReached;
-    // Where there is none, the way to where it stops must be one, too.
-    gone.length = gone.reached ? path.length : 0;
-    gone.straight = gone.reached ? length(to.feet - from.feet) : 0;
-    if (path.points.empty()) return gone;
+    walked.reached = path.end == PathEnd::kReached;
+    // A path that ends short of the goal must be legal, too.
+    walked.length = walked.reached ? path.length : 0;
+    walked.straight = walked.reached ? length(to.feet - from.feet) : 0;
+    if (path.points.empty()) return walked;
     if (length(path.points.front().place.feet - from.feet) > kSame ||
-        (gone.reached && length(path.points.back().place.feet - to.feet) > kSame)) {
-      tear(gone, from.feet);
+        (walked.reached && length(path.points.back().place.feet - to.feet) > kSame)) {
+      tear(walked, from.feet);
     }
     for (const NodePathLink& link : path.links) {
-      ++gone.links;
-      ++gone.kinds[static_cast<size_t>(link.kind)];
-      gone.leaps += link.leaps ? 1 : 0;
+      ++walked.links;
+      ++walked.kinds[static_cast<size_t>(link.kind)];
+      walked.leaps += link.leaps ? 1 : 0;
     }
     size_t next = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
@@ -128,17 +128,17 @@ class Follower {
       const bool in_air = !path.points[i].place;
       const bool leaps = in_air || (linked && path.links[next].leaps);
       if (linked && path.links[next].kind == LinkKind::kDrop) {
-        check_drop(path.points, i, gone);
+        check_drop(path.points, i, walked);
       }
-      // What a jump crosses is the user's own.
+      // What an off-mesh link crosses is not tested.
       if (linked && path.links[next].kind == LinkKind::kOffMesh) continue;
-      segment(path.points[i - 1], path.points[i], leaps, gone);
+      segment(path.points[i - 1], path.points[i], leaps, walked);
     }
-    return gone;
+    return walked;
   }
 
  private:
-  // Do arcs lead from one part to another, both ways or one?
+  // Do arcs lead from one part to another, in their directions?
   [[nodiscard]] bool leads(uint32_t from, uint32_t to) const {
     std::vector<uint32_t> reached{from};
     for (size_t i = 0; i < reached.size(); ++i) {
@@ -154,32 +154,33 @@ class Follower {
   }
 
   // Level out, upright, and straight down, as far as the class lets itself down and no farther.
-  void check_drop(const std::vector<NodePathPoint>& points, size_t landing, Gone& gone) const {
+  void check_drop(const std::vector<NodePathPoint>& points, size_t landing, Walked& walked) const {
     const NodePlace &over = points[landing - 1].place, &to = points[landing].place;
     const bool sound = landing >= 2 && !over && over.axis.y == 1 &&
                        points[landing - 2].place.feet.y == over.feet.y &&
                        over.feet.x == to.feet.x && over.feet.z == to.feet.z &&
                        over.feet.y > to.feet.y &&
                        over.feet.y - to.feet.y <= avatar_.max_drop + kSame;
-    if (!sound) tear(gone, to.feet);
+    if (!sound) tear(walked, to.feet);
   }
 
-  static void tear(Gone& gone, Vec3d at) {
-    if (gone.torn++ == 0) gone.torn_at = at;
+  static void tear(Walked& walked, Vec3d at) {
+    if (walked.torn++ == 0) walked.torn_at = at;
   }
 
-  void segment(const NodePathPoint& from, const NodePathPoint& to, bool leaps, Gone& gone) const {
-    ++gone.segments;
-    const double way = length(to.place.feet - from.place.feet) +
-                       avatar_.height * length(to.place.axis - from.place.axis);
+  void segment(const NodePathPoint& from, const NodePathPoint& to, bool leaps,
+               Walked& walked) const {
+    ++walked.segments;
+    const double moved = length(to.place.feet - from.place.feet) +
+                         avatar_.height * length(to.place.axis - from.place.axis);
     const int parts =
-        1 + static_cast<int>(std::min(kMaxPoses, std::ceil(4 * way / avatar_.radius)));
+        1 + static_cast<int>(std::min(kMaxPoses, std::ceil(4 * moved / avatar_.radius)));
     // From one level tile to the next there may be a step.
     const Vec3d seam = to.place.feet - from.place.feet;
     if (!to.on_surface && !leaps &&
         (std::hypot(seam.x, seam.z) > kSeam ||
          std::fabs(seam.y) > std::max(kSeam, avatar_.step + kSame))) {
-      tear(gone, to.place.feet);
+      tear(walked, to.place.feet);
     }
     bool entered = false, unsupported = false, torn = false;
     for (int k = 0; k <= parts; ++k) {
@@ -198,23 +199,23 @@ class Follower {
         const Vec3d axis = from.place.axis * (1 - f) + to.place.axis * f;
         pose = {from.place.feet * (1 - f) + to.place.feet * f, axis * (1 / length(axis))};
       }
-      ++gone.poses;
+      ++walked.poses;
       if (const auto triangle = verify::turned_intruder(tree_, avatar_, pose)) {
-        if (gone.entered == 0 && !entered) {
-          gone.entered_at = pose.feet;
-          gone.triangle = *triangle;
+        if (walked.entered == 0 && !entered) {
+          walked.entered_at = pose.feet;
+          walked.triangle = *triangle;
         }
         entered = true;
       }
-      // (A climber that leaps goes over a gap.)
+      // (A climber on a link over a hole has no ground there.)
       if (!leaps && !verify::turned_support(tree_, avatar_, pose.feet)) {
-        if (gone.unsupported == 0 && !unsupported) gone.unsupported_at = pose.feet;
+        if (walked.unsupported == 0 && !unsupported) walked.unsupported_at = pose.feet;
         unsupported = true;
       }
     }
-    gone.entered += entered ? 1 : 0;
-    gone.unsupported += unsupported ? 1 : 0;
-    if (torn) tear(gone, from.place.feet);
+    walked.entered += entered ? 1 : 0;
+    walked.unsupported += unsupported ? 1 : 0;
+    if (torn) tear(walked, from.place.feet);
   }
 
   const Nodes& nodes_;
@@ -244,16 +245,16 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
   report.finder_bytes = finder->summary().bytes;
   std::vector<NodePathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
   std::vector<NodePath> paths(finders.size());
-  std::vector<Gone> gone;
+  std::vector<Walked> walked;
   for (uint64_t begin = 0; begin < config.samples; begin += kBatch) {
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
     if (context.on_progress) context.on_progress({"verify", begin, config.samples});
-    gone.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
-    parallel_for_worker(gone.size(), config.workers, [&](size_t i, int32_t worker) {
+    walked.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
+    parallel_for_worker(walked.size(), config.workers, [&](size_t i, int32_t worker) {
       const auto w = static_cast<size_t>(worker);
-      gone[i] = follower.go(finders[w], paths[w], begin + i);
+      walked[i] = follower.go(finders[w], paths[w], begin + i);
     });
-    for (const Gone& g : gone) {
+    for (const Walked& g : walked) {
       if (!g.exists) continue;
       const auto count = [&](uint64_t bad, uint64_t& counter, const char* what, Vec3d at) {
         if (bad == 0) return;

@@ -16,19 +16,19 @@
 #include "verify/triangle_tree.h"
 #include "verify/world_claims.h"
 
-// Every way that the finder of level tiles tells is gone: each leg by the world's own moves, and
-// with the exact body against all triangles. The finder searches over rectangles; what it is held
-// against are cells (moves), triangles, and the graph's components, which nothing of it has made.
+// Every path that the finder of level tiles returns is walked: each segment by the world's own
+// moves, and with the exact body against all triangles. The finder searches over rectangles; it is
+// compared with cells (moves), triangles, and the graph's components, which do not come from it.
 namespace throng {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 256;     // pairs between two looks at `cancel`
-constexpr uint64_t kDraws = 16;    // of a goal that holds together with its start
+constexpr size_t kBatch = 256;     // pairs between two tests of `cancel`
+constexpr uint64_t kDraws = 16;    // of a goal in the component of its start
 constexpr double kSame = 1e-6;     // [m]
-constexpr double kSlack = 1.0001;  // of a way's length, for what its points are rounded to
+constexpr double kSlack = 1.0001;  // of a path's length, for the rounding of its points
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -36,7 +36,7 @@ double seconds_since(Clock::time_point start) {
 
 double plan_distance(Vec3d a, Vec3d b) { return std::hypot(b.x - a.x, b.z - a.z); }
 
-struct Gone {
+struct Walked {
   bool exists = false, reached = false, together = false, illegal = false;
   uint64_t segments = 0;
   double length = 0, straight = 0, seconds = 0;
@@ -55,42 +55,42 @@ class Walker {
         body_(tree_, claims.avatar, claims.cell),
         spacing_(std::min(claims.cell / 2, claims.avatar.radius / 4)) {}
 
-  Gone go(PathFinder& finder, Path& path, uint64_t n) const {
-    Gone gone;
+  Walked go(PathFinder& finder, Path& path, uint64_t n) const {
+    Walked walked;
     const Place from = claims_.random_place(config_.seed, n * (kDraws + 1));
-    if (!from) return gone;
+    if (!from) return walked;
     const int32_t part = part_of(from);
     const Place to = goal_of(n, part);
-    gone.exists = true;
-    gone.at = from.position;
-    gone.together = part >= 0 && part == part_of(to);
+    walked.exists = true;
+    walked.at = from.position;
+    walked.together = part >= 0 && part == part_of(to);
     const auto start = Clock::now();
     finder.find(from, to, path);
-    gone.seconds = seconds_since(start);
-    gone.reached = path.end == PathEnd::kReached;
-    if (!gone.reached) return gone;
-    gone.length = path.length;
-    gone.straight = plan_distance(from.position, to.position);
+    walked.seconds = seconds_since(start);
+    walked.reached = path.end == PathEnd::kReached;
+    if (!walked.reached) return walked;
+    walked.length = path.length;
+    walked.straight = plan_distance(from.position, to.position);
     if (path.points.empty() || !same(path.points.front(), from) || !same(path.points.back(), to)) {
-      refuse(gone, from.position);
-      return gone;
+      refuse(walked, from.position);
+      return walked;
     }
     double along = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
       const Place &a = path.points[i - 1], &b = path.points[i];
-      ++gone.segments;
+      ++walked.segments;
       along += plan_distance(a.position, b.position);
       const MoveResult move =
           claims_.move(a, b.position.x - a.position.x, b.position.z - a.position.z);
-      if (move.end != MoveEnd::kArrived || !same(move.place, b)) refuse(gone, a.position);
-      verify::check_segment(claims_, body_, a, b, spacing_, gone.body);
+      if (move.end != MoveEnd::kArrived || !same(move.place, b)) refuse(walked, a.position);
+      verify::check_segment(claims_, body_, a, b, spacing_, walked.body);
     }
-    // The length is that of the way, which is no shorter than a straight line.
-    if (std::fabs(along - gone.length) > (kSlack - 1) * along + claims_.cell / 100 ||
-        gone.length * kSlack + claims_.cell / 100 < gone.straight) {
-      refuse(gone, from.position);
+    // The length is that of the points, which is no shorter than a straight line.
+    if (std::fabs(along - walked.length) > (kSlack - 1) * along + claims_.cell / 100 ||
+        walked.length * kSlack + claims_.cell / 100 < walked.straight) {
+      refuse(walked, from.position);
     }
-    return gone;
+    return walked;
   }
 
  private:
@@ -113,9 +113,9 @@ class Walker {
     return a.level1 == b.level1 && plan_distance(a.position, b.position) <= kSame;
   }
 
-  static void refuse(Gone& gone, Vec3d at) {
-    if (!gone.illegal) gone.illegal_at = at;
-    gone.illegal = true;
+  static void refuse(Walked& walked, Vec3d at) {
+    if (!walked.illegal) walked.illegal_at = at;
+    walked.illegal = true;
   }
 
   const verify::Claims& claims_;
@@ -126,25 +126,25 @@ class Walker {
   double spacing_;  // [m]
 };
 
-void add(const Gone& gone, PathReport& report) {
-  if (!gone.exists) return;
+void add(const Walked& walked, PathReport& report) {
+  if (!walked.exists) return;
   const auto count = [&](bool bad, uint64_t& counter, const char* what, Vec3d at) {
     if (!bad) return;
-    if (counter++ < kFaultsOfAKind) report.faults.push_back({what, at, gone.body.intruder});
+    if (counter++ < kFaultsOfAKind) report.faults.push_back({what, at, walked.body.intruder});
   };
   ++report.pairs;
-  report.reached += gone.reached ? 1 : 0;
-  report.parted += !gone.reached && !gone.together ? 1 : 0;
-  count(gone.reached != gone.together, report.disagree, "disagree", gone.at);
-  count(gone.illegal, report.illegal, "illegal", gone.illegal_at);
-  count(gone.body.entered, report.entered, "entered", gone.body.entered_at);
-  count(gone.body.unsupported, report.unsupported, "unsupported", gone.body.unsupported_at);
-  count(gone.body.torn, report.torn, "torn", gone.body.torn_at);
-  report.segments += gone.segments;
-  report.bodies += gone.body.bodies;
-  report.length += gone.length;
-  report.straight += gone.straight;
-  report.search_seconds += gone.seconds;
+  report.reached += walked.reached ? 1 : 0;
+  report.parted += !walked.reached && !walked.together ? 1 : 0;
+  count(walked.reached != walked.together, report.disagree, "disagree", walked.at);
+  count(walked.illegal, report.illegal, "illegal", walked.illegal_at);
+  count(walked.body.entered, report.entered, "entered", walked.body.entered_at);
+  count(walked.body.unsupported, report.unsupported, "unsupported", walked.body.unsupported_at);
+  count(walked.body.torn, report.torn, "torn", walked.body.torn_at);
+  report.segments += walked.segments;
+  report.bodies += walked.body.bodies;
+  report.length += walked.length;
+  report.straight += walked.straight;
+  report.search_seconds += walked.seconds;
 }
 
 }  // namespace
@@ -166,17 +166,17 @@ Result<PathReport> verify_paths(const World& world, const Scene& source, const V
   report.finder_bytes = finder->summary().bytes;
   std::vector<PathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
   std::vector<Path> paths(finders.size());
-  std::vector<Gone> gone;
+  std::vector<Walked> walked;
   for (uint64_t begin = 0; begin < config.samples; begin += kBatch) {
     if (context.on_progress) context.on_progress({"verify", begin, config.samples});
-    gone.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
-    parallel_for_worker(gone.size(), config.workers, [&](size_t i, int32_t worker) {
+    walked.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
+    parallel_for_worker(walked.size(), config.workers, [&](size_t i, int32_t worker) {
       if (context.cancel) return;
       const auto w = static_cast<size_t>(worker);
-      gone[i] = walker.go(finders[w], paths[w], begin + i);
+      walked[i] = walker.go(finders[w], paths[w], begin + i);
     });
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
-    for (const Gone& g : gone) add(g, report);
+    for (const Walked& g : walked) add(g, report);
   }
   report.seconds = seconds_since(start);
   return report;

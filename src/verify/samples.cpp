@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 
+// Draws places, moves and points of the surface, and tests each with the exact body.
 namespace throng::verify {
 namespace {
 
@@ -31,8 +32,8 @@ std::array<double, 2> random_direction(uint64_t seed, uint64_t n) {
   }
 }
 
-// A legal move from `start`: as drawn, or, where the way is blocked, nearly as far as the world
-// lets it go, which is where bodies come closest to walls.
+// A legal move from `start`: as drawn, or, where it is blocked, nearly as far as the world allows,
+// which is where bodies come closest to walls.
 std::optional<Place> random_move(const Claims& claims, const Place& start, uint64_t seed,
                                  uint64_t n) {
   const auto direction = random_direction(seed, n);

@@ -34,8 +34,8 @@ struct MoveRecord {
   SegmentRecord segment;
 };
 
-/// Moves from the world's n-th random place, 0.02 to 3 m in a random direction, and looks at the
-/// body four times a cell on the way.
+/// Moves from the world's n-th random place, 0.02 to 3 m in a random direction, and tests the body
+/// four times a cell on it.
 [[nodiscard]] MoveRecord check_move(const Claims& claims, const BodyCheck& body, uint64_t seed,
                                     uint64_t n);
 

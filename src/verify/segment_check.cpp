@@ -6,12 +6,13 @@
 #include <array>
 #include <cmath>
 
+// Tests the exact body at equal distances along one segment of a path.
 namespace throng::verify {
 namespace {
 
 // The claimed place at a point of a move, feet within `reach` of the point. Worlds round positions;
 // where the line passes a corner of the legal area, a 512th of a cell to a side is close enough.
-Place place_on_way(const Claims& claims, Vec3d point, double reach) {
+Place place_on_segment(const Claims& claims, Vec3d point, double reach) {
   const double nudge = claims.cell / 512;
   constexpr std::array<std::array<double, 2>, 5> kTries = {
       {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -59,7 +60,7 @@ void check_segment(const Claims& claims, const BodyCheck& body, const Place& fro
   for (int k = 1; k < parts; ++k) {
     const double t = static_cast<double>(k) / parts;
     const Vec3d point{a.x + t * dx, y, a.z + t * dz};
-    const Place place = place_on_way(claims, point, reach);
+    const Place place = place_on_segment(claims, point, reach);
     if (!place) {
       tear(point, record);
       return;

@@ -20,7 +20,7 @@ struct SegmentRecord {
 };
 
 /// Looks at the body after each `spacing` metres and at the end, its feet where the world says that
-/// they are. Adds to `record`; goes no farther where the leg is torn.
+/// they are. Adds to `record`; goes no farther where the segment is torn.
 void check_segment(const Claims& claims, const BodyCheck& body, const Place& from, const Place& to,
                    double spacing, SegmentRecord& record);
 

@@ -9,6 +9,8 @@
 #include <set>
 #include <tuple>
 
+// Finds by the triangles alone where a body could stand, and walks over a lattice of such points.
+// Cost: points, times the triangles near each.
 namespace throng::verify {
 namespace {
 
@@ -20,8 +22,8 @@ constexpr double kSlack = 1e-6;
 
 // Rings no further apart than `spacing`, points on them likewise, and the centre. The outermost has
 // twice as many points and goes around the disc, not through it: a straight rim of the floor must
-// not slip in between two of them. (It asks for up to 1 mm too much for an adult.) Rounded, so that
-// every machine looks at the same points whatever its sine.
+// not slip in between two of them. (It requires up to 1 mm too much for an adult.) Rounded, so that
+// every machine tests the same points whatever its sine.
 std::vector<std::array<double, 2>> disc_points(double radius, double spacing) {
   using std::numbers::pi;
   std::vector<std::array<double, 2>> points;
@@ -127,7 +129,7 @@ WalkEnd Stance::walk(Vec3d start, double spacing, size_t max_points,
     double y;
   };
   // A lattice point may be met on two floors of a spiral; they are further apart than the body is
-  // high, so half a height tells them apart, and a point taken twice only costs time.
+  // high, so half a height distinguishes them, and a point visited twice only costs time.
   std::set<std::tuple<int32_t, int32_t, int64_t>> seen;
   const auto is_new = [&](const Point& p) {
     const double band = std::max(shape_.height / 2, kSameSurface);

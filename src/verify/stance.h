@@ -15,8 +15,8 @@
 /// Where a body could stand, and walk to, by the triangles alone: the measure of what a bake loses.
 namespace throng::verify {
 
-/// A body for standing tests. The bake's rules: matter up to `bottom` above the feet is climbed,
-/// a rim more than `bottom` below the feet is an obstacle.
+/// A body for standing tests. The bake's rules: a solid up to `bottom` above the feet is climbed, a
+/// rim more than `bottom` below the feet is an obstacle.
 struct BodyShape {
   double radius = 0;     ///< [m]
   double bottom = 0;     ///< [m]

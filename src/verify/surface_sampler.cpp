@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "verify/cylinder.h"
 
+// Draws points uniform by area: a binary search over sums of the triangles' areas.
 namespace throng::verify {
 
 SurfaceSampler::SurfaceSampler(const Scene& scene, double levelness_limit) : scene_(&scene) {

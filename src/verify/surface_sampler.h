@@ -13,8 +13,8 @@ namespace throng::verify {
 
 class SurfaceSampler {
  public:
-  /// Takes the triangles, whichever way they face, that are not blocked and not steeper than the
-  /// slope with this cosine. Triangles that coincide count each.
+  /// Takes the triangles, wherever they face, that are not blocked and not steeper than the slope
+  /// with this cosine. Triangles that coincide count each.
   SurfaceSampler(const Scene& scene, double levelness);
 
   struct Point {

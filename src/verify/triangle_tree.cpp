@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 
+// Builds a balanced box tree by median splits. n log n.
 namespace throng::verify {
 namespace {
 

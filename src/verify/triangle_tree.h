@@ -29,7 +29,7 @@ class TriangleTree {
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
   /// Calls visit(triangle, corners) for each triangle whose box overlaps `box`, until one call
-  /// returns true; tells whether one did. The order is the same on every run.
+  /// returns true; returns whether one did. The order is the same on every run.
   template <class Visit>
   bool find(const Box3d& box, Visit&& visit) const {
     const auto low = to_float(box.min);

@@ -41,7 +41,7 @@ bool for_each_turned(const TriangleTree& tree, const Pose& pose, double radius, 
   });
 }
 
-/// How high above its feet matter may reach before it stops a body that stands along `axis`. Where
+/// How high above its feet a solid may reach before it stops a body that stands along `axis`. Where
 /// a climber walks, on level tiles, it is a walker.
 inline double turned_bottom(const AvatarClass& avatar, Vec3d axis) {
   const bool upright = axis.y > 1 - 1e-12;

@@ -11,6 +11,7 @@
 #include "core/hash.h"
 #include "world/zone_data.h"
 
+// Reads and checks files of air, and queries them: is a cell free, and may a body be in it.
 namespace throng {
 namespace {
 
@@ -105,11 +106,11 @@ bool AirData::is_legal(const AirBody& body, int32_t x, int32_t y, int32_t z) con
   const int32_t zx = x / zone_side, zz = z / zone_side;
   const ZoneAir air = zone(zx, zz);
   if (air.usable && air.tree != nullptr) {
-    // A cube with room around it answers at once.
+    // An air box with clearance around it answers at once.
     const auto place = air.tree->find(x - zx * zone_side, y, z - zz * zone_side);
     if (air_kind(place.word) == AirKind::kFree) {
-      const AirRoom room = air_room(air_number(place.word));
-      if (room.width >= body.reach && room.height >= body.up) return true;
+      const AirClearance clearance = air_clearance(air_number(place.word));
+      if (clearance.width >= body.reach && clearance.height >= body.up) return true;
     }
   }
   for (int32_t dy = 0; dy <= body.up; ++dy) {
@@ -132,8 +133,8 @@ void AirData::fit(const WorldData& world) {
   slot_of_zone.assign(static_cast<size_t>(zones_x) * static_cast<size_t>(zones_z), -1);
 }
 
-// The gap between two cells is the distance that the feet may be nearer than their cells' numbers
-// say: a cell `d` away may be `d - 1` cells away. What is nearer than the radius must be free.
+// The distance between two cells is how much nearer the feet may be than their cells' numbers say:
+// a cell `d` away may be `d - 1` cells away. What is nearer than the radius must be free.
 AirBody air_body(const AvatarClass& avatar, const AirShape& shape) {
   AirBody body;
   body.half_width = {0};

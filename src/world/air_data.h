@@ -17,7 +17,7 @@
 #include "world/air_tree.h"
 #include "world/zone_file.h"
 
-/// The air of a world: which cells over and between its zones' matter are free.
+/// The air of a world: which cells over and between its zones' solids are free.
 namespace throng {
 
 struct WorldData;
@@ -45,16 +45,16 @@ flatbuffers::DetachedBuffer air_zone_bytes(int32_t x, int32_t z, uint64_t input,
 
 /// The attributes in the number of a free cube: every cell up to `width` cells beside it (x and z)
 /// is free, and every cell up to `height` layers over that. Never more than is true; at most 15.
-struct AirRoom {
+struct AirClearance {
   int32_t width = 0, height = 0;
 };
-constexpr uint32_t air_room_number(AirRoom room) {
-  return static_cast<uint32_t>(room.width | room.height << 4);
+constexpr uint32_t air_clearance_number(AirClearance clearance) {
+  return static_cast<uint32_t>(clearance.width | clearance.height << 4);
 }
-constexpr AirRoom air_room(uint32_t number) {
+constexpr AirClearance air_clearance(uint32_t number) {
   return {static_cast<int32_t>(number & 15), static_cast<int32_t>(number >> 4 & 15)};
 }
-inline constexpr int32_t kMaxAirRoom = 15;  // cells
+inline constexpr int32_t kMaxAirClearance = 15;  // cells
 
 /// A flyer's body in air cells: what must be free around the cell of its feet, wherever in that
 /// cell they are.

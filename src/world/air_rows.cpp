@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 
+// Builds an octree of free cells from rows of bits. Linear in the cells / 64.
 namespace throng {
 
 AirRows::AirRows(int32_t w, int32_t h, int32_t d, bool free)

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+// Checks an octree of a file, so that look-ups need no checks. Linear in its words.
 namespace throng {
 
 // Each group is named once and stands before the group that names it, so a walk over the tree ends

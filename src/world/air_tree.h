@@ -14,7 +14,7 @@ namespace throng {
 /// A word of a tree: what fills a cube of cells. The two low bits say how, the rest is a number.
 enum class AirKind : uint32_t {
   kFull = 0,   // no cell of it is free
-  kFree = 1,   // all are; the number belongs to whoever made the tree
+  kFree = 1,   // all are; the number is the tree's builder's own
   kInner = 2,  // the number is where its eight children begin in `nodes`
   kLeaf = 3,   // 4 x 4 x 4 cells; the number is the index of their bits in `leaves`
 };

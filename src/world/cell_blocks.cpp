@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+// Counts, unpacks and checks blocks of 8 x 8 cells: sets of bits, and values.
 namespace throng {
 
 uint32_t count_bits(const uint64_t* words) {

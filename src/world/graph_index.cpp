@@ -9,13 +9,15 @@
 #include "core/var_number.h"
 #include "throng/avatar_class.h"
 
+// Packs the components of a world into bytes: 7 bits a byte, as differences from the one before.
+// Linear.
 namespace throng {
 namespace {
 
 constexpr size_t kMaxClasses = kMaxAvatarClasses;
 constexpr uint64_t kMaxCells = uint64_t{1} << 50;  // of a component
 
-// The place of the last component that was told; the next is told by what has changed.
+// The place of the last component that was read or written; the next is stored as the difference.
 struct LastPlace {
   int64_t level = 0, cell_x = 0, cell_z = 0, feet = 0;
 

@@ -10,7 +10,7 @@
 
 /// How the index of a graph holds the components of the world: they are all read when it is opened,
 /// so they are packed as numbers of 7 bits a byte, in the order in which zones have them, by what
-/// changes from one to the next. What several classes have in one place is told once; their order
+/// changes from one to the next. What several classes have in one place is stored once; their order
 /// in the graph, the largest first, then as here, is found again.
 namespace throng {
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <utility>
 
+// Ground of one class on a level, the range of a floor's heights, and floors unpacked row by row.
 namespace throng {
 namespace {
 
@@ -69,9 +70,10 @@ FloorRange floor_range(const LevelView& view) {
     int32_t low = block.base + std::min(x, 0) + std::min(z, 0);
     int32_t high = block.base + std::max(x, 0) + std::max(z, 0) + highest_rest(view, block);
     if (high > UINT16_MAX) {
-      // The base may be one below 0, modulo 2^16: any cell tells, as it is no lower than its base.
+      // The base may be one below 0, modulo 2^16: any cell shows it, as it is no lower than its
+      // base.
       const uint64_t cells = view.present != nullptr ? block_cells(view.present, b) : 1;
-      if (cells == 0) continue;  // in files that are not true
+      if (cells == 0) continue;  // in forged files
       const auto i = static_cast<uint32_t>(std::countr_zero(cells));
       const uint32_t cx = i % 8, cz = i / 8;
       const int32_t value = value_at(view.floor, static_cast<int32_t>(b % 8 * 8 + cx),

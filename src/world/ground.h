@@ -7,7 +7,7 @@
 #include "world/walk.h"
 #include "world/zone_data.h"
 
-/// The ground of a mapped world for one class, as world/walk.h wants it.
+/// The ground of a mapped world for one class, as world/walk.h needs it.
 namespace throng {
 
 /// One level of the world with what a class needs to walk on it.
@@ -37,8 +37,8 @@ void set_class(GroundLevel& level, uint32_t zone_level, int32_t avatar_class);
 /// By the world's number; null zone if its zone cannot be used.
 GroundLevel ground_level(const WorldData& world, uint32_t level, int32_t avatar_class);
 
-/// Heights between which the floor of a level lies, maybe wider than it does: told by the heads of
-/// its blocks, as a bake makes them. [mm]
+/// Heights between which the floor of a level lies, maybe wider than it does: from the heads of its
+/// blocks, as a bake makes them. [mm]
 struct FloorRange {
   int32_t low = 0, high = 0;
 
@@ -49,8 +49,8 @@ struct FloorRange {
 };
 FloorRange floor_range(const LevelView& view);
 
-/// The floor of a level row by row, kNoValue where there is none: for LevelView::samples of whoever
-/// reads many of its cells. `samples` holds 4096. [view.floor != nullptr]
+/// The floor of a level row by row, kNoValue where there is none: for LevelView::samples, where
+/// many of its cells are read. `samples` holds 4096. [view.floor != nullptr]
 void unpack_floor(const LevelView& view, uint16_t* samples);
 
 struct WorldGround {

@@ -34,8 +34,8 @@ struct LevelView {
   }
   [[nodiscard]] bool is_constant() const { return floor == nullptr && (slope_x | slope_z) == 0; }
 
-  /// For whoever asks for many heights here and there, each of which would wait for memory twice:
-  /// first asks for the heads of a cell's blocks, then for what these say, and nothing waits.
+  /// For many heights at scattered cells, each of which would wait for memory twice: prefetch the
+  /// heads of the cells' blocks, then what these point to, and no read waits.
   void ask_for_heads(int32_t x, int32_t z) const {
     if (floor != nullptr) prefetch(floor + block_of(x, z));
     if (present != nullptr) prefetch(present);

@@ -11,6 +11,7 @@
 #include "world/ground.h"
 #include "world/region_data.h"
 
+// Reads and checks files of nodes, and looks up nodes, arcs and leaps in them.
 namespace throng {
 namespace {
 

@@ -30,7 +30,7 @@ inline constexpr uint32_t kFarNode = uint32_t{1} << 31;
 inline constexpr uint8_t kDeepestPatch = 6;
 inline constexpr uint16_t kEdgeUnits = 256;  // of an edge, as doors count along it
 inline constexpr uint8_t kTerminalFlag = 1, kPartialFlag = 2;  // of nodes
-inline constexpr uint8_t kPartialLevel = 3;  // of ragged nodes: blocks of 8 x 8 of a tile's cells
+inline constexpr uint8_t kPartialLevel = 3;  // of partial nodes: blocks of 8 x 8 of a tile's cells
 
 /// A zone's bytes after the verifier and the checks of its numbers.
 class NodeZone : public ZoneFile<NodeZone> {
@@ -43,7 +43,7 @@ class NodeZone : public ZoneFile<NodeZone> {
   [[nodiscard]] std::span<const format::Door> doors() const { return doors_; }
   [[nodiscard]] std::span<const format::Arc> arcs(uint32_t node) const;
   [[nodiscard]] const format::Arc* first_arc() const { return arcs_.data(); }
-  /// Which of its block's 8 x 8 cells a ragged node is, bit 8 t + s; 0 if it is a whole block.
+  /// Which of its block's 8 x 8 cells a partial node is, bit 8 t + s; 0 if it is a whole block.
   [[nodiscard]] uint64_t cells_of(uint32_t node) const;
   /// The leap of an arc, or null.
   [[nodiscard]] const format::Leap* leap_of(uint32_t arc) const;
@@ -100,14 +100,15 @@ struct NodeData {
   [[nodiscard]] size_t slot_at(int32_t x, int32_t z) const;
   /// Patch of the scene, or level tile of the world.
   [[nodiscard]] uint32_t source_of(const NodeZone& zone, const format::NodePatch& patch) const;
-  /// Those cells of a ragged node of a zone on which a class may stand, by the ground; 0 of others.
+  /// Those cells of a partial node of a zone on which a class may stand, by the ground; 0 of
+  /// others.
   [[nodiscard]] uint64_t cells_of(const NodeZone& zone, uint32_t node, int32_t avatar_class) const;
   /// The part of a node on which a class may stand, if it is one of its classes. [m^2]
   [[nodiscard]] double area_of(const NodeZone& zone, uint32_t node, int32_t avatar_class) const;
   /// A node's zone and its number there; null if the zone cannot be used.
   [[nodiscard]] std::pair<const NodeZone*, uint32_t> find(uint32_t node) const;
   /// For a class, the nodes that share out its area (those whose parents it cannot stand on), and
-  /// the area up to and with each. Made when first asked for.
+  /// the area up to and with each. Made at the first use.
   [[nodiscard]] const AreaList& areas_before(int32_t avatar_class) const;
   /// Where an arc of a slot's zone leads to, as a node of all.
   [[nodiscard]] uint32_t target(size_t slot, const NodeZone& zone, const format::Arc& arc) const {

@@ -11,6 +11,7 @@
 #include "world/graph_index.h"
 #include "world/place.h"
 
+// Reads, checks and writes files of regions, links between zones, and the index of the graph.
 namespace throng {
 namespace {
 

@@ -34,7 +34,7 @@ struct RegionTables {
   std::vector<format::RegionLink> links;
 };
 
-/// What holds together within a zone, for one class.
+/// A connected component within a zone, for one class.
 struct ZoneComponent {
   uint32_t avatar_class = 0;
   uint32_t regions = 0;
@@ -101,7 +101,7 @@ class LinkZone : public ZoneFile<LinkZone> {
   std::span<const format::RegionLink> east_, south_;
 };
 
-/// What holds together in the world, for one class.
+/// A connected component of the world, for one class.
 struct GraphComponent {
   uint64_t cells = 0;  // legal
   uint32_t regions = 0;
@@ -134,7 +134,7 @@ struct GraphData {
   void show(const WorldData& of_world);
 };
 
-/// True if regions are of this zone of the world, as far as counts and coordinates tell.
+/// True if regions are of this zone of the world, by their counts and coordinates.
 bool is_of_slot(const RegionZone& regions, const WorldData& world, size_t slot);
 
 /// Slot of a zone of the world, or -1.

@@ -7,6 +7,7 @@
 #include "core/var_number.h"
 #include "world/cell_blocks.h"
 
+// Packs and reads the groups of a zone's regions and where their components begin. Linear.
 namespace throng {
 namespace {
 

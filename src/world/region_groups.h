@@ -8,10 +8,10 @@
 
 #include "world/regions_generated.h"
 
-/// What holds together within a zone, for all its classes at once. A group is all regions that the
-/// same classes have and that belong, for each of these, to the same component: that is told once
-/// for all its regions. A component is named by the group in which it begins, that of its first
-/// region; most begin where others of the same place do, and need no name.
+/// The connected components within a zone, for all its classes at once. A group is all regions that
+/// the same classes have and that belong, for each of these, to the same component: that is stored
+/// once for all its regions. A component is named by the group in which it begins, that of its
+/// first region; most begin where others of the same place do, and need no name.
 namespace throng {
 
 /// The groups as their file has them. docs/file_format.md explains every field.
@@ -22,7 +22,7 @@ struct GroupTables {
   std::vector<uint8_t> begun;
 };
 
-/// Where components begin, read group by group: all but the first is told by what has changed.
+/// Where components begin, read group by group: all but the first as differences.
 struct BegunReader {
   std::span<const uint8_t> bytes;
   size_t at = 0;

@@ -5,6 +5,7 @@
 #include "core/hash.h"
 #include "world/zone_file.h"
 
+// Appends an XXH3 sum to a file's bytes, and checks it.
 namespace throng {
 namespace {
 

@@ -13,9 +13,9 @@
 #include "world/place.h"
 #include "world/zone_data.h"
 
-// Storeys: sheets of neighbouring tiles that continue each other are joined into groups, the surest
-// first (Kruskal), never two that lie over each other; groups of like height that do not overlap
-// then share a number.
+// Storeys: level tiles of neighbouring tiles that continue each other are joined into groups, the
+// surest first (Kruskal), never two that lie over each other; groups of like height that do not
+// overlap then share a number.
 namespace throng {
 namespace {
 
@@ -58,8 +58,8 @@ int32_t shared_cells(const LevelView& a, const LevelView& b, int32_t side, int32
 }
 
 // Two levels of neighbouring tiles that continue each other. The more cells, the closer their
-// heights and the larger they are, the heavier: a floor goes on as a floor before it turns into the
-// ramp to the next one, or into what is left of it under the ramp's low end.
+// heights and the larger they are, the heavier: a floor continues as a floor before it turns into
+// the ramp to the next one, or into what is left of it under the ramp's low end.
 struct Seam {
   uint32_t a = 0, b = 0;
   double weight = 0;
@@ -228,12 +228,12 @@ std::vector<int32_t> World::storeys() const {
     for (const uint32_t level : members[g]) mean += levels[level].mean * levels[level].cells;
     mean /= std::max(1.0, sizes[g]);
     size_t best = storeys.size(), nearest = storeys.size();
-    double best_distance = 1500, least = best_distance;  // [mm]
+    double best_distance = 1500, min_distance = best_distance;  // [mm]
     for (size_t s = 0; s < storeys.size(); ++s) {
       const double distance = std::fabs(storeys[s].mean - mean);
-      if (distance < least && sizes[g] < kRemnant * storeys[s].cells) {
+      if (distance < min_distance && sizes[g] < kRemnant * storeys[s].cells) {
         nearest = s;
-        least = distance;
+        min_distance = distance;
       }
       if (distance >= best_distance) continue;
       bool clash = false;

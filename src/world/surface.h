@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-/// How feet follow a sheet between the centres of its cells: a plane through the cell's sample
+/// How feet follow a level tile between the centres of its cells: a plane through the cell's sample
 /// whose slope is the gentler of the two that its neighbours suggest (minmod, van Leer's limiter),
 /// so that planes are met exactly and stairs stay stairs. Bake and moves share this rule.
 namespace throng {

@@ -6,8 +6,7 @@
 #include <cstdlib>
 #include <optional>
 
-/// Walking on level tiles: the conservative form of [ML06] algorithm 1, for any way of keeping
-/// levels.
+/// Walking on level tiles: the conservative form of [ML06] algorithm 1, for any storage of levels.
 ///
 /// A Ground has a type Level (a handle), and
 ///   bool is_legal(Level, int32_t x, int32_t z)      may the body stand on cell (x, z) of the tile?
@@ -65,8 +64,8 @@ struct WalkStop {
 };
 
 /// Walks from `from` to `to` in a straight line, cell by cell, as far as it goes; through a corner
-/// only if both cells beside it let the body pass. `level` is then the one of the last cell.
-/// enter(level, x, z, from_x, from_z) is told of every cell after the first, and whence.
+/// only if both cells beside it let the body pass. `level` is then the one of the last cell. Calls
+/// enter(level, x, z, from_x, from_z) for every cell after the first, with the one before it.
 template <class Ground, class Enter>
 WalkStop walk_far(const Ground& ground, typename Ground::Level& level, GroundPoint from,
                   GroundPoint to, int32_t step_mm, Enter enter) {
@@ -107,7 +106,7 @@ WalkStop walk_far(const Ground& ground, typename Ground::Level& level, GroundPoi
                   [](const typename Ground::Level&, int32_t, int32_t, int32_t, int32_t) {});
 }
 
-/// As walk_far, all the way or not at all: false leaves `level` as it was.
+/// As walk_far, to the end or not at all: false leaves `level` as it was.
 template <class Ground>
 bool walk(const Ground& ground, typename Ground::Level& level, GroundPoint from, GroundPoint to,
           int32_t step_mm) {

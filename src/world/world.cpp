@@ -17,6 +17,7 @@
 #include "world/sealed_file.h"
 #include "world/zone_data.h"
 
+// The public queries of a world: places, moves, levels, random places.
 namespace throng {
 namespace {
 

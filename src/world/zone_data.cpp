@@ -9,6 +9,8 @@
 #include "core/hash.h"
 #include "world/cell_blocks.h"
 
+// Opens and checks zone files, and keeps those in memory that are in use: a clock removes others at
+// their second pass.
 namespace throng {
 namespace {
 
@@ -144,7 +146,7 @@ void WorldData::open_zone(const Slot& entry) const {
              });
 }
 
-// The slow way of zone(): the zone is not there, or the hand has come by.
+// The slow path of zone(): the zone is not loaded, or the clock's hand has passed it.
 const Zone* WorldData::touch(size_t slot) const {
   const Slot& entry = *slots[slot];
   std::call_once(entry.once, [&] { open_zone(entry); });
@@ -165,8 +167,8 @@ const Zone* WorldData::touch(size_t slot) const {
   return entry.zone.get();
 }
 
-// Gives zones back that nobody has used since the hand last came by, until the rest fits. A thread
-// that holds such a zone reads on: its pages come back one by one.
+// Unloads zones that were not used since the clock's hand last passed, until the rest fits. A
+// thread that holds such a zone reads on: its pages come back one by one.
 void WorldData::make_room(size_t for_slot) const {
   for (size_t steps = 2 * slots.size(); resident_bytes > budget && steps > 0; --steps) {
     hand = (hand + 1) % slots.size();

@@ -59,7 +59,7 @@ class Zone : public ZoneFile<Zone> {
   uint32_t class_count_ = 0;
 };
 
-/// Legal cells of a class before each level of the world: made when first asked for.
+/// Legal cells of a class before each level of the world: made at the first use.
 struct ClassIndex {
   std::once_flag once;
   std::vector<uint64_t> cells_before;  // levels + 1
@@ -95,7 +95,7 @@ struct WorldData {
   uint64_t budget = 0;  // [bytes], 0: none
   mutable std::mutex residency;
   mutable uint64_t resident_bytes = 0, resident_zones = 0;
-  mutable size_t hand = 0;  // the slot that it looks at next
+  mutable size_t hand = 0;  // the slot that it tests next
 
   /// The zone of a slot, opened and checked at its first touch; null if it cannot be used. It stays
   /// where it is for as long as the world: what a budget gives back comes from its file again.

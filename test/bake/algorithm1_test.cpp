@@ -46,7 +46,7 @@ SliceSet sweep(const Cells& cells, int32_t avatar_height, SliceRule rule) {
   return sweep(columns, config);
 }
 
-// The lowest matter above `feet`, by the columns themselves.
+// The lowest solid above `feet`, by the columns themselves.
 int32_t ceiling(const naive::Columns& columns, size_t cell, int32_t feet) {
   const auto highs = columns.highs(cell);
   const auto lows = columns.lows(cell);
@@ -184,7 +184,7 @@ TEST(Algorithm1, StepsMustBeLowerThanTheBodysStepUpAndDown) {
   EXPECT_FALSE(can_move(slices, 0, 2, 0, body));
 }
 
-TEST(Algorithm1, NobodyStandsOnTheFarPlaneOrWhereTheSliceIsTooLow) {
+TEST(Algorithm1, NoBodyStandsOnTheFarPlaneOrWhereTheSliceIsTooLow) {
   const SliceSet slices =
       sweep({{{0, 0}}, {}, {{0, 0}, {2000, 2000}}}, 1750, SliceRule::kDismissAndReplace);
   ASSERT_EQ(slices.far_plane, -100);

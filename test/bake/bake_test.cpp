@@ -78,10 +78,10 @@ struct Spot {
   auto operator<=>(const Spot&) const = default;
 };
 
-// By cell of the world and height, whatever sheets and zones it is stored in.
+// By cell of the world and height, whatever level tiles and zones it is stored in.
 using Spots = std::map<std::tuple<int32_t, int32_t, int32_t>, Spot>;
 
-// Without `margins` it is only told who may stand there.
+// Without `margins` only which classes may stand there.
 Spots spots_of(const World& world, bool margins = true) {
   Spots spots;
   for (uint32_t l = 0; l < world.level_tile_count(); ++l) {
@@ -286,7 +286,7 @@ TEST(Bake, OneSidedOnlyWhatFacesUpIsFloor) {
   add_square(room, 10, 3, false);
   EXPECT_EQ(area(room, false), 2 * one);
   EXPECT_EQ(area(room, true), one);
-  Scene low = floor;  // What faces down is in the way, too.
+  Scene low = floor;  // What faces down blocks, too.
   add_square(low, 10, 1, false);
   EXPECT_EQ(area(low, true), 0);
   Scene both = room;  // One floor from both sides, cut in other triangles.
@@ -299,7 +299,7 @@ TEST(Bake, OneSidedOnlyWhatFacesUpIsFloor) {
   EXPECT_EQ(area(inverted, true), 0);
 }
 
-// Wound by chance: nobody stands anywhere where he would not if windings said nothing.
+// Wound by chance: no body stands where it would not if windings were ignored.
 TEST(Bake, OneSidedAllowsNothingMore) {
   uint64_t legal = 0, fewer = 0;
   for (uint64_t seed = 1; seed <= 8; ++seed) {
@@ -416,7 +416,7 @@ TEST(Bake, ScenesThatCannotBeBakedAreRefusedWithASentence) {
   refused(scene, Errc::kLimit, "check the units");
 }
 
-TEST(Bake, AWorldWhereNobodyCanStandHasNoZones) {
+TEST(Bake, AWorldWhereNoBodyCanStandHasNoZones) {
   Scene wall;
   wall.add_quad({0, 0, 0}, {0, 3, 0}, {5, 3, 0}, {5, 0, 0});
   const World world = bake(wall, {});

@@ -22,10 +22,10 @@ TEST(MotionJudge, OnlyGroundThatIsNotBlockedCarries) {
     const Scene scene = strip(kind);
     const TriangleSquares triangles(scene, 1);
     MotionJudge judge(triangles);
-    EXPECT_TRUE(judge.is_carried({0.5, 0, 1}, {1.5, 0, 1}, 0.1, 0.1));
-    EXPECT_EQ(judge.is_carried({0.5, 0, 1}, {5.5, 0, 1}, 0.1, 0.1), kind == kAreaWalkable);
-    EXPECT_FALSE(judge.is_carried({4.5, 0, 1}, {6.5, 0, 1}, 0.1, 0.1));  // beyond the end
-    EXPECT_FALSE(judge.is_carried({0.5, 1, 1}, {1.5, 1, 1}, 0.1, 0.1));  // over it
+    EXPECT_TRUE(judge.is_supported({0.5, 0, 1}, {1.5, 0, 1}, 0.1, 0.1));
+    EXPECT_EQ(judge.is_supported({0.5, 0, 1}, {5.5, 0, 1}, 0.1, 0.1), kind == kAreaWalkable);
+    EXPECT_FALSE(judge.is_supported({4.5, 0, 1}, {6.5, 0, 1}, 0.1, 0.1));  // beyond the end
+    EXPECT_FALSE(judge.is_supported({0.5, 1, 1}, {1.5, 1, 1}, 0.1, 0.1));  // over it
   }
 }
 

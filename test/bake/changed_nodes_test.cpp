@@ -14,8 +14,8 @@
 #include "throng/bake.h"
 #include "throng/nodes.h"
 
-// Nodes of a world that changes: zones on which nothing bears are kept, and nobody can tell from
-// the bytes.
+// Nodes of a world that changes: zones that no change affects are reused, and the bytes are those
+// of a new bake.
 namespace throng {
 namespace {
 
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using Folder = test::FolderBytes;
 using test::folder_bytes;
 
-// Walkers, one of whom drops, and climbers.
+// Walkers, one of which drops, and climbers.
 std::vector<AvatarClass> walkers() {
   std::vector<AvatarClass> classes = {{.name = "adult"}, {.name = "diver"}};
   classes[1].max_drop = 3;
@@ -88,15 +88,15 @@ class ChangedNodes : public testing::Test {
   // Bakes a scene into the world that is there and into a fresh one: the same bytes?
   NodeSummary compare(const Scene& scene, const BakeConfig& bake_config, const NodeConfig& config,
                       const std::string& what) {
-    const NodeSummary kept = bake("w", scene, bake_config, config, false);
+    const NodeSummary reused = bake("w", scene, bake_config, config, false);
     const NodeSummary fresh = bake("fresh", scene, bake_config, config, true);
     EXPECT_EQ(fresh.zones_reused, 0u);
-    EXPECT_EQ(kept.zones_made + kept.zones_reused, fresh.zones_made);
-    EXPECT_EQ(kept.nodes, fresh.nodes);
-    EXPECT_EQ(kept.arcs, fresh.arcs);
-    EXPECT_EQ(kept.bytes, fresh.bytes);
+    EXPECT_EQ(reused.zones_made + reused.zones_reused, fresh.zones_made);
+    EXPECT_EQ(reused.nodes, fresh.nodes);
+    EXPECT_EQ(reused.arcs, fresh.arcs);
+    EXPECT_EQ(reused.bytes, fresh.bytes);
     EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == folder_bytes(at("fresh") + "/nodes")) << what;
-    return kept;
+    return reused;
   }
   [[nodiscard]] std::string at(const std::string& name) const {
     return folder_.path() + "/" + name;
@@ -112,7 +112,7 @@ TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
   const Vec3d corner = bare.patches.patches[0].bounds().min;
   add_crate(bare, corner + Vec3d{40, 10, 40}, {2, 2, 2});  // There are level tiles, from now on.
   Draw draw(1);
-  uint64_t kept = 0, made = 0;
+  uint64_t reused = 0, made = 0;
   compare(bare, config, {.size = 2}, "bare");
   Scene scene = bare;
   for (int i = 0; i < 6; ++i) {
@@ -120,10 +120,10 @@ TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
     add_crate(scene, {corner.x + draw(5, 180), draw(-5, 12), corner.z + draw(5, 180)},
               {draw(0.3, 6), draw(0.3, 6), draw(0.3, 6)});
     const NodeSummary summary = compare(scene, config, {.size = 2}, std::to_string(i));
-    kept += summary.zones_reused;
+    reused += summary.zones_reused;
     made += summary.zones_made;
   }
-  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(reused, made / 4);
   EXPECT_GT(made, 10u);
 }
 
@@ -134,7 +134,7 @@ TEST_F(ChangedNodes, PatchesThatMoveAreSeenByThoseAroundThem) {
   PatchSet net =
       test::make_net({.side = 20, .cell = 3, .relief = 0.3, .sideways = 0.2, .split_some = false});
   Draw draw(2);
-  uint64_t kept = 0, made = 0;
+  uint64_t reused = 0, made = 0;
   compare(test::patch_scene(net), config, {.size = 0.5}, "as it was");
   for (int i = 0; i < 4; ++i) {
     // An inner control point: no border moves with it.
@@ -143,10 +143,10 @@ TEST_F(ChangedNodes, PatchesThatMoveAreSeenByThoseAroundThem) {
         draw(-0.4, 0.4);
     const NodeSummary summary =
         compare(test::patch_scene(net), config, {.size = 0.5}, std::to_string(i));
-    kept += summary.zones_reused;
+    reused += summary.zones_reused;
     made += summary.zones_made;
   }
-  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(reused, made / 4);
   EXPECT_GT(made, 10u);
 }
 
@@ -163,12 +163,12 @@ Scene field() {
   return scene;
 }
 
-TEST_F(ChangedNodes, LevelTilesDropsAndJumpsAreMadeWhereSomethingBearsOnThem) {
+TEST_F(ChangedNodes, LevelTilesAndLinksAreMadeWhereAChangeAffectsThem) {
   const BakeConfig config{.cell = 0.2, .zone = 12.8, .classes = walkers()};
   const Scene bare = field();
   Draw draw(3);
   NodeConfig nodes;
-  uint64_t kept = 0, made = 0;
+  uint64_t reused = 0, made = 0;
   compare(bare, config, nodes, "bare");
   Scene scene = bare;
   for (int i = 0; i < 16; ++i) {
@@ -184,15 +184,15 @@ TEST_F(ChangedNodes, LevelTilesDropsAndJumpsAreMadeWhereSomethingBearsOnThem) {
                 {draw(0.2, 3), draw(0.2, 2), draw(0.2, 3)});
     }
     const NodeSummary summary = compare(scene, config, nodes, std::to_string(i));
-    kept += summary.zones_reused;
+    reused += summary.zones_reused;
     made += summary.zones_made;
     if (i % 7 == 6) nodes.off_mesh_links.erase(nodes.off_mesh_links.begin());
   }
-  EXPECT_GT(kept, made / 4);
+  EXPECT_GT(reused, made / 4);
   EXPECT_GT(made, 20u);
 }
 
-TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
+TEST_F(ChangedNodes, WhatHasNotChangedIsReusedAndWhatIsDamagedIsMadeAgain) {
   const BakeConfig config{.cell = 0.2, .zone = 12.8, .classes = walkers()};
   const Scene scene = field();
   const NodeSummary first = compare(scene, config, {}, "first");
@@ -209,7 +209,7 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   EXPECT_EQ(second.zones_reused, 20u);
   EXPECT_EQ(second.zones_made, 0u);
   EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == before);
-  // Other classes, sizes of cells, sizes of nodes: nothing can be kept.
+  // Other classes, sizes of cells, sizes of nodes: nothing can be reused.
   EXPECT_EQ(bake("w", scene, config, {.classes = 1}, false).zones_reused, 0u);
   EXPECT_EQ(bake("w", scene, config, {}, false).zones_reused, 0u);
   // Damaged files are no loss but of time.
@@ -221,7 +221,7 @@ TEST_F(ChangedNodes, WhatHasNotChangedIsKeptAndWhatIsDamagedIsMadeAgain) {
   std::ofstream(at("w") + "/nodes/index.thn", std::ios::binary) << "nothing";
   EXPECT_EQ(bake("w", scene, config, {}, false).zones_made, 20u);
   EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == before);
-  // Who does not ask for nodes gets a world without them.
+  // Without nodes in the config the world has none.
   ASSERT_TRUE(bake_world_to(at("w"), scene, config, context));
   EXPECT_FALSE(Nodes::open(at("w")));
   EXPECT_FALSE(fs::exists(at("w") + "/nodes.old"));
@@ -252,7 +252,7 @@ TEST_F(ChangedNodes, WhatIsMadeBeforeABakeStopsIsNotMadeAgain) {
     ASSERT_TRUE(bake_world_to(at("w"), scene, carry, silent));
     EXPECT_TRUE(fs::exists(at("w") + "/nodes.part/index.thn"));
   }
-  // Half a file, and one of nobody's.
+  // Half a file, and one that belongs to none.
   std::ofstream(at("w") + "/nodes.part/zone_0_0.thn.part", std::ios::binary) << "half";
   std::ofstream(at("w") + "/nodes.part/zone_77_0.thn", std::ios::binary) << "whose?";
   const auto world = World::open(at("w"));
@@ -284,9 +284,9 @@ TEST_F(ChangedNodes, WhatCannotBeMadeLeavesNothingBehind) {
   EXPECT_EQ(nowhere.error().code, Errc::kBadInput);
 }
 
-// What a bake that is told of the nodes to come says of their jumps is what these would say, and
-// the world that is there stays whole.
-TEST_F(ChangedNodes, AJumpWithoutAPlaceIsFoundWhileTheOldWorldIsThere) {
+// A bake that is given the config of its nodes reports the same errors of off-mesh links as the
+// nodes would, and the world that is there stays whole.
+TEST_F(ChangedNodes, AnOffMeshLinkWithoutAPlaceIsFoundWhileTheOldWorldIsThere) {
   Scene hills = test::builtin({.name = "landscape", .size = 64});
   Scene both = hills;
   add_crate(both, hills.patches.patches[0].bounds().min + Vec3d{40, 10, 40}, {2, 2, 2});
@@ -308,11 +308,11 @@ TEST_F(ChangedNodes, AJumpWithoutAPlaceIsFoundWhileTheOldWorldIsThere) {
     Draw draw(7);
     uint64_t good = 0, bad = 0;
     for (int i = 0; i < 8; ++i) {
-      const int32_t who = i % 4;
+      const int32_t avatar_class = i % 4;
       const auto near = [&](uint64_t n) {
-        return nodes->random_place(who, 3, n).feet + Vec3d{0, draw(-1.2, 1.2), 0};
+        return nodes->random_place(avatar_class, 3, n).feet + Vec3d{0, draw(-1.2, 1.2), 0};
       };
-      wanted.off_mesh_links = {{near(2 * i), near(2 * i + 1), who, true}};
+      wanted.off_mesh_links = {{near(2 * i), near(2 * i + 1), avatar_class, true}};
       const auto report = bake_world_to(at("w"), scene, config, context);
       fs::remove_all(at("other"));
       BakeConfig other = config;

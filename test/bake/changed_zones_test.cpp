@@ -13,8 +13,8 @@
 #include "throng/builtin_worlds.h"
 #include "throng/nodes.h"
 
-// A bake into the folder of a world: what has changed is baked, the rest is kept, and nobody can
-// tell from the bytes.
+// A bake into the folder of a world: what has changed is baked, the rest is reused, and the bytes
+// are those of a new bake.
 namespace throng {
 namespace {
 
@@ -156,7 +156,7 @@ TEST_F(ChangedZones, ATouchedTriangleIsBakedWhereItIsSeenAndNowhereElse) {
     Box3d box;
     box.add({touch.x, 0, touch.z});
     box.add({x1, 0, z1});
-    // Whoever looks half a metre far and whoever looks two metres far sees the same zones.
+    // Half a metre around and two metres around lie the same zones.
     ASSERT_EQ(zones_near(box, 0.5), touch.zones);
     ASSERT_EQ(zones_near(box, 2.5), touch.zones);
     scene.add_triangle({touch.x, 1, touch.z}, {touch.x, 1, z1}, {x1, 1, touch.z});
@@ -169,7 +169,7 @@ TEST_F(ChangedZones, ATouchedTriangleIsBakedWhereItIsSeenAndNowhereElse) {
   }
 }
 
-// Which files a touched triangle makes anew: those that are kept are the old ones, linked.
+// Which files a touched triangle changes: the others are the old ones, linked.
 TEST_F(ChangedZones, ATouchedTriangleLeavesAllOtherFilesAsTheyAre) {
   Scene scene = field();
   bake("w", scene);
@@ -196,7 +196,7 @@ TEST_F(ChangedZones, AnotherStepMakesOtherRegions) {
   EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
 }
 
-// What is under the ground is no matter to anybody: the zone is baked, its bytes are the same.
+// What is under the ground affects no class: the zone is baked, its bytes are the same.
 TEST_F(ChangedZones, ATriangleThatChangesNothingRelinksNothing) {
   Scene scene = field();
   bake("w", scene);
@@ -258,7 +258,7 @@ TEST_F(ChangedZones, AnotherAreaKindIsBaked) {
   bake("w", scene);
   scene.area.assign(scene.triangles.size(), kAreaWalkable);
   EXPECT_EQ(bake("w", scene).zones_baked, 0u);
-  scene.area[0] = 9;  // A new kind numbers the surfaces of the whole scene anew.
+  scene.area[0] = 9;  // A new kind renumbers the surfaces of the whole scene.
   EXPECT_EQ(bake("w", scene).zones_baked, 1u);
   bake("new", scene);
   EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
@@ -357,7 +357,7 @@ TEST_F(ChangedZones, ASecondBakeIntoAFolderIsRefusedWhileTheFirstIsAtWork) {
   }
 }
 
-TEST_F(ChangedZones, WhileNodesAreMadeNobodyTakesTheirWorldAway) {
+TEST_F(ChangedZones, WhileNodesAreMadeTheirWorldCannotBeReplaced) {
   const NodeConfig wanted;
   BakeConfig config = kConfig;
   config.nodes = &wanted;

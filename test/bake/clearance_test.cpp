@@ -18,18 +18,18 @@ bool bit(const BitPlane& plane, int32_t x, int32_t z) {
   return ((plane[static_cast<size_t>(z)] >> x) & 1) != 0;
 }
 
-// One class on 3 x 3 tiles of any number of sheets.
+// One class on 3 x 3 tiles of any number of layers.
 struct Tiles {
   std::array<TileLegality, 9> of;
   std::array<const TileLegality*, 9> around;
 
-  explicit Tiles(size_t sheets = 1) {
+  explicit Tiles(size_t layers = 1) {
     for (size_t i = 0; i < 9; ++i) {
-      of[i].resize(sheets);
-      for (SheetLegality& sheet : of[i]) {
-        sheet.classes.resize(1);
-        for (auto& link : sheet.link) link.fill(0);
-        for (auto& rise : sheet.rise) rise.fill(0);
+      of[i].resize(layers);
+      for (LayerLegality& layer : of[i]) {
+        layer.classes.resize(1);
+        for (auto& link : layer.link) link.fill(0);
+        for (auto& rise : layer.rise) rise.fill(0);
       }
       around[i] = &of[i];
     }
@@ -40,7 +40,7 @@ int32_t tile_of(int32_t x, int32_t z) {
   return (z < 0 ? 0 : (z > kLast ? 6 : 3)) + (x < 0 ? 0 : (x > kLast ? 2 : 1));
 }
 
-// Is cell (x, z), counted from the middle tile, legal on a world of one sheet a tile?
+// Is cell (x, z), counted from the middle tile, legal on a world of one layer a tile?
 bool legal_at(const Tiles& tiles, int32_t x, int32_t z) {
   const TileLegality* tile = tiles.around[static_cast<size_t>(tile_of(x, z))];
   return tile != nullptr && !tile->empty() &&
@@ -77,7 +77,7 @@ int32_t margin_of(const ClearancePlanes& planes, int32_t x, int32_t z) {
 // Random holes: `count` in the nine tiles, points and rectangles.
 void punch(Tiles& tiles, uint64_t seed, int32_t count) {
   for (TileLegality& tile : tiles.of) {
-    for (SheetLegality& sheet : tile) sheet.classes[0].legal.fill(~uint64_t{0});
+    for (LayerLegality& layer : tile) layer.classes[0].legal.fill(~uint64_t{0});
   }
   for (int32_t i = 0; i < count; ++i) {
     const auto n = static_cast<uint64_t>(i);
@@ -142,22 +142,22 @@ TEST(Clearance, WhatNoLinkLeadsToCountsAsIllegal) {
         }
       }
     }
-    const auto linked = [&](const SheetLegality& sheet, size_t side, int32_t i) {
+    const auto linked = [&](const LayerLegality& layer, size_t side, int32_t i) {
       const auto at = static_cast<size_t>(i);
-      return sheet.link[side][at] >= 0 && sheet.rise[side][at] <= kStep;
+      return layer.link[side][at] >= 0 && layer.rise[side][at] <= kStep;
     };
     // From the middle tile up or down along a column, then sideways along the row; a corner's
     // columns hang on the outermost one.
     const auto is_legal = [&](int32_t x, int32_t z) {
       if (!legal_at(tiles, x, z)) return false;
-      const SheetLegality* sheet = &tiles.of[4][0];
+      const LayerLegality* layer = &tiles.of[4][0];
       if (z < 0 || z > kLast) {
         const size_t side = z < 0 ? 2 : 3;
-        if (!linked(*sheet, side, std::clamp(x, 0, kLast))) return false;
-        sheet = &tiles.of[z < 0 ? 1 : 7][0];
+        if (!linked(*layer, side, std::clamp(x, 0, kLast))) return false;
+        layer = &tiles.of[z < 0 ? 1 : 7][0];
       }
       if (x >= 0 && x <= kLast) return true;
-      return linked(*sheet, x < 0 ? 0 : 1, z & kLast);
+      return linked(*layer, x < 0 ? 0 : 1, z & kLast);
     };
     ClearancePlanes planes;
     erode(tiles.around, 0, 0, kStep, planes);
@@ -194,8 +194,8 @@ TEST(Clearance, AllMeansTheFullMarginEverywhere) {
   }
 }
 
-TEST(Clearance, AMarginThroughAStackOfSheetsFollowsTheLinkedOne) {
-  // Two sheets a tile; sheet 0 goes on in sheet 1 next door for z < 32, in sheet 0 beyond.
+TEST(Clearance, AMarginThroughAStackOfLayersFollowsTheLinkedOne) {
+  // Two layers a tile; layer 0 goes on in layer 1 next door for z < 32, in layer 0 beyond.
   Tiles tiles(2);
   for (TileLegality& tile : tiles.of) {
     tile[0].classes[0].legal.fill(~uint64_t{0});
@@ -210,14 +210,14 @@ TEST(Clearance, AMarginThroughAStackOfSheetsFollowsTheLinkedOne) {
   EXPECT_EQ(margin_of(planes, kLast, 50), 0);
   EXPECT_EQ(margin_of(planes, kLast, 30), 7);
   EXPECT_EQ(margin_of(planes, kLast - 1, 10), 1);
-  erode(tiles.around, 1, 0, 400, planes);  // Sheet 1 goes on in sheet 0.
+  erode(tiles.around, 1, 0, 400, planes);  // Layer 1 goes on in layer 0.
   EXPECT_EQ(margin_of(planes, kLast, 10), 7);
   EXPECT_EQ(margin_of(planes, kLast, 50), 0);
 }
 
-// Links: for each border cell the sheet across it whose feet are nearest, if within the step.
-bool is_useful(const Sheet& sheet, size_t cell) {
-  return (sheet.useful[cell / 64] >> cell % 64 & 1) != 0;
+// Links: for each border cell the layer across it whose feet are nearest, if within the step.
+bool is_useful(const Layer& layer, size_t cell) {
+  return (layer.useful[cell / 64] >> cell % 64 & 1) != 0;
 }
 
 TEST(Clearance, LinksLeadToTheNearestFeetAcrossTheBorderWithinTheStep) {
@@ -227,46 +227,46 @@ TEST(Clearance, LinksLeadToTheNearestFeetAcrossTheBorderWithinTheStep) {
       return static_cast<int32_t>(random_below(seed, 8, n++, limit));
     };
     const auto make = [&] {
-      auto sheet = std::make_unique<Sheet>();
-      sheet->base = below(600) - 300;
-      for (uint16_t& feet : sheet->feet) {
+      auto layer = std::make_unique<Layer>();
+      layer->base = below(600) - 300;
+      for (uint16_t& feet : layer->feet) {
         feet = static_cast<uint16_t>(4000 + below(900));
         if (below(10) == 0) feet = kNone16;
       }
-      for (uint64_t& row : sheet->useful) row = ~(uint64_t{1} << below(64));
-      summarise(*sheet);
-      set_borders(*sheet);
-      return sheet;
+      for (uint64_t& row : layer->useful) row = ~(uint64_t{1} << below(64));
+      summarise(*layer);
+      set_borders(*layer);
+      return layer;
     };
     const auto own = make();
-    std::array<TileSheets, 4> beside;
-    std::array<const TileSheets*, 4> sides;
+    std::array<TileLayers, 4> beside;
+    std::array<const TileLayers*, 4> sides;
     for (size_t side = 0; side < 4; ++side) {
       for (int32_t s = 0; s < 3; ++s) beside[side].push_back(make());
       sides[side] = &beside[side];
     }
     if (seed % 4 == 0) sides[seed % 3] = nullptr;
     constexpr int32_t kStep = 150;
-    SheetLegality out;
-    link_sheet(*own, sides, kStep, out);
+    LayerLegality out;
+    link_layer(*own, sides, kStep, out);
     for (size_t side = 0; side < 4; ++side) {
       for (size_t i = 0; i < kTileSide; ++i) {
         const size_t left = i * 64, right = i * 64 + 63, up = i, down = 63 * 64 + i;
         const size_t mine[] = {left, right, up, down}, theirs[] = {right, left, down, up};
-        int32_t best = kStep + 1, sheet = -1;
+        int32_t best = kStep + 1, layer = -1;
         for (size_t s = 0; s < 3 && sides[side] != nullptr; ++s) {
-          const Sheet& other = *beside[side][s];
+          const Layer& other = *beside[side][s];
           const uint16_t a = own->feet[mine[side]], b = other.feet[theirs[side]];
           if (a == kNone16 || b == kNone16) continue;
           if (!is_useful(*own, mine[side]) || !is_useful(other, theirs[side])) continue;
           const int32_t rise = std::abs(own->base + a - other.base - b);
           if (rise < best) {
             best = rise;
-            sheet = static_cast<int32_t>(s);
+            layer = static_cast<int32_t>(s);
           }
         }
-        ASSERT_EQ(out.link[side][i], sheet) << "side " << side << " cell " << i;
-        ASSERT_EQ(out.rise[side][i], sheet < 0 ? 0 : best);
+        ASSERT_EQ(out.link[side][i], layer) << "side " << side << " cell " << i;
+        ASSERT_EQ(out.rise[side][i], layer < 0 ? 0 : best);
       }
     }
   }

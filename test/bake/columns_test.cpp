@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bake/gaps.h"
+#include "bake/free_spans.h"
 #include "core/hash.h"
 #include "core/random.h"
 #include "naive_columns.h"
@@ -155,36 +155,36 @@ TEST(Columns, DeepColumnsSpillAndStaySorted) {
   const auto triangles = cell_triangles(soup);
   auto columns = std::make_unique<TileColumns>();
   rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, 0, *columns);
-  auto gaps = std::make_unique<TileGaps>();
-  find_gaps(*columns, 1500, *gaps);
+  auto gaps = std::make_unique<TileFreeSpans>();
+  find_free_spans(*columns, 1500, *gaps);
   EXPECT_EQ(gaps->count[17], 300);
   EXPECT_EQ(gaps->layers[299]->ceiling[17], kOpenSkyMm);
 }
 
-TEST(Columns, GapsAreWhatJoinedSpansLeaveFree) {
+TEST(Columns, FreeSpansAreWhatJoinedSpansLeave) {
   for (uint64_t seed = 1; seed <= 100; ++seed) {
     const Soup soup = random_soup(seed, 0.2, static_cast<int32_t>(seed % 60) + 2);
-    const int32_t min_gap = 700 + static_cast<int32_t>(seed) * 10;
+    const int32_t min_free_span = 700 + static_cast<int32_t>(seed) * 10;
     const auto triangles = cell_triangles(soup);
     auto columns = std::make_unique<TileColumns>();
-    rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, min_gap - 1, *columns);
-    auto gaps = std::make_unique<TileGaps>();
-    find_gaps(*columns, min_gap, *gaps);
+    rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, min_free_span - 1, *columns);
+    auto gaps = std::make_unique<TileFreeSpans>();
+    find_free_spans(*columns, min_free_span, *gaps);
     const TileSpans spans = fast_spans(soup, 0);
     for (size_t c = 0; c < 4096; ++c) {
       std::vector<std::pair<int32_t, int32_t>> expected;  // top, ceiling
       for (size_t i = spans.first[c]; i < spans.first[c + 1]; ++i) {
         const bool last = i + 1 == spans.first[c + 1];
-        if (!last && spans.low[i + 1] - spans.high[i] < min_gap) continue;
+        if (!last && spans.low[i + 1] - spans.high[i] < min_free_span) continue;
         expected.emplace_back(spans.high[i], last ? kOpenSkyMm : spans.low[i + 1]);
       }
       ASSERT_EQ(gaps->count[c], static_cast<int32_t>(expected.size())) << "seed " << seed;
       for (size_t k = 0; k < expected.size(); ++k) {
-        const GapLayer& layer = *gaps->layers[k];
+        const FreeSpanLayer& layer = *gaps->layers[k];
         ASSERT_EQ(layer.top[c] + gaps->base, expected[k].first);
         const int32_t ceiling = layer.ceiling[c];
         ASSERT_EQ(ceiling == kOpenSkyMm ? ceiling : ceiling + gaps->base, expected[k].second);
-        // The support is no higher than the matter, and not below the run's lowest span.
+        // The support is no higher than the solid, and not below the run's lowest span.
         if (layer.support[c] != kNoSupport) {
           ASSERT_LE(layer.support[c] >> 8, layer.top[c]);
         }
@@ -236,11 +236,11 @@ uint64_t hash_columns() {
     const auto triangles = cell_triangles(soup);
     auto columns = std::make_unique<TileColumns>();
     rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, 999, *columns);
-    auto gaps = std::make_unique<TileGaps>();
-    find_gaps(*columns, 1000, *gaps);
+    auto gaps = std::make_unique<TileFreeSpans>();
+    find_free_spans(*columns, 1000, *gaps);
     for (size_t c = 0; c < 4096; ++c) {
       for (int32_t k = 0; k < gaps->count[c]; ++k) {
-        const GapLayer& layer = *gaps->layers[static_cast<size_t>(k)];
+        const FreeSpanLayer& layer = *gaps->layers[static_cast<size_t>(k)];
         const int32_t values[3] = {layer.top[c], layer.ceiling[c], layer.support[c]};
         hash = hash_bytes(values, sizeof values, hash);
       }

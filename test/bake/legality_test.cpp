@@ -13,33 +13,33 @@
 #include "simd_targets.h"
 
 // What a legal cell promises is said in docs/algorithms.md. The oracle looks at columns, never at
-// sheets: a body at a point P of the cell, feet on the plane that the floor's samples suggest,
-// touches the columns nearer than its radius, and each of them needs any gap that holds it.
+// layers: a body at a point P of the cell, feet on the plane that the floor's samples suggest,
+// touches the columns nearer than its radius, and each of them needs any free span that holds it.
 namespace throng {
 namespace {
 
 constexpr int32_t kLast = kTileSide - 1;
 
 SurfaceCodes make_codes(uint32_t all) {
-  // Everybody's, everybody's but the first class's, nobody's.
+  // All classes', all but the first class's, no class's.
   return {.codes = {{0, kAreaWalkable}, {1, kAreaWalkable}, {2, kAreaBlocked}},
           .allowed = {all, all & ~1u, 0}};
 }
 
-// A block dealt to sheets, with what legality needs around it.
-struct Dealt {
-  Dealt(const naive::SolidBlock& solids, std::vector<AvatarClass> of, double cell_size)
+// A block assigned to layers, with what legality needs around it.
+struct AssignedBlock {
+  AssignedBlock(const naive::SolidBlock& solids, std::vector<AvatarClass> of, double cell_size)
       : classes(std::move(of)), cell(cell_size) {
     codes = make_codes((1u << classes.size()) - 1);
     limits = body_limits(classes, codes, cell);
-    gaps = naive::gaps_of(solids, limits.min_gap);
+    free_spans = naive::free_spans_of(solids, limits.min_free_span);
     for (size_t c = 0; c < classes.size(); ++c) {
       bodies.push_back(body_window(classes[c], static_cast<int32_t>(c), cell));
       reach = std::max(reach, bodies.back().reach);
     }
     for (size_t i = 0; i < 9; ++i) {
       const auto n = static_cast<int32_t>(i);
-      naive::deal_tile(gaps, n % 3 - 1, n / 3 - 1, limits, pool, tiles[i]);
+      naive::assign_tile(free_spans, n % 3 - 1, n / 3 - 1, limits, pool, tiles[i]);
       list(i);
       around[i] = &lists[i];
     }
@@ -48,18 +48,18 @@ struct Dealt {
   std::vector<AvatarClass> classes;
   void list(size_t tile) {
     lists[tile] = {};
-    for (const auto& sheet : tiles[tile]) lists[tile].add(sheet.get());
+    for (const auto& layer : tiles[tile]) lists[tile].add(layer.get());
   }
 
   double cell;
   SurfaceCodes codes;
   BodyLimits limits;
-  naive::GapBlock gaps;
+  naive::FreeSpanBlock free_spans;
   std::vector<BodyWindow> bodies;
   int32_t reach = 0;
-  SheetPool pool;
-  std::array<TileSheets, 9> tiles;
-  std::array<SheetList, 9> lists;
+  LayerPool pool;
+  std::array<TileLayers, 9> tiles;
+  std::array<LayerList, 9> lists;
   Neighbourhood around;
 };
 
@@ -68,19 +68,19 @@ struct Verdict {
   BitPlane legal;
 };
 
-Verdict judge(const Dealt& world, size_t sheet, size_t avatar_class) {
+Verdict judge(const AssignedBlock& world, size_t layer, size_t avatar_class) {
   LegalityScratch scratch;
-  scratch.window.assemble(world.around, sheet, world.reach, world.limits);
-  make_tilt(*world.tiles[4][sheet], scratch.tilt);
+  scratch.window.assemble(world.around, layer, world.reach, world.limits);
+  make_tilt(*world.tiles[4][layer], scratch.tilt);
   LegalCells cells;
   const BodyWindow& body = world.bodies[avatar_class];
   BitPlane may;
-  may_stand(*world.tiles[4][sheet], body, world.limits, may);
-  legal_cells(*world.tiles[4][sheet], body, may, scratch, cells);
+  may_stand(*world.tiles[4][layer], body, world.limits, may);
+  legal_cells(*world.tiles[4][layer], body, may, scratch, cells);
   Verdict out;
   out.window = cells.legal;
-  recheck_slopes(*world.tiles[4][sheet], body, scratch, cells);
-  recheck_seams(world.around, sheet, body, world.limits, scratch, cells);
+  recheck_slopes(*world.tiles[4][layer], body, scratch, cells);
+  recheck_seams(world.around, layer, body, world.limits, scratch, cells);
   out.legal = cells.legal;
   return out;
 }
@@ -95,11 +95,11 @@ int32_t count(const BitPlane& plane) {
   return cells;
 }
 
-// Feet of a sheet, absolute, or nothing.
+// Feet of a layer, absolute, or nothing.
 constexpr double kNowhere = 1e18;
-double sample(const Sheet& sheet, int32_t x, int32_t z) {
-  const uint16_t feet = sheet.feet[static_cast<size_t>(z * kTileSide + x)];
-  return feet == kNone16 ? kNowhere : sheet.base + feet;
+double sample(const Layer& layer, int32_t x, int32_t z) {
+  const uint16_t feet = layer.feet[static_cast<size_t>(z * kTileSide + x)];
+  return feet == kNone16 ? kNowhere : layer.base + feet;
 }
 
 // The gentler of the rises to both sides, nought if they disagree; at the rim as one cell inside.
@@ -120,12 +120,12 @@ struct Plane {
   }
 };
 
-Plane feet_plane(const Sheet& sheet, int32_t x, int32_t z) {
+Plane feet_plane(const Layer& layer, int32_t x, int32_t z) {
   const int32_t ix = std::clamp(x, 1, kLast - 1), iz = std::clamp(z, 1, kLast - 1);
   return {
-      sample(sheet, x, z),
-      gentler(sample(sheet, ix - 1, z), sample(sheet, ix, z), sample(sheet, ix + 1, z)),
-      gentler(sample(sheet, x, iz - 1), sample(sheet, x, iz), sample(sheet, x, iz + 1)),
+      sample(layer, x, z),
+      gentler(sample(layer, ix - 1, z), sample(layer, ix, z), sample(layer, ix + 1, z)),
+      gentler(sample(layer, x, iz - 1), sample(layer, x, iz), sample(layer, x, iz + 1)),
   };
 }
 
@@ -141,12 +141,13 @@ double distance(double px, double pz, int32_t bx, int32_t bz) {
   return std::sqrt(dx * dx + dz * dz);
 }
 
-// Does column B have a gap that holds a body whose feet lie in [low, high]?
-bool column_holds(const naive::GapBlock& gaps, int32_t x, int32_t z, double low, double high,
-                  double bottom, double height) {
-  if (!gaps.inside(x, z)) return false;
-  for (const naive::Gap& gap : gaps.at(x, z)) {
-    if (gap.top <= low + bottom && gap.top >= high - bottom && gap.ceiling >= high + height) {
+// Does column B have a free span that holds a body whose feet lie in [low, high]?
+bool column_holds(const naive::FreeSpanBlock& free_spans, int32_t x, int32_t z, double low,
+                  double high, double bottom, double height) {
+  if (!free_spans.inside(x, z)) return false;
+  for (const naive::FreeSpan& free_span : free_spans.at(x, z)) {
+    if (free_span.top <= low + bottom && free_span.top >= high - bottom &&
+        free_span.ceiling >= high + height) {
       return true;
     }
   }
@@ -154,9 +155,9 @@ bool column_holds(const naive::GapBlock& gaps, int32_t x, int32_t z, double low,
 }
 
 // Is the body of a class safe at every one of some points of the cell?
-bool body_is_safe(const Dealt& world, const Sheet& sheet, size_t c, int32_t x, int32_t z) {
+bool body_is_safe(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
   const AvatarClass& avatar = world.classes[c];
-  const Plane plane = feet_plane(sheet, x, z);
+  const Plane plane = feet_plane(layer, x, z);
   const double radius = avatar.radius / world.cell, bottom = true_bottom(avatar);
   const auto reach = static_cast<int32_t>(std::ceil(radius)) + 1;
   const auto odd = static_cast<uint64_t>(z * kTileSide + x);
@@ -175,7 +176,7 @@ bool body_is_safe(const Dealt& world, const Sheet& sheet, size_t c, int32_t x, i
     for (int32_t bz = z - reach; bz <= z + reach; ++bz) {
       for (int32_t bx = x - reach; bx <= x + reach; ++bx) {
         if (distance(x + u, z + v, bx, bz) >= radius - 1e-9) continue;
-        if (!column_holds(world.gaps, bx, bz, low, high, bottom + 1e-6,
+        if (!column_holds(world.free_spans, bx, bz, low, high, bottom + 1e-6,
                           avatar.height * 1000 - 1e-6))
           return false;
       }
@@ -184,22 +185,22 @@ bool body_is_safe(const Dealt& world, const Sheet& sheet, size_t c, int32_t x, i
   return true;
 }
 
-// The gap of the cell's own column on which the sheet stands, if the class may stand there.
-bool stands(const Dealt& world, const Sheet& sheet, size_t c, int32_t x, int32_t z) {
-  const double feet = sample(sheet, x, z);
-  for (const naive::Gap& gap : world.gaps.at(x, z)) {
-    if (gap.support == kNoSupport || gap.support != feet) continue;
-    if (gap.top != sheet.base + sheet.top[static_cast<size_t>(z * kTileSide + x)]) continue;
-    return (world.codes.allowed[static_cast<size_t>(gap.code)] >> c & 1) != 0;
+// The free span of the cell's own column on which the layer stands, if the class may stand there.
+bool stands(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
+  const double feet = sample(layer, x, z);
+  for (const naive::FreeSpan& free_span : world.free_spans.at(x, z)) {
+    if (free_span.support == kNoSupport || free_span.support != feet) continue;
+    if (free_span.top != layer.base + layer.top[static_cast<size_t>(z * kTileSide + x)]) continue;
+    return (world.codes.allowed[static_cast<size_t>(free_span.code)] >> c & 1) != 0;
   }
   return false;
 }
 
-// The rule of the window, word by word, on columns of one gap each.
-bool window_rule(const Dealt& world, const Sheet& sheet, size_t c, int32_t x, int32_t z) {
-  if (sample(sheet, x, z) == kNowhere || !stands(world, sheet, c, x, z)) return false;
+// The rule of the window, word by word, on columns of one free span each.
+bool window_rule(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
+  if (sample(layer, x, z) == kNowhere || !stands(world, layer, c, x, z)) return false;
   const AvatarClass& avatar = world.classes[c];
-  const Plane plane = feet_plane(sheet, x, z);
+  const Plane plane = feet_plane(layer, x, z);
   const double low = plane.middle - plane.tilt(), high = plane.middle + plane.tilt();
   const double radius = avatar.radius / world.cell;
   const double bottom = std::floor(true_bottom(avatar) + 1e-6);
@@ -208,24 +209,24 @@ bool window_rule(const Dealt& world, const Sheet& sheet, size_t c, int32_t x, in
     for (int32_t bx = x - reach; bx <= x + reach; ++bx) {
       const double dx = std::max(std::abs(bx - x) - 1, 0), dz = std::max(std::abs(bz - z) - 1, 0);
       if (std::sqrt(dx * dx + dz * dz) >= radius - 1e-9) continue;
-      if (!world.gaps.inside(bx, bz) || world.gaps.at(bx, bz).size() != 1) return false;
-      const naive::Gap& gap = world.gaps.at(bx, bz)[0];
-      if (gap.top > low + bottom || gap.top < high - bottom) return false;
-      if (gap.ceiling < high + std::ceil(avatar.height * 1000 - 1e-6)) return false;
+      if (!world.free_spans.inside(bx, bz) || world.free_spans.at(bx, bz).size() != 1) return false;
+      const naive::FreeSpan& free_span = world.free_spans.at(bx, bz)[0];
+      if (free_span.top > low + bottom || free_span.top < high - bottom) return false;
+      if (free_span.ceiling < high + std::ceil(avatar.height * 1000 - 1e-6)) return false;
     }
   }
   return true;
 }
 
-// What was found over all sheets of the middle tile, and how much of it the window alone knew.
+// What was found over all layers of the middle tile, and how much of it the window alone knew.
 struct Tally {
-  int64_t legal = 0, rechecked = 0, sheets = 0;
+  int64_t legal = 0, rechecked = 0, layers = 0;
 };
 
-void expect_safe(const Dealt& world, const std::string& what, Tally& tally) {
+void expect_safe(const AssignedBlock& world, const std::string& what, Tally& tally) {
   for (size_t s = 0; s < world.tiles[4].size(); ++s) {
-    const Sheet& sheet = *world.tiles[4][s];
-    ++tally.sheets;
+    const Layer& layer = *world.tiles[4][s];
+    ++tally.layers;
     for (size_t c = 0; c < world.classes.size(); ++c) {
       const Verdict verdict = judge(world, s, c);
       tally.legal += count(verdict.legal);
@@ -233,10 +234,10 @@ void expect_safe(const Dealt& world, const std::string& what, Tally& tally) {
       for (int32_t z = 0; z < kTileSide; ++z) {
         for (int32_t x = 0; x < kTileSide; ++x) {
           if (!has(verdict.legal, x, z)) continue;
-          ASSERT_TRUE(stands(world, sheet, c, x, z))
+          ASSERT_TRUE(stands(world, layer, c, x, z))
               << what << ": " << world.classes[c].name << " has no floor at " << x << " " << z;
-          ASSERT_TRUE(body_is_safe(world, sheet, c, x, z))
-              << what << ": " << world.classes[c].name << " on sheet " << s << " at " << x << " "
+          ASSERT_TRUE(body_is_safe(world, layer, c, x, z))
+              << what << ": " << world.classes[c].name << " on layer " << s << " at " << x << " "
               << z;
         }
       }
@@ -257,10 +258,10 @@ TEST(Legality, ABodyOnALegalCellClearsEveryColumnThatItCanTouch) {
                                    .ceilings = seed % 2 == 0,
                                    .holes = seed % 4 == 0,
                                    .codes = 3};
-    const Dealt world(naive::random_solids(block), default_classes(), 0.1);
+    const AssignedBlock world(naive::random_solids(block), default_classes(), 0.1);
     ASSERT_NO_FATAL_FAILURE(expect_safe(world, words(block), tally));
   }
-  EXPECT_GT(tally.sheets, 60);
+  EXPECT_GT(tally.layers, 60);
   EXPECT_GT(tally.legal, 100000);
   EXPECT_GT(tally.rechecked, 3000);
 }
@@ -280,13 +281,13 @@ TEST(Legality, BodiesOfAllSizesAndCellsAreSafe) {
                                    .ceilings = true,
                                    .holes = seed % 5 == 0};
     const double cell = seed % 3 == 0 ? 0.05 : (seed % 3 == 1 ? 0.17 : 0.4);
-    const Dealt world(naive::random_solids(block), {avatar}, cell);
+    const AssignedBlock world(naive::random_solids(block), {avatar}, cell);
     ASSERT_NO_FATAL_FAILURE(expect_safe(world, words(block), tally));
   }
   EXPECT_GT(tally.legal, 10000);
 }
 
-TEST(Legality, OnASingleSheetTheWindowFindsExactlyWhatTheDefinitionSays) {
+TEST(Legality, OnASingleLayerTheWindowFindsExactlyWhatTheDefinitionSays) {
   int64_t legal = 0;
   for (uint64_t seed = 1; seed <= 32; ++seed) {
     const naive::RandomBlock block{.seed = seed + 200,
@@ -294,37 +295,37 @@ TEST(Legality, OnASingleSheetTheWindowFindsExactlyWhatTheDefinitionSays) {
                                    .holes = seed % 2 == 0,
                                    .codes = seed % 3 == 0 ? 3 : 1};
     naive::SolidBlock solids = naive::random_solids(block);
-    for (auto& column : solids.cells) {  // one gap each; some under a ceiling
+    for (auto& column : solids.cells) {  // one free span each; some under a ceiling
       if (column.size() > 1) column.resize(1);
     }
-    Dealt plain(solids, default_classes(), 0.1);
-    if (seed % 4 == 1) {  // ceilings without gaps above them: nobody ever is there
+    AssignedBlock plain(solids, default_classes(), 0.1);
+    if (seed % 4 == 1) {  // ceilings without free spans above them
       for (int32_t z = -64; z < 128; ++z) {
         for (int32_t x = -64; x < 128; ++x) {
-          for (naive::Gap& gap : plain.gaps.at(x, z)) {
+          for (naive::FreeSpan& free_span : plain.free_spans.at(x, z)) {
             const auto slab = static_cast<uint64_t>((z + 64) / 23 * 10 + (x + 64) / 17);
             if (random_unit(seed, 3, slab) > 0.4) continue;
-            gap.ceiling = gap.top + BodyLimits::kHighGap +
-                          static_cast<int32_t>(2000 * random_unit(seed, 4, slab));
+            free_span.ceiling = free_span.top + BodyLimits::kHighFreeSpan +
+                                static_cast<int32_t>(2000 * random_unit(seed, 4, slab));
           }
         }
       }
       for (size_t i = 0; i < 9; ++i) {
         const auto n = static_cast<int32_t>(i);
-        naive::deal_tile(plain.gaps, n % 3 - 1, n / 3 - 1, plain.limits, plain.pool,
-                         plain.tiles[i]);
+        naive::assign_tile(plain.free_spans, n % 3 - 1, n / 3 - 1, plain.limits, plain.pool,
+                           plain.tiles[i]);
         plain.list(i);
       }
     }
     ASSERT_LE(plain.tiles[4].size(), 1u) << words(block);
     if (plain.tiles[4].empty()) continue;
-    const Sheet& sheet = *plain.tiles[4][0];
+    const Layer& layer = *plain.tiles[4][0];
     for (size_t c = 0; c < plain.classes.size(); ++c) {
       const Verdict verdict = judge(plain, 0, c);
       legal += count(verdict.window);
       for (int32_t z = 0; z < kTileSide; ++z) {
         for (int32_t x = 0; x < kTileSide; ++x) {
-          ASSERT_EQ(has(verdict.window, x, z), window_rule(plain, sheet, c, x, z))
+          ASSERT_EQ(has(verdict.window, x, z), window_rule(plain, layer, c, x, z))
               << words(block) << " " << plain.classes[c].name << " at " << x << " " << z;
           if (has(verdict.window, x, z)) {
             ASSERT_TRUE(has(verdict.legal, x, z));
@@ -347,7 +348,7 @@ TEST(Legality, ABodyThatJustTouchesAColumnIsNotStoppedByIt) {
   const AvatarClass avatar{.name = "a", .height = 1.8, .radius = 0.3};
   naive::SolidBlock solids = flat_block(0);
   solids.at(30, 30).push_back({0, 2500, kNoSupport, 0});
-  const Dealt world(solids, {avatar}, 0.1);
+  const AssignedBlock world(solids, {avatar}, 0.1);
   const Verdict verdict = judge(world, 0, 0);
   for (int32_t x = 27; x <= 33; ++x) EXPECT_FALSE(has(verdict.legal, x, 30)) << x;
   EXPECT_TRUE(has(verdict.legal, 26, 30));
@@ -374,7 +375,7 @@ TEST(Legality, EvenSlopesUpToTheClasssLimitAreLegalAllOver) {
                                      static_cast<int32_t>(std::lround(middle)), 0});
         }
       }
-      const Dealt world(solids, {adult}, 0.1);
+      const AssignedBlock world(solids, {adult}, 0.1);
       ASSERT_EQ(world.tiles[4].size(), 1u);
       EXPECT_EQ(count(judge(world, 0, 0).legal), kTileArea) << degrees << " degrees, " << turn;
     }
@@ -396,11 +397,11 @@ TEST(Legality, WhatAllLegalPassesEveryCellPasses) {
       const auto room = 900 + static_cast<int32_t>(random_below(seed, 7, 0, 2500));
       solids.cells[at].push_back({1000 + room, 1000 + room + 50, kNoSupport, 0});
     }
-    if (seed % 2 == 0) {  // A neighbour that could be in the way, or just not.
+    if (seed % 2 == 0) {  // A neighbour that could block, or just not.
       const auto at = static_cast<size_t>(random_below(seed, 4, 0, solids.cells.size()));
       solids.cells[at][0].high += static_cast<int32_t>(random_below(seed, 5, 0, 800));
     }
-    const Dealt world(solids, default_classes(), 0.1);
+    const AssignedBlock world(solids, default_classes(), 0.1);
     for (size_t c = 0; c < world.classes.size(); ++c) {
       if (!all_legal(world.around, 0, world.bodies[c], world.limits)) {
         ++stopped;
@@ -418,20 +419,20 @@ TEST(Legality, WhatAllLegalPassesEveryCellPasses) {
 }
 
 TEST(Legality, StepSafeIsTrueIffNoTwoLegalNeighboursDifferByMoreThanTheStep) {
-  const auto sheet = std::make_unique<Sheet>();
+  const auto layer = std::make_unique<Layer>();
   int32_t safe = 0;
   for (uint64_t seed = 1; seed <= 400; ++seed) {
     const auto range = 1 + random_below(seed, 0, 0, 500);
     BitPlane legal{};
     for (size_t c = 0; c < kTileArea; ++c) {
-      sheet->feet[c] = static_cast<uint16_t>(4000 + random_below(seed, 1, c, range));
-      if (random_unit(seed, 2, c) < 0.02) sheet->feet[c] = kNone16;
-      const bool stands = sheet->feet[c] != kNone16 && random_unit(seed, 3, c) < 0.9;
+      layer->feet[c] = static_cast<uint16_t>(4000 + random_below(seed, 1, c, range));
+      if (random_unit(seed, 2, c) < 0.02) layer->feet[c] = kNone16;
+      const bool stands = layer->feet[c] != kNone16 && random_unit(seed, 3, c) < 0.9;
       legal[c / 64] |= static_cast<uint64_t>(stands) << (c % 64);
     }
     if (seed % 2 == 0) {  // One step that is too high, somewhere: also along the rim.
       const size_t at = random_below(seed, 4, 0, kTileArea);
-      sheet->feet[at] = static_cast<uint16_t>(5000 + range);
+      layer->feet[at] = static_cast<uint16_t>(5000 + range);
     }
     const auto step = static_cast<int32_t>(range) - 1 + static_cast<int32_t>(seed % 3) - 1;
     bool expected = true;
@@ -440,25 +441,25 @@ TEST(Legality, StepSafeIsTrueIffNoTwoLegalNeighboursDifferByMoreThanTheStep) {
       if (!has(legal, x, z)) continue;
       for (const auto& [nx, nz] : {std::pair{x + 1, z}, {x, z + 1}}) {
         if (nx > kLast || nz > kLast || !has(legal, nx, nz)) continue;
-        const int32_t other = sheet->feet[static_cast<size_t>(nz * 64 + nx)];
-        expected = expected && std::abs(other - sheet->feet[static_cast<size_t>(i)]) <= step;
+        const int32_t other = layer->feet[static_cast<size_t>(nz * 64 + nx)];
+        expected = expected && std::abs(other - layer->feet[static_cast<size_t>(i)]) <= step;
       }
     }
     safe += expected ? 1 : 0;
-    ASSERT_EQ(step_safe(*sheet, legal, step), expected) << "seed " << seed;
+    ASSERT_EQ(step_safe(*layer, legal, step), expected) << "seed " << seed;
   }
   // Each pair of neighbours alone.
   for (int32_t i = 0; i < kTileArea; ++i) {
     const int32_t x = i % 64, z = i / 64;
     for (const auto& [nx, nz] : {std::pair{x + 1, z}, {x, z + 1}}) {
       if (nx > kLast || nz > kLast) continue;
-      sheet->feet.fill(4000);
-      sheet->feet[static_cast<size_t>(i)] = 4300;
+      layer->feet.fill(4000);
+      layer->feet[static_cast<size_t>(i)] = 4300;
       BitPlane legal{};
       legal[static_cast<size_t>(z)] |= uint64_t{1} << x;
       legal[static_cast<size_t>(nz)] |= uint64_t{1} << nx;
-      ASSERT_TRUE(step_safe(*sheet, legal, 300)) << x << " " << z;
-      ASSERT_FALSE(step_safe(*sheet, legal, 299)) << x << " " << z << " to " << nx << " " << nz;
+      ASSERT_TRUE(step_safe(*layer, legal, 300)) << x << " " << z;
+      ASSERT_FALSE(step_safe(*layer, legal, 299)) << x << " " << z << " to " << nx << " " << nz;
     }
   }
   EXPECT_GT(safe, 50);
@@ -478,24 +479,24 @@ TEST(Legality, ATallBodyUnderAFarCeilingOfATallTileKeepsItsHead) {
     }
   }
   Tally tally;
-  expect_safe(Dealt(solids, {AvatarClass{}, tall}, 1.0), "tall tile", tally);
+  expect_safe(AssignedBlock(solids, {AvatarClass{}, tall}, 1.0), "tall tile", tally);
   EXPECT_GT(tally.legal, 1000);
 }
 
-TEST(Legality, ABodyThatStepsFarDownStillSeesADeeperDrop) {
-  // bottom is 5 m; beside the tile the ground lies 12 m lower, in another tile's sheet.
+TEST(Legality, ABodyThatStepsFarDownDoesNotStepOverADeeperEdge) {
+  // bottom is 5 m; beside the tile the ground lies 12 m lower, in another tile's layer.
   const AvatarClass wide{.name = "wide", .height = 20, .radius = 1, .step = 5};
   for (const int32_t drop : {3000, 5500, 12000, 40000}) {
     naive::SolidBlock solids = flat_block(0);
     for (int32_t z = -64; z < 128; ++z) {
       for (int32_t x = 64; x < 128; ++x) {
         solids.at(x, z)[0] = {-drop - 500, -drop, -drop, 0};
-        // A second floor there, so that its sheets are chosen line by line.
+        // A second floor there, so that its layers are chosen line by line.
         if (drop == 40000) solids.at(x, z).push_back({-drop - 61000, -drop - 60500, kNoSupport, 0});
       }
     }
     Tally tally;
-    expect_safe(Dealt(solids, {wide}, 1.0), "drop " + std::to_string(drop), tally);
+    expect_safe(AssignedBlock(solids, {wide}, 1.0), "drop " + std::to_string(drop), tally);
     EXPECT_GT(tally.legal, 3000);
   }
 }
@@ -510,7 +511,7 @@ TEST(Legality, SameBitsForEverySimdWidth) {
                                      .ceilings = true,
                                      .holes = true,
                                      .codes = 3};
-      const Dealt world(naive::random_solids(block), default_classes(), 0.1);
+      const AssignedBlock world(naive::random_solids(block), default_classes(), 0.1);
       for (size_t s = 0; s < world.tiles[4].size(); ++s) {
         for (size_t c = 0; c < world.classes.size(); ++c) {
           const Verdict verdict = judge(world, s, c);

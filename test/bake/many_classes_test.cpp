@@ -30,7 +30,7 @@ std::vector<AvatarClass> six_classes() {
           {.name = "porter", .height = 2.1, .radius = 0.35, .step = 0.3, .max_slope = 20}};
 }
 
-// Places of a class: cell and feet, without the tile and sheet they are stored in.
+// Places of a class: cell and feet, without the level tile they are stored in.
 using Places = std::map<std::pair<int32_t, int32_t>, std::vector<int32_t>>;
 
 Places places_of(const World& world, size_t avatar_class) {
@@ -53,7 +53,7 @@ struct Difference {
   int32_t feet = 0;                // furthest apart of a place that both have [mm]
 };
 
-// Places of `a` that have no like in `b`. Feet may be a plane's, a mm beside those of the matter.
+// Places of `a` that have no like in `b`. Feet may be a plane's, a mm beside those of the solid.
 void compare(const Places& a, const Places& b, Difference& out) {
   for (const auto& [cell, feet] : a) {
     const auto other = b.find(cell);
@@ -97,7 +97,7 @@ TEST(ManyClasses, EachStandsWhereItDoesAlone) {
   RecordProperty("places", std::to_string(places));
 }
 
-// Six bodies of any size that does not change how gaps are dealt.
+// Six bodies of any size that does not change how free spans are assigned.
 std::vector<AvatarClass> random_classes(uint64_t seed) {
   std::vector<AvatarClass> classes;
   for (uint64_t n = 0; n < 6; ++n) {
@@ -107,7 +107,7 @@ std::vector<AvatarClass> random_classes(uint64_t seed) {
     AvatarClass avatar{.name = "class" + std::to_string(n), .radius = pick(0, 0.16, 0.7)};
     avatar.step = pick(1, 0.02, 0.9);
     avatar.max_slope = pick(2, 2, 45);
-    // From those who crawl under tables to those who need a gate.
+    // From those that crawl under tables to those that need a gate.
     const double bottom = std::max(avatar.step, avatar.radius);
     avatar.height = std::max(2 * avatar.step, bottom + pick(3, 0.3, 2.6));
     classes.push_back(avatar);

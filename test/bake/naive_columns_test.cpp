@@ -66,7 +66,7 @@ TEST(NaiveColumns, OnlySpansThatOverlapOrTouchAreMerged) {
   EXPECT_EQ(highs(columns, 0), (Ints{4, 6, 7, 9}));
 }
 
-TEST(NaiveColumns, WideningOnlyAddsMatter) {
+TEST(NaiveColumns, WideningOnlyAddsToTheSolid) {
   const Scene scene = one_triangle({0.3, 0, 0.2}, {2.1, 1.5, 0.9}, {0.6, 4, 2.7});
   const auto exact = naive::make_columns(scene, {.cell = 0.1, .width = 30, .depth = 30});
   const auto wide =

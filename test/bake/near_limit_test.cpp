@@ -55,7 +55,7 @@ Height rough(double spacing, double percent, uint64_t seed) {
   };
 }
 
-TEST(NearLimit, NobodyEntersCreasesKerbsAndPosts) {
+TEST(NearLimit, NoBodyEntersCreasesKerbsAndPosts) {
   std::vector<AvatarClass> classes = default_classes();
   // One that clears its slope by nothing, on more than one cell in height; one thinner than a cell.
   classes.push_back({.name = "steep", .height = 1, .radius = 0.27, .step = 0, .max_slope = 21});
@@ -113,16 +113,16 @@ struct Soup {
       const auto items =
           std::span(bins.items).subspan(bins.first[i], bins.first[i + 1] - bins.first[i]);
       TileColumns columns;
-      TileGaps gaps, high;
+      TileFreeSpans free_spans, high;
       rasterise_tile(triangles, items, (n % 3 - 1) * kTileSide, (n / 3 - 1) * kTileSide, {},
-                     limits.min_gap - 1, columns);
-      find_gaps(columns, limits.min_gap, gaps);
-      find_gaps(columns, BodyLimits::kHighGap, high);
-      lend_supports(gaps);
-      deal_gaps({.high = high, .all = &gaps}, limits, pool, tiles[i]);
-      for (const auto& sheet : tiles[i]) {
-        find_useful(limits, *sheet);
-        lists[i].add(sheet.get());
+                     limits.min_free_span - 1, columns);
+      find_free_spans(columns, limits.min_free_span, free_spans);
+      find_free_spans(columns, BodyLimits::kHighFreeSpan, high);
+      lend_supports(free_spans);
+      assign_free_spans({.high = high, .all = &free_spans}, limits, pool, tiles[i]);
+      for (const auto& layer : tiles[i]) {
+        find_useful(limits, *layer);
+        lists[i].add(layer.get());
       }
       around[i] = &lists[i];
       of_tiles.items[i] = items;
@@ -160,14 +160,14 @@ struct Soup {
   BodyWindow body;
   std::vector<CellTriangle> triangles;
   TriangleBins bins;
-  SheetPool pool;
-  std::array<TileSheets, 9> tiles;
-  std::array<SheetList, 9> lists;
+  LayerPool pool;
+  std::array<TileLayers, 9> tiles;
+  std::array<LayerList, 9> lists;
   Neighbourhood around{};
   TileTriangles of_tiles;
 };
 
-TEST(SurfacePlanes, NoMatterBelowTheGapStandsAboveThePlaneByMoreThanTheExcess) {
+TEST(SurfacePlanes, NoSolidBelowTheFreeSpanIsAboveThePlaneByMoreThanTheExcess) {
   int64_t points = 0, planes = 0, raised = 0;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     const Soup soup(seed);
@@ -176,7 +176,7 @@ TEST(SurfacePlanes, NoMatterBelowTheGapStandsAboveThePlaneByMoreThanTheExcess) {
       asked[z] = seed % 3 != 0 ? ~uint64_t{0} : (z % 9 < 5 ? random_u64(seed, 5, z) : 0);
     }
     CellPlanes planes_of;
-    SheetWindow window;
+    LayerWindow window;
     for (size_t s = 0; s < soup.tiles[4].size(); ++s) {
       const int32_t base = soup.tiles[4][s]->base;
       window.assemble(soup.around, s, soup.body.reach, soup.limits);

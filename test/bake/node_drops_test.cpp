@@ -36,7 +36,7 @@ std::vector<AvatarClass> divers(double deepest = 3) {
   return classes;
 }
 
-// Climbers on curved ground who also let themselves down.
+// Climbers on curved ground that also drop.
 std::vector<AvatarClass> jumpers() {
   std::vector<AvatarClass> classes = divers();
   classes.push_back({.name = "climber", .climb_slope = 100, .max_drop = 4});
@@ -49,12 +49,12 @@ Scene ground() {
   return scene;
 }
 
-// A platform of 2 m that nobody climbs, with a rail along one side and a ledge along another.
+// A platform of 2 m that no class climbs, with a rail along one side and a ledge along another.
 Scene platform() {
   Scene scene = ground();
   scene.add_box({4, 0, 4}, {8, 2, 8});
   scene.add_box({4, 2, 3.9}, {8, 3, 4});      // too high to go over
-  scene.add_box({8, 0, 4}, {8.3, 1, 8});      // half way down, too narrow to stand on
+  scene.add_box({8, 0, 4}, {8.3, 1, 8});      // halfway down, too narrow to stand on
   scene.add_box({2.5, 1.9, 5}, {4, 2, 7});    // a balcony
   scene.add_box({5, 0, 8.45}, {6, 0.5, 12});  // to step down from
   return scene;
@@ -80,7 +80,7 @@ Nodes make(const World& world, const Scene& scene, NodeConfig config = {}) {
 }
 
 // Every cell against every other, by the world's own moves and by bodies every few millimetres of
-// the way: nothing of the bake but the world.
+// the move: it uses nothing of the bake but the world.
 std::map<std::pair<DropEnd, DropEnd>, uint16_t> plain_drops(const World& world,
                                                             const Scene& scene) {
   struct Standing {
@@ -192,7 +192,7 @@ TEST(NodeDrops, AreThoseOfAPlainSearchOverAllPairs) {
   for (uint64_t seed = 1; seed <= 2; ++seed) check("boxes", boxes(seed), 0.2);
 }
 
-TEST(NodeDrops, LeadDownOnlyForWhoAsksForThem) {
+TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
   const Scene scene = platform();
   const Nodes nodes = make(bake(scene, 0.1, divers()), scene);
   Context context;
@@ -244,8 +244,8 @@ TEST(NodeDrops, LeadDownOnlyForWhoAsksForThem) {
   EXPECT_EQ(nodes.reach(0).size(), nodes.reach(1).size());
 }
 
-// The oracle of src/verify goes the ways; who is said to reach whom it tells from the arcs.
-TEST(NodeDrops, EveryWayCanBeGoneByItsBody) {
+// The oracle of src/verify walks the paths; which node reaches which it finds from the arcs.
+TEST(NodeDrops, EveryPathCanBeWalkedByItsBody) {
   Context context;
   uint64_t drops = 0;
   const auto check = [&](const std::string& name, const Scene& scene, double cell, double size,
@@ -294,7 +294,7 @@ TEST(NodeDrops, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(NodeDrops, AreKeptByAWorldAndItsNodes) {
+TEST(NodeDrops, AreStoredByAWorldAndItsNodes) {
   const test::ScratchFolder folder;
   const std::string path = folder.path() + "/platform.throng";
   const Scene scene = platform();

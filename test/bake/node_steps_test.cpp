@@ -10,7 +10,7 @@
 #include "throng/node_path.h"
 #include "throng/nodes.h"
 
-// Links over steps: LinkKind::kStep, in nodes and in ways over them.
+// Links over steps: LinkKind::kStep, in nodes and in paths over them.
 namespace throng {
 namespace {
 
@@ -73,7 +73,7 @@ Scene kerb(double high, double at, double run = 0) {
   return scene;
 }
 
-TEST(NodeSteps, NobodyGetsOverAKerbWithoutOne) {
+TEST(NodeSteps, NoBodyGetsOverAKerbWithoutOne) {
   for (const double cell : {0.1, 0.2, 0.25}) {
     for (const double high : {0.08, 0.17, 0.28}) {
       // Wherever it lies in blocks of 8 x 8 cells and in tiles, but at a tile's very rim.
@@ -138,14 +138,14 @@ TEST(NodeSteps, RampsAndHillsHaveNone) {
   }
 }
 
-TEST(NodeSteps, WhoCanGoAroundDoesWithoutOne) {
+TEST(NodeSteps, AClassThatCanGoAroundNeedsNone) {
   // A kerb that runs out along the ramp: 8 m of it, and the ramp beside.
   const Nodes nodes = make(kerb(0.3, 10, 5), 0.2);
   EXPECT_GT(steps_of(nodes), 0u);
   EXPECT_EQ(parts_without_steps(nodes, 0).size(), 1u);
 }
 
-TEST(NodeSteps, AWayUpstairsNamesEveryRiser) {
+TEST(NodeSteps, APathUpstairsNamesEveryRiser) {
   Context context;
   const Nodes nodes = make(test::builtin({.name = "stairs"}), 0.1);
   auto finder = NodePathFinder::make(nodes, {}, context);

@@ -143,8 +143,8 @@ size_t check_patch_widths(const std::string& name, const Nodes& nodes, uint32_t 
     const double side = 1.0 / (1 << info.level);
     const double s0 = (info.s + 0.5) * side, t0 = (info.t + 0.5) * side;
     const Vec3d middle = nodes.point(n, s0, t0);
-    for (uint64_t way = 0; way < 16; ++way) {
-      const double turn = 6.283185307 * random_unit(7, n, way);
+    for (uint64_t ray = 0; ray < 16; ++ray) {
+      const double turn = 6.283185307 * random_unit(7, n, ray);
       for (double along = 0.02;; along += 0.02) {
         const double s = s0 + along * side * std::cos(turn), t = t0 + along * side * std::sin(turn);
         if (s < 0 || t < 0 || s >= 1 || t >= 1) break;

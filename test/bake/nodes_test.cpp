@@ -206,7 +206,7 @@ TEST(Nodes, ClimbersReachWhatWalkersCannot) {
   EXPECT_TRUE(steep);
 }
 
-TEST(Nodes, JumpsGivenByHandJoinWhatNothingElseJoins) {
+TEST(Nodes, OffMeshLinksJoinWhatNothingElseJoins) {
   Scene scene;  // Two islands, two metres apart.
   scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
   scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
@@ -220,7 +220,7 @@ TEST(Nodes, JumpsGivenByHandJoinWhatNothingElseJoins) {
   EXPECT_EQ(joined.reach(1).size(), 2u);  // For its class only.
   config.off_mesh_links[0].both_ways = false;
   const Nodes one_way = make(world, scene, config);
-  EXPECT_EQ(one_way.reach(0).size(), 2u);  // Who jumps cannot come back.
+  EXPECT_EQ(one_way.reach(0).size(), 2u);  // Over a one-way link no body comes back.
   size_t off_mesh_links = 0, back = 0;
   for (uint32_t n = 0; n < one_way.node_count(); ++n) {
     for (const NodeArc& arc : one_way.arcs(n)) {
@@ -270,7 +270,7 @@ TEST(Nodes, AreWrittenAndOpened) {
   EXPECT_EQ(made.write(path).error().message, path + ": holds another world than these nodes' own");
 }
 
-TEST(Nodes, OverGroundThatCannotBeReadNobodyStands) {
+TEST(Nodes, OverGroundThatCannotBeReadNoBodyStands) {
   const test::ScratchFolder folder;
   const std::string path = folder.path() + "/garage.throng";
   const Scene scene = builtin({.name = "garage"});

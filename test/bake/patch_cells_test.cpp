@@ -116,8 +116,9 @@ std::vector<AvatarClass> four_classes() {
   return classes;
 }
 
-// Where nobody knows of which part of its patch a triangle is, the patch's own are like all others.
-TEST(PatchCells, PromiseWhatALookAtEveryTriangleOfTheSceneFinds) {
+// Where it is unknown which part of its patch a triangle covers, the patch's own are like all
+// others.
+TEST(PatchCells, PromiseWhatATestOfEveryTriangleOfTheSceneFinds) {
   const std::vector<AvatarClass> classes = four_classes();
   const NodeBins bins = make_bins(classes);
   size_t stopped = 0, stands = 0, low = 0, made = 0;

@@ -31,9 +31,9 @@ struct Dice {
 // as touch the body's lid or bottom as closely as numbers go.
 struct Case {
   BodyFrame frame;
-  std::vector<SieveTube> tubes;
+  std::vector<FilterTube> tubes;
   std::vector<LocalTriangle> triangles;  // in the world
-  SieveQuestion question;
+  FilterQuery question;
 
   explicit Case(Dice& dice) {
     Vec3d up = dice.point(1);
@@ -79,21 +79,21 @@ struct Case {
   }
 };
 
-TEST(TriangleSieve, LosesNoTriangleThatEntersAndAnswersOnlyWhatIsSo) {
+TEST(TriangleFilter, LosesNoTriangleThatEntersAndAnswersOnlyWhatIsSo) {
   test::for_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
     Dice dice{.seed = 3};
-    SieveHits hits;
+    FilterHits hits;
     size_t answers = 0, kept = 0, entered = 0;
     for (int round = 0; round < 3000; ++round) {
       const Case c(dice);
-      SieveList list;
+      FilterList list;
       list.clear(c.frame.centre + dice.point(20));
       for (size_t i = 0; i < c.triangles.size(); ++i) {
         list.add(static_cast<uint32_t>(i), c.triangles[i]);
       }
       list.close();
-      const uint32_t answered = sieve(list, c.question, hits);
+      const uint32_t answered = filter(list, c.question, hits);
       const bool all = answered == (1u << c.tubes.size()) - 1;
       kept += hits.count;
       for (size_t b = 0; b < c.tubes.size(); ++b) {
@@ -118,23 +118,23 @@ TEST(TriangleSieve, LosesNoTriangleThatEntersAndAnswersOnlyWhatIsSo) {
   });
 }
 
-TEST(TriangleSieve, AGlanceOverlooksNoTubeThatATriangleEnters) {
+TEST(TriangleFilter, AGlanceOverlooksNoTubeThatATriangleEnters) {
   test::for_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
     Dice dice{.seed = 5};
     size_t met = 0, entered = 0, passed = 0;
     for (int round = 0; round < 3000; ++round) {
       const Case c(dice);
-      SieveList list;
+      FilterList list;
       list.clear(c.frame.centre + dice.point(20));
       const size_t few = 1 + static_cast<size_t>(round) % 20;  // else hardly a tube stays empty
       for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
       list.close();
       std::vector<BodySweep> tubes;
-      for (const SieveTube& tube : c.tubes) tubes.push_back(tube.whole);
+      for (const FilterTube& tube : c.tubes) tubes.push_back(tube.whole);
       const uint32_t all = (1u << tubes.size()) - 1, some = static_cast<uint32_t>(round) & all;
       const uint32_t found = glance(list, c.frame, tubes, all);
-      // Others may grow the margin, but who is not asked about is not answered.
+      // Others may grow the margin, but a tube that is not queried gets no answer.
       ASSERT_EQ(glance(list, c.frame, tubes, some) & ~(found & some), 0u) << "round " << round;
       for (size_t b = 0; b < tubes.size(); ++b) {
         bool enters = false;
@@ -151,7 +151,7 @@ TEST(TriangleSieve, AGlanceOverlooksNoTubeThatATriangleEnters) {
   });
 }
 
-TEST(TriangleSieve, WhatSurelyEntersAnUprightTubeDoesSo) {
+TEST(TriangleFilter, WhatSurelyEntersAnUprightTubeDoesSo) {
   test::for_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
     Dice dice{.seed = 6};
@@ -159,17 +159,17 @@ TEST(TriangleSieve, WhatSurelyEntersAnUprightTubeDoesSo) {
     for (int round = 0; round < 3000; ++round) {
       const Case c(dice);
       if (c.frame.up.y != 1) continue;
-      SieveList list;
+      FilterList list;
       list.clear(c.frame.centre + dice.point(20));
       const size_t few = 1 + static_cast<size_t>(round) % 20;
       for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
       list.close();
-      for (const SieveTube& tube : c.tubes) {
+      for (const FilterTube& tube : c.tubes) {
         bool enters = false;
         for (size_t i = 0; i < few; ++i) enters |= c.enters(i, tube.whole);
-        const bool told = surely_enters(list, c.frame.centre, tube.whole);
-        ASSERT_TRUE(enters || !told) << "round " << round;
-        sure += told;
+        const bool surely = surely_enters(list, c.frame.centre, tube.whole);
+        ASSERT_TRUE(enters || !surely) << "round " << round;
+        sure += surely;
         entered += enters;
         const bool uphill = surely_enters_uphill(list, c.frame.centre, {&tube.whole, 1}, 1) != 0;
         ASSERT_TRUE(enters || !uphill) << "round " << round;
@@ -182,14 +182,14 @@ TEST(TriangleSieve, WhatSurelyEntersAnUprightTubeDoesSo) {
   });
 }
 
-TEST(TriangleSieve, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {
+TEST(TriangleFilter, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {
   test::for_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
     Dice dice{.seed = 4};
-    SieveList near;
+    FilterList near;
     for (int round = 0; round < 300; ++round) {
       const Case c(dice);
-      SieveList list;
+      FilterList list;
       list.clear(dice.point(5));
       for (size_t i = 0; i < c.triangles.size(); ++i) {
         list.add(static_cast<uint32_t>(i), c.triangles[i]);

@@ -44,7 +44,7 @@ Scene clutter(uint64_t seed, double slope) {
   return scene;
 }
 
-TEST(WallParts, NobodyEntersWallsKerbsAndBeamsAtAnyAngle) {
+TEST(WallParts, NoBodyEntersWallsKerbsAndBeamsAtAnyAngle) {
   std::vector<AvatarClass> classes = default_classes();
   classes.push_back({.name = "wide", .height = 1.2, .radius = 0.61, .step = 0.1, .max_slope = 30});
   classes.push_back({.name = "slim", .height = 1.9, .radius = 0.16, .step = 0.3, .max_slope = 40});
@@ -100,7 +100,7 @@ TEST(WallParts, ACorridorAtAnyAngleKeepsWhatAGrownBodyCanUse) {
   for (const double turn : {0.0, 0.2, 0.5, std::numbers::pi / 4, 1.2}) {
     Scene scene = floor_of(16);
     const double c = std::cos(turn), s = std::sin(turn);
-    for (int32_t n = 0; n < 8; ++n) {  // eight walls, the ways between them 1 m wide
+    for (int32_t n = 0; n < 8; ++n) {  // eight walls, 1 m apart
       const double across = n * 1.1;
       add_box(scene, {6 - s * across, 9, 3 + c * across}, {8, 4, 0.1}, turn);
     }
@@ -114,7 +114,7 @@ TEST(WallParts, ACorridorAtAnyAngleKeepsWhatAGrownBodyCanUse) {
   }
 }
 
-TEST(WallParts, ACellBesideAWallIsNoWayOverADrop) {
+TEST(WallParts, ACellBesideAWallLeadsOverNoDrop) {
   // A platform of 2 m without a rail, and one with a pane that stands 4 cells beyond its rim.
   Scene scene = floor_of(12);
   add_box(scene, {3, 9, 3}, {3, 3, 3});

@@ -60,7 +60,7 @@ TEST(Parallel, GroupsVisitEveryIndexOnceAndWorkOnThreadsOfTheirOwn) {
     std::vector<int> sums(200, 0);
     parallel_groups(sums.size(), groups, [&](size_t index, int32_t group) {
       if (inside[static_cast<size_t>(group)]++ != 0) ++clashes;
-      // Scratch memory of a group's workers: nobody else may be in it.
+      // Scratch memory of a group's workers: no other group may use it.
       std::vector<std::atomic<int>> used(2);
       std::atomic<int> sum{0};
       parallel_for_worker(100, 2, [&](size_t i, int32_t worker) {
@@ -92,14 +92,14 @@ TEST(Parallel, WhatAGroupThrowsIsThrownOnceTheOthersHaveEnded) {
   }
 }
 
-TEST(Parallel, WorkersAreDealtSoThatNoneIsLeft) {
+TEST(Parallel, WorkersAreAssignedSoThatNoneIsLeft) {
   for (int32_t workers = 1; workers <= 33; ++workers) {
     for (const size_t tasks : {size_t{0}, size_t{1}, size_t{3}, size_t{10}, size_t{5000}}) {
-      const WorkerGroups dealt = deal_workers(tasks, workers);
-      EXPECT_GE(dealt.groups * dealt.workers, workers);
-      EXPECT_LT((dealt.groups - 1) * dealt.workers, 2 * workers);
-      EXPECT_LE(dealt.groups, std::max<size_t>(tasks, 1));
-      EXPECT_TRUE(workers >= 4 || dealt.groups == 1);
+      const WorkerGroups assigned = assign_workers(tasks, workers);
+      EXPECT_GE(assigned.groups * assigned.workers, workers);
+      EXPECT_LT((assigned.groups - 1) * assigned.workers, 2 * workers);
+      EXPECT_LE(assigned.groups, std::max<size_t>(tasks, 1));
+      EXPECT_TRUE(workers >= 4 || assigned.groups == 1);
     }
   }
 }

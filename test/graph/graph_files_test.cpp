@@ -279,7 +279,7 @@ class DamagedGraphFile : public GraphOnDisk, public testing::WithParamInterface<
     const auto graph = make(open());
     ASSERT_TRUE(graph && Graph::check_files(open()));
   }
-  // What is said of it by who touches it; empty if nothing is.
+  // The error of a read that touches it; empty if there is none.
   [[nodiscard]] std::string said() const {
     const World world = open();
     const auto graph = make(world);

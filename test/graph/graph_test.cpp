@@ -25,7 +25,7 @@ Graph make(const World& world, int32_t workers = 0) {
   return graph ? *graph : Graph{};
 }
 
-// All legal cells of a class, and which of them moves of one cell hold together.
+// All legal cells of a class, and which of them moves of one cell connect.
 struct Cells {
   std::vector<Place> places;
   std::vector<uint32_t> root;
@@ -105,7 +105,7 @@ void expect_as_naive(const World& world, const char* name) {
   }
 }
 
-TEST(Graph, HoldsTogetherWhatMovesHoldTogether) {
+TEST(Graph, ConnectsWhatMovesConnect) {
   const auto classes = default_classes();
   expect_as_naive(bake(worlds::two_floors(), 0.1, classes), "two floors");
   expect_as_naive(bake(worlds::steps(0.17, 0.3, 10), 0.1, classes), "steps");

@@ -113,7 +113,7 @@ TEST(Quadtree, EveryClassHasTheCellsThatItHasAlone) {
   }
 }
 
-// The cells of a ragged node on which a class stands.
+// The cells of a partial node on which a class stands.
 uint64_t own_cells(const PatchCells& cells, const PatchNode& node, uint16_t bit) {
   uint64_t own = 0;
   for (uint64_t left = node.cells; left != 0; left &= left - 1) {
@@ -124,7 +124,7 @@ uint64_t own_cells(const PatchCells& cells, const PatchNode& node, uint16_t bit)
   return own;
 }
 
-// Those of some cells of a block that hold together with the first, step by step.
+// Those of some cells of a block that are connected to the first, step by step.
 uint64_t first_piece(const PatchCells& cells, const PatchNode& node, uint64_t own, uint16_t bit) {
   std::vector<int32_t> reached{std::countr_zero(own)};
   uint64_t piece = own & (~own + 1);
@@ -147,9 +147,9 @@ uint64_t first_piece(const PatchCells& cells, const PatchNode& node, uint64_t ow
   return piece;
 }
 
-// Each class alone has as many ragged nodes in a block as its cells there have pieces, and together
-// with others it has one node for each.
-TEST(Quadtree, RaggedNodesAreThePiecesOfEachClass) {
+// Each class alone has as many partial nodes in a block as its cells there have pieces, and
+// together with others it has one node for each.
+TEST(Quadtree, PartialNodesAreThePiecesOfEachClass) {
   size_t tested = 0, shared = 0;
   for (uint64_t seed = 1; seed <= 120; ++seed) {
     PatchCells cells = random_cells(4 + static_cast<int32_t>(seed % 3), seed, seed % 2 == 0);
@@ -221,7 +221,7 @@ TEST(Quadtree, RaggedNodesAreThePiecesOfEachClass) {
     for (auto* cuts : {&alone.cut_s, &alone.cut_t}) {
       for (uint16_t& cut : *cuts) cut &= 1;
     }
-    // (A class that goes anywhere in a block has a node there that is not ragged.)
+    // (A class that goes anywhere in a block has a node there that is not partial.)
     const auto pieces = [&](const PatchTree& of) {
       size_t count = 0;
       for (const PatchNode& node : of.nodes) {
@@ -267,15 +267,15 @@ class Sets {
 };
 
 // Two patches beside each other, some pairs of their border cells joined for some classes: cells
-// hold together for a class exactly if the nodes that hold them do.
-TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
+// are connected for a class exactly if the nodes that hold them are.
+TEST(NodeLinks, NodesConnectWhatCellsConnect) {
   size_t tested = 0, steps = 0;
   for (uint64_t seed = 1; seed <= 160; ++seed) {
     std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
                                        random_cells(3, seed + 1000, seed % 3 == 0)};
     cells[0].partial = seed % 4 > 1;
     cells[1].partial = seed % 8 > 3;
-    // Steps divide nodes, but not whoever goes over them.
+    // Steps divide nodes, but no class's paths.
     for (uint64_t p = 0; p < 2 && seed % 5 > 1; ++p) {
       const auto side = static_cast<uint64_t>(cells[p].side());
       for (uint64_t t = 0; t < side; ++t) {
@@ -308,7 +308,7 @@ TEST(NodeLinks, NodesHoldTogetherWhatCellsDo) {
       EXPECT_LT(links[i].a, links[i].b);
       steps += links[i].kind == LinkKind::kStep ? 1 : 0;
       if (i == 0 || links[i - 1].a != links[i].a || links[i - 1].b != links[i].b) continue;
-      EXPECT_EQ(links[i - 1].classes & links[i].classes, 0) << "who walks needs no step";
+      EXPECT_EQ(links[i - 1].classes & links[i].classes, 0) << "a class that walks needs no step";
     }
 
     for (uint32_t c = 0; c < 4; ++c) {

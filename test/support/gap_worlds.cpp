@@ -85,41 +85,41 @@ std::array<int32_t, 4> random_rect(Dice& dice, int32_t least, int32_t most) {
 
 }  // namespace
 
-GapBlock gaps_of(const SolidBlock& solids, int32_t min_gap) {
-  GapBlock gaps;
+FreeSpanBlock free_spans_of(const SolidBlock& solids, int32_t min_free_span) {
+  FreeSpanBlock free_spans;
   for (size_t c = 0; c < solids.cells.size(); ++c) {
     std::vector<Solid> column = solids.cells[c];
     std::sort(column.begin(), column.end(),
               [](const Solid& a, const Solid& b) { return a.low < b.low; });
-    std::vector<Gap>& out = gaps.cells[c];
+    std::vector<FreeSpan>& out = free_spans.cells[c];
     for (size_t i = 0; i < column.size();) {
-      Gap gap{column[i].high, kOpenSkyMm, column[i].support, column[i].code};
+      FreeSpan free_span{column[i].high, kOpenSkyMm, column[i].support, column[i].code};
       for (++i; i < column.size(); ++i) {
-        if (column[i].low - gap.top >= min_gap) {
-          gap.ceiling = column[i].low;
+        if (column[i].low - free_span.top >= min_free_span) {
+          free_span.ceiling = column[i].low;
           break;
         }
-        gap.top = std::max(gap.top, column[i].high);
-        const bool higher = column[i].support > gap.support;
-        const bool same = column[i].support == gap.support && column[i].code > gap.code;
+        free_span.top = std::max(free_span.top, column[i].high);
+        const bool higher = column[i].support > free_span.support;
+        const bool same = column[i].support == free_span.support && column[i].code > free_span.code;
         if (higher || same) {
-          gap.support = column[i].support;
-          gap.code = column[i].code;
+          free_span.support = column[i].support;
+          free_span.code = column[i].code;
         }
       }
-      out.push_back(gap);
+      out.push_back(free_span);
     }
   }
-  return gaps;
+  return free_spans;
 }
 
 namespace {
 
-bool is_above(const Gap& a, const Gap& b) {
+bool is_above(const FreeSpan& a, const FreeSpan& b) {
   return a.support != b.support ? a.support > b.support : a.code > b.code;
 }
 
-void lend(const Gap& from, Gap& to) {
+void lend(const FreeSpan& from, FreeSpan& to) {
   if (!is_above(from, to)) return;
   to.support = from.support;
   to.code = from.code;
@@ -127,64 +127,66 @@ void lend(const Gap& from, Gap& to) {
 
 }  // namespace
 
-GapBlock with_lent_supports(const GapBlock& gaps) {
-  GapBlock out = gaps;
+FreeSpanBlock with_lent_supports(const FreeSpanBlock& free_spans) {
+  FreeSpanBlock out = free_spans;
   for (auto& column : out.cells) {
     for (size_t i = 1; i < column.size(); ++i) lend(column[i - 1], column[i]);
   }
   return out;
 }
 
-GapBlock high_gaps(const GapBlock& gaps) {
-  GapBlock out;
-  for (size_t c = 0; c < gaps.cells.size(); ++c) {
-    const Gap* below = nullptr;
-    std::vector<Gap> joined = gaps.cells[c];
-    for (Gap& gap : joined) {
-      if (below != nullptr) lend(*below, gap);
-      const bool is_low =
-          gap.ceiling != kOpenSkyMm && int64_t{gap.ceiling} - gap.top < BodyLimits::kHighGap;
-      below = is_low ? &gap : nullptr;
-      if (!is_low) out.cells[c].push_back(gap);
+FreeSpanBlock high_free_spans(const FreeSpanBlock& free_spans) {
+  FreeSpanBlock out;
+  for (size_t c = 0; c < free_spans.cells.size(); ++c) {
+    const FreeSpan* below = nullptr;
+    std::vector<FreeSpan> joined = free_spans.cells[c];
+    for (FreeSpan& free_span : joined) {
+      if (below != nullptr) lend(*below, free_span);
+      const bool is_low = free_span.ceiling != kOpenSkyMm &&
+                          int64_t{free_span.ceiling} - free_span.top < BodyLimits::kHighFreeSpan;
+      below = is_low ? &free_span : nullptr;
+      if (!is_low) out.cells[c].push_back(free_span);
     }
   }
   return out;
 }
 
-void deal_tile(const GapBlock& gaps, int32_t tile_x, int32_t tile_z, const BodyLimits& limits,
-               SheetPool& pool, TileSheets& sheets) {
-  const auto all = std::make_unique<TileGaps>(), high = std::make_unique<TileGaps>();
-  fill_tile(high_gaps(gaps), tile_x, tile_z, *high);
-  fill_tile(with_lent_supports(gaps), tile_x, tile_z, *all);
-  const bool low_too = limits.min_gap < BodyLimits::kHighGap;
-  deal_gaps({.high = *high, .all = low_too ? all.get() : nullptr}, limits, pool, sheets);
-  for (const auto& sheet : sheets) find_useful(limits, *sheet);
+void assign_tile(const FreeSpanBlock& free_spans, int32_t tile_x, int32_t tile_z,
+                 const BodyLimits& limits, LayerPool& pool, TileLayers& layers) {
+  const auto all = std::make_unique<TileFreeSpans>(), high = std::make_unique<TileFreeSpans>();
+  fill_tile(high_free_spans(free_spans), tile_x, tile_z, *high);
+  fill_tile(with_lent_supports(free_spans), tile_x, tile_z, *all);
+  const bool low_too = limits.min_free_span < BodyLimits::kHighFreeSpan;
+  assign_free_spans({.high = *high, .all = low_too ? all.get() : nullptr}, limits, pool, layers);
+  for (const auto& layer : layers) find_useful(limits, *layer);
 }
 
-void fill_tile(const GapBlock& block, int32_t tile_x, int32_t tile_z, TileGaps& out) {
-  const auto column = [&](int32_t cell) -> const std::vector<Gap>& {
+void fill_tile(const FreeSpanBlock& block, int32_t tile_x, int32_t tile_z, TileFreeSpans& out) {
+  const auto column = [&](int32_t cell) -> const std::vector<FreeSpan>& {
     return block.at(tile_x * kTileSide + cell % kTileSide, tile_z * kTileSide + cell / kTileSide);
   };
   out.base = INT32_MAX;
   out.max_count = 0;
   for (int32_t c = 0; c < kTileArea; ++c) {
-    for (const Gap& gap : column(c)) out.base = std::min(out.base, gap.top - 1000);
+    for (const FreeSpan& free_span : column(c)) out.base = std::min(out.base, free_span.top - 1000);
     out.count[static_cast<size_t>(c)] = static_cast<int32_t>(column(c).size());
     out.max_count = std::max(out.max_count, out.count[static_cast<size_t>(c)]);
   }
   if (out.max_count == 0) out.base = 0;
   while (out.layers.size() < static_cast<size_t>(out.max_count)) {
-    out.layers.push_back(std::make_unique<GapLayer>());
+    out.layers.push_back(std::make_unique<FreeSpanLayer>());
   }
   for (int32_t c = 0; c < kTileArea; ++c) {
     const auto cell = static_cast<size_t>(c);
     for (size_t k = 0; k < column(c).size(); ++k) {
-      const Gap& gap = column(c)[k];
-      GapLayer& layer = *out.layers[k];
-      layer.top[cell] = gap.top - out.base;
-      layer.ceiling[cell] = gap.ceiling == kOpenSkyMm ? kOpenSkyMm : gap.ceiling - out.base;
-      layer.support[cell] =
-          gap.support == kNoSupport ? kNoSupport : (gap.support - out.base) * 256 + gap.code;
+      const FreeSpan& free_span = column(c)[k];
+      FreeSpanLayer& layer = *out.layers[k];
+      layer.top[cell] = free_span.top - out.base;
+      layer.ceiling[cell] =
+          free_span.ceiling == kOpenSkyMm ? kOpenSkyMm : free_span.ceiling - out.base;
+      layer.support[cell] = free_span.support == kNoSupport
+                                ? kNoSupport
+                                : (free_span.support - out.base) * 256 + free_span.code;
     }
   }
 }

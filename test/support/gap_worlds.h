@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/gaps.h"
-#include "bake/sheets.h"
+#include "bake/free_spans.h"
+#include "bake/layers.h"
 
 /// Columns made by hand, for the stages between the rasteriser and the baked world: 3 x 3 tiles of
 /// solids, and the gaps above them by the rule of docs/algorithms.md, written out plainly.
@@ -20,7 +20,7 @@ struct Solid {
 };
 
 /// Room of one cell. Absolute heights; ceiling kOpenSkyMm where nothing is above. [mm]
-struct Gap {
+struct FreeSpan {
   int32_t top = 0, ceiling = kOpenSkyMm;
   int32_t support = kNoSupport;
   int32_t code = 0;
@@ -44,23 +44,23 @@ struct Block {
 };
 
 using SolidBlock = Block<Solid>;
-using GapBlock = Block<Gap>;
+using FreeSpanBlock = Block<FreeSpan>;
 
-/// What is free above the solids, once those less than `min_gap` apart are joined.
-GapBlock gaps_of(const SolidBlock& solids, int32_t min_gap);
+/// What is free above the solids, once those less than `min_free_span` apart are joined.
+FreeSpanBlock free_spans_of(const SolidBlock& solids, int32_t min_free_span);
 
 /// One tile of a block as the bake keeps it. Tile (0, 0) is the middle one.
-void fill_tile(const GapBlock& block, int32_t tile_x, int32_t tile_z, TileGaps& out);
+void fill_tile(const FreeSpanBlock& block, int32_t tile_x, int32_t tile_z, TileFreeSpans& out);
 
 /// The same gaps, each with the highest support under it in its column.
-GapBlock with_lent_supports(const GapBlock& gaps);
+FreeSpanBlock with_lent_supports(const FreeSpanBlock& free_spans);
 
-/// Those of BodyLimits::kHighGap and more: what is between lower ones is joined.
-GapBlock high_gaps(const GapBlock& gaps);
+/// Those of BodyLimits::kHighFreeSpan and more: what is between lower ones is joined.
+FreeSpanBlock high_free_spans(const FreeSpanBlock& free_spans);
 
 /// Deals the gaps of a tile as the bake does.
-void deal_tile(const GapBlock& gaps, int32_t tile_x, int32_t tile_z, const BodyLimits& limits,
-               SheetPool& pool, TileSheets& sheets);
+void assign_tile(const FreeSpanBlock& free_spans, int32_t tile_x, int32_t tile_z,
+                 const BodyLimits& limits, LayerPool& pool, TileLayers& layers);
 
 struct RandomBlock {
   uint64_t seed = 1;

@@ -55,7 +55,7 @@ TEST(Cylinder, CornerOutsideTheDiscButInsideItsBoxIsNotMet) {
   EXPECT_TRUE(meets(kBody, {at_body(0.353, 0, 0.353), at_body(0.353, 2, 0.353), at_body(2, 1, 2)}));
 }
 
-TEST(Cylinder, SegmentsAndPointsAreMatterToo) {
+TEST(Cylinder, SegmentsAndPointsAreSolidToo) {
   const Vec3d inside = at_body(0.2, 1, 0.2);
   const Vec3d outside = at_body(0.4, 1, 0.4);
   EXPECT_TRUE(meets(kBody, {inside, inside, inside}));
@@ -148,7 +148,7 @@ TEST(Cylinder, HeightOfAPlaneIsExactAndCoversItsEdges) {
   EXPECT_FALSE(height_at({Vec3d{0, 0, 0}, Vec3d{0, 5, 0}, Vec3d{0, 0, 5}}, 0, 1));  // A wall.
 }
 
-TEST(Cylinder, LevelnessIsTheCosineOfTheSlopeWhicheverWayItFaces) {
+TEST(Cylinder, LevelnessIsTheCosineOfTheSlopeWhereverItFaces) {
   EXPECT_NEAR(levelness({Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 0, 1}}), 1, 1e-12);
   EXPECT_NEAR(levelness({Vec3d{0, 0, 0}, Vec3d{0, 0, 1}, Vec3d{1, 0, 0}}), 1, 1e-12);
   EXPECT_NEAR(levelness({Vec3d{0, 0, 0}, Vec3d{1, 1, 0}, Vec3d{0, 0, 1}}), std::sqrt(0.5), 1e-12);

@@ -63,7 +63,7 @@ TEST(Stance, StraightRimDoesNotSlipBetweenTwoPointsOfTheDisc) {
   }
 }
 
-TEST(Stance, DropOfLessThanTheBottomIsNoRim) {
+TEST(Stance, DescentOfLessThanTheBottomIsNoRim) {
   Scene scene = floor_scene();
   scene.add_quad({5, -0.39, -5}, {9, -0.39, -5}, {9, -0.39, 5}, {5, -0.39, 5});
   EXPECT_TRUE(stands(scene, {4.9, 0, 0}));
@@ -93,7 +93,7 @@ TEST(Stance, SurfaceJustAboveTheFeetIsTheRealFloor) {
   EXPECT_TRUE(stands(scene, {0, 0.05, 0}));
 }
 
-TEST(Stance, BlockedAndSteepSurfacesCarryNobody) {
+TEST(Stance, BlockedAndSteepSurfacesSupportNoBody) {
   Scene blocked;
   blocked.add_quad({-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}, kAreaBlocked);
   EXPECT_FALSE(stands(blocked, {0, 0, 0}));

@@ -65,7 +65,7 @@ TEST(TriangleTree, FindsWhatATestOfEveryTriangleFinds) {
   }
 }
 
-TEST(TriangleTree, StopsAtTheFirstTriangleThatIsTaken) {
+TEST(TriangleTree, StopsAtTheFirstTriangleThatIsAccepted) {
   const Scene scene = random_soup(500, 4, 0);
   const TriangleTree tree(scene, 0);
   Box3d all;

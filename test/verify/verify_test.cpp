@@ -65,7 +65,7 @@ TEST(Verify, ClosedWallThatIsIgnoredIsEntered) {
   EXPECT_GE(fault.triangle, 2u);  // The floor has 0 and 1.
 }
 
-TEST(Verify, WallThatOnlyMovesIgnoreIsEnteredOnTheWay) {
+TEST(Verify, WallThatOnlyMovesIgnoreIsEnteredInTheMove) {
   FakeWorld world = flat_world(one_wall());
   world.floor_on_moves = flat_world({}).floor;
   const VerifyReport report = judge(world);
@@ -74,7 +74,7 @@ TEST(Verify, WallThatOnlyMovesIgnoreIsEnteredOnTheWay) {
   EXPECT_EQ(report.torn, 0u);
 }
 
-TEST(Verify, BodyIsLookedAtOnTheWayAndNotOnlyAtTheEnds) {
+TEST(Verify, BodyIsTestedAlongTheMoveAndNotOnlyAtItsEnds) {
   FakeWorld world = flat_world(one_wall());
   world.moves_look_at_ends_only = true;
   world.floor_found = flat_world({}).floor;
@@ -169,7 +169,7 @@ TEST(Verify, PercentileIsNotTheMean) {
   EXPECT_NEAR(report.feet_error_p95, 0.2, 1e-9);
 }
 
-TEST(Verify, NobodyStandsBesideTheFloor) {
+TEST(Verify, NoBodyStandsBesideTheFloor) {
   FakeWorld world = flat_world({});
   world.side = 14;  // Its places reach 2 m over the rim.
   world.floor = [](double, double) { return 0.0; };
@@ -180,7 +180,7 @@ TEST(Verify, NobodyStandsBesideTheFloor) {
   EXPECT_GT(report.unsupported, 1000u);
 }
 
-TEST(Verify, BlockedAndSteepSurfacesSupportNobody) {
+TEST(Verify, BlockedAndSteepSurfacesSupportNoBody) {
   FakeWorld blocked = flat_world({});
   for (AreaKind& kind : blocked.scene.area) kind = kAreaBlocked;
   const VerifyReport report = judge(blocked, 500);
@@ -233,7 +233,7 @@ TEST(Verify, RampIsFollowedByHonestFeet) {
   EXPECT_EQ(report.lost_grown, 0);
   EXPECT_NEAR(report.standable_area_grown, 11.3 * 11.3 / std::cos(std::acos(-1) / 6), 5);
 
-  world.avatar.max_slope = 29;  // Now nobody may stand there.
+  world.avatar.max_slope = 29;  // Now no body may stand there.
   const VerifyReport steep = judge(world, 500);
   EXPECT_EQ(steep.unsupported, steep.states + steep.moves);
   EXPECT_EQ(steep.surface_points, 0u);

@@ -66,8 +66,8 @@ TEST(VerifyWorld, BakedHallHoldsForEveryClass) {
   }
 }
 
-// Floors above each other in one tile, close enough that sheets meet: where a step was once taken
-// from a floor to the one above it.
+// Floors above each other in one tile, close enough that level tiles meet: where a step was once
+// taken from a floor to the one above it.
 TEST(VerifyWorld, BuiltInWorldsHoldForEveryClass) {
   for (const char* name : {"stairs", "church", "garage"}) {
     const auto scene = make_builtin_world({.name = name});
@@ -122,7 +122,8 @@ TEST(VerifyWorld, BlockedSurfacesAreNotWalkedOn) {
   EXPECT_LT(report.standable_area_exact, 60);
 }
 
-PathReport go_ways(const World& world, const Scene& source, int32_t avatar_class, uint64_t pairs) {
+PathReport walk_paths(const World& world, const Scene& source, int32_t avatar_class,
+                      uint64_t pairs) {
   Context context;
   const auto report =
       verify_paths(world, source, {.samples = pairs, .avatar_class = avatar_class}, context);
@@ -130,7 +131,7 @@ PathReport go_ways(const World& world, const Scene& source, int32_t avatar_class
   return report ? *report : PathReport{};
 }
 
-TEST(VerifyPaths, EveryWayIsGoneByLegalMovesAndItsBody) {
+TEST(VerifyPaths, EveryPathIsWalkedByLegalMovesAndItsBody) {
   for (const char* name : {"stairs", "church", "garage", "maze"}) {
     const auto scene = make_builtin_world({.name = name});
     ASSERT_TRUE(scene) << scene.error().message;
@@ -138,7 +139,7 @@ TEST(VerifyPaths, EveryWayIsGoneByLegalMovesAndItsBody) {
     const auto world = bake_world(*scene, {}, context);
     ASSERT_TRUE(world) << world.error().message;
     for (int32_t c = 0; c < 4; ++c) {
-      const PathReport report = go_ways(*world, *scene, c, 60);
+      const PathReport report = walk_paths(*world, *scene, c, 60);
       EXPECT_EQ(report.pairs, 60u) << name << c;
       EXPECT_GE(report.reached, 20u) << name << c;
       EXPECT_EQ(report.reached + report.parted, report.pairs) << name << c;
@@ -152,10 +153,10 @@ TEST(VerifyPaths, EveryWayIsGoneByLegalMovesAndItsBody) {
   }
 }
 
-TEST(VerifyPaths, WaysThroughAnotherModelAreFoundOut) {
+TEST(VerifyPaths, PathsThroughAnotherModelAreDetected) {
   Scene more = hall();
   more.add_box({0, 0, 3.8}, {20, 2, 4});
-  const PathReport entered = go_ways(hall_world(), more, 0, 100);
+  const PathReport entered = walk_paths(hall_world(), more, 0, 100);
   EXPECT_GT(entered.entered, 20u);
   EXPECT_EQ(entered.illegal + entered.unsupported + entered.torn + entered.disagree, 0u);
   ASSERT_FALSE(entered.faults.empty());
@@ -163,7 +164,7 @@ TEST(VerifyPaths, WaysThroughAnotherModelAreFoundOut) {
 
   Scene no_floor = hall();
   no_floor.area[0] = no_floor.area[1] = kAreaBlocked;
-  EXPECT_GT(go_ways(hall_world(), no_floor, 0, 100).unsupported, 50u);
+  EXPECT_GT(walk_paths(hall_world(), no_floor, 0, 100).unsupported, 50u);
 }
 
 TEST(VerifyPaths, SameForAnyWorkers) {

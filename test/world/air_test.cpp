@@ -129,7 +129,7 @@ TEST(Air, CellsAreFreeWhereNoTriangleTouchesThemAndOnlyThere) {
   }
 }
 
-// The body by its own measures, cell by cell, against both ways of asking the octree.
+// The body by its own measures, cell by cell, against both queries of the octree.
 TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
   for (const double cell : {0.1, 0.2, 0.8}) {
     const World world = bake(litter(7), cell, 6.4);
@@ -179,7 +179,7 @@ TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
   }
 }
 
-TEST(Air, NoCubePromisesMoreRoomThanThereIs) {
+TEST(Air, NoAirBoxPromisesMoreClearanceThanThereIs) {
   const World world = bake(litter(3), 0.2, 6.4);
   const AirData& air = *world.data()->air;
   uint64_t wide = 0;
@@ -187,16 +187,17 @@ TEST(Air, NoCubePromisesMoreRoomThanThereIs) {
     const int32_t x0 = slot->entry.x() * air.zone_side, z0 = slot->entry.z() * air.zone_side;
     slot->zone->tree().for_each([&](const AirCube& cube, uint32_t word) {
       if (air_kind(word) != AirKind::kFree || cube.side > 8) return;
-      const AirRoom room = air_room(air_number(word));
-      wide += room.width > 0 && room.height > 0 ? 1 : 0;
-      for (int32_t y = cube.y; y < cube.y + cube.side + room.height; ++y) {
+      const AirClearance clearance = air_clearance(air_number(word));
+      wide += clearance.width > 0 && clearance.height > 0 ? 1 : 0;
+      for (int32_t y = cube.y; y < cube.y + cube.side + clearance.height; ++y) {
         if (y < air.shape.floor || y >= air.shape.ceiling) continue;
-        for (int32_t z = cube.z - room.width; z < cube.z + cube.side + room.width; ++z) {
-          for (int32_t x = cube.x - room.width; x < cube.x + cube.side + room.width; ++x) {
+        for (int32_t z = cube.z - clearance.width; z < cube.z + cube.side + clearance.width; ++z) {
+          for (int32_t x = cube.x - clearance.width; x < cube.x + cube.side + clearance.width;
+               ++x) {
             ASSERT_TRUE(air.is_free(x0 + x, y, z0 + z))
                 << "cube " << x0 + cube.x << "," << cube.y << "," << z0 + cube.z << " of "
-                << cube.side << " with " << room.width << ", " << room.height << ": " << x0 + x
-                << "," << y << "," << z0 + z;
+                << cube.side << " with " << clearance.width << ", " << clearance.height << ": "
+                << x0 + x << "," << y << "," << z0 + z;
           }
         }
       }
@@ -330,7 +331,7 @@ TEST_F(DamagedAir, IsOpenedAgainAsItWasBaked) {
   }
 }
 
-TEST_F(DamagedAir, IsKeptByTheNextBakeAndLeftOutOfOneWithoutAir) {
+TEST_F(DamagedAir, IsReusedByTheNextBakeAndLeftOutOfOneWithoutAir) {
   const std::string before = read(air_file_);
   Context context;
   BakeConfig config{.cell = 0.1, .air = 0.4, .zone = 6.4, .classes = flyers()};
@@ -346,7 +347,7 @@ TEST_F(DamagedAir, IsKeptByTheNextBakeAndLeftOutOfOneWithoutAir) {
   EXPECT_EQ(air_summary(*World::open(path_)).error().code, Errc::kNotFound);
 }
 
-TEST_F(DamagedAir, OldFilesAreNotTakenOverWhereAllIsBakedAgain) {
+TEST_F(DamagedAir, OldFilesAreNotReusedWhereAllIsBakedAgain) {
   const std::string before = read(air_file_);
   const auto long_ago = std::filesystem::last_write_time(air_file_) - std::chrono::hours(1);
   std::filesystem::last_write_time(air_file_, long_ago);
@@ -377,7 +378,7 @@ TEST_F(DamagedAir, IsBakedAgainWhereTheWorldEndsElsewhere) {
   }
 }
 
-// Whoever only walks needs none of them.
+// Classes that only walk need none of them.
 TEST_F(DamagedAir, DoesNotConcernTheGround) {
   write(air_file_, read(air_file_).substr(0, 100));
   const auto world = World::open(path_);

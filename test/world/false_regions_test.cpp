@@ -19,8 +19,8 @@ namespace {
 // Keeps the bytes of the zones' files.
 class FilesInMemory : public GraphFiles {
  public:
-  std::unique_ptr<RegionZone> keep_regions(int32_t, int32_t, uint64_t) override { return nullptr; }
-  std::unique_ptr<LinkZone> keep_links(int32_t, int32_t, uint64_t) override { return nullptr; }
+  std::unique_ptr<RegionZone> reuse_regions(int32_t, int32_t, uint64_t) override { return nullptr; }
+  std::unique_ptr<LinkZone> reuse_links(int32_t, int32_t, uint64_t) override { return nullptr; }
   Result<void> write(const std::string& name, std::span<const uint8_t> bytes) override {
     files.emplace_back(name, std::vector<uint8_t>(bytes.begin(), bytes.end()));
     return write_file(folder.path() + "/" + name, bytes);
@@ -189,7 +189,7 @@ TEST(FalseRegions, ChangedBytesAndCutFilesAreRefusedByTheSum) {
     }
   }
   EXPECT_GT(refused, 1500u);
-  EXPECT_LT(filling, 80u);  // What fills up words, or makes another way to the same numbers.
+  EXPECT_LT(filling, 80u);  // What fills up words, or encodes the same numbers differently.
   EXPECT_FALSE(RegionZone::from_bytes(owned(made.links[0]), "it"));
   EXPECT_FALSE(LinkZone::from_bytes(owned(made.regions[0]), "it"));
 }

@@ -30,7 +30,7 @@ struct Storey {
   double area;  // At least so much of it is reached. [m^2]
 };
 
-// Floods `world` from `start`; nobody may climb or drop more than a step on the way.
+// Floods `world` from `start` by climbs and descents of at most a step.
 void expect_reached(const World& world, Vec3d start, std::initializer_list<Storey> storeys) {
   const Flood flood = flood_from(world, 0, start);
   EXPECT_LE(flood.steepest, 0.4 + 1e-9);

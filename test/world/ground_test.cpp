@@ -11,7 +11,7 @@
 namespace throng {
 namespace {
 
-TEST(Ground, FloorsLieWithinTheRangeThatTheirBlocksTell) {
+TEST(Ground, FloorsLieWithinTheRangeOfTheirBlocks) {
   size_t far_apart = 0, wide = 0, levels = 0;
   for (const char* name : {"church", "garage", "landscape", "stairs"}) {
     BuiltinWorldConfig config{.name = name};
@@ -38,7 +38,7 @@ TEST(Ground, FloorsLieWithinTheRangeThatTheirBlocksTell) {
     }
   }
   EXPECT_GT(levels, 100u);
-  EXPECT_LT(wide, levels / 10);  // It tells something.
+  EXPECT_LT(wide, levels / 10);  // It is of use.
   EXPECT_GT(far_apart, 10u);
 }
 

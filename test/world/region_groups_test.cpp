@@ -95,7 +95,7 @@ TEST(RegionGroups, NameTheComponentsOfAPlainList) {
   }
 }
 
-TEST(RegionGroups, TellWhereComponentsBeginAndHowLargeTheyAre) {
+TEST(RegionGroups, GiveWhereComponentsBeginAndHowLargeTheyAre) {
   const Made made = make_groups(3, 500);
   BegunReader reader{made.tables.begun};
   size_t next = 0;
@@ -116,8 +116,8 @@ TEST(RegionGroups, TellWhereComponentsBeginAndHowLargeTheyAre) {
   EXPECT_FALSE(reader.next_place());
 }
 
-// Where all classes see the same roof, it is named once.
-TEST(RegionGroups, PlacesThatClassesShareAreToldOnce) {
+// Where all classes have the same roof, it is named once.
+TEST(RegionGroups, PlacesThatClassesShareAreStoredOnce) {
   const std::vector<uint64_t> cells(6, 900);
   GroupWriter six, one;
   for (uint32_t g = 0; g < 320; ++g) {

@@ -169,8 +169,8 @@ TEST_F(ZoneFiles, AFlippedByteOfAZoneIsSeenByItsChecksum) {
   }
 }
 
-// scripts/fuzz begins with this file. After a change of the format, write it anew: bake small_scene
-// with small_config and take its zone.
+// scripts/fuzz begins with this file. After a change of the format, write it again: bake
+// small_scene with small_config and take its zone.
 TEST(FuzzSeeds, TheZoneIsOfThisVersion) {
   const Bytes bytes = read_bytes(THRONG_TEST_DATA "/../fuzz/seeds/zone/small.thz");
   const auto zone = as_zone(bytes);

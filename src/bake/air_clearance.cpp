@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/air_room.h"
+#include "bake/air_clearance.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,42 +9,42 @@
 #include "core/parallel.h"
 
 // Distances in the plane count rows and columns alike (the larger of the two): a cell is at most r
-// from matter if the square of r cells around it holds some. So matter that grows by a cell all
-// around, 64 cells at a time, tells them one after the other; squares of 4 x 4 cells keep the
-// smallest, as no cube is smaller or lies across them. The same distances as the sweeps of [RP66],
-// which go from cell to cell.
+// from a solid if the square of r cells around it holds some. So solids grow by a cell all around,
+// 64 cells at a time, and reach the cells in order of distance; squares of 4 x 4 cells keep the
+// smallest, as no air box is smaller or lies across them. The same distances as the sweeps of
+// [RP66], which go from cell to cell.
 namespace throng {
 namespace {
 
 // Per layer and square: the distance from its cells to the nearest one that is not free; 0 if one
-// of them is not, 1 if one beside them. At most 1 more than the room that can be promised.
+// of them is not, 1 if one beside them. At most 1 more than the clearance that can be promised.
 class Distances {
  public:
   Distances(const AirTreeSource& source, int32_t apron, int32_t workers)
       : side_(source.side / 4), height_(source.rows->height), base_(source.base) {
     distances_.resize(static_cast<size_t>(side_) * static_cast<size_t>(side_) *
                       static_cast<size_t>(height_));
-    most_ = std::min(apron, kMaxAirRoom);
-    pad_ = (most_ + 3) & -4;
+    max_distance_ = std::min(apron, kMaxAirClearance);
+    pad_ = (max_distance_ + 3) & -4;
     words_ = static_cast<size_t>((source.side + 2 * pad_ + 63) / 64);
-    rows_ = static_cast<size_t>(source.side + 2 * most_);
+    rows_ = static_cast<size_t>(source.side + 2 * max_distance_);
     std::vector<Layer> layers(static_cast<size_t>(worker_count(workers)));
     parallel_for_worker(static_cast<size_t>(height_), workers, [&](size_t y, int32_t worker) {
       grow(source, static_cast<int32_t>(y), layers[static_cast<size_t>(worker)]);
     });
   }
 
-  /// Over all cells of a cube's footprint, in one layer of the world. Layers over and under the
-  /// rows are like the highest of them: without matter, but no wider than what is known.
+  /// Over all cells of an air box's footprint, in one layer of the world. Layers over and under the
+  /// rows are like the highest of them: without a solid, but no wider than what is known.
   [[nodiscard]] int32_t distance(const AirCube& cube, int32_t y) const {
     const int32_t row = y < base_ || y >= base_ + height_ ? height_ - 1 : y - base_;
-    int32_t least = most_ + 1;
+    int32_t min_distance = max_distance_ + 1;
     for (int32_t z = cube.z / 4; z < (cube.z + cube.side) / 4; ++z) {
       for (int32_t x = cube.x / 4; x < (cube.x + cube.side) / 4; ++x) {
-        least = std::min<int32_t>(least, distances_[index(x, row, z)]);
+        min_distance = std::min<int32_t>(min_distance, distances_[index(x, row, z)]);
       }
     }
-    return least;
+    return min_distance;
   }
 
  private:
@@ -54,15 +54,15 @@ class Distances {
            static_cast<size_t>(x);
   }
 
-  // Matter of one layer as bits, `rows_` by `words_`: the zone and `most_` rows around, and so many
-  // columns that its squares stay within half bytes.
+  // Solids of one layer as bits, `rows_` by `words_`: the zone and `max_distance_` rows around, and
+  // so many columns that its squares stay within half bytes.
   struct Layer {
-    std::vector<uint64_t> matter, wide;
+    std::vector<uint64_t> solid, wide;
     std::vector<uint64_t> known;  // by row of squares, a bit for each: its distance is written
   };
 
-  // 64 columns from x on; what lies beside the rows is no matter.
-  static uint64_t matter_at(const AirRows& rows, const uint64_t* row, int32_t x) {
+  // 64 columns from x on; what lies beside the rows is free.
+  static uint64_t solid_at(const AirRows& rows, const uint64_t* row, int32_t x) {
     const auto word = [&](int32_t w) {
       if (w < 0 || w >= rows.words) return uint64_t{0};
       const int32_t left = rows.width - 64 * w;
@@ -74,23 +74,23 @@ class Distances {
 
   void grow(const AirTreeSource& source, int32_t y, Layer& layer) {
     const AirRows& rows = *source.rows;
-    layer.matter.resize(rows_ * words_);
+    layer.solid.resize(rows_ * words_);
     layer.wide.resize(rows_ * words_);
     uint64_t any = 0;
     for (size_t z = 0; z < rows_; ++z) {
-      const uint64_t* row = rows.row(y, source.z - most_ + static_cast<int32_t>(z));
+      const uint64_t* row = rows.row(y, source.z - max_distance_ + static_cast<int32_t>(z));
       for (size_t w = 0; w < words_; ++w) {
         const int32_t x = source.x - pad_ + 64 * static_cast<int32_t>(w);
-        any |= layer.matter[z * words_ + w] = matter_at(rows, row, x);
+        any |= layer.solid[z * words_ + w] = solid_at(rows, row, x);
       }
     }
     std::fill_n(distances_.begin() + static_cast<ptrdiff_t>(index(0, y, 0)),
                 static_cast<size_t>(side_) * static_cast<size_t>(side_),
-                static_cast<uint8_t>(most_ + 1));
+                static_cast<uint8_t>(max_distance_ + 1));
     if (any == 0) return;
     layer.known.assign(static_cast<size_t>(side_) * words_, 0);
     size_t left = static_cast<size_t>(side_) * static_cast<size_t>(side_);
-    for (int32_t r = 0; r <= most_ && left > 0; ++r) {
+    for (int32_t r = 0; r <= max_distance_ && left > 0; ++r) {
       if (r > 0) widen(layer);
       left -= note(r, y, layer);
     }
@@ -99,7 +99,7 @@ class Distances {
   // By one cell along x, then along z.
   void widen(Layer& layer) const {
     for (size_t z = 0; z < rows_; ++z) {
-      const uint64_t* in = &layer.matter[z * words_];
+      const uint64_t* in = &layer.solid[z * words_];
       uint64_t* out = &layer.wide[z * words_];
       for (size_t w = 0; w < words_; ++w) {
         const uint64_t before = w > 0 ? in[w - 1] >> 63 : 0;
@@ -111,16 +111,16 @@ class Distances {
       const uint64_t* here = &layer.wide[z * words_];
       const uint64_t* before = z > 0 ? here - words_ : here;
       const uint64_t* after = z + 1 < rows_ ? here + words_ : here;
-      uint64_t* out = &layer.matter[z * words_];
+      uint64_t* out = &layer.solid[z * words_];
       for (size_t w = 0; w < words_; ++w) out[w] = before[w] | here[w] | after[w];
     }
   }
 
-  // Writes the distance of squares that matter has come to. Returns how many.
+  // Writes the distance of squares that solids have grown into. Returns how many.
   size_t note(int32_t r, int32_t y, Layer& layer) {
     size_t found = 0;
     for (int32_t z = 0; z < side_; ++z) {
-      const uint64_t* rows = &layer.matter[static_cast<size_t>(most_ + 4 * z) * words_];
+      const uint64_t* rows = &layer.solid[static_cast<size_t>(max_distance_ + 4 * z) * words_];
       uint64_t* known = &layer.known[static_cast<size_t>(z) * words_];
       for (size_t w = 0; w < words_; ++w) {
         uint64_t met = rows[w] | rows[words_ + w] | rows[2 * words_ + w] | rows[3 * words_ + w];
@@ -141,20 +141,21 @@ class Distances {
   }
 
   int32_t side_, height_, base_;
-  int32_t most_ = 0;
+  int32_t max_distance_ = 0;
   int32_t pad_ = 0;              // columns before the zone's in a layer's bits
   size_t rows_ = 0, words_ = 0;  // of a layer's bits
   std::vector<uint8_t> distances_;
 };
 
-class RoomWriter {
+class ClearanceWriter {
  public:
-  RoomWriter(const Distances& distances, AirTreeData& tree) : distances_(distances), tree_(tree) {}
+  ClearanceWriter(const Distances& distances, AirTreeData& tree)
+      : distances_(distances), tree_(tree) {}
 
   void write(const AirCube& cube, size_t node) {
     const uint32_t word = tree_.nodes[node];
     if (air_kind(word) == AirKind::kFree) {
-      tree_.nodes[node] = air_word(AirKind::kFree, air_room_number(room(cube)));
+      tree_.nodes[node] = air_word(AirKind::kFree, air_clearance_number(clearance(cube)));
     }
     if (air_kind(word) != AirKind::kInner) return;
     const int32_t half = cube.side / 2;
@@ -165,13 +166,13 @@ class RoomWriter {
   }
 
  private:
-  [[nodiscard]] AirRoom room(const AirCube& cube) const {
-    AirRoom found{.width = kMaxAirRoom, .height = 0};
+  [[nodiscard]] AirClearance clearance(const AirCube& cube) const {
+    AirClearance found{.width = kMaxAirClearance, .height = 0};
     for (int32_t y = cube.y; y < cube.y + cube.side; ++y) {
       found.width = std::min(found.width, distances_.distance(cube, y) - 1);
     }
     const int32_t top = cube.y + cube.side;
-    while (found.height < kMaxAirRoom &&
+    while (found.height < kMaxAirClearance &&
            distances_.distance(cube, top + found.height) > found.width) {
       ++found.height;
     }
@@ -184,9 +185,10 @@ class RoomWriter {
 
 }  // namespace
 
-void measure_room(const AirTreeSource& source, int32_t apron, int32_t workers, AirTreeData& tree) {
+void measure_clearance(const AirTreeSource& source, int32_t apron, int32_t workers,
+                       AirTreeData& tree) {
   const Distances distances(source, apron, workers);
-  RoomWriter writer(distances, tree);
+  ClearanceWriter writer(distances, tree);
   for (uint32_t r = 0; r < tree.roots; ++r) {
     writer.write({0, tree.base + static_cast<int32_t>(r) * tree.side, 0, tree.side}, r);
   }

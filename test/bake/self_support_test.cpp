@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/own_ground.h"
+#include "bake/self_support.h"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@
 namespace throng {
 namespace {
 
-// Points of the patch's triangles, from feet anywhere on a part: none rises higher than is told.
-TEST(OwnGround, NoTriangleRisesHigherThanIsTold) {
+// Points of the patch's triangles, from feet anywhere on a part: none rises above the bound.
+TEST(SelfSupport, NoTriangleRisesAboveTheBound) {
   size_t seen = 0, known = 0;
-  double closest = 0;  // of what is told, the greatest share that was met
+  double closest = 0;  // the greatest share of the bound that was reached
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const Scene scene = test::net_scene({.side = 2,
                                          .cell = 8 + static_cast<double>(seed % 5) * 4,
@@ -29,8 +29,8 @@ TEST(OwnGround, NoTriangleRisesHigherThanIsTold) {
       const BezierPatch& patch = scene.patches.patches[p];
       const auto from_s = static_cast<uint8_t>(random_below(seed, p, 0, 4) * 64);
       const auto from_t = static_cast<uint8_t>(random_below(seed, p, 1, 4) * 64);
-      const OwnGround own(patch, {from_s, static_cast<uint8_t>(from_s + 63), from_t,
-                                  static_cast<uint8_t>(from_t + 63)});
+      const SelfSupport own(patch, {from_s, static_cast<uint8_t>(from_s + 63), from_t,
+                                    static_cast<uint8_t>(from_t + 63)});
       int32_t span_s = 0, span_t = 0;
       for (size_t t = 0; t < scene.triangles.size(); ++t) {
         const PatchPart& part = scene.patch_part[t];
@@ -38,15 +38,15 @@ TEST(OwnGround, NoTriangleRisesHigherThanIsTold) {
         span_s = std::max(span_s, part.s1 + 1 - part.s0);
         span_t = std::max(span_t, part.t1 + 1 - part.t0);
       }
-      const double gap = own.gap(span_s, span_t) + scene.patch_off[p];
+      const double deviation = own.deviation(span_s, span_t) + scene.patch_off[p];
       const double radius = 0.2 + 0.1 * static_cast<double>(seed % 4);
       for (uint64_t n = 0; n < 40; ++n) {
         const double s = (from_s + 64 * random_unit(seed, p, 10 + 2 * n)) / 256;
         const double t = (from_t + 64 * random_unit(seed, p, 11 + 2 * n)) / 256;
         const Vec3d feet = patch.at(s, t);
         for (const bool upright : {false, true}) {
-          const double most = own.rise(upright, radius, gap);
-          if (!std::isfinite(most)) continue;
+          const double max_rise = own.rise(upright, radius, deviation);
+          if (!std::isfinite(max_rise)) continue;
           ++known;
           const Vec3d axis = upright ? Vec3d{0, 1, 0} : patch.normal(s, t);
           for (size_t i = 0; i < scene.triangles.size(); ++i) {
@@ -60,8 +60,8 @@ TEST(OwnGround, NoTriangleRisesHigherThanIsTold) {
               const double height = dot(at - feet, axis);
               if (length(at - feet - axis * height) > radius) continue;
               ++seen;
-              ASSERT_LE(height, most) << seed << " " << p;
-              closest = std::max(closest, height / most);
+              ASSERT_LE(height, max_rise) << seed << " " << p;
+              closest = std::max(closest, height / max_rise);
             }
           }
         }
@@ -73,17 +73,17 @@ TEST(OwnGround, NoTriangleRisesHigherThanIsTold) {
   EXPECT_GT(closest, 0.7);  // The bound is no idle one.
 }
 
-// A patch that turns over itself tells nothing of itself.
-TEST(OwnGround, NothingIsKnownOfWhatFolds) {
+// For a patch that turns over itself there is no bound.
+TEST(SelfSupport, NothingIsKnownOfWhatFolds) {
   BezierPatch patch;
   for (size_t k = 0; k < 16; ++k) {
     const double s = static_cast<double>(k % 4), t = static_cast<double>(k / 4);
     patch.points[k] = {s < 2 ? 4 * s : 4 * (3 - s), s, t};
   }
-  const OwnGround own(patch, {0, 255, 0, 255});
+  const SelfSupport own(patch, {0, 255, 0, 255});
   EXPECT_FALSE(std::isfinite(own.rise(true, 0.3, 0.01)));
   EXPECT_FALSE(std::isfinite(own.rise(false, 0.3, 0.01)));
-  const OwnGround lower(patch, {0, 15, 0, 255});
+  const SelfSupport lower(patch, {0, 15, 0, 255});
   EXPECT_TRUE(std::isfinite(lower.rise(false, 0.3, 0.01)));
 }
 

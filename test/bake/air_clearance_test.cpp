@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/air_room.h"
+#include "bake/air_clearance.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ AirRows litter(int32_t side, int32_t height, int32_t apron, uint64_t seed) {
   const int32_t across = side + 2 * apron;
   AirRows rows(across, height, across, true);
   for (uint64_t i = 0; i < 14; ++i) {
-    const auto dice = [&](uint64_t k, int32_t most) {
-      return static_cast<int32_t>(random_unit(seed, i, k) * most);
+    const auto dice = [&](uint64_t k, int32_t max_value) {
+      return static_cast<int32_t>(random_unit(seed, i, k) * max_value);
     };
     const int32_t x = dice(0, across), y = dice(1, height - 1), z = dice(2, across);
     const int32_t wide = 1 + dice(3, 5), high = 1 + dice(4, 4), deep = 1 + dice(5, 3);
@@ -28,21 +28,21 @@ AirRows litter(int32_t side, int32_t height, int32_t apron, uint64_t seed) {
   return rows;
 }
 
-// Cell by cell: how far matter is from a cube's footprint in a layer of the world.
-int32_t distance(const AirTreeSource& source, int32_t most, const AirCube& cube, int32_t y) {
+// Cell by cell: how far a solid is from an air box's footprint in a layer of the world.
+int32_t distance(const AirTreeSource& source, int32_t max_value, const AirCube& cube, int32_t y) {
   const int32_t height = source.rows->height;
   const int32_t row = y < source.base || y >= source.base + height ? height - 1 : y - source.base;
-  for (int32_t r = 0; r <= most; ++r) {
+  for (int32_t r = 0; r <= max_value; ++r) {
     for (int32_t z = cube.z - r; z < cube.z + cube.side + r; ++z) {
       for (int32_t x = cube.x - r; x < cube.x + cube.side + r; ++x) {
         if (!source.rows->is_free(source.x + x, row, source.z + z)) return r;
       }
     }
   }
-  return most + 1;
+  return max_value + 1;
 }
 
-TEST(AirRoom, IsWhatALookAtEveryCellFinds) {
+TEST(AirClearance, IsWhatATestOfEveryCellFinds) {
   size_t cubes = 0, wide = 0, high = 0;
   for (uint64_t seed = 1; seed <= 24; ++seed) {
     const int32_t apron = seed % 3 == 0 ? 16 : seed % 3 == 1 ? 4 : 7;
@@ -58,18 +58,18 @@ TEST(AirRoom, IsWhatALookAtEveryCellFinds) {
                                .largest = 16,
                                .free_beyond = true};
     AirTreeData data = build_air_tree(source);
-    measure_room(source, apron, 2, data);
+    measure_clearance(source, apron, 2, data);
     const AirTree tree = data.view();
-    const int32_t most = std::min(apron, kMaxAirRoom);
+    const int32_t max_value = std::min(apron, kMaxAirClearance);
     tree.for_each([&](const AirCube& cube, uint32_t word) {
       if (air_kind(word) != AirKind::kFree) return;
-      const AirRoom room = air_room(air_number(word));
-      int32_t width = kMaxAirRoom, free = 0;
+      const AirClearance room = air_clearance(air_number(word));
+      int32_t width = kMaxAirClearance, free = 0;
       for (int32_t y = cube.y; y < cube.y + cube.side; ++y) {
-        width = std::min(width, distance(source, most, cube, y) - 1);
+        width = std::min(width, distance(source, max_value, cube, y) - 1);
       }
-      while (free < kMaxAirRoom &&
-             distance(source, most, cube, cube.y + cube.side + free) > width) {
+      while (free < kMaxAirClearance &&
+             distance(source, max_value, cube, cube.y + cube.side + free) > width) {
         ++free;
       }
       ASSERT_EQ(room.width, width) << seed << ": " << cube.x << ", " << cube.y << ", " << cube.z;

@@ -6,14 +6,14 @@
 
 #include "bake/legality.h"
 
-// The window of a sheet: its own cells, and around them the cells of whichever neighbouring sheets
-// continue it. Which sheet a cell is taken from decides how much is found to be legal, never
-// whether what is found is safe: any gap that holds the body proves its column free.
+// The window of a layer: its own cells, and around them the cells of the neighbouring layers that
+// continue it. Which layer a cell is taken from decides how much is found to be legal, never
+// whether what is found is safe: any free span that holds the body proves its column free.
 namespace throng {
 namespace {
 
-// The top of another sheet on this sheet's scale. Out of range is no gap: were it drawn to the
-// range's end, a class that may step far down would take a deep drop for a shallow one.
+// The top of another layer on this layer's scale. Out of range is no free span: were it drawn to
+// the range's end, a class that may step far down would take a deep drop for a shallow one.
 uint16_t rebased_top(uint16_t value, int32_t shift) {
   const int32_t moved = value + shift;
   return value == kNone16 || moved < 0 || moved > kNone16 ? kNone16 : static_cast<uint16_t>(moved);
@@ -33,46 +33,46 @@ void rebase_row(const uint16_t* from, int32_t count, int32_t shift, uint16_t* to
   for (int32_t i = 0; i < count; ++i) to[i] = rebase(from[i], shift);
 }
 
-// The sheet of a tile whose gap at `cell` is nearest to `near_top` (absolute), or null.
-const Sheet* nearest_sheet(const SheetList& tile, size_t cell, int32_t near_top) {
-  const Sheet* best = nullptr;
+// The layer of a tile whose free span at `cell` is nearest to `near_top` (absolute), or null.
+const Layer* nearest_layer(const LayerList& tile, size_t cell, int32_t near_top) {
+  const Layer* best = nullptr;
   int32_t best_distance = INT32_MAX;
-  for (const Sheet* sheet : tile) {
-    if (sheet->top[cell] == kNone16) continue;
-    const int32_t distance = std::abs(sheet->base + sheet->top[cell] - near_top);
+  for (const Layer* layer : tile) {
+    if (layer->top[cell] == kNone16) continue;
+    const int32_t distance = std::abs(layer->base + layer->top[cell] - near_top);
     if (distance < best_distance) {
       best_distance = distance;
-      best = sheet;
+      best = layer;
     }
   }
   return best;
 }
 
-// Adds the holes of a sheet that another one's gaps continue by a step. Returns 0 if there are
-// none.
-uint64_t add_steps(const Sheet& own, const CellRows& own_gaps, const Sheet& other,
-                   const CellRows& other_gaps, int32_t step, CellRows& holes) {
-  // Most of the other sheets are other storeys.
+// Adds the holes of a layer that another one's free spans continue by a step. Returns 0 if there
+// are none.
+uint64_t add_steps(const Layer& own, const CellRows& own_free_spans, const Layer& other,
+                   const CellRows& other_free_spans, int32_t step, CellRows& holes) {
+  // Most of the other layers are other storeys.
   if (own.base + own.low_top - step > other.base + other.high_top ||
       own.base + own.high_top + step < other.base + other.low_top) {
     return 0;
   }
   uint64_t any = 0;
-  const auto look = [&](uint64_t cells, size_t z, ptrdiff_t way) {
+  const auto add = [&](uint64_t cells, size_t z, ptrdiff_t offset) {
     for (; cells != 0; cells &= cells - 1) {
       const size_t cell = z * kTileSide + static_cast<size_t>(std::countr_zero(cells));
-      const int32_t own_top = own.top[static_cast<size_t>(static_cast<ptrdiff_t>(cell) + way)];
+      const int32_t own_top = own.top[static_cast<size_t>(static_cast<ptrdiff_t>(cell) + offset)];
       if (std::abs(other.base + other.top[cell] - own.base - own_top) > step) continue;
       any |= holes[z] |= uint64_t{1} << cell % kTileSide;
     }
   };
   for (size_t z = 0; z < kTileSide; ++z) {
-    const uint64_t open = other_gaps[z] & ~own_gaps[z];
+    const uint64_t open = other_free_spans[z] & ~own_free_spans[z];
     if (open == 0) continue;
-    look(open & own_gaps[z] << 1, z, -1);
-    look(open & own_gaps[z] >> 1, z, 1);
-    if (z > 0) look(open & own_gaps[z - 1], z, -kTileSide);
-    if (z + 1 < kTileSide) look(open & own_gaps[z + 1], z, kTileSide);
+    add(open & own_free_spans[z] << 1, z, -1);
+    add(open & own_free_spans[z] >> 1, z, 1);
+    if (z > 0) add(open & own_free_spans[z - 1], z, -kTileSide);
+    if (z + 1 < kTileSide) add(open & own_free_spans[z + 1], z, kTileSide);
   }
   return any;
 }
@@ -129,7 +129,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
   return body;
 }
 
-void SheetWindow::assemble(const Neighbourhood& tiles, size_t sheet, int32_t reach,
+void LayerWindow::assemble(const Neighbourhood& tiles, size_t layer, int32_t reach,
                            const BodyLimits& limits) {
   reach_ = reach;
   pad_ = (reach + 31) / 32 * 32;
@@ -142,13 +142,13 @@ void SheetWindow::assemble(const Neighbourhood& tiles, size_t sheet, int32_t rea
     std::fill_n(&top[begin], stride_, kNone16);
     std::fill_n(&ceiling[begin], stride_, uint16_t{0});
   }
-  const SheetList& tile = *tiles[4];
-  copy_own(*tile[sheet]);
-  if (tile.seams && tile.size() > 1) fill_holes(tile, sheet, limits);
-  fill_apron(tiles, *tile[sheet], reach);
+  const LayerList& tile = *tiles[4];
+  copy_own(*tile[layer]);
+  if (tile.seams && tile.size() > 1) fill_holes(tile, layer, limits);
+  fill_apron(tiles, *tile[layer], reach);
 }
 
-void SheetWindow::copy_own(const Sheet& own) {
+void LayerWindow::copy_own(const Layer& own) {
   for (int32_t z = 0; z < kTileSide; ++z) {
     const size_t from = static_cast<size_t>(z * kTileSide);
     std::copy_n(&own.top[from], kTileSide, &top[index(0, z)]);
@@ -156,8 +156,8 @@ void SheetWindow::copy_own(const Sheet& own) {
   }
 }
 
-void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32_t reach) {
-  // Only where a body on the sheet reaches: many sheets are a storey in the middle of the tile.
+void LayerWindow::fill_apron(const Neighbourhood& tiles, const Layer& own, int32_t reach) {
+  // Only where a body on the layer reaches: many layers are a storey in the middle of the tile.
   const uint64_t beside = (uint64_t{1} << reach) - 1;  // Bodies reach at most 49 cells.
   const auto is_reached = [&](int32_t dx, int32_t dz) {
     const uint64_t columns =
@@ -167,10 +167,10 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
     for (int32_t z = z0; z < z1; ++z) any |= own.useful[static_cast<size_t>(z)] & columns;
     return any != 0;
   };
-  // Corners last: they look at the sides.
+  // Corners last: they read the sides.
   for (const int32_t side : {1, 3, 5, 7, 0, 2, 6, 8}) {
     if (tiles[static_cast<size_t>(side)] == nullptr) continue;
-    const SheetList& tile = *tiles[static_cast<size_t>(side)];
+    const LayerList& tile = *tiles[static_cast<size_t>(side)];
     if (tile.empty()) continue;
     const int32_t dx = side % 3 - 1, dz = side / 3 - 1;
     if (!is_reached(dx, dz)) continue;
@@ -182,7 +182,7 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
     const auto [x0, x1] = range(dx);
     const auto [z0, z1] = range(dz);
     if (tile.size() == 1) {
-      const Sheet& other = *tile[0];
+      const Layer& other = *tile[0];
       const int32_t shift = other.base - own.base;
       for (int32_t z = z0; z < z1; ++z) {
         const auto from =
@@ -200,9 +200,9 @@ void SheetWindow::fill_apron(const Neighbourhood& tiles, const Sheet& own, int32
   }
 }
 
-// Several sheets beside the tile: lines of cells from the tile outward, each cell continuing the
+// Several layers beside the tile: lines of cells from the tile outward, each cell continuing the
 // one before it.
-void SheetWindow::fill_side(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz,
+void LayerWindow::fill_side(const LayerList& tile, const Layer& own, int32_t dx, int32_t dz,
                             int32_t reach) {
   const bool is_row = dx == 0;  // lines along x
   const bool outward_up = dx + dz > 0;
@@ -218,7 +218,7 @@ void SheetWindow::fill_side(const SheetList& tile, const Sheet& own, int32_t dx,
   for (int32_t step = 0; step < reach; ++step) {
     const auto line = static_cast<size_t>(outward_up ? step : kTileSide - 1 - step);
     for (size_t s = 0; s < tile.size(); ++s) {
-      const Sheet& other = *tile[s];
+      const Layer& other = *tile[s];
       lines_[s].shift = other.base - own.base;
       if (is_row) {
         lines_[s].top = &other.top[line * kTileSide];
@@ -234,7 +234,7 @@ void SheetWindow::fill_side(const SheetList& tile, const Sheet& own, int32_t dx,
       lines_[s].top = tops;
       lines_[s].ceiling = ceilings;
     }
-    choose_gaps(lines_, near.data(), line_top.data(), line_ceiling.data());
+    choose_free_spans(lines_, near.data(), line_top.data(), line_ceiling.data());
     const int32_t out = outward_up ? kTileSide + step : -1 - step;
     if (is_row) {
       std::copy(line_top.begin(), line_top.end(), &top[index(0, out)]);
@@ -248,7 +248,7 @@ void SheetWindow::fill_side(const SheetList& tile, const Sheet& own, int32_t dx,
   }
 }
 
-void SheetWindow::fill_corner(const SheetList& tile, const Sheet& own, int32_t dx, int32_t dz,
+void LayerWindow::fill_corner(const LayerList& tile, const Layer& own, int32_t dx, int32_t dz,
                               int32_t reach) {
   for (int32_t step_z = 0; step_z < reach; ++step_z) {
     const int32_t z = dz < 0 ? -1 - step_z : kTileSide + step_z;
@@ -258,7 +258,7 @@ void SheetWindow::fill_corner(const SheetList& tile, const Sheet& own, int32_t d
       const int32_t near_top =
           inward != kNone16 ? inward : (beside != kNone16 ? beside : own.low_top);
       const auto from = static_cast<size_t>((z - dz * kTileSide) * kTileSide + x - dx * kTileSide);
-      const Sheet* other = nearest_sheet(tile, from, near_top + own.base);
+      const Layer* other = nearest_layer(tile, from, near_top + own.base);
       if (other == nullptr) continue;
       const int32_t shift = other->base - own.base;
       top[index(x, z)] = rebased_top(other->top[from], shift);
@@ -267,35 +267,36 @@ void SheetWindow::fill_corner(const SheetList& tile, const Sheet& own, int32_t d
   }
 }
 
-// Where the sheet has no gap but another sheet of the tile continues it (a seam), takes that one's.
-void SheetWindow::fill_holes(const SheetList& tile, size_t sheet, const BodyLimits& limits) {
-  const Sheet& own = *tile[sheet];
+// Where the layer has no free span but another layer of the tile continues it (a seam), takes that
+// one's.
+void LayerWindow::fill_holes(const LayerList& tile, size_t layer, const BodyLimits& limits) {
+  const Layer& own = *tile[layer];
   if (own.cells == kTileArea) return;
   CellRows filled{}, others{}, hopeful{};
-  add_gap_bits(own, filled);
+  add_free_span_bits(own, filled);
   uint64_t any = 0;
-  for (const Sheet* other : tile) {
+  for (const Layer* other : tile) {
     if (other == &own) continue;
-    CellRows gaps{};
-    add_gap_bits(*other, gaps);
-    for (size_t z = 0; z < kTileSide; ++z) others[z] |= gaps[z];
-    any |= add_steps(own, filled, *other, gaps, limits.link_step, hopeful);
+    CellRows free_spans{};
+    add_free_span_bits(*other, free_spans);
+    for (size_t z = 0; z < kTileSide; ++z) others[z] |= free_spans[z];
+    any |= add_steps(own, filled, *other, free_spans, limits.link_step, hopeful);
   }
   if (any == 0) return;
-  // Which sheet has the gap nearest to a top, if it lies within a step. Gaps of a column have tops
-  // at least low_gap apart, so one that is nearer than half of that is the nearest: mostly the
-  // sheet's that the last hole was filled from.
-  size_t last = sheet == 0 ? 1 : 0;
-  const int32_t surely_nearest = (limits.low_gap - 1) / 2;
+  // Which layer has the free span nearest to a top, if it lies within a step. Free spans of a
+  // column have tops at least low_free_span apart, so one that is nearer than half of that is the
+  // nearest: mostly the layer's that the last hole was filled from.
+  size_t last = layer == 0 ? 1 : 0;
+  const int32_t surely_nearest = (limits.low_free_span - 1) / 2;
   const auto next_floor = [&](size_t cell, int32_t near_top) {
-    const auto distance = [&](const Sheet& other) {
+    const auto distance = [&](const Layer& other) {
       return std::abs(other.base + other.top[cell] - near_top);
     };
     if (tile[last]->top[cell] != kNone16 && distance(*tile[last]) <= surely_nearest) return last;
     size_t best = tile.size();
     int32_t best_distance = limits.link_step + 1;
     for (size_t i = 0; i < tile.size(); ++i) {
-      const Sheet& other = *tile[i];
+      const Layer& other = *tile[i];
       if (near_top < other.base + other.low_top - limits.link_step ||
           near_top > other.base + other.high_top + limits.link_step || other.top[cell] == kNone16 ||
           distance(other) >= best_distance) {
@@ -315,12 +316,13 @@ void SheetWindow::fill_holes(const SheetList& tile, size_t sheet, const BodyLimi
       if (top[next] == kNone16) continue;
       const size_t floor = next_floor(cell, own.base + top[next]);
       if (floor == tile.size()) continue;
-      const Sheet& other = *tile[floor];
+      const Layer& other = *tile[floor];
       const int32_t shift = other.base - own.base;
       const uint16_t other_top = rebased_top(other.top[cell], shift);
       const uint16_t other_ceiling = rebased_ceiling(other.ceiling[cell], shift);
-      const int32_t room = std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]);
-      if (std::abs(other_top - top[next]) > limits.link_step || room < limits.low_gap) {
+      const int32_t headroom =
+          std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]);
+      if (std::abs(other_top - top[next]) > limits.link_step || headroom < limits.low_free_span) {
         continue;
       }
       top[at] = other_top;
@@ -335,13 +337,14 @@ void SheetWindow::fill_holes(const SheetList& tile, size_t sheet, const BodyLimi
   std::vector<CellRows> even(tile.size());
   std::vector<uint8_t> known(tile.size(), 0);
   const auto fill_on = [&](int32_t x, int32_t z, uint64_t open) {
-    const Sheet& other = *tile[last];
+    const Layer& other = *tile[last];
     const int32_t shift = other.base - own.base;
-    // All heights are told on this sheet's scale, too.
-    if (other.low_top + shift < 0 || other.high_top + shift + limits.low_gap > kHighCeiling16) {
+    // All heights are on this layer's scale, too.
+    if (other.low_top + shift < 0 ||
+        other.high_top + shift + limits.low_free_span > kHighCeiling16) {
       return uint64_t{0};
     }
-    if (known[last] == 0) even_runs(other, {surely_nearest, limits.low_gap}, even[last]);
+    if (known[last] == 0) even_runs(other, {surely_nearest, limits.low_free_span}, even[last]);
     known[last] = 1;
     const uint64_t onward = open & even[last][static_cast<size_t>(z)] << 1;
     const int32_t count = x < kTileSide - 1 ? std::countr_one(onward >> (x + 1)) : 0;
@@ -380,9 +383,9 @@ void SheetWindow::fill_holes(const SheetList& tile, size_t sheet, const BodyLimi
   for (int32_t z = kTileSide - 1; z >= 0; --z) fill_row(z);
 }
 
-bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
+bool all_legal(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
                const BodyLimits& limits) {
-  const Sheet& own = *(*tiles[4])[sheet];
+  const Layer& own = *(*tiles[4])[layer];
   if (own.present != kTileArea || !own.one_code ||
       (limits.allowed[own.some_code] & body.class_bit) == 0) {
     return false;
@@ -392,9 +395,9 @@ bool all_legal(const Neighbourhood& tiles, size_t sheet, const BodyWindow& body,
   const int32_t low_feet = own.base + 2 * own.low_feet - own.high_feet;
   const int32_t high_feet = own.base + 2 * own.high_feet - own.low_feet;
   if (own.high_feet - own.low_feet > body.step) return false;
-  for (const SheetList* tile : tiles) {
+  for (const LayerList* tile : tiles) {
     if (tile == nullptr || tile->size() != 1) return false;
-    const Sheet& other = *(*tile)[0];
+    const Layer& other = *(*tile)[0];
     if (other.cells != kTileArea) return false;
     const int32_t ceiling =
         other.low_ceiling == kNone16 ? INT32_MAX : other.base + other.low_ceiling;

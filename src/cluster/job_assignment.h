@@ -24,29 +24,29 @@ using RankBytes = std::vector<uint8_t>;
 /// What all ranks were started for.
 struct RankJobs {
   const char* stage = "";  ///< As progress and errors name it.
-  /// Does a job, given by what rank 0 has said of it, and tells what rank 0 wants to know. On any
+  /// Does a job, given by rank 0's description of it, and returns the result for rank 0. On any
   /// rank, one call at a time.
   std::function<Result<RankBytes>(std::span<const uint8_t> job, Context& context)> work;
-  /// What is finished, and that the next bake goes on from there, as a part of a sentence.
+  /// What is finished, and that the next bake continues from there, as a part of a sentence.
   std::function<std::string(bool is_rank_0)> finished;
 };
 
-/// What rank 0 has to hand out, in this order, and what it does with what comes back, on its own
-/// thread.
-struct DealtJobs {
+/// What rank 0 has to assign, in this order, and what it does with the results, on its own thread.
+struct JobsToAssign {
   std::vector<RankBytes> jobs;
-  std::function<Result<void>(size_t job, std::span<const uint8_t> told)> enter;
+  std::function<Result<void>(size_t job, std::span<const uint8_t> result)> enter;
   std::function<void()> on_progress;  ///< After one or more were entered.
   std::function<void()> on_cancel;
 };
 
-/// Rank 0: hands out all jobs, does some itself, and waits for the others. Fails with the first
-/// error of any rank, or with kCancelled; no job is begun after that.
-Result<void> deal_jobs(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Context& context);
+/// Rank 0: assigns all jobs, does some itself, and waits for the others. Fails with the first error
+/// of any rank, or with kCancelled; no job is begun after that.
+Result<void> assign_jobs(Ranks& ranks, const RankJobs& what, JobsToAssign to_assign,
+                         Context& context);
 
-/// The others: does what rank 0 says, until it says no more. Fails with its own error, which rank 0
-/// knows then, or with kCancelled.
-Result<void> do_dealt_jobs(Ranks& ranks, const RankJobs& what, Context& context);
+/// The others: does the jobs of rank 0 until there are no more. Fails with its own error, which
+/// rank 0 knows then, or with kCancelled.
+Result<void> do_assigned_jobs(Ranks& ranks, const RankJobs& what, Context& context);
 
 /// Fails with kBadInput on every rank if a rank has another input than rank 0: it "has <read
 /// another scene>, or other options".
@@ -55,11 +55,11 @@ Result<void> same_over_ranks(Ranks& ranks, uint64_t input, const char* stage, co
 /// meet_over_ranks, for several ranks.
 Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context);
 
-/// Threads of a rank: the cores of its machine, shared among its ranks, unless some are asked for.
+/// Threads of a rank: the cores of its machine, shared among its ranks, unless a number is given.
 int32_t workers_of_rank(int32_t asked, const Ranks& ranks);
 
-/// What a rank says when its context is cancelled.
-Error told_to_stop(const Ranks& ranks, const RankJobs& what);
+/// The error of a rank whose context is cancelled.
+Error stopped_error(const Ranks& ranks, const RankJobs& what);
 
 /// A value as the bytes of a message, and back.
 template <class T>

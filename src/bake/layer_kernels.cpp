@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 
 #include <algorithm>
 
+// Linear passes over the 64 x 64 cells of a layer or a free-span layer, 16 to 32 cells a vector;
+// results are rows of bits.
+
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bake/sheet_kernels.cpp"
+#define HWY_TARGET_INCLUDE "bake/layer_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
@@ -22,30 +25,32 @@ using DB = hn::Rebind<uint8_t, DI>;
 using DU = hn::CappedTag<uint16_t, 32>;
 using DC = hn::Rebind<uint8_t, DU>;
 
-// Gaps a and b continue each other: a small step, and room over both.
+// Free spans a and b continue each other: a small step, and enough free over both.
 HWY_INLINE hn::Mask<DI> linked(hn::Vec<DI> top_a, hn::Vec<DI> ceiling_a, hn::Vec<DI> top_b,
-                               hn::Vec<DI> ceiling_b, hn::Vec<DI> max_step, hn::Vec<DI> min_gap) {
+                               hn::Vec<DI> ceiling_b, hn::Vec<DI> max_step,
+                               hn::Vec<DI> min_free_span) {
   const auto high = hn::Max(top_a, top_b), low = hn::Min(top_a, top_b);
-  const auto room = hn::Sub(hn::Min(ceiling_a, ceiling_b), high);
-  return hn::Not(hn::Or(hn::Gt(hn::Sub(high, low), max_step), hn::Lt(room, min_gap)));
+  const auto headroom = hn::Sub(hn::Min(ceiling_a, ceiling_b), high);
+  return hn::Not(hn::Or(hn::Gt(hn::Sub(high, low), max_step), hn::Lt(headroom, min_free_span)));
 }
 
-void LinkLayer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const CellRows* only,
-               LayerLinks& links) {
+void LinkFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, const LinkRule& rule,
+                   const CellRows* only, FreeSpanLinks& links) {
   const DI di;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
-  const GapLayer& g = *gaps.layers[static_cast<size_t>(layer)];
-  const int32_t max_step = rule.step, min_gap = rule.gap;
-  const auto step = hn::Set(di, max_step), gap = hn::Set(di, min_gap), k = hn::Set(di, layer);
+  const FreeSpanLayer& g = *free_spans.layers[static_cast<size_t>(free_layer)];
+  const int32_t max_step = rule.step, min_free_span = rule.free_span;
+  const auto step = hn::Set(di, max_step), free_span = hn::Set(di, min_free_span),
+             k = hn::Set(di, free_layer);
   for (int32_t z = 0; z < kTileSide; ++z) {
     uint64_t has = 0, left = 0, up = 0;
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const size_t c = static_cast<size_t>(z * kTileSide + x);
       const auto top = hn::Load(di, &g.top[c]), ceiling = hn::Load(di, &g.ceiling[c]);
-      has |= bits_of(di, hn::Gt(hn::Load(di, &gaps.count[c]), k)) << x;
+      has |= bits_of(di, hn::Gt(hn::Load(di, &free_spans.count[c]), k)) << x;
       if (c > 0) {
         left |= bits_of(di, linked(top, ceiling, hn::LoadU(di, &g.top[c] - 1),
-                                   hn::LoadU(di, &g.ceiling[c] - 1), step, gap))
+                                   hn::LoadU(di, &g.ceiling[c] - 1), step, free_span))
                 << x;
       } else {
         // The first cell has nothing to its left; the others of its vector look one back.
@@ -55,14 +60,14 @@ void LinkLayer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const 
                         low = std::min(g.top[at], g.top[at - 1]);
           const int32_t ceil = std::min(g.ceiling[at], g.ceiling[at - 1]);
           const bool ok = static_cast<int64_t>(high) - low <= max_step &&
-                          static_cast<int64_t>(ceil) - high >= min_gap;
+                          static_cast<int64_t>(ceil) - high >= min_free_span;
           left |= static_cast<uint64_t>(ok) << i;
         }
       }
       if (z == 0) continue;
       const size_t above = c - kTileSide;
       up |= bits_of(di, linked(top, ceiling, hn::Load(di, &g.top[above]),
-                               hn::Load(di, &g.ceiling[above]), step, gap))
+                               hn::Load(di, &g.ceiling[above]), step, free_span))
             << x;
     }
     const size_t row = static_cast<size_t>(z);
@@ -73,10 +78,12 @@ void LinkLayer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const 
   }
 }
 
-void LowRooms(const TileGaps& gaps, int32_t layer, int32_t room, CellRows& rows) {
+void LowFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t height,
+                  CellRows& rows) {
   const DI di;
-  const GapLayer& g = *gaps.layers[static_cast<size_t>(layer)];
-  const auto k = hn::Set(di, layer), least = hn::Set(di, room), sky = hn::Set(di, kOpenSkyMm);
+  const FreeSpanLayer& g = *free_spans.layers[static_cast<size_t>(free_layer)];
+  const auto k = hn::Set(di, free_layer), least = hn::Set(di, height),
+             sky = hn::Set(di, kOpenSkyMm);
   for (size_t z = 0; z < kTileSide; ++z) {
     rows[z] = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(di)) {
@@ -84,17 +91,17 @@ void LowRooms(const TileGaps& gaps, int32_t layer, int32_t room, CellRows& rows)
       const auto ceiling = hn::Load(di, &g.ceiling[c]);
       const auto low =
           hn::And(hn::Ne(ceiling, sky), hn::Lt(hn::Sub(ceiling, hn::Load(di, &g.top[c])), least));
-      rows[z] |= bits_of(di, hn::And(low, hn::Gt(hn::Load(di, &gaps.count[c]), k))) << x;
+      rows[z] |= bits_of(di, hn::And(low, hn::Gt(hn::Load(di, &free_spans.count[c]), k))) << x;
     }
   }
 }
 
-TopRange LayerRange(const TileGaps& gaps, int32_t layer) {
+TopRange FreeSpanRange(const TileFreeSpans& free_spans, int32_t free_layer) {
   const DI di;
-  const GapLayer& g = *gaps.layers[static_cast<size_t>(layer)];
+  const FreeSpanLayer& g = *free_spans.layers[static_cast<size_t>(free_layer)];
   auto low = hn::Set(di, INT32_MAX), high = hn::Set(di, INT32_MIN);
   for (size_t c = 0; c < kTileArea; c += hn::Lanes(di)) {
-    const auto has = hn::Gt(hn::Load(di, &gaps.count[c]), hn::Set(di, layer));
+    const auto has = hn::Gt(hn::Load(di, &free_spans.count[c]), hn::Set(di, free_layer));
     const auto top = hn::Load(di, &g.top[c]);
     low = hn::IfThenElse(has, hn::Min(low, top), low);
     high = hn::IfThenElse(has, hn::Max(high, top), high);
@@ -102,7 +109,7 @@ TopRange LayerRange(const TileGaps& gaps, int32_t layer) {
   return {hn::GetLane(hn::MinOfLanes(di, low)), hn::GetLane(hn::MaxOfLanes(di, high))};
 }
 
-TopRange RunRange(const GapLayer& layer, int32_t z, uint64_t cells) {
+TopRange RunRange(const FreeSpanLayer& free_layer, int32_t z, uint64_t cells) {
   const DI di;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
   auto low = hn::Set(di, INT32_MAX), high = hn::Set(di, INT32_MIN);
@@ -110,20 +117,20 @@ TopRange RunRange(const GapLayer& layer, int32_t z, uint64_t cells) {
     const uint64_t here = cells >> x & ((1ULL << lanes) - 1);
     if (here == 0) continue;
     const auto mask = mask_of(di, here);
-    const auto top = hn::Load(di, &layer.top[static_cast<size_t>(z * kTileSide + x)]);
+    const auto top = hn::Load(di, &free_layer.top[static_cast<size_t>(z * kTileSide + x)]);
     low = hn::IfThenElse(mask, hn::Min(low, top), low);
     high = hn::IfThenElse(mask, hn::Max(high, top), high);
   }
   return {hn::GetLane(hn::MinOfLanes(di, low)), hn::GetLane(hn::MaxOfLanes(di, high))};
 }
 
-void ClearSheet(Sheet& sheet) {
+void ClearLayer(Layer& layer) {
   const DU du;
   const auto none = hn::Set(du, kNone16), zero = hn::Zero(du);
   for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
-    hn::Store(none, du, &sheet.top[c]);
-    hn::Store(zero, du, &sheet.ceiling[c]);
-    hn::Store(none, du, &sheet.feet[c]);
+    hn::Store(none, du, &layer.top[c]);
+    hn::Store(zero, du, &layer.ceiling[c]);
+    hn::Store(none, du, &layer.feet[c]);
   }
 }
 
@@ -134,20 +141,20 @@ HWY_INLINE hn::Vec<DH> narrow(hn::Vec<DI> v) {
   return hn::TruncateTo(dh, hn::BitCast(dw, v));
 }
 
-void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet) {
+void WriteFreeSpans(const FreeSpanLayer& free_layer, int32_t z, uint64_t cells, Layer& layer) {
   const DI di;
   const DH dh;
   const DB db;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
-  const auto base = hn::Set(di, sheet.base), none = hn::Set(di, kNone16);
+  const auto base = hn::Set(di, layer.base), none = hn::Set(di, kNone16);
   const auto sky = hn::Set(di, kOpenSkyMm), highest = hn::Set(di, kHighCeiling16);
   for (int32_t x = 0; x < kTileSide; x += lanes) {
     const uint64_t here = cells >> x & (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL);
     if (here == 0) continue;
     const size_t c = static_cast<size_t>(z * kTileSide + x);
-    const auto support = hn::Load(di, &layer.support[c]);
-    const auto top = hn::Sub(hn::Load(di, &layer.top[c]), base);
-    const auto raw_ceiling = hn::Load(di, &layer.ceiling[c]);
+    const auto support = hn::Load(di, &free_layer.support[c]);
+    const auto top = hn::Sub(hn::Load(di, &free_layer.top[c]), base);
+    const auto raw_ceiling = hn::Load(di, &free_layer.ceiling[c]);
     // An open sky would overflow the difference: it is replaced after it.
     const auto ceiling = hn::IfThenElse(hn::Eq(raw_ceiling, sky), none,
                                         hn::Min(hn::Sub(raw_ceiling, base), highest));
@@ -159,59 +166,60 @@ void WriteGaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet) {
     const auto kept = hn::IfThenElse(bad, none, feet);
     const auto codes = hn::TruncateTo(db, hn::BitCast(hn::RebindToUnsigned<DI>(), code));
     if (here == (lanes < 64 ? (1ULL << lanes) - 1 : ~0ULL)) {
-      hn::StoreU(narrow(top), dh, &sheet.top[c]);
-      hn::StoreU(narrow(ceiling), dh, &sheet.ceiling[c]);
-      hn::StoreU(narrow(kept), dh, &sheet.feet[c]);
-      hn::StoreU(codes, db, &sheet.code[c]);
+      hn::StoreU(narrow(top), dh, &layer.top[c]);
+      hn::StoreU(narrow(ceiling), dh, &layer.ceiling[c]);
+      hn::StoreU(narrow(kept), dh, &layer.feet[c]);
+      hn::StoreU(codes, db, &layer.code[c]);
     } else {
       const auto mask = mask_of(dh, here);
-      hn::BlendedStore(narrow(top), mask, dh, &sheet.top[c]);
-      hn::BlendedStore(narrow(ceiling), mask, dh, &sheet.ceiling[c]);
-      hn::BlendedStore(narrow(kept), mask, dh, &sheet.feet[c]);
-      hn::BlendedStore(codes, mask_of(db, here), db, &sheet.code[c]);
+      hn::BlendedStore(narrow(top), mask, dh, &layer.top[c]);
+      hn::BlendedStore(narrow(ceiling), mask, dh, &layer.ceiling[c]);
+      hn::BlendedStore(narrow(kept), mask, dh, &layer.feet[c]);
+      hn::BlendedStore(codes, mask_of(db, here), db, &layer.code[c]);
     }
   }
 }
 
-void Summarise(Sheet& sheet) {
+void Summarise(Layer& layer) {
   const DU du;
   const DC dc;
   const auto none = hn::Set(du, kNone16), zero = hn::Zero(du), one = hn::Set(du, 1);
   auto low_top = none, high_top = zero, low_feet = none, high_feet = zero, low_ceiling = none;
   auto cells = zero, present = zero, low_code = none, high_code = zero;
   for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
-    const auto top = hn::Load(du, &sheet.top[c]);
-    const auto feet = hn::Load(du, &sheet.feet[c]);
-    const auto code = hn::PromoteTo(du, hn::LoadU(dc, &sheet.code[c]));
-    const auto gap = hn::Ne(top, none), stands = hn::Ne(feet, none);
+    const auto top = hn::Load(du, &layer.top[c]);
+    const auto feet = hn::Load(du, &layer.feet[c]);
+    const auto code = hn::PromoteTo(du, hn::LoadU(dc, &layer.code[c]));
+    const auto free_span = hn::Ne(top, none), stands = hn::Ne(feet, none);
     low_top = hn::Min(low_top, top);
-    high_top = hn::Max(high_top, hn::IfThenElseZero(gap, top));
+    high_top = hn::Max(high_top, hn::IfThenElseZero(free_span, top));
     low_feet = hn::Min(low_feet, feet);
     high_feet = hn::Max(high_feet, hn::IfThenElseZero(stands, feet));
-    low_ceiling = hn::Min(low_ceiling, hn::IfThenElse(gap, hn::Load(du, &sheet.ceiling[c]), none));
-    cells = hn::Add(cells, hn::IfThenElseZero(gap, one));
+    low_ceiling =
+        hn::Min(low_ceiling, hn::IfThenElse(free_span, hn::Load(du, &layer.ceiling[c]), none));
+    cells = hn::Add(cells, hn::IfThenElseZero(free_span, one));
     present = hn::Add(present, hn::IfThenElseZero(stands, one));
     low_code = hn::Min(low_code, hn::IfThenElse(stands, code, none));
     high_code = hn::Max(high_code, hn::IfThenElseZero(stands, code));
   }
-  sheet.low_top = hn::GetLane(hn::MinOfLanes(du, low_top));
-  sheet.high_top = hn::GetLane(hn::MaxOfLanes(du, high_top));
-  sheet.low_feet = hn::GetLane(hn::MinOfLanes(du, low_feet));
-  sheet.high_feet = hn::GetLane(hn::MaxOfLanes(du, high_feet));
-  sheet.low_ceiling = hn::GetLane(hn::MinOfLanes(du, low_ceiling));
+  layer.low_top = hn::GetLane(hn::MinOfLanes(du, low_top));
+  layer.high_top = hn::GetLane(hn::MaxOfLanes(du, high_top));
+  layer.low_feet = hn::GetLane(hn::MinOfLanes(du, low_feet));
+  layer.high_feet = hn::GetLane(hn::MaxOfLanes(du, high_feet));
+  layer.low_ceiling = hn::GetLane(hn::MinOfLanes(du, low_ceiling));
   alignas(64) uint16_t sums[2][32] = {};
   hn::Store(cells, du, sums[0]);
   hn::Store(present, du, sums[1]);
-  sheet.cells = sheet.present = 0;
+  layer.cells = layer.present = 0;
   for (size_t i = 0; i < hn::Lanes(du); ++i) {
-    sheet.cells += sums[0][i];
-    sheet.present += sums[1][i];
+    layer.cells += sums[0][i];
+    layer.present += sums[1][i];
   }
-  sheet.some_code = static_cast<uint8_t>(hn::GetLane(hn::MaxOfLanes(du, high_code)));
-  sheet.one_code = hn::GetLane(hn::MinOfLanes(du, low_code)) == sheet.some_code;
+  layer.some_code = static_cast<uint8_t>(hn::GetLane(hn::MaxOfLanes(du, high_code)));
+  layer.one_code = hn::GetLane(hn::MinOfLanes(du, low_code)) == layer.some_code;
 }
 
-bool MayBePlane(const Sheet& sheet) {
+bool MayBePlane(const Layer& layer) {
   const DU du;
   const auto none = hn::Set(du, kNone16), bias = hn::Set(du, 32768);
   auto low_x = none, high_x = hn::Zero(du), low_z = none, high_z = hn::Zero(du);
@@ -231,14 +239,14 @@ bool MayBePlane(const Sheet& sheet) {
   for (int32_t z = 0; z < kTileSide; ++z) {
     for (int32_t x = 0; x < kTileSide; x += static_cast<int32_t>(hn::Lanes(du))) {
       const size_t c = static_cast<size_t>(z * kTileSide + x);
-      const auto feet = hn::Load(du, &sheet.feet[c]);
+      const auto feet = hn::Load(du, &layer.feet[c]);
       const auto stands = hn::Ne(feet, none);
-      const auto right = hn::LoadU(du, &sheet.feet[0] + c + 1);
+      const auto right = hn::LoadU(du, &layer.feet[0] + c + 1);
       auto both = hn::And(stands, hn::Ne(right, none));
       if (x + static_cast<int32_t>(hn::Lanes(du)) == kTileSide) both = hn::And(both, not_last);
       widen(feet, right, both, low_x, high_x);
       if (z + 1 == kTileSide) continue;
-      const auto below = hn::Load(du, &sheet.feet[c + kTileSide]);
+      const auto below = hn::Load(du, &layer.feet[c + kTileSide]);
       widen(feet, below, hn::And(stands, hn::Ne(below, none)), low_z, high_z);
     }
     if (z % 8 == 7 && (spread(low_x, high_x) > 2 || spread(low_z, high_z) > 2)) return false;
@@ -257,15 +265,15 @@ HWY_INLINE hn::Vec<DU> gentler(hn::Vec<DU> a, hn::Vec<DU> b, hn::Vec<DU> c) {
   return hn::IfThenElseZero(hn::And(agree, all), hn::Min(first, second));
 }
 
-void MakeTilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
+void MakeTilt(const Layer& layer, std::array<uint16_t, kTileArea>& tilt) {
   const DU du;
   const size_t lanes = hn::Lanes(du);
   alignas(64) uint16_t along[kTileSide], across[kTileSide + 64];
   for (size_t z = 0; z < kTileSide; ++z) {
-    if (sheet.useful[z] == 0) continue;
+    if (layer.useful[z] == 0) continue;
     const size_t middle = std::clamp<size_t>(z, 1, kTileSide - 2);
-    const uint16_t* row = &sheet.feet[z * kTileSide];
-    const uint16_t* centre = &sheet.feet[middle * kTileSide];
+    const uint16_t* row = &layer.feet[z * kTileSide];
+    const uint16_t* centre = &layer.feet[middle * kTileSide];
     for (size_t x = 0; x < kTileSide; x += lanes) {
       hn::Store(gentler(hn::Load(du, centre + x - kTileSide), hn::Load(du, centre + x),
                         hn::Load(du, centre + x + kTileSide)),
@@ -284,15 +292,15 @@ void MakeTilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
   }
 }
 
-void KeepFeet(const CellRows& rows, Sheet& sheet) {
+void KeepFeet(const CellRows& rows, Layer& layer) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
   auto low = none, high = hn::Zero(du);
-  sheet.present = 0;
+  layer.present = 0;
   for (size_t z = 0; z < kTileSide; ++z) {
     uint64_t present = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
-      uint16_t* at = &sheet.feet[z * kTileSide + x];
+      uint16_t* at = &layer.feet[z * kTileSide + x];
       const auto feet = hn::IfThenElse(mask_of(du, rows[z] >> x), hn::Load(du, at), none);
       const auto stands = hn::Ne(feet, none);
       low = hn::Min(low, feet);
@@ -300,13 +308,13 @@ void KeepFeet(const CellRows& rows, Sheet& sheet) {
       present |= bits_of(du, stands) << x;
       hn::Store(feet, du, at);
     }
-    sheet.present += static_cast<int32_t>(hwy::PopCount(present));
+    layer.present += static_cast<int32_t>(hwy::PopCount(present));
   }
-  sheet.low_feet = hn::GetLane(hn::MinOfLanes(du, low));
-  sheet.high_feet = hn::GetLane(hn::MaxOfLanes(du, high));
+  layer.low_feet = hn::GetLane(hn::MinOfLanes(du, low));
+  layer.high_feet = hn::GetLane(hn::MaxOfLanes(du, high));
 }
 
-bool UsefulCells(const Sheet& sheet, const BodyNeed& need, CellRows& rows) {
+bool UsefulCells(const Layer& layer, const BodyNeed& need, CellRows& rows) {
   const DU du;
   const DC dc;
   const auto none = hn::Set(du, kNone16);
@@ -320,45 +328,47 @@ bool UsefulCells(const Sheet& sheet, const BodyNeed& need, CellRows& rows) {
     uint64_t row = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
       const size_t c = z * kTileSide + x;
-      const auto feet = hn::Load(du, &sheet.feet[c]);
-      const auto code = hn::PromoteTo(du, hn::LoadU(dc, &sheet.code[c]));
+      const auto feet = hn::Load(du, &layer.feet[c]);
+      const auto code = hn::PromoteTo(du, hn::LoadU(dc, &layer.code[c]));
       const auto stands = hn::And(hn::Ne(feet, none), hn::Ne(code, barred));
-      const auto low = at_most(hn::Load(du, &sheet.top[c]), hn::SaturatedAdd(feet, bottom));
+      const auto low = at_most(hn::Load(du, &layer.top[c]), hn::SaturatedAdd(feet, bottom));
       // Saturated, a head passes under the open sky only.
-      const auto room = at_most(hn::SaturatedAdd(feet, height), hn::Load(du, &sheet.ceiling[c]));
-      row |= bits_of(du, hn::And(stands, hn::And(low, room))) << x;
+      const auto headroom =
+          at_most(hn::SaturatedAdd(feet, height), hn::Load(du, &layer.ceiling[c]));
+      row |= bits_of(du, hn::And(stands, hn::And(low, headroom))) << x;
     }
     any |= rows[z] = row;
   }
   return any != 0;
 }
 
-void PresentBits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
+void PresentBits(const Layer& layer, std::array<uint64_t, kTileSide>& rows) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
   for (size_t z = 0; z < kTileSide; ++z) {
     uint64_t row = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
-      row |= bits_of(du, hn::Ne(hn::Load(du, &sheet.feet[z * kTileSide + x]), none)) << x;
+      row |= bits_of(du, hn::Ne(hn::Load(du, &layer.feet[z * kTileSide + x]), none)) << x;
     }
     rows[z] = row;
   }
 }
 
-HeightRange CeilingRange(const Sheet& sheet) {
+HeightRange CeilingRange(const Layer& layer) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
   auto low = none, high = hn::Zero(du);
   for (size_t c = 0; c < kTileArea; c += hn::Lanes(du)) {
-    const auto stands = hn::Ne(hn::Load(du, &sheet.feet[c]), none);
-    const auto ceiling = hn::Load(du, &sheet.ceiling[c]);
+    const auto stands = hn::Ne(hn::Load(du, &layer.feet[c]), none);
+    const auto ceiling = hn::Load(du, &layer.ceiling[c]);
     low = hn::Min(low, hn::IfThenElse(stands, ceiling, none));
     high = hn::Max(high, hn::IfThenElseZero(stands, ceiling));
   }
   return {hn::GetLane(hn::MinOfLanes(du, low)), hn::GetLane(hn::MaxOfLanes(du, high))};
 }
 
-void ChooseGaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling) {
+void ChooseFreeSpans(std::span<const FreeSpanLine> lines, int32_t* near, uint16_t* top,
+                     uint16_t* ceiling) {
   const DI di;
   const DH dh;
   const auto none = hn::Set(di, kNone16), zero = hn::Zero(di);
@@ -367,20 +377,20 @@ void ChooseGaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, ui
     const auto wanted = hn::LoadU(di, near + i);
     auto least = hn::Set(di, INT32_MAX);
     auto best_top = none, best_ceiling = zero;
-    for (const GapLine& line : lines) {
+    for (const FreeSpanLine& line : lines) {
       const auto shift = hn::Set(di, line.shift);
       const auto own_top = hn::PromoteTo(di, hn::LoadU(dh, line.top + i));
       const auto own_ceiling = hn::PromoteTo(di, hn::LoadU(dh, line.ceiling + i));
       const auto moved = hn::Add(own_top, shift);
       const auto height = hn::IfThenElse(hn::Lt(moved, zero), none, hn::Min(moved, none));
-      const auto room =
+      const auto headroom =
           hn::IfThenElse(hn::Eq(own_ceiling, none), none,
                          hn::Min(hn::Max(hn::Add(own_ceiling, shift), zero), highest));
       const auto distance = hn::Abs(hn::Sub(moved, wanted));
       const auto better = hn::And(hn::Ne(own_top, none), hn::Lt(distance, least));
       least = hn::IfThenElse(better, distance, least);
       best_top = hn::IfThenElse(better, height, best_top);
-      best_ceiling = hn::IfThenElse(better, room, best_ceiling);
+      best_ceiling = hn::IfThenElse(better, headroom, best_ceiling);
     }
     hn::StoreU(narrow(best_top), dh, top + i);
     hn::StoreU(narrow(best_ceiling), dh, ceiling + i);
@@ -397,7 +407,7 @@ HWY_INLINE hn::Vec<DI> plane_heights(const LevelPlane& plane, int32_t x, int32_t
   return hn::Add(hn::Set(di, plane.base), hn::ShiftRight<10>(rise));
 }
 
-bool PlaneFits(const Sheet& sheet, const LevelPlane& plane) {
+bool PlaneFits(const Layer& layer, const LevelPlane& plane) {
   const DI di;
   const DH dh;
   const auto none = hn::Set(di, kNone16), one = hn::Set(di, 1);
@@ -405,7 +415,7 @@ bool PlaneFits(const Sheet& sheet, const LevelPlane& plane) {
     auto off = hn::Lt(none, none);
     for (int32_t x = 0; x < kTileSide; x += static_cast<int32_t>(hn::Lanes(di))) {
       const auto feet =
-          hn::PromoteTo(di, hn::Load(dh, &sheet.feet[static_cast<size_t>(z * kTileSide + x)]));
+          hn::PromoteTo(di, hn::Load(dh, &layer.feet[static_cast<size_t>(z * kTileSide + x)]));
       const auto miss = hn::Abs(hn::Sub(plane_heights(plane, x, z), feet));
       off = hn::Or(off, hn::And(hn::Ne(feet, none), hn::Gt(miss, one)));
     }
@@ -414,13 +424,13 @@ bool PlaneFits(const Sheet& sheet, const LevelPlane& plane) {
   return true;
 }
 
-void PutOnPlane(const LevelPlane& plane, Sheet& sheet) {
+void PutOnPlane(const LevelPlane& plane, Layer& layer) {
   const DI di;
   const DH dh;
   const auto none = hn::Set(di, kNone16);
   for (int32_t z = 0; z < kTileSide; ++z) {
     for (int32_t x = 0; x < kTileSide; x += static_cast<int32_t>(hn::Lanes(di))) {
-      uint16_t* row = &sheet.feet[static_cast<size_t>(z * kTileSide + x)];
+      uint16_t* row = &layer.feet[static_cast<size_t>(z * kTileSide + x)];
       const auto feet = hn::PromoteTo(di, hn::Load(dh, row));
       const auto height = plane_heights(plane, x, z);
       hn::Store(narrow(hn::IfThenElse(hn::Eq(feet, none), none, height)), dh, row);
@@ -428,7 +438,7 @@ void PutOnPlane(const LevelPlane& plane, Sheet& sheet) {
   }
 }
 
-void LinkTops(const Sheet& sheet, int32_t step, TopLinks& links) {
+void LinkTops(const Layer& layer, int32_t step, TopLinks& links) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
   const auto most = hn::Set(du, static_cast<uint16_t>(std::min(step, 65535)));
@@ -440,11 +450,11 @@ void LinkTops(const Sheet& sheet, int32_t step, TopLinks& links) {
     uint64_t has = 0, right = 0, down = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
       const size_t c = z * kTileSide + x;
-      const auto top = hn::Load(du, &sheet.top[c]);
+      const auto top = hn::Load(du, &layer.top[c]);
       has |= bits_of(du, hn::Ne(top, none)) << x;
       // Past the last row this reads the array that follows: masked below.
-      right |= linked(top, hn::LoadU(du, &sheet.top[0] + c + 1)) << x;
-      if (z + 1 < kTileSide) down |= linked(top, hn::Load(du, &sheet.top[c + kTileSide])) << x;
+      right |= linked(top, hn::LoadU(du, &layer.top[0] + c + 1)) << x;
+      if (z + 1 < kTileSide) down |= linked(top, hn::Load(du, &layer.top[c + kTileSide])) << x;
     }
     links.has[z] = has;
     links.right[z] = right & has & (has >> 1);
@@ -453,35 +463,36 @@ void LinkTops(const Sheet& sheet, int32_t step, TopLinks& links) {
   for (size_t z = 0; z + 1 < kTileSide; ++z) links.down[z] &= links.has[z + 1];
 }
 
-void EvenRuns(const Sheet& sheet, const LinkRule& rule, CellRows& rows) {
+void EvenRuns(const Layer& layer, const LinkRule& rule, CellRows& rows) {
   const DU du;
   const auto step = hn::Set(du, static_cast<uint16_t>(rule.step));
-  const auto gap = hn::Set(du, static_cast<uint16_t>(rule.gap)), none = hn::Set(du, kNone16);
+  const auto free_span = hn::Set(du, static_cast<uint16_t>(rule.free_span)),
+             none = hn::Set(du, kNone16);
   const auto at_most = [](hn::Vec<DU> a, hn::Vec<DU> b) { return hn::Eq(hn::Min(a, b), a); };
   for (size_t z = 0; z < kTileSide; ++z) {
     uint64_t has = 0, even = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
       const size_t c = z * kTileSide + x;
       // Past the last row this reads the array that follows: masked below.
-      const auto top = hn::Load(du, &sheet.top[c]), next = hn::LoadU(du, &sheet.top[0] + c + 1);
+      const auto top = hn::Load(du, &layer.top[c]), next = hn::LoadU(du, &layer.top[0] + c + 1);
       const auto ceiling =
-          hn::Min(hn::Load(du, &sheet.ceiling[c]), hn::LoadU(du, &sheet.ceiling[0] + c + 1));
+          hn::Min(hn::Load(du, &layer.ceiling[c]), hn::LoadU(du, &layer.ceiling[0] + c + 1));
       const auto high = hn::Max(top, next);
       has |= bits_of(du, hn::Ne(top, none)) << x;
       even |= bits_of(du, hn::And(at_most(hn::Sub(high, hn::Min(top, next)), step),
-                                  at_most(gap, hn::SaturatedSub(ceiling, high))))
+                                  at_most(free_span, hn::SaturatedSub(ceiling, high))))
               << x;
     }
     rows[z] = even & has & has >> 1;
   }
 }
 
-void AddGapBits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
+void AddFreeSpanBits(const Layer& layer, std::array<uint64_t, kTileSide>& rows) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
   for (size_t z = 0; z < kTileSide; ++z) {
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(du)) {
-      const auto top = hn::Load(du, &sheet.top[z * kTileSide + x]);
+      const auto top = hn::Load(du, &layer.top[z * kTileSide + x]);
       rows[z] |= bits_of(du, hn::Ne(top, none)) << x;
     }
   }
@@ -494,12 +505,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace throng {
 
-HWY_EXPORT(LinkLayer);
-HWY_EXPORT(LowRooms);
-HWY_EXPORT(LayerRange);
+HWY_EXPORT(LinkFreeSpans);
+HWY_EXPORT(LowFreeSpans);
+HWY_EXPORT(FreeSpanRange);
 HWY_EXPORT(RunRange);
-HWY_EXPORT(ClearSheet);
-HWY_EXPORT(WriteGaps);
+HWY_EXPORT(ClearLayer);
+HWY_EXPORT(WriteFreeSpans);
 HWY_EXPORT(Summarise);
 HWY_EXPORT(MayBePlane);
 HWY_EXPORT(MakeTilt);
@@ -507,78 +518,80 @@ HWY_EXPORT(KeepFeet);
 HWY_EXPORT(UsefulCells);
 HWY_EXPORT(PresentBits);
 HWY_EXPORT(CeilingRange);
-HWY_EXPORT(ChooseGaps);
+HWY_EXPORT(ChooseFreeSpans);
 HWY_EXPORT(LinkTops);
 HWY_EXPORT(EvenRuns);
-HWY_EXPORT(AddGapBits);
+HWY_EXPORT(AddFreeSpanBits);
 HWY_EXPORT(PlaneFits);
 HWY_EXPORT(PutOnPlane);
 
-void link_layer(const TileGaps& gaps, int32_t layer, const LinkRule& rule, const CellRows* only,
-                LayerLinks& links) {
-  HWY_DYNAMIC_DISPATCH(LinkLayer)(gaps, layer, rule, only, links);
+void link_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, const LinkRule& rule,
+                     const CellRows* only, FreeSpanLinks& links) {
+  HWY_DYNAMIC_DISPATCH(LinkFreeSpans)(free_spans, free_layer, rule, only, links);
 }
 
-void low_rooms(const TileGaps& gaps, int32_t layer, int32_t room, CellRows& rows) {
-  HWY_DYNAMIC_DISPATCH(LowRooms)(gaps, layer, room, rows);
+void low_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t height,
+                    CellRows& rows) {
+  HWY_DYNAMIC_DISPATCH(LowFreeSpans)(free_spans, free_layer, height, rows);
 }
 
-TopRange layer_range(const TileGaps& gaps, int32_t layer) {
-  return HWY_DYNAMIC_DISPATCH(LayerRange)(gaps, layer);
+TopRange free_span_range(const TileFreeSpans& free_spans, int32_t free_layer) {
+  return HWY_DYNAMIC_DISPATCH(FreeSpanRange)(free_spans, free_layer);
 }
 
-TopRange run_range(const GapLayer& layer, int32_t z, uint64_t cells) {
-  return HWY_DYNAMIC_DISPATCH(RunRange)(layer, z, cells);
+TopRange run_range(const FreeSpanLayer& free_layer, int32_t z, uint64_t cells) {
+  return HWY_DYNAMIC_DISPATCH(RunRange)(free_layer, z, cells);
 }
 
-void clear_sheet(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(ClearSheet)(sheet); }
+void clear_layer(Layer& layer) { HWY_DYNAMIC_DISPATCH(ClearLayer)(layer); }
 
-void write_gaps(const GapLayer& layer, int32_t z, uint64_t cells, Sheet& sheet) {
-  HWY_DYNAMIC_DISPATCH(WriteGaps)(layer, z, cells, sheet);
+void write_free_spans(const FreeSpanLayer& free_layer, int32_t z, uint64_t cells, Layer& layer) {
+  HWY_DYNAMIC_DISPATCH(WriteFreeSpans)(free_layer, z, cells, layer);
 }
 
-void summarise(Sheet& sheet) { HWY_DYNAMIC_DISPATCH(Summarise)(sheet); }
+void summarise(Layer& layer) { HWY_DYNAMIC_DISPATCH(Summarise)(layer); }
 
-bool may_be_plane(const Sheet& sheet) { return HWY_DYNAMIC_DISPATCH(MayBePlane)(sheet); }
+bool may_be_plane(const Layer& layer) { return HWY_DYNAMIC_DISPATCH(MayBePlane)(layer); }
 
-void make_tilt(const Sheet& sheet, std::array<uint16_t, kTileArea>& tilt) {
-  HWY_DYNAMIC_DISPATCH(MakeTilt)(sheet, tilt);
+void make_tilt(const Layer& layer, std::array<uint16_t, kTileArea>& tilt) {
+  HWY_DYNAMIC_DISPATCH(MakeTilt)(layer, tilt);
 }
 
-bool useful_cells(const Sheet& sheet, const BodyNeed& need, CellRows& rows) {
-  return HWY_DYNAMIC_DISPATCH(UsefulCells)(sheet, need, rows);
+bool useful_cells(const Layer& layer, const BodyNeed& need, CellRows& rows) {
+  return HWY_DYNAMIC_DISPATCH(UsefulCells)(layer, need, rows);
 }
 
-void keep_feet(const CellRows& rows, Sheet& sheet) { HWY_DYNAMIC_DISPATCH(KeepFeet)(rows, sheet); }
+void keep_feet(const CellRows& rows, Layer& layer) { HWY_DYNAMIC_DISPATCH(KeepFeet)(rows, layer); }
 
-void present_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
-  HWY_DYNAMIC_DISPATCH(PresentBits)(sheet, rows);
+void present_bits(const Layer& layer, std::array<uint64_t, kTileSide>& rows) {
+  HWY_DYNAMIC_DISPATCH(PresentBits)(layer, rows);
 }
 
-HeightRange ceiling_range(const Sheet& sheet) { return HWY_DYNAMIC_DISPATCH(CeilingRange)(sheet); }
+HeightRange ceiling_range(const Layer& layer) { return HWY_DYNAMIC_DISPATCH(CeilingRange)(layer); }
 
-void choose_gaps(std::span<const GapLine> lines, int32_t* near, uint16_t* top, uint16_t* ceiling) {
-  HWY_DYNAMIC_DISPATCH(ChooseGaps)(lines, near, top, ceiling);
+void choose_free_spans(std::span<const FreeSpanLine> lines, int32_t* near, uint16_t* top,
+                       uint16_t* ceiling) {
+  HWY_DYNAMIC_DISPATCH(ChooseFreeSpans)(lines, near, top, ceiling);
 }
 
-bool plane_fits(const Sheet& sheet, const LevelPlane& plane) {
-  return HWY_DYNAMIC_DISPATCH(PlaneFits)(sheet, plane);
+bool plane_fits(const Layer& layer, const LevelPlane& plane) {
+  return HWY_DYNAMIC_DISPATCH(PlaneFits)(layer, plane);
 }
 
-void put_on_plane(const LevelPlane& plane, Sheet& sheet) {
-  HWY_DYNAMIC_DISPATCH(PutOnPlane)(plane, sheet);
+void put_on_plane(const LevelPlane& plane, Layer& layer) {
+  HWY_DYNAMIC_DISPATCH(PutOnPlane)(plane, layer);
 }
 
-void link_tops(const Sheet& sheet, int32_t step, TopLinks& links) {
-  HWY_DYNAMIC_DISPATCH(LinkTops)(sheet, step, links);
+void link_tops(const Layer& layer, int32_t step, TopLinks& links) {
+  HWY_DYNAMIC_DISPATCH(LinkTops)(layer, step, links);
 }
 
-void even_runs(const Sheet& sheet, const LinkRule& rule, CellRows& rows) {
-  HWY_DYNAMIC_DISPATCH(EvenRuns)(sheet, rule, rows);
+void even_runs(const Layer& layer, const LinkRule& rule, CellRows& rows) {
+  HWY_DYNAMIC_DISPATCH(EvenRuns)(layer, rule, rows);
 }
 
-void add_gap_bits(const Sheet& sheet, std::array<uint64_t, kTileSide>& rows) {
-  HWY_DYNAMIC_DISPATCH(AddGapBits)(sheet, rows);
+void add_free_span_bits(const Layer& layer, std::array<uint64_t, kTileSide>& rows) {
+  HWY_DYNAMIC_DISPATCH(AddFreeSpanBits)(layer, rows);
 }
 
 }  // namespace throng

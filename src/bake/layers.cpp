@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/sheets.h"
+#include "bake/layers.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,19 +8,19 @@
 #include <numeric>
 #include <utility>
 
-#include "bake/sheet_kernels.h"
+#include "bake/layer_kernels.h"
 
-// Gaps of neighbouring columns belong together when a step leads from one to the other. Runs of
-// linked gaps in a row are the units; they are joined with union-find in one raster pass (after
-// Rosenfeld, Pfaltz. Sequential operations in digital picture processing. 1966). Most gaps continue
-// the gap of the same rank beside them, which vectors find; only where ranks shift, at walls and
-// edges, are columns compared one by one. A component that lies over itself, like a spiral ramp, is
-// split along its breadth-first order; then components are packed first-fit into sheets.
+// Free spans of neighbouring columns belong together when a step leads from one to the other. Runs
+// of linked free spans in a row are the units; they are joined with union-find in one raster pass
+// [RP66]. Most free spans continue that of the same rank beside them, which vectors find; only
+// where ranks shift, at walls and edges, are columns compared one by one. A component that lies
+// over itself, like a spiral ramp, is split along its breadth-first order; then components are
+// packed first-fit into layers.
 namespace throng {
 namespace {
 
 constexpr int32_t kSide = kTileSide;
-constexpr int32_t kMaxRange = Sheet::kHighest - Sheet::kBelow;  // of tops in a sheet [mm]
+constexpr int32_t kMaxRange = Layer::kHighest - Layer::kBelow;  // of tops in a layer [mm]
 
 using Rows = CellRows;
 
@@ -28,9 +28,9 @@ uint64_t run_mask(int32_t first, int32_t last) {
   return (~uint64_t{0} >> (63 - (last - first))) << first;
 }
 
-// A run of linked gaps of one layer in one row.
+// A run of linked free spans of one free-span layer in one row.
 struct Run {
-  int32_t layer, z;
+  int32_t free_layer, z;
   uint64_t cells;
   int32_t parent;  // union-find
   int32_t component;
@@ -44,40 +44,41 @@ struct Component {
   bool is_piece = false;  // of one that was split
 };
 
-// What goes into a sheet: gaps of a layer in a row.
+// What goes into a layer: free spans of a free-span layer in a row.
 struct Piece {
-  int32_t layer, z;
+  int32_t free_layer, z;
   uint64_t cells;
   int32_t component;
 };
 
-class Dealer {
+class LayerBuilder {
  public:
-  // `only`, if it is not empty: of each layer, the gaps to deal. They go on in the others.
-  Dealer(const TileGaps& gaps, const BodyLimits& limits, std::span<const Rows> only = {})
-      : gaps_(gaps), limits_(limits), only_(only) {
-    rule_ = {limits.link_step, only.empty() ? BodyLimits::kHighGap : limits.low_gap};
+  // `only`, if it is not empty: of each free-span layer, those to assign. They may continue others.
+  LayerBuilder(const TileFreeSpans& free_spans, const BodyLimits& limits,
+               std::span<const Rows> only = {})
+      : free_spans_(free_spans), limits_(limits), only_(only) {
+    rule_ = {limits.link_step, only.empty() ? BodyLimits::kHighFreeSpan : limits.low_free_span};
   }
 
-  void deal(SheetPool& pool, TileSheets& sheets);
+  void build(LayerPool& pool, TileLayers& layers);
 
-  // What has gone to no sheet, because it is too small for anybody.
+  // What is in no layer, because it is too small for any class.
   [[nodiscard]] const std::vector<Piece>& crumbs() const { return crumbs_; }
 
  private:
-  [[nodiscard]] const GapLayer& layer(int32_t k) const {
-    return *gaps_.layers[static_cast<size_t>(k)];
+  [[nodiscard]] const FreeSpanLayer& free_layer(int32_t k) const {
+    return *free_spans_.layers[static_cast<size_t>(k)];
   }
   [[nodiscard]] bool linked(size_t cell_a, int32_t a, size_t cell_b, int32_t b) const {
-    const GapLayer &p = layer(a), &q = layer(b);
+    const FreeSpanLayer &p = free_layer(a), &q = free_layer(b);
     return linked(p.top[cell_a], p.ceiling[cell_a], q.top[cell_b], q.ceiling[cell_b]);
   }
   [[nodiscard]] bool linked(int32_t top_a, int32_t ceiling_a, int32_t top_b,
                             int32_t ceiling_b) const {
     const int32_t high = std::max(top_a, top_b), low = std::min(top_a, top_b);
-    return high - low <= rule_.step && std::min(ceiling_a, ceiling_b) - high >= rule_.gap;
+    return high - low <= rule_.step && std::min(ceiling_a, ceiling_b) - high >= rule_.free_span;
   }
-  // Is the gap one of those to deal?
+  // Is the free span one of those to assign?
   [[nodiscard]] bool is_ours(size_t cell, int32_t k) const {
     return only_.empty() ||
            (only_[static_cast<size_t>(k)][cell / kTileSide] >> cell % kTileSide & 1) != 0;
@@ -90,9 +91,9 @@ class Dealer {
   void split(int32_t component);
   [[nodiscard]] bool is_crumb(size_t component) const;
   [[nodiscard]] bool goes_on(size_t component) const;
-  int32_t pack(std::vector<int32_t>& sheet_of) const;
+  int32_t pack(std::vector<int32_t>& layer_of) const;
 
-  const TileGaps& gaps_;
+  const TileFreeSpans& free_spans_;
   const BodyLimits& limits_;
   std::span<const Rows> only_;
   LinkRule rule_;
@@ -101,7 +102,7 @@ class Dealer {
   std::vector<Piece> pieces_, crumbs_;
 };
 
-int32_t Dealer::root(int32_t run) {
+int32_t LayerBuilder::root(int32_t run) {
   while (runs_[static_cast<size_t>(run)].parent != run) {
     int32_t& up = runs_[static_cast<size_t>(run)].parent;
     up = runs_[static_cast<size_t>(up)].parent;
@@ -110,47 +111,49 @@ int32_t Dealer::root(int32_t run) {
   return run;
 }
 
-void Dealer::unite(int32_t a, int32_t b) {
+void LayerBuilder::unite(int32_t a, int32_t b) {
   a = root(a);
   b = root(b);
   runs_[static_cast<size_t>(std::max(a, b))].parent = std::min(a, b);
 }
 
-// Joins gaps of different ranks in two neighbouring columns. `runs` hold the run of each layer.
-void Dealer::join_ranks(size_t cell, size_t other, const int32_t* runs, const int32_t* other_runs) {
+// Joins free spans of different ranks in two neighbouring columns. `runs` holds the run of each
+// free-span layer.
+void LayerBuilder::join_ranks(size_t cell, size_t other, const int32_t* runs,
+                              const int32_t* other_runs) {
   int32_t from = 0;
-  for (int32_t k = 0; k < gaps_.count[cell]; ++k) {
-    const int32_t top = layer(k).top[cell];
-    const int32_t count = gaps_.count[other];
-    while (from < count && layer(from).top[other] < top - rule_.step) ++from;
+  for (int32_t k = 0; k < free_spans_.count[cell]; ++k) {
+    const int32_t top = free_layer(k).top[cell];
+    const int32_t count = free_spans_.count[other];
+    while (from < count && free_layer(from).top[other] < top - rule_.step) ++from;
     if (!is_ours(cell, k)) continue;
-    for (int32_t m = from; m < count && layer(m).top[other] <= top + rule_.step; ++m) {
+    for (int32_t m = from; m < count && free_layer(m).top[other] <= top + rule_.step; ++m) {
       if (!is_ours(other, m) || !linked(cell, k, other, m)) continue;
       unite(runs[k * kSide], other_runs[m * kSide]);
     }
   }
 }
 
-void Dealer::find_runs() {
-  const int32_t layers = gaps_.max_count;
-  std::vector<LayerLinks> links(static_cast<size_t>(layers));
-  for (int32_t k = 0; k < layers; ++k) {
+void LayerBuilder::find_runs() {
+  const int32_t free_layers = free_spans_.max_count;
+  std::vector<FreeSpanLinks> links(static_cast<size_t>(free_layers));
+  for (int32_t k = 0; k < free_layers; ++k) {
     const auto l = static_cast<size_t>(k);
-    link_layer(gaps_, k, rule_, only_.empty() ? nullptr : &only_[l], links[l]);
+    link_free_spans(free_spans_, k, rule_, only_.empty() ? nullptr : &only_[l], links[l]);
   }
-  // Run of each layer and column, in this row and the one above.
-  std::vector<int32_t> now(static_cast<size_t>(layers * kSide)), above(now.size());
+  // Run of each free-span layer and column, in this row and the one above.
+  std::vector<int32_t> now(static_cast<size_t>(free_layers * kSide)), above(now.size());
   for (int32_t z = 0; z < kSide; ++z) {
     const size_t row = static_cast<size_t>(z);
     std::swap(now, above);
     uint64_t odd_left = 0, odd_up = 0;  // columns whose ranks may have shifted
-    for (int32_t k = 0; k < layers; ++k) {
-      const LayerLinks& l = links[static_cast<size_t>(k)];
+    for (int32_t k = 0; k < free_layers; ++k) {
+      const FreeSpanLinks& l = links[static_cast<size_t>(k)];
       const uint64_t has = l.has[row];
       if (z > 0) odd_up |= (has | l.has[row - 1]) & ~l.up[row];
       if (has == 0) continue;
       odd_left |= (has | has << 1) & ~l.left[row];
-      // A run begins where a gap does not continue its left neighbour.
+      // A run begins where a free span does not continue its left neighbour.
       uint64_t starts = has & ~l.left[row];
       for (; starts != 0; starts &= starts - 1) {
         const int32_t first = std::countr_zero(starts);
@@ -184,7 +187,7 @@ void Dealer::find_runs() {
   }
 }
 
-void Dealer::make_components() {
+void LayerBuilder::make_components() {
   for (size_t i = 0; i < runs_.size(); ++i) {
     Run& run = runs_[i];
     const int32_t top = root(static_cast<int32_t>(i));
@@ -199,7 +202,7 @@ void Dealer::make_components() {
     component.overlaps_itself |= (row & run.cells) != 0;
     row |= run.cells;
     component.count += std::popcount(run.cells);
-    const TopRange tops = run_range(layer(run.layer), run.z, run.cells);
+    const TopRange tops = run_range(free_layer(run.free_layer), run.z, run.cells);
     component.tops.low = std::min(component.tops.low, tops.low);
     component.tops.high = std::max(component.tops.high, tops.high);
   }
@@ -209,29 +212,30 @@ void Dealer::make_components() {
   }
 }
 
-// Cuts a component into pieces that lie over themselves nowhere, breadth first from its first gap.
-void Dealer::split(int32_t index) {
-  const auto layers = static_cast<size_t>(gaps_.max_count);
-  struct Gap {
-    uint16_t cell, layer;
+// Cuts a component into pieces that lie over themselves nowhere, breadth first from its first free
+// span.
+void LayerBuilder::split(int32_t index) {
+  const auto free_layers = static_cast<size_t>(free_spans_.max_count);
+  struct FreeSpan {
+    uint16_t cell, free_layer;
   };
-  std::vector<Rows> pending(layers, Rows{});  // gaps that are in no piece yet
+  std::vector<Rows> pending(free_layers, Rows{});  // free spans that are in no piece yet
   for (const Run& run : runs_) {
     if (run.component != index) continue;
-    pending[static_cast<size_t>(run.layer)][static_cast<size_t>(run.z)] |= run.cells;
+    pending[static_cast<size_t>(run.free_layer)][static_cast<size_t>(run.z)] |= run.cells;
   }
-  std::array<Gap, kTileArea> queue;
-  std::vector<Rows> rows(layers);
-  // Row z + 1: columns with gaps that are pending, but not those where the piece has one. Most of
-  // what a gap has around is its own piece, and a few operations tell.
+  std::array<FreeSpan, kTileArea> queue;
+  std::vector<Rows> rows(free_layers);
+  // Row z + 1: columns with free spans that are pending, but not those where the piece has one.
+  // Most neighbours of a free span are in its own piece, which a few operations show.
   std::array<uint64_t, kTileSide + 2> open{};
-  const auto grow_piece = [&](int32_t seed_cell, int32_t seed_layer) {
+  const auto grow_piece = [&](int32_t seed_cell, int32_t seed_free_layer) {
     const auto piece = static_cast<int32_t>(components_.size());
     Component& component = components_.emplace_back();
     component.is_piece = true;
     for (size_t z = 0; z < kTileSide; ++z) {
       open[z + 1] = 0;
-      for (const Rows& of_layer : pending) open[z + 1] |= of_layer[z];
+      for (const Rows& of_free_layer : pending) open[z + 1] |= of_free_layer[z];
     }
     for (Rows& r : rows) r.fill(0);
     TopRange tops;
@@ -249,54 +253,55 @@ void Dealer::split(int32_t index) {
       queue[count++] = {static_cast<uint16_t>(cell), static_cast<uint16_t>(k)};
     };
     const auto seed = static_cast<size_t>(seed_cell);
-    take(seed, seed_layer, layer(seed_layer).top[seed]);
+    take(seed, seed_free_layer, free_layer(seed_free_layer).top[seed]);
     for (size_t head = 0; head < count; ++head) {
-      const Gap gap = queue[head];
-      const size_t z = gap.cell / kTileSide;
-      const uint64_t bit = uint64_t{1} << gap.cell % kTileSide;
+      const FreeSpan free_span = queue[head];
+      const size_t z = free_span.cell / kTileSide;
+      const uint64_t bit = uint64_t{1} << free_span.cell % kTileSide;
       const uint64_t left = bit >> 1 & open[z + 1], right = bit << 1 & open[z + 1];
       const uint64_t up = bit & open[z], down = bit & open[z + 2];
       if ((left | right | up | down) == 0) continue;
-      const GapLayer& own = layer(gap.layer);
-      const int32_t top = own.top[gap.cell], ceiling = own.ceiling[gap.cell];
+      const FreeSpanLayer& own = free_layer(free_span.free_layer);
+      const int32_t top = own.top[free_span.cell], ceiling = own.ceiling[free_span.cell];
       const auto grow_to = [&](size_t other, uint64_t other_bit) {
-        const int32_t gaps_there = gaps_.count[other];
-        for (int32_t m = 0; m < gaps_there; ++m) {
+        const int32_t free_spans_there = free_spans_.count[other];
+        for (int32_t m = 0; m < free_spans_there; ++m) {
           if ((pending[static_cast<size_t>(m)][other / kTileSide] & other_bit) == 0) continue;
-          const GapLayer& theirs = layer(m);
+          const FreeSpanLayer& theirs = free_layer(m);
           if (!linked(top, ceiling, theirs.top[other], theirs.ceiling[other])) continue;
           take(other, m, theirs.top[other]);
           break;
         }
       };
-      if (left != 0) grow_to(gap.cell - size_t{1}, left);
-      if (right != 0) grow_to(gap.cell + size_t{1}, right);
-      if (up != 0) grow_to(gap.cell - size_t{kTileSide}, up);
-      if (down != 0) grow_to(gap.cell + size_t{kTileSide}, down);
+      if (left != 0) grow_to(free_span.cell - size_t{1}, left);
+      if (right != 0) grow_to(free_span.cell + size_t{1}, right);
+      if (up != 0) grow_to(free_span.cell - size_t{kTileSide}, up);
+      if (down != 0) grow_to(free_span.cell + size_t{kTileSide}, down);
     }
     component.tops = tops;
     component.count = static_cast<int32_t>(count);
-    for (size_t k = 0; k < layers; ++k) {
+    for (size_t k = 0; k < free_layers; ++k) {
       for (int32_t z = 0; z < kSide; ++z) {
         const uint64_t cells = rows[k][static_cast<size_t>(z)];
         if (cells != 0) pieces_.push_back({static_cast<int32_t>(k), z, cells, piece});
       }
     }
   };
-  components_[static_cast<size_t>(index)].count = 0;  // its number is used no more
+  components_[static_cast<size_t>(index)].count = 0;  // its number is not used again
   for (size_t i = 0; i < runs_.size(); ++i) {
     const Run run = runs_[i];
     if (run.component != index) continue;
-    const uint64_t& left = pending[static_cast<size_t>(run.layer)][static_cast<size_t>(run.z)];
+    const uint64_t& left = pending[static_cast<size_t>(run.free_layer)][static_cast<size_t>(run.z)];
     while ((left & run.cells) != 0) {
-      grow_piece(run.z * kSide + std::countr_zero(left & run.cells), run.layer);
+      grow_piece(run.z * kSide + std::countr_zero(left & run.cells), run.free_layer);
     }
   }
 }
 
-// True if no body of any class has room on the component: it is smaller than the smallest footprint
-// and ends inside the tile. Tops of pillars and rails go this way. A piece goes on in another one.
-bool Dealer::is_crumb(size_t component) const {
+// True if no body of any class fits on the component: it is smaller than the smallest footprint and
+// ends inside the tile. This removes the tops of pillars and rails. A piece continues in another
+// one.
+bool LayerBuilder::is_crumb(size_t component) const {
   const Component& c = components_[component];
   if (c.is_piece) return false;
   if (c.count >= limits_.min_footprint || c.cells[0] != 0 || c.cells[kSide - 1] != 0) return false;
@@ -305,8 +310,8 @@ bool Dealer::is_crumb(size_t component) const {
   return (columns & 0x8000000000000001u) == 0 && (only_.empty() || !goes_on(component));
 }
 
-// True if a component goes on in gaps that are in sheets already.
-bool Dealer::goes_on(size_t component) const {
+// True if free spans that are in layers already continue a component.
+bool LayerBuilder::goes_on(size_t component) const {
   for (const Run& run : runs_) {
     if (run.component != static_cast<int32_t>(component)) continue;
     for (uint64_t cells = run.cells; cells != 0; cells &= cells - 1) {
@@ -314,8 +319,8 @@ bool Dealer::goes_on(size_t component) const {
       const int32_t cell = run.z * kSide + std::countr_zero(cells);
       for (const int32_t next : {cell - 1, cell + 1, cell - kSide, cell + kSide}) {
         const auto at = static_cast<size_t>(cell), other = static_cast<size_t>(next);
-        for (int32_t m = 0; m < gaps_.count[other]; ++m) {
-          if (!is_ours(other, m) && linked(at, run.layer, other, m)) return true;
+        for (int32_t m = 0; m < free_spans_.count[other]; ++m) {
+          if (!is_ours(other, m) && linked(at, run.free_layer, other, m)) return true;
         }
       }
     }
@@ -323,11 +328,11 @@ bool Dealer::goes_on(size_t component) const {
   return false;
 }
 
-// Deals components to sheets, larger first, each to the first sheet of about its height whose
-// columns are free: floors stay constant when a crate's top goes elsewhere. Many sheets are worse
-// than mixed ones, so after kManySheets any free columns do.
-int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
-  constexpr size_t kManySheets = 24;
+// Assigns components to layers, larger first, each to the first layer of about its height whose
+// columns are free: floors stay constant when a crate's top is in another layer. Many layers are
+// worse than mixed ones, so after kManyLayers the height does not count.
+int32_t LayerBuilder::pack(std::vector<int32_t>& layer_of) const {
+  constexpr size_t kManyLayers = 24;
   constexpr int32_t kSameHeight = 500;  // [mm]
   std::vector<int32_t> order;
   for (size_t i = 0; i < components_.size(); ++i) {
@@ -341,7 +346,7 @@ int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
     TopRange tops;
   };
   std::vector<Bin> bins;
-  sheet_of.assign(components_.size(), -1);
+  layer_of.assign(components_.size(), -1);
   for (const int32_t index : order) {
     const Component& component = components_[static_cast<size_t>(index)];
     size_t b = 0;
@@ -350,7 +355,7 @@ int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
       if (std::max(bins[b].tops.high, component.tops.high) - low > kMaxRange) continue;
       const bool apart = component.tops.low - bins[b].tops.high > kSameHeight ||
                          bins[b].tops.low - component.tops.high > kSameHeight;
-      if (apart && bins.size() < kManySheets) continue;
+      if (apart && bins.size() < kManyLayers) continue;
       bool clash = false;
       for (size_t z = 0; z < kTileSide && !clash; ++z)
         clash = (bins[b].used[z] & component.cells[z]) != 0;
@@ -361,12 +366,12 @@ int32_t Dealer::pack(std::vector<int32_t>& sheet_of) const {
     bin.tops.low = std::min(bin.tops.low, component.tops.low);
     bin.tops.high = std::max(bin.tops.high, component.tops.high);
     for (size_t z = 0; z < kTileSide; ++z) bin.used[z] |= component.cells[z];
-    sheet_of[static_cast<size_t>(index)] = static_cast<int32_t>(b);
+    layer_of[static_cast<size_t>(index)] = static_cast<int32_t>(b);
   }
   return static_cast<int32_t>(bins.size());
 }
 
-void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
+void LayerBuilder::build(LayerPool& pool, TileLayers& layers) {
   find_runs();
   make_components();
   bool seams = false;
@@ -378,57 +383,58 @@ void Dealer::deal(SheetPool& pool, TileSheets& sheets) {
   }
   for (const Run& run : runs_) {
     if (components_[static_cast<size_t>(run.component)].overlaps_itself) continue;
-    pieces_.push_back({run.layer, run.z, run.cells, run.component});
+    pieces_.push_back({run.free_layer, run.z, run.cells, run.component});
   }
-  std::vector<int32_t> sheet_of;
-  const int32_t count = pack(sheet_of);
-  std::vector<std::unique_ptr<Sheet>> dealt;
+  std::vector<int32_t> layer_of;
+  const int32_t count = pack(layer_of);
+  std::vector<std::unique_ptr<Layer>> built;
   std::vector<int32_t> low(static_cast<size_t>(count), INT32_MAX);
   for (size_t i = 0; i < components_.size(); ++i) {
-    if (sheet_of[i] < 0) continue;
-    int32_t& lowest = low[static_cast<size_t>(sheet_of[i])];
+    if (layer_of[i] < 0) continue;
+    int32_t& lowest = low[static_cast<size_t>(layer_of[i])];
     lowest = std::min(lowest, components_[i].tops.low);
   }
   for (const int32_t lowest : low) {
-    dealt.push_back(pool.take());
-    dealt.back()->base = lowest - Sheet::kBelow;
-    dealt.back()->seams = seams || !only_.empty();
-    dealt.back()->is_low = !only_.empty();
-    clear_sheet(*dealt.back());
+    built.push_back(pool.take());
+    built.back()->base = lowest - Layer::kBelow;
+    built.back()->seams = seams || !only_.empty();
+    built.back()->is_low = !only_.empty();
+    clear_layer(*built.back());
   }
   for (const Piece& piece : pieces_) {
-    const int32_t sheet = sheet_of[static_cast<size_t>(piece.component)];
-    if (sheet < 0) {
+    const int32_t layer = layer_of[static_cast<size_t>(piece.component)];
+    if (layer < 0) {
       crumbs_.push_back(piece);
       continue;
     }
-    write_gaps(layer(piece.layer), piece.z, piece.cells, *dealt[static_cast<size_t>(sheet)]);
+    write_free_spans(free_layer(piece.free_layer), piece.z, piece.cells,
+                     *built[static_cast<size_t>(layer)]);
   }
-  for (auto& sheet : dealt) {
-    summarise(*sheet);
-    sheet->base += gaps_.base;
-    if (sheet->present == 0) {
-      pool.give(std::move(sheet));
+  for (auto& layer : built) {
+    summarise(*layer);
+    layer->base += free_spans_.base;
+    if (layer->present == 0) {
+      pool.give(std::move(layer));
     } else {
-      sheets.push_back(std::move(sheet));
+      layers.push_back(std::move(layer));
     }
   }
 }
 
-// Per layer, the gaps that are too low for high sheets or were too few for one; empty if there are
-// none. High gaps are found among all by their tops.
-std::vector<Rows> gaps_to_add(const TileGaps& all, const TileGaps& high,
-                              const std::vector<Piece>& crumbs) {
+// Per free-span layer, the free spans that are too low for high layers, and the crumbs of these;
+// empty if there are none. High free spans are found among all by their tops.
+std::vector<Rows> free_spans_to_add(const TileFreeSpans& all, const TileFreeSpans& high,
+                                    const std::vector<Piece>& crumbs) {
   std::vector<Rows> rows(static_cast<size_t>(all.max_count));
   uint64_t any = 0;
   for (int32_t k = 0; k < all.max_count; ++k) {
-    Rows& of_layer = rows[static_cast<size_t>(k)];
-    low_rooms(all, k, BodyLimits::kHighGap, of_layer);
-    for (const uint64_t row : of_layer) any |= row;
+    Rows& of_free_layer = rows[static_cast<size_t>(k)];
+    low_free_spans(all, k, BodyLimits::kHighFreeSpan, of_free_layer);
+    for (const uint64_t row : of_free_layer) any |= row;
   }
   if (any == 0 && crumbs.empty()) return {};
   for (const Piece& crumb : crumbs) {
-    const GapLayer& from = *high.layers[static_cast<size_t>(crumb.layer)];
+    const FreeSpanLayer& from = *high.layers[static_cast<size_t>(crumb.free_layer)];
     for (uint64_t cells = crumb.cells; cells != 0; cells &= cells - 1) {
       const int32_t x = std::countr_zero(cells);
       const auto cell = static_cast<size_t>(crumb.z * kSide + x);
@@ -442,29 +448,29 @@ std::vector<Rows> gaps_to_add(const TileGaps& all, const TileGaps& high,
   return rows;
 }
 
-// A tile of single gaps that fit 16 bits needs no runs: any deal is as safe as any other.
-bool deal_single_layer(const TileGaps& gaps, SheetPool& pool, TileSheets& sheets) {
-  const TopRange range = layer_range(gaps, 0);
+// A tile of single free spans that fit 16 bits needs no runs: they are one layer.
+bool build_single_layer(const TileFreeSpans& free_spans, LayerPool& pool, TileLayers& layers) {
+  const TopRange range = free_span_range(free_spans, 0);
   if (static_cast<int64_t>(range.high) - range.low > kMaxRange) return false;
-  auto sheet = pool.take();
-  sheet->base = range.low - Sheet::kBelow;
-  sheet->seams = sheet->is_low = false;
+  auto layer = pool.take();
+  layer->base = range.low - Layer::kBelow;
+  layer->seams = layer->is_low = false;
   uint64_t missing = 0;
   Rows has{};
   for (size_t c = 0; c < kTileArea; ++c) {
-    has[c / kTileSide] |= static_cast<uint64_t>(gaps.count[c] > 0) << (c % kTileSide);
+    has[c / kTileSide] |= static_cast<uint64_t>(free_spans.count[c] > 0) << (c % kTileSide);
   }
   for (const uint64_t row : has) missing |= ~row;
-  if (missing != 0) clear_sheet(*sheet);
+  if (missing != 0) clear_layer(*layer);
   for (int32_t z = 0; z < kSide; ++z) {
-    write_gaps(*gaps.layers[0], z, has[static_cast<size_t>(z)], *sheet);
+    write_free_spans(*free_spans.layers[0], z, has[static_cast<size_t>(z)], *layer);
   }
-  summarise(*sheet);
-  sheet->base += gaps.base;
-  if (sheet->present == 0) {
-    pool.give(std::move(sheet));
+  summarise(*layer);
+  layer->base += free_spans.base;
+  if (layer->present == 0) {
+    pool.give(std::move(layer));
   } else {
-    sheets.push_back(std::move(sheet));
+    layers.push_back(std::move(layer));
   }
   return true;
 }
@@ -479,7 +485,7 @@ int32_t height_mm(const AvatarClass& avatar) {
   return static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
 }
 
-int32_t min_gap_of(const AvatarClass& avatar) {
+int32_t min_free_span_of(const AvatarClass& avatar) {
   return std::max(1, height_mm(avatar) - bottom_mm(avatar));
 }
 
@@ -501,20 +507,21 @@ BodyLimits body_limits(std::span<const AvatarClass> classes, const SurfaceCodes&
   limits.min_footprint = footprint_cells(BodyLimits::kMinRadius, cell);
   for (const AvatarClass& avatar : classes) {
     const int32_t bottom = bottom_mm(avatar), height = height_mm(avatar);
-    min_room = std::min(min_room, min_gap_of(avatar));
+    min_room = std::min(min_room, min_free_span_of(avatar));
     limits.min_height = std::min(limits.min_height, height);
     limits.max_bottom = std::max(limits.max_bottom, bottom);
     limits.min_footprint = std::min(limits.min_footprint, footprint_cells(avatar.radius, cell));
   }
-  limits.low_gap = std::min(BodyLimits::kLowGap, min_room);
-  limits.min_gap = min_room < BodyLimits::kHighGap ? limits.low_gap : BodyLimits::kHighGap;
+  limits.low_free_span = std::min(BodyLimits::kLowFreeSpan, min_room);
+  limits.min_free_span =
+      min_room < BodyLimits::kHighFreeSpan ? limits.low_free_span : BodyLimits::kHighFreeSpan;
   limits.blocked_code = static_cast<int32_t>(codes.codes.size()) - 1;
   limits.allowed.assign(256, 0);
   std::copy(codes.allowed.begin(), codes.allowed.end(), limits.allowed.begin());
   return limits;
 }
 
-void set_borders(Sheet& sheet) {
+void set_borders(Layer& layer) {
   constexpr size_t kEnd = kTileSide - 1;
   constexpr std::array<size_t, 4> kFirst{0, kEnd, 0, kEnd * kTileSide};
   for (size_t side = 0; side < 4; ++side) {
@@ -522,65 +529,65 @@ void set_borders(Sheet& sheet) {
     uint16_t lowest = kNone16;
     for (size_t i = 0; i < kTileSide; ++i) {
       const size_t cell = kFirst[side] + i * stride;
-      const auto useful = static_cast<uint16_t>(sheet.useful[cell / kTileSide] >> cell % kTileSide);
-      const uint16_t feet = sheet.feet[cell] | static_cast<uint16_t>((useful & 1) - 1);
-      sheet.border[side][i] = feet;
+      const auto useful = static_cast<uint16_t>(layer.useful[cell / kTileSide] >> cell % kTileSide);
+      const uint16_t feet = layer.feet[cell] | static_cast<uint16_t>((useful & 1) - 1);
+      layer.border[side][i] = feet;
       lowest = std::min(lowest, feet);
     }
-    sheet.has_border[side] = lowest != kNone16;
+    layer.has_border[side] = lowest != kNone16;
   }
 }
 
-void find_useful(const BodyLimits& limits, Sheet& sheet) {
-  // Most sheets are so even that their extremes tell.
-  sheet.all_useful =
-      sheet.one_code && sheet.some_code != limits.blocked_code &&
-      sheet.high_top <= sheet.low_feet + limits.max_bottom &&
-      (sheet.low_ceiling == kNone16 || sheet.low_ceiling >= sheet.high_feet + limits.min_height);
-  if (!sheet.all_useful) {
-    useful_cells(sheet, {limits.max_bottom, limits.min_height, limits.blocked_code}, sheet.useful);
-  } else if (sheet.present == kTileArea) {
-    sheet.useful.fill(~uint64_t{0});
+void find_useful(const BodyLimits& limits, Layer& layer) {
+  // Most layers are so even that their extremes suffice.
+  layer.all_useful =
+      layer.one_code && layer.some_code != limits.blocked_code &&
+      layer.high_top <= layer.low_feet + limits.max_bottom &&
+      (layer.low_ceiling == kNone16 || layer.low_ceiling >= layer.high_feet + limits.min_height);
+  if (!layer.all_useful) {
+    useful_cells(layer, {limits.max_bottom, limits.min_height, limits.blocked_code}, layer.useful);
+  } else if (layer.present == kTileArea) {
+    layer.useful.fill(~uint64_t{0});
   } else {
-    present_bits(sheet, sheet.useful);
+    present_bits(layer, layer.useful);
   }
-  set_borders(sheet);
+  set_borders(layer);
 }
 
-std::unique_ptr<Sheet> SheetPool::take() {
+std::unique_ptr<Layer> LayerPool::take() {
   {
     const std::lock_guard lock(mutex_);
     if (!free_.empty()) {
-      auto sheet = std::move(free_.back());
+      auto layer = std::move(free_.back());
       free_.pop_back();
-      return sheet;
+      return layer;
     }
   }
-  return std::make_unique_for_overwrite<Sheet>();
+  return std::make_unique_for_overwrite<Layer>();
 }
 
-void SheetPool::give(std::unique_ptr<Sheet> sheet) {
+void LayerPool::give(std::unique_ptr<Layer> layer) {
   const std::lock_guard lock(mutex_);
-  free_.push_back(std::move(sheet));
+  free_.push_back(std::move(layer));
 }
 
-void deal_gaps(const GapsToDeal& gaps, const BodyLimits& limits, SheetPool& pool,
-               TileSheets& sheets) {
-  sheets.clear();
-  const TileGaps& high = gaps.high;
+void assign_free_spans(const FreeSpansToAssign& free_spans, const BodyLimits& limits,
+                       LayerPool& pool, TileLayers& layers) {
+  layers.clear();
+  const TileFreeSpans& high = free_spans.high;
   std::vector<Piece> crumbs;
   if (high.max_count > 0) {
-    if (high.max_count > 1 || !deal_single_layer(high, pool, sheets)) {
-      Dealer dealer(high, limits);
-      dealer.deal(pool, sheets);
-      crumbs = dealer.crumbs();
+    if (high.max_count > 1 || !build_single_layer(high, pool, layers)) {
+      LayerBuilder builder(high, limits);
+      builder.build(pool, layers);
+      crumbs = builder.crumbs();
     }
   }
-  if (gaps.all != nullptr && gaps.all->max_count > 1) {
-    const std::vector<Rows> low = gaps_to_add(*gaps.all, high, crumbs);
-    if (!low.empty()) Dealer(*gaps.all, limits, low).deal(pool, sheets);
+  if (free_spans.all != nullptr && free_spans.all->max_count > 1) {
+    const std::vector<Rows> low = free_spans_to_add(*free_spans.all, high, crumbs);
+    if (!low.empty()) LayerBuilder(*free_spans.all, limits, low).build(pool, layers);
   }
-  std::stable_sort(sheets.begin(), sheets.end(),
+  std::stable_sort(layers.begin(), layers.end(),
                    [](const auto& a, const auto& b) { return a->base < b->base; });
 }
 

@@ -9,12 +9,12 @@
 /// How far a patch's own triangles may come up towards bodies that stand on it.
 namespace throng {
 
-/// A part of a Bezier patch around some of its cells. Whatever stands on it can do without a test
-/// against the triangles of the same part, as long as these rise by less than its bottom.
-class OwnGround {
+/// A part of a Bezier patch around some of its cells. A body that stands on it need not be tested
+/// against the triangles of the same part if these rise by less than its bottom.
+class SelfSupport {
  public:
-  /// What covers `cells`, and as much beside it as bodies reach as a rule.
-  OwnGround(const BezierPatch& whole, const PatchPart& cells);
+  /// The part that covers `cells`, and as much beside it as most bodies reach.
+  SelfSupport(const BezierPatch& whole, const PatchPart& cells);
 
   /// Does a triangle of the patch that covers `part` belong to it?
   [[nodiscard]] bool holds(const PatchPart& part) const {
@@ -23,12 +23,12 @@ class OwnGround {
 
   /// At most how far a triangle whose parameters span so many 256ths is from the surface at equal
   /// parameters, if its corners are on it. [m]
-  [[nodiscard]] double gap(int32_t span_s, int32_t span_t) const;
+  [[nodiscard]] double deviation(int32_t span_s, int32_t span_t) const;
 
   /// At most how high above feet on the part its triangles come within `radius` of an axis through
-  /// the feet, if they are nowhere farther than `gap` from the surface at equal parameters;
+  /// the feet, if they are nowhere farther than `deviation` from the surface at equal parameters;
   /// infinite if nothing is known. The axis is upright, or the surface's normal at the feet. [m]
-  [[nodiscard]] double rise(bool upright, double radius, double gap) const;
+  [[nodiscard]] double rise(bool upright, double radius, double deviation) const;
 
  private:
   void bound_slopes(const BezierPatch& piece);

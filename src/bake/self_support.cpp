@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/own_ground.h"
+#include "bake/self_support.h"
 
 #include <algorithm>
 #include <array>
@@ -8,15 +8,15 @@
 #include <limits>
 
 // Between two points of a part, S(s, t) and S(s + ds, t + dt), lies a ds + b dt, where a and b are
-// means of the derivatives along the straight way between their parameters. Means lie in the hulls
+// means of the derivatives along the straight line between their parameters. Means lie in the hulls
 // of the derivatives' control points, so a x b lies in the hull of the products of these. Where all
-// of these lie in a cone narrower than a half space, so does a x b: the way between the points is
+// of these lie in a cone narrower than a half space, so does a x b: the line between the points is
 // no steeper than the cone's steepest plane, and leaves the plane across a normal of the part by at
 // most twice the cone's half angle. This holds for parts of any outline, and all pairs of their
 // points.
 //
-// A triangle's point is at most `gap` from the surface's at the same parameters, by the bound that
-// is told in patch_steps.cpp and because its corners are that near to the surface.
+// A triangle's point is at most `deviation` from the surface's at the same parameters, by the bound
+// of import/patch_steps.cpp and because its corners are that near to the surface.
 namespace throng {
 namespace {
 
@@ -38,7 +38,7 @@ BezierPatch cut(BezierPatch patch, int32_t from, int32_t to, Split split) {
 
 }  // namespace
 
-OwnGround::OwnGround(const BezierPatch& whole, const PatchPart& cells)
+SelfSupport::SelfSupport(const BezierPatch& whole, const PatchPart& cells)
     : part_(widened(cells)), upright_slope_(kNever), along_slope_(kNever) {
   const int32_t span_s = part_.s1 + 1 - part_.s0, span_t = part_.t1 + 1 - part_.t0;
   const BezierPatch piece =
@@ -63,7 +63,7 @@ OwnGround::OwnGround(const BezierPatch& whole, const PatchPart& cells)
   tt_ *= 6.0 / (span_t * span_t);
 }
 
-void OwnGround::bound_slopes(const BezierPatch& piece) {
+void SelfSupport::bound_slopes(const BezierPatch& piece) {
   const auto& p = piece.points;
   std::array<Vec3d, 12> along_s, along_t;
   Vec3d mean_s, mean_t;
@@ -78,7 +78,7 @@ void OwnGround::bound_slopes(const BezierPatch& piece) {
   const Vec3d mean = cross(mean_t, mean_s);
   if (!(length(mean) > 0)) return;
   const Vec3d middle = mean * (1 / length(mean));
-  double up = 1, along = 1;  // least cosines, of the angles to the vertical and to the middle
+  double up = 1, along = 1;  // minimum cosines, of the angles to the vertical and to the middle
   for (const Vec3d& t : along_t) {
     for (const Vec3d& s : along_s) {
       const Vec3d normal = cross(t, s);
@@ -95,12 +95,12 @@ void OwnGround::bound_slopes(const BezierPatch& piece) {
   }
 }
 
-double OwnGround::gap(int32_t span_s, int32_t span_t) const {
+double SelfSupport::deviation(int32_t span_s, int32_t span_t) const {
   return (span_s * span_s * ss_ + 2.0 * span_s * span_t * st_ + span_t * span_t * tt_) / 8;
 }
 
-double OwnGround::rise(bool upright, double radius, double gap) const {
-  return (upright ? upright_slope_ : along_slope_) * (radius + gap) + gap;
+double SelfSupport::rise(bool upright, double radius, double deviation) const {
+  return (upright ? upright_slope_ : along_slope_) * (radius + deviation) + deviation;
 }
 
 }  // namespace throng

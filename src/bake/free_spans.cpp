@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/gaps.h"
+#include "bake/free_spans.h"
 
 #include <algorithm>
 
-// Spans come by blocks of cells and unsorted; gaps leave by rows and ascending. A run of blocks
-// side by side is turned into rows as it is loaded, and each vector of a row is sorted by a
-// network.
+// Lists the free spans of a tile's columns. Spans come by blocks of cells and unsorted; free spans
+// leave by rows and ascending. A run of blocks side by side is turned into rows as it is loaded,
+// and each vector of a row is sorted by a network.
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bake/gaps.cpp"
+#define HWY_TARGET_INCLUDE "bake/free_spans.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
@@ -54,23 +54,23 @@ struct SpanVectors {
   }
 };
 
-HWY_INLINE GapLayer& gap_layer_at(TileGaps& gaps, int32_t k) {
-  while (static_cast<int32_t>(gaps.layers.size()) <= k) {
-    gaps.layers.push_back(std::make_unique_for_overwrite<GapLayer>());
+HWY_INLINE FreeSpanLayer& free_span_layer_at(TileFreeSpans& free_spans, int32_t k) {
+  while (static_cast<int32_t>(free_spans.layers.size()) <= k) {
+    free_spans.layers.push_back(std::make_unique_for_overwrite<FreeSpanLayer>());
   }
-  return *gaps.layers[static_cast<size_t>(k)];
+  return *free_spans.layers[static_cast<size_t>(k)];
 }
 
-// One deep column, by plain sorting.
-void gaps_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_gap, TileGaps& gaps,
-                         std::vector<TileColumns::Spill>& spans) {
+// One deep column, by std::sort.
+void free_spans_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_free_span,
+                               TileFreeSpans& free_spans, std::vector<TileColumns::Spill>& spans) {
   const auto c = static_cast<size_t>(cell);
   const size_t p = columns.place(c);
   spans.clear();
   for (int32_t k = 0; k < columns.depth[p / static_cast<size_t>(columns.lanes)]; ++k) {
-    const SpanLayer& layer = *columns.layers[static_cast<size_t>(k)];
-    if (layer.low[p] == kNoSpan) continue;
-    spans.push_back({cell, layer.low[p], layer.high[p], layer.support[p]});
+    const SpanLayer& free_layer = *columns.layers[static_cast<size_t>(k)];
+    if (free_layer.low[p] == kNoSpan) continue;
+    spans.push_back({cell, free_layer.low[p], free_layer.high[p], free_layer.support[p]});
   }
   const auto spilled = columns.spills_of(cell);
   spans.insert(spans.end(), spilled.begin(), spilled.end());
@@ -81,13 +81,13 @@ void gaps_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_g
   int32_t found = 0;
   TileColumns::Spill run = spans.front();
   const auto emit = [&](int32_t ceiling) {
-    GapLayer& layer = gap_layer_at(gaps, found++);
-    layer.top[c] = run.high;
-    layer.ceiling[c] = ceiling;
-    layer.support[c] = run.support;
+    FreeSpanLayer& free_layer = free_span_layer_at(free_spans, found++);
+    free_layer.top[c] = run.high;
+    free_layer.ceiling[c] = ceiling;
+    free_layer.support[c] = run.support;
   };
   for (const auto& next : spans) {
-    if (next.low - run.high >= min_gap) {
+    if (next.low - run.high >= min_free_span) {
       emit(next.low);
       run = next;
     } else {
@@ -96,22 +96,22 @@ void gaps_of_deep_column(const TileColumns& columns, int32_t cell, int32_t min_g
     }
   }
   emit(kOpenSkyMm);
-  gaps.count[c] = found;
-  gaps.max_count = std::max(gaps.max_count, found);
-  gaps.spans += static_cast<uint64_t>(found);
+  free_spans.count[c] = found;
+  free_spans.max_count = std::max(free_spans.max_count, found);
+  free_spans.spans += static_cast<uint64_t>(found);
 }
 
-// Writes one gap to each lane of `mask`, into the layer that the lane has reached.
-HWY_INLINE void emit(TileGaps& gaps, size_t c, MI mask, VI found, int32_t deepest, VI top,
-                     VI ceiling, VI support) {
+// Writes one free span to each lane of `mask`, into the free-span layer that the lane has reached.
+HWY_INLINE void emit(TileFreeSpans& free_spans, size_t c, MI mask, VI found, int32_t deepest,
+                     VI top, VI ceiling, VI support) {
   const DI di;
   for (int32_t k = 0; k <= deepest; ++k) {
     const MI here = hn::And(mask, hn::Eq(found, hn::Set(di, k)));
     if (hn::AllFalse(di, here)) continue;
-    GapLayer& layer = gap_layer_at(gaps, k);
-    hn::BlendedStore(top, here, di, &layer.top[c]);
-    hn::BlendedStore(ceiling, here, di, &layer.ceiling[c]);
-    hn::BlendedStore(support, here, di, &layer.support[c]);
+    FreeSpanLayer& free_layer = free_span_layer_at(free_spans, k);
+    hn::BlendedStore(top, here, di, &free_layer.top[c]);
+    hn::BlendedStore(ceiling, here, di, &free_layer.ceiling[c]);
+    hn::BlendedStore(support, here, di, &free_layer.support[c]);
   }
 }
 
@@ -140,9 +140,9 @@ HWY_INLINE void blocks_to_rows(VI (&v)[kMaxBlocks]) {
 #endif
 }
 
-// Gaps of one vector of columns, of n sorted spans each.
-HWY_INLINE VI list_gaps(const SpanVectors& spans, size_t c, size_t n, int32_t min_gap,
-                        TileGaps& gaps) {
+// Free spans of one vector of columns, of n sorted spans each.
+HWY_INLINE VI list_free_spans(const SpanVectors& spans, size_t c, size_t n, int32_t min_free_span,
+                              TileFreeSpans& free_spans) {
   static_assert(kNoSpan == kOpenSkyMm);  // A span that is not there sorts last, as the sky.
   const DI di;
   const VI sky = hn::Set(di, kOpenSkyMm);
@@ -152,9 +152,9 @@ HWY_INLINE VI list_gaps(const SpanVectors& spans, size_t c, size_t n, int32_t mi
     const VI low = spans.low[k], high = spans.high[k];
     const MI has = hn::Lt(low, sky);
     // Spans lie within 2^31 mm of each other; the sentinel is masked by `has`.
-    const MI apart = hn::And(has, at_least(hn::Sub(low, top), hn::Set(di, min_gap)));
+    const MI apart = hn::And(has, at_least(hn::Sub(low, top), hn::Set(di, min_free_span)));
     if (!hn::AllFalse(di, apart)) {
-      emit(gaps, c, apart, found, deepest, top, low, support);
+      emit(free_spans, c, apart, found, deepest, top, low, support);
       found = hn::Add(found, hn::IfThenElseZero(apart, hn::Set(di, 1)));
       ++deepest;
     }
@@ -164,7 +164,7 @@ HWY_INLINE VI list_gaps(const SpanVectors& spans, size_t c, size_t n, int32_t mi
                              hn::IfThenElse(joined, hn::Max(support, spans.support[k]), support));
   }
   const MI any = hn::Lt(spans.low[0], sky);
-  emit(gaps, c, any, found, deepest, top, sky, support);
+  emit(free_spans, c, any, found, deepest, top, sky, support);
   return hn::IfThenElseZero(any, hn::Add(found, hn::Set(di, 1)));
 }
 
@@ -196,14 +196,14 @@ HWY_INLINE void load_spans(const TileColumns& columns, const BlockRun& run,
   const auto blocks = static_cast<size_t>(block_height());
   const VI none[3] = {hn::Set(di, kNoSpan), hn::Set(di, INT32_MIN), hn::Set(di, kNoSupport)};
   for (size_t k = 0; k < run.deepest; ++k) {
-    const SpanLayer& layer = *columns.layers[k];
+    const SpanLayer& free_layer = *columns.layers[k];
     VI low[kMaxBlocks], high[kMaxBlocks], support[kMaxBlocks];
     for (size_t b = 0; b < blocks; ++b) {
       const size_t at = run.place + b * hn::Lanes(di);
       const bool has = k < run.depth[b];
-      low[b] = has ? hn::Load(di, &layer.low[at]) : none[0];
-      high[b] = has ? hn::Load(di, &layer.high[at]) : none[1];
-      support[b] = has ? hn::Load(di, &layer.support[at]) : none[2];
+      low[b] = has ? hn::Load(di, &free_layer.low[at]) : none[0];
+      high[b] = has ? hn::Load(di, &free_layer.high[at]) : none[1];
+      support[b] = has ? hn::Load(di, &free_layer.support[at]) : none[2];
     }
     blocks_to_rows(low);
     blocks_to_rows(high);
@@ -216,16 +216,16 @@ HWY_INLINE void load_spans(const TileColumns& columns, const BlockRun& run,
   }
 }
 
-void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
+void FindFreeSpans(const TileColumns& columns, int32_t min_free_span, TileFreeSpans& free_spans) {
   const DI di;
   const auto lanes = static_cast<int32_t>(hn::Lanes(di));
-  gaps.base = columns.base;
-  gaps.max_count = 0;
-  gaps.spans = 0;
+  free_spans.base = columns.base;
+  free_spans.max_count = 0;
+  free_spans.spans = 0;
   std::vector<TileColumns::Spill> scratch;
   SpanVectors rows[kMaxBlocks];
   VI total = hn::Zero(di);
-  VI most = hn::Zero(di);
+  VI max_found = hn::Zero(di);
   for (int32_t z = 0; z < kTileSide; z += block_height()) {
     for (int32_t x = 0; x < kTileSide; x += lanes) {
       const BlockRun run = run_of_blocks(columns, x, z);
@@ -235,11 +235,11 @@ void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
         VI found = hn::Zero(di);
         if (run.deepest > 0) {
           rows[row].sort(run.deepest);
-          found = list_gaps(rows[row], c, run.deepest, min_gap, gaps);
+          found = list_free_spans(rows[row], c, run.deepest, min_free_span, free_spans);
         }
-        hn::Store(found, di, &gaps.count[c]);
+        hn::Store(found, di, &free_spans.count[c]);
         total = hn::Add(total, found);
-        most = hn::Max(most, found);
+        max_found = hn::Max(max_found, found);
       }
       if (HWY_LIKELY(!run.any_too_deep)) continue;
       for (int32_t row = 0; row < block_height(); ++row) {
@@ -247,39 +247,39 @@ void FindGaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
           const int32_t cell = (z + row) * kTileSide + x + i;
           const size_t block = columns.place(static_cast<size_t>(cell)) / hn::Lanes(di);
           if (columns.depth[block] > kNetwork) {
-            gaps_of_deep_column(columns, cell, min_gap, gaps, scratch);
+            free_spans_of_deep_column(columns, cell, min_free_span, free_spans, scratch);
           }
         }
       }
     }
   }
-  gaps.spans += static_cast<uint64_t>(hn::GetLane(hn::SumOfLanes(di, total)));
-  gaps.max_count = std::max(gaps.max_count, hn::GetLane(hn::MaxOfLanes(di, most)));
+  free_spans.spans += static_cast<uint64_t>(hn::GetLane(hn::SumOfLanes(di, total)));
+  free_spans.max_count = std::max(free_spans.max_count, hn::GetLane(hn::MaxOfLanes(di, max_found)));
 }
 
-// Matter has at least the sky above it.
-void BareColumns(const TileGaps& gaps, std::array<uint64_t, kTileSide>& bare) {
+// A column with a solid has at least the sky above it.
+void BareColumns(const TileFreeSpans& free_spans, std::array<uint64_t, kTileSide>& bare) {
   const DI di;
   for (size_t z = 0; z < kTileSide; ++z) {
     bare[z] = 0;
     for (size_t x = 0; x < kTileSide; x += hn::Lanes(di)) {
-      const VI count = hn::Load(di, &gaps.count[z * kTileSide + x]);
+      const VI count = hn::Load(di, &free_spans.count[z * kTileSide + x]);
       bare[z] |= bits_of(di, hn::Eq(count, hn::Zero(di))) << x;
     }
   }
 }
 
-void LendSupports(TileGaps& gaps) {
+void LendSupports(TileFreeSpans& free_spans) {
   const DI di;
   for (size_t c = 0; c < kTileArea; c += hn::Lanes(di)) {
-    const VI count = hn::Load(di, &gaps.count[c]);
+    const VI count = hn::Load(di, &free_spans.count[c]);
     VI below = hn::Set(di, kNoSupport);
-    for (int32_t k = 0; k < gaps.max_count; ++k) {
+    for (int32_t k = 0; k < free_spans.max_count; ++k) {
       const MI has = hn::Gt(count, hn::Set(di, k));
       if (hn::AllFalse(di, has)) break;
-      GapLayer& layer = *gaps.layers[static_cast<size_t>(k)];
-      below = hn::Max(hn::Load(di, &layer.support[c]), below);
-      hn::BlendedStore(below, has, di, &layer.support[c]);
+      FreeSpanLayer& free_layer = *free_spans.layers[static_cast<size_t>(k)];
+      below = hn::Max(hn::Load(di, &free_layer.support[c]), below);
+      hn::BlendedStore(below, has, di, &free_layer.support[c]);
     }
   }
 }
@@ -291,19 +291,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace throng {
 
-HWY_EXPORT(FindGaps);
+HWY_EXPORT(FindFreeSpans);
 HWY_EXPORT(LendSupports);
 HWY_EXPORT(BareColumns);
 
-void find_gaps(const TileColumns& columns, int32_t min_gap, TileGaps& gaps) {
-  HWY_DYNAMIC_DISPATCH(FindGaps)(columns, min_gap, gaps);
+void find_free_spans(const TileColumns& columns, int32_t min_free_span, TileFreeSpans& free_spans) {
+  HWY_DYNAMIC_DISPATCH(FindFreeSpans)(columns, min_free_span, free_spans);
 }
 
-void lend_supports(TileGaps& gaps) { HWY_DYNAMIC_DISPATCH(LendSupports)(gaps); }
+void lend_supports(TileFreeSpans& free_spans) { HWY_DYNAMIC_DISPATCH(LendSupports)(free_spans); }
 
-std::array<uint64_t, kTileSide> bare_columns(const TileGaps& gaps) {
+std::array<uint64_t, kTileSide> bare_columns(const TileFreeSpans& free_spans) {
   std::array<uint64_t, kTileSide> bare;
-  HWY_DYNAMIC_DISPATCH(BareColumns)(gaps, bare);
+  HWY_DYNAMIC_DISPATCH(BareColumns)(free_spans, bare);
   return bare;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "cluster/deal.h"
+#include "cluster/job_assignment.h"
 
 #include <unistd.h>
 
@@ -15,17 +15,17 @@
 #include "core/parallel.h"
 #include "throng/cluster.h"
 
-// Rank 0 hands out jobs and enters what comes back, so that the next bake can go on where a rank
-// has died. It works too, on a thread beside the one that listens. All of them poll: MPI waits by
+// Rank 0 assigns jobs and enters their results, so that the next bake can continue where a rank has
+// died. It works too, on a thread beside the one that listens. All of them poll: MPI waits by
 // spinning, which would take a core from those that work.
 namespace throng {
 namespace {
 
 enum Tag : int32_t {
   kFree,   // a rank wants work; empty
-  kDone,   // uint64_t: the job, and what there is to tell
+  kDone,   // uint64_t: the job, and its result
   kFail,   // the code of an error as a byte, and its message
-  kWork,   // uint64_t: the job, and what is said of it
+  kWork,   // uint64_t: the job, and its description
   kNoMore  // nothing is left, or the bake has failed elsewhere; empty
 };
 
@@ -74,15 +74,15 @@ Result<RankBytes> work_on(const RankJobs& what, std::span<const uint8_t> job,
                                  ": out of memory; use smaller zones or fewer ranks a machine"};
 }
 
-class Dealer {
+class JobAssigner {
  public:
-  Dealer(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Context& context)
-      : ranks_(ranks), what_(what), dealt_(std::move(dealt)), context_(context) {}
+  JobAssigner(Ranks& ranks, const RankJobs& what, JobsToAssign to_assign, Context& context)
+      : ranks_(ranks), what_(what), jobs_(std::move(to_assign)), context_(context) {}
 
   Result<void> run();
 
  private:
-  void work_beside();
+  void work_alongside();
   std::optional<uint64_t> next_job();
   void enter(const Numbered& done);
   void take(const RankMessage& message);
@@ -90,10 +90,10 @@ class Dealer {
 
   Ranks& ranks_;
   const RankJobs& what_;
-  DealtJobs dealt_;
+  JobsToAssign jobs_;
   Context& context_;
   size_t done_ = 0;     // jobs
-  int32_t parted_ = 1;  // ranks that ask for nothing any more: this one never did
+  int32_t parted_ = 1;  // ranks that take no more jobs: this one never did
   std::optional<Error> error_;
 
   std::mutex mutex_;  // of what the working thread shares
@@ -103,7 +103,7 @@ class Dealer {
   Context own_context_;  // cancelled when a job fails elsewhere
 };
 
-std::optional<uint64_t> Dealer::next_job() {
+std::optional<uint64_t> JobAssigner::next_job() {
   const std::lock_guard lock(mutex_);
   if (queue_.empty()) return std::nullopt;
   const uint64_t job = queue_.front();
@@ -111,33 +111,33 @@ std::optional<uint64_t> Dealer::next_job() {
   return job;
 }
 
-void Dealer::work_beside() {
+void JobAssigner::work_alongside() {
   while (!own_context_.cancel) {
     const auto job = next_job();
     if (!job) return;
-    auto told = work_on(what_, dealt_.jobs[static_cast<size_t>(*job)], own_context_);
+    auto result = work_on(what_, jobs_.jobs[static_cast<size_t>(*job)], own_context_);
     const std::lock_guard lock(mutex_);
-    if (!told) {
-      own_error_ = told.error();
+    if (!result) {
+      own_error_ = result.error();
       return;
     }
-    own_.push_back({*job, *std::move(told)});
+    own_.push_back({*job, *std::move(result)});
   }
 }
 
-void Dealer::fail(Error error) {
+void JobAssigner::fail(Error error) {
   if (!error_) error_ = std::move(error);
   own_context_.cancel = true;
   const std::lock_guard lock(mutex_);
   queue_.clear();
 }
 
-void Dealer::enter(const Numbered& done) {
+void JobAssigner::enter(const Numbered& done) {
   ++done_;
-  if (auto ok = dealt_.enter(static_cast<size_t>(done.job), done.bytes); !ok) fail(ok.error());
+  if (auto ok = jobs_.enter(static_cast<size_t>(done.job), done.bytes); !ok) fail(ok.error());
 }
 
-void Dealer::take(const RankMessage& message) {
+void JobAssigner::take(const RankMessage& message) {
   if (message.tag == kFail) {
     ++parted_;
     fail(unpacked(message));
@@ -145,23 +145,23 @@ void Dealer::take(const RankMessage& message) {
   }
   if (message.tag == kDone) enter(numbered(message));
   if (const auto job = next_job()) {
-    ranks_.send(message.from, kWork, packed(*job, dealt_.jobs[static_cast<size_t>(*job)]));
+    ranks_.send(message.from, kWork, packed(*job, jobs_.jobs[static_cast<size_t>(*job)]));
   } else {
     ranks_.send(message.from, kNoMore, {});
     ++parted_;
   }
 }
 
-Result<void> Dealer::run() {
-  for (uint64_t job = 0; job < dealt_.jobs.size(); ++job) queue_.push_back(job);
-  SideThread beside([&] { work_beside(); });
+Result<void> JobAssigner::run() {
+  for (uint64_t job = 0; job < jobs_.jobs.size(); ++job) queue_.push_back(job);
+  SideThread beside([&] { work_alongside(); });
   size_t shown = SIZE_MAX;
-  while ((done_ < dealt_.jobs.size() && !error_) || parted_ < ranks_.size()) {
+  while ((done_ < jobs_.jobs.size() && !error_) || parted_ < ranks_.size()) {
     if (context_.cancel) {
       own_context_.cancel = true;
       ranks_.abandon();
-      dealt_.on_cancel();
-      return told_to_stop(ranks_, what_);
+      jobs_.on_cancel();
+      return stopped_error(ranks_, what_);
     }
     const auto message = ranks_.poll();
     if (message) take(*message);
@@ -175,7 +175,7 @@ Result<void> Dealer::run() {
     for (const Numbered& done : own) enter(done);
     if (own_error && own_error->code != Errc::kCancelled) fail(*std::move(own_error));
     if (shown != done_) {
-      dealt_.on_progress();
+      jobs_.on_progress();
       shown = done_;
     }
     if (!message && own.empty()) nap();
@@ -187,25 +187,26 @@ Result<void> Dealer::run() {
 
 }  // namespace
 
-Error told_to_stop(const Ranks& ranks, const RankJobs& what) {
+Error stopped_error(const Ranks& ranks, const RankJobs& what) {
   return {Errc::kCancelled,
           std::string(what.stage) + ": rank " + std::to_string(ranks.rank()) + " of " +
               std::to_string(ranks.size()) +
-              " was told to stop, because another rank has died or mpirun was interrupted; " +
+              " was stopped, because another rank has died or mpirun was interrupted; " +
               what.finished(ranks.rank() == 0)};
 }
 
-Result<void> deal_jobs(Ranks& ranks, const RankJobs& what, DealtJobs dealt, Context& context) {
-  return Dealer(ranks, what, std::move(dealt), context).run();
+Result<void> assign_jobs(Ranks& ranks, const RankJobs& what, JobsToAssign to_assign,
+                         Context& context) {
+  return JobAssigner(ranks, what, std::move(to_assign), context).run();
 }
 
-Result<void> do_dealt_jobs(Ranks& ranks, const RankJobs& what, Context& context) {
+Result<void> do_assigned_jobs(Ranks& ranks, const RankJobs& what, Context& context) {
   ranks.send(0, kFree, {});
   while (true) {
     const auto message = ranks.poll();
     if (context.cancel) {
       ranks.abandon();
-      return told_to_stop(ranks, what);
+      return stopped_error(ranks, what);
     }
     if (!message) {
       nap();
@@ -213,18 +214,18 @@ Result<void> do_dealt_jobs(Ranks& ranks, const RankJobs& what, Context& context)
     }
     if (message->tag == kNoMore) return {};
     const Numbered job = numbered(*message);
-    const auto told = work_on(what, job.bytes, context);
-    if (told) {
-      ranks.send(0, kDone, packed(job.job, *told));
+    const auto result = work_on(what, job.bytes, context);
+    if (result) {
+      ranks.send(0, kDone, packed(job.job, *result));
     } else if (!context.cancel) {
-      ranks.send(0, kFail, packed(told.error()));
-      return told.error();
+      ranks.send(0, kFail, packed(result.error()));
+      return result.error();
     }
   }
 }
 
 int32_t workers_of_rank(int32_t asked, const Ranks& ranks) {
-  // Unless mpirun has dealt the cores already.
+  // Unless mpirun has assigned the cores already.
   if (asked > 0) return asked;
   const auto cores = static_cast<int32_t>(sysconf(_SC_NPROCESSORS_ONLN));
   return std::clamp(cores / ranks.local_size(), 1, worker_count(0));
@@ -251,7 +252,7 @@ Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context) {
     while (true) {
       if (context.cancel) {
         ranks.abandon();
-        return told_to_stop(ranks, what);
+        return stopped_error(ranks, what);
       }
       if (auto message = ranks.poll(kMeetings)) return *std::move(message);
       nap();

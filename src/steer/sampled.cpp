@@ -75,7 +75,7 @@ Plane following(const SampledSettings& settings, const Situation& s) {
     const float aside = settings.lane * radii;
     if (!(along > 0 && square - along * along < aside * aside)) continue;
     const float theirs = wx * ahead.x + wz * ahead.z;
-    const float turned = settings.same_way * settings.same_way * (wx * wx + wz * wz);
+    const float turned = settings.same_direction * settings.same_direction * (wx * wx + wz * wz);
     if (!(theirs > 0 && theirs * theirs > turned)) continue;
     const float room = std::max(std::sqrt(square) - std::min(radii, settings.body), 0.0f);
     const float u = room * per_metre;

@@ -38,7 +38,7 @@ struct SampledSettings {
   float headway = 0.43f;      ///< Time between two who walk close behind each other. [s, > 0]
   float body = 0.4f;          ///< Of their distance, what is not room, if they are that wide. [m]
   float lane = 0.75f;         ///< Who is ahead: not further aside than this part of both radii,
-  float same_way = 0.8f;      ///< and wishes to go one's way: cosine of the angle between wishes.
+  float same_direction = 0.8f;      ///< and wishes to go one's way: cosine of the angle between wishes.
   float unbound = 1.1f;       ///< What room without end allows, by the fastest.
   float foresight = 0.29f;    ///< Share of a leader's being faster that the room does not limit.
 };

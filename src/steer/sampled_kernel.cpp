@@ -64,7 +64,7 @@ Plane Following(const SampledSettings& settings, const Situation& s) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1),
           fastest = hn::Set(d, settings.unbound * s.fastest);
   const V ahead_x = hn::Set(d, ahead.x), ahead_z = hn::Set(d, ahead.z);
-  const float same = settings.same_way * settings.same_way;
+  const float same = settings.same_direction * settings.same_direction;
   const float per_metre = 1 / (settings.headway * s.fastest);
   V most = hn::Set(d, desired);
   for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {

@@ -27,7 +27,7 @@ Force repulsion(const ForceWalker& a, const ForceWalker& b, const SocialForceCon
   if (r == 0 || s == 0 || twice <= 0) return {};
   const double axis = std::sqrt(twice) / 2;
   const double size =
-      config.strength / config.reach * exp_of(-axis / config.reach) * (r + s) / (4 * axis);
+      config.strength / config.range * exp_of(-axis / config.range) * (r + s) / (4 * axis);
   return {size * (rx / r + sx / s), size * (rz / r + sz / s)};
 }
 
@@ -51,7 +51,7 @@ void add_wall(Force& sum, double x, double z, const SocialForceConfig& config) {
   const double far = size_of(x, z);
   if (far == 0) return;
   const double size =
-      config.wall_strength / config.wall_reach * exp_of(-far / config.wall_reach) / far;
+      config.wall_strength / config.wall_range * exp_of(-far / config.wall_range) / far;
   sum.x -= size * x;
   sum.z -= size * z;
 }

@@ -19,13 +19,13 @@ struct ForceWalker {
 struct SocialForceConfig {
   double relaxation = 0.5;  ///< In which a wish is taken up. [s]
   double strength = 2.1;    ///< Of the repulsion by others. [m2/s2]
-  double reach = 0.3;       ///< Of it. [m]
+  double range = 0.3;       ///< Of it. [m]
   double stride = 2;        ///< For how long a step of somebody else is kept free. [s]
   double sight_cosine = -0.17364817766693033;  ///< Of 100 degrees: half of the field of view.
   double behind = 0.5;                         ///< Weight of what is outside of it.
   double most = 1.3;                           ///< Speed, by the wished one.
   double wall_strength = 10;                   ///< Of the repulsion by walls. [m2/s2]
-  double wall_reach = 0.2;                     ///< Of it. [m]
+  double wall_range = 0.2;                     ///< Of it. [m]
 };
 
 struct Force {

@@ -37,7 +37,7 @@ TEST(SocialForce, TheForceIsTheSlopeOfThePotential) {
     const double rx = x - b.x, rz = z - b.z;
     const double sum = std::hypot(rx, rz) + std::hypot(rx - 2 * b.vx, rz - 2 * b.vz);
     const double step = 2 * std::hypot(b.vx, b.vz);
-    return config.strength * std::exp(-std::sqrt(sum * sum - step * step) / 2 / config.reach);
+    return config.strength * std::exp(-std::sqrt(sum * sum - step * step) / 2 / config.range);
   };
   const double h = 1e-6;
   for (int k = 0; k < 50; ++k) {

@@ -13,7 +13,7 @@
 namespace throng {
 namespace {
 
-using validate::Before;
+using validate::DoorOffset;
 using validate::Passer;
 
 TEST(Streams, OrderIsOneForPureRowsAndNoneForChance) {
@@ -46,7 +46,7 @@ TEST(Streams, OrderIsOneForPureRowsAndNoneForChance) {
 }
 
 TEST(Streams, AHalfCircleIsAsWideAsItIsDeep) {
-  std::vector<Before> half, column;
+  std::vector<DoorOffset> half, column;
   for (double x = -4.975; x < 5; x += 0.05) {
     for (double y = 0.025; y < 5; y += 0.05) {
       if (std::hypot(x, y) < 5) half.push_back({x, y});

@@ -14,8 +14,8 @@
 #include "validate/statistics.h"
 #include "validate/tests.h"
 
-// Flow of a crowd through a door, by the width of the door, as in laboratory experiments: [Kretz06],
-// [Seyfried09].
+// Flow of a crowd through a door, by the width of the door, as in laboratory experiments:
+// [Kretz06], [Seyfried09].
 namespace throng::validate {
 namespace {
 
@@ -49,7 +49,7 @@ std::vector<Point2> waiting(const Door& door, double radius, uint64_t seed) {
     for (double z = 0.5; z < kRoomWide - 0.5; z += apart) {
       const uint64_t n = starts.size();
       starts.push_back({x + spare * (random_unit(seed, 1, n) - 0.5),
-                       z + spare * (random_unit(seed, 2, n) - 0.5)});
+                        z + spare * (random_unit(seed, 2, n) - 0.5)});
     }
   }
   const auto off = [](const Point2& s) { return std::hypot(s.x - kRoomLong, s.z - kRoomWide / 2); };

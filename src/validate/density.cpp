@@ -80,7 +80,7 @@ struct Walk {
 
 // Each avatar prefers a velocity along the circle at its present distance from the middle.
 Result<DiagramPoint> walk_around(const Walk& walk, double density, const ValidationConfig& config,
-                          ValidationResult& result, Context& context) {
+                                 ValidationResult& result, Context& context) {
   AvatarClass body;
   body.radius = walk.radius;
   body.speed = walk.speed;
@@ -151,8 +151,8 @@ ValidationChart diagram(const std::string& name, const std::string& title,
 }
 
 Result<std::vector<DiagramPoint>> diagram_of(const Walk& walk, std::vector<double> densities,
-                                      const ValidationConfig& config, ValidationResult& result,
-                                      Context& context) {
+                                             const ValidationConfig& config,
+                                             ValidationResult& result, Context& context) {
   std::vector<DiagramPoint> points;
   for (const double density : densities) {
     const auto point = walk_around(walk, density, config, result, context);

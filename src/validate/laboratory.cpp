@@ -126,7 +126,8 @@ double crossing_time(const WalkedPath& walked_path, const Experiment& e) {
     const double before = along_x ? a.z - e.line_from.z : a.x - e.line_from.x;
     const double after = along_x ? b.z - e.line_from.z : b.x - e.line_from.x;
     if ((before < 0) == (after < 0)) continue;
-    return (static_cast<double>(walked_path.first + static_cast<int64_t>(i)) - after / (after - before)) *
+    return (static_cast<double>(walked_path.first + static_cast<int64_t>(i)) -
+            after / (after - before)) *
            PlaneCrowd::kStep;
   }
   return -1;
@@ -168,8 +169,8 @@ Measured measure(const std::vector<WalkedPath>& walked_paths, const Experiment& 
 
 // Simulates the people recorded: each enters as recorded and heads to the end it walked to.
 Result<std::vector<WalkedPath>> walk(const Experiment& e, const std::vector<WalkedPath>& recorded,
-                              const ValidationConfig& config, ValidationResult& result,
-                              Context& context) {
+                                     const ValidationConfig& config, ValidationResult& result,
+                                     Context& context) {
   PlaneConfig plane;
   plane.ground = box(e.low.x, e.low.z, e.high.x, e.high.z);
   plane.obstacles = e.walls;

@@ -20,8 +20,9 @@ Polygon box(double x0, double z0, double x1, double z1) {
   return {.outer = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}, .holes = {}};
 }
 
-Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass& body, Routing routing,
-                         const ValidationConfig& config, Context& context) {
+Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass& body,
+                                     Routing routing, const ValidationConfig& config,
+                                     Context& context) {
   const auto scene = make_plane_scene(plane);
   if (!scene) return scene.error();
   auto world = bake_world(
@@ -37,7 +38,7 @@ Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass
 }
 
 Result<std::vector<AvatarId>> PlaneCrowd::add(std::span<const Point2> starts,
-                                          std::span<const double> speeds, Context& context) {
+                                              std::span<const double> speeds, Context& context) {
   std::vector<AvatarSpawn> spawns;
   std::vector<size_t> index_of;
   for (size_t i = 0; i < starts.size(); ++i) {
@@ -61,7 +62,7 @@ Result<std::vector<AvatarId>> PlaneCrowd::add(std::span<const Point2> starts,
 }
 
 Result<std::vector<AvatarId>> PlaneCrowd::add_fitting(std::span<const Point2> starts, double speed,
-                                          Context& context) {
+                                                      Context& context) {
   auto ids = add(starts, std::vector<double>(starts.size(), speed), context);
   if (ids) std::erase_if(*ids, [](AvatarId id) { return !id; });
   return ids;

@@ -38,14 +38,16 @@ Polygon box(double x0, double z0, double x1, double z1);
 
 class PlaneCrowd {
  public:
-  static Result<PlaneCrowd> build(const PlaneConfig& plane, const AvatarClass& body, Routing routing,
-                            const ValidationConfig& config, Context& context);
+  static Result<PlaneCrowd> build(const PlaneConfig& plane, const AvatarClass& body,
+                                  Routing routing, const ValidationConfig& config,
+                                  Context& context);
 
   /// Adds avatars with the given speeds; the id is null where an avatar does not fit.
   Result<std::vector<AvatarId>> add(std::span<const Point2> starts, std::span<const double> speeds,
-                                      Context& context);
+                                    Context& context);
   /// Adds avatars and leaves out those that do not fit. Returns the ids of those added.
-  Result<std::vector<AvatarId>> add_fitting(std::span<const Point2> starts, double speed, Context& context);
+  Result<std::vector<AvatarId>> add_fitting(std::span<const Point2> starts, double speed,
+                                            Context& context);
   /// Sets the goal of an avatar. False if no avatar of the class can stand there.
   bool set_goal(AvatarId id, Point2 goal);
   void remove(std::span<const AvatarId> ids) { crowd_.remove(ids); }

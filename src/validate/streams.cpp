@@ -229,7 +229,8 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
       const AvatarId id = (*added)[n++];
       if (!id) return false;
       stream_of[id.slot1] = one.second;
-      crowd->set_goal(id, one.second == 0 ? Point2{all + 0.7, one.first.z} : Point2{one.first.x, all + 0.7});
+      crowd->set_goal(
+          id, one.second == 0 ? Point2{all + 0.7, one.first.z} : Point2{one.first.x, all + 0.7});
       entered += counts ? 1 : 0;
       return true;
     });

@@ -63,9 +63,9 @@ std::optional<double> crossing(const Vec3d& a, const Vec3d& b,
 // The data collected for one measure during the run.
 struct MeasureData {
   std::vector<double> distance, time;  // by person: in the area [m, s]
-  std::vector<double> density;    // by step [1/m2]
-  std::vector<double> crossed;    // [s]
-  std::vector<bool> has_crossed;  // by person
+  std::vector<double> density;         // by step [1/m2]
+  std::vector<double> crossed;         // [s]
+  std::vector<bool> has_crossed;       // by person
 };
 
 class Observer {
@@ -194,8 +194,8 @@ class Observer {
     return numbers;
   }
 
-  // The distribution that the scenario states for the numbers: of the first source or profile of the
-  // measure.
+  // The distribution that the scenario states for the numbers: of the first source or profile of
+  // the measure.
   [[nodiscard]] const Distribution& distribution_of(const TrialMeasure& m) const {
     const Scenario& s = trial_.scenario;
     if (m.of == Observed::kPremovement) {
@@ -204,7 +204,8 @@ class Observer {
     return s.profiles[m.profiles.empty() ? 0 : static_cast<size_t>(m.profiles[0])].speed;
   }
 
-  [[nodiscard]] double statistic_of(const TrialMeasure& m, const std::vector<double>& numbers) const {
+  [[nodiscard]] double statistic_of(const TrialMeasure& m,
+                                    const std::vector<double>& numbers) const {
     if (numbers.empty()) return std::nan("");
     const auto [min, max] = std::ranges::minmax(numbers);
     double sum = 0;
@@ -273,10 +274,10 @@ class Observer {
   const Trial& trial_;
   std::vector<MeasureData> data_;  // by measure
   std::vector<AvatarState> states_;
-  std::vector<Vec3d> last_position_;         // by person
-  std::vector<uint64_t> was_here_;  // by person: the last observation that had it
-  std::vector<double> first_step_;  // by person [s]
-  std::vector<double> inside_;      // by measure: people in its area
+  std::vector<Vec3d> last_position_;  // by person
+  std::vector<uint64_t> was_here_;    // by person: the last observation that had it
+  std::vector<double> first_step_;    // by person [s]
+  std::vector<double> inside_;        // by measure: people in its area
   uint64_t observations_ = 0;
 };
 

@@ -95,7 +95,8 @@ Positions predict_constant(const std::vector<Walker>& walkers) {
   for (size_t n = 0; n < walkers.size(); ++n) {
     for (size_t i = 0; i < kAhead; ++i) {
       const double t = kSample * static_cast<double>(i + 1);
-      positions[n][i] = {walkers[n].begin.x + walkers[n].vx * t, walkers[n].begin.z + walkers[n].vz * t};
+      positions[n][i] = {walkers[n].begin.x + walkers[n].vx * t,
+                         walkers[n].begin.z + walkers[n].vz * t};
     }
   }
   return positions;
@@ -292,7 +293,8 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   }
   crowd->report(result);
   if (count == 0) {
-    return Error{Errc::kBadFile, path + ": no person is recorded for 5.2 s on end; it is too short"};
+    return Error{Errc::kBadFile,
+                 path + ": no person is recorded for 5.2 s on end; it is too short"};
   }
   const auto people = static_cast<double>(count);
   const auto add_measure = [&](const std::string& what, double value, const std::string& unit) {
@@ -309,13 +311,13 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
     const auto below = std::ranges::count_if(
         scores[m].nearest, [](double d) { return d < 2 * walker().radius - 1e-6; });
     add_measure(std::string("min distance, 5 % of people, ") + kNames[m],
-         quantile(scores[m].nearest, 0.05), "m");
+                quantile(scores[m].nearest, 0.05), "m");
     add_measure(std::string("min distance, half of people, ") + kNames[m],
-         quantile(scores[m].nearest, 0.5), "m");
+                quantile(scores[m].nearest, 0.5), "m");
     add_measure(std::string("bodies overlap, ") + kNames[m],
-         100 * static_cast<double>(below) /
-             static_cast<double>(std::max<size_t>(1, scores[m].nearest.size())),
-         "% of people");
+                100 * static_cast<double>(below) /
+                    static_cast<double>(std::max<size_t>(1, scores[m].nearest.size())),
+                "% of people");
   }
   result.charts.push_back(distances(scene, scores));
   return {};

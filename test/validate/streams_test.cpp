@@ -16,7 +16,7 @@ namespace {
 using validate::DoorOffset;
 using validate::Passer;
 
-TEST(Streams, OrderIsOneForPureRowsAndNoneForChance) {
+TEST(Streams, OrderIsOneForPureRowsAndZeroForRandomOnes) {
   std::vector<Passer> pure, even;
   for (int n = 0; n < 40; ++n) {
     const double across = 0.1 + n % 4;
@@ -58,7 +58,7 @@ TEST(Streams, AHalfCircleIsAsWideAsItIsDeep) {
   EXPECT_EQ(validate::arch_shape({}), 0);
 }
 
-TEST(Streams, CrowdsAreTheSameForAnyWorkersAndTouchNobody) {
+TEST(Streams, CrowdsAreTheSameForAnyWorkersAndHaveNoOverlaps) {
   for (const char* name : {"crossing", "arch"}) {
     Context context;
     const auto one = run_validation(name, {.workers = 1, .brief = true}, context);

@@ -155,15 +155,15 @@ Plane preferred_towards(Plane to_target, float speed, float dt, float detour_ang
   return turned_right({to_target.x * size, to_target.z * size}, detour_angle);
 }
 
-float next_turn(const Patience& patience, float detour_angle, float progress, float along,
+float next_turn(const Patience& settings, float detour_angle, float progress, float along,
                 float dt) {
-  const float side = patience.side_angle;
+  const float side = settings.side_angle;
   const bool has_progress =
-      progress >= patience.min_progress || (detour_angle > side && along >= patience.min_walk);
-  if (has_progress) return std::max(0.0f, detour_angle - patience.return_rate * dt);
-  if (detour_angle < side) return std::min(side, detour_angle + patience.rate * dt);
-  const float next = detour_angle + patience.slow_rate * dt;
-  return next < patience.max_angle ? next : 0;
+      progress >= settings.min_progress || (detour_angle > side && along >= settings.min_walk);
+  if (has_progress) return std::max(0.0f, detour_angle - settings.return_rate * dt);
+  if (detour_angle < side) return std::min(side, detour_angle + settings.rate * dt);
+  const float next = detour_angle + settings.slow_rate * dt;
+  return next < settings.max_angle ? next : 0;
 }
 
 Plane turned_right(Plane direction, float detour_angle) {

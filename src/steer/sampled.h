@@ -155,19 +155,19 @@ struct Patience {
 
 /// True if the spacing to those ahead allows less than `min_progress`. `followed`: following() of
 /// `preferred`.
-inline bool can_but_crawl(const Patience& patience, Plane preferred, Plane followed,
+inline bool can_but_crawl(const Patience& settings, Plane preferred, Plane followed,
                           float fastest) {
   const float size = size_of(followed);
-  return size < patience.min_progress * fastest && size < size_of(preferred);
+  return size < settings.min_progress * fastest && size < size_of(preferred);
 }
 /// Progress as input of next_turn: full for an avatar that can only crawl and does so.
-inline float progress_felt(const Patience& patience, float progress, bool follows) {
-  return follows && progress >= patience.min_crawl ? 1 : progress;
+inline float progress_felt(const Patience& settings, float progress, bool follows) {
+  return follows && progress >= settings.min_crawl ? 1 : progress;
 }
 
 /// The next detour angle of an avatar. `progress`: its speed towards the goal by the desired one;
 /// `along`: the same along its turned preferred velocity.
-float next_turn(const Patience& patience, float detour_angle, float progress, float along,
+float next_turn(const Patience& settings, float detour_angle, float progress, float along,
                 float dt);
 
 /// `direction` turned to the right (seen from above, X to the right, Z down) by 2

@@ -8,14 +8,15 @@
 
 #include "steer/sampled.h"
 
-// Plain floats, square roots and no tables of sines: the same on every machine.
+// Steering in the air by trying velocities, as steer/sampled.cpp in the plane. Cost: directions
+// times speeds times neighbours. Only arithmetic and square roots: the same bytes on every machine.
 namespace throng::steer {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr auto kHalf = static_cast<float>(kDiagonal);
 
-// Cosine and sine of a ring's angle from the wish: 20, 45, 70, 100, 140 degrees.
+// Cosine and sine of a ring's angle from the preferred velocity: 20, 45, 70, 100, 140 degrees.
 constexpr std::array<std::array<float, 2>, 5> kRings = {{{0.93969262f, 0.34202014f},
                                                          {kHalf, kHalf},
                                                          {0.34202014f, 0.93969262f},
@@ -24,7 +25,7 @@ constexpr std::array<std::array<float, 2>, 5> kRings = {{{0.93969262f, 0.3420201
 constexpr std::array<float, kAirSpeeds> kSpeedParts = {1, 0.6f, 0.25f};
 
 // Ahead, to the right and, at right angles to both, up. Seen from above with X to the right and Z
-// down, the right hand of who looks along X points along Z.
+// down, the right of X is Z.
 struct Frame {
   Space ahead, right, up;
 };
@@ -38,9 +39,9 @@ Frame frame_of(Space preferred) {
   return {ahead, right, up};
 }
 
-float soonness_of_wall(float way, float speed, float horizon) {
-  if (!(speed > 0) || way >= speed * horizon) return 0;
-  return way > 1e-3f ? speed / way : speed * 1e3f;
+float soonness_of_wall(float distance, float speed, float horizon) {
+  if (!(speed > 0) || distance >= speed * horizon) return 0;
+  return distance > 1e-3f ? speed / distance : speed * 1e3f;
 }
 
 }  // namespace
@@ -62,18 +63,18 @@ AirFan air_fan(Space preferred) {
   return fan;
 }
 
-// Cylinders touch while their circles overlap in the plan and their heights do, too: two spans of
-// time, each from a gap that is wished for, but never from more than there is now.
+// Cylinders touch while both their circles in the plan and their heights overlap: two spans of
+// time. Each includes the preferred gap, but no more than the present one.
 float soonness(const AirSettings& settings, const AirSituation& situation,
                const AirNeighbour& other, Space velocity) {
-  const Space way = other.velocity - velocity;
+  const Space relative = other.velocity - velocity;
   const float square = other.at.x * other.at.x + other.at.z * other.at.z;
   const float radii = other.radii + settings.gap;
-  // Real overlap in the plan: one is over the other.
+  // The circles overlap without the gap: one body is over the other.
   const bool stacked = square < other.radii * other.radii;
   float from = 0, to = kNever;
-  const float a = way.x * way.x + way.z * way.z;
-  const float b = other.at.x * way.x + other.at.z * way.z;
+  const float a = relative.x * relative.x + relative.z * relative.z;
+  const float b = other.at.x * relative.x + other.at.z * relative.z;
   if (stacked) {
     const float c = square - other.radii * other.radii;
     if (a > 0) to = (std::sqrt(b * b - a * c) - b) / a;
@@ -88,10 +89,10 @@ float soonness(const AirSettings& settings, const AirSituation& situation,
   const bool above = y >= situation.height, below = y <= -other.height;
   const float top = above ? std::min(situation.height + settings.gap, y) : situation.height;
   const float bottom = below ? std::max(-other.height - settings.gap, y) : -other.height;
-  if (way.y == 0) {
+  if (relative.y == 0) {
     if (above || below) return 0;
   } else {
-    const float t0 = (top - y) / way.y, t1 = (bottom - y) / way.y;
+    const float t0 = (top - y) / relative.y, t1 = (bottom - y) / relative.y;
     from = std::max(from, std::min(t0, t1));
     to = std::min(to, std::max(t0, t1));
   }
@@ -113,17 +114,17 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
   const AirFan fan = air_fan(situation.preferred);
   const Frame frame = frame_of(situation.preferred);
   const float desired = size_of(situation.preferred), fastest = situation.fastest;
-  // Who is too far away to be met in time need not be asked for each trial.
+  // Bodies too far away to be met within the horizon are left out of all trials.
   std::array<const AirNeighbour*, kMaxNearInAir> met;
   size_t count = 0;
   for (size_t n = 0; n < situation.size; ++n) {
     const AirNeighbour& other = situation.near[n];
     const float level = std::sqrt(other.at.x * other.at.x + other.at.z * other.at.z);
-    const float reach = settings.horizon * (fastest + size_of(other.velocity));
-    if (level <= other.radii + settings.gap + reach) met[count++] = &other;
+    const float radius = settings.horizon * (fastest + size_of(other.velocity));
+    if (level <= other.radii + settings.gap + radius) met[count++] = &other;
   }
-  // The best so far, in order. Of equals the first is better, so what already costs as much as the
-  // last of them before anybody is asked cannot be among them.
+  // The best so far, in order. Of equals the first is better, so a trial that costs as much as the
+  // last of them without its neighbours cannot be among them.
   struct Choice {
     float cost = kNever;
     Space velocity;
@@ -131,7 +132,7 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
   std::array<Choice, kAirChoices> best;
   for (size_t t = 0; t <= kAirTrials; ++t) {
     const size_t d = t / kAirSpeeds;
-    // Along the wish it is parts of the wish; the last of all is to hover.
+    // Along the preferred velocity the trials are parts of it; the last of all hovers.
     const float speed =
         t == kAirTrials ? 0 : (d == 0 ? desired : fastest) * kSpeedParts[t % kAirSpeeds];
     const Space v = t == kAirTrials ? Space{} : speed * fan[d];
@@ -160,21 +161,22 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
   return choices;
 }
 
-Space preferred_towards(Space way, float speed, float dt, float turn, int32_t roll, bool stops) {
+Space preferred_towards(Space to_target, float speed, float dt, float detour_angle, int32_t roll,
+                        bool stops) {
   constexpr float kStop = 0.5f;   // [s]
-  constexpr float kCreep = 0.2f;  // [m/s] Who stops comes to an end.
-  const float left = size_of(way);
+  constexpr float kCreep = 0.2f;  // [m/s] So that a stop takes finite time.
+  const float left = size_of(to_target);
   if (left <= 1e-6f) return {};
-  float most = std::min(speed, left / dt);
-  if (stops) most = std::min(most, std::max(left / kStop, kCreep));
-  const float part = most / left;
-  if (turn == 0) return part * way;
-  const Frame frame = frame_of(way);
+  float limit = std::min(speed, left / dt);
+  if (stops) limit = std::min(limit, std::max(left / kStop, kCreep));
+  const float part = limit / left;
+  if (detour_angle == 0) return part * to_target;
+  const Frame frame = frame_of(to_target);
   const Space side =
       roll == 0 ? frame.right : kHalf * (frame.right + (roll == 1 ? 1.0f : -1.0f) * frame.up);
-  const float scale = 1 / (1 + turn * turn);
-  const float cosine = (1 - turn * turn) * scale, sine = 2 * turn * scale;
-  return most * (cosine * frame.ahead + sine * side);
+  const float square = detour_angle * detour_angle, scale = 1 / (1 + square);
+  const float cosine = (1 - square) * scale, sine = 2 * detour_angle * scale;
+  return limit * (cosine * frame.ahead + sine * side);
 }
 
 }  // namespace throng::steer

@@ -34,14 +34,14 @@ inline constexpr std::array<std::array<double, 2>, 8> kEighths = {{{1, 0},
                                                                    {0, -1},
                                                                    {kDiagonal, -kDiagonal}}};
 
-/// As steer::SampledSettings has them, but for the gap: who flies keeps farther away.
+/// As in steer::SampledSettings, but for the gap: flyers keep larger distances.
 struct AirSettings {
-  float horizon = 2;          ///< Touching later than that is of no concern. [s, > 0]
+  float horizon = 2;          ///< Later touches do not count. [s, > 0]
   float straightness = 0.8f;  ///< Share of "less progress", beside "another velocity", in a cost.
-  float keep = 0.2f;          ///< Cost of leaving one's present velocity.
+  float keep = 0.2f;          ///< Cost of a change of the present velocity.
   float right = 0.1f;         ///< Cost of passing on the left.
   float threat = 0.5f;        ///< Cost of the most urgent touch.
-  float gap = 0.05f;          ///< Wished between two bodies. [m]
+  float gap = 0.05f;          ///< Preferred between two bodies. [m]
   float wall = 0.5f;          ///< Cost of flying up to a wall,
   float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
 };
@@ -53,43 +53,45 @@ inline constexpr size_t kAirTrials = kAirDirections * kAirSpeeds;
 inline constexpr size_t kAirChoices = 8;
 
 struct AirNeighbour {
-  Space at, velocity;  ///< `at`: its feet from one's own.
+  Space at, velocity;  ///< `at`: offset of its feet.
   float radii = 0;     ///< Sum of both.
-  float height = 0;    ///< The other's.
+  float height = 0;    ///< Of the other.
 };
 
-/// What a body steers by.
+/// The input of steering for one body.
 struct AirSituation {
   Space velocity;
-  Space preferred;    ///< The velocity if nobody were there. [at most `fastest`]
+  Space preferred;    ///< The velocity without others. [at most `fastest`]
   float fastest = 1;  ///< [m/s, > 0]
   float height = 1;   ///< Of the body. [m]
   size_t size = 0;    ///< Of `near`.
   std::array<AirNeighbour, kMaxNearInAir> near;
-  /// How far it is to a wall in each direction of the fan around the wish, if `has_walls`. [m]
+  /// Distance to a wall in each direction of air_fan(preferred), if `has_walls`. [m]
   std::array<float, kAirDirections> free_distance{};
   bool has_walls = false;
 };
 
-/// Unit vectors around the wish (around X, if there is none), the first along it.
+/// Unit vectors around the preferred velocity (around X if it is 0), the first along it.
 using AirFan = std::array<Space, kAirDirections>;
 AirFan air_fan(Space preferred);
 
-/// How soon two upright cylinders touch if one goes at `velocity` and the other goes on: 1 / the
-/// time until then, 0 if not within the horizon. [1/s]
+/// How soon two upright cylinders touch if one moves with `velocity` and the other keeps its own: 1
+/// / the time until then, 0 if not within the horizon. [1/s]
 float soonness(const AirSettings& settings, const AirSituation& situation,
                const AirNeighbour& other, Space velocity);
 
-/// True if whoever does as he wishes touches nobody and no wall within their horizons.
+/// True if the preferred velocity leads to no touch with a body or a wall within their horizons.
 bool preferred_is_open(const AirSettings& settings, const AirSituation& situation);
 
-/// The velocities that cost least, the best first.
+/// The velocities of the smallest costs, the best first.
 using AirChoices = std::array<Space, kAirChoices>;
 AirChoices best_of(const AirSettings& settings, const AirSituation& situation);
 
-/// The wish of a body whose aim is `way` off: at `speed`, turned aside by 2 atan(turn), to the side
-/// `roll` (0 right, 1 over it, 2 under it), and not past the aim within `dt`; where `stops`, slower
-/// the nearer it is: it would be there in half a second.
-Space preferred_towards(Space way, float speed, float dt, float turn, int32_t roll, bool stops);
+/// The preferred velocity of a body with the offset `to_target` to its target: at `speed`, turned
+/// by 2 atan(detour_angle) to the side `roll` (0 right, 1 right and up, 2 right and down), and not
+/// past the target within `dt`. If it `stops`, the speed is at most the remaining distance in 0.5
+/// s.
+Space preferred_towards(Space to_target, float speed, float dt, float detour_angle, int32_t roll,
+                        bool stops);
 
 }  // namespace throng::steer

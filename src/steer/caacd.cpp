@@ -7,20 +7,21 @@
 #include <cmath>
 #include <string>
 
-// [CAACD] equations 1 to 15, one function each where it has a meaning of its own. What the print
-// leaves open, and what was measured to decide it: docs/design/007-caacd.md.
+// [CAACD] equations 1 to 15, one function for each step that has a meaning of its own. What the
+// paper leaves open, and the measurements that decided it: docs/design/007-caacd.md. The greatest
+// threat takes time linear in the bodies and obstacles.
 namespace throng::caacd {
 namespace {
 
-// Below this a speed or a length has no direction worth the name.
+// A speed or a length below this has no direction.
 constexpr double kNone = 1e-150;
 
-Vec3d limited(Vec3d v, double most) {
+Vec3d limited(Vec3d v, double max) {
   const double size = length(v);
-  return size > most ? v * (most / size) : v;
+  return size > max ? v * (max / size) : v;
 }
 
-// Which way to push when eq. 11 vanishes. Both of two who meet head-on see the other ahead and go
+// The side to push to when eq. 11 vanishes. Of two bodies head-on each has the other ahead and goes
 // right; of two in one line the rear one goes right and the front one left, or they would stay in
 // line.
 double side_when_in_line(const Body& self, const Threat& threat) {
@@ -46,8 +47,8 @@ Result<void> check_model(const Model& m) {
   constexpr double kMax = 1e100;
   struct Setting {
     const char* name;
-    double value, least, most;
-    bool above;  // More than `least`, not just as much.
+    double value, min, max;
+    bool above;  // Above `min`, not equal to it.
   };
   const std::array<Setting, 8> settings{{
       {"mass", m.mass, 1e-100, kMax, false},
@@ -61,11 +62,11 @@ Result<void> check_model(const Model& m) {
   }};
   for (const Setting& s : settings) {
     // Written so that a NaN is refused as well.
-    if ((s.above ? s.value > s.least : s.value >= s.least) && s.value <= s.most) continue;
-    const std::string range = s.most < kMax ? s.least == 0.5 ? "from 0.5 to 1" : "from 0 to 1"
-                              : s.above     ? "above 0 and finite"
-                              : s.least > 0 ? "1e-100 or more and finite"
-                                            : "0 or more and finite";
+    if ((s.above ? s.value > s.min : s.value >= s.min) && s.value <= s.max) continue;
+    const std::string range = s.max < kMax ? s.min == 0.5 ? "from 0.5 to 1" : "from 0 to 1"
+                              : s.above    ? "above 0 and finite"
+                              : s.min > 0  ? "1e-100 or more and finite"
+                                           : "0 or more and finite";
     return Error{Errc::kBadConfig, std::string("caacd: ") + s.name + " must be " + range};
   }
   return {};
@@ -86,8 +87,8 @@ Vec3d position_at(const Body& body, double time) { return body.position + body.v
 double convergence_distance(Vec3d r, const Model& model) {
   if (model.length == Length::kTrue) return length(r);
   const double x = std::fabs(r.x), y = std::fabs(r.y), z = std::fabs(r.z);
-  const double most = std::max({x, y, z});
-  return most * model.lambda1 + ((x + y + z) - most) * (1 - model.lambda1);
+  const double max = std::max({x, y, z});
+  return max * model.lambda1 + ((x + y + z) - max) * (1 - model.lambda1);
 }
 
 Threat threat_of(const Body& self, const Body& other, const Model& model) {
@@ -117,7 +118,7 @@ Threat threat_of(const Body& self, const Obstacle& obstacle, const Model& model)
   if (!zone_overlaps(self, obstacle.position, obstacle.fields.precaution, model)) return {};
   const Body standing{.position = obstacle.position, .velocity = {}, .fields = obstacle.fields};
   const Approach approach = nearest_approach(self, standing);
-  // Behind it is none, whatever the zone still covers.
+  // An obstacle behind is no threat, even if the zone still covers it.
   if (approach.time < 0) return {};
   // A zone may reach farther than T3, so the time is not bounded here.
   Threat threat{.level = State::kCritical,
@@ -137,14 +138,15 @@ bool more_urgent(const Threat& a, const Threat& b) {
 }
 
 Threat greatest_threat(const Body& self, std::span<const Body> others,
-                       std::span<const Obstacle> obstacles, const Model& model, double reach) {
+                       std::span<const Obstacle> obstacles, const Model& model,
+                       double search_radius) {
   Threat greatest;
   const auto consider = [&](const Threat& threat) {
     if (threat.level != State::kTolerable && more_urgent(threat, greatest)) greatest = threat;
   };
   for (const Body& other : others) {
-    const Vec3d way = other.position - self.position;
-    if (other.id == self.id || dot(way, way) > reach * reach) continue;
+    const Vec3d offset = other.position - self.position;
+    if (other.id == self.id || dot(offset, offset) > search_radius * search_radius) continue;
     consider(threat_of(self, other, model));
   }
   for (const Obstacle& obstacle : obstacles) consider(threat_of(self, obstacle, model));
@@ -154,7 +156,7 @@ Threat greatest_threat(const Body& self, std::span<const Body> others,
 double threat_reach(const Body& self, double alert, const Model& model) {
   // Eq. 10's other length is at least half of the true one.
   const double joint = (self.fields.alert + alert) * (model.length == Length::kTrue ? 1 : 2);
-  // Who is not in the alert field now is none, whatever will be.
+  // A body outside the alert field now is no threat.
   if (model.trigger == Trigger::kNear) return joint * (1 + 1e-9);
   return joint + model.horizon * (length(self.velocity) + model.max_speed);
 }
@@ -189,16 +191,16 @@ Vec3d avoidance(const Body& self, const Threat& threat, const Model& model) {
 }
 
 Vec3d path_amendment(const Body& self, Vec3d target, double stop_before, const Model& model) {
-  const Vec3d way = target - self.position;
-  const double distance = length(way);
+  const Vec3d to_target = target - self.position;
+  const double distance = length(to_target);
   const double left = distance - stop_before;
   Vec3d wanted{};
   if (left > 0 && distance > kNone) {
-    // Even braking: the speed falls with the square root of the way left.
+    // Even braking: the speed falls with the square root of the distance left.
     const double speed = left < model.deceleration
                              ? model.max_speed * std::sqrt(left / model.deceleration)
                              : model.max_speed;
-    wanted = way * (speed / distance);
+    wanted = to_target * (speed / distance);
   }
   return limited(wanted - self.velocity, model.max_force);
 }
@@ -219,8 +221,8 @@ Curvilinear curvilinear(Vec3d forward, Vec3d acceleration) {
 }
 
 bool goes_first(const Body& a, Vec3d target_a, const Body& b, Vec3d target_b) {
-  const double way_a = length(target_a - a.position), way_b = length(target_b - b.position);
-  if (way_a != way_b) return way_a < way_b;
+  const double left_a = length(target_a - a.position), left_b = length(target_b - b.position);
+  if (left_a != left_b) return left_a < left_b;
   return a.id < b.id;
 }
 

@@ -10,12 +10,12 @@
 #include "core/hash.h"
 #include "throng/caacd_experiment.h"
 
-// One run of [CAACD] section V: determination, avoidance and path amendment of III, all avatars at
-// once, frame by frame.
+// One run of [CAACD] section V: determination, avoidance and path amendment of section III, all
+// avatars at once, frame by frame. Time of a frame: the square of the bodies.
 namespace throng::caacd {
 namespace {
 
-// An avatar has arrived once its centre is so near to the target, in repulsive radii: "until its
+// An avatar has arrived if its centre is this near to the target, in repulsive radii: "until its
 // repulsive field origin completely overlaps its target destination origin".
 constexpr double kArrival = 0.1;
 
@@ -75,7 +75,7 @@ Result<Simulation> Simulation::create(Space space, const Model& model, double dt
   run.inside_.assign(n * (n - std::min<size_t>(n, 1)) / 2, 0);
   run.inside_obstacle_.assign(n * run.space_.obstacles.size(), 0);
   run.find_rivals();
-  // Who begins inside of another has not entered.
+  // Overlaps at the start are not entries.
   run.count();
   run.counts_ = {};
   return run;
@@ -108,16 +108,16 @@ Result<void> Simulation::send(uint32_t id, Vec3d target) {
   return {};
 }
 
-// Who comes first into the neighbourhood of a place that another wants too claims it and keeps it;
-// the others stop before it, outside of the precaution field.
+// Of avatars with targets too near to each other, the first one near its target reserves it; the
+// others stop before it, outside of the precaution field.
 void Simulation::negotiate() {
   const auto& bodies = space_.bodies;
   const auto rivals = [&](size_t i) {
     return std::span(rivals_).subspan(rival_first_[i], rival_first_[i + 1] - rival_first_[i]);
   };
   const auto is_near = [&](size_t i) {
-    const double reach = std::max(model_.deceleration, 2 * bodies[i].fields.alert);
-    return distance2(bodies[i].position, space_.targets[i]) <= reach * reach;
+    const double radius = std::max(model_.deceleration, 2 * bodies[i].fields.alert);
+    return distance2(bodies[i].position, space_.targets[i]) <= radius * radius;
   };
   for (size_t i = 0; i < bodies.size(); ++i) {
     if (claims_[i] != 0 || !is_near(i)) continue;
@@ -146,8 +146,8 @@ void Simulation::sense(size_t i) {
     steer_[i] = {};
     return;
   }
-  const double reach = threat_reach(self, largest_alert_, model_);
-  const Threat greatest = greatest_threat(self, space_.bodies, space_.obstacles, model_, reach);
+  const double radius = threat_reach(self, largest_alert_, model_);
+  const Threat greatest = greatest_threat(self, space_.bodies, space_.obstacles, model_, radius);
   threats_[i] = greatest;
   if (greatest.level != State::kTolerable) {
     activities_[i] = Activity::kAvoiding;

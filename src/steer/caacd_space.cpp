@@ -6,13 +6,13 @@
 #include "core/random.h"
 #include "throng/caacd_experiment.h"
 
-// Random spaces for [CAACD] section V: places are drawn again until they are free.
+// Random spaces for [CAACD] section V: a position is drawn again until it is free.
 namespace throng::caacd {
 namespace {
 
 constexpr uint64_t kTries = 20000;
 
-// One stream a purpose and an index, so that one more avatar changes nothing for the others.
+// One stream for each purpose and index, so that one more avatar does not change the others.
 enum Purpose : uint64_t { kObstaclePlace = 1, kStart, kTarget, kHeading, kSpeed, kObstacleSize };
 
 uint64_t stream_of(Purpose purpose, size_t index) { return uint64_t{purpose} << 32 | index; }
@@ -28,7 +28,7 @@ Vec3d random_point(uint64_t seed, uint64_t stream, uint64_t attempt, double side
           margin + range * random_unit(seed, stream, 2 * attempt + 1)};
 }
 
-// A direction, from a point of the unit disc: no sine is the same everywhere, a root is.
+// A direction, from a point of the unit disc: sines differ between machines, square roots do not.
 Vec3d random_heading(uint64_t seed, size_t index) {
   for (uint64_t attempt = 0; attempt < kTries; ++attempt) {
     const Vec3d p = random_point(seed, stream_of(kHeading, index), attempt, 2, 0);
@@ -87,7 +87,7 @@ Result<Space> random_space(const SpaceConfig& config, const Model& model) {
                                   random_unit(seed, stream_of(kObstacleSize, i), 0);
     const Fields fields{radius, radius + config.obstacle_precaution,
                         radius + config.obstacle_alert};
-    // Obstacles leave a way between them for an avatar and its precaution field.
+    // Obstacles leave a gap between them for an avatar and its precaution field.
     const auto is_free = [&](Vec3d p) {
       for (const Obstacle& o : space.obstacles) {
         const double apart = o.fields.precaution + fields.precaution + 2 * config.fields.precaution;

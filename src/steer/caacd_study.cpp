@@ -13,7 +13,7 @@
 #include "core/parallel.h"
 #include "throng/caacd_experiment.h"
 
-// Many runs of [CAACD] section V: each writes its own slot, sums go in order.
+// Many runs of [CAACD] section V in parallel: each run writes its own slot; sums are in order.
 namespace throng::caacd {
 namespace {
 

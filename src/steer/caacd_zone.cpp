@@ -6,18 +6,18 @@
 
 #include "throng/caacd.h"
 
-// Repulsive zones, the dashed rectangles of [CAACD] figure 7, seen from above.
+// Probes: the "repulsive zones" of [CAACD], the dashed rectangles of figure 7, seen from above.
 namespace throng::caacd {
 namespace {
 
-// A rectangle by its middle, the directions of its sides and half their lengths.
+// A rectangle by its centre, the directions of its sides and half their lengths.
 struct Zone {
   Vec3d middle;
   Vec3d along, aside;
   double half_length = 0, half_width = 0;
 };
 
-// Its heading on the ground, or x for one that heads straight up.
+// Along the heading in the plan, or along X for a body that heads straight up.
 Zone zone_of(const Body& body, const Model& model) {
   const Vec3d aside = right_of(body.forward);
   const Vec3d along{aside.z, 0, -aside.x};
@@ -30,7 +30,7 @@ Zone zone_of(const Body& body, const Model& model) {
           .half_width = body.fields.repulsive};
 }
 
-// Half the stretch that a zone takes on an axis.
+// Half the length of a zone's projection on an axis.
 double half_shadow(const Zone& zone, Vec3d axis) {
   return zone.half_length * std::fabs(dot(zone.along, axis)) +
          zone.half_width * std::fabs(dot(zone.aside, axis));

@@ -7,7 +7,7 @@
 
 #include "steer/sampled.h"
 
-/// The directions that are tried.
+/// The directions and speeds of the trials.
 namespace throng::steer {
 
 /// Cosines and sines of multiples of 15 degrees.
@@ -16,7 +16,7 @@ struct Turns {
 };
 
 constexpr Turns turns() {
-  // cos 0, 15, 30, ... 90; the rest are these.
+  // cos 0, 15, 30, ... 90 degrees; the rest follow by symmetry.
   constexpr std::array<double, 7> kCosines = {1,
                                               0.96592582628906828675,
                                               0.86602540378443864676,

@@ -6,31 +6,32 @@
 #include <cmath>
 #include <cstdlib>
 
+// Lanes: a cost for each of seven parallel lanes, linear in the avatars added.
 namespace throng::steer {
 namespace {
 
-constexpr float kOne = 4096;  // Sums of whole numbers do not depend on their order.
+constexpr float kOne = 4096;  // Unit of integer sums, which do not depend on their order.
 
-// Cosine of the angle between a direction and a way, 0 if the way leads nowhere.
-float cosine(Plane direction, Plane way) {
-  const float size = size_of(way);
-  return size > 1e-6f ? (way.x * direction.x + way.z * direction.z) / size : 0;
+// Cosine of the angle between a unit vector and a vector, 0 if the vector is 0.
+float cosine(Plane direction, Plane v) {
+  const float size = size_of(v);
+  return size > 1e-6f ? (v.x * direction.x + v.z * direction.z) / size : 0;
 }
 
 }  // namespace
 
-bool comes_towards(Plane at, Plane way, Plane his, float cosine) {
-  const float towards = -(his.x * way.x + his.z * way.z);
-  if (towards <= 0 || at.x * way.x + at.z * way.z <= 0) return false;
-  const float both = (his.x * his.x + his.z * his.z) * (way.x * way.x + way.z * way.z);
+bool comes_towards(Plane at, Plane own, Plane other, float cosine) {
+  const float towards = -(other.x * own.x + other.z * own.z);
+  if (towards <= 0 || at.x * own.x + at.z * own.z <= 0) return false;
+  const float both = (other.x * other.x + other.z * other.z) * (own.x * own.x + own.z * own.z);
   return towards * towards > cosine * cosine * both;
 }
 
 bool is_opposed(const LaneSettings& settings, const Situation& s) {
   int32_t opposers = 0;
   for (size_t n = 0; n < s.near.size; ++n) {
-    const Plane at{s.near.x[n], s.near.z[n]}, his{s.near.wx[n], s.near.wz[n]};
-    opposers += comes_towards(at, s.preferred, his, settings.opposed) ? 1 : 0;
+    const Plane at{s.near.x[n], s.near.z[n]}, other{s.near.wx[n], s.near.wz[n]};
+    opposers += comes_towards(at, s.preferred, other, settings.opposed) ? 1 : 0;
   }
   return opposers >= settings.opposers;
 }
@@ -40,23 +41,23 @@ Lanes::Lanes(const LaneSettings& settings, Plane preferred)
   ahead_ = {preferred.x / desired_, preferred.z / desired_};
 }
 
-void Lanes::add(Plane at, Plane bound) {
+void Lanes::add(Plane at, Plane heading) {
   const float along = at.x * ahead_.x + at.z * ahead_.z;
-  if (!(along > 0 && along < settings_.far)) return;
+  if (!(along > 0 && along < settings_.max_ahead)) return;
   const float aside = ahead_.x * at.z - ahead_.z * at.x;
-  const float same = cosine(ahead_, bound);
+  const float same = cosine(ahead_, heading);
   const float kind = same < -settings_.opposed ? 1
                      : same > settings_.same   ? -settings_.follows
                                                : settings_.crosses;
-  const float weight = kind * (1 - along / settings_.far) * kOne;
+  const float weight = kind * (1 - along / settings_.max_ahead) * kOne;
   for (int32_t lane = 0; lane < kLanes; ++lane) {
-    const float share = 1 - std::abs(aside - off(lane)) / settings_.wide;
+    const float share = 1 - std::abs(aside - off(lane)) / settings_.max_aside;
     if (share > 0) costs_[static_cast<size_t>(lane)] += static_cast<int32_t>(weight * share);
   }
 }
 
 Plane Lanes::preferred() const {
-  // One's own first, then the others from there, of equals the first.
+  // The avatar's own lane first, then the others from there; of equals the first.
   constexpr std::array<int32_t, kLanes> kOrder = {3, 4, 2, 5, 1, 6, 0};
   const auto cost = [&](int32_t lane) {
     const float by_others = static_cast<float>(costs_[static_cast<size_t>(lane)]) / kOne;

@@ -10,26 +10,26 @@
 #include "throng/base.h"
 #include "throng/caacd.h"
 
-// [CAACD] and [HM95] have no length of a step of their own: both are followed by Euler's rule in
-// parts of a step that are short beside what they wait for.
+// [CAACD] and [HM95] as models of a crowd. They define no step length: both are integrated by
+// Euler's method in parts of a step that are short beside their time constants.
 namespace throng::steer {
 namespace {
 
-// Of [CAACD]'s figures: a body's repulsive, precaution and alert fields, and how fast it is.
+// Of [CAACD]'s figures: a body's repulsive, precaution and alert fields.
 constexpr caacd::Fields kFields = {5, 7.5, 12};
 constexpr double kMaxFrames = 2.5;  // of a part of a step
 constexpr double kMaxPart = 0.03;   // [s] of a part of a step
 
 Vec3d flat(Plane p, double scale) { return {p.x * scale, 0, p.z * scale}; }
 
-Plane limited(double x, double z, double most) {
+Plane limited(double x, double z, double max) {
   const double size = std::sqrt(x * x + z * z);
-  const double scale = size > most ? most / size : 1;
+  const double scale = size > max ? max / size : 1;
   return {static_cast<float>(x * scale), static_cast<float>(z * scale)};
 }
 
-// A unit is what makes the body's repulsive field as large as the body, a frame as long as makes
-// its greatest speed the wished one.
+// The unit of length makes the repulsive field as large as the body; the unit of time makes the
+// model's maximum speed equal to `fastest`.
 Plane curvilinear_velocity(const View& view, float dt) {
   const caacd::Model model;
   const double units = kFields.repulsive / view.radius;          // a metre
@@ -53,7 +53,7 @@ Plane curvilinear_velocity(const View& view, float dt) {
         .id = other.slot};
   }
   const std::span<caacd::Body> near(others.data(), view.others.size());
-  // A corner is passed, not stopped at.
+  // The avatar does not stop at a corner: the target is moved beyond the braking distance.
   Vec3d target = flat(view.way, units);
   const double far = length(target);
   if (!view.stops && far > 1e-9) target = target * ((far + 2 * model.deceleration) / far);
@@ -72,7 +72,7 @@ Plane curvilinear_velocity(const View& view, float dt) {
   return limited(self.velocity.x / speed, self.velocity.z / speed, view.fastest);
 }
 
-// Nobody is faster than he wishes: a crowd's steps are no longer than that.
+// No speed is above `fastest`: a crowd's moves must not be longer.
 Plane force_velocity(const View& view, float dt) {
   const SocialForceConfig config;
   ForceWalker self{.vx = view.velocity.x,
@@ -116,14 +116,14 @@ Plane preferred_velocity(SteeringModel model, const View& view, float dt) {
 Choices ways_about(Plane preferred) {
   const float size = size_of(preferred);
   const Fan fan = fan_around(preferred);  // every 15 degrees, from X to Z: to the right
-  Choices ways{preferred};
+  Choices candidates{preferred};
   constexpr std::array<size_t, 6> kTurned = {2, 22, 4, 20, 6, 18};
   for (size_t n = 0; n < kTurned.size(); ++n) {
-    const Plane way = fan[kTurned[n]];
-    ways[n + 1] = {way.x * size, way.z * size};
+    const Plane direction = fan[kTurned[n]];
+    candidates[n + 1] = {direction.x * size, direction.z * size};
   }
-  ways.back() = {preferred.x * 0.75f, preferred.z * 0.75f};
-  return ways;
+  candidates.back() = {preferred.x * 0.75f, preferred.z * 0.75f};
+  return candidates;
 }
 
 }  // namespace throng::steer

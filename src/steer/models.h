@@ -8,37 +8,37 @@
 #include "steer/sampled.h"
 #include "throng/steering_model.h"
 
-/// The other models that a crowd can be steered by, for comparison: from what an avatar sees to the
-/// velocity that it would walk at. No memory: all that they keep is the present velocity.
+/// The other models that can steer a crowd, for comparison: from the view of an avatar to its next
+/// velocity. Their only state is the present velocity.
 namespace throng::steer {
 
-/// Somebody whom an avatar sees.
+/// Another avatar in the view of an avatar.
 struct Other {
-  Plane at, velocity;  ///< `at` from the avatar's own middle.
+  Plane at, velocity;  ///< `at`: offset from the avatar's centre.
   float radius = 0;    ///< [m]
   uint32_t slot = 0;
 };
 
-/// What an avatar sees.
+/// The input of steering for one avatar.
 struct View {
   Plane velocity;
-  Plane preferred;    ///< The velocity if nobody were there.
-  Plane way;          ///< To where it is bound in a straight line. [m]
-  bool stops = true;  ///< There it is to stand.
+  Plane preferred;    ///< The velocity without others.
+  Plane way;          ///< Offset to its target. [m]
+  bool stops = true;  ///< It stops at the target.
   float fastest = 1;  ///< [m/s, > 0]
   float radius = 0;   ///< [m]
   uint32_t slot = 0;
   std::span<const Other> others;  ///< At most kMaxNear, the nearest first.
   bool has_wall = false;
-  Plane wall = {};  ///< From the middle to the nearest point of a wall.
+  Plane wall = {};  ///< Offset to the nearest point of a wall.
 };
 
-/// The velocity after a step of `dt` in which all others walk on as they do; at most `fastest`.
-/// Others are looked at again every 28 ms or so. [model: not kSampled]
+/// The velocity after a step of `dt` in which all others keep their velocities; at most `fastest`.
+/// A step is integrated in parts of at most about 30 ms. [model: not kSampled]
 Plane preferred_velocity(SteeringModel model, const View& view, float dt);
 
-/// What is tried, in order, by who prefers a velocity: that, then slanted by 30 and 60 degrees,
-/// then sideways, each to the right first, then straight on, slower.
+/// Candidates for a preferred velocity, in order: the velocity itself, turned by 30, 60 and 90
+/// degrees, each to the right first, then straight on, slower.
 Choices ways_about(Plane preferred);
 
 }  // namespace throng::steer

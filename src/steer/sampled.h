@@ -11,11 +11,10 @@
 
 #include "throng/base.h"
 
-/// Steering by trying velocities: which of some velocities costs least, by how far it leads from
-/// the wish and how soon the body would touch another or a wall. A model of avoidance that knows
-/// nothing of how a crowd stores its avatars. docs/log/008-engine.md has how its settings were
-/// found. Here as plainly as it can be written; steer/sampled_kernel.h is the same, bit by bit, for
-/// machines.
+/// Steering by trying velocities: the cheapest of a set of velocities, by their difference from the
+/// preferred velocity and by how soon the body would touch another or a wall. Independent of how a
+/// crowd stores its avatars. docs/log/008-engine.md states how the settings were found. This is the
+/// plain version; steer/sampled_kernel.h gives the same bits, vectorised.
 namespace throng::steer {
 
 /// In the plane. [m, m/s]
@@ -26,21 +25,21 @@ inline float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
 /// Sources of all numbers: docs/log/008-engine.md.
 struct SampledSettings {
-  float horizon = 2;          ///< Touching later than that is of no concern. [s, > 0]
-  float straightness = 0.8f;  ///< Share of "less progress", beside "another velocity", in a cost.
-  float keep = 0.2f;          ///< Cost of leaving one's present velocity.
-  float right = 0.1f;         ///< Cost of passing on the left.
-  float threat = 0.5f;        ///< Cost of the most urgent touch.
-  float gap = 0.02f;          ///< Wished between two bodies. [m]
-  float wall = 0.5f;          ///< Cost of walking up to a wall,
-  float wall_horizon = 0.7f;  ///< if it is reached within this. [s, > 0]
-  int32_t neighbours = 8;     ///< The nearest so many are looked at. [1 to kMaxNear]
-  float headway = 0.43f;      ///< Time between two who walk close behind each other. [s, > 0]
-  float body = 0.4f;          ///< Of their distance, what is not room, if they are that wide. [m]
-  float lane = 0.75f;         ///< Who is ahead: not further aside than this part of both radii,
-  float same_way = 0.8f;      ///< and wishes to go one's way: cosine of the angle between wishes.
-  float unbound = 1.1f;       ///< What room without end allows, by the fastest.
-  float foresight = 0.29f;    ///< Share of a leader's being faster that the room does not limit.
+  float horizon = 2;            ///< Later touches do not count. [s, > 0]
+  float straightness = 0.8f;    ///< Share of "less progress", beside "another velocity", in a cost.
+  float keep = 0.2f;            ///< Cost of a change of the present velocity.
+  float right = 0.1f;           ///< Cost of passing on the left.
+  float threat = 0.5f;          ///< Cost of the most urgent touch.
+  float gap = 0.02f;            ///< Preferred between two bodies. [m]
+  float wall = 0.5f;            ///< Cost of walking up to a wall,
+  float wall_horizon = 0.7f;    ///< if it is reached within this. [s, > 0]
+  int32_t neighbours = 8;       ///< How many of the nearest count. [1 to kMaxNear]
+  float headway = 0.43f;        ///< Time between two that follow each other closely. [s, > 0]
+  float body = 0.4f;            ///< Part of their distance that is body, if they are that wide. [m]
+  float lane = 0.75f;           ///< A leader is not farther aside than this part of both radii,
+  float same_direction = 0.8f;  ///< and prefers the same direction: cosine of the angle.
+  float unbound = 1.1f;         ///< Speed at unlimited spacing, by `fastest`.
+  float foresight = 0.29f;      ///< Share of a leader's excess speed that is added to the limit.
 };
 
 inline constexpr size_t kMaxNear = 16;
@@ -48,19 +47,19 @@ inline constexpr size_t kDirections = 24;
 inline constexpr size_t kSpeeds = 4;
 /// Velocities that are tried: a direction's speeds beside each other.
 inline constexpr size_t kTrials = kDirections * kSpeeds;
-inline constexpr float kSoonest = 0.1f;  ///< [s] Nothing is more urgent than a touch within this.
+inline constexpr float kSoonest = 0.1f;  ///< [s] Bounds the urgency of a touch: see nearness().
 
 struct Neighbour {
-  Plane at, velocity;    ///< `at` from the body's own middle.
+  Plane at, velocity;    ///< `at`: offset from the body's centre.
   float radii = 0;       ///< Sum of both.
   Plane preferred = {};  ///< Its heading: only the direction counts.
 };
 
-/// Those whom a body steers by, as arrays.
+/// The neighbours that count, as arrays.
 struct NearSet {
   size_t size = 0;
   alignas(64) std::array<float, kMaxNear> x{}, z{}, vx{}, vz{}, wx{}, wz{};
-  alignas(64) std::array<float, kMaxNear> apart{};  ///< Squares: distance less radii and gap, >= 0.
+  alignas(64) std::array<float, kMaxNear> apart{};  ///< Distance^2 - (radii + gap)^2, >= 0.
 
   void add(const SampledSettings& settings, const Neighbour& other) {
     THRONG_ASSERT(size < kMaxNear);
@@ -76,98 +75,103 @@ struct NearSet {
   }
 };
 
-/// What a body steers by.
+/// The input of steering for one body.
 struct Situation {
   Plane velocity;
-  Plane preferred;    ///< The velocity if nobody were there. [at most `fastest`]
+  Plane preferred;    ///< The velocity without others. [at most `fastest`]
   float fastest = 1;  ///< [m/s, > 0]
   NearSet near;
-  /// How far it is to a wall in each direction of the fan around the wish, if `has_walls`. [m]
+  /// Distance to a wall in each direction of fan_around(preferred), if `has_walls`. [m]
   alignas(64) std::array<float, kDirections> free_distance{};
   bool has_walls = false;
 };
 
-/// Which way it is to a wish: a unit vector, along X if there is none.
+/// The direction of a preferred velocity: a unit vector, X if the velocity is 0.
 Plane ahead_of(Plane preferred);
 
-/// Unit vectors, 15 degrees apart, the first along the wish (or X, if there is none).
+/// Unit vectors, 15 degrees apart, the first along the preferred velocity (X if it is 0).
 using Fan = std::array<Plane, kDirections>;
 Fan fan_around(Plane preferred);
 
 /// The velocities that are tried, in order: direction d at speed s is number d * kSpeeds + s. Along
-/// the wish they are parts of the wish; instead of the slowest way back there is standing.
+/// the preferred velocity they are parts of it; the slowest one straight back is replaced by 0.
 struct Trials {
   alignas(64) std::array<float, kTrials> x, z;
 };
 Trials trials_of(const Situation& situation);
 
-/// How soon two discs touch that go on as they do: 1 / the time until then, 0 if they never do.
-/// `at` and `velocity`: the other's against one's own. `apart` as in NearSet. [1/s]
+/// How soon two discs of constant velocities touch: 1 / the time until then, 0 if they never do.
+/// `at` and `velocity` of the other are relative to the body; `apart` as in NearSet. [1/s]
 float soonness(Plane at, Plane velocity, float apart);
-/// How near a touch is: 1 / (time until then + kSoonest). [1/s]
+/// Urgency of a touch: 1 / (time until then + kSoonest). [1/s]
 inline float nearness(float soonness) { return soonness / (1 + kSoonest * soonness); }
 /// Discs that touch count as this far apart. [m2]
 inline constexpr float kTouching = 1e-6f;
-/// The same for a wall that is `way` off. [1/s]
-float nearness_of_wall(float way, float speed);
+/// The same for a wall at a distance. [1/s]
+float nearness_of_wall(float distance, float speed);
 
-/// The wish of one who follows others: no faster than what the nearest ahead leave him room for.
-/// With u = room / (headway * fastest) that is unbound * fastest * (1 - 1 / (1 + u + u^2 / 2 + u^3
-/// / 2)): in proportion to the room while there is little, and no limit when there is much.
+/// The preferred velocity, limited by the spacing to the nearest leaders. With u = spacing /
+/// (headway
+/// * fastest) the limit is unbound * fastest * (1 - 1 / (1 + u + u^2 / 2 + u^3 / 2)): proportional
+/// to a small spacing, and without effect at a large one.
 Plane following(const SampledSettings& settings, const Situation& situation);
 
-/// True if whoever does as he wishes touches nobody and no wall within their horizons.
+/// True if the preferred velocity leads to no touch with a body or a wall within their horizons.
 bool preferred_is_open(const SampledSettings& settings, const Situation& situation);
 
-/// What each trial costs. Whole vectors are stored there, so it is aligned as they are.
+/// The cost of each trial, aligned for stores of whole vectors.
 struct alignas(64) Costs : std::array<float, kTrials> {};
 Costs costs_of(const SampledSettings& settings, const Situation& situation, const Trials& trials);
 
-/// Trials in order of their cost, the best first, the first of equals first.
+/// The cheapest trials in order of their cost; of equals the first comes first.
 inline constexpr size_t kChoices = 8;
 using Choices = std::array<Plane, kChoices>;
 Choices best_of(const Costs& costs, const Trials& trials);
 
-/// All of that.
+/// Trials, costs and choices at once.
 Choices choose_velocity(const SampledSettings& settings, const Situation& situation);
 
-/// The wish of a body that is bound for a place `way` from its own: at `speed`, but not past it
-/// within `dt`; turned as by turned_right.
-Plane preferred_towards(Plane way, float speed, float dt, float turn);
+/// The preferred velocity of a body with the offset `to_target` to its target: at `speed`, but not
+/// past the target within `dt`; turned as by turned_right.
+Plane preferred_towards(Plane to_target, float speed, float dt, float detour_angle);
 
-/// Who is not getting on turns to the right, by and by, up to `most`, and back once he is: what a
-/// jam needs to begin to turn as a whole. Who still does not turns on, slowly, up to `farthest`:
-/// away from his goal, and so out of a jam that is as dense as bodies can stand; if that led
-/// nowhere either, as in a corner, he begins again. All as tan(angle / 2), which needs no sines.
+/// Deadlock avoidance. An avatar without progress turns its preferred velocity to the right, by a
+/// detour angle that grows up to `side_angle` and shrinks with progress: so a jam starts to rotate.
+/// Without progress at `side_angle` it grows slowly up to `max_angle`: away from the goal, out of a
+/// jam of the highest density. If that fails too, as in a corner, the angle starts again at 0. All
+/// angles are stored as tan(angle / 2), which needs no sines.
 struct Patience {
-  float rate = 0.5f;      ///< a second
-  float most = 0.42f;     ///< 46 degrees
-  float slow = 0.03f;     ///< a second, beyond `most`
-  float farthest = 1.2f;  ///< 100 degrees
-  float back = 0.25f;     ///< a second
-  float content = 0.3f;   ///< Share of the wished speed towards the goal that is getting on.
-  float walks = 0.5f;  ///< Share of the wished speed along the turned wish that is, beyond `most`.
-  float crawls = 0.05f;  ///< The same as `content`, of who follows others so closely that he could
-                         ///< not be content.
+  float rate = 0.5f;          ///< Growth up to `side_angle`. [1/s]
+  float side_angle = 0.42f;   ///< 46 degrees
+  float slow_rate = 0.03f;    ///< Growth beyond `side_angle`. [1/s]
+  float max_angle = 1.2f;     ///< 100 degrees
+  float return_rate = 0.25f;  ///< Decrease with progress. [1/s]
+  float min_progress = 0.3f;  ///< Speed towards the goal that is progress, by the desired one.
+  float min_walk = 0.5f;      ///< Speed along the turned velocity that is progress beyond
+                              ///< `side_angle`, by the desired one.
+  float min_crawl = 0.05f;    ///< As min_progress, for an avatar that follows others too closely
+                              ///< to reach it.
 };
 
-/// Do those ahead leave less room than contents him? `followed`: what `following` made of
+/// True if the spacing to those ahead allows less than `min_progress`. `followed`: following() of
 /// `preferred`.
-inline bool can_but_crawl(const Patience& patience, Plane preferred, Plane followed,
+inline bool can_but_crawl(const Patience& settings, Plane preferred, Plane followed,
                           float fastest) {
   const float size = size_of(followed);
-  return size < patience.content * fastest && size < size_of(preferred);
+  return size < settings.min_progress * fastest && size < size_of(preferred);
 }
-/// Progress as next_turn takes it: who can but crawl, and does, gets on as well as he can.
-inline float progress_felt(const Patience& patience, float progress, bool follows) {
-  return follows && progress >= patience.crawls ? 1 : progress;
+/// Progress as input of next_turn: full for an avatar that can only crawl and does so.
+inline float progress_felt(const Patience& settings, float progress, bool follows) {
+  return follows && progress >= settings.min_crawl ? 1 : progress;
 }
 
-/// The next turn of an avatar. `progress`: its speed towards the goal by the wished one; `along`:
-/// the same along its turned wish.
-float next_turn(const Patience& patience, float turn, float progress, float along, float dt);
+/// The next detour angle of an avatar. `progress`: its speed towards the goal by the desired one;
+/// `along`: the same along its turned preferred velocity.
+float next_turn(const Patience& settings, float detour_angle, float progress, float along,
+                float dt);
 
-/// `direction` turned to the right (seen from above, X to the right, Z down) by 2 atan(turn).
-Plane turned_right(Plane direction, float turn);
+/// `direction` turned to the right (seen from above, X to the right, Z down) by 2
+/// atan(detour_angle).
+Plane turned_right(Plane direction, float detour_angle);
 
 }  // namespace throng::steer

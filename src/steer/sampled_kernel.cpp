@@ -14,7 +14,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-// Every operation is one of sampled.cpp's, in its order, and none is fused: the bits are the same.
+// Every operation is one of sampled.cpp, in its order, and none is fused: the bits are the same.
 HWY_BEFORE_NAMESPACE();
 namespace throng::steer {
 namespace HWY_NAMESPACE {
@@ -28,7 +28,7 @@ HWY_INLINE V times(V a, float b) { return hn::Mul(a, hn::Set(D(), b)); }
 
 HWY_INLINE V size_of(V x, V z) { return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(z, z))); }
 
-// Of others whose places are divided by `apart` already; `share` is 1 / apart.
+// The touch of another whose offset is divided by `apart` already; `share` is 1 / apart.
 struct Touch {
   V approach, inside;
   hn::Mask<D> happens;
@@ -55,7 +55,7 @@ HWY_INLINE V share_of(V apart) {
   return hn::Div(hn::Set(d, 1), hn::Max(apart, hn::Set(d, kTouching)));
 }
 
-// Written out by vectors of neighbours: the least of their limits does not depend on the order.
+// By vectors of neighbours: the minimum of their limits does not depend on the order.
 Plane Following(const SampledSettings& settings, const Situation& s) {
   const D d;
   const float desired = std::sqrt(s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
@@ -64,9 +64,9 @@ Plane Following(const SampledSettings& settings, const Situation& s) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1),
           fastest = hn::Set(d, settings.unbound * s.fastest);
   const V ahead_x = hn::Set(d, ahead.x), ahead_z = hn::Set(d, ahead.z);
-  const float same = settings.same_way * settings.same_way;
+  const float same = settings.same_direction * settings.same_direction;
   const float per_metre = 1 / (settings.headway * s.fastest);
-  V most = hn::Set(d, desired);
+  V max_speed = hn::Set(d, desired);
   for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
     const V x = hn::Load(d, &s.near.x[n]), z = hn::Load(d, &s.near.z[n]);
     const V along = hn::Add(hn::Mul(x, ahead_x), hn::Mul(z, ahead_z));
@@ -78,14 +78,14 @@ Plane Following(const SampledSettings& settings, const Situation& s) {
     auto leads = hn::And(hn::FirstN(d, s.near.size - n), hn::Gt(along, zero));
     leads = hn::And(leads, hn::Lt(off, hn::Mul(aside, aside)));
     const V wx = hn::Load(d, &s.near.wx[n]), wz = hn::Load(d, &s.near.wz[n]);
-    const V theirs = hn::Add(hn::Mul(wx, ahead_x), hn::Mul(wz, ahead_z));
-    const V turned = times(hn::Add(hn::Mul(wx, wx), hn::Mul(wz, wz)), same);
-    leads = hn::And(leads, hn::Gt(theirs, zero));
-    leads = hn::And(leads, hn::Gt(hn::Mul(theirs, theirs), turned));
+    const V along_ahead = hn::Add(hn::Mul(wx, ahead_x), hn::Mul(wz, ahead_z));
+    const V min_square = times(hn::Add(hn::Mul(wx, wx), hn::Mul(wz, wz)), same);
+    leads = hn::And(leads, hn::Gt(along_ahead, zero));
+    leads = hn::And(leads, hn::Gt(hn::Mul(along_ahead, along_ahead), min_square));
     if (hn::AllFalse(d, leads)) continue;
     const V bodies = hn::Min(radii, hn::Set(d, settings.body));
-    const V room = hn::Max(hn::Sub(hn::Sqrt(square), bodies), zero);
-    const V u = times(room, per_metre);
+    const V spacing = hn::Max(hn::Sub(hn::Sqrt(square), bodies), zero);
+    const V u = times(spacing, per_metre);
     const V half = times(u, 0.5f);
     const V sum = hn::Add(u, hn::Mul(half, hn::Add(u, hn::Mul(u, u))));
     const V limit = hn::Mul(fastest, hn::Sub(one, hn::Div(one, hn::Add(one, sum))));
@@ -93,15 +93,15 @@ Plane Following(const SampledSettings& settings, const Situation& s) {
                              hn::Mul(hn::Load(d, &s.near.vz[n]), ahead_z));
     const V faster = hn::Max(hn::Sub(leader, limit), zero);
     const V allowed = hn::Add(limit, times(faster, settings.foresight));
-    most = hn::IfThenElse(leads, hn::Min(most, allowed), most);
+    max_speed = hn::IfThenElse(leads, hn::Min(max_speed, allowed), max_speed);
   }
-  const float least = hn::GetLane(hn::MinOfLanes(d, most));
-  return least < desired ? Plane{ahead.x * least, ahead.z * least} : s.preferred;
+  const float speed = hn::GetLane(hn::MinOfLanes(d, max_speed));
+  return speed < desired ? Plane{ahead.x * speed, ahead.z * speed} : s.preferred;
 }
 
 bool PreferredIsOpen(const SampledSettings& settings, const Situation& s) {
   const D d;
-  const V least = hn::Set(d, 1 / settings.horizon);
+  const V min_soonness = hn::Set(d, 1 / settings.horizon);
   for (size_t n = 0; n < s.near.size; n += hn::Lanes(d)) {
     const V vx = hn::Sub(hn::Load(d, &s.near.vx[n]), hn::Set(d, s.preferred.x));
     const V vz = hn::Sub(hn::Load(d, &s.near.vz[n]), hn::Set(d, s.preferred.z));
@@ -109,7 +109,7 @@ bool PreferredIsOpen(const SampledSettings& settings, const Situation& s) {
     const Touch t = touch(hn::Mul(hn::Load(d, &s.near.x[n]), share),
                           hn::Mul(hn::Load(d, &s.near.z[n]), share), vx, vz, share);
     const auto here = hn::FirstN(d, s.near.size - n);
-    if (!hn::AllFalse(d, hn::And(here, hn::Gt(soonness(t), least)))) return false;
+    if (!hn::AllFalse(d, hn::And(here, hn::Gt(soonness(t), min_soonness)))) return false;
   }
   if (!s.has_walls) return true;
   const float desired = std::sqrt(s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
@@ -137,7 +137,7 @@ bool IsOpposed(const LaneSettings& settings, const Situation& s) {
   return opposers >= static_cast<size_t>(std::max(settings.opposers, 0));
 }
 
-// What a trial is of the directions ahead and to the right, and of the fastest speed.
+// Parts of a trial along and right of the first direction, and its part of the fastest speed.
 struct Shares {
   alignas(64) std::array<float, kTrials> cosine, sine, part;
 };
@@ -170,11 +170,11 @@ void FindTrials(const Situation& s, float desired, Plane ahead, Trials& trials) 
   trials.x[kTrials / 2] = trials.z[kTrials / 2] = 0;
 }
 
-// Those whom no velocity up to `fastest` can touch within the horizon cost nothing: they are left
-// out. The distance to a touch shrinks fastest at first, so it takes at least (distance - radii) /
-// (speed towards each other) seconds; with some room for rounding.
+// Neighbours that no velocity up to `fastest` touches within the horizon cost nothing and are left
+// out. The distance to a touch shrinks fastest at first, so a touch takes at least (distance -
+// radii) / (speed towards each other) seconds; with a margin for rounding.
 struct Relevant {
-  // As `touch` takes them, with room for a vector more.
+  // As input of `touch`, with space for one more vector.
   alignas(64) std::array<float, 2 * kMaxNear> x, z, vx, vz, share;
 };
 size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& near) {
@@ -204,10 +204,10 @@ size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& n
   return size;
 }
 
-// What trials cost, some at a time: first without the others, then with them.
-class Pricing {
+// Costs of trials, a vector at a time: first without the others, then with them.
+class TrialCosts {
  public:
-  Pricing(const SampledSettings& settings, const Situation& s)
+  TrialCosts(const SampledSettings& settings, const Situation& s)
       : settings_(settings), s_(s), count_(CopyNear(settings, s, near_)) {
     desired_ = std::sqrt(s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
     ahead_ = ahead_of(s.preferred);
@@ -215,8 +215,8 @@ class Pricing {
   }
   [[nodiscard]] const Trials& trials() const { return trials_; }
 
-  // What is lost of progress: a part of what the trial costs, and so no more.
-  HWY_INLINE V at_least(size_t t) const {
+  // The lost progress, which is one term of the cost: a lower bound.
+  HWY_INLINE V lower_bound(size_t t) const {
     const D d;
     const V x = hn::Load(d, &trials_.x[t]), z = hn::Load(d, &trials_.z[t]);
     const V along = hn::Add(hn::Mul(x, hn::Set(d, ahead_.x)), hn::Mul(z, hn::Set(d, ahead_.z)));
@@ -258,14 +258,14 @@ class Pricing {
       soonest = hn::Max(soonest, soonness(to));
     }
     const V near = hn::Div(soonest, hn::Add(hn::Set(d, 1), hn::Mul(hn::Set(d, kSoonest), soonest)));
-    const V least = hn::Set(d, 1 / (settings_.horizon + kSoonest));
-    cost = hn::Add(cost, times(hn::Max(hn::Sub(near, least), zero), settings_.threat));
+    const V min_nearness = hn::Set(d, 1 / (settings_.horizon + kSoonest));
+    cost = hn::Add(cost, times(hn::Max(hn::Sub(near, min_nearness), zero), settings_.threat));
     if (!s_.has_walls) return cost;
-    alignas(64) std::array<float, kMaxNear> ways;
-    for (size_t n = 0; n < hn::Lanes(d); ++n) ways[n] = s_.free_distance[(t + n) / kSpeeds];
+    alignas(64) std::array<float, kMaxNear> distances;
+    for (size_t n = 0; n < hn::Lanes(d); ++n) distances[n] = s_.free_distance[(t + n) / kSpeeds];
     const V speed = size_of(x, z);
-    const V close =
-        hn::Div(speed, hn::Add(hn::Load(d, ways.data()), hn::Mul(hn::Set(d, kSoonest), speed)));
+    const V close = hn::Div(
+        speed, hn::Add(hn::Load(d, distances.data()), hn::Mul(hn::Set(d, kSoonest), speed)));
     const V min_of_wall = hn::Set(d, 1 / (settings_.wall_horizon + kSoonest));
     const V urgent =
         hn::Max(hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), close), min_of_wall), zero);
@@ -284,47 +284,47 @@ class Pricing {
 
 void CostsOf(const SampledSettings& settings, const Situation& s, Trials& trials, Costs& costs) {
   const D d;
-  const Pricing pricing(settings, s);
-  trials = pricing.trials();
+  const TrialCosts all(settings, s);
+  trials = all.trials();
   for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
-    hn::Store(pricing.among_others(t, pricing.alone(t)), d, &costs[t]);
+    hn::Store(all.among_others(t, all.alone(t)), d, &costs[t]);
   }
 }
 
 // Others only add to a cost: trials that cost more than the best so far without them are left out.
-// The wish is in the first trials, and what is near it in those and in the last, so these come
-// first.
+// The preferred velocity is among the first trials and those near it among the first and the last,
+// so these come first.
 Plane Best(const SampledSettings& settings, const Situation& s) {
   const D d;
   const size_t lanes = hn::Lanes(d), pieces = kTrials / lanes;
-  const Pricing pricing(settings, s);
+  const TrialCosts all(settings, s);
   float lowest = std::numeric_limits<float>::infinity();
   size_t best = 0;
   for (size_t n = 0; n < pieces; ++n) {
     const size_t piece = n % 2 == 0 ? n / 2 : pieces - 1 - n / 2;
     const size_t t = piece * lanes;
-    const V most = hn::Set(d, lowest);
-    if (hn::AllFalse(d, hn::Le(pricing.at_least(t), most))) continue;
-    const V alone = pricing.alone(t);
-    if (hn::AllFalse(d, hn::Le(alone, most))) continue;
-    const V cost = pricing.among_others(t, alone);
-    const float least = hn::GetLane(hn::MinOfLanes(d, cost));
-    if (least > lowest) continue;
-    const intptr_t lane = hn::FindFirstTrue(d, hn::Eq(cost, hn::Set(d, least)));
+    const V limit = hn::Set(d, lowest);
+    if (hn::AllFalse(d, hn::Le(all.lower_bound(t), limit))) continue;
+    const V alone = all.alone(t);
+    if (hn::AllFalse(d, hn::Le(alone, limit))) continue;
+    const V cost = all.among_others(t, alone);
+    const float min_cost = hn::GetLane(hn::MinOfLanes(d, cost));
+    if (min_cost > lowest) continue;
+    const intptr_t lane = hn::FindFirstTrue(d, hn::Eq(cost, hn::Set(d, min_cost)));
     const size_t here = t + static_cast<size_t>(lane);
-    if (least < lowest || here < best) best = here;
-    lowest = least;
+    if (min_cost < lowest || here < best) best = here;
+    lowest = min_cost;
   }
-  return {pricing.trials().x[best], pricing.trials().z[best]};
+  return {all.trials().x[best], all.trials().z[best]};
 }
 
 Plane TakeBest(const Trials& trials, Costs& costs) {
   const D d;
-  V least = hn::LoadU(d, costs.data());
+  V min_costs = hn::LoadU(d, costs.data());
   for (size_t t = hn::Lanes(d); t < kTrials; t += hn::Lanes(d)) {
-    least = hn::Min(least, hn::LoadU(d, &costs[t]));
+    min_costs = hn::Min(min_costs, hn::LoadU(d, &costs[t]));
   }
-  const V lowest = hn::MinOfLanes(d, least);
+  const V lowest = hn::MinOfLanes(d, min_costs);
   for (size_t t = 0; t < kTrials; t += hn::Lanes(d)) {
     const intptr_t lane = hn::FindFirstTrue(d, hn::Eq(hn::LoadU(d, &costs[t]), lowest));
     if (lane < 0) continue;

@@ -5,19 +5,19 @@
 #include "steer/lanes.h"
 #include "steer/sampled.h"
 
-/// steer/sampled.h and what is asked often of steer/lanes.h, for machines: many trials, or many
-/// neighbours, at a time. The same bits.
+/// steer/sampled.h and the hot part of steer/lanes.h, vectorised over trials or neighbours. The
+/// same bits.
 namespace throng::steer {
 
 Plane following_fast(const SampledSettings& settings, const Situation& situation);
 bool preferred_is_open_fast(const SampledSettings& settings, const Situation& situation);
 bool is_opposed_fast(const LaneSettings& settings, const Situation& situation);
-/// The cheapest trial: what take_best_fast gives first. Most trials need not be looked at for that.
+/// The cheapest trial, which take_best_fast gives first; computes only a part of the costs.
 Plane best_fast(const SampledSettings& settings, const Situation& situation);
-/// Costs of trials_of(situation), which it leaves in `trials`.
+/// Costs of trials_of(situation), which it writes to `trials`.
 void costs_of_fast(const SampledSettings& settings, const Situation& situation, Trials& trials,
                    Costs& costs);
-/// The cheapest trial, and takes it out: the next call gives the next.
+/// Returns the cheapest trial and removes it: the next call returns the next one.
 Plane take_best_fast(const Trials& trials, Costs& costs);
 
 }  // namespace throng::steer

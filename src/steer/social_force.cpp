@@ -7,9 +7,9 @@
 
 #include "core/exponential.h"
 
-// Around everybody lies a potential whose lines are ellipses along his next step, eq. 4; the force
-// is its gradient, eq. 3, weaker from behind, eq. 8 and 9. Walls push by their nearest point,
-// eq. 5.
+// [HM95]: each walker has a potential whose level lines are ellipses along its next stride, eq. 4;
+// the force is its gradient, eq. 3, weaker from behind, eq. 8 and 9. Walls push by their nearest
+// point, eq. 5.
 namespace throng::steer {
 namespace {
 
@@ -27,7 +27,7 @@ Force repulsion(const ForceWalker& a, const ForceWalker& b, const SocialForceCon
   if (r == 0 || s == 0 || twice <= 0) return {};
   const double axis = std::sqrt(twice) / 2;
   const double size =
-      config.strength / config.reach * exp_of(-axis / config.reach) * (r + s) / (4 * axis);
+      config.strength / config.range * exp_of(-axis / config.range) * (r + s) / (4 * axis);
   return {size * (rx / r + sx / s), size * (rz / r + sz / s)};
 }
 
@@ -39,7 +39,7 @@ void add_repulsion(Force& sum, const ForceWalker& a, const ForceWalker& b,
                    const SocialForceConfig& config) {
   const double preferred = size_of(a.preferred_x, a.preferred_z);
   const Force force = repulsion(a, b, config);
-  // It pushes away from what is seen: that lies against the force.
+  // The force points away from its source, so the source lies opposite to it.
   const double ahead =
       preferred > 0 ? -(force.x * a.preferred_x + force.z * a.preferred_z) / preferred : 0;
   const bool seen = ahead >= size_of(force.x, force.z) * config.sight_cosine;
@@ -51,7 +51,7 @@ void add_wall(Force& sum, double x, double z, const SocialForceConfig& config) {
   const double far = size_of(x, z);
   if (far == 0) return;
   const double size =
-      config.wall_strength / config.wall_reach * exp_of(-far / config.wall_reach) / far;
+      config.wall_strength / config.wall_range * exp_of(-far / config.wall_range) / far;
   sum.x -= size * x;
   sum.z -= size * z;
 }
@@ -68,11 +68,11 @@ void step_social_force(std::span<ForceWalker> walkers, double dt, const SocialFo
     ForceWalker& a = walkers[i];
     a.vx += forces[i].x * dt;
     a.vz += forces[i].z * dt;
-    const double most = config.most * size_of(a.preferred_x, a.preferred_z);
+    const double max_speed = config.max_speed * size_of(a.preferred_x, a.preferred_z);
     const double speed = size_of(a.vx, a.vz);
-    if (speed > most) {
-      a.vx *= most / speed;
-      a.vz *= most / speed;
+    if (speed > max_speed) {
+      a.vx *= max_speed / speed;
+      a.vz *= max_speed / speed;
     }
     a.x += a.vx * dt;
     a.z += a.vz * dt;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+// Names of the steering models.
 namespace throng {
 namespace {
 

@@ -7,6 +7,7 @@
 
 #include "steer/sampled.h"
 
+// The trials lie in the tangent plane. Cost: directions times speeds times neighbours.
 namespace throng::steer {
 namespace {
 
@@ -34,8 +35,8 @@ Space cross(Space a, Space b) {
 
 SurfaceChoices best_along(const AirSettings& settings, const AirSituation& situation, Space up) {
   const float desired = size_of(situation.preferred), fastest = situation.fastest;
-  const auto along = [&](Space way) { return way - dot(way, up) * up; };
-  // Who has no wish tries all sides of some direction.
+  const auto along = [&](Space v) { return v - dot(v, up) * up; };
+  // Without a preferred velocity the fan starts at an arbitrary direction.
   Space ahead = along(desired > 1e-6f ? situation.preferred : Space{1, 0, 0});
   if (size_of(ahead) < 0.1f * std::max(desired, 1.0f)) ahead = along({0, 0, 1});
   const float size = size_of(ahead);

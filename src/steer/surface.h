@@ -7,13 +7,13 @@
 
 #include "steer/air.h"
 
-/// Steering on a surface, level or not, by trying velocities along it: the model of steer/air.h
-/// with the directions that one who climbs has. docs/design/013-climbers.md.
+/// Steering on a surface of any slope by trying velocities along it: the model of steer/air.h with
+/// directions of a climber. docs/design/013-climbers.md.
 namespace throng::steer {
 
 inline constexpr size_t kSurfaceChoices = 8;
 
-/// The velocities that cost least, the best first. `up`: from the surface. [unit length]
+/// The velocities of the smallest costs, the best first. `up`: the surface normal. [unit length]
 using SurfaceChoices = std::array<Space, kSurfaceChoices>;
 SurfaceChoices best_along(const AirSettings& settings, const AirSituation& situation, Space up);
 

@@ -10,18 +10,19 @@
 #include <vector>
 
 #include "core/random.h"
-#include "validate/room.h"
+#include "validate/plane_crowd.h"
 #include "validate/statistics.h"
 #include "validate/tests.h"
 
-// A crowd before a door, as in the laboratory.
+// Flow of a crowd through a door, by the width of the door, as in laboratory experiments:
+// [Kretz06], [Seyfried09].
 namespace throng::validate {
 namespace {
 
 constexpr double kRoomLong = 12, kRoomWide = 12;  // [m] before the bottleneck
 constexpr double kBeyond = 8;                     // [m] behind it
 constexpr double kThick = 1;                      // [m] of the wall: how long the bottleneck is
-constexpr double kStart = 3.3;                    // [1/m2] of those who wait
+constexpr double kStart = 3.3;                    // [1/m2] of the people that wait
 
 struct Door {
   double width = 1;
@@ -40,22 +41,22 @@ PlaneConfig door_plane(double width) {
   return plane;
 }
 
-// In a half circle around the door, nearest first.
-std::vector<Spot> waiting(const Door& door, double radius, uint64_t seed) {
+// Start points in a half circle around the door, nearest first.
+std::vector<Point2> waiting(const Door& door, double radius, uint64_t seed) {
   const double apart = 1 / std::sqrt(kStart), spare = apart - 2 * radius - 0.004;
-  std::vector<Spot> spots;
+  std::vector<Point2> starts;
   for (double x = kRoomLong - 0.8; x > 0.5; x -= apart) {
     for (double z = 0.5; z < kRoomWide - 0.5; z += apart) {
-      const uint64_t n = spots.size();
-      spots.push_back({x + spare * (random_unit(seed, 1, n) - 0.5),
-                       z + spare * (random_unit(seed, 2, n) - 0.5)});
+      const uint64_t n = starts.size();
+      starts.push_back({x + spare * (random_unit(seed, 1, n) - 0.5),
+                        z + spare * (random_unit(seed, 2, n) - 0.5)});
     }
   }
-  const auto off = [](const Spot& s) { return std::hypot(s.x - kRoomLong, s.z - kRoomWide / 2); };
-  std::sort(spots.begin(), spots.end(),
-            [&](const Spot& a, const Spot& b) { return off(a) < off(b); });
-  spots.resize(std::min<size_t>(spots.size(), door.people));
-  return spots;
+  const auto off = [](const Point2& s) { return std::hypot(s.x - kRoomLong, s.z - kRoomWide / 2); };
+  std::sort(starts.begin(), starts.end(),
+            [&](const Point2& a, const Point2& b) { return off(a) < off(b); });
+  starts.resize(std::min<size_t>(starts.size(), door.people));
+  return starts;
 }
 
 // When people passed the middle of the door, in order. [s]
@@ -64,33 +65,33 @@ using Times = std::vector<double>;
 Result<Times> pass(const Door& door, const ValidationConfig& config, ValidationResult& result,
                    Context& context) {
   const AvatarClass body = walker();
-  auto room = Room::build(door_plane(door.width), body, Routing::kPaths, config, context);
-  if (!room) return room.error();
-  const auto ids = room->stand(waiting(door, body.radius, config.seed), 0, context);
+  auto crowd = PlaneCrowd::build(door_plane(door.width), body, Routing::kPaths, config, context);
+  if (!crowd) return crowd.error();
+  const auto ids = crowd->add_fitting(waiting(door, body.radius, config.seed), 0, context);
   if (!ids) return ids.error();
   for (size_t i = 0; i < ids->size(); ++i) {
     const double z = 1 + (kRoomWide - 2) * random_unit(config.seed, 3, i);
-    room->send((*ids)[i], {kRoomLong + kThick + kBeyond - 0.5, z});
+    crowd->set_goal((*ids)[i], {kRoomLong + kThick + kBeyond - 0.5, z});
   }
   Times times;
   const double line = kRoomLong + kThick / 2;
   std::set<uint32_t> through;  // only the first time counts
   const double limit = 60 + 3.0 * door.people / door.width;
-  while (room->size() > 0 && room->time() < limit) {
-    room->step();
+  while (crowd->size() > 0 && crowd->time() < limit) {
+    crowd->step();
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
-    std::vector<AvatarId> gone;
-    for (const Seen& s : room->all()) {
-      const double before = s.x - s.vx * Room::kStep;
+    std::vector<AvatarId> leaving;
+    for (const AvatarMotion& s : crowd->avatars()) {
+      const double before = s.x - s.vx * PlaneCrowd::kStep;
       if (before < line && s.x >= line && through.insert(s.id.slot1).second) {
-        times.push_back(room->time() - (s.x - line) / std::max(1e-9, s.vx));
+        times.push_back(crowd->time() - (s.x - line) / std::max(1e-9, s.vx));
       }
-      if (s.x > kRoomLong + kThick + kBeyond - 2) gone.push_back(s.id);
+      if (s.x > kRoomLong + kThick + kBeyond - 2) leaving.push_back(s.id);
     }
-    room->leave(gone);
+    crowd->remove(leaving);
   }
   std::sort(times.begin(), times.end());
-  room->report(result);
+  crowd->report(result);
   return times;
 }
 

@@ -10,13 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "validate/room.h"
+#include "validate/plane_crowd.h"
 #include "validate/statistics.h"
 #include "validate/tests.h"
 #include "validate/tracks.h"
 
-// Experiments of the laboratory of Juelich again: the same walls, and everybody comes in when and
-// where he was filmed first. Measured alike in both: what was filmed and what was walked.
+// Experiments of the laboratory of Juelich simulated: the same walls, and each avatar enters at the
+// time and place of one person's first recorded position. Recorded and simulated paths are measured
+// in the same manner.
 namespace throng::validate {
 namespace {
 
@@ -26,10 +27,10 @@ struct Experiment {
   const char* file;
   const char* title;
   std::vector<Polygon> walls;
-  Spot low, high;            // of the ground
-  Spot box_low, box_high;    // in which density and speed are measured
-  Spot line_from, line_to;   // over which flow is
-  Spot goal_low, goal_high;  // two ends; whoever was filmed last nearer to one is bound for it
+  Point2 low, high;            // of the ground
+  Point2 box_low, box_high;    // in which density and speed are measured
+  Point2 line_from, line_to;   // over which flow is measured
+  Point2 goal_low, goal_high;  // both ends; the target is that of the person's walking direction
   bool has_two_ways = false;
 };
 
@@ -89,27 +90,27 @@ std::vector<Experiment> experiments() {
   return all;
 }
 
-// Somebody's way, a position each step of 0.1 s.
-struct Way {
+// The path of a person, one position each step of 0.1 s.
+struct WalkedPath {
   int64_t first = 0;  // step
-  std::vector<Spot> at;
+  std::vector<Point2> at;
 };
 
-// Positions between frames, straight.
-Way resampled(const Track& track, double fps) {
-  Way way;
+// Positions between frames by linear interpolation.
+WalkedPath resampled(const Track& track, double fps) {
+  WalkedPath walked_path;
   const auto time = [&](size_t i) { return static_cast<double>(track.points[i].frame) / fps; };
-  way.first = static_cast<int64_t>(std::ceil(time(0) / Room::kStep - 1e-9));
+  walked_path.first = static_cast<int64_t>(std::ceil(time(0) / PlaneCrowd::kStep - 1e-9));
   size_t i = 0;
-  for (int64_t step = way.first;; ++step) {
-    const double t = static_cast<double>(step) * Room::kStep;
+  for (int64_t step = walked_path.first;; ++step) {
+    const double t = static_cast<double>(step) * PlaneCrowd::kStep;
     while (i + 1 < track.points.size() && time(i + 1) < t) ++i;
     if (i + 1 >= track.points.size()) break;
     const TrackPoint &a = track.points[i], &b = track.points[i + 1];
     const double part = (t - time(i)) / (time(i + 1) - time(i));
-    way.at.push_back({a.x + part * (b.x - a.x), a.z + part * (b.z - a.z)});
+    walked_path.at.push_back({a.x + part * (b.x - a.x), a.z + part * (b.z - a.z)});
   }
-  return way;
+  return walked_path;
 }
 
 struct Measured {
@@ -117,45 +118,46 @@ struct Measured {
   double flow = 0, density = 0, speed = 0;
 };
 
-// When somebody comes over the line first [s]; below 0: he does not.
-double crossing_time(const Way& way, const Experiment& e) {
+// Time of the first crossing of the line [s]; below 0: there is none.
+double crossing_time(const WalkedPath& walked_path, const Experiment& e) {
   const bool along_x = e.line_from.z == e.line_to.z;
-  for (size_t i = 1; i < way.at.size(); ++i) {
-    const Spot &a = way.at[i - 1], &b = way.at[i];
+  for (size_t i = 1; i < walked_path.at.size(); ++i) {
+    const Point2 &a = walked_path.at[i - 1], &b = walked_path.at[i];
     const double before = along_x ? a.z - e.line_from.z : a.x - e.line_from.x;
     const double after = along_x ? b.z - e.line_from.z : b.x - e.line_from.x;
     if ((before < 0) == (after < 0)) continue;
-    return (static_cast<double>(way.first + static_cast<int64_t>(i)) - after / (after - before)) *
-           Room::kStep;
+    return (static_cast<double>(walked_path.first + static_cast<int64_t>(i)) -
+            after / (after - before)) *
+           PlaneCrowd::kStep;
   }
   return -1;
 }
 
-Measured measure(const std::vector<Way>& ways, const Experiment& e) {
+Measured measure(const std::vector<WalkedPath>& walked_paths, const Experiment& e) {
   Measured out;
   std::vector<double> times;
-  for (const Way& way : ways) {
-    if (const double t = crossing_time(way, e); t >= 0) times.push_back(t);
+  for (const WalkedPath& walked_path : walked_paths) {
+    if (const double t = crossing_time(walked_path, e); t >= 0) times.push_back(t);
   }
   std::sort(times.begin(), times.end());
   out.passed = times.size();
   out.flow = flow_rate(times);
   if (times.size() < 20) return out;
-  const auto step_of = [](double t) { return static_cast<int64_t>(t / Room::kStep); };
+  const auto step_of = [](double t) { return static_cast<int64_t>(t / PlaneCrowd::kStep); };
   const int64_t begin = step_of(times[times.size() / 10]),
                 end = step_of(times[times.size() - 1 - times.size() / 10]);
   double inside = 0, moved = 0, speeds = 0;
-  for (const Way& way : ways) {
-    for (size_t i = 0; i < way.at.size(); ++i) {
-      const int64_t step = way.first + static_cast<int64_t>(i);
-      const Spot& p = way.at[i];
+  for (const WalkedPath& walked_path : walked_paths) {
+    for (size_t i = 0; i < walked_path.at.size(); ++i) {
+      const int64_t step = walked_path.first + static_cast<int64_t>(i);
+      const Point2& p = walked_path.at[i];
       const bool here =
           p.x >= e.box_low.x && p.x <= e.box_high.x && p.z >= e.box_low.z && p.z <= e.box_high.z;
       if (step < begin || step >= end || !here) continue;
       inside += 1;
-      if (i < kHalf || i + kHalf >= way.at.size()) continue;
-      const Spot &a = way.at[i - kHalf], &b = way.at[i + kHalf];
-      speeds += std::hypot(b.x - a.x, b.z - a.z) / (2 * kHalf * Room::kStep);
+      if (i < kHalf || i + kHalf >= walked_path.at.size()) continue;
+      const Point2 &a = walked_path.at[i - kHalf], &b = walked_path.at[i + kHalf];
+      speeds += std::hypot(b.x - a.x, b.z - a.z) / (2 * kHalf * PlaneCrowd::kStep);
       moved += 1;
     }
   }
@@ -165,99 +167,99 @@ Measured measure(const std::vector<Way>& ways, const Experiment& e) {
   return out;
 }
 
-// Whoever has been filmed comes in, and walks to the end at which he was filmed last.
-Result<std::vector<Way>> walk(const Experiment& e, const std::vector<Way>& filmed,
-                              const ValidationConfig& config, ValidationResult& result,
-                              Context& context) {
+// Simulates the people recorded: each enters as recorded and heads to the end it walked to.
+Result<std::vector<WalkedPath>> walk(const Experiment& e, const std::vector<WalkedPath>& recorded,
+                                     const ValidationConfig& config, ValidationResult& result,
+                                     Context& context) {
   PlaneConfig plane;
   plane.ground = box(e.low.x, e.low.z, e.high.x, e.high.z);
   plane.obstacles = e.walls;
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, Routing::kPaths, config, context);
-  if (!room) return room.error();
-  std::vector<size_t> outside(filmed.size());
-  for (size_t n = 0; n < filmed.size(); ++n) outside[n] = n;
+  auto crowd = PlaneCrowd::build(plane, body, Routing::kPaths, config, context);
+  if (!crowd) return crowd.error();
+  std::vector<size_t> outside(recorded.size());
+  for (size_t n = 0; n < recorded.size(); ++n) outside[n] = n;
   std::sort(outside.begin(), outside.end(), [&](size_t a, size_t b) {
-    return std::pair(filmed[a].first, a) < std::pair(filmed[b].first, b);
+    return std::pair(recorded[a].first, a) < std::pair(recorded[b].first, b);
   });
-  std::vector<Way> ways(filmed.size());
-  std::map<uint32_t, size_t> who;  // by slot
+  std::vector<WalkedPath> walked_paths(recorded.size());
+  std::map<uint32_t, size_t> person_of;  // by slot
   int64_t last = 0;
-  for (const Way& way : filmed) {
-    last = std::max(last, way.first + static_cast<int64_t>(way.at.size()));
+  for (const WalkedPath& walked_path : recorded) {
+    last = std::max(last, walked_path.first + static_cast<int64_t>(walked_path.at.size()));
   }
-  for (int64_t step = 0; step < 3 * last && !(outside.empty() && room->size() == 0); ++step) {
-    std::vector<Spot> spots;
+  for (int64_t step = 0; step < 3 * last && !(outside.empty() && crowd->size() == 0); ++step) {
+    std::vector<Point2> starts;
     std::vector<size_t> due;
     for (const size_t n : outside) {
-      if (filmed[n].first > step) break;
+      if (recorded[n].first > step) break;
       due.push_back(n);
-      spots.push_back(filmed[n].at.front());
+      starts.push_back(recorded[n].at.front());
     }
     if (!due.empty()) {
-      const auto ids = room->place(spots, std::vector<double>(spots.size(), body.speed), context);
+      const auto ids = crowd->add(starts, std::vector<double>(starts.size(), body.speed), context);
       if (!ids) return ids.error();
       for (size_t k = 0; k < due.size(); ++k) {
         if (!(*ids)[k]) continue;
-        const Way& own = filmed[due[k]];
+        const WalkedPath& own = recorded[due[k]];
         const bool to_low = !e.has_two_ways || own.at.back().x < own.at.front().x;
-        room->send((*ids)[k], to_low ? e.goal_low : e.goal_high);
-        who[(*ids)[k].slot1] = due[k];
-        ways[due[k]] = {step, {own.at.front()}};
+        crowd->set_goal((*ids)[k], to_low ? e.goal_low : e.goal_high);
+        person_of[(*ids)[k].slot1] = due[k];
+        walked_paths[due[k]] = {step, {own.at.front()}};
         std::erase(outside, due[k]);
       }
     }
-    room->step();
-    std::vector<AvatarId> gone;
-    for (const Seen& s : room->all()) {
-      Way& way = ways[who[s.id.slot1]];
-      way.at.push_back({s.x, s.z});
-      const bool to_low = !e.has_two_ways || filmed[who[s.id.slot1]].at.back().x <
-                                                 filmed[who[s.id.slot1]].at.front().x;
-      const Spot& goal = to_low ? e.goal_low : e.goal_high;
-      if (std::hypot(s.x - goal.x, s.z - goal.z) < 2) gone.push_back(s.id);
+    crowd->step();
+    std::vector<AvatarId> leaving;
+    for (const AvatarMotion& s : crowd->avatars()) {
+      WalkedPath& walked_path = walked_paths[person_of[s.id.slot1]];
+      walked_path.at.push_back({s.x, s.z});
+      const bool to_low = !e.has_two_ways || recorded[person_of[s.id.slot1]].at.back().x <
+                                                 recorded[person_of[s.id.slot1]].at.front().x;
+      const Point2& goal = to_low ? e.goal_low : e.goal_high;
+      if (std::hypot(s.x - goal.x, s.z - goal.z) < 2) leaving.push_back(s.id);
     }
-    room->leave(gone);
+    crowd->remove(leaving);
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
   }
-  room->report(result);
-  return ways;
+  crowd->report(result);
+  return walked_paths;
 }
 
 Result<void> compare(const Experiment& e, const std::string& path, const ValidationConfig& config,
                      ValidationResult& result, Context& context) {
   const auto tracks = load_juelich(path);
   if (!tracks) return tracks.error();
-  std::vector<Way> filmed;
+  std::vector<WalkedPath> recorded;
   for (const Track& track : tracks->people) {
-    Way way = resampled(track, tracks->fps);
-    if (way.at.empty()) continue;
-    filmed.push_back(std::move(way));
+    WalkedPath walked_path = resampled(track, tracks->fps);
+    if (walked_path.at.empty()) continue;
+    recorded.push_back(std::move(walked_path));
   }
-  const auto is_outside = [&](const Way& way) {
-    const Spot& p = way.at.front();
+  const auto is_outside = [&](const WalkedPath& walked_path) {
+    const Point2& p = walked_path.at.front();
     return !(p.x > e.low.x && p.x < e.high.x && p.z > e.low.z && p.z < e.high.z);
   };
-  if (filmed.empty() || std::ranges::any_of(filmed, is_outside)) {
+  if (recorded.empty() || std::ranges::any_of(recorded, is_outside)) {
     return Error{Errc::kBadFile, path +
-                                     ": somebody is filmed first outside of the experiment's "
+                                     ": a person is first recorded outside of the experiment's "
                                      "ground; is it another experiment's file?"};
   }
-  const auto walked = walk(e, filmed, config, result, context);
+  const auto walked = walk(e, recorded, config, result, context);
   if (!walked) return walked.error();
-  const Measured real = measure(filmed, e), ours = measure(*walked, e);
-  const auto told = [&](const char* what, double value, const char* unit) {
+  const Measured real = measure(recorded, e), ours = measure(*walked, e);
+  const auto add_measure = [&](const char* what, double value, const char* unit) {
     result.measures.push_back(
         {.name = std::string(e.title) + ": " + what, .value = value, .unit = unit});
   };
-  told("people recorded over the line", static_cast<double>(real.passed), "");
-  told("people walked over the line", static_cast<double>(ours.passed), "");
-  told("flow, real", real.flow, "p/s");
-  told("flow, throng", ours.flow, "p/s");
-  told("density, real", real.density, "1/m2");
-  told("density, throng", ours.density, "1/m2");
-  told("speed, real", real.speed, "m/s");
-  told("speed, throng", ours.speed, "m/s");
+  add_measure("people recorded over the line", static_cast<double>(real.passed), "");
+  add_measure("people walked over the line", static_cast<double>(ours.passed), "");
+  add_measure("flow, real", real.flow, "p/s");
+  add_measure("flow, throng", ours.flow, "p/s");
+  add_measure("density, real", real.density, "1/m2");
+  add_measure("density, throng", ours.density, "1/m2");
+  add_measure("speed, real", real.speed, "m/s");
+  add_measure("speed, throng", ours.speed, "m/s");
   return {};
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Shares of distributions in closed form; the Kolmogorov-Smirnov test with Stephens' correction
+// for small samples [Stephens70], n log n.
 namespace throng::validate {
 namespace {
 
@@ -25,7 +27,7 @@ double share_of_whole(const Distribution& d, double x) {
 
 }  // namespace
 
-// What is drawn outside the bounds is drawn again, so the rest grows in proportion.
+// Numbers drawn outside the bounds are drawn again, so the shares within grow in proportion.
 double share_below(const Distribution& d, double x) {
   const double low = std::isfinite(d.low) && d.low != d.high ? share_of_whole(d, d.low) : 0;
   const double high = std::isfinite(d.high) && d.low != d.high ? share_of_whole(d, d.high) : 1;
@@ -36,19 +38,19 @@ double share_below(const Distribution& d, double x) {
 double ks_distance(std::vector<double> sample, const std::function<double(double)>& share) {
   std::sort(sample.begin(), sample.end());
   const auto n = static_cast<double>(sample.size());
-  double most = 0;
+  double distance = 0;
   for (size_t i = 0; i < sample.size(); ++i) {
     const double here = share(sample[i]);
     const auto before = static_cast<double>(i);
-    most = std::max({most, here - before / n, (before + 1) / n - here});
+    distance = std::max({distance, here - before / n, (before + 1) / n - here});
   }
-  return most;
+  return distance;
 }
 
 double ks_likelihood(double distance, size_t n) {
   const double root = std::sqrt(static_cast<double>(n));
   const double x = (root + 0.12 + 0.11 / root) * distance;
-  if (x < 0.2) return 1;  // The series below has not converged there; it is 1 to 12 digits.
+  if (x < 0.2) return 1;  // The series below does not converge there; the result is 1 to 12 digits.
   double sum = 0, sign = 1;
   for (int k = 1; k <= 100; ++k, sign = -sign) sum += sign * std::exp(-2 * k * k * x * x);
   return std::clamp(2 * sum, 0.0, 1.0);

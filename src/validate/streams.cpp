@@ -11,11 +11,12 @@
 #include <vector>
 
 #include "core/random.h"
-#include "validate/room.h"
+#include "validate/plane_crowd.h"
 #include "validate/statistics.h"
 #include "validate/tests.h"
 
-// What streams of people do by themselves: lanes, crossings without jams, arches before doors.
+// Self-organisation of streams: lanes of a counter-flow [NS12], crossings without jams, arches
+// before doors [HFV00].
 namespace throng::validate {
 
 double lane_order(std::span<const Passer> people, double row) {
@@ -28,17 +29,17 @@ double lane_order(std::span<const Passer> people, double row) {
   const auto count = static_cast<double>(rows.size());
   if (all <= count) return 0;
   double sum = 0;
-  for (const auto& [at, ways] : rows) {
-    const auto [up, down] = ways;
+  for (const auto& [at, counts] : rows) {
+    const auto [up, down] = counts;
     sum += (up - down) * (up - down) / (up + down);
   }
-  // By chance each row of n has a mean square surplus of n.
+  // With random directions a row of n people has a mean square surplus of n.
   return (sum - count) / (all - count);
 }
 
-double arch_shape(std::span<const Before> people) {
+double arch_shape(std::span<const DoorOffset> people) {
   double aside = 0, front = 0;
-  for (const Before& p : people) {
+  for (const DoorOffset& p : people) {
     aside += std::fabs(p.aside);
     front += p.front;
   }
@@ -47,9 +48,9 @@ double arch_shape(std::span<const Before> people) {
 
 namespace {
 
-// Lanes: whoever leaves at one end comes in again at the other, so that as many stay.
+// Lanes: avatars that leave at one end enter again at the other, so the number stays.
 constexpr double kLong = 40, kWide = 6;            // [m]
-constexpr double kLaneFrom = 10, kLaneUntil = 30;  // [m] where order is looked at
+constexpr double kLaneFrom = 10, kLaneUntil = 30;  // [m] where order is measured
 constexpr double kRow = 0.6;                       // [m]
 constexpr double kLaneTime = 120;                  // [s]
 
@@ -63,77 +64,77 @@ Result<Lanes> walk_lanes(double density, const ValidationConfig& config, Validat
   plane.ground = box(-1, -0.5, kLong + 1, kWide + 0.5);
   plane.obstacles = {box(-1, -0.5, kLong + 1, 0), box(-1, kWide, kLong + 1, kWide + 0.5)};
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, Routing::kStraight, config, context);
-  if (!room) return room.error();
-  // Everybody begins at a place of a grid, and goes either way by chance.
-  std::vector<Spot> spots;
+  auto crowd = PlaneCrowd::build(plane, body, Routing::kStraight, config, context);
+  if (!crowd) return crowd.error();
+  // Each avatar starts at a point of a grid, in a random direction.
+  std::vector<Point2> starts;
   const double apart = 1 / std::sqrt(density), spare = apart - 2 * body.radius - 0.01;
   for (double x = apart / 2; x < kLong; x += apart) {
     for (double z = std::max(0.3, apart / 2); z < kWide - 0.25; z += apart) {
-      const uint64_t n = spots.size();
-      spots.push_back(
+      const uint64_t n = starts.size();
+      starts.push_back(
           {x + spare * (random_unit(config.seed, 1, n) - 0.5),
            std::clamp(z + spare * (random_unit(config.seed, 2, n) - 0.5), 0.3, kWide - 0.3)});
     }
   }
-  const auto ids = room->stand(spots, 0, context);
+  const auto ids = crowd->add_fitting(starts, 0, context);
   if (!ids) return ids.error();
   std::map<uint32_t, bool> is_up;  // by slot
   for (const AvatarId id : *ids) {
     is_up[id.slot1] = random_unit(config.seed, 3, id.slot1) < 0.5;
   }
   Lanes lanes;
-  std::vector<std::pair<Spot, bool>> coming;
+  std::vector<std::pair<Point2, bool>> entering;
   std::vector<Passer> passers;
-  std::vector<AvatarId> who, gone;
-  std::vector<Vec3d> wishes;
+  std::vector<AvatarId> walking, leaving;
+  std::vector<Vec3d> velocities;
   const double time = config.brief ? kLaneTime / 4 : kLaneTime;
-  double speeds = 0, looked = 0;
-  for (int64_t step = 1; room->time() < time - 1e-9; ++step) {
-    who.clear();
-    wishes.clear();
-    gone.clear();
-    for (const Seen& s : room->all()) {
+  double speeds = 0, measured = 0;
+  for (int64_t step = 1; crowd->time() < time - 1e-9; ++step) {
+    walking.clear();
+    velocities.clear();
+    leaving.clear();
+    for (const AvatarMotion& s : crowd->avatars()) {
       const bool up = is_up[s.id.slot1];
       if (up ? s.x > kLong : s.x < 0) {
-        gone.push_back(s.id);
-        coming.push_back({{up ? 0.1 : kLong - 0.1, s.z}, up});
+        leaving.push_back(s.id);
+        entering.push_back({{up ? 0.1 : kLong - 0.1, s.z}, up});
         continue;
       }
-      who.push_back(s.id);
-      wishes.push_back({up ? body.speed : -body.speed, 0, 0});
+      walking.push_back(s.id);
+      velocities.push_back({up ? body.speed : -body.speed, 0, 0});
     }
-    room->leave(gone);
-    std::vector<Spot> at;
-    for (const auto& [spot, up] : coming) at.push_back(spot);
-    const auto added = room->place(at, std::vector<double>(at.size(), body.speed), context);
+    crowd->remove(leaving);
+    std::vector<Point2> at;
+    for (const auto& [start, up] : entering) at.push_back(start);
+    const auto added = crowd->add(at, std::vector<double>(at.size(), body.speed), context);
     if (!added) return added.error();
     size_t k = 0;
-    std::erase_if(coming, [&](const auto& one) {
+    std::erase_if(entering, [&](const auto& one) {
       const AvatarId id = (*added)[k++];
       if (!id) return false;
       is_up[id.slot1] = one.second;
-      who.push_back(id);
-      wishes.push_back({one.second ? body.speed : -body.speed, 0, 0});
+      walking.push_back(id);
+      velocities.push_back({one.second ? body.speed : -body.speed, 0, 0});
       return true;
     });
-    room->drive(who, wishes);
-    room->step();
+    crowd->set_velocities(walking, velocities);
+    crowd->step();
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
     passers.clear();
-    for (const Seen& s : room->all()) {
+    for (const AvatarMotion& s : crowd->avatars()) {
       if (s.x < kLaneFrom || s.x > kLaneUntil) continue;
       const bool up = is_up[s.id.slot1];
       passers.push_back({s.z, up});
       speeds += up ? s.vx : -s.vx;
-      looked += 1;
+      measured += 1;
     }
     if (step % 10 != 0) continue;
     lanes.order.push_back(lane_order(passers, kRow));
-    lanes.speed.push_back(looked > 0 ? speeds / looked : 0);
-    speeds = looked = 0;
+    lanes.speed.push_back(measured > 0 ? speeds / measured : 0);
+    speeds = measured = 0;
   }
-  room->report(result);
+  crowd->report(result);
   return lanes;
 }
 
@@ -163,7 +164,7 @@ Result<ValidationResult> lanes(const ValidationConfig& config, Context& context)
         {.name = "order in the first 5 s, " + at, .value = mean_of(found->order, 0, 5)});
     ValidationMeasure last_order{.name = "order in the last quarter, " + at,
                                  .value = mean_of(found->order, seconds - last, seconds)};
-    if (density > 0.5) last_order.low = 0.5;  // Fewer have room without lanes.
+    if (density > 0.5) last_order.low = 0.5;  // At a lower density there is space without lanes.
     result.measures.push_back(std::move(last_order));
     result.measures.push_back({.name = "speed in the last quarter, " + at,
                                .value = mean_of(found->speed, seconds - last, seconds),
@@ -184,8 +185,8 @@ Result<ValidationResult> lanes(const ValidationConfig& config, Context& context)
   return result;
 }
 
-// Two corridors that cross: half a person a square metre comes in each, so that there is one where
-// they cross, as long as nobody is held up.
+// Two corridors that cross: half a person a square metre enters each, so the density is one where
+// they cross unless there is a jam.
 constexpr double kArm = 12, kCross = 4;  // [m] of a corridor before the crossing; its width
 constexpr double kEach = 0.5;            // [1/m2]
 
@@ -198,65 +199,66 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
                      box(-1, kArm + kCross, kArm, all + 1),
                      box(kArm + kCross, kArm + kCross, all + 1, all + 1)};
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, Routing::kPaths, config, context);
-  if (!room) return room.error();
+  auto crowd = PlaneCrowd::build(plane, body, Routing::kPaths, config, context);
+  if (!crowd) return crowd.error();
   const double rate = kEach * body.speed * kCross;  // [p/s] of each stream
   const double time = config.brief ? 40 : 120, from = time / 3;
   std::map<uint32_t, int> stream_of;
   std::array<uint64_t, 2> called{};
-  std::vector<std::pair<Spot, int>> coming;
-  uint64_t came = 0, left = 0, max_outside = 0;
+  std::vector<std::pair<Point2, int>> entering;
+  uint64_t entered = 0, left = 0, max_outside = 0;
   double inside = 0, speeds = 0;
   int64_t steps = 0;
-  while (room->time() < time - 1e-9) {
+  while (crowd->time() < time - 1e-9) {
     for (int k = 0; k < 2; ++k) {
       const auto which = static_cast<size_t>(k);
-      while (static_cast<double>(called[which]) < rate * room->time()) {
+      while (static_cast<double>(called[which]) < rate * crowd->time()) {
         const double aside =
             kArm + 0.25 + (kCross - 0.5) * random_unit(config.seed, 10 + which, called[which]);
         ++called[which];
-        coming.push_back({k == 0 ? Spot{-0.5, aside} : Spot{aside, -0.5}, k});
+        entering.push_back({k == 0 ? Point2{-0.5, aside} : Point2{aside, -0.5}, k});
       }
     }
-    std::vector<Spot> at;
-    for (const auto& [spot, stream] : coming) at.push_back(spot);
-    const auto added = room->place(at, std::vector<double>(at.size(), body.speed), context);
+    std::vector<Point2> at;
+    for (const auto& [start, stream] : entering) at.push_back(start);
+    const auto added = crowd->add(at, std::vector<double>(at.size(), body.speed), context);
     if (!added) return added.error();
-    const bool counts = room->time() >= from;
+    const bool counts = crowd->time() >= from;
     size_t n = 0;
-    std::erase_if(coming, [&](const auto& one) {
+    std::erase_if(entering, [&](const auto& one) {
       const AvatarId id = (*added)[n++];
       if (!id) return false;
       stream_of[id.slot1] = one.second;
-      room->send(id, one.second == 0 ? Spot{all + 0.7, one.first.z} : Spot{one.first.x, all + 0.7});
-      came += counts ? 1 : 0;
+      crowd->set_goal(
+          id, one.second == 0 ? Point2{all + 0.7, one.first.z} : Point2{one.first.x, all + 0.7});
+      entered += counts ? 1 : 0;
       return true;
     });
-    max_outside = std::max<uint64_t>(max_outside, coming.size());
-    room->step();
+    max_outside = std::max<uint64_t>(max_outside, entering.size());
+    crowd->step();
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
-    std::vector<AvatarId> gone;
+    std::vector<AvatarId> leaving;
     steps += counts ? 1 : 0;
-    for (const Seen& s : room->all()) {
+    for (const AvatarMotion& s : crowd->avatars()) {
       const bool eastward = stream_of[s.id.slot1] == 0;
-      if ((eastward ? s.x : s.z) > all) gone.push_back(s.id);
+      if ((eastward ? s.x : s.z) > all) leaving.push_back(s.id);
       if (!counts || s.x < kArm || s.x > kArm + kCross || s.z < kArm || s.z > kArm + kCross) {
         continue;
       }
       inside += 1;
       speeds += eastward ? s.vx : s.vz;
     }
-    left += counts ? gone.size() : 0;
-    room->leave(gone);
+    left += counts ? leaving.size() : 0;
+    crowd->remove(leaving);
   }
-  room->report(result);
+  crowd->report(result);
   result.measures = {
       {.name = "density where they cross",
        .value = inside / (kCross * kCross * static_cast<double>(steps)),
        .unit = "1/m2"},
       {.name = "speed there", .value = speeds / inside, .unit = "m/s", .low = weidmann(1) / 2},
       {.name = "left / entered",
-       .value = static_cast<double>(left) / static_cast<double>(came),
+       .value = static_cast<double>(left) / static_cast<double>(entered),
        .low = 0.9},
       {.name = "max waiting for room to enter", .value = static_cast<double>(max_outside)},
   };
@@ -275,68 +277,68 @@ Result<ValidationResult> arch(const ValidationConfig& config, Context& context) 
   plane.obstacles = {box(kHall, -0.5, kHall + 0.5, middle - kDoor / 2),
                      box(kHall, middle + kDoor / 2, kHall + 0.5, kHall + 0.5)};
   const AvatarClass body = walker();
-  auto room = Room::build(plane, body, Routing::kPaths, config, context);
-  if (!room) return room.error();
-  std::vector<Spot> spots;
+  auto crowd = PlaneCrowd::build(plane, body, Routing::kPaths, config, context);
+  if (!crowd) return crowd.error();
+  std::vector<Point2> starts;
   for (uint64_t n = 0; n < kCrowd; ++n) {
-    spots.push_back(
+    starts.push_back(
         {0.5 + 0.6 * static_cast<double>(n / 15) + 0.2 * (random_unit(config.seed, 1, n) - 0.5),
          2.8 + 0.6 * static_cast<double>(n % 15) + 0.2 * (random_unit(config.seed, 2, n) - 0.5)});
   }
-  const auto ids = room->stand(spots, 0, context);
+  const auto ids = crowd->add_fitting(starts, 0, context);
   if (!ids) return ids.error();
-  for (const AvatarId id : *ids) room->send(id, {kHall + 7, middle});
+  for (const AvatarId id : *ids) crowd->set_goal(id, {kHall + 7, middle});
   std::vector<double> times;
-  std::vector<Before> waiting;
+  std::vector<DoorOffset> waiting;
   double shape = 0, near = 0;
-  int64_t looks = 0;
-  while (room->size() > 0 && room->time() < 300) {
-    room->step();
+  int64_t samples = 0;
+  while (crowd->size() > 0 && crowd->time() < 300) {
+    crowd->step();
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
-    std::vector<AvatarId> gone;
+    std::vector<AvatarId> leaving;
     waiting.clear();
-    for (const Seen& s : room->all()) {
-      const double before = s.x - s.vx * Room::kStep;
-      if (before < kHall + 0.25 && s.x >= kHall + 0.25) times.push_back(room->time());
-      if (s.x > kHall + 5) gone.push_back(s.id);
+    for (const AvatarMotion& s : crowd->avatars()) {
+      const double before = s.x - s.vx * PlaneCrowd::kStep;
+      if (before < kHall + 0.25 && s.x >= kHall + 0.25) times.push_back(crowd->time());
+      if (s.x > kHall + 5) leaving.push_back(s.id);
       if (s.x < kHall) waiting.push_back({s.z - middle, kHall - s.x});
     }
-    room->leave(gone);
-    if (room->time() < 15 || room->time() > 30 + 1e-9) continue;
-    ++looks;
+    crowd->remove(leaving);
+    if (crowd->time() < 15 || crowd->time() > 30 + 1e-9) continue;
+    ++samples;
     shape += arch_shape(waiting);
     near += static_cast<double>(std::ranges::count_if(
-        waiting, [](const Before& p) { return std::hypot(p.aside, p.front) < 2; }));
+        waiting, [](const DoorOffset& p) { return std::hypot(p.aside, p.front) < 2; }));
   }
-  room->report(result);
+  crowd->report(result);
   const double half_circle = 2 * 3.14159265358979323846;  // of 2 m [m2]
   result.measures = {
       {.name = "to the side by to the front, 15 to 30 s",
-       .value = shape / static_cast<double>(looks),
+       .value = shape / static_cast<double>(samples),
        .low = 0.6,
        .high = 1.6},
       {.name = "density within 2 m of the door",
-       .value = near / (half_circle * static_cast<double>(looks)),
+       .value = near / (half_circle * static_cast<double>(samples)),
        .unit = "1/m2"},
       {.name = "flow", .value = flow_rate(times) / kDoor, .unit = "p/(m s)"},
-      {.name = "left behind", .value = static_cast<double>(room->size()), .low = 0, .high = 0},
+      {.name = "left behind", .value = static_cast<double>(crowd->size()), .low = 0, .high = 0},
   };
   return result;
 }
 
 const std::array<Test, 3> kTests{
     Test{{"lanes", "Lanes in a counter-flow",
-          "A corridor of 40 x 6 m, people set off either way by chance, mixed; whoever leaves at "
-          "one end comes in again at the other. Order of rows 0.6 m wide along the middle 20 m "
-          "[NS12], 0 for people mixed by chance, 1 if every row goes one way, each second for 120 "
-          "s; speeds along the way.",
+          "A corridor of 40 x 6 m, people start in either direction at random, mixed; those that "
+          "leave at one end enter again at the other. Order of rows 0.6 m wide along the middle 20 "
+          "m [NS12], 0 for random mixing, 1 if every row has one direction, each second for 120 s; "
+          "speeds along the corridor.",
           "ours: an order of 0.5 from 0.6 /m2 up, and half of the speed of [Weidmann93]"},
          lanes},
     Test{{"crossing", "Two streams that cross at right angles",
           "Corridors 4 m wide, half a person a square metre entering each, so 1 /m2 where they "
           "cross; after the first third of 120 s.",
-          "ours: no jam, that is half of [Weidmann93]'s speed at 1 /m2, and nine of ten who come "
-          "leave"},
+          "ours: no jam, that is half of [Weidmann93]'s speed at 1 /m2, and nine of ten that "
+          "enter leave"},
          crossing},
     Test{{"arch", "An arch before a door",
           "150 people walk up to a door of 1.2 m. From 15 to 30 s: mean distance to the side of "

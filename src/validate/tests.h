@@ -19,11 +19,11 @@ std::span<const Test> density_tests();     // fundamental diagrams
 std::span<const Test> bottleneck_tests();  // flow through doors
 std::span<const Test> stream_tests();      // lanes, crossings, arches
 
-/// Real people filmed, and the same without them: of a folder of scenes.
+/// Recorded people beside predictions of their positions, for a folder of scenes.
 Result<ValidationResult> walkers(const std::string& folder, const ValidationConfig& config,
                                  Context& context);
 
-/// Experiments of the laboratory of Juelich: of a folder of their files.
+/// Experiments of the laboratory of Juelich, for a folder of their files.
 Result<ValidationResult> laboratory(const std::string& folder, const ValidationConfig& config,
                                     Context& context);
 

@@ -9,10 +9,11 @@
 
 #include "core/read_file.h"
 
+// Readers of text tables of positions, one row a person and frame. Linear in the text.
 namespace throng::validate {
 namespace {
 
-// The numbers of a line; false where something else stands in it.
+// The numbers of a line; false if the line holds anything else.
 bool numbers_of(const std::string& line, std::vector<double>& out) {
   out.clear();
   const char* at = line.c_str();
@@ -31,10 +32,10 @@ constexpr int64_t kMaxFrames = 1000000;  // 17 hours at 16 a second
 constexpr double kMaxFps = 1000;
 
 struct Columns {
-  size_t person, frame, x, z, least;
+  size_t person, frame, x, z, min_count;
 };
 
-// A comment may tell the frames a second and the unit.
+// A comment may state the frames a second and the unit.
 void read_comment(const std::string& line, double& fps, double& unit) {
   if (const size_t at = line.find("framerate:"); at != std::string::npos) {
     const double value = std::strtod(line.c_str() + at + 10, nullptr);
@@ -67,9 +68,9 @@ Result<Tracks> load(const std::string& path, const Columns& columns, double unit
     }
     if (!numbers_of(line, row)) return bad("numbers are expected here, nothing else");
     if (row.empty()) continue;
-    if (row.size() < columns.least) {
+    if (row.size() < columns.min_count) {
       return bad("it has " + std::to_string(row.size()) + " numbers, " +
-                 std::to_string(columns.least) + " are expected");
+                 std::to_string(columns.min_count) + " are expected");
     }
     auto& points = people[std::llround(row[columns.person])];
     const TrackPoint point{std::llround(row[columns.frame]), row[columns.x] * unit,
@@ -90,11 +91,11 @@ Result<Tracks> load(const std::string& path, const Columns& columns, double unit
 }  // namespace
 
 Result<Tracks> load_juelich(const std::string& path) {
-  return load(path, {.person = 0, .frame = 1, .x = 2, .z = 3, .least = 5}, 0.01);
+  return load(path, {.person = 0, .frame = 1, .x = 2, .z = 3, .min_count = 5}, 0.01);
 }
 
 Result<Tracks> load_obsmat(const std::string& path) {
-  return load(path, {.person = 1, .frame = 0, .x = 2, .z = 4, .least = 8}, 1);
+  return load(path, {.person = 1, .frame = 0, .x = 2, .z = 4, .min_count = 8}, 1);
 }
 
 }  // namespace throng::validate

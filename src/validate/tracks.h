@@ -8,7 +8,7 @@
 
 #include "throng/result.h"
 
-/// Ways of real people, as they were filmed.
+/// Recorded trajectories of people.
 namespace throng::validate {
 
 struct TrackPoint {
@@ -23,13 +23,12 @@ struct Track {
 
 struct Tracks {
   std::vector<Track> people;  ///< By person.
-  double fps = 16;            ///< Frames a second; as the file says.
+  double fps = 16;            ///< Frames a second, as the file states.
 };
 
 /// Reads the trajectory text of Forschungszentrum Juelich: lines of person, frame, x, y, height,
 /// comments with the unit and the frames a second; without them centimetres at 16 a second, as in
-/// the experiments of 2009. Fails with kIo (it cannot be read), kBadFile and
-/// the line.
+/// the experiments of 2009. Fails with kIo (it cannot be read), kBadFile and the line.
 Result<Tracks> load_juelich(const std::string& path);
 /// Reads an "obsmat.txt" of the scenes of ETH and UCY: lines of frame, person, x, 0, y and a
 /// velocity, which is left out. fps is not in the file. Fails as above.

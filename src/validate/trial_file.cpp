@@ -11,7 +11,8 @@
 #include "core/read_file.h"
 #include "throng/trial.h"
 
-// The tables [trial] and [[measure]] of a scenario file.
+// Reads the tables [trial] and [[measure]] of a scenario file, which takes time linear in the text.
+// Keys and names of former versions are accepted.
 namespace throng {
 namespace {
 
@@ -26,7 +27,7 @@ constexpr ObservedName kObserved[] = {
     {"left", Observed::kLeft},
     {"premovement", Observed::kPremovement},
     {"delay", Observed::kDelay},
-    {"wish", Observed::kWish},
+    {"desired_speed", Observed::kWish},
     {"speed", Observed::kSpeed},
     {"people", Observed::kPeople},
     {"stayed", Observed::kStayed},
@@ -40,17 +41,38 @@ constexpr ObservedName kObserved[] = {
 
 struct StatisticName {
   const char* name;
-  Statistic take;
+  Statistic statistic;
 };
 constexpr StatisticName kStatistics[] = {
-    {"mean", Statistic::kMean},    {"least", Statistic::kMin},       {"most", Statistic::kMax},
-    {"spread", Statistic::kRange}, {"overall", Statistic::kOverall}, {"fit", Statistic::kFit}};
+    {"mean", Statistic::kMean},   {"min", Statistic::kMin},         {"max", Statistic::kMax},
+    {"range", Statistic::kRange}, {"overall", Statistic::kOverall}, {"fit", Statistic::kFit}};
+
+// Names of former versions, and what they are called now.
+struct FormerName {
+  const char* former;
+  const char* name;
+};
+constexpr FormerName kFormerNames[] = {
+    {"wish", "desired_speed"}, {"least", "min"}, {"most", "max"}, {"spread", "range"}};
+
+// A measure's table with the present key `statistic`, where it has the former key `take` alone.
+ConfigNode with_present_keys(const ConfigNode& table) {
+  ConfigNode out = table;
+  if (out.find("statistic") != nullptr) return out;
+  for (ConfigEntry& entry : out.entries) {
+    if (entry.name == "take") entry.name = "statistic";
+  }
+  return out;
+}
 
 // The index of a text among names; fails with all of them.
 template <class Names>
 size_t pick(ConfigReader& r, const char* key, const Names& names) {
   std::string text = names[0].name, known;
   r.text(key, text);
+  for (const FormerName& known_as : kFormerNames) {
+    if (text == known_as.former) text = known_as.name;
+  }
   for (size_t i = 0; i < std::size(names); ++i) {
     if (text == names[i].name) return i;
     known += (i == 0 ? "" : ", ") + std::string(names[i].name);
@@ -59,7 +81,7 @@ size_t pick(ConfigReader& r, const char* key, const Names& names) {
   return 0;
 }
 
-// A name or a list of names of a scenario's things.
+// The indices of a name, or of a list of names, among things of a scenario.
 template <class Thing>
 void names_of(ConfigReader& r, const char* key, const std::vector<Thing>& things,
               std::vector<int32_t>& out) {
@@ -109,7 +131,7 @@ void read_line(ConfigReader& r, TrialMeasure& m) {
   if (!good || m.line[0] == m.line[1]) r.fail(*node, "line must be two different [x, z]");
 }
 
-// Which of the measures before are named.
+// The indices of the measures before this one that are named.
 void read_others(ConfigReader& r, const Trial& trial, TrialMeasure& m) {
   std::vector<int32_t> others;
   r.require("others");
@@ -124,13 +146,13 @@ void read_others(ConfigReader& r, const Trial& trial, TrialMeasure& m) {
 void read_measure(ConfigReader& r, Trial& trial) {
   TrialMeasure m;
   const Scenario& s = trial.scenario;
-  r.only({"name", "of", "take", "source", "profile", "journey", "exit", "area", "line", "by",
+  r.only({"name", "of", "statistic", "source", "profile", "journey", "exit", "area", "line", "by",
           "from", "until", "others", "low", "high"});
   r.require("name");
   r.require("of");
   r.text("name", m.name);
   m.of = kObserved[pick(r, "of", kObserved)].of;
-  m.take = kStatistics[pick(r, "take", kStatistics)].take;
+  m.take = kStatistics[pick(r, "statistic", kStatistics)].statistic;
   names_of(r, "source", s.sources, m.sources);
   names_of(r, "profile", s.profiles, m.profiles);
   names_of(r, "journey", s.journeys, m.journeys);
@@ -158,19 +180,19 @@ void read_measure(ConfigReader& r, Trial& trial) {
     refuse("name", "the name stands here twice");
   }
   if (m.take == Statistic::kOverall && m.of != Observed::kSpeed) {
-    refuse("take", "only a speed is taken overall");
+    refuse("statistic", "only a speed has an overall value");
   }
   if (m.take == Statistic::kFit && m.of != Observed::kPremovement && m.of != Observed::kWish &&
       m.of != Observed::kSpeed) {
-    refuse("take", "only what the scenario draws can fit: premovement, wish, speed");
+    refuse("statistic", "only what the scenario draws can fit: premovement, desired_speed, speed");
   }
-  const bool has_law =
+  const bool has_distribution =
       m.of == Observed::kPremovement ? m.sources.size() == 1 : m.profiles.size() == 1;
-  if (m.take == Statistic::kFit && !has_law) {
-    refuse("take", "a fit needs one source whose premovement, or one profile whose speed it is of");
+  if (m.take == Statistic::kFit && !has_distribution) {
+    refuse("statistic", "a fit needs one source for premovement, or one profile for a speed");
   }
   if (!is_per_person(m.of) && m.of != Observed::kDensity) {
-    refuse("take", "there is one number only, nothing to take");
+    refuse("statistic", "there is one number only, and no statistic of it");
   }
   const bool has_area = m.of == Observed::kSpeed || m.of == Observed::kDensity;
   if (!has_area) refuse("area", "only a speed or a density is of an area");
@@ -213,9 +235,10 @@ Result<Trial> parse_trial(const std::string& text, const std::string& name) {
   if (!scenario) return scenario.error();
   trial.scenario = *std::move(scenario);
   ConfigReader top(name, *root, "trial");
-  for (const ConfigNode* table : top.tables("measure")) {
-    const ConfigNode* called = table->find("name");
-    ConfigReader r(name, *table,
+  for (const ConfigNode* node : top.tables("measure")) {
+    const ConfigNode table = with_present_keys(*node);
+    const ConfigNode* called = table.find("name");
+    ConfigReader r(name, table,
                    called != nullptr && called->kind == Kind::kString
                        ? fmt::format("measure '{}'", called->text)
                        : "measure");
@@ -225,7 +248,7 @@ Result<Trial> parse_trial(const std::string& text, const std::string& name) {
   if (!top.ok()) return top.error();
   if (trial.measures.empty()) {
     return Error{Errc::kBadFile,
-                 fmt::format("{}: nothing is measured; give it a table [[measure]]", name)};
+                 fmt::format("{}: nothing is measured; add a table [[measure]]", name)};
   }
   return trial;
 }

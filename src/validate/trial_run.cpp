@@ -10,17 +10,18 @@
 #include "throng/trial.h"
 #include "validate/statistics.h"
 
-// A trial: its scenario is run, and looked at after every step.
+// Runs the scenario of a trial and measures after every step. Cost of a step: its avatars times the
+// measures.
 namespace throng {
 namespace {
 
-constexpr double kFirstStep = 0.02;  // [m] in one step: he walks, he is not made way for.
+constexpr double kFirstStep = 0.02;  // [m] in one step: a shorter move may be a yield to others.
 
 bool covers(const ScenarioArea& area, const Vec3d& at) {
   return std::ranges::any_of(area.prisms, [&](const Prism& p) { return p.holds(at); });
 }
 
-// By the shoelace formula; the parts of an area are taken not to overlap.
+// By the shoelace formula. The parts of an area must not overlap.
 double size_of(const ScenarioArea& area) {
   double sum = 0;
   for (const Prism& prism : area.prisms) {
@@ -44,7 +45,7 @@ bool counts(const TrialMeasure& m, const Visit& v) {
          (m.exits.empty() || (v.left >= 0 && is_in(m.exits, v.exit)));
 }
 
-// Where along the way from a to b it crosses a line, 0 to 1; none if it does not.
+// The parameter from a to b of the crossing with a line, 0 to 1; none if there is no crossing.
 std::optional<double> crossing(const Vec3d& a, const Vec3d& b,
                                const std::array<std::array<double, 2>, 2>& line) {
   const double lx = line[1][0] - line[0][0], lz = line[1][1] - line[0][1];
@@ -59,50 +60,50 @@ std::optional<double> crossing(const Vec3d& a, const Vec3d& b,
   return along >= 0 && along <= 1 ? std::optional(part) : std::nullopt;
 }
 
-// What is kept of one measure while the run goes on.
-struct Kept {
-  std::vector<double> way, time;  // by person: in the area [m, s]
-  std::vector<double> density;    // by step [1/m2]
-  std::vector<double> crossed;    // [s]
-  std::vector<bool> has_crossed;  // by person
+// The data collected for one measure during the run.
+struct MeasureData {
+  std::vector<double> distance, time;  // by person: in the area [m, s]
+  std::vector<double> density;         // by step [1/m2]
+  std::vector<double> crossed;         // [s]
+  std::vector<bool> has_crossed;       // by person
 };
 
 class Observer {
  public:
-  explicit Observer(const Trial& trial) : trial_(trial), kept_(trial.measures.size()) {}
+  explicit Observer(const Trial& trial) : trial_(trial), data_(trial.measures.size()) {}
 
-  void look(const Simulation& simulation, double time) {
+  void observe(const Simulation& simulation, double time) {
     simulation.read(states_);
     const auto visits = simulation.visits();
     const size_t people = visits.size();
-    last_.resize(people);
+    last_position_.resize(people);
     was_here_.resize(people, 0);
     first_step_.resize(people, -1);
-    inside_.assign(kept_.size(), 0);
-    ++looks_;
+    inside_.assign(data_.size(), 0);
+    ++observations_;
     for (const AvatarState& state : states_) {
       const size_t n = state.id;
       const Vec3d& now = state.position;
-      // Who was looked at the last time has walked since; in lifts nobody walks.
-      if (was_here_[n] == looks_ - 1 && was_here_[n] > 0) {
-        walked(visits[n], last_[n], now, time);
+      // An avatar observed the last time has walked since; in a lift it is not observed.
+      if (was_here_[n] == observations_ - 1 && was_here_[n] > 0) {
+        walked(visits[n], last_position_[n], now, time);
       } else {
-        for (size_t k = 0; k < kept_.size(); ++k) stands(k, visits[n], now);
+        for (size_t k = 0; k < data_.size(); ++k) stands(k, visits[n], now);
       }
-      last_[n] = now;
-      was_here_[n] = looks_;
+      last_position_[n] = now;
+      was_here_[n] = observations_;
     }
-    for (size_t k = 0; k < kept_.size(); ++k) {
+    for (size_t k = 0; k < data_.size(); ++k) {
       const TrialMeasure& m = trial_.measures[k];
       if (m.of != Observed::kDensity || time < m.from || time > m.until) continue;
       const ScenarioArea& area = trial_.scenario.areas[static_cast<size_t>(m.area)];
-      kept_[k].density.push_back(inside_[k] / size_of(area));
+      data_[k].density.push_back(inside_[k] / size_of(area));
     }
   }
 
   [[nodiscard]] std::vector<ValidationMeasure> measures(std::span<const Visit> visits) const {
     std::vector<ValidationMeasure> out;
-    for (size_t k = 0; k < kept_.size(); ++k) {
+    for (size_t k = 0; k < data_.size(); ++k) {
       const TrialMeasure& m = trial_.measures[k];
       out.push_back({.name = m.name,
                      .value = value(k, visits, out),
@@ -123,31 +124,31 @@ class Observer {
   }
 
   void walked(const Visit& visit, const Vec3d& before, const Vec3d& now, double time) {
-    const double way = std::hypot(now.x - before.x, now.z - before.z);
+    const double distance = std::hypot(now.x - before.x, now.z - before.z);
     const double dt = trial_.scenario.dt;
     double& first = first_step_[visit.person];
-    if (first < 0 && time > visit.started && way >= kFirstStep) first = time;
-    for (size_t k = 0; k < kept_.size(); ++k) {
+    if (first < 0 && time > visit.started && distance >= kFirstStep) first = time;
+    for (size_t k = 0; k < data_.size(); ++k) {
       const TrialMeasure& m = trial_.measures[k];
       stands(k, visit, now);
       if (time < m.from || time > m.until || !counts(m, visit)) continue;
-      Kept& kept = kept_[k];
+      MeasureData& data = data_[k];
       if (m.of == Observed::kSpeed) {
         const bool here =
             m.area < 0 ? time - dt >= visit.started - 1e-9
                        : covers(trial_.scenario.areas[static_cast<size_t>(m.area)], now) &&
                              covers(trial_.scenario.areas[static_cast<size_t>(m.area)], before);
         if (!here) continue;
-        kept.way.resize(last_.size());
-        kept.time.resize(last_.size());
-        kept.way[visit.person] += way;
-        kept.time[visit.person] += dt;
+        data.distance.resize(last_position_.size());
+        data.time.resize(last_position_.size());
+        data.distance[visit.person] += distance;
+        data.time[visit.person] += dt;
       } else if (m.of == Observed::kFlow || m.of == Observed::kPassed) {
-        kept.has_crossed.resize(last_.size());
+        data.has_crossed.resize(last_position_.size());
         const auto part = crossing(before, now, m.line);
-        if (!part || kept.has_crossed[visit.person]) continue;
-        kept.has_crossed[visit.person] = true;
-        kept.crossed.push_back(time - dt * (1 - *part));
+        if (!part || data.has_crossed[visit.person]) continue;
+        data.has_crossed[visit.person] = true;
+        data.crossed.push_back(time - dt * (1 - *part));
       }
     }
   }
@@ -172,7 +173,7 @@ class Observer {
     }
   }
 
-  // One number of each person that the measure is of.
+  // One number for each person that the measure counts.
   [[nodiscard]] std::vector<double> of_each(size_t k, std::span<const Visit> visits) const {
     const TrialMeasure& m = trial_.measures[k];
     std::vector<double> numbers;
@@ -185,17 +186,17 @@ class Observer {
       }
       if (m.of == Observed::kTime && v.left >= 0) numbers.push_back(v.left - v.started);
       if (m.of == Observed::kLeft && v.left >= 0) numbers.push_back(v.left);
-      if (m.of == Observed::kSpeed && v.person < kept_[k].time.size() &&
-          kept_[k].time[v.person] > 0) {
-        numbers.push_back(kept_[k].way[v.person] / kept_[k].time[v.person]);
+      if (m.of == Observed::kSpeed && v.person < data_[k].time.size() &&
+          data_[k].time[v.person] > 0) {
+        numbers.push_back(data_[k].distance[v.person] / data_[k].time[v.person]);
       }
     }
     return numbers;
   }
 
-  // What the scenario says that the numbers are drawn from: of the first source or profile that the
-  // measure is of.
-  [[nodiscard]] const Distribution& law(const TrialMeasure& m) const {
+  // The distribution that the scenario states for the numbers: of the first source or profile of
+  // the measure.
+  [[nodiscard]] const Distribution& distribution_of(const TrialMeasure& m) const {
     const Scenario& s = trial_.scenario;
     if (m.of == Observed::kPremovement) {
       return s.sources[m.sources.empty() ? 0 : static_cast<size_t>(m.sources[0])].premovement;
@@ -203,20 +204,21 @@ class Observer {
     return s.profiles[m.profiles.empty() ? 0 : static_cast<size_t>(m.profiles[0])].speed;
   }
 
-  [[nodiscard]] double taken(const TrialMeasure& m, const std::vector<double>& numbers) const {
+  [[nodiscard]] double statistic_of(const TrialMeasure& m,
+                                    const std::vector<double>& numbers) const {
     if (numbers.empty()) return std::nan("");
-    const auto [least, most] = std::ranges::minmax(numbers);
+    const auto [min, max] = std::ranges::minmax(numbers);
     double sum = 0;
     for (const double x : numbers) sum += x;
     switch (m.take) {
       case Statistic::kMin:
-        return least;
+        return min;
       case Statistic::kMax:
-        return most;
+        return max;
       case Statistic::kRange:
-        return most - least;
+        return max - min;
       case Statistic::kFit: {
-        const auto share = [&](double x) { return validate::share_below(law(m), x); };
+        const auto share = [&](double x) { return validate::share_below(distribution_of(m), x); };
         return validate::ks_likelihood(validate::ks_distance(numbers, share), numbers.size());
       }
       default:
@@ -237,46 +239,46 @@ class Observer {
       case Observed::kStayed:
         return count(false);
       case Observed::kPassed:
-        return static_cast<double>(kept_[k].crossed.size());
+        return static_cast<double>(data_[k].crossed.size());
       case Observed::kFlow: {
-        std::vector<double> times = kept_[k].crossed;
+        std::vector<double> times = data_[k].crossed;
         std::sort(times.begin(), times.end());
         const double width = std::hypot(m.line[1][0] - m.line[0][0], m.line[1][1] - m.line[0][1]);
         return validate::flow_rate(times) / (m.by_width ? width : 1);
       }
       case Observed::kDensity:
-        return taken(m, kept_[k].density);
+        return statistic_of(m, data_[k].density);
       case Observed::kRatio:
         return before[m.others[0]].value / before[m.others[1]].value;
       case Observed::kDifference:
         return before[m.others[0]].value - before[m.others[1]].value;
       case Observed::kRise: {
-        double least = std::numeric_limits<double>::infinity();
+        double smallest = std::numeric_limits<double>::infinity();
         for (size_t i = 1; i < m.others.size(); ++i) {
           const double step = before[m.others[i]].value - before[m.others[i - 1]].value;
           if (std::isnan(step)) return step;
-          least = std::min(least, step);
+          smallest = std::min(smallest, step);
         }
-        return least;
+        return smallest;
       }
       default:
         break;
     }
-    if (m.take != Statistic::kOverall) return taken(m, of_each(k, visits));
-    double way = 0, time = 0;
-    for (const double w : kept_[k].way) way += w;
-    for (const double t : kept_[k].time) time += t;
-    return way / time;
+    if (m.take != Statistic::kOverall) return statistic_of(m, of_each(k, visits));
+    double distance = 0, time = 0;
+    for (const double d : data_[k].distance) distance += d;
+    for (const double t : data_[k].time) time += t;
+    return distance / time;
   }
 
   const Trial& trial_;
-  std::vector<Kept> kept_;  // by measure
+  std::vector<MeasureData> data_;  // by measure
   std::vector<AvatarState> states_;
-  std::vector<Vec3d> last_;         // by person
-  std::vector<uint64_t> was_here_;  // by person: the look at which he was seen last
-  std::vector<double> first_step_;  // by person [s]
-  std::vector<double> inside_;      // by measure: people in its area
-  uint64_t looks_ = 0;
+  std::vector<Vec3d> last_position_;  // by person
+  std::vector<uint64_t> was_here_;    // by person: the last observation that had it
+  std::vector<double> first_step_;    // by person [s]
+  std::vector<double> inside_;        // by measure: people in its area
+  uint64_t observations_ = 0;
 };
 
 }  // namespace
@@ -295,13 +297,13 @@ Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& c
   auto simulation = Simulation::make(*world, scenario, config.workers, context);
   if (!simulation) return simulation.error();
   Observer observer(trial);
-  observer.look(*simulation, 0);
+  observer.observe(*simulation, 0);
   ValidationResult result;
   const auto steps = static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9));
   for (uint64_t step = 0; step < steps && !simulation->is_over(); ++step) {
     const auto report = simulation->step();
     if (!report) return report.error();
-    observer.look(*simulation, report->time);
+    observer.observe(*simulation, report->time);
     const CrowdCheck found = simulation->crowd().check();
     result.faults.overlaps += found.overlaps;
     result.faults.wall_entries += found.wall_entries;

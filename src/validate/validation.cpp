@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "validate/tests.h"
 
+// The list of tests, and the run of one by its name.
 namespace throng {
 namespace {
 
@@ -18,22 +19,20 @@ struct RecordedTest {
 
 const RecordedTest kRecorded[] = {
     {{"walkers", "People in streets for 4.8 s, and four predictions of their positions",
-      "All who were filmed for 0.4 s before and 4.8 s after a beginning, one each 4.8 s, begin "
-      "where "
-      "they are as they walked in the last 0.4 s; no guess knows a destination or a wall. Errors: "
-      "distance "
-      "from where they were, mean of 12 positions and last. Least distances among those who are "
-      "followed, at the same positions.",
+      "All people recorded for 0.4 s before and 4.8 s after a start, one each 4.8 s, start with "
+      "their recorded position and the velocity of the last 0.4 s; no prediction has destinations "
+      "or walls. Errors: distance to the recorded position, mean of 12 positions and last. Min "
+      "distances between the people predicted, at the same positions.",
       "scenes of [PESV09], [LCL07]; no target; beside constant velocity, [HM95] and "
       "[CAACD]"},
      validate::walkers},
     {{"laboratory",
       "Corridors, a counter-flow and an entrance gate, beside recordings of these experiments",
-      "The same walls; everybody comes in when and where he was filmed first, wishing for 1.34 "
-      "m/s. "
-      "Flow over a line by the time between people, without the first and the last tenth [SS10]; "
-      "meanwhile classic density in a box, and speeds over 0.8 s in it. Measured alike in both.",
-      "trajectories of [ZKSS11], [ZKSS12], [ABHSS20]; nothing is asked"},
+      "The same walls; each avatar enters at the time and place of the first recorded position of "
+      "one person, with a desired speed of 1.34 m/s. Flow over a line by the time between people, "
+      "without the first and the last tenth [SS10]; meanwhile classic density in a box, and speeds "
+      "over 0.8 s in it. Measured alike in both.",
+      "trajectories of [ZKSS11], [ZKSS12], [ABHSS20]; no target"},
      validate::laboratory},
 };
 

@@ -12,38 +12,39 @@
 
 #include "steer/social_force.h"
 #include "throng/caacd.h"
-#include "validate/room.h"
+#include "validate/plane_crowd.h"
 #include "validate/tests.h"
 #include "validate/tracks.h"
 
-// Real people in a street, and guesses where they will be: each begins where somebody is, as
-// he walked last, and is looked at for 4.8 s. All guesses know the same: nobody's destination.
+// Predictions of the positions of people in a street for 4.8 s, from their present position and
+// velocity, beside their recorded positions: constant velocity, [HM95], [CAACD] and our crowd. No
+// prediction has destinations.
 namespace throng::validate {
 namespace {
 
 constexpr double kSample = 0.4;  // [s] between positions in the scenes
 constexpr size_t kAhead = 12;    // samples
 constexpr int kStepsASample = 4;
-constexpr double kStanding = 0.05;  // [m/s] Who is slower stands.
+constexpr double kStanding = 0.05;  // [m/s] A slower person stands.
 
 enum Model : size_t { kReal, kOurs, kConstant, kForce, kCurves, kModels };
 constexpr std::array<const char*, kModels> kNames{"real", "throng", "constant velocity",
                                                   "social force [HM95]", "[CAACD]"};
 
 struct Walker {
-  Spot begin;
+  Point2 begin;
   double vx = 0, vz = 0;
-  std::array<Spot, kAhead> real = {};
-  bool is_complete = false;  // He was filmed for all of it.
+  std::array<Point2, kAhead> real = {};
+  bool is_complete = false;  // Recorded for the whole time.
 };
 
-// The scene by sample: who was there when.
-struct Film {
-  std::vector<std::map<int64_t, Spot>> samples;
-  Spot low{1e9, 1e9}, high{-1e9, -1e9};
+// The scene by sample: positions by person.
+struct Recording {
+  std::vector<std::map<int64_t, Point2>> samples;
+  Point2 low{1e9, 1e9}, high{-1e9, -1e9};
 };
 
-Film film_of(const Tracks& tracks) {
+Recording recording_of(const Tracks& tracks) {
   int64_t first = std::numeric_limits<int64_t>::max(), gap = first;
   for (const Track& track : tracks.people) {
     first = std::min(first, track.points.front().frame);
@@ -51,32 +52,32 @@ Film film_of(const Tracks& tracks) {
       gap = std::min(gap, track.points[i].frame - track.points[i - 1].frame);
     }
   }
-  Film film;
+  Recording recording;
   for (const Track& track : tracks.people) {
     for (const TrackPoint& p : track.points) {
       const auto k = static_cast<size_t>((p.frame - first) / gap);
-      if (film.samples.size() <= k) film.samples.resize(k + 1);
-      film.samples[k][track.person] = {p.x, p.z};
-      film.low = {std::min(film.low.x, p.x), std::min(film.low.z, p.z)};
-      film.high = {std::max(film.high.x, p.x), std::max(film.high.z, p.z)};
+      if (recording.samples.size() <= k) recording.samples.resize(k + 1);
+      recording.samples[k][track.person] = {p.x, p.z};
+      recording.low = {std::min(recording.low.x, p.x), std::min(recording.low.z, p.z)};
+      recording.high = {std::max(recording.high.x, p.x), std::max(recording.high.z, p.z)};
     }
   }
-  return film;
+  return recording;
 }
 
-std::vector<Walker> walkers_at(const Film& film, size_t k) {
+std::vector<Walker> walkers_at(const Recording& recording, size_t k) {
   std::vector<Walker> walkers;
-  for (const auto& [person, now] : film.samples[k]) {
-    const auto before = film.samples[k - 1].find(person);
-    if (before == film.samples[k - 1].end()) continue;
+  for (const auto& [person, now] : recording.samples[k]) {
+    const auto before = recording.samples[k - 1].find(person);
+    if (before == recording.samples[k - 1].end()) continue;
     Walker w;
     w.begin = now;
     w.vx = (now.x - before->second.x) / kSample;
     w.vz = (now.z - before->second.z) / kSample;
     w.is_complete = true;
     for (size_t i = 0; i < kAhead; ++i) {
-      const auto then = film.samples[k + 1 + i].find(person);
-      if (then == film.samples[k + 1 + i].end()) {
+      const auto then = recording.samples[k + 1 + i].find(person);
+      if (then == recording.samples[k + 1 + i].end()) {
         w.is_complete = false;
         break;
       }
@@ -87,38 +88,39 @@ std::vector<Walker> walkers_at(const Film& film, size_t k) {
   return walkers;
 }
 
-using Ways = std::vector<std::array<Spot, kAhead>>;  // by walker
+using Positions = std::vector<std::array<Point2, kAhead>>;  // by walker
 
-Ways constant_ways(const std::vector<Walker>& walkers) {
-  Ways ways(walkers.size());
+Positions predict_constant(const std::vector<Walker>& walkers) {
+  Positions positions(walkers.size());
   for (size_t n = 0; n < walkers.size(); ++n) {
     for (size_t i = 0; i < kAhead; ++i) {
       const double t = kSample * static_cast<double>(i + 1);
-      ways[n][i] = {walkers[n].begin.x + walkers[n].vx * t, walkers[n].begin.z + walkers[n].vz * t};
+      positions[n][i] = {walkers[n].begin.x + walkers[n].vx * t,
+                         walkers[n].begin.z + walkers[n].vz * t};
     }
   }
-  return ways;
+  return positions;
 }
 
-Ways force_ways(const std::vector<Walker>& walkers) {
+Positions predict_by_forces(const std::vector<Walker>& walkers) {
   std::vector<steer::ForceWalker> moved;
   for (const Walker& w : walkers) moved.push_back({w.begin.x, w.begin.z, w.vx, w.vz, w.vx, w.vz});
-  Ways ways(walkers.size());
+  Positions positions(walkers.size());
   for (size_t i = 0; i < kAhead; ++i) {
     for (int step = 0; step < kStepsASample; ++step)
-      steer::step_social_force(moved, Room::kStep, {});
-    for (size_t n = 0; n < walkers.size(); ++n) ways[n][i] = {moved[n].x, moved[n].z};
+      steer::step_social_force(moved, PlaneCrowd::kStep, {});
+    for (size_t n = 0; n < walkers.size(); ++n) positions[n][i] = {moved[n].x, moved[n].z};
   }
-  return ways;
+  return positions;
 }
 
 // [CAACD] as printed, in its own units: a repulsive field as large as our body, and its frames so
-// long that its greatest speed is an adult's. Everybody's target lies far ahead, nobody brakes.
+// long that its greatest speed is an adult's. All targets lie far ahead, so that no body brakes.
 constexpr double kUnit = 0.19 / 5;                       // [m]
 constexpr double kFramesASecond = 1.34 / (0.4 * kUnit);  // of 0.4 units each
 constexpr int kFramesASample = 36;
 
-Ways curve_ways(const std::vector<Walker>& walkers) {
+Positions predict_by_curves(const std::vector<Walker>& walkers) {
   const double per_frame = 1 / (kUnit * kFramesASecond);
   const double dt = kSample * kFramesASecond / kFramesASample;  // [frames]
   std::vector<caacd::Body> bodies;
@@ -138,7 +140,7 @@ Ways curve_ways(const std::vector<Walker>& walkers) {
     targets.push_back(body.position + body.velocity * (stands ? 0 : 100 * kFramesASecond));
     bodies.push_back(body);
   }
-  Ways ways(walkers.size());
+  Positions positions(walkers.size());
   std::vector<Vec3d> steer(walkers.size());
   for (size_t i = 0; i < kAhead; ++i) {
     for (int frame = 0; frame < kFramesASample; ++frame) {
@@ -156,24 +158,24 @@ Ways curve_ways(const std::vector<Walker>& walkers) {
       }
     }
     for (size_t n = 0; n < bodies.size(); ++n) {
-      ways[n][i] = {bodies[n].position.x * kUnit, bodies[n].position.z * kUnit};
+      positions[n][i] = {bodies[n].position.x * kUnit, bodies[n].position.z * kUnit};
     }
   }
-  return ways;
+  return positions;
 }
 
-// Walks the crowd; who found no room to stand is marked as not complete.
-Result<Ways> our_ways(Room& room, std::vector<Walker>& walkers, Context& context) {
-  std::vector<Spot> spots;
+// Simulates our crowd; an avatar that does not fit is marked as not complete.
+Result<Positions> walk_crowd(PlaneCrowd& crowd, std::vector<Walker>& walkers, Context& context) {
+  std::vector<Point2> starts;
   std::vector<double> speeds;
   for (const Walker& w : walkers) {
-    spots.push_back(w.begin);
+    starts.push_back(w.begin);
     speeds.push_back(std::max(kStanding, std::hypot(w.vx, w.vz)));
   }
-  const auto ids = room.place(spots, speeds, context);
+  const auto ids = crowd.add(starts, speeds, context);
   if (!ids) return ids.error();
-  std::vector<AvatarId> who;
-  std::vector<Vec3d> wishes;
+  std::vector<AvatarId> walking;
+  std::vector<Vec3d> velocities;
   std::map<uint32_t, size_t> walker_of;  // by slot
   for (size_t n = 0; n < walkers.size(); ++n) {
     if (!(*ids)[n]) {
@@ -181,41 +183,41 @@ Result<Ways> our_ways(Room& room, std::vector<Walker>& walkers, Context& context
       continue;
     }
     walker_of[(*ids)[n].slot1] = n;
-    who.push_back((*ids)[n]);
+    walking.push_back((*ids)[n]);
     const bool stands = std::hypot(walkers[n].vx, walkers[n].vz) < kStanding;
-    wishes.push_back(stands ? Vec3d{} : Vec3d{walkers[n].vx, 0, walkers[n].vz});
+    velocities.push_back(stands ? Vec3d{} : Vec3d{walkers[n].vx, 0, walkers[n].vz});
   }
-  room.drive(who, wishes);
-  Ways ways(walkers.size());
+  crowd.set_velocities(walking, velocities);
+  Positions positions(walkers.size());
   for (size_t i = 0; i < kAhead; ++i) {
-    for (int step = 0; step < kStepsASample; ++step) room.step();
-    for (const Seen& s : room.all()) ways[walker_of[s.id.slot1]][i] = {s.x, s.z};
+    for (int step = 0; step < kStepsASample; ++step) crowd.step();
+    for (const AvatarMotion& s : crowd.avatars()) positions[walker_of[s.id.slot1]][i] = {s.x, s.z};
   }
-  room.leave(who);
-  return ways;
+  crowd.remove(walking);
+  return positions;
 }
 
-// What is summed up over all beginnings.
+// Sums over all starts.
 struct Score {
   double mean_error = 0, last_error = 0;
-  std::vector<double> nearest;  // to another of those who are scored, of each [m]
+  std::vector<double> nearest;  // min distance to another scored person, of each [m]
 };
 
-double apart(const Spot& a, const Spot& b) { return std::hypot(a.x - b.x, a.z - b.z); }
+double apart(const Point2& a, const Point2& b) { return std::hypot(a.x - b.x, a.z - b.z); }
 
-void add(Score& score, const std::vector<Walker>& walkers, const Ways& ways) {
+void add(Score& score, const std::vector<Walker>& walkers, const Positions& positions) {
   for (size_t n = 0; n < walkers.size(); ++n) {
     if (!walkers[n].is_complete) continue;
     double sum = 0, nearest = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < kAhead; ++i) {
-      sum += apart(ways[n][i], walkers[n].real[i]);
+      sum += apart(positions[n][i], walkers[n].real[i]);
       for (size_t m = 0; m < walkers.size(); ++m) {
         if (m == n || !walkers[m].is_complete) continue;
-        nearest = std::min(nearest, apart(ways[n][i], ways[m][i]));
+        nearest = std::min(nearest, apart(positions[n][i], positions[m][i]));
       }
     }
     score.mean_error += sum / static_cast<double>(kAhead);
-    score.last_error += apart(ways[n].back(), walkers[n].real.back());
+    score.last_error += apart(positions[n].back(), walkers[n].real.back());
     if (nearest < std::numeric_limits<double>::infinity()) score.nearest.push_back(nearest);
   }
 }
@@ -252,11 +254,11 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
                         Context& context) {
   const auto tracks = load_obsmat(path);
   if (!tracks) return tracks.error();
-  const Film film = film_of(*tracks);
-  // The speeds of the file are short: nobody gets farther than this from where he was filmed.
+  const Recording recording = recording_of(*tracks);
+  // No avatar gets farther than this from the recorded positions within 4.8 s.
   constexpr double kMargin = 20;
-  const Spot& low = film.low;
-  const Spot& high = film.high;
+  const Point2& low = recording.low;
+  const Point2& high = recording.high;
   if (high.x - low.x > 300 || high.z - low.z > 300) {
     return Error{Errc::kBadFile, path +
                                      ": its people are more than 300 m apart; metres are "
@@ -264,57 +266,58 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   }
   PlaneConfig plane;
   plane.ground = box(low.x - kMargin, low.z - kMargin, high.x + kMargin, high.z + kMargin);
-  auto room = Room::build(plane, walker(), Routing::kStraight, config, context);
-  if (!room) return room.error();
+  auto crowd = PlaneCrowd::build(plane, walker(), Routing::kStraight, config, context);
+  if (!crowd) return crowd.error();
   std::array<Score, kModels> scores;
-  size_t count = 0, no_room = 0;
+  size_t count = 0, not_placed = 0;
   const size_t every = config.brief ? 10 * kAhead : kAhead;
-  for (size_t k = 1; k + kAhead < film.samples.size(); k += every) {
-    std::vector<Walker> walkers = walkers_at(film, k);
+  for (size_t k = 1; k + kAhead < recording.samples.size(); k += every) {
+    std::vector<Walker> walkers = walkers_at(recording, k);
     const auto complete = [&] {
       return static_cast<size_t>(std::ranges::count_if(walkers, &Walker::is_complete));
     };
-    const size_t filmed = complete();
-    if (filmed == 0) continue;
-    const auto ours = our_ways(*room, walkers, context);
+    const size_t recorded = complete();
+    if (recorded == 0) continue;
+    const auto ours = walk_crowd(*crowd, walkers, context);
     if (!ours) return ours.error();
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
     count += complete();
-    no_room += filmed - complete();
-    Ways real;
+    not_placed += recorded - complete();
+    Positions real;
     for (const Walker& w : walkers) real.push_back(w.real);
     add(scores[kReal], walkers, real);
     add(scores[kOurs], walkers, *ours);
-    add(scores[kConstant], walkers, constant_ways(walkers));
-    add(scores[kForce], walkers, force_ways(walkers));
-    add(scores[kCurves], walkers, curve_ways(walkers));
+    add(scores[kConstant], walkers, predict_constant(walkers));
+    add(scores[kForce], walkers, predict_by_forces(walkers));
+    add(scores[kCurves], walkers, predict_by_curves(walkers));
   }
-  room->report(result);
+  crowd->report(result);
   if (count == 0) {
-    return Error{Errc::kBadFile, path + ": nobody was filmed for 5.2 s on end; it is too short"};
+    return Error{Errc::kBadFile,
+                 path + ": no person is recorded for 5.2 s on end; it is too short"};
   }
   const auto people = static_cast<double>(count);
-  const auto told = [&](const std::string& what, double value, const std::string& unit) {
+  const auto add_measure = [&](const std::string& what, double value, const std::string& unit) {
     result.measures.push_back({.name = scene + ": " + what, .value = value, .unit = unit});
   };
-  told("people predicted", people, "");
-  told("left out, nearer to another than two bodies", static_cast<double>(no_room), "");
+  add_measure("people predicted", people, "");
+  add_measure("left out, nearer to another than two bodies", static_cast<double>(not_placed), "");
   for (size_t m = kOurs; m < kModels; ++m) {
-    told(std::string("mean error, ") + kNames[m], scores[m].mean_error / people, "m");
-    told(std::string("error after 4.8 s, ") + kNames[m], scores[m].last_error / people, "m");
+    add_measure(std::string("mean error, ") + kNames[m], scores[m].mean_error / people, "m");
+    add_measure(std::string("error after 4.8 s, ") + kNames[m], scores[m].last_error / people, "m");
   }
   for (size_t m = 0; m < kModels; ++m) {
     std::ranges::sort(scores[m].nearest);
     const auto below = std::ranges::count_if(
         scores[m].nearest, [](double d) { return d < 2 * walker().radius - 1e-6; });
-    told(std::string("min distance, 5 % of people, ") + kNames[m],
-         quantile(scores[m].nearest, 0.05), "m");
-    told(std::string("min distance, half of people, ") + kNames[m],
-         quantile(scores[m].nearest, 0.5), "m");
-    told(std::string("bodies overlap, ") + kNames[m],
-         100 * static_cast<double>(below) /
-             static_cast<double>(std::max<size_t>(1, scores[m].nearest.size())),
-         "% of people");
+    add_measure(std::string("min distance, 5 % of people, ") + kNames[m],
+                quantile(scores[m].nearest, 0.05), "m");
+    add_measure(std::string("min distance, half of people, ") + kNames[m],
+                quantile(scores[m].nearest, 0.5), "m");
+    add_measure(std::string("bodies overlap, ") + kNames[m],
+                100 * static_cast<double>(below) /
+                    static_cast<double>(std::max<size_t>(1, scores[m].nearest.size())),
+                "% of people");
   }
   result.charts.push_back(distances(scene, scores));
   return {};

@@ -44,15 +44,15 @@ double distance(const Simulation& run, size_t i, size_t j) {
   return length(run.bodies()[i].position - run.bodies()[j].position);
 }
 
-// Steps until all stand, at most `frames`; the smallest distance of the first two on the way.
+// Steps until all stand, at most `frames`; returns the smallest distance of the first two bodies.
 double walk(Simulation& run, int64_t frames = 5000) {
-  double least = 1e9;
+  double smallest = 1e9;
   while (!run.finished() && run.counts().frames < frames) {
     run.step();
-    if (run.bodies().size() > 1) least = std::min(least, distance(run, 0, 1));
+    if (run.bodies().size() > 1) smallest = std::min(smallest, distance(run, 0, 1));
   }
   EXPECT_TRUE(run.finished());
-  return least;
+  return smallest;
 }
 
 TEST(CaacdSimulation, OneAvatarTurnsToItsTargetBrakesAndStandsThere) {
@@ -116,7 +116,7 @@ TEST(CaacdSimulation, HeadOnTheyPassOnTheRightWithoutACollision) {
   }
   EXPECT_TRUE(run.finished());
   EXPECT_TRUE(avoided);
-  EXPECT_GT(side, 2);  // +z is the right of who goes to +x
+  EXPECT_GT(side, 2);  // +z is the right of +x
   EXPECT_EQ(run.counts().collisions, 0);
   EXPECT_EQ(run.counts().arrived, 2);
 }
@@ -131,7 +131,7 @@ TEST(CaacdSimulation, WithoutAvoidanceTheSameMeetingIsOneCollision) {
 }
 
 TEST(CaacdSimulation, OvertakingAndCrossingGoWithoutACollision) {
-  // A brisk one comes up behind one that brakes to its target.
+  // A fast body approaches from behind one that brakes to its target.
   Space overtaking;
   add(overtaking, {0, 0, 0}, {1, 0, 0}, 0.4, {150, 0, 0});
   add(overtaking, {26, 0, 0}, {1, 0, 0}, 0.4, {60, 0, 0});
@@ -167,7 +167,7 @@ TEST(CaacdSimulation, ParallelCoursesOutsideTheAlertFieldStayStraight) {
   EXPECT_GT(run.bodies()[1].position.z, 20.01);
 }
 
-TEST(CaacdSimulation, WhoStandInOnePointPartAndStayFinite) {
+TEST(CaacdSimulation, BodiesAtOnePointPartAndStayFinite) {
   Space space;
   for (int i = 0; i < 4; ++i) add(space, {7, 0, 7}, {1, 0, 0}, 0, {80.0 + 30 * i, 0, 90});
   Simulation run = made(space, best());
@@ -198,8 +198,8 @@ TEST(CaacdSimulation, AnObstacleIsWalkedAround) {
 }
 
 TEST(CaacdSimulation, ACollisionIsAnEntryOfAPair) {
-  // A third one walks through two that stand: two entries, counted once each, and again on the way
-  // back.
+  // A third body walks through two that stand: two entries, counted once each, and again on its
+  // return.
   Space space;
   add(space, {50, 0, 0}, {1, 0, 0}, 0, {50, 0, 0});
   add(space, {90, 0, 0}, {1, 0, 0}, 0, {90, 0, 0});
@@ -212,7 +212,7 @@ TEST(CaacdSimulation, ACollisionIsAnEntryOfAPair) {
   EXPECT_EQ(run.counts().collisions, 4);
 }
 
-// Checks while two go to one place that at most one is inside; returns who came first.
+// Checks that of two bodies with one target at most one is inside; returns the first.
 int first_at(Simulation& run, Vec3d place) {
   int first = -1;
   while (!run.finished() && run.counts().frames < 5000) {
@@ -228,9 +228,9 @@ int first_at(Simulation& run, Vec3d place) {
   return first;
 }
 
-TEST(CaacdSimulation, OfTwoBoundForOneTargetExactlyOneGoesFirstAndTheOtherWaits) {
+TEST(CaacdSimulation, OfTwoWithOneTargetExactlyOneGoesFirstAndTheOtherWaits) {
   const Vec3d place{0, 0, 0};
-  // From both sides, from one side, at a right angle; also dead even.
+  // From both sides, from one side, at a right angle; also at equal distances.
   const std::array<std::array<Vec3d, 2>, 4> starts{{{Vec3d{-100, 0, 0}, Vec3d{90, 0, 0}},
                                                     {Vec3d{-100, 0, 0}, Vec3d{-70, 0, 3}},
                                                     {Vec3d{-80, 0, 0}, Vec3d{0, 0, -95}},
@@ -270,7 +270,7 @@ TEST(CaacdSimulation, OfTwoThatAreBothNearTheNearerOneGoesFirstWhateverItsId) {
   }
 }
 
-TEST(CaacdSimulation, NobodyBrakesForAPlaceThatNobodyHasClaimed) {
+TEST(CaacdSimulation, NoBodyBrakesForAPlaceWithoutAReservation) {
   Space space;
   add(space, {-100, 0, 0}, {1, 0, 0}, 0.4, {0, 0, 0});
   add(space, {900, 0, 0}, {-1, 0, 0}, 0.4, {0, 0, 0});
@@ -295,7 +295,7 @@ TEST(CaacdSimulation, EveryChangeOfActivityHappensAndNoOther) {
         const Activity now = run.activities()[k];
         if (now != before[k]) seen.insert({before[k], now});
         before[k] = now;
-        // Who has arrived leaves now and then.
+        // Bodies that have arrived leave now and then.
         if (now == kArrived && random_below(seed, i, k, 40) == 0) {
           const double x = 300 * random_unit(seed, i, 100 + k);
           const double z = 300 * random_unit(seed, i, 200 + k);
@@ -322,7 +322,7 @@ TEST(CaacdSimulation, EveryChangeOfActivityHappensAndNoOther) {
   }
 }
 
-TEST(CaacdSimulation, RandomSpacesKeepTheirPromisesAndTheirPlaces) {
+TEST(CaacdSimulation, RandomSpacesKeepTheirDistancesAndTheirPlaces) {
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const SpaceConfig config{.avatars = 60, .seed = seed};
     const auto space = random_space(config, best());
@@ -344,7 +344,7 @@ TEST(CaacdSimulation, RandomSpacesKeepTheirPromisesAndTheirPlaces) {
         EXPECT_GT(length(b.position - space->bodies[j].position), 15);
       }
     }
-    // One more avatar, another model: the places stay.
+    // One more avatar or another model does not change the places.
     SpaceConfig more = config;
     more.avatars = 61;
     const auto other = random_space(more, model_of({1, 1.2, 0.2}));

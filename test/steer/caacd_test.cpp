@@ -131,11 +131,11 @@ TEST(Caacd, ParallelCoursesAreJudgedByTheirPresentDistance) {
   EXPECT_EQ(beside(12).distance, 12);
 }
 
-TEST(Caacd, TheAlertFieldTriggersOnlyWhoIsInIt) {
+TEST(Caacd, OnlyABodyInTheAlertFieldIsAThreat) {
   const Model near = brisk(Trigger::kNear);
   EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(20.1, 0, -1, 0), near).level, State::kTolerable);
   EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(20, 0, -1, 0), near).level, State::kCritical);
-  // In it, but on the way out.
+  // In it, but leaving it.
   EXPECT_EQ(threat_of(body(0, 0, -1, 0), body(12, 0, 1, 0), near).level, State::kTolerable);
   EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(12, 0, -1, 0), brisk(Trigger::kNever)).level,
             State::kTolerable);
@@ -289,12 +289,12 @@ TEST(Caacd, PathAmendmentTurnsToTheTargetAndBrakesEvenly) {
   Model model = brisk();
   model.max_force = 100;
   model.deceleration = 32;
-  // Full speed from far off, with the root of the way left from psi on, none at the target.
+  // Full speed from far off, with the root of the distance left from psi on, none at the target.
   expect_near(path_amendment(body(0, 0, 0, 0), {100, 0, 0}, 0, model), {2, 0, 0});
   expect_near(path_amendment(body(0, 0, 0, 0), {0, 0, 8}, 0, model), {0, 0, 1});
   expect_near(path_amendment(body(0, 0, 1, 0.5), {0, 0, 2}, 0, model), {-1, 0, 0});
   expect_near(path_amendment(body(0, 0, 1, 0), {0, 0, 0}, 0, model), {-1, 0, 0});
-  // Who waits stops before the target, and stands where it is if it is nearer already.
+  // A waiting body stops before the target, and stops at once if it is nearer already.
   expect_near(path_amendment(body(0, 0, 0, 0), {0, 0, 20}, 12, model), {0, 0, 1});
   expect_near(path_amendment(body(0, 0, 0.5, 0), {0, 0, 10}, 12, model), {-0.5, 0, 0});
   model.max_force = 0.5;
@@ -326,7 +326,7 @@ TEST(Caacd, CrossingTheLaterOneBrakesAndTheEarlierOneGoesOn) {
   EXPECT_GT(forward_avoidance(early, threat_of(early, late, model), model).x, 0);
 }
 
-TEST(Caacd, WhoStandInOnePointPart) {
+TEST(Caacd, BodiesAtOnePointPart) {
   const Model model = brisk();
   const Body a = body(3, 3, 1, 0, 4), b = body(3, 3, 1, 0, 8);
   const Threat ta = threat_of(a, b, model), tb = threat_of(b, a, model);
@@ -336,7 +336,7 @@ TEST(Caacd, WhoStandInOnePointPart) {
   expect_near(lateral_avoidance(b, tb, model), {0, 0, -0.5});
 }
 
-TEST(Caacd, WhoIsNearerGoesFirstAndThenTheSmallerId) {
+TEST(Caacd, TheNearerBodyGoesFirstAndThenTheSmallerId) {
   const Vec3d place{0, 0, 0};
   EXPECT_TRUE(goes_first(body(3, 0, 1, 0, 9), place, body(4, 0, 1, 0, 1), place));
   EXPECT_FALSE(goes_first(body(4, 0, 1, 0, 1), place, body(3, 0, 1, 0, 9), place));
@@ -414,7 +414,7 @@ TEST(Caacd, AMirrorMirrorsTheForceWhereTheOtherIsNotDeadAhead) {
   EXPECT_GT(threats, 500);
 }
 
-TEST(Caacd, NothingFartherThanTheReachIsAThreat) {
+TEST(Caacd, NoBodyBeyondTheThreatRadiusIsAThreat) {
   int threats = 0;
   for (const Length kind : {Length::kTrue, Length::kMaxAndSum}) {
     Model model = brisk();
@@ -430,7 +430,7 @@ TEST(Caacd, NothingFartherThanTheReachIsAThreat) {
   EXPECT_GT(threats, 500);
 }
 
-TEST(Caacd, TheReachAllowsForALengthThatIsTooShort) {
+TEST(Caacd, TheThreatRadiusAllowsForALengthThatIsTooShort) {
   Model model{.max_speed = 0.01, .horizon = 1, .lambda1 = 0.5};
   model.length = Length::kMaxAndSum;
   model.trigger = Trigger::kThreat;

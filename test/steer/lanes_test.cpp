@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 
-// Worked out by hand: X is ahead, Z to the right.
+// Expected values by hand: X is ahead, Z to the right.
 namespace throng::steer {
 namespace {
 
@@ -24,7 +24,7 @@ Situation in_counterflow(const std::vector<Plane>& places, Plane preferred) {
   return s;
 }
 
-TEST(Lanes, ThreeWhoComeTowardsOneAreACounterFlow) {
+TEST(Lanes, ThreeThatComeTowardsItAreACounterFlow) {
   const LaneSettings settings;
   EXPECT_TRUE(is_opposed(settings, in_counterflow({{2, 0}, {2, 1}, {3, -1}}, kBack)));
   EXPECT_FALSE(is_opposed(settings, in_counterflow({{2, 0}, {2, 1}}, kBack)));
@@ -39,7 +39,7 @@ TEST(Lanes, ThreeWhoComeTowardsOneAreACounterFlow) {
   EXPECT_FALSE(is_opposed(settings, in_counterflow({{2, 0}, {2, 1}, {3, -1}}, {-0.79f, 0.6f})));
 }
 
-TEST(Lanes, WithNobodyAheadTheNearestLaneOnTheRightIsNoBetterByMuch) {
+TEST(Lanes, WithoutOthersTheRightmostLaneIsTheBest) {
   // 0.15 a metre aside, less 0.2 on the right: the rightmost lane, 1.2 m off, 1.5 m ahead.
   const Plane preferred = Lanes({}, kAhead).preferred();
   const float size = std::sqrt(1.5f * 1.5f + 1.2f * 1.2f);
@@ -52,7 +52,7 @@ TEST(Lanes, WithNobodyAheadTheNearestLaneOnTheRightIsNoBetterByMuch) {
   EXPECT_FLOAT_EQ(own.z, 0);
 }
 
-TEST(Lanes, OneWalksBehindHisOwnAndBesideTheOthers) {
+TEST(Lanes, ItWalksBehindItsOwnDirectionAndBesideTheOther) {
   LaneSettings settings;
   settings.right = 0;
   Lanes lanes(settings, kAhead);
@@ -64,19 +64,19 @@ TEST(Lanes, OneWalksBehindHisOwnAndBesideTheOthers) {
   EXPECT_NEAR(preferred.z, 1.2f * 0.8f / 1.7f, 1e-5f);
 }
 
-TEST(Lanes, WhoIsBehindOrFarOffDoesNotCount) {
+TEST(Lanes, AvatarsBehindOrFarAwayDoNotCount) {
   LaneSettings settings;
   settings.right = 0;
   Lanes lanes(settings, kAhead);
   for (const float x : {-0.1f, 5.1f, 80.0f}) lanes.add({x, 0}, kBack);
-  lanes.add({1, 0.6f}, kBack);  // farther than half a metre beside one's own lane
+  lanes.add({1, 0.6f}, kBack);  // more than half a metre aside of its own lane
   EXPECT_FLOAT_EQ(lanes.preferred().z, 0);
 }
 
 TEST(Lanes, TheOrderDoesNotMatterAndTheSpeedStays) {
   for (uint64_t seed = 1; seed <= 200; ++seed) {
-    const auto draw = [&](uint64_t n, float most) {
-      return most * static_cast<float>(2 * random_unit(seed, 1, n) - 1);
+    const auto draw = [&](uint64_t n, float max) {
+      return max * static_cast<float>(2 * random_unit(seed, 1, n) - 1);
     };
     const Plane preferred{draw(0, 1), draw(1, 1)};
     std::vector<std::pair<Plane, Plane>> others;
@@ -85,7 +85,7 @@ TEST(Lanes, TheOrderDoesNotMatterAndTheSpeedStays) {
           {{draw(4 * n, 6), draw(4 * n + 1, 6)}, {draw(4 * n + 2, 2), draw(4 * n + 3, 2)}});
     }
     Lanes one({}, preferred), other({}, preferred);
-    for (const auto& [at, bound] : others) one.add(at, bound);
+    for (const auto& [at, heading] : others) one.add(at, heading);
     for (auto it = others.rbegin(); it != others.rend(); ++it) other.add(it->first, it->second);
     const Plane a = one.preferred(), b = other.preferred();
     EXPECT_EQ(a.x, b.x);
@@ -95,7 +95,7 @@ TEST(Lanes, TheOrderDoesNotMatterAndTheSpeedStays) {
   }
 }
 
-TEST(MakingRoom, LeadsAwayFromThoseWhoAreTooClose) {
+TEST(Spacing, LeadsAwayFromOthersThatAreTooClose) {
   Situation s;
   EXPECT_EQ(making_room({}, s).x, 0);
   const SampledSettings settings;  // bodies count 0.02 m larger
@@ -110,7 +110,7 @@ TEST(MakingRoom, LeadsAwayFromThoseWhoAreTooClose) {
   add({0, -0.5f});  // touching: 0.06 m
   EXPECT_NEAR(making_room({}, s).z, 0.18f, 1e-3f);
   add({-0.54f, 0});
-  EXPECT_NEAR(making_room({}, s).x, 0, 1e-3f) << "between two one stays";
+  EXPECT_NEAR(making_room({}, s).x, 0, 1e-3f) << "between two it stays";
 }
 
 }  // namespace

@@ -16,17 +16,17 @@ namespace {
 constexpr SteeringModel kCurves = SteeringModel::kCurvilinear,
                         kForces = SteeringModel::kSocialForce;
 
-View walker(Plane velocity, Plane way = {100, 0}) {
+View walker(Plane velocity, Plane to_target = {100, 0}) {
   return {.velocity = velocity,
           .preferred = {1.3f, 0},
-          .way = way,
+          .way = to_target,
           .fastest = 1.3f,
           .radius = 0.25f,
           .slot = 3,
           .others = {}};
 }
 
-TEST(SteeringModels, NamesAreReadAsTheyAreTold) {
+TEST(SteeringModels, NamesAreReadAsTheyAreWritten) {
   for (const SteeringModel model : {SteeringModel::kSampled, kCurves, kForces}) {
     EXPECT_EQ(find_steering_model(name_of(model)), model);
     EXPECT_NE(std::string(steering_model_names()).find(name_of(model)), std::string::npos);
@@ -34,8 +34,8 @@ TEST(SteeringModels, NamesAreReadAsTheyAreTold) {
   EXPECT_FALSE(find_steering_model("orca"));
 }
 
-// v(t) = wish (1 - e^(-t / 0.5 s)), here by four steps of Euler's rule a tenth of a second.
-TEST(SteeringModels, AForceTakesUpTheWishByItsRelaxation) {
+// v(t) = preferred (1 - e^(-t / 0.5 s)), here by four Euler steps a tenth of a second.
+TEST(SteeringModels, AForceApproachesThePreferredVelocityByItsRelaxation) {
   const Plane v = preferred_velocity(kForces, walker({}), 0.1f);
   EXPECT_NEAR(v.x, 1.3 * (1 - std::pow(1 - 0.025 / 0.5, 4)), 1e-6);
   EXPECT_EQ(v.z, 0);
@@ -43,7 +43,7 @@ TEST(SteeringModels, AForceTakesUpTheWishByItsRelaxation) {
 
 // A unit is 0.05 m, the greatest speed 0.4 units a frame: 65 frames a second, in which MaxForce /
 // Mass changes the speed by 0.03 units a frame, each.
-TEST(SteeringModels, ACurveTakesUpTheWishByItsGreatestForce) {
+TEST(SteeringModels, ACurveApproachesThePreferredVelocityByItsMaxForce) {
   const Plane v = preferred_velocity(kCurves, walker({}), 0.1f);
   EXPECT_NEAR(v.x, std::min(1.3, 6.5 * 0.03 * 0.05 * 65), 1e-6);
   EXPECT_EQ(v.z, 0);
@@ -84,7 +84,7 @@ TEST(SteeringModels, ACurveIsThatOfTheEquations) {
   EXPECT_NEAR(got.z, v.z / speed, 1e-5);
 }
 
-TEST(SteeringModels, WhoMeetsSomebodyLeavesHisLineAndIsNeverTooFast) {
+TEST(SteeringModels, AnOpposedAvatarLeavesItsLineAndIsNeverTooFast) {
   for (const SteeringModel model : {kCurves, kForces}) {
     for (int k = 1; k < 200; ++k) {  // exactly head-on forces have no side
       const std::array<Other, 1> other{
@@ -98,7 +98,7 @@ TEST(SteeringModels, WhoMeetsSomebodyLeavesHisLineAndIsNeverTooFast) {
   }
 }
 
-TEST(SteeringModels, AWallPushesWhoWalksByForces) {
+TEST(SteeringModels, AWallPushesAnAvatarOfTheForceModel) {
   View view = walker({1.3f, 0});
   view.has_wall = true;
   view.wall = {0, 0.3f};
@@ -106,15 +106,15 @@ TEST(SteeringModels, AWallPushesWhoWalksByForces) {
   EXPECT_NEAR(v.z, -0.01 * 10 / 0.2 * std::exp(-0.3 / 0.2), 1e-3);
 }
 
-TEST(SteeringModels, WaysBeginWithWhatIsPreferred) {
-  const Choices ways = ways_about({0, 1});
-  EXPECT_EQ(ways[0].z, 1);
-  EXPECT_NEAR(ways[1].x, -0.5, 1e-6);  // 30 degrees to the right of Z, seen from above
-  EXPECT_NEAR(ways[2].x, 0.5, 1e-6);
-  EXPECT_NEAR(ways[5].x, -1, 1e-6);
-  EXPECT_NEAR(ways[6].x, 1, 1e-6);
-  EXPECT_EQ(ways[7].z, 0.75f);
-  for (const Plane& way : ways_about({})) EXPECT_EQ(size_of(way), 0);
+TEST(SteeringModels, CandidatesBeginWithThePreferredVelocity) {
+  const Choices candidates = ways_about({0, 1});
+  EXPECT_EQ(candidates[0].z, 1);
+  EXPECT_NEAR(candidates[1].x, -0.5, 1e-6);  // 30 degrees to the right of Z, seen from above
+  EXPECT_NEAR(candidates[2].x, 0.5, 1e-6);
+  EXPECT_NEAR(candidates[5].x, -1, 1e-6);
+  EXPECT_NEAR(candidates[6].x, 1, 1e-6);
+  EXPECT_EQ(candidates[7].z, 0.75f);
+  for (const Plane& v : ways_about({})) EXPECT_EQ(size_of(v), 0);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(SampledSteering, NearnessOfAWallIsThatOfTheTimeToReachIt) {
   EXPECT_EQ(nearness_of_wall(0, 0), 0);
 }
 
-TEST(SampledSteering, AloneItDoesWhatItWishes) {
+TEST(SampledSteering, AloneItTakesThePreferredVelocity) {
   const Plane preferred = best(situation({0.3f, 0.9f}, {1.1f, -0.2f}));
   EXPECT_EQ(preferred.x, 1.1f);
   EXPECT_EQ(preferred.z, -0.2f);
@@ -70,7 +70,7 @@ TEST(SampledSteering, AloneItDoesWhatItWishes) {
   EXPECT_TRUE(preferred_is_open({}, situation({0.3f, 0.9f}, {1.1f, -0.2f})));
 }
 
-TEST(SampledSteering, HeadOnItGoesToTheRight) {
+TEST(SampledSteering, HeadOnItPassesOnTheRight) {
   const Situation ahead = situation({1.3f, 0}, {1.3f, 0}, {{{1.6f, 0}, {-1.3f, 0}, 0.6f}});
   EXPECT_FALSE(preferred_is_open({}, ahead));
   EXPECT_GT(best(ahead).z, 0.1f);
@@ -81,20 +81,20 @@ TEST(SampledSteering, HeadOnItGoesToTheRight) {
   EXPECT_NEAR(turned.z, best(ahead).x, 1e-6);
 }
 
-TEST(SampledSteering, OvertakesAndLetsThoseAheadBe) {
+TEST(SampledSteering, OvertakesSlowerOnesAndFollowsEqualOnes) {
   const Plane v{1.3f, 0};
   EXPECT_GT(std::fabs(best(situation(v, v, {{{0.9f, 0}, {0.4f, 0}, 0.6f}})).z), 0.1f);
   EXPECT_EQ(best(situation(v, v, {{{0.9f, 0}, {1.3f, 0}, 0.6f}})).z, 0);
   EXPECT_EQ(best(situation(v, v, {{{0, 1}, {1.3f, 0}, 0.6f}})).x, 1.3f);
 }
 
-// The speed that a room of so many metres leaves, worked out in other terms.
-double speed_for(double room, double fastest) {
-  const double u = room / (SampledSettings{}.headway * fastest);
+// The speed limit at a spacing [m], by an equivalent formula.
+double speed_for(double spacing, double fastest) {
+  const double u = spacing / (SampledSettings{}.headway * fastest);
   return 1.1 * fastest * (u + u * u / 2 + u * u * u / 2) / (1 + u + u * u / 2 + u * u * u / 2);
 }
 
-TEST(SampledSteering, FollowsNoFasterThanTheRoomAllows) {
+TEST(SampledSteering, FollowsNoFasterThanTheSpacingAllows) {
   const Plane preferred{1.3f, 0};
   const auto speed = [&](const Neighbour& other) {
     return following({}, situation({}, preferred, {other}));
@@ -106,17 +106,18 @@ TEST(SampledSteering, FollowsNoFasterThanTheRoomAllows) {
               1e-5);  // and the gap
   EXPECT_EQ(speed({{0.4f, 0}, {}, 0.38f, preferred}).x, 0);
   EXPECT_EQ(speed({{3, 0}, {}, 0.5f, preferred}).x, 1.3f);
-  // A leader who is faster lets a part of that through.
+  // A faster leader raises the limit by a share of the difference.
   const double limit = speed_for(0.2, 1.3), foresight = SampledSettings{}.foresight;
   EXPECT_NEAR(speed({{0.6f, 0}, {1.2f, 0.4f}, 0.5f, preferred}).x,
               limit + foresight * (1.2 - limit), 1e-5);
   EXPECT_NEAR(speed({{0.6f, 0}, {0.1f, 0}, 0.5f, preferred}).x, limit, 1e-5);
-  // Behind, beside, bound elsewhere, or without a wish: nobody to follow.
+  // Behind, beside, in another direction, or without a preferred velocity: no leader.
   EXPECT_EQ(speed({{-0.8f, 0}, {}, 0.6f, preferred}).x, 1.3f);
   EXPECT_EQ(speed({{0.5f, 0.6f}, {}, 0.6f, preferred}).x, 1.3f);
   EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {0, 1.3f}}).x, 1.3f);
   EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {-1.3f, 0}}).x, 1.3f);
-  EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {1, 0.8f}}).x, 1.3f);  // 39 degrees, 37 are one's way
+  EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {1, 0.8f}}).x,
+            1.3f);  // 39 degrees; up to 37 is the same direction
   EXPECT_LT(speed({{0.8f, 0}, {}, 0.6f, {1, 0.7f}}).x, 1.3f);  // 35
   EXPECT_EQ(speed({{0.8f, 0}, {}, 0.6f, {}}).x, 1.3f);
   // The nearest of several counts, and the direction stays.
@@ -140,11 +141,11 @@ TEST(SampledSteering, TurnsAwayFromAWallAheadAndStopsInADeadEnd) {
   EXPECT_EQ(size_of(best(s)), 0);
 }
 
-// Situations of all kinds: crowded, coincident, without a wish, beside walls.
+// Situations of all kinds: crowded, coincident, without a preferred velocity, beside walls.
 Situation random_situation(uint64_t seed, uint64_t n) {
   uint64_t k = 0;
-  const auto number = [&](double most) {
-    return static_cast<float>(most * (2 * random_unit(seed, n, k++) - 1));
+  const auto number = [&](double max) {
+    return static_cast<float>(max * (2 * random_unit(seed, n, k++) - 1));
   };
   const float fastest = 0.2f + std::fabs(number(2));
   Situation s = situation({number(1), number(1)}, {number(1), number(1)}, {}, fastest);
@@ -160,7 +161,7 @@ Situation random_situation(uint64_t seed, uint64_t n) {
     s.near.add({}, {at, {number(2), number(2)}, radii, heading});
   }
   s.has_walls = n % 3 == 0;
-  for (float& way : s.free_distance) way = std::max(number(1), 0.0f);
+  for (float& distance : s.free_distance) distance = std::max(number(1), 0.0f);
   return s;
 }
 
@@ -173,7 +174,7 @@ TEST(SampledSteering, ChoicesAreFiniteAndNeverFasterThanTheBody) {
   }
 }
 
-TEST(SampledSteering, MachinesFindTheSameBits) {
+TEST(SampledSteering, VectorsFindTheSameBits) {
   test::for_every_simd_target([&](const char* name) {
     for (uint64_t n = 0; n < 2000; ++n) {
       const Situation s = random_situation(9, n);
@@ -195,45 +196,47 @@ TEST(SampledSteering, MachinesFindTheSameBits) {
       const Plane first = best_of(expected, expected_trials)[0];
       ASSERT_EQ(std::memcmp(&best, &first, sizeof best), 0) << name << ' ' << n;
       for (const Plane& choice : best_of(expected, expected_trials)) {
-        const Plane taken = take_best_fast(trials, costs);
-        ASSERT_EQ(std::memcmp(&taken, &choice, sizeof choice), 0) << name << ' ' << n;
+        const Plane next = take_best_fast(trials, costs);
+        ASSERT_EQ(std::memcmp(&next, &choice, sizeof choice), 0) << name << ' ' << n;
       }
     }
   });
 }
 
-TEST(SampledSteering, PatienceTurnsRightWhileOneDoesNotGetOn) {
-  const Patience patience;
-  float turn = 0;
-  for (int i = 0; i < 5; ++i) turn = next_turn(patience, turn, 0.1f, 0.1f, 0.1f);
-  EXPECT_NEAR(turn, 5 * 0.1 * patience.rate, 1e-6);
-  turn = next_turn(patience, patience.most, 0.9f, 0, 0.1f);
-  EXPECT_NEAR(turn, patience.most - 0.1 * patience.back, 1e-6);
-  for (int i = 0; i < 100; ++i) turn = next_turn(patience, turn, 1, 1, 0.1f);
-  EXPECT_EQ(turn, 0);
+TEST(SampledSteering, WithoutProgressItTurnsRightAndReturnsWithProgress) {
+  const Patience settings;
+  float angle = 0;
+  for (int i = 0; i < 5; ++i) angle = next_turn(settings, angle, 0.1f, 0.1f, 0.1f);
+  EXPECT_NEAR(angle, 5 * 0.1 * settings.rate, 1e-6);
+  angle = next_turn(settings, settings.side_angle, 0.9f, 0, 0.1f);
+  EXPECT_NEAR(angle, settings.side_angle - 0.1 * settings.return_rate, 1e-6);
+  for (int i = 0; i < 100; ++i) angle = next_turn(settings, angle, 1, 1, 0.1f);
+  EXPECT_EQ(angle, 0);
 }
 
-TEST(SampledSteering, WhoIsShutInTurnsAwaySlowlyUntilHeWalks) {
-  const Patience patience;
-  float turn = patience.most;
-  for (int i = 0; i < 10; ++i) turn = next_turn(patience, turn, 0, 0, 0.1f);
-  EXPECT_NEAR(turn, patience.most + patience.slow, 1e-5);
-  // Away from his goal, but he walks: back, until he can make for it again.
-  EXPECT_NEAR(next_turn(patience, turn, -0.2f, 0.9f, 0.1f), turn - 0.1 * patience.back, 1e-6);
-  // In a corner, nothing helps: he begins again.
-  float most = 0;
+TEST(SampledSteering, ABlockedAvatarTurnsAwaySlowlyUntilItWalks) {
+  const Patience settings;
+  float angle = settings.side_angle;
+  for (int i = 0; i < 10; ++i) angle = next_turn(settings, angle, 0, 0, 0.1f);
+  EXPECT_NEAR(angle, settings.side_angle + settings.slow_rate, 1e-5);
+  // It walks away from its goal: the angle decreases until it can head to the goal again.
+  EXPECT_NEAR(next_turn(settings, angle, -0.2f, 0.9f, 0.1f), angle - 0.1 * settings.return_rate,
+              1e-6);
+  // In a corner no angle helps: it starts again at 0.
+  float largest = 0;
   int steps = 0;
-  for (; turn > 0; ++steps) {
-    turn = next_turn(patience, turn, -0.1f, 0.2f, 0.1f);
-    most = std::max(most, turn);
+  for (; angle > 0; ++steps) {
+    angle = next_turn(settings, angle, -0.1f, 0.2f, 0.1f);
+    largest = std::max(largest, angle);
   }
-  EXPECT_NEAR(most, patience.farthest, 0.1 * patience.slow + 1e-5);
-  EXPECT_NEAR(steps * 0.1, (patience.farthest - patience.most) / patience.slow - 1, 0.5);
-  // Along a wish that is turned less it is the goal that counts.
-  EXPECT_GT(next_turn(patience, 0.3f, 0.2f, 0.9f, 0.1f), 0.3f);
+  EXPECT_NEAR(largest, settings.max_angle, 0.1 * settings.slow_rate + 1e-5);
+  EXPECT_NEAR(steps * 0.1, (settings.max_angle - settings.side_angle) / settings.slow_rate - 1,
+              0.5);
+  // Below side_angle only progress towards the goal counts.
+  EXPECT_GT(next_turn(settings, 0.3f, 0.2f, 0.9f, 0.1f), 0.3f);
 }
 
-TEST(SampledSteering, TurnsAreToTheRight) {
+TEST(SampledSteering, DetourAnglesAreToTheRight) {
   const Plane right = turned_right({1, 0}, 1);  // 2 atan(1): a right angle
   EXPECT_NEAR(right.x, 0, 1e-6);
   EXPECT_NEAR(right.z, 1, 1e-6);

@@ -10,8 +10,8 @@
 namespace throng::steer {
 namespace {
 
-TEST(SocialForce, WhoStandsPushesByDistanceAlone) {
-  // b is the distance then: 2.1 / 0.3 exp(-1 / 0.3) = 0.249718.
+TEST(SocialForce, AStandingWalkerPushesByDistanceAlone) {
+  // Then b is the distance: 2.1 / 0.3 exp(-1 / 0.3) = 0.249718.
   const Force force = repulsion({.x = 1}, {}, {});
   EXPECT_NEAR(force.x, 0.249718, 1e-6);
   EXPECT_EQ(force.z, 0);
@@ -21,23 +21,23 @@ TEST(SocialForce, WhoStandsPushesByDistanceAlone) {
   EXPECT_EQ(repulsion({}, {}, {}).x, 0);
 }
 
-TEST(SocialForce, WhoWalksPushesAlongAnEllipseAroundHisNextStep) {
-  // b walks at 1 m/s for 2 s past a, who stands 1 m beside the middle of that step: both foci are
-  // sqrt 2 away, so the small axis is 1, and the push goes straight aside:
-  // 7 exp(-1 / 0.3) x (2 sqrt 2 / 4) x 2 / sqrt 2 = 0.249718.
+TEST(SocialForce, AMovingWalkerPushesAlongAnEllipseAroundItsNextStride) {
+  // b walks at 1 m/s for 2 s past a, which stands 1 m beside the middle of that stride: both foci
+  // are sqrt 2 away, so the small axis is 1, and the push goes straight aside: 7 exp(-1 / 0.3) x (2
+  // sqrt 2 / 4) x 2 / sqrt 2 = 0.249718.
   const Force force = repulsion({.x = 1, .z = 1}, {.vx = 1}, {});
   EXPECT_NEAR(force.x, 0, 1e-12);
   EXPECT_NEAR(force.z, 0.249718, 1e-6);
 }
 
-// An oracle of its own: the slope of the potential.
+// An independent oracle: the slope of the potential.
 TEST(SocialForce, TheForceIsTheSlopeOfThePotential) {
   const SocialForceConfig config;
   const auto potential = [&](double x, double z, const ForceWalker& b) {
     const double rx = x - b.x, rz = z - b.z;
     const double sum = std::hypot(rx, rz) + std::hypot(rx - 2 * b.vx, rz - 2 * b.vz);
     const double step = 2 * std::hypot(b.vx, b.vz);
-    return config.strength * std::exp(-std::sqrt(sum * sum - step * step) / 2 / config.reach);
+    return config.strength * std::exp(-std::sqrt(sum * sum - step * step) / 2 / config.range);
   };
   const double h = 1e-6;
   for (int k = 0; k < 50; ++k) {
@@ -51,12 +51,12 @@ TEST(SocialForce, TheForceIsTheSlopeOfThePotential) {
   }
 }
 
-TEST(SocialForce, AWishIsTakenUpInHalfASecondAndNobodyRuns) {
+TEST(SocialForce, ThePreferredVelocityIsApproachedInHalfASecondAndTheSpeedIsLimited) {
   std::vector<ForceWalker> one{{.preferred_x = 1}};
   step_social_force(one, 0.1, {});
   EXPECT_NEAR(one[0].vx, 0.2, 1e-12);  // 1 / 0.5 x 0.1
   EXPECT_NEAR(one[0].x, 0.02, 1e-12);
-  // Somebody right behind: 7 exp(-1) by half, as he is not seen, and the speed is cut at 1.3.
+  // Another right behind: half of 7 exp(-1), as it is out of view; the speed is limited to 1.3.
   std::vector<ForceWalker> two{{.vx = 1, .preferred_x = 1}, {.x = -0.3}};
   step_social_force(two, 0.1, {});
   EXPECT_NEAR(two[0].vx, 1 + 0.05 * 7 * std::exp(-1), 1e-9);

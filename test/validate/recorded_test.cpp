@@ -37,7 +37,7 @@ double value_of(const ValidationResult& result, const std::string& name) {
   return std::nan("");
 }
 
-TEST_F(Recorded, JuelichFilesSayTheirUnitAndTime) {
+TEST_F(Recorded, JuelichFilesStateTheirUnitAndTime) {
   const auto metres = validate::load_juelich(
       write("a.txt",
             "# framerate: 25 fps\n# id frame x/m y/m z/m\n1\t0\t2.5\t-1\t1.76\n"
@@ -76,7 +76,7 @@ TEST_F(Recorded, DamagedFilesAreRefusedWithTheLine) {
   EXPECT_FALSE(validate::load_juelich((folder_ / "none.txt").string()));
 }
 
-// Whatever stands in a file, it is read or refused.
+// Any file is either read or refused.
 TEST_F(Recorded, DamagedFilesNeverDoHarm) {
   std::string good;
   for (int k = 0; k < 30; ++k) {
@@ -120,13 +120,13 @@ TEST_F(Recorded, ErrorsOfConstantVelocityAreThoseWorkedOutByHand) {
   Context context;
   const auto result = run_recorded_validation("walkers", folder_.string(), {}, context);
   ASSERT_TRUE(result) << result.error().message;
-  EXPECT_EQ(value_of(*result, "scene: people followed"), 2);
+  EXPECT_EQ(value_of(*result, "scene: people predicted"), 2);
   EXPECT_NEAR(value_of(*result, "scene: mean error, constant velocity"), 0.65 / 2, 1e-5);
   EXPECT_NEAR(value_of(*result, "scene: error after 4.8 s, constant velocity"), 1.2 / 2, 1e-5);
   // Alone, [CAACD] and the social force keep on as well.
   EXPECT_NEAR(value_of(*result, "scene: mean error, [CAACD]"), 0.65 / 2, 1e-5);
   EXPECT_NEAR(value_of(*result, "scene: mean error, social force [HM95]"), 0.65 / 2, 1e-5);
-  // Nobody is near, so ours walks as straight, a tenth of a millimetre aside.
+  // No other is near, so ours walks straight as well, within a tenth of a millimetre.
   EXPECT_NEAR(value_of(*result, "scene: mean error, throng"), 0.65 / 2, 1e-3);
   EXPECT_NEAR(value_of(*result, "scene: min distance, half of people, real"), 20.1, 1e-5);
   EXPECT_NEAR(value_of(*result, "scene: min distance, half of people, constant velocity"), 20,
@@ -145,9 +145,9 @@ TEST_F(Recorded, ErrorsOfConstantVelocityAreThoseWorkedOutByHand) {
   }
 }
 
-// Every 2 s somebody walks straight through an open corridor at 1 m/s: 2 are in the 7.2 m2 of the
-// box at a time. Ours wish for 1.34 m/s, so as many come and fewer are there.
-TEST_F(Recorded, AFilmedCorridorIsMeasuredAsWorkedOutByHand) {
+// Every 2 s a person walks straight through an open corridor at 1 m/s: 2 are in the 7.2 m2 of the
+// box at a time. Our avatars have a desired speed of 1.34 m/s: the same flow, a lower density.
+TEST_F(Recorded, ARecordedCorridorIsMeasuredAsWorkedOutByHand) {
   std::string text = "# framerate: 10 fps\n# id frame x/m y/m z/m\n";
   for (int n = 0; n < 40; ++n) {
     for (int k = 0; k <= 140; ++k) {
@@ -160,7 +160,7 @@ TEST_F(Recorded, AFilmedCorridorIsMeasuredAsWorkedOutByHand) {
   const auto result = run_recorded_validation("laboratory", folder_.string(), {}, context);
   ASSERT_TRUE(result) << result.error().message;
   const std::string at = "one way, open: ";
-  EXPECT_EQ(value_of(*result, at + "people filmed over the line"), 40);
+  EXPECT_EQ(value_of(*result, at + "people recorded over the line"), 40);
   EXPECT_EQ(value_of(*result, at + "people walked over the line"), 40);
   EXPECT_NEAR(value_of(*result, at + "flow, real"), 0.5, 1e-6);
   EXPECT_NEAR(value_of(*result, at + "speed, real"), 1, 1e-6);

@@ -35,7 +35,7 @@ TEST(Statistics, SharesBelowAreThoseOfTheBooks) {
 
 TEST(Statistics, KolmogorovsDistanceIsTheLargestStepAside) {
   const auto share = [](double x) { return x; };
-  // Steps at .1, .4, .7 up to 1/3, 2/3, 1: the most is 1 - .7.
+  // Steps at .1, .4, .7 up to 1/3, 2/3, 1: the largest is 1 - .7.
   EXPECT_NEAR(ks_distance({0.7, 0.1, 0.4}, share), 0.3, 1e-12);
   EXPECT_NEAR(ks_distance({0.5}, share), 0.5, 1e-12);
   EXPECT_NEAR(ks_distance({0.9}, share), 0.9, 1e-12);  // before the step, not after it
@@ -58,7 +58,7 @@ TEST(Statistics, LikelihoodsAreThoseOfTheTables) {
   }
 }
 
-TEST(Statistics, WeidmannsSpeedsAreThoseOfHisTable) {
+TEST(Statistics, WeidmannsSpeedsAreThoseOfTheTable) {
   EXPECT_NEAR(weidmann(0.5), 1.30, 0.005);
   EXPECT_NEAR(weidmann(1), 1.06, 0.005);
   EXPECT_NEAR(weidmann(2), 0.61, 0.005);

@@ -13,10 +13,10 @@
 namespace throng {
 namespace {
 
-using validate::Before;
+using validate::DoorOffset;
 using validate::Passer;
 
-TEST(Streams, OrderIsOneForPureRowsAndNoneForChance) {
+TEST(Streams, OrderIsOneForPureRowsAndZeroForRandomOnes) {
   std::vector<Passer> pure, even;
   for (int n = 0; n < 40; ++n) {
     const double across = 0.1 + n % 4;
@@ -46,7 +46,7 @@ TEST(Streams, OrderIsOneForPureRowsAndNoneForChance) {
 }
 
 TEST(Streams, AHalfCircleIsAsWideAsItIsDeep) {
-  std::vector<Before> half, column;
+  std::vector<DoorOffset> half, column;
   for (double x = -4.975; x < 5; x += 0.05) {
     for (double y = 0.025; y < 5; y += 0.05) {
       if (std::hypot(x, y) < 5) half.push_back({x, y});
@@ -58,7 +58,7 @@ TEST(Streams, AHalfCircleIsAsWideAsItIsDeep) {
   EXPECT_EQ(validate::arch_shape({}), 0);
 }
 
-TEST(Streams, CrowdsAreTheSameForAnyWorkersAndTouchNobody) {
+TEST(Streams, CrowdsAreTheSameForAnyWorkersAndHaveNoOverlaps) {
   for (const char* name : {"crossing", "arch"}) {
     Context context;
     const auto one = run_validation(name, {.workers = 1, .brief = true}, context);

@@ -70,18 +70,18 @@ ValidationResult run(const std::string& text, int32_t workers = 1) {
 }
 
 TEST(Trial, MeasuresAreThoseOfOneWalkWorkedOutByHand) {
-  const auto result =
-      run(kWalk + measures({"of = \"time\"", "of = \"left\"", "of = \"premovement\"",
-                            "of = \"delay\"", "of = \"wish\"", "of = \"speed\"\narea = \"slow\"",
-                            "of = \"speed\"\nfrom = 4\nuntil = 11", "of = \"people\"",
-                            "of = \"stayed\"", "of = \"people\"\nexit = \"slow\"",
-                            "of = \"passed\"\nline = [[10, 0], [10, 2]]",
-                            "of = \"passed\"\nline = [[10, 1.5], [10, 2]]",
-                            "of = \"density\"\narea = \"slow\"\nfrom = 14\nuntil = 22",
-                            "of = \"density\"\narea = \"slow\"\ntake = \"most\"",
-                            "of = \"ratio\"\nothers = [\"m0\", \"m2\"]",
-                            "of = \"difference\"\nothers = [\"m1\", \"m0\"]",
-                            "of = \"rise\"\nothers = [\"m2\", \"m0\", \"m1\"]"}));
+  const auto result = run(
+      kWalk +
+      measures({"of = \"time\"", "of = \"left\"", "of = \"premovement\"", "of = \"delay\"",
+                "of = \"desired_speed\"", "of = \"speed\"\narea = \"slow\"",
+                "of = \"speed\"\nfrom = 4\nuntil = 11", "of = \"people\"", "of = \"stayed\"",
+                "of = \"people\"\nexit = \"slow\"", "of = \"passed\"\nline = [[10, 0], [10, 2]]",
+                "of = \"passed\"\nline = [[10, 1.5], [10, 2]]",
+                "of = \"density\"\narea = \"slow\"\nfrom = 14\nuntil = 22",
+                "of = \"density\"\narea = \"slow\"\nstatistic = \"max\"",
+                "of = \"ratio\"\nothers = [\"m0\", \"m2\"]",
+                "of = \"difference\"\nothers = [\"m1\", \"m0\"]",
+                "of = \"rise\"\nothers = [\"m2\", \"m0\", \"m1\"]"}));
   const double time = 10 + 10 + 4;
   const std::vector<std::pair<double, double>> expected = {
       {time, 0.4}, {time + 3, 0.4}, {3, 1e-9},        {0.1, 0.101}, {1, 1e-9}, {0.5, 0.005},
@@ -105,10 +105,12 @@ TEST(Trial, AFitIsLikelyForWhatIsDrawnSoAndNotForWhatIsNot) {
   put("box = [0.9, 0.9, 1.1, 1.1]", "box = [0.3, 0.3, 10, 1.7]");
   put("speed = 1", "speed = { normal = [1.2, 0.2], within = [0.6, 1.8] }");
   put("seconds = 60", "seconds = 30");
-  text += "[[measure]]\nname = \"wished\"\nof = \"wish\"\nprofile = \"one\"\ntake = \"fit\"\n";
-  // In a corridor for two abreast nobody walks as fast as he wishes.
   text +=
-      "[[measure]]\nname = \"walked\"\nof = \"speed\"\nprofile = \"one\"\ntake = \"fit\"\n"
+      "[[measure]]\nname = \"desired\"\nof = \"desired_speed\"\nprofile = \"one\"\nstatistic = "
+      "\"fit\"\n";
+  // In a corridor for two abreast no avatar walks at its desired speed.
+  text +=
+      "[[measure]]\nname = \"walked\"\nof = \"speed\"\nprofile = \"one\"\nstatistic = \"fit\"\n"
       "area = \"slow\"\n";
   const auto one = run(text, 1);
   EXPECT_GT(one.measures[0].value, 0.05);
@@ -129,18 +131,38 @@ TEST(Trial, ANumberThatNothingGaveIsNoneAndFails) {
   }
 }
 
+TEST(Trial, NamesOfFormerVersionsMeanTheSame) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"of = \"desired_speed\"", "of = \"wish\""},
+      {"of = \"time\"\nstatistic = \"mean\"", "of = \"time\"\ntake = \"mean\""},
+      {"of = \"time\"\nstatistic = \"min\"", "of = \"time\"\ntake = \"least\""},
+      {"of = \"left\"\nstatistic = \"max\"", "of = \"left\"\ntake = \"most\""},
+      {"of = \"left\"\nstatistic = \"range\"", "of = \"left\"\nstatistic = \"spread\""},
+  };
+  for (const auto& [present, former] : cases) {
+    const auto expected = parse_trial(kWalk + measures({present}), "present.toml");
+    const auto found = parse_trial(kWalk + measures({former}), "former.toml");
+    ASSERT_TRUE(expected) << expected.error().message;
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->measures[0].of, expected->measures[0].of) << former;
+    EXPECT_EQ(found->measures[0].take, expected->measures[0].take) << former;
+  }
+}
+
 TEST(Trial, WhatIsWrongIsRefusedInOneSentence) {
   const std::pair<std::string, std::string> cases[] = {
       {"of = \"weight\"", "of must be one of: time, left"},
       {"of = \"time\"\nnonsense = 1", "unknown key 'nonsense'"},
-      {"of = \"time\"\nsource = \"nobody\"", "source: there is no 'nobody'; there are: source"},
-      {"of = \"time\"\ntake = \"overall\"", "only a speed"},
-      {"of = \"time\"\ntake = \"fit\"", "can fit"},
-      {"of = \"wish\"\ntake = \"fit\"", "a fit needs one source"},
+      {"of = \"time\"\nsource = \"other\"", "source: there is no 'other'; there are: source"},
+      {"of = \"time\"\nstatistic = \"overall\"", "only a speed"},
+      {"of = \"time\"\nstatistic = \"fit\"", "can fit"},
+      {"of = \"desired_speed\"\nstatistic = \"fit\"", "a fit needs one source"},
+      {"of = \"time\"\nstatistic = \"total\"", "statistic must be one of: mean, min, max, range"},
+      {"of = \"time\"\nstatistic = \"min\"\ntake = \"max\"", "unknown key 'take'"},
       {"of = \"time\"\nline = [[0, 0], [1, 1]]", "only flow and passed"},
       {"of = \"flow\"", "line = [[x, z], [x, z]]"},
       {"of = \"flow\"\nline = [[1, 1], [1, 1]]", "two different"},
-      {"of = \"flow\"\nline = [[1, 1], [1, 2]]\ntake = \"mean\"", "one number only"},
+      {"of = \"flow\"\nline = [[1, 1], [1, 2]]\nstatistic = \"mean\"", "one number only"},
       {"of = \"density\"", "needs an area"},
       {"of = \"people\"\narea = \"end\"", "only a speed or a density"},
       {"of = \"speed\"\nfrom = 5\nuntil = 5", "until must be after from"},
@@ -163,12 +185,12 @@ TEST(Trial, WhatIsWrongIsRefusedInOneSentence) {
   EXPECT_FALSE(load_trials("/no/such/folder"));
 }
 
-// Whatever stands in a file, it is read or refused with a place.
+// Any file is either read or refused with the place of the fault.
 TEST(Trial, DamagedFilesNeverDoHarm) {
   const std::string good =
       kWalk +
       measures({"of = \"flow\"\nline = [[10, 0], [10, 2]]\nby = \"width\"\nlow = 1\nhigh = 2",
-                "of = \"speed\"\ntake = \"fit\"\nprofile = \"one\"\narea = \"slow\"\nfrom = 1",
+                "of = \"speed\"\nstatistic = \"fit\"\nprofile = \"one\"\narea = \"slow\"\nfrom = 1",
                 "of = \"ratio\"\nothers = [\"m0\", \"m1\"]"});
   ASSERT_TRUE(parse_trial(good, "good.toml"));
   const std::string bytes = "0123456789.-\"[]{}=,\n #\xff";

@@ -25,7 +25,7 @@ TEST(Validation, AMeasureIsJudgedByItsBoundsAlone) {
   EXPECT_FALSE(result.passed());
 }
 
-TEST(Validation, TestsHaveNamesOfTheirOwnAndSayHowTheyMeasure) {
+TEST(Validation, TestsHaveUniqueNamesAndStateTheirMethod) {
   std::set<std::string> names;
   for (const ValidationTest& test : validation_tests()) {
     EXPECT_TRUE(names.insert(test.name).second) << test.name;
@@ -34,7 +34,7 @@ TEST(Validation, TestsHaveNamesOfTheirOwnAndSayHowTheyMeasure) {
   EXPECT_FALSE(names.empty());
 }
 
-TEST(Validation, AnUnknownTestIsRefusedWithThoseThatThereAre) {
+TEST(Validation, AnUnknownTestIsRefusedWithTheListOfTests) {
   Context context;
   const auto result = run_validation("fundamentl", {}, context);
   ASSERT_FALSE(result);

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "validate/room.h"
+#include "validate/plane_crowd.h"
 
 #include <utility>
 
 #include "throng/bake.h"
 
+// The world is baked from polygons; velocities are differences of positions over a step.
 namespace throng::validate {
 
 AvatarClass walker() {
@@ -19,8 +20,9 @@ Polygon box(double x0, double z0, double x1, double z1) {
   return {.outer = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}, .holes = {}};
 }
 
-Result<Room> Room::build(const PlaneConfig& plane, const AvatarClass& body, Routing ways,
-                         const ValidationConfig& config, Context& context) {
+Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass& body,
+                                     Routing routing, const ValidationConfig& config,
+                                     Context& context) {
   const auto scene = make_plane_scene(plane);
   if (!scene) return scene.error();
   auto world = bake_world(
@@ -29,81 +31,81 @@ Result<Room> Room::build(const PlaneConfig& plane, const AvatarClass& body, Rout
   auto crowd = Crowd::create(*world, {.dt = kStep,
                                       .seed = config.seed,
                                       .workers = config.workers,
-                                      .ways = ways,
+                                      .ways = routing,
                                       .model = config.model});
   if (!crowd) return crowd.error();
-  return Room(*std::move(world), *std::move(crowd));
+  return PlaneCrowd(*std::move(world), *std::move(crowd));
 }
 
-Result<std::vector<AvatarId>> Room::place(std::span<const Spot> spots,
-                                          std::span<const double> speeds, Context& context) {
+Result<std::vector<AvatarId>> PlaneCrowd::add(std::span<const Point2> starts,
+                                              std::span<const double> speeds, Context& context) {
   std::vector<AvatarSpawn> spawns;
-  std::vector<size_t> whose;
-  for (size_t i = 0; i < spots.size(); ++i) {
-    const Place place = world_.find_place(0, {spots[i].x, 0, spots[i].z}, 0.5);
+  std::vector<size_t> index_of;
+  for (size_t i = 0; i < starts.size(); ++i) {
+    const Place place = world_.find_place(0, {starts[i].x, 0, starts[i].z}, 0.5);
     if (!place) continue;
     spawns.push_back({.place = place, .speed = speeds[i]});
-    whose.push_back(i);
+    index_of.push_back(i);
   }
   const auto added = crowd_.add(spawns, context);
   if (!added) return added.error();
-  std::vector<AvatarId> ids(spots.size());
+  std::vector<AvatarId> ids(starts.size());
   for (size_t k = 0; k < added->size(); ++k) {
     const AvatarId id = (*added)[k];
     if (!id) continue;
-    ids[whose[k]] = id;
+    ids[index_of[k]] = id;
     if (id.slot1 > id_of_slot_.size()) id_of_slot_.resize(id.slot1);
     id_of_slot_[id.slot1 - 1] = id;
   }
-  look(/*has_moved=*/false);
+  observe(/*has_moved=*/false);
   return ids;
 }
 
-Result<std::vector<AvatarId>> Room::stand(std::span<const Spot> spots, double speed,
-                                          Context& context) {
-  auto ids = place(spots, std::vector<double>(spots.size(), speed), context);
+Result<std::vector<AvatarId>> PlaneCrowd::add_fitting(std::span<const Point2> starts, double speed,
+                                                      Context& context) {
+  auto ids = add(starts, std::vector<double>(starts.size(), speed), context);
   if (ids) std::erase_if(*ids, [](AvatarId id) { return !id; });
   return ids;
 }
 
-bool Room::send(AvatarId id, Spot goal) {
+bool PlaneCrowd::set_goal(AvatarId id, Point2 goal) {
   const Place place = world_.find_place(0, {goal.x, 0, goal.z}, 0.5);
   if (!place) return false;
   crowd_.set_goals({&id, 1}, {&place, 1});
   return true;
 }
 
-void Room::look(bool has_moved) {
+void PlaneCrowd::observe(bool has_moved) {
   crowd_.read(states_);
-  seen_.clear();
-  last_.resize(id_of_slot_.size());
+  avatars_.clear();
+  last_position_.resize(id_of_slot_.size());
   for (const AvatarState& state : states_) {
-    Spot& last = last_[state.id];
-    const Spot now{state.position.x, state.position.z};
-    Seen seen{.id = id_of_slot_[state.id], .x = now.x, .z = now.z};
+    Point2& last = last_position_[state.id];
+    const Point2 now{state.position.x, state.position.z};
+    AvatarMotion motion{.id = id_of_slot_[state.id], .x = now.x, .z = now.z};
     if (has_moved) {
-      seen.vx = (now.x - last.x) / kStep;
-      seen.vz = (now.z - last.z) / kStep;
+      motion.vx = (now.x - last.x) / kStep;
+      motion.vz = (now.z - last.z) / kStep;
     }
     last = now;
-    seen_.push_back(seen);
+    avatars_.push_back(motion);
   }
 }
 
-void Room::step() {
+void PlaneCrowd::step() {
   crowd_.step();
-  look(/*has_moved=*/true);
+  observe(/*has_moved=*/true);
   if (++steps_ % 10 != 0) return;
   const CrowdCheck found = crowd_.check();
   faults_.overlaps += found.overlaps;
   faults_.wall_entries += found.wall_entries;
-  ++looks_;
+  ++checks_;
 }
 
-void Room::report(ValidationResult& result) const {
+void PlaneCrowd::report(ValidationResult& result) const {
   result.faults.overlaps += faults_.overlaps;
   result.faults.wall_entries += faults_.wall_entries;
-  result.looks += looks_;
+  result.looks += checks_;
   result.simulated += time();
 }
 

@@ -84,13 +84,13 @@ void draw_ticks(Canvas& canvas, const Rect& plot, const HeatMap& map, double sca
   for (double n = std::ceil(map.x0 / step - 1e-9); n * step <= map.x0 + width + 1e-9; ++n) {
     const double x = plot.x + (n * step - map.x0) * scale;
     canvas.line({x, plot.y + plot.height}, {x, plot.y + plot.height + text * 0.4}, 1, kFaintInk);
-    draw_text(canvas, {x, plot.y + plot.height + text * 1.8}, fmt::format("{:g}", n * step + 0.0),
-              {.size = text, .align = Align::kCentre});
+    draw_text(canvas, {x, plot.y + plot.height + text * 1.8},
+              fmt::format("{:.12g}", n * step + 0.0), {.size = text, .align = Align::kCentre});
   }
   for (double n = std::ceil(map.z0 / step - 1e-9); n * step <= map.z0 + depth + 1e-9; ++n) {
     const double y = plot.y + (n * step - map.z0) * scale;
     canvas.line({plot.x - text * 0.4, y}, {plot.x, y}, 1, kFaintInk);
-    draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, fmt::format("{:g}", n * step + 0.0),
+    draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, fmt::format("{:.12g}", n * step + 0.0),
               {.size = text, .align = Align::kRight});
   }
   draw_text(canvas, {plot.x + plot.width, plot.y + plot.height + text * 3.6}, "x, z [m]",

@@ -65,6 +65,60 @@ double run_out(Simulation& simulation, double most) {
   return last.time;
 }
 
+// The hall's like at a place of the world, with all that names coordinates.
+Hall hall_at(double x, double z) {
+  const auto point = [&](double u, double v) {
+    return "[" + std::to_string(x + u) + ", " + std::to_string(z + v) + "]";
+  };
+  const auto box = [&](double u0, double v0, double u1, double v1) {
+    return "box = [" + std::to_string(x + u0) + ", " + std::to_string(z + v0) + ", " +
+           std::to_string(x + u1) + ", " + std::to_string(z + v1) + "]\n";
+  };
+  const auto ring = [&](double u0, double v0, double u1, double v1) {
+    return "[" + point(u0, v0) + ", " + point(u1, v0) + ", " + point(u1, v1) + ", " +
+           point(u0, v1) + "]";
+  };
+  const std::string text =
+      "seconds = 60\nseed = 3\ncell = 0.125\n[plane]\nfloor = " + ring(0, 0, 20, 10) +
+      "\nobstacles = [" + ring(10, 0, 10.25, 4) + ", " + ring(10, 7, 10.25, 10) +
+      "]\n[[area]]\nname = \"west\"\n" + box(0.5, 0.5, 8, 9.5) +
+      "[[area]]\nname = \"out\"\ncircle = [" + std::to_string(x + 18) + ", " +
+      std::to_string(z + 2) + ", 1]\n[[density]]\nname = \"all\"\n" + box(0, 0, 8, 10) +
+      "pixel = 1\npaint = [{ area = \"west\", weight = 200 }]\n" +
+      "[[queue]]\nname = \"till\"\nline = [[" + std::to_string(x + 13) + ", 0, " +
+      std::to_string(z + 5) + "], [" + std::to_string(x + 17) + ", 0, " + std::to_string(z + 5) +
+      "]]\nservice = 0.5\n[[journey]]\nname = \"out\"\n" +
+      "stages = [{ queue = \"till\" }, { leave = \"out\" }]\n" +
+      "[[source]]\nname = \"all\"\ndensity = \"all\"\njourney = \"out\"\ncount = 40\n";
+  auto scenario = parse_scenario(text, "hall.toml");
+  EXPECT_TRUE(scenario) << scenario.error().message;
+  if (!scenario) return {};
+  Context context;
+  auto world = open_world(*scenario, context);
+  EXPECT_TRUE(world) << world.error().message;
+  return {*scenario, *world};
+}
+
+TEST(Simulation, a_scenario_in_a_national_grid_goes_as_near_the_coordinate_origin) {
+  for (const auto& [x, z] : {std::pair{678000.0, -5403500.0}, std::pair{-1e7, 1e7}}) {
+    Simulation near = made(hall_at(0, 0)), far = made(hall_at(x, z));
+    std::vector<AvatarState> near_states, far_states;
+    for (int step = 0; step < 300; ++step) {
+      ASSERT_TRUE(near.step());
+      ASSERT_TRUE(far.step());
+      near.crowd().read(near_states);
+      far.crowd().read(far_states);
+      ASSERT_EQ(near_states.size(), far_states.size()) << step;
+      for (size_t i = 0; i < near_states.size(); ++i) {
+        EXPECT_EQ(near_states[i].id, far_states[i].id);
+        const Vec3d off = far_states[i].position - Vec3d{x, 0, z} - near_states[i].position;
+        ASSERT_LT(length(off), 1e-3) << step;  // [m]
+      }
+    }
+    EXPECT_EQ(far.crowd().check().wall_entries, 0U);
+  }
+}
+
 TEST(Simulation, people_come_and_leave_by_the_nearest_exit) {
   const Hall run = read(R"(
 [[journey]]

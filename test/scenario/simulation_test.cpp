@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "throng/simulation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,29 +68,47 @@ double run_out(Simulation& simulation, double most) {
 
 // The hall's like at a place of the world, with all that names coordinates.
 Hall hall_at(double x, double z) {
-  const auto point = [&](double u, double v) {
-    return "[" + std::to_string(x + u) + ", " + std::to_string(z + v) + "]";
-  };
   const auto box = [&](double u0, double v0, double u1, double v1) {
-    return "box = [" + std::to_string(x + u0) + ", " + std::to_string(z + v0) + ", " +
-           std::to_string(x + u1) + ", " + std::to_string(z + v1) + "]\n";
+    return fmt::format("[{}, {}, {}, {}]", x + u0, z + v0, x + u1, z + v1);
   };
   const auto ring = [&](double u0, double v0, double u1, double v1) {
-    return "[" + point(u0, v0) + ", " + point(u1, v0) + ", " + point(u1, v1) + ", " +
-           point(u0, v1) + "]";
+    return fmt::format("[[{0}, {1}], [{2}, {1}], [{2}, {3}], [{0}, {3}]]", x + u0, z + v0, x + u1,
+                       z + v1);
   };
-  const std::string text =
-      "seconds = 60\nseed = 3\ncell = 0.125\n[plane]\nfloor = " + ring(0, 0, 20, 10) +
-      "\nobstacles = [" + ring(10, 0, 10.25, 4) + ", " + ring(10, 7, 10.25, 10) +
-      "]\n[[area]]\nname = \"west\"\n" + box(0.5, 0.5, 8, 9.5) +
-      "[[area]]\nname = \"out\"\ncircle = [" + std::to_string(x + 18) + ", " +
-      std::to_string(z + 2) + ", 1]\n[[density]]\nname = \"all\"\n" + box(0, 0, 8, 10) +
-      "pixel = 1\npaint = [{ area = \"west\", weight = 200 }]\n" +
-      "[[queue]]\nname = \"till\"\nline = [[" + std::to_string(x + 13) + ", 0, " +
-      std::to_string(z + 5) + "], [" + std::to_string(x + 17) + ", 0, " + std::to_string(z + 5) +
-      "]]\nservice = 0.5\n[[journey]]\nname = \"out\"\n" +
-      "stages = [{ queue = \"till\" }, { leave = \"out\" }]\n" +
-      "[[source]]\nname = \"all\"\ndensity = \"all\"\njourney = \"out\"\ncount = 40\n";
+  const std::string text = fmt::format(
+      R"(seconds = 60
+seed = 3
+cell = 0.125
+[plane]
+floor = {}
+obstacles = [{}, {}]
+[[area]]
+name = "west"
+box = {}
+[[area]]
+name = "out"
+circle = [{}, {}, 1]
+[[density]]
+name = "all"
+box = {}
+pixel = 1
+paint = [{{ area = "west", weight = 200 }}]
+[[queue]]
+name = "till"
+line = [[{}, 0, {}], [{}, 0, {}]]
+spacing = 0.75
+service = 0.5
+[[journey]]
+name = "out"
+stages = [{{ queue = "till" }}, {{ leave = "out" }}]
+[[source]]
+name = "all"
+density = "all"
+journey = "out"
+count = 40
+)",
+      ring(0, 0, 20, 10), ring(10, 0, 10.25, 4), ring(10, 7, 10.25, 10), box(0.5, 0.5, 8, 9.5),
+      x + 18, z + 2, box(0, 0, 8, 10), x + 13, z + 5, x + 17, z + 5);
   auto scenario = parse_scenario(text, "hall.toml");
   EXPECT_TRUE(scenario) << scenario.error().message;
   if (!scenario) return {};

@@ -39,7 +39,7 @@ Scene moved(Scene scene, Vec3d by) {
 }
 
 const Scene& garage() {
-  static const Scene scene = test::builtin({.name = "garage", .size = 30, .levels = 2});
+  static const Scene scene = test::builtin({.name = "garage", .size = 45, .levels = 2});
   return scene;
 }
 

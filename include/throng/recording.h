@@ -26,12 +26,13 @@ inline constexpr size_t kMostAvatars = size_t{1} << 28;  ///< In one frame, fewe
 
 /// One moment, borrowed: avatar i is ids[i], classes[i], ... Fastest in ascending order of id.
 struct FrameView {
-  double time = 0;                    ///< [s, grows from frame to frame]
-  uint64_t step = 0;                  ///< [grows from frame to frame]
-  uint64_t state_hash = 0;            ///< Of the whole state, all of it and not only what is here.
-  std::span<const uint64_t> ids;      ///< Each once. [< 2^64 - 1]
-  std::span<const uint8_t> classes;   ///< Index into RecordingInfo::classes.
-  std::span<const Vec3d> positions;   ///< Feet; kept to the millimetre. [m, within 2000 km]
+  double time = 0;                   ///< [s, grows from frame to frame]
+  uint64_t step = 0;                 ///< [grows from frame to frame]
+  uint64_t state_hash = 0;           ///< Of the whole state, all of it and not only what is here.
+  std::span<const uint64_t> ids;     ///< Each once. [< 2^64 - 1]
+  std::span<const uint8_t> classes;  ///< Index into RecordingInfo::classes.
+  /// Feet; kept to the millimetre. [m, each axis within 2000 km of RecordingInfo::origin]
+  std::span<const Vec3d> positions;
   std::span<const float> radii;       ///< Kept to the millimetre. [m, 0 to 65]
   std::span<const Heading> headings;  ///< Kept to 0.9 degrees; of who leans, before he leans.
   /// Along each body from its feet, kept to 0.06 degrees; nothing: all stand upright. [any length]
@@ -73,7 +74,15 @@ struct RecordingInfo {
   /// Some may lean: frames hold FrameView::ups, and the file is of version 2. Else it is of version
   /// 1, as it was before there were any, and a frame in which somebody leans is refused.
   bool leans = false;
+  /// What the file stores positions relative to; those of frames are absolute all the same. If it
+  /// is not zero the file is of version 3. [m, whole metres within 1 000 000 km]
+  Vec3d origin = {};
 };
+
+/// An origin from which a recording reaches all of a world, RecordingInfo::origin: on each axis 0
+/// if the bounds lie within 1000 km of it, else the whole metre next to their middle. The same on
+/// every machine; zero for an empty box.
+[[nodiscard]] THRONG_API Vec3d recording_origin(const Box3d& bounds);
 
 /// When a recorder writes. The defaults lose at most 32 frames when the process dies.
 struct RecorderConfig {
@@ -126,8 +135,9 @@ struct FrameInfo {
 /// Reads a recording. Not for several threads at a time: frames are undone one after the other.
 class THRONG_API Replay {
  public:
-  /// Maps the file and walks over its chunks' heads. Fails with kBadFile if it is no recording or
-  /// holds none of its settings; one that ends too early or is corrupt opens as far as it is good.
+  /// Maps the file and walks over its chunks' heads. Reads versions 1 to 3. Fails with kBadFile if
+  /// it is no recording, of another version or holds none of its settings; one that ends too early
+  /// or is corrupt opens as far as it is good.
   [[nodiscard]] static Result<Replay> open(const std::string& path);
   /// The same for bytes in memory, which must outlive it. `name` stands in sentences.
   [[nodiscard]] static Result<Replay> from_bytes(std::span<const uint8_t> bytes,

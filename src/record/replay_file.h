@@ -13,6 +13,8 @@
 namespace throng {
 
 inline constexpr uint32_t kReplayVersion = 1, kReplayVersionThatLeans = 2;
+inline constexpr uint32_t kReplayVersionWithOrigin = 3;  // Tells by a field whether it leans.
+inline constexpr double kFarthestOrigin = 1e9;           // [m]
 inline constexpr std::array<char, 4> kChunkMark{'T', 'H', 'R', 'C'};
 
 enum class ChunkKind : uint32_t {

@@ -17,8 +17,9 @@
 namespace throng {
 namespace {
 
-constexpr double kFar = 1e6;   // [m]
-constexpr double kLong = 1e9;  // [s]
+constexpr double kFarthest = 1e9;  // [m] Coordinates, as those of models.
+constexpr double kHighest = 1e6;   // [m] Heights, as those of worlds.
+constexpr double kLong = 1e9;      // [s]
 constexpr int kCircleSides = 32;
 constexpr double kMostStages = 10000;  // of a journey
 
@@ -170,8 +171,8 @@ bool Reader::corners(const ConfigNode& node, const char* key,
   for (size_t i = 0; good && i < node.items.size(); ++i) {
     const ConfigNode& p = node.items[i];
     good = p.kind == Kind::kArray && p.items.size() == 2 && is_number(p.items[0]) &&
-           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kFar &&
-           std::fabs(p.items[1].number) <= kFar;
+           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kFarthest &&
+           std::fabs(p.items[1].number) <= kFarthest;
     if (good) out.push_back({p.items[0].number, p.items[1].number});
   }
   if (!good) fail(node, fmt::format("{} must be a list of [x, z]", key));
@@ -360,8 +361,8 @@ void File::read_plane(const ConfigNode& table) {
 }
 
 void File::heights(Reader& r, double& low, double& high) {
-  low = -kFar;
-  high = kFar;
+  low = -kHighest;
+  high = kHighest;
   double y[2] = {};
   if (!r.numbers("y", y, 2)) return;
   if (!(y[0] < y[1])) return r.fail(*r.find("y"), "y must be [low, high], low below high");

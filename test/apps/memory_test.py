@@ -100,7 +100,7 @@ def main():
         elif case == "city":
             check_flat(film(throng, folder, 100, "builtin:city,size=600", "--avatars", "20", "--width", "160", "--height", "90"))
         else:
-            check_flat(film(throng, folder, 300, "builtin:garage", "--avatars", "20", "--overlay", "Clearance",
+            check_flat(film(throng, folder, 300, "builtin:stairs", "--avatars", "5", "--overlay", "Clearance",
                             "--width", "64", "--height", "48"))
     return 0
 

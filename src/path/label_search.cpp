@@ -96,6 +96,7 @@ GroundPoint middle_of(const PathMesh& mesh, uint32_t rect, uint32_t block) {
 // A block whose middle is seen from an end, and how far that is.
 struct SeenMiddle {
   uint32_t block = 0;
+  Stop middle;
   double distance = 0;  // [cells]
 };
 
@@ -116,7 +117,7 @@ SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, 
     const uint32_t block = mesh.block_at(rect, there.cell_x(), there.cell_z());
     const GroundPoint middle = middle_of(mesh, rect, block);
     if (mesh_ray(mesh, end.rect, end.at, middle) != rect) continue;
-    return {block, distance(at, in_cells(middle))};
+    return {block, {middle, rect}, distance(at, in_cells(middle))};
   }
   return own;
 }
@@ -141,22 +142,29 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   for (const uint32_t c : corners) way_.push_back(way_point(mesh, c));
   way_.insert(way_.end(), {to_middle, {goal, to.rect}});
   if (!pull_.pull(mesh, way_, corners, length)) return false;
-  // No way is shorter than that between two middles less the ends' distances from them.
-  const auto is_proved = [&](float between, double off) {
-    const double least = between - off;
-    return length <= kMostLonger * std::max(least - kSlack, distance(start, goal));
+  // No way is shorter than that between two middles less the ends' distances from them. Labels know
+  // ways over corners only: where the middles see each other, the shortest is the straight one.
+  const double straight = distance(start, goal);
+  const auto is_proved = [&](const SeenMiddle& p, const SeenMiddle& q, double between) {
+    const auto is_short = [&](double least) { return length <= kMostLonger * least; };
+    if (is_short(straight)) return true;
+    const double off = p.distance + q.distance + kSlack;
+    if (!is_short(between - off)) return false;
+    const double apart = distance(in_cells(p.middle.at), in_cells(q.middle.at));
+    return is_short(apart - off) ||
+           mesh_ray(mesh, p.middle.rect, p.middle.at, q.middle.at) != q.middle.rect;
   };
-  const SeenMiddle own_a{a, distance(start, from_middle.at)};
-  const SeenMiddle own_b{b, distance(goal, to_middle.at)};
-  if (is_proved(best.length, own_a.distance + own_b.distance)) return true;
+  const SeenMiddle own_a{
+      a, {middle_of(mesh, from.rect, a), from.rect}, distance(start, from_middle.at)};
+  const SeenMiddle own_b{b, {middle_of(mesh, to.rect, b), to.rect}, distance(goal, to_middle.at)};
+  if (is_proved(own_a, own_b, best.length)) return true;
   const auto at = [&](uint32_t corner) { return way_point(mesh, corner).at; };
   const SeenMiddle behind_a =
       middle_behind(mesh, from, corners.empty() ? goal : at(corners.front()), own_a);
   const SeenMiddle behind_b =
       middle_behind(mesh, to, corners.empty() ? start : at(corners.back()), own_b);
   const Meeting longer = meet(middles.of(behind_a.block), middles.of(behind_b.block));
-  return longer.length < kFarthest &&
-         is_proved(longer.length, behind_a.distance + behind_b.distance);
+  return longer.length < kFarthest && is_proved(behind_a, behind_b, longer.length);
 }
 
 // The corners from each end to the hub.

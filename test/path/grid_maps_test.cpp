@@ -17,7 +17,13 @@
 namespace throng {
 namespace {
 
-class GridMaps : public testing::TestWithParam<const char*> {};
+struct GridMap {
+  const char* name;
+  // Berlin's labels do not fit the lists of blocks, and PathConfig::labels promises 2 % then.
+  double most_longer = 1e-4;
+};
+
+class GridMaps : public testing::TestWithParam<GridMap> {};
 
 PathFinder finder(const World& world, const PathConfig& config) {
   Context context;
@@ -27,7 +33,8 @@ PathFinder finder(const World& world, const PathConfig& config) {
 }
 
 TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
-  const std::string map = std::string(THRONG_SHARED_WORLDS) + "/movingai/" + GetParam() + ".map";
+  const std::string map =
+      std::string(THRONG_SHARED_WORLDS) + "/movingai/" + GetParam().name + ".map";
   if (!std::filesystem::exists(map)) GTEST_SKIP() << "no shared worlds here";
   const auto cells = load_grid_map(map);
   ASSERT_TRUE(cells) << cells.error().message;
@@ -58,7 +65,7 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
     ASSERT_EQ(searched.end, PathEnd::kReached);
     ASSERT_EQ(looked_up.end, PathEnd::kReached);
     ASSERT_EQ(over_zones.end, PathEnd::kReached);
-    EXPECT_NEAR(looked_up.length, searched.length, searched.length * 1e-4);
+    EXPECT_NEAR(looked_up.length, searched.length, searched.length * GetParam().most_longer);
     EXPECT_NEAR(over_zones.length, searched.length, searched.length * 1e-4);
     if (searched.length > 0) worst = std::max(worst, looked_up.length / searched.length);
   }
@@ -68,9 +75,10 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Maps, GridMaps,
-                         testing::Values("arena", "lak303d", "brc202d", "orz900d", "Berlin_0_512",
-                                         "AcrosstheCape"),
-                         [](const auto& map) { return std::string(map.param); });
+                         testing::Values(GridMap{"arena"}, GridMap{"lak303d"}, GridMap{"brc202d"},
+                                         GridMap{"orz900d"}, GridMap{"Berlin_0_512", 0.02},
+                                         GridMap{"AcrosstheCape"}),
+                         [](const auto& map) { return std::string(map.param.name); });
 
 }  // namespace
 }  // namespace throng

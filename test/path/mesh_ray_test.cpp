@@ -25,8 +25,7 @@ PathMesh mesh_of(const World& world, int32_t avatar_class) {
 // The rectangle in which a walk over cells ends.
 uint32_t walked(const World& world, const PathMesh& mesh, const Stop& from, GroundPoint to) {
   const WorldGround ground{*world.data(), mesh.avatar_class};
-  GroundLevel level =
-      ground_level(*world.data(), mesh.rects[from.rect].level, mesh.avatar_class);
+  GroundLevel level = ground_level(*world.data(), mesh.rects[from.rect].level, mesh.avatar_class);
   if (!walk(ground, level, from.at, to, mesh.step)) return kNoRect;
   return mesh.rect_at(level.world_level, to.cell_x(), to.cell_z());
 }

@@ -17,13 +17,7 @@
 namespace throng {
 namespace {
 
-struct GridMap {
-  const char* name;
-  // Berlin's labels do not fit the lists of blocks, and PathConfig::labels promises 2 % then.
-  double most_longer = 1e-4;
-};
-
-class GridMaps : public testing::TestWithParam<GridMap> {};
+class GridMaps : public testing::TestWithParam<const char*> {};
 
 PathFinder finder(const World& world, const PathConfig& config) {
   Context context;
@@ -33,8 +27,7 @@ PathFinder finder(const World& world, const PathConfig& config) {
 }
 
 TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
-  const std::string map =
-      std::string(THRONG_SHARED_WORLDS) + "/movingai/" + GetParam().name + ".map";
+  const std::string map = std::string(THRONG_SHARED_WORLDS) + "/movingai/" + GetParam() + ".map";
   if (!std::filesystem::exists(map)) GTEST_SKIP() << "no shared worlds here";
   const auto cells = load_grid_map(map);
   ASSERT_TRUE(cells) << cells.error().message;
@@ -47,6 +40,8 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
   std::string line;
   std::getline(scenario, line);  // "version 1"
   Path searched, looked_up, over_zones;
+  // Berlin's labels do not fit the lists of blocks, and PathConfig::labels promises 2 % then.
+  const double most_longer = GetParam() == std::string("Berlin_0_512") ? 0.02 : 1e-4;
   double worst = 1;
   int queries = 0;
   while (std::getline(scenario, line)) {
@@ -65,7 +60,7 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
     ASSERT_EQ(searched.end, PathEnd::kReached);
     ASSERT_EQ(looked_up.end, PathEnd::kReached);
     ASSERT_EQ(over_zones.end, PathEnd::kReached);
-    EXPECT_NEAR(looked_up.length, searched.length, searched.length * GetParam().most_longer);
+    EXPECT_NEAR(looked_up.length, searched.length, searched.length * most_longer);
     EXPECT_NEAR(over_zones.length, searched.length, searched.length * 1e-4);
     if (searched.length > 0) worst = std::max(worst, looked_up.length / searched.length);
   }
@@ -75,10 +70,9 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Maps, GridMaps,
-                         testing::Values(GridMap{"arena"}, GridMap{"lak303d"}, GridMap{"brc202d"},
-                                         GridMap{"orz900d"}, GridMap{"Berlin_0_512", 0.02},
-                                         GridMap{"AcrosstheCape"}),
-                         [](const auto& map) { return std::string(map.param.name); });
+                         testing::Values("arena", "lak303d", "brc202d", "orz900d", "Berlin_0_512",
+                                         "AcrosstheCape"),
+                         [](const auto& map) { return std::string(map.param); });
 
 }  // namespace
 }  // namespace throng

@@ -389,6 +389,7 @@ TEST(Path, StraightLinesOverManyZonesAreFound) {
     SCOPED_TRACE(testing::Message() << "pair " << n);
     const double length = plan_distance(from.place.position, to.place.position);
     for (PathFinder* by : {&search, &labels, &over_zones}) {
+      SCOPED_TRACE(by == &search ? "search" : by == &labels ? "labels" : "zones");
       by->find(from.place, to.place, path);
       ASSERT_EQ(path.end, PathEnd::kReached);
       EXPECT_NEAR(path.length, length, 2 * cell / 2048);  // to a unit

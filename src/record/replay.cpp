@@ -129,7 +129,7 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
                std::to_string(kReplayVersion) + " and " + std::to_string(kReplayVersionThatLeans));
   }
   if (!root.classes() || root.classes()->size() == 0 || root.classes()->size() > 256 ||
-      !(root.dt() > 0 && root.dt() < 1e6)) {
+      !(root.dt() >= 1e-6 && root.dt() <= 1e6)) {
     return bad(kBadSettings);
   }
   info = {.world = text_of(root.world()),

@@ -132,7 +132,7 @@ void add_film(CLI::App& parser, Session& session) {
   command
       ->add_option("--seconds", options->seconds,
                    "Length of the film, 0: all of a recording, ten of a crowd [s]")
-      ->check(at_least(0));
+      ->check(between(0, 86400));
   command->add_option("--play-speed", options->speed, "Of time")
       ->check(between(0.05, 16.0))
       ->capture_default_str();

@@ -12,6 +12,8 @@
 #include <map>
 
 #include "output_file.h"
+#include "run_crowd.h"
+#include "run_times.h"
 
 namespace throng::app {
 namespace {
@@ -67,16 +69,15 @@ Result<void> write_visits(const std::string& path, const Scenario& scenario,
 }
 
 struct Totals {
-  uint64_t steps = 0, most = 0, checks = 0;
-  double avatar_steps = 0, seconds = 0, progress = 0;
+  uint64_t steps = 0, most = 0, checks = 0, out_of_memory = 0;
+  double avatar_steps = 0, progress = 0;
   CrowdCheck found;
   SimulationReport last;
 };
 
 void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
-           const Simulation& simulation, const Totals& t) {
+           const Simulation& simulation, const Totals& t, const RunTimes& times) {
   const Outcome outcome = outcome_of(scenario, simulation);
-  const double ns = t.avatar_steps > 0 ? t.seconds * 1e9 / t.avatar_steps : 0;
   const double progress = t.avatar_steps > 0 ? t.progress / t.avatar_steps : 0;
   Json exits = Json::object();
   std::string lines;
@@ -85,45 +86,47 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
     lines += fmt::format("  {:<16} {:6} people, {:.1f} to {:.1f} s\n", name, exit.left, exit.first,
                          exit.last);
   }
+  Json json = {{"scenario", run.file},
+               {"steps", t.steps},
+               {"seconds", t.last.time},
+               {"dt", scenario.dt},
+               {"model", name_of(scenario.steering)},
+               {"seed", scenario.seed},
+               {"threads", run.workers},
+               {"entered", t.last.entered},
+               {"left", t.last.left},
+               {"still_here", simulation.crowd().size()},
+               {"outside", t.last.outside},
+               {"in_links", t.last.in_links},
+               {"stranded", t.last.stranded},
+               {"most_at_a_time", t.most},
+               {"last_left", outcome.last},
+               {"mean_time", outcome.mean_time},
+               {"exits", exits},
+               {"progress", progress},
+               {"out_of_memory", t.out_of_memory},
+               {"checks", t.checks},
+               {"wall_entries", t.found.wall_entries},
+               {"overlaps", t.found.overlaps},
+               {"obstacle_entries", t.found.obstacle_entries},
+               {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
+               {"peak_bytes", peak_memory()}};
+  times.add_to(json);
   print_result(
-      session,
-      {{"scenario", run.file},
-       {"steps", t.steps},
-       {"seconds", t.last.time},
-       {"dt", scenario.dt},
-       {"model", name_of(scenario.steering)},
-       {"seed", scenario.seed},
-       {"threads", run.workers},
-       {"entered", t.last.entered},
-       {"left", t.last.left},
-       {"still_here", simulation.crowd().size()},
-       {"outside", t.last.outside},
-       {"in_links", t.last.in_links},
-       {"stranded", t.last.stranded},
-       {"most_at_a_time", t.most},
-       {"last_left", outcome.last},
-       {"mean_time", outcome.mean_time},
-       {"exits", exits},
-       {"progress", progress},
-       {"ns_per_avatar_step_mean", ns},
-       {"checks", t.checks},
-       {"wall_entries", t.found.wall_entries},
-       {"overlaps", t.found.overlaps},
-       {"obstacle_entries", t.found.obstacle_entries},
-       {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
-       {"peak_bytes", peak_memory()}},
+      session, json,
       fmt::format("{}: {:.1f} s, {} people came, {} left, {} are still here\n{}"
                   "the last left after {:.1f} s; a way took {:.1f} s in the mean\n"
-                  "{} stranded, {} found no room to come in; {:.0f} ns an avatar a step\n"
+                  "{} stranded, {} found no room to come in\n{}\n{}{}"
                   "{} checks: {} wall entries, {} overlaps, {} in obstacles\nstate {:016x}\n",
                   run.file, t.last.time, t.last.entered, t.last.left, simulation.crowd().size(),
-                  lines, outcome.last, outcome.mean_time, t.last.stranded, t.last.outside, ns,
-                  t.checks, t.found.wall_entries, t.found.overlaps, t.found.obstacle_entries,
-                  simulation.state_hash()));
+                  lines, outcome.last, outcome.mean_time, t.last.stranded, t.last.outside,
+                  times.text_of_steps(), times.text_of_parts(),
+                  memory_text(t.out_of_memory, "search_memory"), t.checks, t.found.wall_entries,
+                  t.found.overlaps, t.found.obstacle_entries, simulation.state_hash()));
 }
 
 Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& scenario,
-                    Simulation& simulation, Sinks& sinks) {
+                    Simulation& simulation, Sinks& sinks, RunTimes& times) {
   Totals t;
   const uint64_t steps =
       run.steps.value_or(static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9)));
@@ -131,34 +134,42 @@ Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& sc
       run.check_every > 0 ? run.check_every : std::max<uint64_t>(1, steps / 10);
   t.last.entered = simulation.crowd().size();
   const auto check = [&] {
-    const CrowdCheck found = simulation.crowd().check();
+    const CrowdCheck found = times.measure("check", [&] { return simulation.crowd().check(); });
     ++t.checks;
     t.found.wall_entries += found.wall_entries;
     t.found.overlaps += found.overlaps;
     t.found.obstacle_entries += found.obstacle_entries;
   };
-  if (auto ok = sinks.add(0, simulation); !ok) return ok.error();
+  const auto write = [&](uint64_t step) {
+    return times.measure("write", [&] { return sinks.add(step, simulation); });
+  };
+  if (auto ok = write(0); !ok) return ok.error();
   while (t.steps < steps && (run.steps || !simulation.is_over())) {
+    const auto start = RunTimes::Clock::now();
     const auto report = simulation.step();
     if (!report) return report.error();
+    const double whole = std::chrono::duration<double>(RunTimes::Clock::now() - start).count();
+    add_step(report->crowd, times);
+    times.add("journeys", whole - report->crowd.seconds_total);
     ++t.steps;
     t.last = *report;
     const auto avatars = static_cast<double>(report->crowd.avatars);
     t.most = std::max(t.most, report->crowd.avatars);
     t.avatar_steps += avatars;
-    t.seconds += report->crowd.seconds_total;
+    t.out_of_memory += report->crowd.out_of_memory;
     t.progress += report->crowd.progress * avatars;
     if (t.steps % check_every == 0) check();
-    if (auto ok = sinks.add(t.steps, simulation); !ok) return ok.error();
+    if (auto ok = write(t.steps); !ok) return ok.error();
     show_progress(session, "run", t.steps, steps);
     if (session.context.cancel) return Error{Errc::kCancelled, "run: interrupted"};
   }
   check();
-  if (auto ok = sinks.finish(); !ok) return ok.error();
+  if (auto ok = times.measure("write", [&] { return sinks.finish(); }); !ok) return ok.error();
   return t;
 }
 
 Result<int> try_run(Session& session, ScenarioRun& run) {
+  RunTimes times;
   std::ifstream file(run.file, std::ios::binary);
   if (!file) return Error{Errc::kNotFound, run.file + ": cannot be read"};
   run.text.assign(std::istreambuf_iterator<char>(file), {});
@@ -166,9 +177,10 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (!scenario) return scenario.error();
   if (run.seed) scenario->seed = *run.seed;
   if (run.model) scenario->steering = *run.model;
-  const auto world = open_world(*scenario, session.context);
+  const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
-  auto simulation = Simulation::make(*world, *scenario, run.workers, session.context);
+  auto simulation = times.measure(
+      "prepare", [&] { return Simulation::make(*world, *scenario, run.workers, session.context); });
   if (!simulation) return simulation.error();
   Sinks sinks(run.sinks);
   const Json settings = {{"scenario", run.text},
@@ -181,12 +193,12 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
                                 .settings = settings.dump(),
                                 .leans = simulation->crowd().may_lean()});
   if (!ok) return ok.error();
-  const auto totals = walk(session, run, *scenario, *simulation, sinks);
+  const auto totals = walk(session, run, *scenario, *simulation, sinks, times);
   if (!totals) return totals.error();
   if (!run.visits.empty()) {
     if (ok = write_visits(run.visits, *scenario, *simulation); !ok) return ok.error();
   }
-  print(session, run, *scenario, *simulation, *totals);
+  print(session, run, *scenario, *simulation, *totals, times);
   const CrowdCheck& found = totals->found;
   const bool sound = found.wall_entries + found.overlaps + found.obstacle_entries == 0;
   return sound ? kDone : kAnswerIsNo;

@@ -67,7 +67,7 @@ struct RecordedClass {
 struct RecordingInfo {
   std::string world = {};   ///< Where it was walked: the folder, as the caller named it.
   uint64_t world_hash = 0;  ///< WorldSummary::hash; 0: not known.
-  double dt = 0.1;          ///< Length of a step. [s, > 0]
+  double dt = 0.1;          ///< Length of a step. [s, 1e-6 to 1e6]
   std::vector<RecordedClass> classes = {};  ///< [1 to 256]
   std::string model = {};                   ///< What made the steps: "wanderers" ...
   std::string settings = {};  ///< All that it takes to run again, as the model writes it.

@@ -16,6 +16,7 @@
 #include "throng/prism.h"
 #include "throng/result.h"
 #include "throng/scene.h"
+#include "throng/search_budget.h"
 #include "throng/steering_model.h"
 #include "throng/world.h"
 
@@ -156,8 +157,9 @@ struct Scenario {
   double seconds = 60;  ///< How long. [s]
   double dt = 0.1;      ///< [s]
   uint64_t seed = 1;
-  bool labels = false, zones = false;                ///< As in CrowdConfig.
-  SteeringModel steering = SteeringModel::kSampled;  ///< CrowdConfig::model.
+  bool labels = false, zones = false;                   ///< As in CrowdConfig.
+  uint64_t search_bytes = SearchBudget::kDefaultBytes;  ///< As in CrowdConfig.
+  SteeringModel steering = SteeringModel::kSampled;     ///< CrowdConfig::model.
 
   std::vector<ScenarioArea> areas;
   std::vector<DensityMap> densities;

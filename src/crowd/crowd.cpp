@@ -21,9 +21,11 @@
 namespace throng {
 namespace {
 
-constexpr double kMostSpeed = 100;   // [m/s]
-constexpr double kMostRadius = 100;  // [m]
-constexpr double kMostHeight = 65;   // [m]
+constexpr double kLeastDt = 1e-3, kMostDt = 1;             // [s]
+constexpr uint64_t kLeastSearchBytes = uint64_t{1} << 20;  // of each search
+constexpr double kMostSpeed = 100;                         // [m/s]
+constexpr double kMostRadius = 100;                        // [m]
+constexpr double kMostHeight = 65;                         // [m]
 constexpr int32_t kMostSubSteps = 1000;
 constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
@@ -46,7 +48,12 @@ Crowd::~Crowd() = default;
 
 Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!world.data()) return bad_config("there is no world");
-  if (!(config.dt > 0 && config.dt <= 1)) return bad_config("dt must be above 0 and at most 1 s");
+  if (!(config.dt >= kLeastDt && config.dt <= kMostDt)) {
+    return bad_config("dt must be 0.001 to 1 s");
+  }
+  if (config.search_bytes < kLeastSearchBytes) {
+    return bad_config("search_bytes must be 1048576 (1 MiB) or more");
+  }
   if (config.workers < 0) return bad_config("workers must be 0 (all cores) or more");
   if (!(config.sight >= 1 && config.sight <= 50)) return bad_config("sight must be 1 to 50 m");
   if (!(config.reaction >= 0 && config.reaction <= 1)) {
@@ -59,7 +66,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.far_steps >= 1 && config.far_steps <= 16)) {
     return bad_config("far_steps must be 1 to 16");
   }
-  if (!(config.stuck_after >= 0)) return bad_config("stuck_after must be 0 s or more");
+  if (!(config.stuck_after >= 0 && config.stuck_after <= 1e6)) {
+    return bad_config("stuck_after must be 0 to 1000000 s");
+  }
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
   if (config.nodes.data() != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
@@ -510,8 +519,10 @@ CrowdReport Crowd::step() {
   report.avatars = s.engine.bodies().size();
   s.arrived.clear();
   s.stranded.clear();
+  s.out_of_memory = 0;
   report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.in_the_way);
   s.renew_flows();
+  report.seconds_obstacles = seconds_since(start);
   EngineCounts counts;
   CrowdEngine::Times times;
   std::atomic<uint64_t> planned{0};
@@ -539,11 +550,13 @@ CrowdReport Crowd::step() {
       report.climbing += body.climbs ? 1 : 0;
     }
   }
+  const auto events_start = Clock::now();
   s.arrive_in_targets();
   s.find_events();
   for (std::vector<AvatarId>* ids : {&s.arrived, &s.stranded}) {
     std::sort(ids->begin(), ids->end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
   }
+  report.seconds_events = seconds_since(events_start);
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
   report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
   report.contested = counts.contested;
@@ -552,6 +565,7 @@ CrowdReport Crowd::step() {
   report.arrived = s.arrived.size();
   report.planned = planned;
   report.no_way = s.stranded.size();
+  report.out_of_memory = s.out_of_memory;
   report.progress = static_cast<double>(counts.progress) * 1e-6 / moves;
   report.seconds_plan = times.plan;
   report.seconds_sort = times.sort;

@@ -213,7 +213,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   if (!is_roomy || random_below(seed, stream | 1, sub_step, 2) == 0) {
     const NodePlace to =
         config.nodes.random_place(body.avatar_class, seed, random_u64(seed, stream | 2, sub_step));
-    parts.node_finders[w].find(from, to, path, kNoSpacing, kFew);
+    parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
   }
   if (path.points.size() < 2) {
     const double side = 1.0 / (1 << info.level);
@@ -273,7 +273,7 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   if (!to || !from) return clear_way(climb);
   NodePath& path = parts.node_paths[w];
-  parts.node_finders[w].find(from, to, path, kNoSpacing, kFew);
+  parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
   // A long way around is none to where it is driven.
   if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_way(climb);
   set_way(climb, path);
@@ -310,7 +310,8 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   if (climb.station < climb.station_count) {
     const ClimbPoint& station = climb.stations[climb.station];
     const NodePlace to = nodes.place(body.avatar_class, station.node1 - 1, station.s, station.t);
-    parts.node_finders[w].find(from, to, path, kNoSpacing);
+    parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget());
+    note_spent(path.spent);
     if (is_found()) {
       set_way(climb, path);
       climb.to_station = std::exchange(climb.whole, uint8_t{0});
@@ -320,7 +321,8 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   if (climb.goal_node1 != 0) {
     const NodePlace to =
         nodes.place(body.avatar_class, climb.goal_node1 - 1, climb.goal_s, climb.goal_t);
-    parts.node_finders[w].find(from, to, path, kNoSpacing);
+    parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget());
+    note_spent(path.spent);
   }
   if (!is_found()) {
     if (path.end == PathEnd::kNoPlace && step_off(body, climb, worker)) return;

@@ -158,6 +158,7 @@ void CrowdEngine::add(const Body& body) {
 
 void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts, Times& times) {
   if (size_ == 0) return;
+  step_ = step;
   auto start = Clock::now();
   const auto lap = [&](double& seconds) {
     seconds += seconds_since(start);
@@ -180,6 +181,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
 bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
   return body.has(Body::kKeeps) && !body.has(Body::kDriven) && !body.has(Body::kLost) &&
          !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
+         !takes_few(body) &&
          !is_before({body.aim_x - body.x, body.aim_z - body.z}, stride_of(body));
 }
 
@@ -261,7 +263,7 @@ void CrowdEngine::prefetch_ground(size_t i) const {
   }
   if (i + kAhead < size_) {
     const Body& body = bodies_[i + kAhead];
-    const Way way = way_of(body, body.velocity);
+    const Way way = way_as_before(body, body.velocity);
     grounds_[body.avatar_class].prefetch_cell(body.level,
                                               {int64_t{body.x} + way.x, int64_t{body.z} + way.z});
   }
@@ -503,7 +505,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
   claim = {};
   claim.flags = Body::kKeeps;
   claim.meets = body.meets;
-  const Way way = way_of(body, body.velocity);
+  const Way way = way_as_before(body, body.velocity);
   if (!try_way(body, way, claim.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);

@@ -171,9 +171,11 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
                                 .to = parts.air->metres(flight.goal),
                                 .reach = kReach,
                                 .max_nodes = kMostBoxes,
+                                .max_bytes = config.search_bytes,
                                 .by_turns = false,
                                 .nearest = false},
                                path);
+  note_spent(path.spent);
   flight.to_port = 0;
   if (lands) routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
   if (path.end != PathEnd::kReached) return false;  // as those who only walk
@@ -284,9 +286,11 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
                                   .to = air.metres(end),
                                   .reach = kReach,
                                   .max_nodes = kMostBoxes,
+                                  .max_bytes = config.search_bytes,
                                   .by_turns = false,
                                   .nearest = false},
                                  path);
+    note_spent(path.spent);
   };
   find(from, flight.goal);
   std::vector<AirSpot> points;

@@ -92,6 +92,7 @@ struct Crowd::State {
   bool flows_are_old = false;   // the ground has changed since
   std::vector<AvatarId> arrived, stranded, in_the_way;
   std::mutex stranding;
+  mutable std::atomic<uint64_t> out_of_memory{0};  // searches of this step
 
   State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine,
         FlyerEngine&& a_flyer_engine, ClimberEngine&& a_climber_engine)
@@ -138,6 +139,13 @@ struct Crowd::State {
   [[nodiscard]] AvatarState state_of(const Body& body) const;
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
   void strand(Body& body);
+  /// Counts a search that would have taken more memory than it may.
+  void note_spent(SpentBudget spent) const {
+    if (spent == SpentBudget::kMemory) out_of_memory.fetch_add(1, std::memory_order_relaxed);
+  }
+  [[nodiscard]] SearchBudget search_budget(uint64_t max_nodes = UINT64_MAX) const {
+    return {max_nodes, nullptr, config.search_bytes};
+  }
 
   // crowd_flights.cpp
   /// What a class needs beside its ground if it flies, and the world has air.

@@ -130,10 +130,13 @@ bool Crowd::State::plan_way(Body& body, Route& route, const StrideGround& ground
     route.goal = here;  // if it stands there already
   } else {
     const Place to = place_of(data, body, route.goal);
-    parts.finders[w].find(from, to, path);
+    parts.finders[w].find(from, to, path, search_budget());
+    SpentBudget spent = path.spent;
     if (cuts_ways && path.end == PathEnd::kReached) {
-      lead_around(data, parts.lives[w], ground, path, parts.detours[w]);
+      lead_around(data, parts.lives[w], ground, search_budget(), path, parts.detours[w]);
+      if (path.spent != SpentBudget::kNone) spent = path.spent;
     }
+    note_spent(spent);
   }
   return take_way(data, path, ground, body, route);
 }

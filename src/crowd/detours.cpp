@@ -75,14 +75,14 @@ class Mender {
 
 }  // namespace
 
-void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground, Path& path,
-                 DetourScratch& scratch) {
+void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground,
+                 const SearchBudget& budget, Path& path, DetourScratch& scratch) {
   if (path.points.size() < 2) return;
   const Mender mender(world, live, ground);
   if (mender.is_whole(path.points)) return;
   const Place from = path.points.front(), to = path.points.back();
   if (mender.mend(path.points, path.length, scratch)) return;
-  live.find(from, to, path);
+  live.find(from, to, path, budget);
 }
 
 }  // namespace throng

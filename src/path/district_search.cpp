@@ -195,7 +195,7 @@ PathEnd DistrictSearch::over_gates(const BlockPoint& from, const BlockPoint& to,
   }
   for (Open top; next(top);) {
     if (top.estimate >= found) break;
-    if (budget.is_spent(++looked_at_)) return PathEnd::kGaveUp;
+    if (budget.is_spent(++looked_at_, 3 * open_.size() * sizeof(Open))) return PathEnd::kGaveUp;
     const uint32_t entry = top.entry;
     const double cost = states_[entry].cost;
     if (tiers.front().of_entry[entry] == goal_district) {

@@ -141,7 +141,10 @@ Recorder::~Recorder() {
 Result<Recorder> Recorder::create(const std::string& path, const RecordingInfo& info,
                                   const RecorderConfig& config) {
   constexpr uint32_t kMost = 65536;
-  if (!(info.dt > 0 && info.dt < 1e6)) return bad_config("dt must be above 0");
+  constexpr double kLeastDt = 1e-6, kMostDt = 1e6;  // [s]
+  if (!(info.dt >= kLeastDt && info.dt <= kMostDt)) {
+    return bad_config("dt must be 0.000001 to 1000000 s");
+  }
   if (info.classes.empty() || info.classes.size() > 256) return bad_config("1 to 256 classes");
   for (const RecordedClass& c : info.classes) {
     if (std::isfinite(c.height) && std::isfinite(c.radius)) continue;

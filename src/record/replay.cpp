@@ -138,7 +138,7 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
     if (std::fabs(static_cast<double>(v)) > kFarthestOrigin) return bad(kBadSettings);
   }
   if (!root.classes() || root.classes()->size() == 0 || root.classes()->size() > 256 ||
-      !(root.dt() > 0 && root.dt() < 1e6)) {
+      !(root.dt() >= 1e-6 && root.dt() <= 1e6)) {
     return bad(kBadSettings);
   }
   info = {.world = text_of(root.world()),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <numbers>
 #include <span>
 
 #include "core/classes_file.h"
@@ -54,6 +55,16 @@ bool is_number(const ConfigNode& node) {
 void Reader::distribution(const char* key, Distribution& out, double low, double high) {
   if (const ConfigNode* node = find(key); node != nullptr)
     distribution_of(*node, key, out, low, high);
+}
+
+// How many draws of a hundred lie within the limits of a distribution.
+double percent_within(const Distribution& d) {
+  const auto below = [&](double x) {
+    if (d.kind == Distribution::Kind::kExponential) return x > 0 ? 1 - std::exp(-x / d.a) : 0.0;
+    return d.b > 0 ? 0.5 * std::erfc((d.a - x) / (d.b * std::numbers::sqrt2))
+                   : (x >= d.a ? 1 : 0.0);
+  };
+  return 100 * (below(d.high) - below(d.low));
 }
 
 // A number, or { uniform = [a, b] }, { normal = [mean, deviation] }, { exponential = mean }, the
@@ -113,6 +124,15 @@ void Reader::distribution_of(const ConfigNode& node, const std::string& key, Dis
   if (!has_kind) return fail(node, wrong);
   if (has_within && out.kind == Distribution::Kind::kUniform) {
     fail(node, fmt::format("{}: a uniform number has its limits already", key));
+  }
+  // Others are drawn again, but not for ever: the last would all lie on a limit.
+  constexpr double kLeastPercent = 5;
+  if (has_within && out.kind != Distribution::Kind::kUniform &&
+      percent_within(out) < kLeastPercent) {
+    fail(node,
+         fmt::format("{}: under {} % of what is drawn lies within {} to {}; give wider limits "
+                     "or another mean",
+                     key, kLeastPercent, out.low, out.high));
   }
 }
 
@@ -264,8 +284,8 @@ class File {
 void File::read_top() {
   Reader r(name_, root_, "scenario");
   r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
-          "steering", "area", "density", "profile", "queue", "link", "journey", "source",
-          "obstacle",
+          "search_memory", "steering", "area", "density", "profile", "queue", "link", "journey",
+          "source", "obstacle",
           // What is expected of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
@@ -285,6 +305,10 @@ void File::read_top() {
   r.number("seconds", out_.seconds, 0, kLong);
   r.number("dt", out_.dt, 1e-3, 1);
   r.count("seed", out_.seed, 0, 9007199254740992.0);
+  constexpr double kMebibyte = 1 << 20;
+  double search_memory = static_cast<double>(out_.search_bytes) / kMebibyte;
+  r.number("search_memory", search_memory, 1, kMebibyte);
+  out_.search_bytes = static_cast<uint64_t>(search_memory * kMebibyte);
   std::string ways = "corners";
   r.text("ways", ways);
   if (const ConfigNode* node = r.find("ways");

@@ -60,6 +60,7 @@ Result<Simulation> Simulation::make(const World& world, const Scenario& scenario
                                      .model = scenario.steering,
                                      .labels = scenario.labels,
                                      .zones = scenario.zones,
+                                     .search_bytes = scenario.search_bytes,
                                      .nodes = *std::move(nodes)});
   if (!crowd) return crowd.error();
   auto state = std::make_unique<State>(world, scenario, std::move(*crowd));

@@ -175,6 +175,27 @@ class Program(ProgramCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIsInstance(json.loads(done.stdout), dict)
 
+    def test_a_run_tells_where_its_time_went_and_the_mean_of_all_steps_first(self):
+        parts = ("open", "prepare", "plan", "sort", "steer", "commit", "settle", "obstacles", "events", "goals", "write", "check")
+        for goals, names in (((), ("open", "prepare", "sort", "move", "write", "check")), (("--goals", "random"), parts)):
+            arguments = ("run", self.world, "--avatars", 50, "--steps", 30, *goals)
+            told = json.loads(self.run_throng(*arguments, "--json").stdout)
+            known = sum(told[f"seconds_{name}"] for name in (*names, "other"))
+            self.assertAlmostEqual(known, told["seconds_wall"], delta=1e-6 + 1e-3 * told["seconds_wall"])
+            self.assertAlmostEqual(told["ns_per_avatar_step_mean"], told["seconds_total"] * 1e9 / 50 / 30, delta=1)
+            self.assertEqual(told["ns_per_avatar_step"], told["ns_per_avatar_step_median"])
+            lines = self.run_throng(*arguments).stdout.splitlines()
+            self.assertRegex(lines[0], r": [0-9.]+ ns an avatar a step \(mean; [0-9.]+ median\)$")
+            self.assertRegex(lines[1], r"^time [0-9.]+ s: open [0-9.]+ s \([0-9]+ %\), .*, other [0-9.]+ s \([0-9]+ %\)$")
+
+    def test_lengths_of_steps_that_cannot_be_walked_are_refused_with_a_sentence(self):
+        for length in ("0", "-1", "1e-300", "1e-20", "1e-9", "1e9", "inf", "nan"):
+            for goals in ((), ("--goals", "random")):
+                done = self.run_throng("run", self.world, "--avatars", 5, "--steps", 2, "--dt", length, *goals)
+                self.assertEqual(done.returncode, 2, (length, done.stderr))
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertEqual(self.run_throng("caacd", "--dt", length, "--avatars", 5).returncode, 2)
+
     def test_a_run_has_the_same_state_for_any_threads_and_another_for_another_seed(self):
         def state(**options):
             words = [word for key, value in options.items() for word in (f"--{key}", value)]

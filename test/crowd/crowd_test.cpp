@@ -330,8 +330,8 @@ TEST(Crowd, BadSettingsAreNamed) {
     const auto crowd = Crowd::create(world, config);
     return crowd ? std::string("accepted") : crowd.error().message;
   };
-  EXPECT_EQ(refused({.dt = 0}), "crowd: dt must be above 0 and at most 1 s");
-  EXPECT_EQ(refused({.dt = NAN}), "crowd: dt must be above 0 and at most 1 s");
+  EXPECT_EQ(refused({.dt = 0}), "crowd: dt must be 0.001 to 1 s");
+  EXPECT_EQ(refused({.dt = NAN}), "crowd: dt must be 0.001 to 1 s");
   EXPECT_EQ(refused({.workers = -1}), "crowd: workers must be 0 (all cores) or more");
   EXPECT_EQ(refused({.labels = true, .zones = true}), "crowd: choose labels or zones, not both");
   EXPECT_EQ(refused({.sight = 0}), "crowd: sight must be 1 to 50 m");

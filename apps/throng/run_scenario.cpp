@@ -66,6 +66,40 @@ Result<void> write_visits(const std::string& path, const Scenario& scenario,
   return file.finish();
 }
 
+// The times of an obstacle in a sentence.
+std::string words_for(const ScenarioObstacle& obstacle, const ObstacleTimes& times) {
+  std::string words = fmt::format("to come at {:.1f} s, ", times.asked);
+  if (times.up >= 0) {
+    words += fmt::format("up at {:.1f} s", times.up);
+  } else if (times.gone >= 0) {
+    words += fmt::format("never up until it went at {:.1f} s", times.gone);
+  } else {
+    words += fmt::format("still open: {} avatars are in it", times.waits_for);
+  }
+  if (times.inside > 0) words += fmt::format("; {} avatars were in it then", times.inside);
+  if (obstacle.policy == ObstaclePolicy::kWait) words += "; it waits until it is free";
+  return words;
+}
+
+// Each obstacle whose time has come, in a line, and as JSON.
+std::string obstacle_lines(const Scenario& scenario, const Simulation& simulation, Json& json) {
+  std::string lines;
+  for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
+    const ScenarioObstacle& obstacle = scenario.obstacles[n];
+    const ObstacleTimes& times = simulation.obstacle_times()[n];
+    const auto time = [](double t) { return t < 0 ? Json(nullptr) : Json(t); };
+    json[obstacle.name] = {{"policy", name_of(obstacle.policy)},
+                           {"asked", time(times.asked)},
+                           {"up", time(times.up)},
+                           {"gone", time(times.gone)},
+                           {"inside", times.inside},
+                           {"waits_for", times.waits_for}};
+    if (times.asked < 0) continue;
+    lines += fmt::format("  obstacle {}: {}\n", obstacle.name, words_for(obstacle, times));
+  }
+  return lines;
+}
+
 struct Totals {
   uint64_t steps = 0, most = 0, checks = 0;
   double avatar_steps = 0, seconds = 0, progress = 0;
@@ -85,6 +119,8 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
     lines += fmt::format("  {:<16} {:6} people, {:.1f} to {:.1f} s\n", name, exit.left, exit.first,
                          exit.last);
   }
+  Json obstacles = Json::object();
+  lines += obstacle_lines(scenario, simulation, obstacles);
   print_result(
       session,
       {{"scenario", run.file},
@@ -104,6 +140,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
        {"last_left", outcome.last},
        {"mean_time", outcome.mean_time},
        {"exits", exits},
+       {"obstacles", obstacles},
        {"progress", progress},
        {"ns_per_avatar_step_mean", ns},
        {"checks", t.checks},

@@ -45,7 +45,7 @@ bool is_bound(const Body& body) {
   constexpr uint8_t kAll =
       Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven | Body::kFlying;
   // A region has room for many.
-  return body.target == 0 && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
+  return body.target == 0 && !body.leaves && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
 // Part of a way.
@@ -58,7 +58,7 @@ Way shorter(Way way, float part) {
 // Bound for a corner, not for its goal yet?
 bool turns_corner(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven | Body::kFlying;
-  return (body.flags & kAll) == Body::kHasGoal;
+  return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
 }
 
 // Turned aside by his patience where not only others are in the way?
@@ -205,7 +205,7 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
       if (b.has(Body::kDriven) || b.has(Body::kFlying) || b.steps == 0) continue;
-      b.wish = b.has(Body::kHasGoal)
+      b.wish = b.has(Body::kHasGoal) || b.leaves
                    ? steer::wish_towards(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z),
                                          b.speed, units_of(b).dt, turn(b))
                    : Plane{};

@@ -88,16 +88,33 @@ std::string obstacle_lines(const Scenario& scenario, const Simulation& simulatio
     const ScenarioObstacle& obstacle = scenario.obstacles[n];
     const ObstacleTimes& times = simulation.obstacle_times()[n];
     const auto time = [](double t) { return t < 0 ? Json(nullptr) : Json(t); };
+    const std::string words = times.asked < 0 ? "" : words_for(obstacle, times);
     json[obstacle.name] = {{"policy", name_of(obstacle.policy)},
                            {"asked", time(times.asked)},
                            {"up", time(times.up)},
                            {"gone", time(times.gone)},
                            {"inside", times.inside},
-                           {"waits_for", times.waits_for}};
-    if (times.asked < 0) continue;
-    lines += fmt::format("  obstacle {}: {}\n", obstacle.name, words_for(obstacle, times));
+                           {"waits_for", times.waits_for},
+                           {"words", words}};
+    if (!words.empty()) lines += fmt::format("  obstacle {}: {}\n", obstacle.name, words);
   }
   return lines;
+}
+
+Result<void> write_obstacles(const std::string& path, const Scenario& scenario,
+                             const Simulation& simulation) {
+  OutputFile file;
+  if (auto ok = file.open(path); !ok) return ok;
+  file.write("obstacle,policy,asked,up,gone,inside,waits_for\n");
+  const auto time = [](double t) { return t < 0 ? std::string() : fmt::format("{:.3f}", t); };
+  for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
+    const ScenarioObstacle& obstacle = scenario.obstacles[n];
+    const ObstacleTimes& times = simulation.obstacle_times()[n];
+    file.write(fmt::format("{},{},{},{},{},{},{}\n", obstacle.name, name_of(obstacle.policy),
+                           time(times.asked), time(times.up), time(times.gone), times.inside,
+                           times.waits_for));
+  }
+  return file.finish();
 }
 
 struct Totals {
@@ -191,7 +208,10 @@ Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& sc
     if (session.context.cancel) return Error{Errc::kCancelled, "run: interrupted"};
   }
   check();
-  if (auto ok = sinks.finish(); !ok) return ok.error();
+  Json obstacles = Json::object();
+  const std::string lines = obstacle_lines(scenario, simulation, obstacles);
+  const Json outcome = {{"obstacles", obstacles}};
+  if (auto ok = sinks.finish(lines.empty() ? "" : outcome.dump()); !ok) return ok.error();
   return t;
 }
 
@@ -222,6 +242,9 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (!totals) return totals.error();
   if (!run.visits.empty()) {
     if (ok = write_visits(run.visits, *scenario, *simulation); !ok) return ok.error();
+  }
+  if (!run.obstacles.empty()) {
+    if (ok = write_obstacles(run.obstacles, *scenario, *simulation); !ok) return ok.error();
   }
   print(session, run, *scenario, *simulation, *totals);
   const CrowdCheck& found = totals->found;

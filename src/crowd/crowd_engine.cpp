@@ -365,8 +365,12 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
       const float back = -0.5f * body.speed / size_of(apart);
       situation.wish = {apart.x * back, apart.z * back};
     }
-    // Who has arrived makes way for those who would pass, were he not there: they may stand.
-    const bool makes_way = body.has(Body::kArrived) && !other.has(Body::kArrived);
+    // Who has arrived makes way for those who would pass, were he not there: they may stand. Those
+    // that only stand do so for those that leave an obstacle.
+    const bool rests =
+        body.has(Body::kArrived) || !(body.has(Body::kHasGoal) || body.has(Body::kDriven));
+    const bool makes_way = (body.has(Body::kArrived) && !other.has(Body::kArrived)) ||
+                           (rests && other.leaves && !body.leaves);
     situation.near.add(config_.steering,
                        {apart, makes_way ? other.wish : other.velocity, room, other.wish});
   }

@@ -177,6 +177,26 @@ void Crowd::State::end_leaving(Body& body) {
   body.flags |= Body::kLast;
 }
 
+// Does it take its path again, as it does not get on by the nearest way out either?
+bool Crowd::State::tries_path_again(Body& body) const {
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kArrived | Body::kLost;
+  if ((body.flags & kAll) != (Body::kHasGoal | Body::kLost)) return false;
+  const Route& route = routes[body.slot];
+  if (std::fabs(body.turn) <= kPatience || route.next >= route.count) return false;
+  body.turn = 0;
+  std::vector<uint32_t> slots;
+  const GroundPoint at = body.point();
+  classes[body.avatar_class]->ground.left().list_obstacles(
+      {body.level, at.cell_x() & 63, at.cell_z() & 63}, slots);
+  if (slots.empty() || !leads_out(body, slots)) return false;
+  const Spot& corner = route.corners[route.next];
+  body.aim_x = corner.x;
+  body.aim_z = corner.z;
+  body.clear(Body::kLost);
+  if (route.whole && route.next + 1 == route.count) body.flags |= Body::kLast;
+  return true;
+}
+
 void Crowd::State::plan_exit(Body& body) {
   if (body.has(Body::kDriven)) return;
   const CrowdGround& cells = classes[body.avatar_class]->ground;
@@ -189,8 +209,13 @@ void Crowd::State::plan_exit(Body& body) {
       const uint64_t nth = (sub_step - 1 + body.slot) / engine.steps_of_reaction(body);
       follow(body, routes[body.slot], ground, nth, static_cast<float>(1 / unit));
     }
-    if (std::fabs(body.turn) > kPatience) body.flags |= Body::kLost;
+    if (std::fabs(body.turn) > kPatience) {
+      body.flags |= Body::kLost;
+      body.turn = 0;
+    }
     if (!body.has(Body::kLost)) return;
+  } else if (tries_path_again(body)) {
+    return;
   }
   body.clear(Body::kLast);
   body.clear(Body::kKeeps);

@@ -100,9 +100,12 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
   const auto seconds = [&](uint64_t step) {
     return step == CrowdObstacle::kNever ? -1 : static_cast<double>(step) * state_->config.dt;
   };
-  return ObstacleState{found->place,           found->is_up,
-                       found->waits(),         found->kind,
-                       found->policy,          seconds(found->asked_step),
+  return ObstacleState{found->place,
+                       found->is_up,
+                       found->waits(),
+                       found->kind,
+                       found->policy,
+                       seconds(found->asked_step),
                        seconds(found->up_step),
                        found->occupants};
 }

@@ -132,6 +132,7 @@ struct Crowd::State {
   void end_leaving(Body& body);
   /// Of one on foot: on along its way, or to the nearest exit.
   void plan_exit(Body& body);
+  bool tries_path_again(Body& body) const;
   [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const;
   /// Of one who flies; true: its way is not followed.
   bool plan_exit_in_air(Body& body, Flight& flight) const;

@@ -51,6 +51,14 @@ bool LeftCells::holds(const Cell& cell) const {
                                       [&](const Part& part) { return has(part.rows, cell); });
 }
 
+void LeftCells::list_obstacles(const Cell& cell, std::vector<uint32_t>& obstacles) const {
+  const OfLevel* of = find(cell.level);
+  if (of == nullptr) return;
+  for (const Part& part : of->parts) {
+    if (has(part.rows, cell)) obstacles.push_back(part.obstacle);
+  }
+}
+
 bool LeftCells::may_cross(const Cell& from, const Cell& over) const {
   const OfLevel* of = find(over.level);
   const OfLevel* of_from = find(from.level);

@@ -39,6 +39,8 @@ class LeftCells {
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
   [[nodiscard]] bool holds(const Cell& cell) const;
+  /// Appends the obstacles on whose cells it is.
+  void list_obstacles(const Cell& cell, std::vector<uint32_t>& obstacles) const;
   /// May a body that stands on the cell `from` go over a cell that was legal before it was taken?
   [[nodiscard]] bool may_cross(const Cell& from, const Cell& over) const;
   /// Would a body that stands on a cell come, from one point to another, into an obstacle in which

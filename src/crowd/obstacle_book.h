@@ -35,7 +35,7 @@ struct CrowdObstacle {
   bool lets_out = false;   // some who walk stand on these, and may only leave
   uint32_t version = 0;    // of `place`
   uint64_t asked_step = kNever, up_step = kNever;  // steps made before it was asked, and came up
-  uint32_t occupants = 0;  // in its way, when last looked at
+  uint32_t occupants = 0;                          // in its way, when last looked at
 
   static constexpr uint64_t kNever = UINT64_MAX;
 

@@ -29,6 +29,7 @@ constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
 constexpr uint64_t kSides = 0x51de5;         // stream of chance
 constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
+constexpr float kStepsBack = 1;              // [m] beside it, for one that leaves an obstacle
 constexpr float kAtOnce = 0.1f;              // [s] Who goes straight meets nobody within.
 constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
 constexpr float kEnough = 14;                // bodies, to find the nearest among
@@ -347,6 +348,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
+  const bool rests = !body.leaves && !body.has(Body::kDriven) &&
+                     (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
@@ -365,12 +368,16 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
       const float back = -0.5f * body.speed / size_of(apart);
       situation.wish = {apart.x * back, apart.z * back};
     }
-    // Who has arrived makes way for those who would pass, were he not there: they may stand. Those
-    // that only stand do so for those that leave an obstacle.
-    const bool rests =
-        body.has(Body::kArrived) || !(body.has(Body::kHasGoal) || body.has(Body::kDriven));
-    const bool makes_way = (body.has(Body::kArrived) && !other.has(Body::kArrived)) ||
-                           (rests && other.leaves && !body.leaves);
+    // Those that stand step back from those beside them that leave an obstacle.
+    const float far = size_of(apart);
+    if (other.leaves && rests && far > 0 && far < room + kStepsBack) {
+      worker.waits = true;
+      const float back = -0.5f * body.speed / far;
+      situation.wish = {apart.x * back, apart.z * back};
+    }
+    // Who has arrived makes way for those who would pass, were he not there: they may stand.
+    const bool makes_way =
+        (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
     situation.near.add(config_.steering,
                        {apart, makes_way ? other.wish : other.velocity, room, other.wish});
   }

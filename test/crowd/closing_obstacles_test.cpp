@@ -11,7 +11,6 @@
 
 #include "baked.h"
 #include "crowds.h"
-#include "flyers.h"
 #include "throng/crowd.h"
 #include "worlds.h"
 
@@ -104,7 +103,9 @@ TEST(ClosingObstacles, OnlyThoseInsideADoorComeThroughOnceItIsToShut) {
         const std::set<uint32_t> now = inside(crowd, kDoor, rush.radius - 2e-4);
         for (const uint32_t id : now) ASSERT_TRUE(still.count(id)) << "entered at step " << step;
         still = inside(crowd, kDoor, rush.radius);
-        if (crowd.obstacle(*door)->is_up) ASSERT_TRUE(now.empty());
+        if (crowd.obstacle(*door)->is_up) {
+          ASSERT_TRUE(now.empty());
+        }
       }
       const ObstacleState state = *crowd.obstacle(*door);
       ASSERT_TRUE(state.is_up);
@@ -113,7 +114,9 @@ TEST(ClosingObstacles, OnlyThoseInsideADoorComeThroughOnceItIsToShut) {
       EXPECT_LE(state.up_at, state.asked_at + 3) << seed;
       for (const auto& [id, p] : positions(crowd)) {
         const bool came_through = before.at(id).x < 20.2 && p.x > 20.5;
-        if (came_through) EXPECT_TRUE(in_it.count(id));
+        if (came_through) {
+          EXPECT_TRUE(in_it.count(id));
+        }
       }
       if (first == 0) first = crowd.state_hash();
       EXPECT_EQ(crowd.state_hash(), first) << seed << ' ' << workers;

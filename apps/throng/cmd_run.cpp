@@ -25,7 +25,7 @@ struct RunOptions {
   std::string world;
   std::string class_name;
   SinkOptions sinks;
-  std::string visits;
+  std::string visits, obstacles;
   uint64_t steps = 100;
   uint64_t check_every = 0;
   WanderConfig config;
@@ -196,6 +196,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
                   .check_every = options.check_every,
                   .workers = options.config.workers,
                   .visits = options.visits,
+                  .obstacles = options.obstacles,
                   .sinks = options.sinks};
   if (command.count("--steps") > 0) run.steps = options.steps;
   if (command.count("--seed") > 0) run.seed = options.config.seed;
@@ -266,13 +267,20 @@ void add_run(CLI::App& parser, Session& session) {
                       "Look for walls entered and overlaps each K-th step, 0 for ten times a run");
   command->add_option("--visits", options->visits, "Of a scenario: write who came and went")
       ->type_name("FILE.csv");
+  command
+      ->add_option("--obstacles", options->obstacles,
+                   "Of a scenario: write when its obstacles were to come, and when they were up")
+      ->type_name("FILE.csv");
   command->callback([&session, options, command] {
     if (is_scenario_file(options->world)) {
       session.exit_code = run_file(session, *command, *options);
       return;
     }
-    if (!options->visits.empty()) {
-      session.exit_code = fail({Errc::kBadConfig, "--visits goes with a scenario file"});
+    for (const auto& [name, path] : {std::pair("--visits", &options->visits),
+                                     std::pair("--obstacles", &options->obstacles)}) {
+      if (path->empty()) continue;
+      const std::string what = name;
+      session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});
       return;
     }
     session.exit_code = run(session, *options);

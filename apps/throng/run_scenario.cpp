@@ -68,6 +68,57 @@ Result<void> write_visits(const std::string& path, const Scenario& scenario,
   return file.finish();
 }
 
+// The times of an obstacle in a sentence.
+std::string words_for(const ScenarioObstacle& obstacle, const ObstacleTimes& times) {
+  std::string words = fmt::format("to come at {:.1f} s, ", times.asked);
+  if (times.up >= 0) {
+    words += fmt::format("up at {:.1f} s", times.up);
+  } else if (times.gone >= 0) {
+    words += fmt::format("never up until it went at {:.1f} s", times.gone);
+  } else {
+    words += fmt::format("still open: {} avatars are in it", times.waits_for);
+  }
+  if (times.inside > 0) words += fmt::format("; {} avatars were in it then", times.inside);
+  if (obstacle.policy == ObstaclePolicy::kWait) words += "; it waits until it is free";
+  return words;
+}
+
+// Each obstacle whose time has come, in a line, and as JSON.
+std::string obstacle_lines(const Scenario& scenario, const Simulation& simulation, Json& json) {
+  std::string lines;
+  for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
+    const ScenarioObstacle& obstacle = scenario.obstacles[n];
+    const ObstacleTimes& times = simulation.obstacle_times()[n];
+    const auto time = [](double t) { return t < 0 ? Json(nullptr) : Json(t); };
+    const std::string words = times.asked < 0 ? "" : words_for(obstacle, times);
+    json[obstacle.name] = {{"policy", name_of(obstacle.policy)},
+                           {"asked", time(times.asked)},
+                           {"up", time(times.up)},
+                           {"gone", time(times.gone)},
+                           {"inside", times.inside},
+                           {"waits_for", times.waits_for},
+                           {"words", words}};
+    if (!words.empty()) lines += fmt::format("  obstacle {}: {}\n", obstacle.name, words);
+  }
+  return lines;
+}
+
+Result<void> write_obstacles(const std::string& path, const Scenario& scenario,
+                             const Simulation& simulation) {
+  OutputFile file;
+  if (auto ok = file.open(path); !ok) return ok;
+  file.write("obstacle,policy,asked,up,gone,inside,waits_for\n");
+  const auto time = [](double t) { return t < 0 ? std::string() : fmt::format("{:.3f}", t); };
+  for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
+    const ScenarioObstacle& obstacle = scenario.obstacles[n];
+    const ObstacleTimes& times = simulation.obstacle_times()[n];
+    file.write(fmt::format("{},{},{},{},{},{},{}\n", obstacle.name, name_of(obstacle.policy),
+                           time(times.asked), time(times.up), time(times.gone), times.inside,
+                           times.waits_for));
+  }
+  return file.finish();
+}
+
 struct Totals {
   uint64_t steps = 0, most = 0, checks = 0, out_of_memory = 0;
   double avatar_steps = 0, progress = 0;
@@ -86,6 +137,8 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
     lines += fmt::format("  {:<16} {:6} people, {:.1f} to {:.1f} s\n", name, exit.left, exit.first,
                          exit.last);
   }
+  Json obstacles = Json::object();
+  lines += obstacle_lines(scenario, simulation, obstacles);
   Json json = {{"scenario", run.file},
                {"steps", t.steps},
                {"seconds", t.last.time},
@@ -103,6 +156,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                {"last_left", outcome.last},
                {"mean_time", outcome.mean_time},
                {"exits", exits},
+               {"obstacles", obstacles},
                {"progress", progress},
                {"out_of_memory", t.out_of_memory},
                {"checks", t.checks},
@@ -164,7 +218,13 @@ Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& sc
     if (session.context.cancel) return Error{Errc::kCancelled, "run: interrupted"};
   }
   check();
-  if (auto ok = times.measure("write", [&] { return sinks.finish(); }); !ok) return ok.error();
+  Json obstacles = Json::object();
+  const std::string lines = obstacle_lines(scenario, simulation, obstacles);
+  const Json outcome = {{"obstacles", obstacles}};
+  const std::string text = lines.empty() ? "" : outcome.dump();
+  if (auto ok = times.measure("write", [&] { return sinks.finish(text); }); !ok) {
+    return ok.error();
+  }
   return t;
 }
 
@@ -197,6 +257,9 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (!totals) return totals.error();
   if (!run.visits.empty()) {
     if (ok = write_visits(run.visits, *scenario, *simulation); !ok) return ok.error();
+  }
+  if (!run.obstacles.empty()) {
+    if (ok = write_obstacles(run.obstacles, *scenario, *simulation); !ok) return ok.error();
   }
   print(session, run, *scenario, *simulation, *totals, times);
   const CrowdCheck& found = totals->found;

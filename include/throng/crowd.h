@@ -170,23 +170,26 @@ class THRONG_API Crowd {
 
   /// Puts up an obstacle: nobody stands where a body of his class could touch it, its bottom above
   /// his step, until it is removed. It comes up at once or, as a door that closes, before the first
-  /// step at whose beginning nobody stands there. Ways of kStanding ones lead around them; whose
-  /// way is cut asks for another, and whoever has none left is stranded. Fails with kBadInput.
-  /// Time: all avatars, and the cells that it touches.
-  [[nodiscard]] Result<ObstacleId> add_obstacle(const Prism& prism,
-                                                ObstacleKind kind = ObstacleKind::kStanding);
+  /// step at whose beginning no body is in it; what happens until then, ObstaclePolicy says. Ways
+  /// of kStanding ones lead around them; whose way is cut asks for another, and whoever has none
+  /// left is stranded. Fails with kBadInput. Time: all avatars, and the cells that it touches.
+  [[nodiscard]] Result<ObstacleId> add_obstacle(
+      const Prism& prism, ObstacleKind kind = ObstacleKind::kStanding,
+      ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
   /// Where it is to be: by a small step at a time, as it waits while anybody stands within the
-  /// convex hull of here and there. The last order counts. Fails with kBadInput, kNotFound.
+  /// convex hull of here and there: avatars may enter that, whatever the policy. The last order
+  /// counts. Fails with kBadInput, kNotFound.
   [[nodiscard]] Result<void> move_obstacle(ObstacleId id, const Prism& prism);
-  /// A door: true closes it, as soon as nobody stands in it; false opens it at once. False for ids
-  /// of none.
+  /// A door: true closes it, by its policy; false opens it at once, or ends its closing. False for
+  /// ids of none.
   bool set_obstacle_active(ObstacleId id, bool active);
   bool remove_obstacle(ObstacleId id);
   /// Fails with kNotFound.
   [[nodiscard]] Result<ObstacleState> obstacle(ObstacleId id) const;
   /// All that are up, in order of slot.
   [[nodiscard]] std::vector<Prism> obstacles() const;
-  /// Who stood in the way of obstacles that wait when the last step began, in order of slot.
+  /// Who stood in the way of obstacles that wait when the last step began, in order of slot: also
+  /// of those that no way leads out, or that the caller drives, and which keep an obstacle open.
   [[nodiscard]] std::span<const AvatarId> in_the_way() const;
 
   /// Where they are bound for, one for each id: places of their class. An avatar keeps to its goal

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "throng/base.h"
@@ -109,8 +110,9 @@ class THRONG_API Recorder {
   [[nodiscard]] Result<void> append_hash(uint64_t step, uint64_t state_hash);
   /// Hands all frames so far to the system: they survive the process, not a power cut.
   [[nodiscard]] Result<void> flush();
-  /// Marks the file as complete and closes it. Nothing can be added then.
-  [[nodiscard]] Result<void> finish();
+  /// Marks the file as complete and closes it. Nothing can be added then. `outcome`: what else came
+  /// out of the run, as the model writes it. Fails with kIo.
+  [[nodiscard]] Result<void> finish(std::string_view outcome = {});
   [[nodiscard]] uint64_t frames() const;
   [[nodiscard]] uint64_t bytes() const;  ///< Written so far.
 
@@ -147,6 +149,8 @@ class THRONG_API Replay {
   ~Replay();
 
   [[nodiscard]] const RecordingInfo& info() const;
+  /// What Recorder::finish was given; empty if that was nothing, or it was not finished.
+  [[nodiscard]] const std::string& outcome() const;
   [[nodiscard]] uint64_t frame_count() const;
   [[nodiscard]] uint64_t bytes() const;  ///< Of the good part of the file.
   /// Empty for a recording that was finished, else a sentence: where it ends and why.

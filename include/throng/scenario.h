@@ -13,6 +13,7 @@
 #include "throng/base.h"
 #include "throng/builtin_worlds.h"
 #include "throng/context.h"
+#include "throng/crowd_obstacle.h"
 #include "throng/prism.h"
 #include "throng/result.h"
 #include "throng/scene.h"
@@ -142,8 +143,12 @@ struct Link {
 struct ScenarioObstacle {
   std::string name;
   Prism prism;
-  double begin = 0, end = HUGE_VAL;  ///< Comes then, as soon as nobody stands there; and goes. [s]
+  double begin = 0, end = HUGE_VAL;                      ///< When it is to come, and goes. [s]
+  ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;  ///< What is done about who stands there.
 };
+
+/// "shut" or "wait", as in scenario files.
+[[nodiscard]] THRONG_API const char* name_of(ObstaclePolicy policy);
 
 struct Scenario {
   // Where: one of these, in this order.

@@ -479,6 +479,10 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
   for (Body& body : bodies) {
     if (body.has(Body::kFlying) || body.steps == 0) continue;
     const ClassParts& parts = *classes[body.avatar_class];
+    if (body.leaves) {
+      plan_exit(body);
+      continue;
+    }
     if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kDriven)) &&
         plan_on_foot(body, flights[body.slot], worker, planned)) {
       body.clear(Body::kKeeps);
@@ -533,7 +537,7 @@ CrowdReport Crowd::step() {
                        .steps = s.config.far_steps,
                        .reaction = static_cast<float>(s.config.far_reaction),
                        .narrowest = s.narrowest});
-  const bool has_ways = s.config.ways == CrowdWays::kPaths || !s.flights.empty();
+  const bool has_ways = s.config.ways == CrowdWays::kPaths || !s.flights.empty() || s.some_leave;
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_ways ? before : CrowdEngine::Before(), counts, times);
     for (const uint32_t slot : s.engine.arrived()) {

@@ -29,6 +29,7 @@ constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
 constexpr uint64_t kSides = 0x51de5;         // stream of chance
 constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
+constexpr float kStepsBack = 1;              // [m] beside it, for one that leaves an obstacle
 constexpr float kAtOnce = 0.1f;              // [s] Who goes straight meets nobody within.
 constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
 constexpr float kEnough = 14;                // bodies, to find the nearest among
@@ -45,7 +46,7 @@ bool is_bound(const Body& body) {
   constexpr uint8_t kAll =
       Body::kHasGoal | Body::kLast | Body::kArrived | Body::kDriven | Body::kFlying;
   // A region has room for many.
-  return body.target == 0 && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
+  return body.target == 0 && !body.leaves && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
 // Part of a way.
@@ -58,7 +59,7 @@ Way shorter(Way way, float part) {
 // Bound for a corner, not for its goal yet?
 bool turns_corner(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kDriven | Body::kFlying;
-  return (body.flags & kAll) == Body::kHasGoal;
+  return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
 }
 
 // Turned aside by his patience where not only others are in the way?
@@ -207,7 +208,7 @@ void CrowdEngine::wish_all(uint64_t step, const Before& before) {
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
       if (b.has(Body::kDriven) || b.has(Body::kFlying) || b.steps == 0) continue;
-      b.wish = b.has(Body::kHasGoal)
+      b.wish = b.has(Body::kHasGoal) || b.leaves
                    ? steer::wish_towards(config_.units.metres(b.aim_x - b.x, b.aim_z - b.z),
                                          b.speed, units_of(b).dt, turn(b))
                    : Plane{};
@@ -349,6 +350,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
+  const bool rests = !body.leaves && !body.has(Body::kDriven) &&
+                     (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
@@ -367,8 +370,16 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
       const float back = -0.5f * body.speed / size_of(apart);
       situation.wish = {apart.x * back, apart.z * back};
     }
+    // Those that stand step back from those beside them that leave an obstacle.
+    const float far = size_of(apart);
+    if (other.leaves && rests && far > 0 && far < room + kStepsBack) {
+      worker.waits = true;
+      const float back = -0.5f * body.speed / far;
+      situation.wish = {apart.x * back, apart.z * back};
+    }
     // Who has arrived makes way for those who would pass, were he not there: they may stand.
-    const bool makes_way = body.has(Body::kArrived) && !other.has(Body::kArrived);
+    const bool makes_way =
+        (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
     situation.near.add(config_.steering,
                        {apart, makes_way ? other.wish : other.velocity, room, other.wish});
   }

@@ -64,7 +64,7 @@ bool Crowd::State::put_in_air(Body& body, const Vec3d& feet) const {
   const FlyerAir* air = air_of(body);
   if (air == nullptr || !air->in_grid(feet)) return false;
   const AirSpot spot = air->spot(feet);
-  if (!air->is_legal(spot) || flyers.is_blocked(body, spot)) return false;
+  if (!air->is_legal(spot) || flyers.is_taken(body, spot)) return false;
   body.x = spot.x;
   body.z = spot.z;
   body.y = spot.y;
@@ -347,6 +347,7 @@ void Crowd::State::look_for_room(Body& body, const Flight& flight) const {
 
 void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
                                std::atomic<uint64_t>& planned) {
+  if (body.leaves && plan_exit_in_air(body, flight)) return;
   if (!body.has(Body::kHasGoal)) return;
   const FlyerAir& air = *air_of(body);
   const AirSpot at = here(body);
@@ -451,8 +452,8 @@ void Crowd::State::tell_flyers_of_obstacles() {
   std::vector<Solid> solids;
   const Vec3d& origin = world.data()->summary.origin;
   for (const CrowdObstacle& obstacle : obstacles.all()) {
-    if (!obstacle.exists || !obstacle.is_up) continue;
-    all.emplace_back(obstacle.place, origin, unit);
+    if (!obstacle.exists || !obstacle.has_cells) continue;
+    all.emplace_back(obstacle.place, origin, unit, obstacle.closes());
     solids.push_back({obstacle.place, {}});
   }
   climbers.set_obstacles(all, std::move(solids));

@@ -71,7 +71,8 @@ struct Crowd::State {
   uint64_t step = 0, sub_step = 0;
   uint64_t scattered = 0;  // draws of `scatter`
   ObstacleBook obstacles;
-  bool cuts_ways = false;  // an obstacle that ways lead around is up
+  bool cuts_ways = false;   // an obstacle that ways lead around is up, or closes
+  bool some_leave = false;  // Body::leaves of some
 
   // By slot.
   std::vector<uint32_t> generation;
@@ -120,6 +121,25 @@ struct Crowd::State {
   /// Those obstacles that wait and in whose way nobody stands come up or move on. Returns how many
   /// still wait.
   size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_way);
+  /// Is any of these bodies in an obstacle that is to come up?
+  [[nodiscard]] bool is_occupied(uint32_t slot,
+                                 std::span<const std::pair<uint32_t, uint32_t>> found) const;
+
+  // crowd_leaving.cpp
+  /// These (obstacle, index of the body) are in obstacles that they are to leave; with `all`, no
+  /// others are.
+  void mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> found, bool all);
+  void begin_to_leave(Body& body, std::span<const uint32_t> slots);
+  void end_leaving(Body& body);
+  /// Of one on foot: on along its way, or to the nearest exit.
+  void plan_exit(Body& body);
+  bool tries_path_again(Body& body) const;
+  [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const;
+  /// Of one who flies; true: its way is not followed.
+  bool plan_exit_in_air(Body& body, Flight& flight) const;
+  /// Of one who goes over nodes.
+  bool plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker);
+
   /// Tells the ways of a class, or of all, what an obstacle is to them by now.
   void tell_ways(uint32_t slot, size_t number);
   void tell_ways(uint32_t slot);
@@ -199,7 +219,7 @@ struct Crowd::State {
   [[nodiscard]] bool is_sound_climb(const Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
-  bool step_off(Body& body, Climb& climb, int32_t worker);
+  bool step_off(Body& body, Climb& climb, int32_t worker, double beside);
   void cut_climbs(std::span<const uint32_t> slots);
 };
 

@@ -154,7 +154,7 @@ void Crowd::State::renew_flows() {
     THRONG_ASSERT(ok);  // It was possible before, and nobody cancels it.
   }
   for (Body& body : engine.bodies()) {
-    if (body.target != 0 && body.has(Body::kHasGoal)) body.flags |= Body::kLost;
+    if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves) body.flags |= Body::kLost;
   }
 }
 

@@ -225,14 +225,15 @@ Result<void> Recorder::append(const FrameView& frame) {
 
 Result<void> Recorder::flush() { return state_->flush(); }
 
-Result<void> Recorder::finish() {
+Result<void> Recorder::finish(std::string_view outcome) {
   State& s = *state_;
   if (auto ok = s.flush(); !ok) return ok;
   ChunkHead head;
   head.kind = static_cast<uint32_t>(ChunkKind::kEnd);
   head.first_frame = s.frames;
   head.first_time = head.last_time = s.last_time;
-  if (auto ok = s.write(head, {}); !ok) return ok;
+  const auto* text = reinterpret_cast<const uint8_t*>(outcome.data());
+  if (auto ok = s.write(head, {{text, outcome.size()}}); !ok) return ok;
   if (std::fclose(std::exchange(s.file, nullptr)) != 0) {
     s.reason = errno != 0 ? errno : EIO;
     return s.io_error();

@@ -41,7 +41,7 @@ struct Replay::State {
   std::span<const uint8_t> bytes;
   RecordingInfo info;
   std::array<int64_t, 3> origin{};  // [m]
-  std::string damage;
+  std::string damage, outcome;
   std::vector<Chunk> chunks;
   uint64_t frames = 0;
   uint64_t good_bytes = 0;
@@ -192,7 +192,14 @@ Result<void> Replay::State::walk() {
       if (kind != ChunkKind::kRun) break;
       if (auto ok = read_info(head, chunk.at); !ok) return ok;
     } else if (kind == ChunkKind::kEnd) {
-      ended = true;
+      ended = check(chunk);
+      if (!ended) {
+        why = "is corrupt";
+        break;
+      }
+      const auto* text = reinterpret_cast<const char*>(bytes.data() + chunk.at);
+      outcome.assign(text, head.bytes);
+      outcome.resize(outcome.find_last_not_of('\0') + 1);  // what it was padded with
     } else {
       const bool key = kind == ChunkKind::kKeyFrames;
       const uint64_t table =
@@ -283,6 +290,7 @@ Result<Replay> Replay::from_bytes(std::span<const uint8_t> bytes, const std::str
   return Replay(std::move(state));
 }
 
+const std::string& Replay::outcome() const { return state_->outcome; }
 const RecordingInfo& Replay::info() const { return state_->info; }
 uint64_t Replay::frame_count() const { return state_->frames; }
 uint64_t Replay::bytes() const { return state_->good_bytes; }

@@ -21,7 +21,7 @@ enum class ChunkKind : uint32_t {
   kRun = 1,        ///< replay.fbs; the first, and there is one.
   kFrames = 2,     ///< FrameEntry, StepHash, then the frames' bytes.
   kKeyFrames = 3,  ///< The same; its first frame stands alone.
-  kEnd = 4,        ///< Nothing: the recording was finished.
+  kEnd = 4,        ///< The recording was finished: the text of its outcome, or nothing.
 };
 
 struct ChunkHead {

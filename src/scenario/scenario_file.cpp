@@ -440,8 +440,15 @@ void File::read_area(Reader& r) {
 
 void File::read_obstacle(Reader& r) {
   ScenarioObstacle obstacle;
-  r.only({"name", "box", "polygon", "circle", "y", "begin", "end"});
+  r.only({"name", "box", "polygon", "circle", "y", "begin", "end", "policy"});
   name_of(r, out_.obstacles, obstacle.name);
+  std::string policy = throng::name_of(obstacle.policy);
+  r.text("policy", policy);
+  if (policy == throng::name_of(ObstaclePolicy::kWait)) {
+    obstacle.policy = ObstaclePolicy::kWait;
+  } else if (policy != throng::name_of(obstacle.policy)) {
+    return r.fail(*r.find("policy"), "policy: write \"shut\" or \"wait\"");
+  }
   r.number("begin", obstacle.begin, 0, kLong);
   r.number("end", obstacle.end, 0, kLong);
   if (!read_shape(r, obstacle.prism)) return;
@@ -703,6 +710,10 @@ Result<Scenario> parse_scenario(const std::string& text, const std::string& name
   const auto root = parse_config(text, name);
   if (!root) return root.error();
   return File(name, *root).read();
+}
+
+const char* name_of(ObstaclePolicy policy) {
+  return policy == ObstaclePolicy::kWait ? "wait" : "shut";
 }
 
 Result<Scenario> load_scenario(const std::string& path) {

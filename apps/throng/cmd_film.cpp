@@ -19,6 +19,7 @@ namespace {
 struct FilmOptions {
   ViewTarget target;
   std::vector<double> camera;
+  std::vector<std::string> overlays;
   std::string output;
   FilmFormat format;
   double seconds = 0;
@@ -56,6 +57,8 @@ int film(Session& session, const FilmOptions& options) {
     return fail({Errc::kBadFile, error});
   }
   viewer->play_for(options.from / options.speed);
+  for (const std::string& overlay : options.overlays) viewer->show_overlay(overlay);
+  if (!options.overlays.empty()) viewer->wait_for_overlays();
   // Of a recording all that is left, of a crowd ten seconds.
   double seconds = options.seconds;
   const ViewerStatus begin = viewer->status();
@@ -120,13 +123,16 @@ void add_film(CLI::App& parser, Session& session) {
       ->expected(6)
       ->delimiter(',')
       ->type_name("X,Y,Z,TX,TY,TZ");
+  command->add_option("--overlay", options->overlays, "Switch on, may be repeated")
+      ->check(CLI::IsMember(Viewer::overlay_names(), CLI::ignore_case))
+      ->allow_extra_args(false);
   command->add_option("--turn", options->turn, "Turn around what is looked at [degrees/s]");
   command->add_option("--from", options->from, "Leave out what comes before [s]")
       ->check(at_least(0));
   command
       ->add_option("--seconds", options->seconds,
                    "Length of the film, 0: all of a recording, ten of a crowd [s]")
-      ->check(at_least(0));
+      ->check(between(0, 86400));
   command->add_option("--play-speed", options->speed, "Of time")
       ->check(between(0.05, 16.0))
       ->capture_default_str();

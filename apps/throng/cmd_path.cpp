@@ -38,11 +38,33 @@ struct PathOptions {
   std::vector<double> off_mesh_links;  // six numbers a jump
   std::vector<double> area_costs;      // a kind and its cost
   double slope_cost = 0;
+  uint64_t search_bytes = SearchBudget::kDefaultBytes;
 
   [[nodiscard]] bool is_live() const {
     return !blocks.empty() || !off_mesh_links.empty() || !area_costs.empty() || slope_cost > 0;
   }
 };
+
+const char* word_for(SpentBudget spent) {
+  switch (spent) {
+    case SpentBudget::kNone:
+      return "";
+    case SpentBudget::kNodes:
+      return "nodes";
+    case SpentBudget::kMemory:
+      return "memory";
+    case SpentBudget::kCancelled:
+      return "cancelled";
+  }
+  return "";
+}
+
+// What a search had too little of, and what to do; empty if it had enough.
+std::string text_for(const PathOptions& options, SpentBudget spent) {
+  if (spent != SpentBudget::kMemory) return {};
+  return fmt::format("  the search would take more than {} MiB of memory; raise --search-memory\n",
+                     options.search_bytes >> 20);
+}
 
 const char* word_for(PathEnd end) {
   switch (end) {
@@ -116,6 +138,7 @@ Json path_json(const PathOptions& options, const Path& path, const Place& to, do
                {"links", links},
                {"nodes", path.nodes},
                {"seconds", seconds}};
+  if (path.spent != SpentBudget::kNone) json["spent"] = word_for(path.spent);
   if (options.is_live()) json["jumps"] = path.off_mesh_links;
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d& nearest = path.points.back().position;
@@ -143,7 +166,8 @@ std::string path_text(const PathOptions& options, const Path& path, const Place&
                        options.avatar_class, path.points.size() - 1, seconds * 1e3);
     if (options.is_live()) text += fmt::format("  costs {:.3f}\n", path.cost);
   } else {
-    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end)) +
+           text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;
     text += fmt::format("  gets to ({}), {}; what is in the way: {}\n", where(nearest),
@@ -189,6 +213,7 @@ Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d
       {"nodes", path.nodes},
       {"seconds", seconds},
       {"air", {{"boxes", summary.boxes}, {"bytes", summary.bytes}, {"seconds", summary.seconds}}}};
+  if (path.spent != SpentBudget::kNone) json["spent"] = word_for(path.spent);
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d& nearest = path.points.back();
     json["nearest"] = {{"place", numbers(nearest)},
@@ -205,7 +230,8 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
     text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
                        options.avatar_class, path.segments.size(), seconds * 1e3);
   } else {
-    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end)) +
+           text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back();
     text += fmt::format("  gets to ({}), {:.3f} m from there; what is in the way: {}\n",
@@ -249,8 +275,12 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   if (auto ok = put_up(options, *finder); !ok) return fail(ok.error());
   FlightPath found;
   const auto start = std::chrono::steady_clock::now();
-  finder->find(
-      {.from = *from, .to = *to, .reach = options.reach, .cancel = &session.context.cancel}, found);
+  finder->find({.from = *from,
+                .to = *to,
+                .reach = options.reach,
+                .max_bytes = options.search_bytes,
+                .cancel = &session.context.cancel},
+               found);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (found.end == PathEnd::kNoPlace) {
@@ -293,6 +323,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
                  {"crossings", summary.crossings},
                  {"bytes", summary.bytes},
                  {"seconds", summary.seconds}}}};
+  if (path.spent != SpentBudget::kNone) json["spent"] = word_for(path.spent);
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d nearest = path.points.back().place.feet;
     json["nearest"] = {{"place", numbers(nearest)},
@@ -313,7 +344,8 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
     text = fmt::format("{:.3f} m for {} over {} nodes, found in {:.3f} ms\n", path.length,
                        options.avatar_class, path.corridor.size(), seconds * 1e3);
   } else {
-    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end));
+    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end)) +
+           text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d nearest = path.points.back().place.feet;
     text += fmt::format("  gets to ({}), {:.3f} m from there; what is in the way: {}\n",
@@ -372,7 +404,8 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
   }
   NodePath found;
   const auto start = std::chrono::steady_clock::now();
-  finder->find(from, to, found);
+  finder->find(from, to, found, 0.25, {UINT64_MAX, &session.context.cancel, options.search_bytes});
+  if (found.spent == SpentBudget::kCancelled) return fail({Errc::kCancelled, "path: interrupted"});
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Json json = node_path_json(options, found, to, finder->summary(), seconds);
@@ -457,6 +490,7 @@ int path(Session& session, const PathOptions& options) {
   if (!from) return fail(from.error());
   const auto to = place_of(*world, options, *avatar_class, options.to, "--to");
   if (!to) return fail(to.error());
+  const SearchBudget budget(UINT64_MAX, &session.context.cancel, options.search_bytes);
   Path found;
   Json mesh;
   double seconds = 0;
@@ -470,7 +504,7 @@ int path(Session& session, const PathOptions& options) {
         *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
     if (!finder) return fail(finder.error());
     mesh = mesh_json(finder->summary());
-    timed([&] { finder->find(*from, *to, found); });
+    timed([&] { finder->find(*from, *to, found, budget); });
   }
   // How near it gets, and why no nearer, only the other one says.
   if (options.is_live() || found.end == PathEnd::kUnreachable) {
@@ -482,8 +516,9 @@ int path(Session& session, const PathOptions& options) {
           bad_end(options, place.position, option,
                   "is no place to stand now: a --block stands there, or its ground is closed"));
     }
-    timed([&] { ground->find(*from, *to, found); });
+    timed([&] { ground->find(*from, *to, found, budget); });
   }
+  if (found.spent == SpentBudget::kCancelled) return fail({Errc::kCancelled, "path: interrupted"});
   Json json = path_json(options, found, *to, seconds);
   if (!mesh.is_null()) json["mesh"] = mesh;
   print_result(session, json, path_text(options, found, *to, seconds));
@@ -544,6 +579,7 @@ void add_path(CLI::App& parser, Session& session) {
                    "What a metre costs more for each metre that the ground rises on it")
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
+  add_search_memory(*command, options->search_bytes);
   command->add_option("--threads", options->threads, "Threads for making the mesh, 0 for all cores")
       ->check(between(0, 1024))
       ->capture_default_str();

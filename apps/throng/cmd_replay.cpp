@@ -91,6 +91,7 @@ Json info_json(const ReplayOptions& options, Replay& replay, const FilmRate& fil
       {"settings", settings.is_discarded() ? Json(info.settings) : settings},
       {"dt", info.dt},
       {"leans", info.leans},
+      {"origin", numbers(info.origin)},
       {"classes", classes},
       {"frames", frames},
       {"frames_per_second", film.rate},

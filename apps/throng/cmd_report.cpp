@@ -55,6 +55,19 @@ Result<FlowLine> parse_line(const std::string& text) {
   return line;
 }
 
+// By name, as `throng run` tells of them; none where the recording does not.
+Json obstacles_of(const Replay& replay) {
+  Json found = Json::object();
+  const Json outcome = Json::parse(replay.outcome(), nullptr, /*allow_exceptions=*/false);
+  if (!outcome.is_object() || !outcome.contains("obstacles")) return found;
+  const Json& obstacles = outcome["obstacles"];
+  if (!obstacles.is_object()) return found;
+  for (const auto& [name, times] : obstacles.items()) {
+    if (times.is_object()) found[name] = times;
+  }
+  return found;
+}
+
 ReportText report_text(const ReportOptions& options, const Replay& replay,
                        const ReplaySummary& summary) {
   const RecordingInfo& info = replay.info();
@@ -88,6 +101,13 @@ ReportText report_text(const ReportOptions& options, const Replay& replay,
                        flow.total_forth, rate(flow.total_forth), flow.total_back,
                        rate(flow.total_back)));
   }
+  const Json obstacles = obstacles_of(replay);
+  for (const auto& [name, times] : obstacles.items()) {
+    const auto words = times.find("words");
+    if (words != times.end() && words->is_string() && *words != "") {
+      number("obstacle " + name, words->get<std::string>());
+    }
+  }
   setting("world", fmt::format("{} ({:016x})", info.world, info.world_hash));
   setting("model", info.model);
   setting("step", fmt::format("{:g} s", info.dt));
@@ -102,7 +122,7 @@ ReportText report_text(const ReportOptions& options, const Replay& replay,
   return text;
 }
 
-Json report_json(const ReportOptions& options, const ReplaySummary& summary) {
+Json report_json(const ReportOptions& options, const Replay& replay, const ReplaySummary& summary) {
   Json lines = Json::array();
   for (size_t l = 0; l < summary.lines.size(); ++l) {
     lines.push_back({{"line", options.lines[l]},
@@ -121,6 +141,7 @@ Json report_json(const ReportOptions& options, const ReplaySummary& summary) {
           {"mean_speed", summary.mean_speed},
           {"waited", summary.waited},
           {"lines", lines},
+          {"obstacles", obstacles_of(replay)},
           {"storeys", summary.maps.size()}};
 }
 
@@ -149,7 +170,7 @@ int report(Session& session, ReportOptions& options) {
   file.write(*page);
   if (const auto ok = file.finish(); !ok) return fail(ok.error());
   if (!replay->damage().empty()) note(replay->damage());
-  print_result(session, report_json(options, *summary),
+  print_result(session, report_json(options, *replay, *summary),
                fmt::format("{}: {} frames, {} pictures; mean speed {:.3f} m/s, {} left\n",
                            options.output, summary->time.size(), pictures->size(),
                            summary->mean_speed, summary->left.back()));

@@ -13,6 +13,7 @@
 #include "run_crowd.h"
 #include "run_scenario.h"
 #include "run_sinks.h"
+#include "run_times.h"
 #include "throng/wanderers.h"
 #include "throng/world.h"
 
@@ -24,7 +25,7 @@ struct RunOptions {
   std::string world;
   std::string class_name;
   SinkOptions sinks;
-  std::string visits;
+  std::string visits, obstacles;
   uint64_t steps = 100;
   uint64_t check_every = 0;
   WanderConfig config;
@@ -38,10 +39,7 @@ struct RunTotals {
   uint64_t blocked_by_wall = 0;
   uint64_t blocked_by_avatar = 0;
   uint64_t waited = 0;
-  double seconds_sort = 0;
-  double seconds_move = 0;
   double seconds_total = 0;
-  std::vector<double> seconds;  // One a step, for the median.
   uint64_t checks = 0;
   CrowdCheck found;
 
@@ -50,10 +48,7 @@ struct RunTotals {
     blocked_by_wall += report.blocked_by_wall;
     blocked_by_avatar += report.blocked_by_avatar;
     waited += report.waited;
-    seconds_sort += report.seconds_sort;
-    seconds_move += report.seconds_move;
     seconds_total += report.seconds_total;
-    seconds.push_back(report.seconds_total);
   }
 
   void add(const CrowdCheck& check) {
@@ -61,56 +56,43 @@ struct RunTotals {
     found.wall_entries += check.wall_entries;
     found.overlaps += check.overlaps;
   }
-
-  [[nodiscard]] double median_seconds() const {
-    std::vector<double> sorted = seconds;
-    std::sort(sorted.begin(), sorted.end());
-    const size_t n = sorted.size();
-    return n == 0 ? 0 : (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
-  }
 };
 
-double ns_per_avatar(double seconds, uint32_t avatars) {
-  return avatars > 0 ? seconds * 1e9 / avatars : 0;
+Json run_json(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals,
+              const RunTimes& times) {
+  Json json = {{"world", options.world},
+               {"class", options.class_name},
+               {"avatars", crowd.size()},
+               {"steps", times.steps()},
+               {"dt", options.config.dt},
+               {"seed", options.config.seed},
+               {"threads", options.config.workers},
+               {"moved", totals.moved},
+               {"blocked", totals.blocked_by_wall + totals.blocked_by_avatar},
+               {"blocked_by_wall", totals.blocked_by_wall},
+               {"blocked_by_avatar", totals.blocked_by_avatar},
+               {"waited", totals.waited},
+               {"checks", totals.checks},
+               {"wall_entries", totals.found.wall_entries},
+               {"overlaps", totals.found.overlaps},
+               {"state_hash", fmt::format("{:016x}", crowd.state_hash())},
+               {"seconds_total", totals.seconds_total},
+               {"crowd_bytes", crowd.bytes()},
+               {"peak_bytes", peak_memory()}};
+  times.add_to(json);
+  return json;
 }
 
-Json run_json(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals) {
-  const double steps = std::max<double>(1, static_cast<double>(totals.seconds.size()));
-  return {{"world", options.world},
-          {"class", options.class_name},
-          {"avatars", crowd.size()},
-          {"steps", totals.seconds.size()},
-          {"dt", options.config.dt},
-          {"seed", options.config.seed},
-          {"threads", options.config.workers},
-          {"ns_per_avatar_step", ns_per_avatar(totals.median_seconds(), crowd.size())},
-          {"ns_per_avatar_step_mean", ns_per_avatar(totals.seconds_total / steps, crowd.size())},
-          {"moved", totals.moved},
-          {"blocked", totals.blocked_by_wall + totals.blocked_by_avatar},
-          {"blocked_by_wall", totals.blocked_by_wall},
-          {"blocked_by_avatar", totals.blocked_by_avatar},
-          {"waited", totals.waited},
-          {"checks", totals.checks},
-          {"wall_entries", totals.found.wall_entries},
-          {"overlaps", totals.found.overlaps},
-          {"state_hash", fmt::format("{:016x}", crowd.state_hash())},
-          {"seconds_sort", totals.seconds_sort},
-          {"seconds_move", totals.seconds_move},
-          {"seconds_total", totals.seconds_total},
-          {"crowd_bytes", crowd.bytes()},
-          {"peak_bytes", peak_memory()}};
-}
-
-std::string run_text(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals) {
+std::string run_text(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals,
+                     const RunTimes& times) {
   return fmt::format(
-      "{} {} avatars, {} steps of {} s: {:.1f} ns an avatar a step (median)\n"
+      "{} {} avatars, {} steps of {} s: {}\n{}"
       "blocked {} times by walls, {} by avatars; waited {} times\n"
       "{} checks: {} wall entries, {} overlaps\n"
       "state {:016x}\n",
-      crowd.size(), options.class_name, totals.seconds.size(), options.config.dt,
-      ns_per_avatar(totals.median_seconds(), crowd.size()), totals.blocked_by_wall,
-      totals.blocked_by_avatar, totals.waited, totals.checks, totals.found.wall_entries,
-      totals.found.overlaps, crowd.state_hash());
+      crowd.size(), options.class_name, times.steps(), options.config.dt, times.text_of_steps(),
+      times.text_of_parts(), totals.blocked_by_wall, totals.blocked_by_avatar, totals.waited,
+      totals.checks, totals.found.wall_entries, totals.found.overlaps, crowd.state_hash());
 }
 
 // The class's index, by name or the first; fills in the name.
@@ -119,7 +101,7 @@ Result<int32_t> pick_class(const World& world, std::string& name) {
   return class_named(world, name);
 }
 
-int run_with_goals(Session& session, const World& world, RunOptions& options) {
+int run_with_goals(Session& session, const World& world, RunOptions& options, RunTimes& times) {
   CrowdRun& run = options.crowd;
   run.world_name = options.world;
   run.class_name = options.class_name;
@@ -141,7 +123,8 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
     }
     run.also.emplace_back(group.substr(0, colon), count);
   }
-  auto crowd = GoalCrowd::make(world, run, session.context);
+  auto crowd =
+      times.measure("prepare", [&] { return GoalCrowd::make(world, run, session.context); });
   if (!crowd) return fail(crowd.error());
   Sinks sinks(options.sinks);
   if (auto ok = sinks.open(world, {.world = options.world,
@@ -152,15 +135,17 @@ int run_with_goals(Session& session, const World& world, RunOptions& options) {
       !ok)
     return fail(ok.error());
   const auto shown = [&](uint64_t step) { return sinks.add(step, crowd->crowd()); };
-  return run_crowd(session, run, *crowd, shown, [&] { return sinks.finish(); });
+  return run_crowd(session, run, *crowd, times, shown, [&] { return sinks.finish(); });
 }
 
-int run_wanderers(Session& session, const World& world, const RunOptions& options) {
+int run_wanderers(Session& session, const World& world, const RunOptions& options,
+                  RunTimes& times) {
   if (!options.also.empty()) return fail({Errc::kBadConfig, "--also goes with --goals"});
   if (options.crowd.config.model != SteeringModel::kSampled) {
     return fail({Errc::kBadConfig, "--model goes with --goals, or with a scenario file"});
   }
-  Result<Wanderers> crowd = Wanderers::create(world, options.config);
+  Result<Wanderers> crowd =
+      times.measure("prepare", [&] { return Wanderers::create(world, options.config); });
   if (!crowd) return fail(crowd.error());
   Sinks sinks(options.sinks);
   auto ok = sinks.open(world,
@@ -168,27 +153,37 @@ int run_wanderers(Session& session, const World& world, const RunOptions& option
                         .dt = options.config.dt,
                         .model = kWanderersModel,
                         .settings = wanderers_settings(options.config, options.class_name).dump()});
-  if (ok) ok = sinks.add(0, *crowd);
+  const auto write = [&](uint64_t step) {
+    return times.measure("write", [&] { return sinks.add(step, *crowd); });
+  };
+  if (ok) ok = write(0);
   if (!ok) return fail(ok.error());
   RunTotals totals;
   for (uint64_t step = 1; step <= options.steps; ++step) {
-    totals.add(crowd->step());
-    if (step % options.check_every == 0 || step == options.steps) totals.add(crowd->check());
-    ok = sinks.add(step, *crowd);
+    const WanderReport report = crowd->step();
+    totals.add(report);
+    times.add_step(report.seconds_total, crowd->size());
+    times.add("sort", report.seconds_sort);
+    times.add("move", report.seconds_move);
+    if (step % options.check_every == 0 || step == options.steps) {
+      totals.add(times.measure("check", [&] { return crowd->check(); }));
+    }
+    ok = write(step);
     if (!ok) return fail(ok.error());
     show_progress(session, "walk", step, options.steps);
     if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
   }
-  ok = sinks.finish();
+  ok = times.measure("write", [&] { return sinks.finish(); });
   if (!ok) return fail(ok.error());
-  print_result(session, run_json(options, *crowd, totals), run_text(options, *crowd, totals));
+  print_result(session, run_json(options, *crowd, totals, times),
+               run_text(options, *crowd, totals, times));
   return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
 }
 
 int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
   // What the file says is not said again; a world's options are none of a scenario's.
   for (const char* name : {"--avatars", "--dt", "--class", "--speed", "--goals", "--near", "--also",
-                           "--radius", "--labels", "--zones"}) {
+                           "--radius", "--labels", "--zones", "--search-memory"}) {
     if (command.count(name) == 0) continue;
     return fail({Errc::kBadConfig,
                  fmt::format("{} goes with a world; write it into {}", name, options.world)});
@@ -201,6 +196,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
                   .check_every = options.check_every,
                   .workers = options.config.workers,
                   .visits = options.visits,
+                  .obstacles = options.obstacles,
                   .sinks = options.sinks};
   if (command.count("--steps") > 0) run.steps = options.steps;
   if (command.count("--seed") > 0) run.seed = options.config.seed;
@@ -209,7 +205,8 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 }
 
 int run(Session& session, RunOptions& options) {
-  const Result<World> world = World::open(options.world);
+  RunTimes times;
+  const Result<World> world = times.measure("open", [&] { return World::open(options.world); });
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = pick_class(*world, options.class_name);
   if (!avatar_class) return fail(avatar_class.error());
@@ -217,8 +214,8 @@ int run(Session& session, RunOptions& options) {
   if (options.check_every == 0) options.check_every = std::max<uint64_t>(1, options.steps / 10);
   options.crowd.steps = options.steps;
   options.crowd.check_every = options.check_every;
-  return options.crowd.goals.empty() ? run_wanderers(session, *world, options)
-                                     : run_with_goals(session, *world, options);
+  return options.crowd.goals.empty() ? run_wanderers(session, *world, options, times)
+                                     : run_with_goals(session, *world, options, times);
 }
 
 }  // namespace
@@ -257,6 +254,7 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_flag("--labels", options->crowd.config.labels,
                     "Label corners: faster ways, for small worlds");
   command->add_flag("--zones", options->crowd.config.zones, "Ways by zones: for large worlds");
+  add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
   command->add_option("--trajectories", options->sinks.trajectories, "Write positions to this file")
       ->type_name("FILE.csv");
@@ -269,13 +267,20 @@ void add_run(CLI::App& parser, Session& session) {
                       "Look for walls entered and overlaps each K-th step, 0 for ten times a run");
   command->add_option("--visits", options->visits, "Of a scenario: write who came and went")
       ->type_name("FILE.csv");
+  command
+      ->add_option("--obstacles", options->obstacles,
+                   "Of a scenario: write when its obstacles were to come, and when they were up")
+      ->type_name("FILE.csv");
   command->callback([&session, options, command] {
     if (is_scenario_file(options->world)) {
       session.exit_code = run_file(session, *command, *options);
       return;
     }
-    if (!options->visits.empty()) {
-      session.exit_code = fail({Errc::kBadConfig, "--visits goes with a scenario file"});
+    for (const auto& [name, path] : {std::pair("--visits", &options->visits),
+                                     std::pair("--obstacles", &options->obstacles)}) {
+      if (path->empty()) continue;
+      const std::string what = name;
+      session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});
       return;
     }
     session.exit_code = run(session, *options);

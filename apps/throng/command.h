@@ -55,6 +55,8 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
 
 /// The option --model.
 void add_model(CLI::App& command, SteeringModel& model);
+/// --search-memory, in MiB.
+void add_search_memory(CLI::App& command, uint64_t& bytes);
 
 /// Index of the class that --class names. Fails with kNotFound and the names to choose from.
 Result<int32_t> class_named(const World& world, const std::string& name);

@@ -44,8 +44,8 @@ Chart flow_chart(const ReplaySummary& summary, const SummaryConfig& config, size
   const LineFlow& flow = summary.lines[index];
   const FlowLine& line = config.lines[index];
   Chart chart{.title = fmt::format("Flow at line {}", index + 1),
-              .notes = {fmt::format("From {:g}, {:g} to {:g}, {:g}; in bins of {:g} s", line.x0,
-                                    line.z0, line.x1, line.z1, config.bin)},
+              .notes = {fmt::format("From {:.12g}, {:.12g} to {:.12g}, {:.12g}; in bins of {:g} s",
+                                    line.x0, line.z0, line.x1, line.z1, config.bin)},
               .x_title = "time [s]",
               .y_title = "persons a second"};
   ChartLine forth{.name = fmt::format("to the right: {} in all", flow.total_forth)};
@@ -166,8 +166,8 @@ Result<std::vector<ReportPicture>> draw_report(const ReplaySummary& summary,
   }
   for (size_t m = 0; m < summary.maps.size(); ++m) {
     const SummaryMap& map = summary.maps[m];
-    const std::string where =
-        fmt::format("Feet from {:g} to {:g} m; cells of {:g} m", map.lowest, map.highest, map.cell);
+    const std::string where = fmt::format("Feet from {:.12g} to {:.12g} m; cells of {:g} m",
+                                          map.lowest, map.highest, map.cell);
     HeatMap density = heat_map(map, map.density);
     density.title = "Density";
     density.notes = {where, "Mean over the whole time"};

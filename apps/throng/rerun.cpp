@@ -58,6 +58,9 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
     ok = need(settings, {"class", "goals", "goals_text"},
               [](const Json& j) { return j.is_string(); });
   }
+  if (ok && settings.contains("search_bytes")) {
+    ok = need(settings, {"search_bytes"}, [](const Json& j) { return j.is_number_unsigned(); });
+  }
   if (ok) ok = need(settings, {"labels", "zones"}, [](const Json& j) { return j.is_boolean(); });
   if (ok && settings.contains("model")) {
     ok = need(settings, {"model"}, [](const Json& j) { return j.is_string(); });
@@ -85,6 +88,7 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.config.seed = settings.at("seed");
   run.config.labels = settings.at("labels");
   run.config.zones = settings.at("zones");
+  run.config.search_bytes = settings.value("search_bytes", run.config.search_bytes);
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
   if (!model) {
@@ -98,7 +102,11 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   Result<GoalCrowd> made = GoalCrowd::make(world, run, context);
   if (!made) return made.error();
   const auto crowd = std::make_shared<GoalCrowd>(std::move(*made));
-  return Rerun{.step = [crowd] { crowd->step(); },
+  return Rerun{.step =
+                   [crowd] {
+                     crowd->step();
+                     crowd->give_goals();
+                   },
                .state_hash = [crowd] { return crowd->crowd().state_hash(); }};
 }
 
@@ -147,19 +155,13 @@ Json wanderers_settings(const WanderConfig& config, const std::string& class_nam
 Json crowd_settings(const CrowdRun& run) {
   Json also = Json::array();
   for (const auto& [name, count] : run.also) also.push_back(Json::array({name, count}));
-  return {{"avatars", run.avatars},
-          {"also", also},
-          {"class", run.class_name},
-          {"goals", run.goals},
-          {"goals_text", run.goals_text},
-          {"near", run.near},
-          {"dt", run.config.dt},
-          {"speed", run.speed},
-          {"radius", run.radius},
-          {"labels", run.config.labels},
-          {"zones", run.config.zones},
-          {"seed", run.config.seed},
-          {"model", name_of(run.config.model)}};
+  return {{"avatars", run.avatars},       {"also", also},
+          {"class", run.class_name},      {"goals", run.goals},
+          {"goals_text", run.goals_text}, {"near", run.near},
+          {"dt", run.config.dt},          {"speed", run.speed},
+          {"radius", run.radius},         {"labels", run.config.labels},
+          {"zones", run.config.zones},    {"search_bytes", run.config.search_bytes},
+          {"seed", run.config.seed},      {"model", name_of(run.config.model)}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

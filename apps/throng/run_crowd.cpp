@@ -30,13 +30,6 @@ double random_number(uint64_t seed, uint64_t stream, uint64_t n) {
   return static_cast<double>(x >> 11) * 0x1p-53;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return (values[(n - 1) / 2] + values[n / 2]) / 2;
-}
-
 // Numbers of a line, apart by commas; none if it has others.
 std::optional<Vec3d> numbers_of(const std::string& line) {
   double v[3];
@@ -53,7 +46,6 @@ std::optional<Vec3d> numbers_of(const std::string& line) {
 
 struct Totals {
   CrowdReport sum;
-  std::vector<double> seconds;
   double progress = 0;
   uint64_t checks = 0;
   CrowdCheck found;
@@ -66,13 +58,8 @@ struct Totals {
     sum.no_path += r.no_path;
     sum.flying = r.flying;  // at the end
     sum.climbing = r.climbing;
-    sum.seconds_plan += r.seconds_plan;
-    sum.seconds_sort += r.seconds_sort;
-    sum.seconds_steer += r.seconds_steer;
-    sum.seconds_commit += r.seconds_commit;
-    sum.seconds_settle += r.seconds_settle;
+    sum.out_of_memory += r.out_of_memory;
     sum.seconds_total += r.seconds_total;
-    seconds.push_back(r.seconds_total);
     progress += r.progress;
   }
   void add(const CrowdCheck& check) {
@@ -82,52 +69,46 @@ struct Totals {
   }
 };
 
-void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Totals& t) {
-  const auto steps = std::max<double>(1, static_cast<double>(t.seconds.size()));
-  const double avatars = std::max<double>(1, crowd.size());
-  const double ns = median(t.seconds) * 1e9 / avatars;
-  const double ns_mean = t.sum.seconds_total * 1e9 / avatars / steps;
+void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Totals& t,
+           const RunTimes& times) {
+  const auto steps = std::max<double>(1, static_cast<double>(times.steps()));
+  Json json = {{"world", run.world_name},
+               {"class", run.class_name},
+               {"goals", run.goals},
+               {"model", name_of(run.config.model)},
+               {"avatars", crowd.size()},
+               {"steps", times.steps()},
+               {"dt", run.config.dt},
+               {"seed", run.config.seed},
+               {"threads", run.config.workers},
+               {"progress", t.progress / steps},
+               {"arrived", t.sum.arrived},
+               {"planned", t.sum.planned},
+               {"no_way", t.sum.no_path},
+               {"out_of_memory", t.sum.out_of_memory},
+               {"flying", t.sum.flying},
+               {"climbing", t.sum.climbing},
+               {"blocked", t.sum.stood},
+               {"contested", t.sum.contested},
+               {"checks", t.checks},
+               {"wall_entries", t.found.wall_entries},
+               {"overlaps", t.found.overlaps},
+               {"state_hash", fmt::format("{:016x}", crowd.state_hash())},
+               {"seconds_total", t.sum.seconds_total},
+               {"crowd_bytes", crowd.memory().total()},
+               {"peak_bytes", peak_memory()}};
+  times.add_to(json);
   print_result(
-      session,
-      {{"world", run.world_name},
-       {"class", run.class_name},
-       {"goals", run.goals},
-       {"model", name_of(run.config.model)},
-       {"avatars", crowd.size()},
-       {"steps", t.seconds.size()},
-       {"dt", run.config.dt},
-       {"seed", run.config.seed},
-       {"threads", run.config.workers},
-       {"ns_per_avatar_step", ns},
-       {"ns_per_avatar_step_mean", ns_mean},
-       {"progress", t.progress / steps},
-       {"arrived", t.sum.arrived},
-       {"planned", t.sum.planned},
-       {"no_way", t.sum.no_path},
-       {"flying", t.sum.flying},
-       {"climbing", t.sum.climbing},
-       {"blocked", t.sum.stood},
-       {"contested", t.sum.contested},
-       {"checks", t.checks},
-       {"wall_entries", t.found.wall_entries},
-       {"overlaps", t.found.overlaps},
-       {"state_hash", fmt::format("{:016x}", crowd.state_hash())},
-       {"seconds_plan", t.sum.seconds_plan},
-       {"seconds_sort", t.sum.seconds_sort},
-       {"seconds_steer", t.sum.seconds_steer},
-       {"seconds_commit", t.sum.seconds_commit},
-       {"seconds_settle", t.sum.seconds_settle},
-       {"seconds_total", t.sum.seconds_total},
-       {"crowd_bytes", crowd.memory().total()},
-       {"peak_bytes", peak_memory()}},
-      fmt::format("{} {} avatars, {} steps of {} s: {:.1f} ns an avatar a step (median)\n"
+      session, json,
+      fmt::format("{} {} avatars, {} steps of {} s: {}\n{}"
                   "{} goals reached, {} ways planned, {} goals without a way; got on at {:.2f} of "
-                  "their speeds\n"
+                  "their speeds\n{}"
                   "{} checks: {} wall entries, {} overlaps\n"
                   "state {:016x}\n",
-                  crowd.size(), run.class_name, t.seconds.size(), run.config.dt, ns, t.sum.arrived,
-                  t.sum.planned, t.sum.no_path, t.progress / steps, t.checks, t.found.wall_entries,
-                  t.found.overlaps, crowd.state_hash()));
+                  crowd.size(), run.class_name, times.steps(), run.config.dt, times.text_of_steps(),
+                  times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path,
+                  t.progress / steps, memory_text(t.sum.out_of_memory, "--search-memory"), t.checks,
+                  t.found.wall_entries, t.found.overlaps, crowd.state_hash()));
 }
 
 }  // namespace
@@ -306,27 +287,52 @@ void GoalCrowd::give(std::span<const AvatarId> ids) {
   crowd_.set_goals(on_nodes_, goals_on_nodes_);
 }
 
-CrowdReport GoalCrowd::step() {
-  const CrowdReport report = crowd_.step();
+CrowdReport GoalCrowd::step() { return crowd_.step(); }
+
+void GoalCrowd::give_goals() {
   give(crowd_.goal_unreachable());
   if (run_.goals == "random") give(crowd_.arrived());
-  return report;
 }
 
-int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd,
+std::string memory_text(uint64_t out_of_memory, const char* setting) {
+  if (out_of_memory == 0) return {};
+  return fmt::format("{} searches for paths gave up for want of memory; raise {}\n", out_of_memory,
+                     setting);
+}
+
+void add_step(const CrowdReport& report, RunTimes& times) {
+  times.add_step(report.seconds_total, static_cast<double>(report.avatars));
+  times.add("plan", report.seconds_plan);
+  times.add("sort", report.seconds_sort);
+  times.add("steer", report.seconds_steer);
+  times.add("commit", report.seconds_commit);
+  times.add("settle", report.seconds_settle);
+  times.add("obstacles", report.seconds_obstacles);
+  times.add("events", report.seconds_events);
+}
+
+int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd, RunTimes& times,
               const std::function<Result<void>(uint64_t step)>& shown,
               const std::function<Result<void>()>& finished) {
-  if (auto ok = shown(0); !ok) return fail(ok.error());
+  const auto write = [&](uint64_t step) {
+    return times.measure("write", [&] { return shown(step); });
+  };
+  if (auto ok = write(0); !ok) return fail(ok.error());
   Totals totals;
   for (uint64_t step = 1; step <= run.steps; ++step) {
-    totals.add(crowd.step());
-    if (step % run.check_every == 0 || step == run.steps) totals.add(crowd.crowd().check());
-    if (auto ok = shown(step); !ok) return fail(ok.error());
+    const CrowdReport report = crowd.step();
+    totals.add(report);
+    add_step(report, times);
+    times.measure("goals", [&] { crowd.give_goals(); });
+    if (step % run.check_every == 0 || step == run.steps) {
+      totals.add(times.measure("check", [&] { return crowd.crowd().check(); }));
+    }
+    if (auto ok = write(step); !ok) return fail(ok.error());
     show_progress(session, "walk", step, run.steps);
     if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
   }
-  if (auto ok = finished(); !ok) return fail(ok.error());
-  print(session, run, crowd.crowd(), totals);
+  if (auto ok = times.measure("write", finished); !ok) return fail(ok.error());
+  print(session, run, crowd.crowd(), totals, times);
   return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
 }
 

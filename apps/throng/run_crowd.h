@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "run_times.h"
 #include "throng/crowd.h"
 #include "throng/nodes.h"
 #include "throng/world.h"
@@ -41,6 +42,8 @@ class GoalCrowd {
  public:
   static Result<GoalCrowd> make(const World& world, const CrowdRun& run, Context& context);
   CrowdReport step();
+  /// Gives new goals to avatars that arrived in the last step, or found no path.
+  void give_goals();
   [[nodiscard]] const Crowd& crowd() const { return crowd_; }
 
  private:
@@ -65,9 +68,14 @@ class GoalCrowd {
   std::vector<NodePlace> goals_on_nodes_;
 };
 
+/// How many searches gave up for want of memory, and the setting to raise; empty if none did.
+std::string memory_text(uint64_t out_of_memory, const char* setting);
+/// Counts the parts of a crowd's step.
+void add_step(const CrowdReport& report, RunTimes& times);
+
 /// Walks the crowd and prints what came of it. `shown` is called at the start and after each step,
 /// `finished` before anything is printed.
-int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd,
+int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd, RunTimes& times,
               const std::function<Result<void>(uint64_t step)>& shown,
               const std::function<Result<void>()>& finished);
 

@@ -9,6 +9,7 @@ namespace throng::app {
 Result<void> RunRecorder::open(const std::string& path, RecordingInfo info, const World& world) {
   const WorldSummary summary = world.summary();
   info.world_hash = summary.hash;
+  info.origin = recording_origin(summary.bounds);
   for (const AvatarClass& avatar : summary.classes) {
     info.classes.push_back({avatar.name, avatar.height, avatar.radius});
   }

@@ -26,7 +26,7 @@ class RunRecorder {
   Result<void> add_hash(uint64_t step, uint64_t state_hash) {
     return recorder_->append_hash(step, state_hash);
   }
-  Result<void> finish() { return recorder_->finish(); }
+  Result<void> finish(const std::string& outcome) { return recorder_->finish(outcome); }
   [[nodiscard]] uint64_t bytes() const { return recorder_->bytes(); }
 
  private:

@@ -12,6 +12,8 @@
 #include <map>
 
 #include "output_file.h"
+#include "run_crowd.h"
+#include "run_times.h"
 
 namespace throng::app {
 namespace {
@@ -66,17 +68,67 @@ Result<void> write_visits(const std::string& path, const Scenario& scenario,
   return file.finish();
 }
 
+// The times of an obstacle in a sentence.
+std::string words_for(const ScenarioObstacle& obstacle, const ObstacleTimes& times) {
+  std::string words = fmt::format("to come at {:.1f} s, ", times.asked);
+  if (times.up >= 0) {
+    words += fmt::format("up at {:.1f} s", times.up);
+  } else if (times.gone >= 0) {
+    words += fmt::format("never up until it went at {:.1f} s", times.gone);
+  } else {
+    words += fmt::format("still open: {} avatars are in it", times.waits_for);
+  }
+  if (times.inside > 0) words += fmt::format("; {} avatars were in it then", times.inside);
+  if (obstacle.policy == ObstaclePolicy::kWait) words += "; it waits until it is free";
+  return words;
+}
+
+// Each obstacle whose time has come, in a line, and as JSON.
+std::string obstacle_lines(const Scenario& scenario, const Simulation& simulation, Json& json) {
+  std::string lines;
+  for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
+    const ScenarioObstacle& obstacle = scenario.obstacles[n];
+    const ObstacleTimes& times = simulation.obstacle_times()[n];
+    const auto time = [](double t) { return t < 0 ? Json(nullptr) : Json(t); };
+    const std::string words = times.asked < 0 ? "" : words_for(obstacle, times);
+    json[obstacle.name] = {{"policy", name_of(obstacle.policy)},
+                           {"asked", time(times.asked)},
+                           {"up", time(times.up)},
+                           {"gone", time(times.gone)},
+                           {"inside", times.inside},
+                           {"waits_for", times.waits_for},
+                           {"words", words}};
+    if (!words.empty()) lines += fmt::format("  obstacle {}: {}\n", obstacle.name, words);
+  }
+  return lines;
+}
+
+Result<void> write_obstacles(const std::string& path, const Scenario& scenario,
+                             const Simulation& simulation) {
+  OutputFile file;
+  if (auto ok = file.open(path); !ok) return ok;
+  file.write("obstacle,policy,asked,up,gone,inside,waits_for\n");
+  const auto time = [](double t) { return t < 0 ? std::string() : fmt::format("{:.3f}", t); };
+  for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
+    const ScenarioObstacle& obstacle = scenario.obstacles[n];
+    const ObstacleTimes& times = simulation.obstacle_times()[n];
+    file.write(fmt::format("{},{},{},{},{},{},{}\n", obstacle.name, name_of(obstacle.policy),
+                           time(times.asked), time(times.up), time(times.gone), times.inside,
+                           times.waits_for));
+  }
+  return file.finish();
+}
+
 struct Totals {
-  uint64_t steps = 0, most = 0, checks = 0;
-  double avatar_steps = 0, seconds = 0, progress = 0;
+  uint64_t steps = 0, most = 0, checks = 0, out_of_memory = 0;
+  double avatar_steps = 0, progress = 0;
   CrowdCheck found;
   SimulationReport last;
 };
 
 void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
-           const Simulation& simulation, const Totals& t) {
+           const Simulation& simulation, const Totals& t, const RunTimes& times) {
   const Outcome outcome = outcome_of(scenario, simulation);
-  const double ns = t.avatar_steps > 0 ? t.seconds * 1e9 / t.avatar_steps : 0;
   const double progress = t.avatar_steps > 0 ? t.progress / t.avatar_steps : 0;
   Json exits = Json::object();
   std::string lines;
@@ -85,45 +137,50 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
     lines += fmt::format("  {:<16} {:6} people, {:.1f} to {:.1f} s\n", name, exit.left, exit.first,
                          exit.last);
   }
+  Json obstacles = Json::object();
+  lines += obstacle_lines(scenario, simulation, obstacles);
+  Json json = {{"scenario", run.file},
+               {"steps", t.steps},
+               {"seconds", t.last.time},
+               {"dt", scenario.dt},
+               {"model", name_of(scenario.steering)},
+               {"seed", scenario.seed},
+               {"threads", run.workers},
+               {"entered", t.last.entered},
+               {"left", t.last.left},
+               {"still_here", simulation.crowd().size()},
+               {"outside", t.last.outside},
+               {"in_links", t.last.in_links},
+               {"stranded", t.last.goal_unreachable},
+               {"most_at_a_time", t.most},
+               {"last_left", outcome.last},
+               {"mean_time", outcome.mean_time},
+               {"exits", exits},
+               {"obstacles", obstacles},
+               {"progress", progress},
+               {"out_of_memory", t.out_of_memory},
+               {"checks", t.checks},
+               {"wall_entries", t.found.wall_entries},
+               {"overlaps", t.found.overlaps},
+               {"obstacle_entries", t.found.obstacle_entries},
+               {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
+               {"peak_bytes", peak_memory()}};
+  times.add_to(json);
   print_result(
-      session,
-      {{"scenario", run.file},
-       {"steps", t.steps},
-       {"seconds", t.last.time},
-       {"dt", scenario.dt},
-       {"model", name_of(scenario.steering)},
-       {"seed", scenario.seed},
-       {"threads", run.workers},
-       {"entered", t.last.entered},
-       {"left", t.last.left},
-       {"still_here", simulation.crowd().size()},
-       {"outside", t.last.outside},
-       {"in_links", t.last.in_links},
-       {"stranded", t.last.goal_unreachable},
-       {"most_at_a_time", t.most},
-       {"last_left", outcome.last},
-       {"mean_time", outcome.mean_time},
-       {"exits", exits},
-       {"progress", progress},
-       {"ns_per_avatar_step_mean", ns},
-       {"checks", t.checks},
-       {"wall_entries", t.found.wall_entries},
-       {"overlaps", t.found.overlaps},
-       {"obstacle_entries", t.found.obstacle_entries},
-       {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
-       {"peak_bytes", peak_memory()}},
+      session, json,
       fmt::format("{}: {:.1f} s, {} people came, {} left, {} are still here\n{}"
                   "the last left after {:.1f} s; a way took {:.1f} s in the mean\n"
-                  "{} stranded, {} found no room to come in; {:.0f} ns an avatar a step\n"
+                  "{} stranded, {} found no room to come in\n{}\n{}{}"
                   "{} checks: {} wall entries, {} overlaps, {} in obstacles\nstate {:016x}\n",
                   run.file, t.last.time, t.last.entered, t.last.left, simulation.crowd().size(),
                   lines, outcome.last, outcome.mean_time, t.last.goal_unreachable, t.last.outside,
-                  ns, t.checks, t.found.wall_entries, t.found.overlaps, t.found.obstacle_entries,
-                  simulation.state_hash()));
+                  times.text_of_steps(), times.text_of_parts(),
+                  memory_text(t.out_of_memory, "search_memory"), t.checks, t.found.wall_entries,
+                  t.found.overlaps, t.found.obstacle_entries, simulation.state_hash()));
 }
 
 Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& scenario,
-                    Simulation& simulation, Sinks& sinks) {
+                    Simulation& simulation, Sinks& sinks, RunTimes& times) {
   Totals t;
   const uint64_t steps =
       run.steps.value_or(static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9)));
@@ -131,34 +188,48 @@ Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& sc
       run.check_every > 0 ? run.check_every : std::max<uint64_t>(1, steps / 10);
   t.last.entered = simulation.crowd().size();
   const auto check = [&] {
-    const CrowdCheck found = simulation.crowd().check();
+    const CrowdCheck found = times.measure("check", [&] { return simulation.crowd().check(); });
     ++t.checks;
     t.found.wall_entries += found.wall_entries;
     t.found.overlaps += found.overlaps;
     t.found.obstacle_entries += found.obstacle_entries;
   };
-  if (auto ok = sinks.add(0, simulation); !ok) return ok.error();
+  const auto write = [&](uint64_t step) {
+    return times.measure("write", [&] { return sinks.add(step, simulation); });
+  };
+  if (auto ok = write(0); !ok) return ok.error();
   while (t.steps < steps && (run.steps || !simulation.is_over())) {
+    const auto start = RunTimes::Clock::now();
     const auto report = simulation.step();
     if (!report) return report.error();
+    const double whole = std::chrono::duration<double>(RunTimes::Clock::now() - start).count();
+    add_step(report->crowd, times);
+    times.add("journeys", whole - report->crowd.seconds_total);
     ++t.steps;
     t.last = *report;
     const auto avatars = static_cast<double>(report->crowd.avatars);
     t.most = std::max(t.most, report->crowd.avatars);
     t.avatar_steps += avatars;
-    t.seconds += report->crowd.seconds_total;
+    t.out_of_memory += report->crowd.out_of_memory;
     t.progress += report->crowd.progress * avatars;
     if (t.steps % check_every == 0) check();
-    if (auto ok = sinks.add(t.steps, simulation); !ok) return ok.error();
+    if (auto ok = write(t.steps); !ok) return ok.error();
     show_progress(session, "run", t.steps, steps);
     if (session.context.cancel) return Error{Errc::kCancelled, "run: interrupted"};
   }
   check();
-  if (auto ok = sinks.finish(); !ok) return ok.error();
+  Json obstacles = Json::object();
+  const std::string lines = obstacle_lines(scenario, simulation, obstacles);
+  const Json outcome = {{"obstacles", obstacles}};
+  const std::string text = lines.empty() ? "" : outcome.dump();
+  if (auto ok = times.measure("write", [&] { return sinks.finish(text); }); !ok) {
+    return ok.error();
+  }
   return t;
 }
 
 Result<int> try_run(Session& session, ScenarioRun& run) {
+  RunTimes times;
   std::ifstream file(run.file, std::ios::binary);
   if (!file) return Error{Errc::kNotFound, run.file + ": cannot be read"};
   run.text.assign(std::istreambuf_iterator<char>(file), {});
@@ -166,9 +237,10 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (!scenario) return scenario.error();
   if (run.seed) scenario->seed = *run.seed;
   if (run.model) scenario->steering = *run.model;
-  const auto world = open_world(*scenario, session.context);
+  const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
-  auto simulation = Simulation::make(*world, *scenario, run.workers, session.context);
+  auto simulation = times.measure(
+      "prepare", [&] { return Simulation::make(*world, *scenario, run.workers, session.context); });
   if (!simulation) return simulation.error();
   Sinks sinks(run.sinks);
   const Json settings = {{"scenario", run.text},
@@ -181,12 +253,15 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
                                 .settings = settings.dump(),
                                 .leans = simulation->crowd().may_lean()});
   if (!ok) return ok.error();
-  const auto totals = walk(session, run, *scenario, *simulation, sinks);
+  const auto totals = walk(session, run, *scenario, *simulation, sinks, times);
   if (!totals) return totals.error();
   if (!run.visits.empty()) {
     if (ok = write_visits(run.visits, *scenario, *simulation); !ok) return ok.error();
   }
-  print(session, run, *scenario, *simulation, *totals);
+  if (!run.obstacles.empty()) {
+    if (ok = write_obstacles(run.obstacles, *scenario, *simulation); !ok) return ok.error();
+  }
+  print(session, run, *scenario, *simulation, *totals, times);
   const CrowdCheck& found = totals->found;
   const bool sound = found.wall_entries + found.overlaps + found.obstacle_entries == 0;
   return sound ? kDone : kAnswerIsNo;

@@ -22,7 +22,8 @@ struct ScenarioRun {
   std::optional<SteeringModel> model;  // instead of the scenario's
   uint64_t check_every = 0;            // 0: ten times a run
   int32_t workers = 0;
-  std::string visits;  // CSV of who came and went; empty: none
+  std::string visits;     // CSV of who came and went; empty: none
+  std::string obstacles;  // CSV of when they were to come, and came; empty: none
   SinkOptions sinks;
 };
 

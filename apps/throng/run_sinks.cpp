@@ -33,11 +33,11 @@ void Sinks::write_trajectories(uint64_t step) {
   trajectories_.write({text_.data(), text_.size()});
 }
 
-Result<void> Sinks::finish() {
+Result<void> Sinks::finish(const std::string& outcome) {
   if (trajectories_.is_open()) {
     if (auto ok = trajectories_.finish(); !ok) return ok;
   }
-  return recorder_.is_open() ? recorder_.finish() : Result<void>();
+  return recorder_.is_open() ? recorder_.finish(outcome) : Result<void>();
 }
 
 }  // namespace throng::app

@@ -39,7 +39,8 @@ class Sinks {
     if (!is_due) return recorder_.add_hash(step, avatars.state_hash());
     return recorder_.add(step, avatars.state_hash(), states_);
   }
-  Result<void> finish();
+  /// `outcome`: what the recording keeps of it, as JSON, or nothing.
+  Result<void> finish(const std::string& outcome = {});
 
  private:
   // One line an avatar: kCsvColumns.

@@ -13,7 +13,9 @@
 
 #include "bad_usage.h"
 #include "command.h"
+#include "number_checks.h"
 #include "throng/cluster.h"
+#include "throng/search_budget.h"
 
 namespace throng::app {
 namespace {
@@ -193,6 +195,17 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   command->footer(indented);
   command->parse_complete_callback([command] { refuse_nan(*command); });
   return command;
+}
+
+void add_search_memory(CLI::App& command, uint64_t& bytes) {
+  command
+      .add_option_function<double>(
+          "--search-memory",
+          [&bytes](double mebibytes) { bytes = static_cast<uint64_t>(mebibytes * (1 << 20)); },
+          fmt::format("Most that a search for one path may remember, {} unless given [MiB]",
+                      SearchBudget::kDefaultBytes >> 20))
+      ->check(between(1, 1 << 20))
+      ->type_name("MIB");
 }
 
 void add_model(CLI::App& command, SteeringModel& model) {

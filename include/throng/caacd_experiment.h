@@ -147,7 +147,7 @@ struct StudyConfig {
   int64_t frames = 3000;              ///< A run ends here, or when all have arrived. [1 to 10^7]
   Model model = {};                   ///< All but mass, max_speed and max_force.
   SpaceConfig space = {};             ///< All but avatars; seeds count up from space.seed.
-  double dt = 1;                      ///< [frames, > 0]
+  double dt = 1;                      ///< [frames, 0.001 to 1000]
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
 };
 

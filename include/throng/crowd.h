@@ -59,7 +59,7 @@ enum class Routing {
 };
 
 struct CrowdConfig {
-  double dt = 0.1;  ///< Length of a step. [s, > 0, <= 1]
+  double dt = 0.1;  ///< Length of a step. [s, 0.001 to 1]
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
   Routing ways = Routing::kPaths;
@@ -68,7 +68,10 @@ struct CrowdConfig {
   SteeringModel model = SteeringModel::kSampled;
   bool labels = false;  ///< PathConfig::labels: for small worlds and many long ways.
   bool zones = false;   ///< PathConfig::zones: for large worlds and long ways.
-  double sight = 5;     ///< Who is farther away is not avoided yet. [m, 1 to 50]
+  /// SearchBudget::max_bytes of each search for a path. As many as there are workers may run at a
+  /// time. [bytes, >= 2^20]
+  uint64_t search_bytes = SearchBudget::kDefaultBytes;
+  double sight = 5;  ///< Who is farther away is not avoided yet. [m, 1 to 50]
   /// Whoever does what he wants most decides anew that often; in the steps between he goes on as he
   /// does, if nobody and no wall is in his way. Steps that are longer decide in each. Shorter times
   /// cost more and gain little. [s, 0 to 1]
@@ -81,7 +84,7 @@ struct CrowdConfig {
   int32_t rounds = 3;                ///< In which claims are settled, a step. [1 to 100]
   bool deadlock_avoidance = true;    ///< Who does not get on turns aside by and by.
   /// Who has a goal, has not arrived, and has not come 0.3 m further between two looks, so many
-  /// seconds apart, is told by stuck(). 0: nobody looks. Never changes what happens. [s, >= 0]
+  /// seconds apart, is told by stuck(). 0: nobody looks. Never changes what happens. [s, 0 to 1e6]
   double no_progress_after = 0;
   /// Of the same world. Classes that climb or let themselves down over edges, and do not fly, go
   /// over them; without nodes they walk on level tiles as others do.
@@ -125,14 +128,19 @@ struct CrowdReport {
   uint64_t arrived = 0;  ///< Came within 0.3 m of their goals, or into their targets, in this step.
   uint64_t planned = 0;  ///< Got a way, or another one.
   uint64_t no_path = 0;  ///< Of these, found that none leads to the goal: it is dropped.
-  uint64_t waiting = 0;  ///< Obstacles in whose way somebody stands.
-  double progress = 0;   ///< Mean speed towards the next corner by the wished one. [-1 to 1]
-  double seconds_plan = 0;
-  double seconds_sort = 0;
-  double seconds_steer = 0;
-  double seconds_commit = 0;
-  double seconds_settle = 0;
-  double seconds_total = 0;
+  /// Searches that gave up because they would have taken more than CrowdConfig::search_bytes, which
+  /// is to be raised: among no_path, or of a detour that was not found.
+  uint64_t out_of_memory = 0;
+  uint64_t waiting = 0;       ///< Obstacles in whose way somebody stands.
+  double progress = 0;        ///< Mean speed towards the next corner by the wished one. [-1 to 1]
+  double seconds_plan = 0;    ///< Finding and following paths.
+  double seconds_sort = 0;    ///< Which avatars are near which.
+  double seconds_steer = 0;   ///< Choosing velocities.
+  double seconds_commit = 0;  ///< Settling which proposed moves are made, and making them.
+  double seconds_settle = 0;  ///< What the moves change for the next step.
+  double seconds_obstacles = 0;  ///< Those that come up or move, and the flows around them.
+  double seconds_events = 0;     ///< Arrivals in targets, watched areas, no progress.
+  double seconds_total = 0;      ///< Of the whole step: the sum of these and a little more.
 };
 
 /// Sense, steer, claim, commit. Sources: [CAACD] for what avatars do, docs/design/008-engine.md for
@@ -162,23 +170,26 @@ class THRONG_API Crowd {
 
   /// Puts up an obstacle: nobody stands where a body of his class could touch it, its bottom above
   /// his step, until it is removed. It comes up at once or, as a door that closes, before the first
-  /// step at whose beginning nobody stands there. Ways of kStatic ones lead around them; whose
-  /// way is cut asks for another, and whoever has none left is stranded. Fails with kBadInput.
-  /// Time: all avatars, and the cells that it touches.
-  [[nodiscard]] Result<ObstacleId> add_obstacle(const Prism& prism,
-                                                ObstacleKind kind = ObstacleKind::kStatic);
+  /// step at whose beginning no body is in it; what happens until then, ObstaclePolicy says. Ways
+  /// of kStatic ones lead around them; whose way is cut asks for another, and whoever has none
+  /// left is stranded. Fails with kBadInput. Time: all avatars, and the cells that it touches.
+  [[nodiscard]] Result<ObstacleId> add_obstacle(
+      const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic,
+      ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
   /// Where it is to be: by a small step at a time, as it waits while anybody stands within the
-  /// convex hull of here and there. The last order counts. Fails with kBadInput, kNotFound.
+  /// convex hull of here and there: avatars may enter that, whatever the policy. The last order
+  /// counts. Fails with kBadInput, kNotFound.
   [[nodiscard]] Result<void> move_obstacle(ObstacleId id, const Prism& prism);
-  /// A door: true closes it, as soon as nobody stands in it; false opens it at once. False for ids
-  /// of none.
+  /// A door: true closes it, by its policy; false opens it at once, or ends its closing. False for
+  /// ids of none.
   bool set_obstacle_active(ObstacleId id, bool active);
   bool remove_obstacle(ObstacleId id);
   /// Fails with kNotFound.
   [[nodiscard]] Result<ObstacleState> obstacle(ObstacleId id) const;
   /// All that are up, in order of slot.
   [[nodiscard]] std::vector<Prism> obstacles() const;
-  /// Who stood in the way of obstacles that wait when the last step began, in order of slot.
+  /// Who stood in the way of obstacles that wait when the last step began, in order of slot: also
+  /// of those that no way leads out, or that the caller drives, and which keep an obstacle open.
   [[nodiscard]] std::span<const AvatarId> blockers() const;
 
   /// Where they are bound for, one for each id: places of their class. An avatar keeps to its goal

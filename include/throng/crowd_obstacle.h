@@ -23,13 +23,30 @@ enum class ObstacleKind : uint8_t {
   kKinematic,  ///< Ways do not know it: a cart, which is elsewhere by the time that one is there.
 };
 
+/// What an obstacle does that is to come up where avatars are.
+enum class ObstaclePolicy : uint8_t {
+  /// It closes: from the request on no avatar enters its volume, paths lead around it, and avatars
+  /// in it get out: on along their paths if these lead out soon, else the nearest way. It is up as
+  /// soon as no body is in it.
+  kRefuseEntry,
+  /// It waits until its volume happens to be free; until then avatars go in and out.
+  kWait,
+};
+
 /// An obstacle as it is now.
 struct ObstacleState {
   Prism prism;         ///< Where it is, or would be.
   bool is_up = false;  ///< It is in the way of those who walk.
   bool waits =
-      false;  ///< It is not yet where, or what, it was asked to be: somebody is in its way.
+      false;  ///< It is not yet where, or what, it was asked to be: avatars are in its way.
   ObstacleKind kind = ObstacleKind::kStatic;
+  ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
+  /// When it was last asked to be up, in the crowd's time: steps times dt; below 0: never, or it
+  /// was asked to be down since. [s]
+  double asked_at = -1;
+  double up_at = -1;  ///< When it came up; below 0: it is not up. [s]
+  /// In its way when this was last looked at: when it was asked for, and as each step begins.
+  uint32_t occupants = 0;
 };
 
 }  // namespace throng

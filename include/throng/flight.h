@@ -50,6 +50,8 @@ struct FlightQuery {
   Vec3d from, to;      ///< Feet. In the air, or on the ground within `reach` above or below. [m]
   double reach = 0.5;  ///< [m, >= 0]
   uint64_t max_nodes = UINT64_MAX;  ///< Boxes that may be looked at; nodes, of each way on foot.
+  /// As SearchBudget::max_bytes, of each flight and of each way on foot. [bytes]
+  uint64_t max_bytes = SearchBudget::kDefaultBytes;
   /// Set from any thread to give up. A search on foot is gone through with before it is looked at.
   const std::atomic<bool>* cancel = nullptr;
   /// Where no one flight leads there, look for ways that land, walk and take off again.
@@ -68,7 +70,8 @@ struct FlightPath {
   /// What is in the straight way on to an unreachable goal: kLow where a body that is less tall
   /// would go on, or where it cannot take off, else kNarrow.
   Obstacle obstacle = Obstacle::kNone;
-  uint64_t nodes = 0;  ///< Boxes that the search looked at.
+  uint64_t nodes = 0;                      ///< Boxes that the search looked at.
+  SpentBudget spent = SpentBudget::kNone;  ///< What there was too little of, if it gave up.
 };
 
 struct FlightSummary {

@@ -75,10 +75,11 @@ class THRONG_API LiveGround {
   /// A way of little cost, every leg a legal move: over points of the borders of rectangles, drawn
   /// straight afterwards, in the mean within 1 % of the best. Where none leads there
   /// (kUnreachable), `path` leads to the place of least distance to the goal that was met, and says
-  /// what is in the way. Gives up when the budget of points is spent. No allocation once it is
-  /// warm.
+  /// what is in the way. Gives up when the budget of points or of memory is spent (Path::spent). No
+  /// allocation once it is warm.
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
-  /// The same in slices: begin, then advance by some points a frame until it says true.
+  /// The same in slices: begin, then advance by some points a frame until it says true. Gives up
+  /// where it would take more than SearchBudget::kDefaultBytes.
   void begin(const Place& from, const Place& to);
   bool advance(uint64_t max_nodes, Path& path);
 

@@ -66,6 +66,7 @@ struct NodePath {
   /// block whose border comes nearest. And what is in the way there.
   Obstacle obstacle = Obstacle::kNone;
   uint64_t nodes = 0;  ///< Crossings, and gates of districts, that the search looked at.
+  SpentBudget spent = SpentBudget::kNone;  ///< What there was too little of, if it gave up.
 };
 
 struct NodePathSummary {

@@ -38,7 +38,7 @@ enum class PathEnd {
   kReached,
   kUnreachable,      ///< No way on foot leads there.
   kNoPlace,          ///< `from` or `to` is no place of the class.
-  kBudgetExhausted,  ///< The budget was spent.
+  kBudgetExhausted,  ///< The budget was spent: `spent` says which part of it.
 };
 
 struct Path {
@@ -51,6 +51,8 @@ struct Path {
   Obstacle obstacle =
       Obstacle::kNone;  ///< Of LiveGround's: what is in the way to an unreachable goal.
   uint64_t nodes = 0;   ///< Intervals that the search looked at; 0 with labels.
+  /// What there was too little of, if the search gave up.
+  SpentBudget spent = SpentBudget::kNone;
 };
 
 struct PathSummary {
@@ -80,8 +82,9 @@ class THRONG_API PathFinder {
   /// The shortest way from one place to another over all legal cells, any angle: no legal way is
   /// shorter by more than 1/1000 of a cell a corner. Wherever places hold together a way is found;
   /// where legal cells side by side lie more than a step apart, it may be one from portal to portal
-  /// that is a little longer. `path` is reused: its memory stays. When
-  /// the budget is spent the search gives up; with labels there is none.
+  /// that is a little longer. `path` is reused: its memory stays. When the budget is spent the
+  /// search gives up (Path::spent); with labels there is none. Between queries a finder keeps up to
+  /// 64 MiB of what it searches with, and 16 bytes for each corner.
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
 
   [[nodiscard]] PathSummary summary() const;

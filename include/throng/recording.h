@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "throng/base.h"
@@ -26,12 +27,13 @@ inline constexpr size_t kMaxAvatars = size_t{1} << 28;  ///< In one frame, fewer
 
 /// One moment, borrowed: avatar i is ids[i], classes[i], ... Fastest in ascending order of id.
 struct FrameView {
-  double time = 0;                    ///< [s, grows from frame to frame]
-  uint64_t step = 0;                  ///< [grows from frame to frame]
-  uint64_t state_hash = 0;            ///< Of the whole state, all of it and not only what is here.
-  std::span<const uint64_t> ids;      ///< Each once. [< 2^64 - 1]
-  std::span<const uint8_t> classes;   ///< Index into RecordingInfo::classes.
-  std::span<const Vec3d> positions;   ///< Feet; kept to the millimetre. [m, within 2000 km]
+  double time = 0;                   ///< [s, grows from frame to frame]
+  uint64_t step = 0;                 ///< [grows from frame to frame]
+  uint64_t state_hash = 0;           ///< Of the whole state, all of it and not only what is here.
+  std::span<const uint64_t> ids;     ///< Each once. [< 2^64 - 1]
+  std::span<const uint8_t> classes;  ///< Index into RecordingInfo::classes.
+  /// Feet; kept to the millimetre. [m, each axis within 2000 km of RecordingInfo::origin]
+  std::span<const Vec3d> positions;
   std::span<const float> radii;       ///< Kept to the millimetre. [m, 0 to 65]
   std::span<const Heading> headings;  ///< Kept to 0.9 degrees; of who leans, before he leans.
   /// Along each body from its feet, kept to 0.06 degrees; nothing: all stand upright. [any length]
@@ -66,14 +68,22 @@ struct RecordedClass {
 struct RecordingInfo {
   std::string world = {};   ///< Where it was walked: the folder, as the caller named it.
   uint64_t world_hash = 0;  ///< WorldSummary::hash; 0: not known.
-  double dt = 0.1;          ///< Length of a step. [s, > 0]
+  double dt = 0.1;          ///< Length of a step. [s, 1e-6 to 1e6]
   std::vector<RecordedClass> classes = {};  ///< [1 to 256]
   std::string model = {};                   ///< What made the steps: "wanderers" ...
   std::string settings = {};  ///< All that it takes to run again, as the model writes it.
   /// Some may lean: frames hold FrameView::ups, and the file is of version 2. Else it is of version
   /// 1, as it was before there were any, and a frame in which somebody leans is refused.
   bool leans = false;
+  /// What the file stores positions relative to; those of frames are absolute all the same. If it
+  /// is not zero the file is of version 3. [m, whole metres within 1 000 000 km]
+  Vec3d origin = {};
 };
+
+/// An origin from which a recording reaches all of a world, RecordingInfo::origin: on each axis 0
+/// if the bounds lie within 1000 km of it, else the whole metre next to their middle. The same on
+/// every machine; zero for an empty box.
+[[nodiscard]] THRONG_API Vec3d recording_origin(const Box3d& bounds);
 
 /// When a recorder writes. The defaults lose at most 32 frames when the process dies.
 struct RecorderConfig {
@@ -100,8 +110,9 @@ class THRONG_API Recorder {
   [[nodiscard]] Result<void> append_hash(uint64_t step, uint64_t state_hash);
   /// Hands all frames so far to the system: they survive the process, not a power cut.
   [[nodiscard]] Result<void> flush();
-  /// Marks the file as complete and closes it. Nothing can be added then.
-  [[nodiscard]] Result<void> finish();
+  /// Marks the file as complete and closes it. Nothing can be added then. `outcome`: what else came
+  /// out of the run, as the model writes it. Fails with kIo.
+  [[nodiscard]] Result<void> finish(std::string_view outcome = {});
   [[nodiscard]] uint64_t frames() const;
   [[nodiscard]] uint64_t bytes() const;  ///< Written so far.
 
@@ -126,8 +137,9 @@ struct FrameInfo {
 /// Reads a recording. Not for several threads at a time: frames are undone one after the other.
 class THRONG_API Replay {
  public:
-  /// Maps the file and walks over its chunks' heads. Fails with kBadFile if it is no recording or
-  /// holds none of its settings; one that ends too early or is corrupt opens as far as it is good.
+  /// Maps the file and walks over its chunks' heads. Reads versions 1 to 3. Fails with kBadFile if
+  /// it is no recording, of another version or holds none of its settings; one that ends too early
+  /// or is corrupt opens as far as it is good.
   [[nodiscard]] static Result<Replay> open(const std::string& path);
   /// The same for bytes in memory, which must outlive it. `name` stands in sentences.
   [[nodiscard]] static Result<Replay> from_bytes(std::span<const uint8_t> bytes,
@@ -137,6 +149,8 @@ class THRONG_API Replay {
   ~Replay();
 
   [[nodiscard]] const RecordingInfo& info() const;
+  /// What Recorder::finish was given; empty if that was nothing, or it was not finished.
+  [[nodiscard]] const std::string& outcome() const;
   [[nodiscard]] uint64_t frame_count() const;
   [[nodiscard]] uint64_t bytes() const;  ///< Of the good part of the file.
   /// Empty for a recording that was finished, else a sentence: where it ends and why.

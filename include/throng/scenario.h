@@ -13,9 +13,11 @@
 #include "throng/base.h"
 #include "throng/builtin_worlds.h"
 #include "throng/context.h"
+#include "throng/crowd_obstacle.h"
 #include "throng/prism.h"
 #include "throng/result.h"
 #include "throng/scene.h"
+#include "throng/search_budget.h"
 #include "throng/steering_model.h"
 #include "throng/world.h"
 
@@ -141,8 +143,12 @@ struct Link {
 struct ScenarioObstacle {
   std::string name;
   Prism prism;
-  double begin = 0, end = HUGE_VAL;  ///< Comes then, as soon as nobody stands there; and goes. [s]
+  double begin = 0, end = HUGE_VAL;                      ///< When it is to come, and goes. [s]
+  ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;  ///< What is done about who stands there.
 };
+
+/// "shut" or "wait", as in scenario files.
+[[nodiscard]] THRONG_API const char* name_of(ObstaclePolicy policy);
 
 struct Scenario {
   // Where: one of these, in this order.
@@ -156,8 +162,9 @@ struct Scenario {
   double seconds = 60;  ///< How long. [s]
   double dt = 0.1;      ///< [s]
   uint64_t seed = 1;
-  bool labels = false, zones = false;                ///< As in CrowdConfig.
-  SteeringModel steering = SteeringModel::kSampled;  ///< CrowdConfig::model.
+  bool labels = false, zones = false;                   ///< As in CrowdConfig.
+  uint64_t search_bytes = SearchBudget::kDefaultBytes;  ///< As in CrowdConfig.
+  SteeringModel steering = SteeringModel::kSampled;     ///< CrowdConfig::model.
 
   std::vector<ScenarioArea> areas;
   std::vector<DensityMap> densities;

@@ -43,6 +43,15 @@ struct Visit {
   double speed = 0;      ///< Wished. [m/s]
 };
 
+/// What became of an obstacle of the scenario.
+struct ObstacleTimes {
+  double asked = -1;  ///< When it was to come; -1: not yet. [s]
+  double up = -1;     ///< When it was up: since then no body was in it; -1: not yet, or never. [s]
+  double gone = -1;   ///< When it went; -1: it is still there, or not yet. [s]
+  uint32_t inside = 0;     ///< Avatars that stood in its way when it was to come.
+  uint32_t waits_for = 0;  ///< Avatars that stand in its way now, so that it is not up.
+};
+
 /// Movable, not copyable. One thread at a time. The same scenario gives the same steps on any
 /// machine with any number of workers.
 class THRONG_API Simulation {
@@ -70,6 +79,9 @@ class THRONG_API Simulation {
   [[nodiscard]] uint64_t state_hash() const;
   /// Everybody who ever came, in order of coming.
   [[nodiscard]] std::span<const Visit> visits() const;
+
+  /// Of each obstacle of the scenario, in its order.
+  [[nodiscard]] std::span<const ObstacleTimes> obstacle_times() const;
 
   /// Puts other weights in place of a density map's, as many, from the next draw on. Fails with
   /// kNotFound, kBadInput (another number of pixels, or all are 0).

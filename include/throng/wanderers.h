@@ -20,7 +20,7 @@ namespace throng {
 struct WanderConfig {
   uint32_t avatars = 1000;
   int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.
-  double dt = 0.1;           ///< Length of a step. [s, > 0]
+  double dt = 0.1;           ///< Length of a step. [s, 0.001 to 10]
   double speed = 0;          ///< Walking speed, 0 for the class's own. [m/s, >= 0]
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]

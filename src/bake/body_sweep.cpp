@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/float_origin.h"
 #include "core/parallel.h"
 
 // Exact tests of one triangle against an upright cylinder, a prism or a cylinder that moves: the
@@ -134,6 +135,7 @@ Box3d sweep_box(const BodyFrame& frame, const BodySweep& sweep) {
 }
 
 TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&scene) {
+  if (!scene.triangles.empty()) base_ = float_origin(corners(0)[0]);
   const std::vector<Cluster> clusters = make_clusters(workers);
   Box3d bounds;  // Clusters know it sooner than all triangles.
   for (const Cluster& cluster : clusters) {
@@ -301,7 +303,7 @@ TriangleSquares::Cluster TriangleSquares::measure(uint32_t first, uint32_t last)
   cluster.last = last;
   Box3d box;
   for (uint32_t i = first; i < last; ++i) {
-    for (const Vec3d& p : corners(order_[i])) box.add(p);
+    for (const Vec3d& p : corners(order_[i])) box.add(p - base_);
   }
   const auto above = [](double v) { return std::nextafter(static_cast<float>(v), INFINITY); };
   const auto below = [](double v) { return std::nextafter(static_cast<float>(v), -INFINITY); };
@@ -316,7 +318,8 @@ int32_t TriangleSquares::square(double v, double origin, int32_t count) const {
 }
 
 // A cluster in several squares is found in the first one that the box has in common with it.
-void TriangleSquares::find(const Box3d& box, std::vector<uint32_t>& out) const {
+void TriangleSquares::find(const Box3d& wanted, std::vector<uint32_t>& out) const {
+  const Box3d box{wanted.min - base_, wanted.max - base_};
   const int32_t x0 = square(box.min.x, origin_x_, squares_x_);
   const int32_t x1 = square(box.max.x, origin_x_, squares_x_);
   const int32_t z0 = square(box.min.z, origin_z_, squares_z_);

@@ -50,14 +50,14 @@ class TriangleSquares {
  public:
   TriangleSquares(const Scene& scene, int32_t workers);
 
-  /// Appends the triangles of clusters whose boxes overlap `box`, each once.
-  void find(const Box3d& box, std::vector<uint32_t>& out) const;
+  /// Appends the triangles of clusters whose boxes overlap `wanted`, each once.
+  void find(const Box3d& wanted, std::vector<uint32_t>& out) const;
   [[nodiscard]] LocalTriangle corners(uint32_t triangle) const;
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
  private:
   struct Cluster {
-    std::array<float, 6> box;      ///< Rounded outward.
+    std::array<float, 6> box;      ///< From base_, rounded outward.
     uint32_t first = 0, last = 0;  ///< of order_
   };
 
@@ -74,10 +74,11 @@ class TriangleSquares {
 
   const Scene* scene_;
   double side_ = 2;  // [m]
-  double origin_x_ = 0, origin_z_ = 0;
-  std::unique_ptr<uint32_t[]> order_;  // triangles
-  std::unique_ptr<Item[]> items_;      // by square
-  std::vector<uint32_t> first_;        // squares and the end
+  Vec3d base_;
+  double origin_x_ = 0, origin_z_ = 0;  // from base_
+  std::unique_ptr<uint32_t[]> order_;   // triangles
+  std::unique_ptr<Item[]> items_;       // by square
+  std::vector<uint32_t> first_;         // squares and the end
   int32_t squares_x_ = 0, squares_z_ = 0;
 };
 

@@ -257,8 +257,7 @@ class NodeBatch {
     }
     for (size_t patch = 0; patch < cells_.size(); ++patch) {
       for (size_t i = 0; i < cells_[patch].shape.size(); ++i) {
-        const CellShape& c = cells_[patch].shape[i];
-        const Vec3d d{c.x - at.x, c.y - at.y, c.z - at.z};
+        const Vec3d d = cells_[patch].shape[i].middle(cells_[patch].origin) - at;
         const double far = dot(d, d);
         const uint16_t classes = cells_[patch].promise.cells[i].classes;
         if (far >= nearest || (classes >> avatar_class & 1) == 0) continue;
@@ -372,11 +371,13 @@ class NodeBatch {
     std::vector<CellBalls> balls;
     for (const PatchSource& source : sources_) {
       if (source.kind == PatchKind::kBezier) {
-        balls.push_back({.listed = cells_[source.source].shape});
+        const BezierCells& cells = cells_[source.source];
+        balls.push_back({.listed = cells.shape, .origin = cells.origin});
         continue;
       }
       const auto [x, z] = tile_place[source.source];
-      balls.push_back({.listed = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
+      balls.push_back(
+          {.listed = {}, .origin = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
     }
     const CrossCells cross(pairs_, sources_.size(), config_.workers);
     const double max_width = bins_.width.back();

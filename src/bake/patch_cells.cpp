@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/float_origin.h"
 #include "world/node_data.h"
 
 // A body with its feet at p, axis n and bottom b fills the points p + h n + l, where b <= h <=
@@ -123,6 +124,8 @@ BezierCells PatchJudge::judge(uint32_t patch) {
   out.promise.depth = patch_depth(whole, size_);
   const size_t cells = size_t{1} << (2 * out.promise.depth);
   out.promise.cells.resize(cells);
+  const Box3d box = whole.bounds();
+  out.origin = float_origin((box.min + box.max) * 0.5);
   out.shape.resize(cells);
   patch_ = patch;
   visit(whole, 0, 0, 0, out);
@@ -187,13 +190,13 @@ void PatchJudge::bound_cells(BezierCells& out) {
     CellShape& shape = out.shape[part_cell_[i]];
     if (!bounds_[i].valid) {
       const Box3d box = parts_.patch(i).bounds();
-      const Vec3d middle = (box.min + box.max) * 0.5;
-      shape = {static_cast<float>(middle.x), static_cast<float>(middle.y),
-               static_cast<float>(middle.z), static_cast<float>(length(box.max - middle)), 0};
+      const Vec3d middle = (box.min + box.max) * 0.5, at = middle - out.origin;
+      shape = {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z),
+               static_cast<float>(length(box.max - middle)), 0};
       continue;
     }
     const SurfaceBound& bound = bounds_[i].along;
-    const Vec3d c = bound.frame.centre;
+    const Vec3d c = bound.frame.centre - out.origin;
     const double deep = std::max(-bound.low, bound.high);
     shape = {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
              static_cast<float>(std::sqrt(bound.radius * bound.radius + deep * deep)),

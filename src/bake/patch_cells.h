@@ -49,6 +49,7 @@ void find_patches_around(const PatchSet& set, uint32_t patch, std::vector<uint32
 
 struct BezierCells {
   PatchCells promise;
+  Vec3d origin;  ///< What `shape` is relative to: near the patch.
   std::vector<CellShape> shape;
   std::vector<uint32_t> makers;  ///< Patches that pierce this one, ascending.
 };

@@ -21,8 +21,8 @@ constexpr double kWalkSpacing = 0.1;  // between the tested points of a walker's
 constexpr size_t kTries = 6;          // cells of a patch that are tried for one link
 constexpr size_t kBoxedCells = 8;     // of a patch, found to be far away together
 
-const CellShape& shape_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
-  return input.cells[patch].shape[cell];
+Vec3d middle_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
+  return input.cells[patch].shape[cell].middle(input.cells[patch].origin);
 }
 
 // The middle of a cell of a patch, as a body stands there.
@@ -168,7 +168,7 @@ class HoleLinker {
       for (const uint32_t maker : here_.makers) add_target(c, maker);
     }
     Box3d box;
-    for (const CellShape& cell : here_.shape) box.add({cell.x, cell.y, cell.z});
+    for (const CellShape& cell : here_.shape) box.add(cell.middle(here_.origin));
     judge_.look_around({.min = box.min - Vec3d{farthest_, farthest_, farthest_},
                         .max = box.max + Vec3d{farthest_, farthest_, farthest_}});
   }
@@ -197,23 +197,21 @@ class HoleLinker {
     if (target.cells.empty()) return;
     target.boxes.resize((target.cells.size() + kBoxedCells - 1) / kBoxedCells);
     for (size_t k = 0; k < target.cells.size(); ++k) {
-      const CellShape& cell = shape_of(input_, maker, target.cells[k]);
-      target.boxes[k / kBoxedCells].add({cell.x, cell.y, cell.z});
-      target.whole.add({cell.x, cell.y, cell.z});
+      const Vec3d middle = middle_of(input_, maker, target.cells[k]);
+      target.boxes[k / kBoxedCells].add(middle);
+      target.whole.add(middle);
     }
     targets_.push_back(std::move(target));
   }
 
   // Fills `nearest_` with the target's cells in reach, the nearest first.
-  void find_nearest(const CellShape& at, const Target& target, double widest) {
-    const Vec3d middle{at.x, at.y, at.z};
+  void find_nearest(Vec3d middle, const Target& target, double widest) {
     nearest_.clear();
     for (size_t run = 0; run < target.boxes.size(); ++run) {
       if (distance2(target.boxes[run], middle) > widest * widest) continue;
       const size_t end = std::min(target.cells.size(), (run + 1) * kBoxedCells);
       for (size_t k = run * kBoxedCells; k < end; ++k) {
-        const CellShape& other = shape_of(input_, target.maker, target.cells[k]);
-        const Vec3d d{double{other.x} - at.x, double{other.y} - at.y, double{other.z} - at.z};
+        const Vec3d d = middle_of(input_, target.maker, target.cells[k]) - middle;
         if (const double far = dot(d, d); far <= widest * widest) {
           nearest_.push_back({far, target.cells[k]});
         }
@@ -225,12 +223,11 @@ class HoleLinker {
   void link_cell(uint32_t a, const Target& target) {
     const PatchBody& body = bodies_[target.avatar_class];
     if ((here_.promise.cells[a].classes & body.bit) == 0) return;
-    const CellShape& at = shape_of(input_, patch_, a);
-    const Vec3d middle{at.x, at.y, at.z};
+    const Vec3d middle = middle_of(input_, patch_, a);
     const double widest = patch_leap(body.radius, input_.size);
     if (distance2(target.whole, middle) > widest * widest) return;
     if (!lacks_neighbour(here_.promise, a, body.bit)) return;
-    find_nearest(at, target, widest);
+    find_nearest(middle, target, widest);
     if (nearest_.empty()) return;
     if (!looked_closer_) {
       judge_.look_closer({.min = middle - Vec3d{farthest_, farthest_, farthest_},

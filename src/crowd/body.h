@@ -53,7 +53,8 @@ struct Body {
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: it is bound for a region
-  State state : 4 = kFree;
+  State state : 3 = kFree;
+  bool leaves : 1 = false;     // an obstacle that closes around it, or that came up beside it
   bool follows : 1 = false;    // so closely that it could but crawl, when it last decided
   bool climbs : 1 = false;     // kFlying, too: it goes over nodes, ClimberEngine's
   bool on_right : 1 = false;   // of the opening lies its own place, because of such a stream

@@ -60,12 +60,38 @@ void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt
             static_cast<int32_t>(near_metres_ * 1000) + 4);
 }
 
+bool ClimberEngine::in_counterflow(const ClimberGround& ground, const ClimbHold& hold,
+                                   const ClimbPose& pose, double radius,
+                                   const AirObstacle& obstacle, const Solid& solid) const {
+  return obstacle.holds(hold.low, hold.radius * double{config_.units.unit}, hold.height) &&
+         may_touch(ground.room_of(pose, radius), solid);
+}
+
 bool ClimberEngine::is_blocked(const ClimberGround& ground, const ClimbHold& hold,
                                const ClimbPose& pose, double radius) const {
-  const double held = hold.radius * double{config_.units.unit};
   for (size_t i = 0; i < obstacles_.size(); ++i) {
-    if (!obstacles_[i].holds(hold.low, held, hold.height)) continue;
-    if (may_touch(ground.room_of(pose, radius), solids_[i])) return true;
+    if (in_counterflow(ground, hold, pose, radius, obstacles_[i], solids_[i])) return true;
+  }
+  return false;
+}
+
+bool ClimberEngine::is_inside(const ClimberGround& ground, const ClimbHold& hold,
+                              const ClimbPose& pose, double radius) const {
+  for (size_t i = 0; i < obstacles_.size(); ++i) {
+    const bool is_up = !obstacles_[i].closes();
+    if (is_up && in_counterflow(ground, hold, pose, radius, obstacles_[i], solids_[i])) return true;
+  }
+  return false;
+}
+
+bool ClimberEngine::is_blocked(const ClimberGround& ground, const Body& body, const Climb& climb,
+                               const ClimbHold& hold, const ClimbPose& pose) const {
+  for (size_t i = 0; i < obstacles_.size(); ++i) {
+    if (!in_counterflow(ground, hold, pose, climb.radius, obstacles_[i], solids_[i])) continue;
+    const bool goes_on =
+        obstacles_[i].closes() && in_counterflow(ground, hold_of(body), {climb.feet, climb.axis},
+                                                 climb.radius, obstacles_[i], solids_[i]);
+    if (!goes_on) return true;
   }
   return false;
 }
@@ -104,7 +130,8 @@ void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb>
 // What it wishes for, as if nobody were there.
 void ClimberEngine::preferred(Body& body, Climb& climb) const {
   Space desired;
-  if ((body.has(Body::kHasGoal) || body.has(Body::kExternal)) && climb.count > 0) {
+  const bool goes = body.has(Body::kHasGoal) || body.has(Body::kExternal) || body.leaves;
+  if (goes && climb.count > 0) {
     float speed = body.speed;
     if (body.has(Body::kExternal)) {
       speed = std::min(speed,
@@ -210,7 +237,7 @@ void ClimberEngine::find_paths(const Body& body, const Climb& climb,
     if (!step || contest.ways == kWays) return;
     const auto hold = ground.hold_of(step->pose, climb.radius);
     if (!hold) return;
-    if (is_blocked(ground, *hold, step->pose, climb.radius)) return;
+    if (is_blocked(ground, body, climb, *hold, step->pose)) return;
     contest.displacement[contest.ways++] = {*step, *hold, on_path};
   };
   const bool goes = climb.count > 0 && steer::size_of(situation.preferred) > 0;

@@ -54,6 +54,17 @@ class ClimberEngine {
   [[nodiscard]] bool is_blocked(const ClimberGround& ground, const ClimbHold& hold,
                                 const ClimbPose& pose, double radius) const;
 
+  /// The same for a body that goes there from a pose: one that closes lets those go on in it.
+  [[nodiscard]] bool is_blocked(const ClimberGround& ground, const Body& body, const Climb& climb,
+                                const ClimbHold& hold, const ClimbPose& pose) const;
+  /// Does the body meet something that is up?
+  [[nodiscard]] bool is_inside(const ClimberGround& ground, const ClimbHold& hold,
+                               const ClimbPose& pose, double radius) const;
+  /// Does a body meet an obstacle?
+  [[nodiscard]] bool in_counterflow(const ClimberGround& ground, const ClimbHold& hold,
+                                    const ClimbPose& pose, double radius,
+                                    const AirObstacle& obstacle, const Solid& solid) const;
+
   /// Called for each of them first, on any worker: he finds and follows his way.
   using Before = std::function<void(Body&, Climb&, int32_t worker)>;
   /// One step of all who go over nodes; `climbs` by slot, `flights` too or none. The others stay

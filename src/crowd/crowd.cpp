@@ -21,9 +21,11 @@
 namespace throng {
 namespace {
 
-constexpr double kMaxSpeed = 100;      // [m/s]
-constexpr double kMaxRadius = 100;     // [m]
-constexpr double kMaxBodyHeight = 65;  // [m]
+constexpr double kMinDt = 1e-3, kMaxDt = 1;              // [s]
+constexpr uint64_t kMinSearchBytes = uint64_t{1} << 20;  // of each search
+constexpr double kMaxSpeed = 100;                        // [m/s]
+constexpr double kMaxRadius = 100;                       // [m]
+constexpr double kMaxBodyHeight = 65;                    // [m]
 constexpr int32_t kMaxSubSteps = 1000;
 constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
@@ -46,7 +48,12 @@ Crowd::~Crowd() = default;
 
 Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!world.data()) return bad_config("there is no world");
-  if (!(config.dt > 0 && config.dt <= 1)) return bad_config("dt must be above 0 and at most 1 s");
+  if (!(config.dt >= kMinDt && config.dt <= kMaxDt)) {
+    return bad_config("dt must be 0.001 to 1 s");
+  }
+  if (config.search_bytes < kMinSearchBytes) {
+    return bad_config("search_bytes must be 1048576 (1 MiB) or more");
+  }
   if (config.workers < 0) return bad_config("workers must be 0 (all cores) or more");
   if (!(config.sight >= 1 && config.sight <= 50)) return bad_config("sight must be 1 to 50 m");
   if (!(config.reaction >= 0 && config.reaction <= 1)) {
@@ -59,7 +66,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.low_detail_steps >= 1 && config.low_detail_steps <= 16)) {
     return bad_config("far_steps must be 1 to 16");
   }
-  if (!(config.no_progress_after >= 0)) return bad_config("stuck_after must be 0 s or more");
+  if (!(config.no_progress_after >= 0 && config.no_progress_after <= 1e6)) {
+    return bad_config("stuck_after must be 0 to 1000000 s");
+  }
   if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
   if (config.nodes.data() != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
@@ -471,6 +480,10 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
   for (Body& body : bodies) {
     if (body.has(Body::kFlying) || body.steps == 0) continue;
     const ClassParts& parts = *classes[body.avatar_class];
+    if (body.leaves) {
+      plan_exit(body);
+      continue;
+    }
     if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kExternal)) &&
         plan_on_foot(body, flights[body.slot], worker, planned)) {
       body.clear(Body::kKeeps);
@@ -511,8 +524,10 @@ CrowdReport Crowd::step() {
   report.avatars = s.engine.bodies().size();
   s.arrived.clear();
   s.goal_unreachable.clear();
+  s.out_of_memory = 0;
   report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.blockers);
   s.renew_flows();
+  report.seconds_obstacles = seconds_since(start);
   EngineCounts counts;
   CrowdEngine::Times times;
   std::atomic<uint64_t> planned{0};
@@ -523,7 +538,7 @@ CrowdReport Crowd::step() {
                        .steps = s.config.low_detail_steps,
                        .reaction = static_cast<float>(s.config.low_detail_reaction),
                        .narrowest = s.narrowest});
-  const bool has_paths = s.config.ways == Routing::kPaths || !s.flights.empty();
+  const bool has_paths = s.config.ways == Routing::kPaths || !s.flights.empty() || s.some_leave;
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_paths ? before : CrowdEngine::Before(), counts, times);
     for (const uint32_t slot : s.engine.arrived()) {
@@ -540,11 +555,13 @@ CrowdReport Crowd::step() {
       report.climbing += body.climbs ? 1 : 0;
     }
   }
+  const auto events_start = Clock::now();
   s.arrive_in_targets();
   s.find_events();
   for (std::vector<AvatarId>* ids : {&s.arrived, &s.goal_unreachable}) {
     std::sort(ids->begin(), ids->end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
   }
+  report.seconds_events = seconds_since(events_start);
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
   report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
   report.contested = counts.contested;
@@ -553,6 +570,7 @@ CrowdReport Crowd::step() {
   report.arrived = s.arrived.size();
   report.planned = planned;
   report.no_path = s.goal_unreachable.size();
+  report.out_of_memory = s.out_of_memory;
   report.progress = static_cast<double>(counts.progress) * 1e-6 / moves;
   report.seconds_plan = times.plan;
   report.seconds_sort = times.sort;

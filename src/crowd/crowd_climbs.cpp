@@ -21,6 +21,7 @@ constexpr float kExternal = 0.5f;          // [s] for which one who is driven lo
 constexpr uint64_t kDetours = 0x6465746f;  // stream of chance
 constexpr uint64_t kPlaces = 0x706c6163;   // stream of chance
 constexpr double kRoomy = 2;               // [m] of a node in which one can go out of the way
+constexpr double kBeside = 1;              // [m] more than a square of a node
 constexpr uint64_t kFew = 8000;            // crossings that a search for a detour looks at
 
 ClimbPoint point_of(const NodePathPoint& point, bool drops) {
@@ -123,7 +124,7 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
 // Whose way leads past what has come up asks for another.
 void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
   for (Body& body : engine.bodies()) {
-    if (!body.climbs || !body.has(Body::kHasGoal) || body.has(Body::kLost)) continue;
+    if (!body.climbs || !body.has(Body::kHasGoal) || body.has(Body::kLost) || body.leaves) continue;
     const Climb& climb = climbs[body.slot];
     const ClimberGround& ground = *classes[body.avatar_class]->nodes;
     BodyRoom around;  // all that it takes, whichever way it stands
@@ -213,7 +214,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   if (!is_roomy || random_below(seed, stream | 1, sub_step, 2) == 0) {
     const NodePlace to =
         config.nodes.random_place(body.avatar_class, seed, random_u64(seed, stream | 2, sub_step));
-    parts.node_finders[w].find(from, to, path, kNoSpacing, kFew);
+    parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
   }
   if (path.points.size() < 2) {
     const double side = 1.0 / (1 << info.level);
@@ -239,14 +240,13 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
 
 // What has come up beside him takes the whole of a square of his node for his finder: on to the
 // nearest that is left of it.
-bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker) {
-  constexpr double kBeside = 1;  // [m] more than a square
+bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double beside) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   if (obstacles.all().empty() || !from) return false;
-  const NodePlace to = parts.node_finders[w].find_place(climb.feet, kBeside);
+  const NodePlace to = parts.node_finders[w].find_place(climb.feet, beside);
   if (to.node1 != from.node1 || to.feet == from.feet) return false;
   NodePath& path = parts.node_paths[w];
   path.points.clear();
@@ -273,7 +273,7 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   if (!to || !from) return clear_way(climb);
   NodePath& path = parts.node_paths[w];
-  parts.node_finders[w].find(from, to, path, kNoSpacing, kFew);
+  parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
   // A long way around is none to where it is driven.
   if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_way(climb);
   set_path(climb, path);
@@ -283,6 +283,7 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
 void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
                               std::atomic<uint64_t>& planned) {
   if (body.has(Body::kExternal)) return drive_climber(body, climb, worker);
+  if (body.leaves && plan_exit_on_nodes(body, climb, worker)) return;
   if (!body.has(Body::kHasGoal)) return;
   if (climb.detour > 0) {
     climb.detour -= static_cast<float>(config.dt / sub_steps);
@@ -310,7 +311,8 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   if (climb.station < climb.station_count) {
     const ClimbPoint& station = climb.stations[climb.station];
     const NodePlace to = nodes.place(body.avatar_class, station.node1 - 1, station.s, station.t);
-    parts.node_finders[w].find(from, to, path, kNoSpacing);
+    parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget());
+    note_spent(path.spent);
     if (is_found()) {
       set_path(climb, path);
       climb.to_station = std::exchange(climb.whole, uint8_t{0});
@@ -320,10 +322,11 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   if (climb.goal_node1 != 0) {
     const NodePlace to =
         nodes.place(body.avatar_class, climb.goal_node1 - 1, climb.goal_s, climb.goal_t);
-    parts.node_finders[w].find(from, to, path, kNoSpacing);
+    parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget());
+    note_spent(path.spent);
   }
   if (!is_found()) {
-    if (path.end == PathEnd::kNoPlace && step_off(body, climb, worker)) return;
+    if (path.end == PathEnd::kNoPlace && step_off(body, climb, worker, kBeside)) return;
     clear_way(climb);
     return strand(body);
   }
@@ -404,7 +407,7 @@ uint64_t Crowd::State::count_climbers_inside() const {
     const Climb& climb = climbs[body.slot];
     const ClimberGround& ground = *classes[body.avatar_class]->nodes;
     const ClimbHold hold{{body.x, body.z, body.y}, body.radius, body.height};
-    found += climbers.is_blocked(ground, hold, {climb.feet, climb.axis}, climb.radius) ? 1 : 0;
+    found += climbers.is_inside(ground, hold, {climb.feet, climb.axis}, climb.radius) ? 1 : 0;
   }
   return found;
 }

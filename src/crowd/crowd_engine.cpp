@@ -29,6 +29,7 @@ constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
 constexpr uint64_t kSides = 0x51de5;         // stream of chance
 constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
+constexpr float kStepsBack = 1;              // [m] beside it, for one that leaves an obstacle
 constexpr float kAtOnce = 0.1f;              // [s] Who goes straight meets nobody within.
 constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
 constexpr float kEnough = 14;                // bodies, to find the nearest among
@@ -45,7 +46,7 @@ bool is_bound(const Body& body) {
   constexpr uint8_t kAll =
       Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kFlying;
   // A region has room for many.
-  return body.target == 0 && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
+  return body.target == 0 && !body.leaves && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
 // Part of a way.
@@ -58,7 +59,7 @@ Displacement shorter(Displacement displacement, float part) {
 // Bound for a corner, not for its goal yet?
 bool turns_corner(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kFlying;
-  return (body.flags & kAll) == Body::kHasGoal;
+  return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
 }
 
 // Turned aside by his patience where not only others are in the way?
@@ -159,6 +160,7 @@ void CrowdEngine::add(const Body& body) {
 
 void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts, Times& times) {
   if (size_ == 0) return;
+  step_ = step;
   auto start = Clock::now();
   const auto lap = [&](double& seconds) {
     seconds += seconds_since(start);
@@ -181,6 +183,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
 bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
   return body.has(Body::kKeeps) && !body.has(Body::kExternal) && !body.has(Body::kLost) &&
          !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
+         !takes_few(body) &&
          !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
 }
 
@@ -207,7 +210,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
       if (b.has(Body::kExternal) || b.has(Body::kFlying) || b.steps == 0) continue;
-      b.preferred = b.has(Body::kHasGoal)
+      b.preferred = b.has(Body::kHasGoal) || b.leaves
                         ? steer::preferred_towards(
                               config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z),
                               b.speed, units_of(b).dt, turn(b))
@@ -264,7 +267,7 @@ void CrowdEngine::prefetch_ground(size_t i) const {
   }
   if (i + kAhead < size_) {
     const Body& body = bodies_[i + kAhead];
-    const Displacement displacement = displacement_of(body, body.velocity);
+    const Displacement displacement = way_as_before(body, body.velocity);
     grounds_[body.avatar_class].prefetch_cell(
         body.level, {int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z});
   }
@@ -350,6 +353,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.fastest = body.speed;
   situation.near.size = 0;
   const bool may_wait = is_bound(body), turns = turns_corner(body);
+  const bool rests = !body.leaves && !body.has(Body::kExternal) &&
+                     (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
@@ -370,8 +375,16 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
       const float back = -0.5f * body.speed / size_of(apart);
       situation.preferred = {apart.x * back, apart.z * back};
     }
+    // Those that stand step back from those beside them that leave an obstacle.
+    const float far = size_of(apart);
+    if (other.leaves && rests && far > 0 && far < room + kStepsBack) {
+      worker.waits = true;
+      const float back = -0.5f * body.speed / far;
+      situation.preferred = {apart.x * back, apart.z * back};
+    }
     // Who has arrived makes way for those who would pass, were he not there: they may stand.
-    const bool yields = body.has(Body::kArrived) && !other.has(Body::kArrived);
+    const bool yields =
+        (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
     situation.near.add(config_.steering,
                        {apart, yields ? other.preferred : other.velocity, room, other.preferred});
   }
@@ -512,7 +525,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
   proposal = {};
   proposal.flags = Body::kKeeps;
   proposal.in_counterflow = body.in_counterflow;
-  const Displacement displacement = displacement_of(body, body.velocity);
+  const Displacement displacement = way_as_before(body, body.velocity);
   if (!try_displacement(body, displacement, proposal.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);

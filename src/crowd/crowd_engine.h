@@ -215,7 +215,24 @@ class CrowdEngine {
   }
   void find_paths(const Body& body, const steer::Situation& situation, bool open,
                   Displacements& ways);
+  // Steps are whole units. A body that takes steps of few decides in each, and is rounded up or
+  // down by turns: else it would be too slow, or stand.
+  [[nodiscard]] bool takes_few(const Body& body) const {
+    constexpr float kFew = 128;  // [units]
+    const StepUnits units = units_of(body);
+    return body.speed * (units.dt / units.unit) < kFew;
+  }
   [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
+    const StepUnits units = units_of(body);
+    if (takes_few(body)) {
+      const uint64_t n = step_ + body.slot;
+      return {static_cast<int16_t>(units.small_way(velocity.x, n)),
+              static_cast<int16_t>(units.small_way(velocity.z, n))};
+    }
+    return way_as_before(body, velocity);
+  }
+  // Of a velocity that comes of a step: the same step again.
+  [[nodiscard]] Displacement way_as_before(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);
     return {static_cast<int16_t>(units.displacement(velocity.x)),
             static_cast<int16_t>(units.displacement(velocity.z))};
@@ -239,6 +256,7 @@ class CrowdEngine {
   }
 
   EngineConfig config_;
+  uint64_t step_ = 0;                  // that is being made
   std::vector<StrideGround> grounds_;  // by class
   int32_t width_, depth_;
   int32_t widest_ = 0, longest_ = 0, sight_ = 0;

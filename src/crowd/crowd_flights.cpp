@@ -64,7 +64,7 @@ bool Crowd::State::put_in_air(Body& body, const Vec3d& feet) const {
   const FlyerAir* air = air_of(body);
   if (air == nullptr || !air->in_grid(feet)) return false;
   const AirSpot spot = air->spot(feet);
-  if (!air->is_legal(spot) || flyers.is_blocked(body, spot)) return false;
+  if (!air->is_legal(spot) || flyers.is_taken(body, spot)) return false;
   body.x = spot.x;
   body.z = spot.z;
   body.y = spot.y;
@@ -171,9 +171,11 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
                                 .to = parts.air->metres(flight.goal),
                                 .reach = kReach,
                                 .max_nodes = kMaxBoxes,
+                                .max_bytes = config.search_bytes,
                                 .by_turns = false,
                                 .nearest = false},
                                path);
+  note_spent(path.spent);
   flight.to_port = 0;
   if (lands) routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
   if (path.end != PathEnd::kReached) return false;  // as those who only walk
@@ -284,9 +286,11 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
                                   .to = air.metres(end),
                                   .reach = kReach,
                                   .max_nodes = kMaxBoxes,
+                                  .max_bytes = config.search_bytes,
                                   .by_turns = false,
                                   .nearest = false},
                                  path);
+    note_spent(path.spent);
   };
   find(from, flight.goal);
   std::vector<AirSpot> points;
@@ -344,6 +348,7 @@ void Crowd::State::look_for_room(Body& body, const Flight& flight) const {
 
 void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
                                std::atomic<uint64_t>& planned) {
+  if (body.leaves && plan_exit_in_air(body, flight)) return;
   if (!body.has(Body::kHasGoal)) return;
   const FlyerAir& air = *air_of(body);
   const AirSpot at = here(body);
@@ -450,8 +455,8 @@ void Crowd::State::tell_flyers_of_obstacles() {
   std::vector<Solid> solids;
   const Vec3d& origin = world.data()->summary.origin;
   for (const CrowdObstacle& obstacle : obstacles.all()) {
-    if (!obstacle.exists || !obstacle.is_up) continue;
-    all.emplace_back(obstacle.place, origin, unit);
+    if (!obstacle.exists || !obstacle.has_cells) continue;
+    all.emplace_back(obstacle.place, origin, unit, obstacle.closes());
     solids.push_back({obstacle.place, {}});
   }
   climbers.set_obstacles(all, std::move(solids));

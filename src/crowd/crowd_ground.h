@@ -8,6 +8,7 @@
 
 #include "core/huge_array.h"
 #include "core/prefetch.h"
+#include "crowd/left_cells.h"
 #include "crowd/level_line.h"
 #include "throng/result.h"
 #include "world/ground.h"
@@ -106,6 +107,9 @@ class CrowdGround {
   void join_tile(int32_t x, int32_t z);
   /// Legal cells of a level that lacks some, as they were baked; null: it lacks none.
   [[nodiscard]] const CellRows* baked_legal(Level level) const;
+  /// Of the taken cells, those that bodies on them may leave.
+  [[nodiscard]] LeftCells& left() { return left_; }
+  [[nodiscard]] const LeftCells& left() const { return left_; }
   [[nodiscard]] const LevelView& view(Level level) const { return views_[level]; }
 
   /// 64 rows of legal cells.
@@ -180,6 +184,7 @@ class CrowdGround {
   uint32_t row_sets_ = 0;
   std::unordered_map<Level, Baked> baked_;  // looked up only
   std::vector<uint32_t> spare_sets_;        // given back
+  LeftCells left_;
   // Floors that are no plane, row by row: each step of an avatar on one reads five of its cells,
   // and out of the zone's blocks that takes a fifth of the step.
   HugeArray<uint16_t> samples_;

@@ -21,7 +21,7 @@ void tell(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_n
   const ChangeId old = change;
   for (Finder& finder : finders) {
     if (!is_new) {
-      finder.set_active(old, obstacle.is_up);
+      finder.set_active(old, obstacle.has_cells);
       continue;
     }
     finder.remove(old);
@@ -40,10 +40,12 @@ Error gone() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"
 
 }  // namespace
 
-Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind) {
+Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind,
+                                       ObstaclePolicy policy) {
   if (auto ok = check_prism(prism); !ok) return ok.error();
   State& s = *state_;
-  const uint32_t slot = s.obstacles.add(prism, kind, /*wanted_up=*/true);
+  const uint32_t slot = s.obstacles.add(prism, kind, /*wanted_up=*/true, policy);
+  s.obstacles.at(slot).asked_step = s.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   return ObstacleId{slot + 1, s.obstacles.at(slot).generation};
 }
@@ -53,8 +55,10 @@ Result<void> Crowd::move_obstacle(ObstacleId id, const Prism& prism) {
   State& s = *state_;
   if (s.obstacles.find(id) == nullptr) return gone();
   const uint32_t slot = id.slot1 - 1;
+  const bool closed = s.obstacles.at(slot).closes();
   s.obstacles.ask_to_be_at(slot, prism);
   s.settle_obstacles(std::span(&slot, 1), nullptr);
+  if (closed && !s.obstacles.at(slot).has_cells) s.ground_changed();
   return {};
 }
 
@@ -62,10 +66,12 @@ bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
   State& s = *state_;
   if (s.obstacles.find(id) == nullptr) return false;
   const uint32_t slot = id.slot1 - 1;
-  const bool was_up = s.obstacles.at(slot).is_up;
+  const CrowdObstacle& obstacle = s.obstacles.at(slot);
+  const bool had_cells = obstacle.has_cells, was_wanted = obstacle.wanted_up;
   s.obstacles.ask_to_be_up(slot, active);
+  if (active && !was_wanted) s.obstacles.at(slot).asked_step = s.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
-  if (was_up && !active) {
+  if (had_cells && !active) {
     s.ground_changed();
     s.report_paths(slot);
   }
@@ -91,7 +97,17 @@ bool Crowd::remove_obstacle(ObstacleId id) {
 Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
   const CrowdObstacle* found = state_->obstacles.find(id);
   if (found == nullptr) return gone();
-  return ObstacleState{found->place, found->is_up, found->waits(), found->kind};
+  const auto seconds = [&](uint64_t step) {
+    return step == CrowdObstacle::kNever ? -1 : static_cast<double>(step) * state_->config.dt;
+  };
+  return ObstacleState{found->place,
+                       found->is_up,
+                       found->waits(),
+                       found->kind,
+                       found->policy,
+                       seconds(found->asked_step),
+                       seconds(found->up_step),
+                       found->occupants};
 }
 
 std::vector<Prism> Crowd::obstacles() const {
@@ -107,32 +123,69 @@ std::span<const AvatarId> Crowd::blockers() const { return state_->blockers; }
 size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
                                       std::vector<AvatarId>* in_their_path) {
   if (in_their_path != nullptr) in_their_path->clear();
-  if (slots.empty()) return 0;
+  const bool begins_step = in_their_path != nullptr;
+  if (slots.empty()) {
+    if (begins_step && some_leave) mark_leaving({}, begins_step);
+    return 0;
+  }
   auto found = obstacles.blockers(slots, engine.bodies(), config.workers);
   if (!flights.empty() || !climbs.empty()) add_flyer_blockers(slots, found);
   size_t waiting = 0;
-  std::vector<uint32_t> settled;
+  std::vector<uint32_t> cut;
+  std::vector<std::pair<uint32_t, uint32_t>> leaving;
+  bool changed = false;
   for (const uint32_t slot : slots) {
-    if (!obstacles.at(slot).waits()) continue;
+    const CrowdObstacle& obstacle = obstacles.at(slot);
     const auto first = std::lower_bound(found.begin(), found.end(), std::pair(slot, uint32_t{0}));
-    if (first != found.end() && first->first == slot) {
-      ++waiting;
-      continue;
+    const auto last =
+        std::lower_bound(found.begin(), found.end(), std::pair(slot + 1, uint32_t{0}));
+    const bool refuses = obstacle.policy == ObstaclePolicy::kRefuseEntry && !obstacle.is_up;
+    const std::span<const std::pair<uint32_t, uint32_t>> here(first, last);
+    if (!obstacle.waits() && !obstacle.lets_out) continue;
+    const bool had_cells = obstacle.has_cells && !obstacle.is_elsewhere;
+    const bool let_out = obstacle.lets_out, waited = obstacle.waits();
+    bool comes = here.empty();
+    if (!here.empty() && (refuses || obstacle.lets_out)) {
+      leaving.insert(leaving.end(), here.begin(), here.end());
+      const auto walks = [&](const auto& pair) {
+        return !engine.bodies()[pair.second].has(Body::kFlying);
+      };
+      obstacles.let_out(slot, std::any_of(here.begin(), here.end(), walks));
+      if (refuses) {
+        obstacles.close(slot);
+        comes = !is_occupied(slot, here);
+      }
+    } else if (here.empty()) {
+      obstacles.let_out(slot, false);
     }
-    obstacles.settle(slot);
-    settled.push_back(slot);
+    if (waited && comes) {
+      obstacles.settle(slot);
+      if (obstacle.up_step == CrowdObstacle::kNever) {
+        obstacles.at(slot).up_step = begins_step ? step - 1 : step;
+      }
+    }
+    changed = changed || (waited && comes) || let_out != obstacle.lets_out ||
+              had_cells != obstacle.has_cells;
+    if (obstacle.has_cells && !had_cells) cut.push_back(slot);
+    obstacles.at(slot).occupants = obstacle.waits() ? static_cast<uint32_t>(here.size()) : 0;
+    if (!obstacle.waits()) continue;
+    ++waiting;
+    if (!begins_step) continue;
+    for (const auto& pair : here) {
+      in_their_path->push_back(id_of(engine.bodies()[pair.second].slot));
+    }
   }
-  if (in_their_path != nullptr) {
-    for (const auto& [slot, i] : found) in_their_path->push_back(id_of(engine.bodies()[i].slot));
+  if (begins_step) {
     const auto before = [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; };
     std::sort(in_their_path->begin(), in_their_path->end(), before);
     in_their_path->erase(std::unique(in_their_path->begin(), in_their_path->end()),
                          in_their_path->end());
   }
-  if (settled.empty()) return waiting;
-  ground_changed();
-  for (const uint32_t slot : settled) report_paths(slot);
-  cut_ways(settled);
+  if (changed) ground_changed();
+  mark_leaving(leaving, begins_step);
+  if (cut.empty()) return waiting;
+  for (const uint32_t slot : cut) report_paths(slot);
+  cut_ways(cut);
   return waiting;
 }
 
@@ -140,7 +193,7 @@ void Crowd::State::ground_changed() {
   obstacles.take_cells();
   cuts_ways = false;
   for (const CrowdObstacle& obstacle : obstacles.all()) {
-    cuts_ways |= obstacle.exists && obstacle.is_up && obstacle.kind == ObstacleKind::kStatic;
+    cuts_ways |= obstacle.exists && obstacle.has_cells && obstacle.kind == ObstacleKind::kStatic;
   }
   for (const auto& parts : classes) {
     if (parts) parts->standing.reset();
@@ -157,14 +210,15 @@ void Crowd::State::report_paths(uint32_t slot, size_t number) {
   if (obstacle.kind != ObstacleKind::kStatic || !obstacle.exists || !classes[number]) return;
   ClassParts& parts = *classes[number];
   CrowdObstacle::OfClass& told = obstacle.of_class[number];
-  const bool is_new = obstacle.is_up && (!told.is_told || told.told_version != obstacle.version);
+  const bool is_new =
+      obstacle.has_cells && (!told.is_told || told.told_version != obstacle.version);
   if (is_new) {
     told.is_told = true;
     told.told_version = obstacle.version;
   }
   tell(parts.node_finders, obstacle, is_new, told.node_change);
   if (config.ways != Routing::kPaths) return;
-  if (obstacle.is_up) make_lives(number);
+  if (obstacle.has_cells) make_lives(number);
   flows_are_old = true;
   tell(parts.lives, obstacle, is_new, told.change);
   tell(parts.flight_finders, obstacle, is_new, told.air_change);
@@ -197,7 +251,10 @@ void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
   const std::span<Body> bodies = engine.bodies();
   parallel_ranges(bodies.size(), 4096, config.workers, [&](size_t begin, size_t end) {
     for (Body& body : bodies.subspan(begin, end - begin)) {
-      if (!body.has(Body::kHasGoal) || body.has(Body::kLost) || body.has(Body::kFlying)) continue;
+      if (!body.has(Body::kHasGoal) || body.has(Body::kLost) || body.has(Body::kFlying) ||
+          body.leaves) {
+        continue;
+      }
       const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const PlanBox& box) {
         return leads_through(body, routes[body.slot], box);
       });

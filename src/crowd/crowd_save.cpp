@@ -16,7 +16,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x37305744574f5243;  // "CROWDW07"
+constexpr uint64_t kMagic = 0x38305744574f5243;  // "CROWDW08"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -42,10 +42,11 @@ struct SavedObstacle {
   double low = 0, high = 0, wanted_low = 0, wanted_high = 0;
   uint32_t generation = 0, corners = 0, wanted_corners = 0;
   uint8_t exists = 0, kind = 0, is_up = 0, wanted_up = 0;
-  uint8_t is_elsewhere = 0;
-  std::array<uint8_t, 7> reserved{};
+  uint8_t is_elsewhere = 0, policy = 0, has_cells = 0, lets_out = 0;
+  uint32_t occupants = 0;
+  uint64_t asked_step = 0, up_step = 0;
 };
-static_assert(sizeof(SavedObstacle) == 56 && std::is_trivially_copyable_v<SavedObstacle>);
+static_assert(sizeof(SavedObstacle) == 72 && std::is_trivially_copyable_v<SavedObstacle>);
 
 std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
                                            std::vector<std::array<double, 2>>& corners) {
@@ -62,7 +63,13 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
                      .kind = static_cast<uint8_t>(o.kind),
                      .is_up = o.is_up,
                      .wanted_up = o.wanted_up,
-                     .is_elsewhere = o.is_elsewhere});
+                     .is_elsewhere = o.is_elsewhere,
+                     .policy = static_cast<uint8_t>(o.policy),
+                     .has_cells = o.has_cells,
+                     .lets_out = o.lets_out,
+                     .occupants = o.occupants,
+                     .asked_step = o.asked_step,
+                     .up_step = o.up_step});
     for (const Prism* prism : {&o.place, &o.wanted}) {
       corners.insert(corners.end(), prism->corners.begin(), prism->corners.end());
     }
@@ -76,7 +83,9 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
   std::vector<CrowdObstacle> obstacles;
   size_t at = 0;
   for (const SavedObstacle& s : saved) {
-    if (corners.size() - at < size_t{s.corners} + s.wanted_corners || s.kind > 1) return {};
+    if (corners.size() - at < size_t{s.corners} + s.wanted_corners || s.kind > 1 || s.policy > 1) {
+      return {};
+    }
     CrowdObstacle& o = obstacles.emplace_back();
     const auto take = [&](size_t count) {
       const auto first = corners.begin() + static_cast<ptrdiff_t>(at);
@@ -95,6 +104,12 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
     o.is_up = s.is_up != 0;
     o.wanted_up = s.wanted_up != 0;
     o.is_elsewhere = s.is_elsewhere != 0;
+    o.policy = static_cast<ObstaclePolicy>(s.policy);
+    o.has_cells = s.has_cells != 0;
+    o.lets_out = s.lets_out != 0;
+    o.occupants = s.occupants;
+    o.asked_step = s.asked_step;
+    o.up_step = s.up_step;
     if ((o.is_up && !o.wanted_up) || (o.is_elsewhere && !o.is_up)) return {};
   }
   return at == corners.size() ? std::optional(std::move(obstacles)) : std::nullopt;
@@ -371,6 +386,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     }
   }
   s.where_is_old = true;
+  s.some_leave = std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.leaves; });
   s.flows_are_old = head.flows_are_old != 0;  // opening a class found them as they are now
   s.step = head.step;
   s.sub_step = head.sub_step;

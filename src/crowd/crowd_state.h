@@ -71,7 +71,8 @@ struct Crowd::State {
   uint64_t step = 0, sub_step = 0;
   uint64_t scattered = 0;  // draws of `scatter`
   ObstacleSet obstacles;
-  bool cuts_ways = false;  // an obstacle that ways lead around is up
+  bool cuts_ways = false;   // an obstacle that ways lead around is up, or closes
+  bool some_leave = false;  // Body::leaves of some
 
   // By slot.
   std::vector<uint32_t> generation;
@@ -92,6 +93,7 @@ struct Crowd::State {
   bool flows_are_old = false;   // the ground has changed since
   std::vector<AvatarId> arrived, goal_unreachable, blockers;
   std::mutex stranding;
+  mutable std::atomic<uint64_t> out_of_memory{0};  // searches of this step
 
   State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine,
         FlyerEngine&& a_flyer_engine, ClimberEngine&& a_climber_engine)
@@ -119,6 +121,25 @@ struct Crowd::State {
   /// Those obstacles that wait and in whose way nobody stands come up or move on. Returns how many
   /// still wait.
   size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_path);
+  /// Is any of these bodies in an obstacle that is to come up?
+  [[nodiscard]] bool is_occupied(uint32_t slot,
+                                 std::span<const std::pair<uint32_t, uint32_t>> found) const;
+
+  // crowd_leaving.cpp
+  /// These (obstacle, index of the body) are in obstacles that they are to leave; with `all`, no
+  /// others are.
+  void mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> found, bool all);
+  void begin_to_leave(Body& body, std::span<const uint32_t> slots);
+  void end_leaving(Body& body);
+  /// Of one on foot: on along its way, or to the nearest exit.
+  void plan_exit(Body& body);
+  bool tries_path_again(Body& body) const;
+  [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const;
+  /// Of one who flies; true: its way is not followed.
+  bool plan_exit_in_air(Body& body, Flight& flight) const;
+  /// Of one who goes over nodes.
+  bool plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker);
+
   /// Tells the ways of a class, or of all, what an obstacle is to them by now.
   void report_paths(uint32_t slot, size_t number);
   void report_paths(uint32_t slot);
@@ -138,6 +159,13 @@ struct Crowd::State {
   [[nodiscard]] AvatarState state_of(const Body& body) const;
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
   void strand(Body& body);
+  /// Counts a search that would have taken more memory than it may.
+  void note_spent(SpentBudget spent) const {
+    if (spent == SpentBudget::kMemory) out_of_memory.fetch_add(1, std::memory_order_relaxed);
+  }
+  [[nodiscard]] SearchBudget search_budget(uint64_t max_nodes = UINT64_MAX) const {
+    return {max_nodes, nullptr, config.search_bytes};
+  }
 
   // crowd_flights.cpp
   /// What a class needs beside its ground if it flies, and the world has air.
@@ -191,7 +219,7 @@ struct Crowd::State {
   [[nodiscard]] bool is_sound_climb(const Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
-  bool step_off(Body& body, Climb& climb, int32_t worker);
+  bool step_off(Body& body, Climb& climb, int32_t worker, double beside);
   void cut_climbs(std::span<const uint32_t> slots);
 };
 

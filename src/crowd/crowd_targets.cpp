@@ -130,10 +130,13 @@ bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& groun
     route.goal = here;  // if it stands there already
   } else {
     const Place to = place_of(data, body, route.goal);
-    parts.finders[w].find(from, to, path);
+    parts.finders[w].find(from, to, path, search_budget());
+    SpentBudget spent = path.spent;
     if (cuts_ways && path.end == PathEnd::kReached) {
-      lead_around(data, parts.lives[w], ground, path, parts.repairs[w]);
+      lead_around(data, parts.lives[w], ground, search_budget(), path, parts.repairs[w]);
+      if (path.spent != SpentBudget::kNone) spent = path.spent;
     }
+    note_spent(spent);
   }
   return take_way(data, path, ground, body, route);
 }
@@ -151,7 +154,7 @@ void Crowd::State::renew_flows() {
     THRONG_ASSERT(ok);  // It was possible before, and nobody cancels it.
   }
   for (Body& body : engine.bodies()) {
-    if (body.target != 0 && body.has(Body::kHasGoal)) body.flags |= Body::kLost;
+    if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves) body.flags |= Body::kLost;
   }
 }
 

@@ -41,47 +41,6 @@ AirSpot spot_of(const Body& body) { return {body.x, body.z, body.y}; }
 
 }  // namespace
 
-AirObstacle::AirObstacle(const Prism& prism, const Vec3d& origin, double unit)
-    : unit_(unit),
-      x0_(HUGE_VAL),
-      z0_(HUGE_VAL),
-      x1_(-HUGE_VAL),
-      z1_(-HUGE_VAL),
-      low_(static_cast<int32_t>(std::clamp(std::floor(prism.low * 1000), -2e9, 2e9))),
-      high_(static_cast<int32_t>(std::clamp(std::ceil(prism.high * 1000), -2e9, 2e9))) {
-  double area2 = 0;
-  for (size_t i = 0; i < prism.corners.size(); ++i) {
-    const auto& [x, z] = prism.corners[i];
-    const auto& [nx, nz] = prism.corners[(i + 1) % prism.corners.size()];
-    corners_.push_back({(x - origin.x) / unit, (z - origin.z) / unit});
-    area2 += x * nz - nx * z;
-    x0_ = std::min(x0_, corners_.back()[0]);
-    z0_ = std::min(z0_, corners_.back()[1]);
-    x1_ = std::max(x1_, corners_.back()[0]);
-    z1_ = std::max(z1_, corners_.back()[1]);
-  }
-  if (area2 < 0) std::reverse(corners_.begin(), corners_.end());  // inside is on the left
-}
-
-bool AirObstacle::holds(const AirSpot& feet, double radius, int32_t height) const {
-  if (!overlap(feet.y, height, low_, high_ - low_)) return false;
-  const double reach = radius / unit_ + 2;  // and what rounding takes
-  const double x = feet.x + 0.5, z = feet.z + 0.5;
-  if (x < x0_ - reach || x > x1_ + reach || z < z0_ - reach || z > z1_ + reach) return false;
-  bool inside = true;
-  for (size_t i = 0; i < corners_.size(); ++i) {
-    const auto& [ax, az] = corners_[i];
-    const auto& [bx, bz] = corners_[(i + 1) % corners_.size()];
-    const double wx = bx - ax, wz = bz - az, px = x - ax, pz = z - az;
-    inside = inside && wx * pz - wz * px >= 0;
-    const double whole = wx * wx + wz * wz;
-    const double part = whole > 0 ? std::clamp((px * wx + pz * wz) / whole, 0.0, 1.0) : 0;
-    const double dx = px - part * wx, dz = pz - part * wz;
-    if (dx * dx + dz * dz < reach * reach) return true;
-  }
-  return inside;
-}
-
 FlyerEngine::FlyerEngine(const FlyerConfig& config, size_t classes)
     : config_(config), classes_(classes) {
   rounds_.workers.resize(static_cast<size_t>(worker_count(config.workers)));
@@ -107,9 +66,26 @@ void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) 
 }
 
 bool FlyerEngine::is_blocked(const Body& body, const AirSpot& spot) const {
+  const double radius = classes_[body.avatar_class].radius;
+  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
+    return obstacle.holds(spot, radius, body.height) &&
+           !(obstacle.closes() && obstacle.holds(spot_of(body), radius, body.height));
+  });
+}
+
+bool FlyerEngine::is_taken(const Body& body, const AirSpot& spot) const {
   return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
     return obstacle.holds(spot, classes_[body.avatar_class].radius, body.height);
   });
+}
+
+void FlyerEngine::list_exits(const Body& body, std::vector<AirSpot>& exits) const {
+  const double radius = classes_[body.avatar_class].radius;
+  exits.clear();
+  for (const AirObstacle& obstacle : obstacles_) {
+    if (!obstacle.closes() || !obstacle.holds(spot_of(body), radius, body.height)) continue;
+    obstacle.list_exits(spot_of(body), radius, body.height, exits);
+  }
 }
 
 void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights,
@@ -166,7 +142,7 @@ void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
     return set(steer::preferred_towards(displacement, std::min(body.speed, kSlow), units.dt, 0, 0,
                                         flight.descends != 0));
   }
-  if (!body.has(Body::kHasGoal)) return set({});
+  if (!body.has(Body::kHasGoal) && !body.leaves) return set({});
   const steer::Plane level =
       units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   const Space displacement{level.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f,

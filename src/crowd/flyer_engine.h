@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "crowd/air_obstacle.h"
 #include "crowd/body.h"
 #include "crowd/crowd_engine.h"
 #include "crowd/flight.h"
@@ -17,7 +18,6 @@
 #include "crowd/step_units.h"
 #include "steer/air.h"
 #include "steer/sampled.h"
-#include "throng/prism.h"
 
 /// The step of those who are in the air, after that of those who walk: sense, steer, commit in
 /// rounds, settle. docs/design/012-flyers.md.
@@ -34,21 +34,6 @@ struct FlyerConfig {
   steer::Patience patience;
 };
 
-/// An obstacle as flyers know it: nobody's cylinder is in it.
-class AirObstacle {
- public:
-  /// For a world whose units are so long, from its corner. [m]
-  AirObstacle(const Prism& prism, const Vec3d& origin, double unit);
-  /// Is a body in it whose feet are there? [m, mm]
-  [[nodiscard]] bool holds(const AirSpot& feet, double radius, int32_t height) const;
-
- private:
-  std::vector<std::array<double, 2>> corners_;  // [units]
-  double unit_;
-  double x0_, z0_, x1_, z1_;  // [units]
-  int32_t low_, high_;        // [mm]
-};
-
 class FlyerEngine {
  public:
   /// `classes`: of the world.
@@ -60,7 +45,13 @@ class FlyerEngine {
   void fit(int32_t widest, float fastest, int32_t tallest, float dt);
   void set_obstacles(std::vector<AirObstacle> obstacles) { obstacles_ = std::move(obstacles); }
   [[nodiscard]] bool has_obstacles() const { return !obstacles_.empty(); }
+  /// May the body not move there? One that closes lets those go on that are in it.
   [[nodiscard]] bool is_blocked(const Body& body, const AirSpot& spot) const;
+  /// May no such body be put there?
+  [[nodiscard]] bool is_taken(const Body& body, const AirSpot& spot) const;
+  /// The nearest places beside, over and under the obstacles that close around a body, not yet
+  /// looked at otherwise.
+  void list_exits(const Body& body, std::vector<AirSpot>& exits) const;
 
   /// How far from its landing place one comes down that waits for it. [m]
   [[nodiscard]] static float landing_reach(const Flight& flight);

@@ -7,7 +7,9 @@
 
 #include "core/parallel.h"
 #include "core/plan_point.h"
+#include "crowd/leaving_ground.h"
 #include "path/blocked_cells.h"
+#include "world/place.h"
 
 namespace throng {
 namespace {
@@ -49,8 +51,8 @@ void ObstacleSet::open_class(size_t number, CrowdGround& ground) {
   classes_[number].ground = &ground;
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
     if (!obstacles_[slot].exists) continue;
-    if (obstacles_[slot].is_up) put_up(slot, number);
-    if (obstacles_[slot].waits()) find_swept(slot);
+    if (obstacles_[slot].has_cells) put_up(slot, number);
+    if (obstacles_[slot].waits() || obstacles_[slot].lets_out) find_swept(slot);
   }
   take_cells();
 }
@@ -62,7 +64,8 @@ void ObstacleSet::close_class(size_t number) {
   }
 }
 
-uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up) {
+uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up,
+                          ObstaclePolicy policy) {
   uint32_t slot = 0;
   if (free_slots_.empty()) {
     slot = static_cast<uint32_t>(obstacles_.size());
@@ -77,6 +80,7 @@ uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up)
   obstacle.generation = generation;
   obstacle.exists = true;
   obstacle.kind = kind;
+  obstacle.policy = policy;
   obstacle.place = obstacle.wanted = prism;
   obstacle.of_class.resize(classes_.size());
   if (wanted_up) ask_to_be_up(slot, true);
@@ -94,6 +98,7 @@ void ObstacleSet::ask_to_be_at(uint32_t slot, const Prism& prism) {
   obstacle.wanted = prism;
   obstacle.is_elsewhere = obstacle.is_up;
   if (!obstacle.is_up) {
+    give_back(slot);  // It closes there instead.
     obstacle.place = prism;
     ++obstacle.version;
   }
@@ -107,11 +112,11 @@ void ObstacleSet::ask_to_be_up(uint32_t slot, bool up) {
     if (!obstacle.is_up) find_swept(slot);
     return;
   }
-  if (obstacle.is_up) {
-    for (size_t c = 0; c < classes_.size(); ++c) take_down(slot, c);
-  }
+  give_back(slot);
   if (obstacle.is_elsewhere) ++obstacle.version;
   obstacle.is_up = obstacle.is_elsewhere = false;
+  obstacle.asked_step = obstacle.up_step = CrowdObstacle::kNever;
+  obstacle.occupants = 0;
   obstacle.place = obstacle.wanted;
   for (auto& of_class : obstacle.of_class) of_class.swept.clear();
 }
@@ -128,7 +133,7 @@ void ObstacleSet::remove(uint32_t slot) {
 std::vector<uint32_t> ObstacleSet::waiting() const {
   std::vector<uint32_t> slots;
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
-    if (obstacles_[slot].waits()) slots.push_back(slot);
+    if (obstacles_[slot].waits() || obstacles_[slot].lets_out) slots.push_back(slot);
   }
   return slots;
 }
@@ -178,17 +183,44 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
 
 void ObstacleSet::settle(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
-  if (obstacle.is_up) {
-    for (size_t c = 0; c < classes_.size(); ++c) take_down(slot, c);
+  if (obstacle.is_elsewhere) {
+    give_back(slot);
+    ++obstacle.version;
   }
-  if (obstacle.is_elsewhere) ++obstacle.version;
   obstacle.place = obstacle.wanted;
   obstacle.is_up = true;
   obstacle.is_elsewhere = false;
-  for (size_t c = 0; c < classes_.size(); ++c) {
-    obstacle.of_class[c].swept.clear();
-    put_up(slot, c);
+  if (!obstacle.lets_out) {
+    for (auto& of_class : obstacle.of_class) of_class.swept.clear();
   }
+  take(slot);
+}
+
+void ObstacleSet::close(uint32_t slot) { take(slot); }
+
+void ObstacleSet::let_out(uint32_t slot, bool lets) {
+  CrowdObstacle& obstacle = obstacles_[slot];
+  if (obstacle.lets_out == lets) return;
+  obstacle.lets_out = lets;
+  for (size_t c = 0; c < classes_.size(); ++c) {
+    CrowdObstacle::OfClass& of = obstacle.of_class[c];
+    classes_[c].touched.insert(classes_[c].touched.end(), of.levels.begin(), of.levels.end());
+    if (!lets && !obstacle.waits()) of.swept.clear();
+  }
+}
+
+void ObstacleSet::take(uint32_t slot) {
+  if (obstacles_[slot].has_cells) return;
+  obstacles_[slot].has_cells = true;
+  for (size_t c = 0; c < classes_.size(); ++c) put_up(slot, c);
+}
+
+void ObstacleSet::give_back(uint32_t slot) {
+  CrowdObstacle& obstacle = obstacles_[slot];
+  if (obstacle.has_cells) {
+    for (size_t c = 0; c < classes_.size(); ++c) take_down(slot, c);
+  }
+  obstacle.has_cells = obstacle.lets_out = false;
 }
 
 std::vector<LevelCells> ObstacleSet::cells_under(size_t number, const Prism& prism) const {
@@ -219,7 +251,7 @@ void ObstacleSet::find_swept(uint32_t slot) {
   const Prism swept = obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
   for (size_t c = 0; c < classes_.size(); ++c) {
     obstacle.of_class[c].swept =
-        obstacle.waits() ? cells_under(c, swept) : std::vector<LevelCells>();
+        obstacle.waits() || obstacle.lets_out ? cells_under(c, swept) : std::vector<LevelCells>();
   }
 }
 
@@ -246,28 +278,48 @@ void ObstacleSet::take_down(uint32_t slot, size_t number) {
 }
 
 void ObstacleSet::take_cells() {
-  for (ClassGround& of : classes_) {
+  for (size_t c = 0; c < classes_.size(); ++c) {
+    ClassGround& of = classes_[c];
     if (of.touched.empty()) continue;
     std::sort(of.touched.begin(), of.touched.end());
     of.touched.erase(std::unique(of.touched.begin(), of.touched.end()), of.touched.end());
-    std::vector<std::pair<int32_t, int32_t>> tiles;
-    for (const uint32_t level : of.touched) {
-      CellRows taken{};
-      const auto takers = of.takers.find(level);
-      if (takers != of.takers.end()) {
-        for (const Taker& taker : takers->second) {
-          for (size_t z = 0; z < taken.size(); ++z) taken[z] |= taker.rows[z];
-        }
-      }
-      of.ground->set_taken(level, taken);
-      const CrowdGround::Record& record = of.ground->records()[level];
-      tiles.emplace_back(record.tile_x, record.tile_z);
-    }
-    std::sort(tiles.begin(), tiles.end());
-    tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
-    for (const auto& [x, z] : tiles) of.ground->join_tile(x, z);
+    take_levels(c, of);
     of.touched.clear();
   }
+}
+
+void ObstacleSet::take_levels(size_t number, ClassGround& of) {
+  std::vector<std::pair<int32_t, int32_t>> tiles;
+  const WorldSummary& summary = world_.data()->summary;
+  LeftCells& left = of.ground->left();
+  left.begin(summary, summary.classes[number]);
+  for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
+    const CrowdObstacle& obstacle = obstacles_[slot];
+    if (obstacle.exists && obstacle.lets_out) left.add(slot, obstacle.place);
+  }
+  for (const uint32_t level : of.touched) {
+    CellRows taken{}, kept{};
+    std::vector<LeftCells::Part> parts;
+    const auto takers = of.takers.find(level);
+    if (takers != of.takers.end()) {
+      for (const Taker& taker : takers->second) {
+        for (size_t z = 0; z < taken.size(); ++z) taken[z] |= taker.rows[z];
+        if (obstacles_[taker.slot].lets_out) {
+          parts.push_back({taker.slot, taker.rows});
+        } else {
+          for (size_t z = 0; z < kept.size(); ++z) kept[z] |= taker.rows[z];
+        }
+      }
+    }
+    of.ground->set_taken(level, taken);
+    left.set_level(level, std::move(parts), kept);
+    const CrowdGround::Record& record = of.ground->records()[level];
+    tiles.emplace_back(record.tile_x, record.tile_z);
+  }
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  for (const auto& [x, z] : tiles) of.ground->join_tile(x, z);
+  find_exits(*of.ground, step_mm(summary.classes[number]));
 }
 
 bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots) {
@@ -281,6 +333,9 @@ bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint
     if (obstacle.exists == is_free[slot]) return false;
     if (!obstacle.exists) continue;
     if (!check_prism(obstacle.place) || !check_prism(obstacle.wanted)) return false;
+    const bool may_close = obstacle.wanted_up && obstacle.policy == ObstaclePolicy::kRefuseEntry;
+    if (obstacle.is_up ? !obstacle.has_cells : obstacle.has_cells && !may_close) return false;
+    if (obstacle.lets_out && !obstacle.has_cells) return false;
     obstacle.of_class.resize(classes_.size());
   }
   obstacles_ = std::move(obstacles);

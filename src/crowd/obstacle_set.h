@@ -27,10 +27,17 @@ struct CrowdObstacle {
   uint32_t generation = 1;
   bool exists = false;
   ObstacleKind kind = ObstacleKind::kStatic;
+  ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
   bool is_up = false, wanted_up = false;
   bool is_elsewhere = false;  // it is up, but asked to be at `wanted`
   Prism place, wanted;
-  uint32_t version = 0;  // of `place`
+  bool has_cells = false;  // taken from the grounds: it is up, or closes
+  bool lets_out = false;   // some who walk stand on these, and may only leave
+  uint32_t version = 0;    // of `place`
+  uint64_t asked_step = kNever, up_step = kNever;  // steps made before it was asked, and came up
+  uint32_t occupants = 0;                          // in its way, when last looked at
+
+  static constexpr uint64_t kNever = UINT64_MAX;
 
   // By class, empty for those that nobody is of.
   struct OfClass {
@@ -45,6 +52,8 @@ struct CrowdObstacle {
   std::vector<OfClass> of_class;
 
   [[nodiscard]] bool waits() const { return exists && ((wanted_up && !is_up) || is_elsewhere); }
+  /// Not up, but no avatar may enter it.
+  [[nodiscard]] bool closes() const { return exists && has_cells && !is_up; }
 };
 
 /// The smallest convex prism around two.
@@ -61,7 +70,8 @@ class ObstacleSet {
   void close_class(size_t number);
 
   /// [check_prism] It waits until it is settled.
-  uint32_t add(const Prism& prism, ObstacleKind kind, bool wanted_up);
+  uint32_t add(const Prism& prism, ObstacleKind kind, bool wanted_up,
+               ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
   /// Null for those that are gone.
   [[nodiscard]] const CrowdObstacle* find(ObstacleId id) const;
   [[nodiscard]] std::span<const CrowdObstacle> all() const { return obstacles_; }
@@ -71,7 +81,7 @@ class ObstacleSet {
   void ask_to_be_up(uint32_t slot, bool up);
   void remove(uint32_t slot);
 
-  /// Those of some obstacles that wait.
+  /// Those that wait, or let out.
   [[nodiscard]] std::vector<uint32_t> waiting() const;
   /// Who stands where some of them would come or pass: (obstacle, index of the body), in order.
   [[nodiscard]] std::vector<std::pair<uint32_t, uint32_t>> blockers(std::span<const uint32_t> slots,
@@ -79,6 +89,10 @@ class ObstacleSet {
                                                                     int32_t workers) const;
   /// It is where it waited to be. Then take_cells.
   void settle(uint32_t slot);
+  /// From now on it is entered no more, and left only. Then take_cells.
+  void close(uint32_t slot);
+  /// Those on its cells may leave these, or there are none any more. Then take_cells.
+  void let_out(uint32_t slot, bool lets);
   /// Brings the grounds up to date with all that was settled, asked down or removed.
   void take_cells();
 
@@ -98,8 +112,11 @@ class ObstacleSet {
     std::unordered_map<uint32_t, std::vector<Taker>> takers;  // by level; looked up only
     std::vector<uint32_t> touched;                            // levels, with doubles
   };
+  void take_levels(size_t number, ClassGround& of);
   [[nodiscard]] std::vector<LevelCells> cells_under(size_t number, const Prism& prism) const;
   void find_swept(uint32_t slot);
+  void take(uint32_t slot);
+  void give_back(uint32_t slot);
   void put_up(uint32_t slot, size_t number);
   void take_down(uint32_t slot, size_t number);
 

@@ -75,14 +75,14 @@ class PathRepair {
 
 }  // namespace
 
-void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground, Path& path,
-                 RepairScratch& scratch) {
+void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground,
+                 const SearchBudget& budget, Path& path, RepairScratch& scratch) {
   if (path.points.size() < 2) return;
   const PathRepair repair(world, live, ground);
   if (repair.is_whole(path.points)) return;
   const Place from = path.points.front(), to = path.points.back();
   if (repair.mend(path.points, path.length, scratch)) return;
-  live.find(from, to, path);
+  live.find(from, to, path, budget);
 }
 
 }  // namespace throng

@@ -22,6 +22,14 @@ struct StepUnits {
   [[nodiscard]] int32_t displacement(float velocity) const {
     return static_cast<int32_t>(std::lrint(velocity * (dt / unit)));
   }
+  /// The same for steps of few units: the n-th of many at one velocity, which together are as long
+  /// as they should be to the unit. (As Bresenham's line does.)
+  [[nodiscard]] int32_t small_way(float velocity, uint64_t n) const {
+    const double units = double{velocity} * (double{dt} / unit);
+    const auto k = static_cast<double>(n % kSmallWays);
+    return static_cast<int32_t>(std::floor(units * (k + 1)) - std::floor(units * k));
+  }
+  static constexpr uint64_t kSmallWays = 1 << 16;
   [[nodiscard]] float velocity(int32_t displacement) const {
     return static_cast<float>(displacement) * (unit / dt);
   }

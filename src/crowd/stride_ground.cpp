@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "crowd/leaving_ground.h"
 #include "world/walk.h"
 
 namespace throng {
@@ -25,10 +26,28 @@ bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint
       return true;
     }
   }
+  if (leaves(level, from)) return leave(level, y, from, to, landing);
   uint32_t end = level;
   if (!walk_open(end, from, to) && !walk(*ground_, end, from, to, step_mm_)) return false;
   landing = {end, ground_->feet(end, to)};
   return true;
+}
+
+bool StrideGround::leaves(uint32_t level, GroundPoint from) const {
+  return is_leaving(*ground_, level, from.cell_x(), from.cell_z());
+}
+
+bool StrideGround::leave(uint32_t level, int32_t y, GroundPoint from, GroundPoint to,
+                         Landing& landing) const {
+  const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
+  uint32_t end = level;
+  if (!walk(leaving, end, from, to, step_mm_)) return false;
+  landing = {end, ground_->feet(end, to)};
+  const auto spot = [](GroundPoint p, int32_t feet) {
+    return AirSpot{static_cast<int32_t>(p.x), static_cast<int32_t>(p.z), feet};
+  };
+  return !ground_->left().enters({level, from.cell_x() & 63, from.cell_z() & 63}, spot(from, y),
+                                 spot(to, landing.y));
 }
 
 namespace {
@@ -155,6 +174,7 @@ StrideGround::Around StrideGround::look_around(uint32_t level, int32_t y, Ground
                                                int32_t reach, int32_t rise,
                                                WallWindow& window) const {
   const int32_t x = from.cell_x(), z = from.cell_z();
+  if (leaves(level, from)) return Around::kSteps;
   // Squares of one cell, or of two where the look is longer.
   const int32_t scale = reach < WallWindow::kMiddle ? 1 : 2;
   if (reach >= 2 * WallWindow::kMiddle) return Around::kSteps;
@@ -267,6 +287,10 @@ bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32
     const float part = most / far;
     to = {from.x + std::lrint(dx * part), from.z + std::lrint(dz * part)};
   }
+  if (leaves(level, from)) {
+    const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
+    return walk(leaving, level, from, to, step_mm_) && (far > most || level == end);
+  }
   const bool arrives = walk_open(level, from, to) || walk_rows(level, from, to).arrived;
   return arrives && (far > most || level == end);
 }
@@ -275,8 +299,14 @@ float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane
                                   float most) const {
   const GroundPoint to{from.x + std::lrint(direction.x * most),
                        from.z + std::lrint(direction.z * most)};
-  if (walk_open(level, from, to)) return most;
-  const WalkStop stop = walk_rows(level, from, to);
+  WalkStop stop;
+  if (leaves(level, from)) {
+    const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
+    stop = walk_far(leaving, level, from, to, step_mm_);
+  } else {
+    if (walk_open(level, from, to)) return most;
+    stop = walk_rows(level, from, to);
+  }
   if (stop.arrived) return most;
   // To the border of the last cell that it could not cross.
   const auto part = [](int32_t cell, int32_t toward, int64_t begin, int64_t end) {

@@ -23,7 +23,8 @@ class StrideGround {
     int32_t y = 0;  // feet [mm]
   };
   /// The conservative move of algorithm 1 ([ML06]) from one point to another: every cell between is
-  /// legal, and no step is too high. False: there is a wall.
+  /// legal, and no step is too high. False: there is a wall. A body in an obstacle that closes may
+  /// go on in it, and out.
   bool move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
 
   /// Is there no wall, as far as a quick look tells, up to a square of cells `reach` to each side?
@@ -57,6 +58,8 @@ class StrideGround {
                                     float most) const;
 
  private:
+  bool leave(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
+  [[nodiscard]] bool leaves(uint32_t level, GroundPoint from) const;
   WalkStop walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const;
   bool walk_open(uint32_t& level, GroundPoint from, GroundPoint to) const;
   [[nodiscard]] bool box_is_open(uint32_t level, int32_t x0, int32_t z0, int32_t x1,

@@ -27,6 +27,7 @@ constexpr int32_t kBlockPixels = 32;
 constexpr int64_t kSparse = 2048;
 constexpr double kMaxPixels =
     1e12;                         // 8 TB of addresses, of which only what is touched takes memory
+constexpr double kMinUnits = 50;  // of a step: they are whole, so it is within 1.5 % of its length
 constexpr uint64_t kGrain = 512;  // avatars that are worth handing to another thread
 
 // A direction, uniform over the circle, without trigonometry: a point of the disc, put on its rim.
@@ -77,7 +78,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
                                       " is not in this world, which has " +
                                       std::to_string(data.summary.classes.size())};
   }
-  if (!(config.dt > 0 && config.dt <= 10)) return bad("dt must be above 0 and at most 10 s");
+  if (!(config.dt >= 1e-3 && config.dt <= 10)) return bad("dt must be 0.001 to 10 s");
   if (!(config.speed >= 0 && config.speed <= 1000)) return bad("speed must be 0 to 1000 m/s");
   if (config.workers < 0) return bad("workers must be 0 (all cores) or more");
 
@@ -112,6 +113,11 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   if (state->sub_steps > 10000)
     return bad("speed times dt is over 10000 radii; take shorter steps");
   const double units = length / state->sub_steps / state->unit;
+  if (units < kMinUnits) {
+    return bad("speed times dt is " + std::to_string(length * 1e3) + " mm, but steps below " +
+               std::to_string(kMinUnits * state->unit * 1e3) +
+               " mm are not exact in this world; take longer steps");
+  }
   state->stride = static_cast<int64_t>(std::ceil(units)) + 1;
   // A mover reads one pixel further than it goes; two movers of one colour keep a block between
   // them.

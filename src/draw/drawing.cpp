@@ -106,6 +106,7 @@ struct Drawing::State {
   GlFramebuffer sun_frame;
   GLsizei sun_pixels = 0;
   Target target;
+  std::vector<uint8_t> texels;  // Of the target, kept from picture to picture.
 
   void make_current() const {
     if (context) context->make_current();
@@ -567,13 +568,13 @@ Result<Image> Drawing::draw(std::span<const DrawnCrowd> crowds, const DrawingCon
   state.panel.draw(state.panel_program, panel, config.width, config.height, config.samples);
   const auto start = Clock::now();
   const GLsizei wide = state.target.width, high = state.target.height;
-  std::vector<uint8_t> texels(static_cast<size_t>(wide) * static_cast<size_t>(high) * 4);
+  state.texels.resize(static_cast<size_t>(wide) * static_cast<size_t>(high) * 4);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, wide, high, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  glReadPixels(0, 0, wide, high, GL_RGBA, GL_UNSIGNED_BYTE, state.texels.data());
   done.seconds_draw += seconds_since(start);
   if (report != nullptr) *report = done;
   if (auto ok = no_driver_error(); !ok) return ok.error();
-  return reduce(texels, config.width, config.height, config.samples);
+  return reduce(state.texels, config.width, config.height, config.samples);
 }
 
 Result<void> Drawing::show(std::span<const DrawnCrowd> crowds, const DrawingConfig& given,

@@ -7,15 +7,21 @@
 #include <vector>
 
 #include "graph/node_links.h"
+#include "throng/math.h"
 
 /// How far around its middle nothing is more restrictive than a node: the seed's cylinder width.
 namespace throng {
 
-/// The middle of a cell and the radius around it that holds the cell, for floods.
+/// The middle of a cell, from an origin close enough for floats, and the radius around it that
+/// holds the cell, for floods.
 struct CellShape {
   float x = 0, y = 0, z = 0;
   float radius = 0;
   float area = 0;
+
+  [[nodiscard]] Vec3d middle(Vec3d origin) const {
+    return {origin.x + x, origin.y + y, origin.z + z};
+  }
 };
 
 /// A cell as a ball that holds it. Distances along the ground are at least those between balls.
@@ -27,13 +33,15 @@ struct CellBall {
 /// only be nearer.
 struct CellBalls {
   std::span<const CellShape> listed;
+  Vec3d origin;         ///< Of those listed.
   double x = 0, z = 0;  ///< Else: the first of 64 x 64 cells, of all there are.
   double side = 0;      ///< Of these. [m]
 
   [[nodiscard]] CellBall operator[](uint32_t cell) const {
     if (!listed.empty()) {
       const CellShape& shape = listed[cell];
-      return {shape.x, shape.y, shape.z, shape.radius};
+      const Vec3d middle = shape.middle(origin);
+      return {middle.x, middle.y, middle.z, shape.radius};
     }
     return {(x + cell % 64 + 0.5) * side, 0, (z + cell / 64 + 0.5) * side, side * 0.7072};
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 #include <string>
 
@@ -22,6 +23,13 @@ std::string one_line(std::string name) {
   return name;
 }
 
+// Significant digits of a coordinate: ten, and far from the origin as many as keep the micrometre.
+int digits(double metres) {
+  int count = 10;
+  for (double size = std::fabs(metres); size >= 1e4 && count < 17; size /= 10) ++count;
+  return count;
+}
+
 }  // namespace
 
 Result<void> write_obj(const Scene& scene, const std::string& path) {
@@ -34,7 +42,8 @@ Result<void> write_obj(const Scene& scene, const std::string& path) {
   };
   const auto to = std::back_inserter(line);
   for (const Vec3d& p : scene.positions) {
-    fmt::format_to(to, "v {:.10g} {:.10g} {:.10g}\n", p.x, p.y, p.z);
+    fmt::format_to(to, "v {:.{}g} {:.{}g} {:.{}g}\n", p.x, digits(p.x), p.y, digits(p.y), p.z,
+                   digits(p.z));
     put();
   }
   size_t part = 0;

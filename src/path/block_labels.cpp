@@ -88,7 +88,7 @@ class Lister {
     const Stop middle{middle_of(r), rect};
     for (uint32_t i = begin; i < end; ++i) {
       const uint32_t corner = labels_.candidates[i].corner;
-      if (ray_to_corner(mesh_, middle, corner) != RayEnd::kArrived) continue;
+      if (!sees_corner(mesh_, middle, corner)) continue;
       const float here = from_middle(r, mesh_.corners[corner]);
       for (uint32_t l = labels_.first[corner]; l < labels_.first[corner + 1]; ++l) {
         const HubLabels::Label& label = labels_.labels[l];

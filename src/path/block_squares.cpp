@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "core/float_origin.h"
 #include "world/zone_data.h"
 
 namespace throng {
@@ -69,9 +70,11 @@ BlockSquares::BlockSquares(const NodeMesh& mesh) {
     for (uint32_t b = 0; b < blocks.size(); ++b) {
       const double side = blocks[b].side();
       const Vec3d at = surface.at((blocks[b].s + 0.5) * side, (blocks[b].t + 0.5) * side);
-      Ball ball{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z), 0,
+      if (balls.empty()) base_ = float_origin(at);
+      const Vec3d off = at - base_;
+      Ball ball{static_cast<float>(off.x), static_cast<float>(off.y), static_cast<float>(off.z), 0,
                 mesh.first_block(p) + b};
-      const Vec3d middle{ball.x, ball.y, ball.z};
+      const Vec3d middle = ball.middle(base_);
       const double radius = (by_s + by_t) * side / 2 + length(at - middle);
       ball.radius = static_cast<float>(radius * (1 + 1e-6) + 1e-6);
       largest_ = std::max(largest_, double{ball.radius});
@@ -89,7 +92,8 @@ BlockSquares::BlockSquares(const NodeMesh& mesh) {
   squares_x_ = static_cast<size_t>(width / side_) + 1;
   squares_z_ = static_cast<size_t>(depth / side_) + 1;
   const auto square_of = [&](const Ball& ball) {
-    const auto [x, z] = square(ball.x, ball.z);
+    const Vec3d middle = ball.middle(base_);
+    const auto [x, z] = square(middle.x, middle.z);
     return z * squares_x_ + x;
   };
   first_.assign(squares_x_ * squares_z_ + 1, 0);

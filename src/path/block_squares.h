@@ -35,7 +35,7 @@ class BlockSquares {
     for (size_t z = z0; z <= z1; ++z) {
       for (size_t k = first_[z * squares_x_ + x0]; k < first_[z * squares_x_ + x1 + 1]; ++k) {
         const Ball& ball = balls_[k];
-        const Vec3d d{ball.x - position.x, ball.y - position.y, ball.z - position.z};
+        const Vec3d d = ball.middle(base_) - position;
         const double within = reach + ball.radius;
         if (dot(d, d) <= within * within) visit(ball.block);
       }
@@ -44,10 +44,11 @@ class BlockSquares {
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  /// Holds all of the block's points.
+  /// Holds all of the block's points. From base_.
   struct Ball {
     float x = 0, y = 0, z = 0, radius = 0;
     uint32_t block = 0;
+    [[nodiscard]] Vec3d middle(Vec3d base) const { return {base.x + x, base.y + y, base.z + z}; }
   };
   /// The nearest square: outermost ones for what lies outside.
   [[nodiscard]] std::pair<size_t, size_t> square(double x, double z) const {
@@ -57,6 +58,7 @@ class BlockSquares {
     return {along(x - origin_x_, squares_x_), along(z - origin_z_, squares_z_)};
   }
 
+  Vec3d base_;  // Near the first block, for floats.
   double origin_x_ = 0, origin_z_ = 0, side_ = 1, largest_ = 0;
   size_t squares_x_ = 0, squares_z_ = 0;
   std::vector<uint32_t> first_;  // squares, row by row, and the end

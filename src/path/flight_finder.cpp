@@ -41,6 +41,11 @@ void clear(FlightPath& path) {
   path.segments.clear();
   path.length = 0;
   path.obstacle = Obstacle::kNone;
+  path.spent = SpentBudget::kNone;
+}
+
+SearchBudget budget_of(const FlightQuery& query) {
+  return {query.max_nodes, query.cancel, query.max_bytes};
 }
 
 void add(Vec3d point, SegmentKind kind, FlightPath& path) {
@@ -142,6 +147,7 @@ struct FlightFinder::Scratch {
   }
 
   FlightSearch search;
+  SpentBudget spent = SpentBudget::kNone;  // what the last search that gave up had too little of
   FlightStringPuller pull;
   CircleFlood flood;
   std::optional<PathFinder> walker;
@@ -305,9 +311,15 @@ Place FlightFinder::landing(Vec3d feet) const {
 }
 
 void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
+  scratch_->spent = SpentBudget::kNodes;
   find_flight(query, path);
   if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
   if (query.nearest && path.end == PathEnd::kUnreachable) find_nearest(query, path);
+  if (path.end == PathEnd::kBudgetExhausted) {
+    const bool stopped = query.cancel != nullptr && *query.cancel;
+    path.spent = stopped ? SpentBudget::kCancelled : scratch_->spent;
+  }
+  scratch_->search.give_back();
 }
 
 bool FlightFinder::locate(Vec3d at, double reach, End& end) const {
@@ -323,13 +335,15 @@ PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Pl
   reset(path);
   if (query.cancel != nullptr && *query.cancel) return PathEnd::kBudgetExhausted;
   if (!scratch_->is_changed()) {
-    scratch_->walker->find(from, to, path, query.max_nodes);
+    scratch_->walker->find(from, to, path, {query.max_nodes, nullptr, query.max_bytes});
+    if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
     return path.end;
   }
   if (shared_->ground_of(from) != shared_->ground_of(to)) {
     path.end = PathEnd::kUnreachable;
   } else {
-    scratch_->ground(*shared_).find(from, to, path, {query.max_nodes, query.cancel});
+    scratch_->ground(*shared_).find(from, to, path, budget_of(query));
+    if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
   }
   return path.end;
 }
@@ -424,10 +438,12 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   const bool ground_air_links = to_ports(from, to);
   SearchResult result = SearchResult::kNone;
   if (ground_air_links && air.same_component(*from.air, *to.air)) {
-    result =
-        scratch.search.find(air, *from.air, *to.air, query.max_nodes, query.cancel, scratch.way);
+    result = scratch.search.find(air, *from.air, *to.air, budget_of(query), scratch.way);
     path.nodes = scratch.search.expanded();
-    budget_exhausted = budget_exhausted || result == SearchResult::kBudget;
+    if (result == SearchResult::kBudget) {
+      scratch.spent = budget_of(query).spent(path.nodes);
+      budget_exhausted = true;
+    }
     if (result == SearchResult::kNone) {
       scratch.reached = scratch.search.nearest_reached(ends.to_air(query.to));
     }
@@ -525,8 +541,10 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       return;
     }
     const SearchResult result =
-        scratch.search.find(view, air, there, query.max_nodes, query.cancel, scratch.way);
+        scratch.search.find(view, air, there, budget_of(query), scratch.way);
     path.nodes += scratch.search.expanded();
+    if (result == SearchResult::kBudget)
+      scratch.spent = budget_of(query).spent(scratch.search.expanded());
     end = result == SearchResult::kFound    ? PathEnd::kReached
           : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
                                             : PathEnd::kUnreachable;

@@ -80,8 +80,25 @@ void FlightSearch::push(uint32_t node) {
   std::push_heap(open_.begin(), open_.end());
 }
 
-SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to, uint64_t max_nodes,
-                                const std::atomic<bool>* cancel, std::vector<AirPoint>& way) {
+// A box takes a node, a mark and, more than once if it is reached anew, an entry of the heap.
+uint64_t FlightSearch::used_bytes() const {
+  return nodes_.size() * (sizeof(Node) + sizeof(Mark)) + 3 * open_.size() * sizeof(Entry);
+}
+
+uint64_t FlightSearch::allocated_bytes() const {
+  return nodes_.allocated_bytes() + marks_.allocated_bytes() + open_.capacity() * sizeof(Entry);
+}
+
+void FlightSearch::give_back() {
+  if (allocated_bytes() <= kKeptBytes) return;
+  nodes_.clear();
+  nodes_.shrink(0);
+  marks_.clear();
+  std::vector<Entry>().swap(open_);
+}
+
+SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
+                                const SearchBudget& budget, std::vector<AirPoint>& way) {
   air_ = air;
   start_ = from;
   goal_ = to;
@@ -97,19 +114,20 @@ SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to, 
   const double straight = air_distance(from, to);
   if (straight <= kFar) {
     large_ = false;
-    return search(from, start, max_nodes, cancel, way);
+    return search(from, start, budget, way);
   }
   large_ = true;
   large_way_.clear();
-  const SearchResult large = search(from, start, max_nodes, cancel, large_way_);
+  const SearchResult large = search(from, start, budget, large_way_);
   if (large == SearchResult::kBudget) return large;
   const bool found = large == SearchResult::kFound;
   const double length = length_of(large_way_);
   if (!found || length > kHardlyLonger * straight) {
     large_ = false;
-    const uint64_t left = max_nodes - expanded_;
-    const SearchResult all =
-        search(from, start, expanded_ + (found ? std::min(left, kBudget) : left), cancel, way);
+    const uint64_t left = budget.max_nodes - expanded_;
+    SearchBudget rest = budget;
+    rest.max_nodes = expanded_ + (found ? std::min(left, kBudget) : left);
+    const SearchResult all = search(from, start, rest, way);
     if (!found || (all == SearchResult::kFound && length_of(way) <= length)) return all;
   }
   way = large_way_;
@@ -128,8 +146,8 @@ int32_t FlightSearch::min_around(const AirCube& box) const {
   return ring->least;
 }
 
-SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_nodes,
-                                  const std::atomic<bool>* cancel, std::vector<AirPoint>& way) {
+SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBudget& budget,
+                                  std::vector<AirPoint>& way) {
   marks_.resize(air_->end());
   if (++search_ == 0) {  // After 2^32 searches the marks begin anew.
     marks_.clear();
@@ -147,8 +165,7 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_no
     open_.pop_back();
     Node& node = nodes_[entry.node];
     if (node.opened || entry.estimate > node.estimate) continue;
-    if (++expanded_ > max_nodes) return SearchResult::kBudget;
-    if (cancel != nullptr && (expanded_ & 255) == 0 && *cancel) return SearchResult::kBudget;
+    if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
     // Seen from the bend after all? Else the way bends where it entered the box before.
     if (node.parent != node.via && !air_->sees(nodes_[node.parent].point, node.point)) {
       node.parent = node.via;
@@ -174,7 +191,8 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, uint64_t max_no
 AirPoint FlightSearch::nearest_reached(AirPoint goal) const {
   AirPoint nearest = start_;
   double least = air_distance(start_, goal);
-  for (const Node& node : nodes_) {
+  for (size_t n = 0; n < nodes_.size(); ++n) {
+    const Node& node = nodes_[n];
     const AirPoint p = nearest_of(air_->cube(node.box), goal);
     const double far = air_distance(p, goal);
     if (far >= least) continue;

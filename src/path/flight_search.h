@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "core/chunked_array.h"
 #include "core/paged.h"
 #include "path/air_view.h"
 #include "path/search.h"
+#include "throng/search_budget.h"
 
 /// A short way through the air, over boxes.
 namespace throng {
@@ -19,18 +20,23 @@ namespace throng {
 /// its box is opened. Owns its memory: one per thread, no allocation once it has grown.
 class FlightSearch {
  public:
-  /// Bends of a way from `from` to `to`, ends included. Gives up after `max_nodes` boxes, or where
-  /// `cancel` (may be null) is set. Far ends are looked for
-  /// through large boxes first.
-  SearchResult find(const AirView& air, AirPoint from, AirPoint to, uint64_t max_nodes,
-                    const std::atomic<bool>* cancel, std::vector<AirPoint>& way);
+  /// Bends of a way from `from` to `to`, ends included. Gives up when the budget of boxes is spent.
+  /// Far ends are looked for through large boxes first.
+  SearchResult find(const AirView& air, AirPoint from, AirPoint to, const SearchBudget& budget,
+                    std::vector<AirPoint>& way);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
+  /// Gives back what is allocated beyond kKeptBytes: after a query, when nothing more is asked of
+  /// it.
+  void give_back();
+  [[nodiscard]] uint64_t allocated_bytes() const;
+  static constexpr uint64_t kKeptBytes = uint64_t{64} << 20;
   /// After a search that found none: of all that is reached, the point nearest to another.
   [[nodiscard]] AirPoint nearest_reached(AirPoint goal) const;
 
  private:
-  SearchResult search(AirPoint from, uint32_t start, uint64_t max_nodes,
-                      const std::atomic<bool>* cancel, std::vector<AirPoint>& way);
+  SearchResult search(AirPoint from, uint32_t start, const SearchBudget& budget,
+                      std::vector<AirPoint>& way);
+  [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] int32_t min_around(const AirCube& box) const;
   struct Node {
     AirPoint point;       // where the way enters the box
@@ -64,7 +70,7 @@ class FlightSearch {
   uint32_t goal_box_ = kNoBox;
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
-  std::vector<Node> nodes_;
+  ChunkedArray<Node> nodes_;
   std::vector<Entry> open_;
   Paged<Mark> marks_;                // per box, parts of those that are split among them
   std::vector<AirPoint> large_way_;  // through large boxes

@@ -54,7 +54,7 @@ class Outwards {
     return true;
   }
 
-  [[nodiscard]] const std::vector<LiveNode>& nodes() const { return nodes_.nodes; }
+  [[nodiscard]] const ChunkedArray<LiveNode>& nodes() const { return nodes_.nodes; }
 
  private:
   LiveMesh& mesh_;
@@ -77,7 +77,7 @@ std::optional<FlowPoints> FlowPoints::make(LiveGround& of, std::span<const Place
     if (ground.locate(goal, stop)) search.push(stop, UINT32_MAX, 0);
   }
   if (!search.run(context)) return {};
-  const std::vector<LiveNode>& nodes = search.nodes();
+  const ChunkedArray<LiveNode>& nodes = search.nodes();
   std::vector<uint32_t> order(nodes.size());
   for (uint32_t n = 0; n < order.size(); ++n) order[n] = n;
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {

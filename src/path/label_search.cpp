@@ -30,8 +30,8 @@ float gap(const MeshCorner& corner, CellPoint p) {
 // Joins the labels of the corners that the ends see. A way from one end to the other over a corner
 // is at least as long as the straight lines to it and from it, so no corner outside the ellipse of
 // a way that is known can be on a shorter one, and rays are sent only to the corners within.
-LabelSearch::Merge LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels,
-                                       const Stop& from, const Stop& to, float known, Best& best) {
+bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
+                         const Stop& to, float known, Best& best) {
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
   const auto gather = [&](const Stop& end, CellPoint here, CellPoint there,
                           std::vector<Turn>& turns) {
@@ -46,12 +46,8 @@ LabelSearch::Merge LabelSearch::narrow(const PathMesh& mesh, const HubLabels& la
           {candidate.corner, distance, distance + gap(corner, there), candidate.from_all != 0});
     }
   };
-  bool unsure = false;
   const auto see = [&](const Stop& end, Turn& turn) {
-    if (turn.is_seen) return true;
-    const RayEnd ray = ray_to_corner(mesh, end, turn.corner);
-    unsure = unsure || ray == RayEnd::kTouches;
-    turn.is_seen = ray == RayEnd::kArrived;
+    turn.is_seen = turn.is_seen || sees_corner(mesh, end, turn.corner);
     return turn.is_seen;
   };
   gather(from, start, goal, start_);
@@ -62,8 +58,7 @@ LabelSearch::Merge LabelSearch::narrow(const PathMesh& mesh, const HubLabels& la
   };
   keep(from, start_);
   keep(to, goal_);
-  if (unsure) return Merge::kUnsure;
-  return join(mesh, labels, best) ? Merge::kFound : Merge::kNone;
+  return join(mesh, labels, best);
 }
 
 // The shortest way over the gathered corners; false if there is none.
@@ -101,6 +96,7 @@ GroundPoint middle_of(const PathMesh& mesh, uint32_t rect, uint32_t block) {
 // A block whose middle is seen from an end, and how far that is.
 struct SeenMiddle {
   uint32_t block = 0;
+  Stop middle;
   double distance = 0;  // [cells]
 };
 
@@ -117,11 +113,11 @@ SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, 
     };
     const GroundPoint there{behind(at.x, bend.x), behind(at.z, bend.z)};
     const uint32_t rect = mesh_ray(mesh, end.rect, end.at, there);
-    if (rect == kNoRect || rect == kUnsure) continue;
+    if (rect == kNoRect) continue;
     const uint32_t block = mesh.block_at(rect, there.cell_x(), there.cell_z());
     const GroundPoint middle = middle_of(mesh, rect, block);
     if (mesh_ray(mesh, end.rect, end.at, middle) != rect) continue;
-    return {block, distance(at, in_cells(middle))};
+    return {block, {middle, rect}, distance(at, in_cells(middle))};
   }
   return own;
 }
@@ -146,22 +142,29 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   for (const uint32_t c : corners) way_.push_back(waypoint(mesh, c));
   way_.insert(way_.end(), {to_middle, {goal, to.rect}});
   if (!pull_.pull(mesh, way_, corners, length)) return false;
-  // No way is shorter than that between two middles less the ends' distances from them.
-  const auto is_proved = [&](float between, double off) {
-    const double least = between - off;
-    return length <= kMaxLonger * std::max(least - kSlack, distance(start, goal));
+  // No way is shorter than that between two middles less the ends' distances from them. Labels know
+  // ways over corners only: where the middles see each other, the shortest is the straight one.
+  const double straight = distance(start, goal);
+  const auto is_proved = [&](const SeenMiddle& p, const SeenMiddle& q, double between) {
+    const auto is_short = [&](double least) { return length <= kMaxLonger * least; };
+    if (is_short(straight)) return true;
+    const double off = p.distance + q.distance + kSlack;
+    if (!is_short(between - off)) return false;
+    const double apart = distance(in_cells(p.middle.at), in_cells(q.middle.at));
+    return is_short(apart - off) ||
+           mesh_ray(mesh, p.middle.rect, p.middle.at, q.middle.at) != q.middle.rect;
   };
-  const SeenMiddle own_a{a, distance(start, from_middle.at)};
-  const SeenMiddle own_b{b, distance(goal, to_middle.at)};
-  if (is_proved(best.length, own_a.distance + own_b.distance)) return true;
+  const SeenMiddle own_a{
+      a, {middle_of(mesh, from.rect, a), from.rect}, distance(start, from_middle.at)};
+  const SeenMiddle own_b{b, {middle_of(mesh, to.rect, b), to.rect}, distance(goal, to_middle.at)};
+  if (is_proved(own_a, own_b, best.length)) return true;
   const auto at = [&](uint32_t corner) { return waypoint(mesh, corner).at; };
   const SeenMiddle behind_a =
       middle_behind(mesh, from, corners.empty() ? goal : at(corners.front()), own_a);
   const SeenMiddle behind_b =
       middle_behind(mesh, to, corners.empty() ? start : at(corners.back()), own_b);
   const Meeting longer = meet(middles.of(behind_a.block), middles.of(behind_b.block));
-  return longer.length < kFarthest &&
-         is_proved(longer.length, behind_a.distance + behind_b.distance);
+  return longer.length < kFarthest && is_proved(behind_a, behind_b, longer.length);
 }
 
 // The corners from each end to the hub.
@@ -202,19 +205,16 @@ struct HubReach {
 
 // Joins the lists of the ends' blocks. Where a ray does not reach the best way's first or last
 // corner, the best without it.
-LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels,
-                                      const Stop& from, const Stop& to, Best& best) {
+bool LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
+                        const Stop& to, Best& best) {
   const BlockLabels& by_block = labels.by_block;
   const uint32_t from_block = block_of(mesh, from), to_block = block_of(mesh, to);
   distances(mesh, labels, from, from_);
   distances(mesh, labels, to, to_);
-  const auto is_seen = [&](const Stop& end, uint32_t candidate, float& length, bool& unsure) {
+  const auto is_seen = [&](const Stop& end, uint32_t candidate, float& length) {
     const HubLabels::Candidate& c =
         labels.candidates[labels.first_candidate[block_of(mesh, end)] + candidate];
-    if (c.from_all != 0) return true;
-    const RayEnd ray = ray_to_corner(mesh, end, c.corner);
-    unsure = unsure || ray == RayEnd::kTouches;
-    if (ray == RayEnd::kArrived) return true;
+    if (c.from_all != 0 || sees_corner(mesh, end, c.corner)) return true;
     length = kFarthest;
     return false;
   };
@@ -238,15 +238,13 @@ LabelSearch::Merge LabelSearch::merge(const PathMesh& mesh, const HubLabels& lab
         last = b.candidate;
       }
     }
-    if (!(best.length < kFarthest)) return Merge::kNone;
-    bool unsure = false;
-    const bool seen = is_seen(from, first, from_[first], unsure);
-    const bool both = is_seen(to, last, to_[last], unsure) && seen;
-    if (unsure) return Merge::kUnsure;
+    if (!(best.length < kFarthest)) return false;
+    const bool seen = is_seen(from, first, from_[first]);
+    const bool both = is_seen(to, last, to_[last]) && seen;
     if (!both) continue;
     best.first = labels.candidates[labels.first_candidate[from_block] + first].corner;
     best.last = labels.candidates[labels.first_candidate[to_block] + last].corner;
-    return Merge::kFound;
+    return true;
   }
 }
 
@@ -265,11 +263,12 @@ bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop
     corners.clear();
   }
   Best best;
-  const Merge merged = labels.by_block.first.empty()
-                           ? narrow(mesh, labels, from, to, static_cast<float>(known), best)
-                           : merge(mesh, labels, from, to, best);
-  if (merged != Merge::kFound) {
-    // The cells would have to tell what is seen: look out from both ends.
+  const bool merged = labels.by_block.first.empty()
+                          ? narrow(mesh, labels, from, to, static_cast<float>(known), best)
+                          : merge(mesh, labels, from, to, best);
+  if (!merged) {
+    // Rays to points beside corners may graze what a line to the corner itself passes by: look out
+    // from both ends.
     const auto take_seen = [&](std::vector<Turn>& turns) {
       turns.clear();
       for (const SeenCorner& s : sight_.corners())

@@ -38,13 +38,12 @@ class LabelSearch {
     float bound = 0;     // and in a straight line to the other end
     bool is_seen = false;
   };
-  enum class Merge { kFound, kNone, kUnsure };
 
-  Merge narrow(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
-               float known, Best& best);
+  bool narrow(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+              float known, Best& best);
   bool join(const PathMesh& mesh, const HubLabels& labels, Best& best);
-  Merge merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
-              Best& best);
+  bool merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
+             Best& best);
   bool by_middles(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
                   std::vector<uint32_t>& corners, double& length);
   void trace(const HubLabels& labels, const Best& best, std::vector<uint32_t>& corners) const;

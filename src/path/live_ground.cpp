@@ -156,37 +156,55 @@ void LiveGround::begin(const Place& from, const Place& to) {
   if (s.searching) s.search.begin(s.mesh, s.from, s.to);
 }
 
+bool LiveGround::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& path) {
+  reset(path);
+  if (!searching) return true;
+  const LiveSearch::State result = search.advance(mesh, max_nodes, max_bytes);
+  path.nodes = search.expanded();
+  path.end = PathEnd::kBudgetExhausted;
+  path.spent = SpentBudget::kNodes;
+  if (result == LiveSearch::State::kSearching) return false;
+  searching = false;
+  if (result == LiveSearch::State::kFull) {
+    path.spent = SpentBudget::kMemory;
+    search.give_back();
+    return true;
+  }
+  path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
+  path.spent = SpentBudget::kNone;
+  search.way(mesh, way);
+  search.give_back();
+  straight.draw(mesh, way);
+  give(path);
+  if (path.end == PathEnd::kUnreachable) path.obstacle = blocker();
+  return true;
+}
+
 bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
   // What the search has met may be gone.
   if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
-  reset(path);
-  if (!s.searching) return true;
-  const LiveSearch::State result = s.search.advance(s.mesh, max_nodes);
-  path.nodes = s.search.expanded();
-  path.end = PathEnd::kBudgetExhausted;
-  if (result == LiveSearch::State::kSearching) return false;
-  s.searching = false;
-  path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
-  s.search.way(s.mesh, s.way);
-  s.straight.draw(s.mesh, s.way);
-  s.give(path);
-  if (path.end == PathEnd::kUnreachable) path.obstacle = s.blocker();
-  return true;
+  return s.advance(max_nodes, SearchBudget::kDefaultBytes, path);
 }
 
 void LiveGround::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
   begin(from, to);
+  State& s = *state_;
   if (budget.cancel == nullptr) {
-    advance(budget.max_nodes, path);
+    s.advance(budget.max_nodes, budget.max_bytes, path);
     return;
   }
   constexpr uint64_t kSlice = 64;
   reset(path);
   path.end = PathEnd::kBudgetExhausted;
-  for (uint64_t left = budget.max_nodes; left > 0 && !*budget.cancel;) {
+  path.spent = SpentBudget::kNodes;
+  for (uint64_t left = budget.max_nodes; left > 0;) {
+    if (*budget.cancel) {
+      path.spent = SpentBudget::kCancelled;
+      return;
+    }
     const uint64_t slice = std::min(left, kSlice);
-    if (advance(slice, path)) return;
+    if (s.advance(slice, budget.max_bytes, path)) return;
     left -= slice;
   }
 }

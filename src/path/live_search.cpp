@@ -32,8 +32,8 @@ double factor_at(LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
 void LiveNodes::clear() {
   if (table_.empty()) table_.resize(1 << 12);
   if (nodes.size() * 16 < table_.size()) {
-    for (const LiveNode& node : nodes) {
-      for (size_t s = slot_of(node.stop, table_.size() - 1); table_[s] != 0;
+    for (size_t n = 0; n < nodes.size(); ++n) {
+      for (size_t s = slot_of(nodes[n].stop, table_.size() - 1); table_[s] != 0;
            s = (s + 1) & (table_.size() - 1)) {
         table_[s] = 0;
       }
@@ -44,13 +44,29 @@ void LiveNodes::clear() {
   nodes.clear();
 }
 
+void LiveNodes::give_back() {
+  nodes.clear();
+  nodes.shrink(0);
+  std::vector<uint32_t>().swap(table_);
+}
+
+// Beside itself a node takes up to eight places of the table, and two of the old one as it grows.
+uint64_t LiveNodes::used_bytes() const {
+  return nodes.size() * (sizeof(LiveNode) + 10 * sizeof(uint32_t));
+}
+
+uint64_t LiveNodes::allocated_bytes() const {
+  return nodes.allocated_bytes() + table_.capacity() * sizeof(uint32_t);
+}
+
 std::pair<uint32_t, bool> LiveNodes::node_of(const LiveStop& stop) {
   size_t slot = slot_of(stop, table_.size() - 1);
   for (; table_[slot] != 0; slot = (slot + 1) & (table_.size() - 1)) {
     if (same(nodes[table_[slot] - 1].stop, stop)) return {table_[slot] - 1, false};
   }
   const auto index = static_cast<uint32_t>(nodes.size());
-  nodes.emplace_back().stop = stop;
+  nodes.push_back({});
+  nodes[index].stop = stop;
   table_[slot] = index + 1;
   if (nodes.size() * 2 > table_.size()) grow();
   return {index, true};
@@ -244,9 +260,20 @@ void LiveSearch::push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index
   }
 }
 
-LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most) {
+uint64_t LiveSearch::allocated_bytes() const {
+  return nodes_.allocated_bytes() + open_.capacity() * sizeof(Open);
+}
+
+void LiveSearch::give_back() {
+  if (allocated_bytes() <= kKeptBytes) return;
+  nodes_.give_back();
+  std::vector<Open>().swap(open_);
+}
+
+LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most, uint64_t max_bytes) {
   for (uint64_t n = 0; n < most;) {
     if (open_.empty()) return State::kNone;
+    if (nodes_.used_bytes() + 3 * open_.size() * sizeof(Open) > max_bytes) return State::kFull;
     std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
       return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
     });

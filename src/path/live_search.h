@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/chunked_array.h"
 #include "path/live_mesh.h"
 
 /// Ways of little cost over a LiveMesh: a search over points of portals, drawn straight afterwards.
@@ -31,9 +32,14 @@ struct LiveNode {
 class LiveNodes {
  public:
   void clear();
+  /// Gives back what was allocated.
+  void give_back();
+  /// Of what is remembered, the same whatever was allocated before. [bytes]
+  [[nodiscard]] uint64_t used_bytes() const;
+  [[nodiscard]] uint64_t allocated_bytes() const;
   /// The node of a stop, and whether it is new.
   std::pair<uint32_t, bool> node_of(const LiveStop& stop);
-  std::vector<LiveNode> nodes;
+  ChunkedArray<LiveNode> nodes;
 
  private:
   void grow();
@@ -68,14 +74,19 @@ class WayStraightener {
   std::vector<double> before_;  // cost up to each stop
 };
 
-/// A*, best first. Owns its memory: no allocation once it has grown.
+/// A*, best first. Owns its memory: no allocation once it has grown; what a large query took beyond
+/// kKeptBytes is given back when the next one begins.
 class LiveSearch {
  public:
-  enum class State { kSearching, kFound, kNone };
+  enum class State { kSearching, kFound, kNone, kFull };
+  static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
   void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
-  /// Looks at up to `most` points more.
-  State advance(LiveMesh& mesh, uint64_t most);
+  /// Looks at up to `most` points more; kFull where it would remember more than so many bytes.
+  State advance(LiveMesh& mesh, uint64_t most, uint64_t max_bytes);
+  /// Gives back what is allocated beyond kKeptBytes: for a search that is done with.
+  void give_back();
+  [[nodiscard]] uint64_t allocated_bytes() const;
   /// The way to the goal, or to the point met that is nearest to it; not yet straight.
   void way(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
   [[nodiscard]] uint64_t expanded() const { return expanded_; }

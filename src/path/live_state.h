@@ -15,6 +15,8 @@ struct LiveGround::State {
   explicit State(LiveMesh of) : mesh(std::move(of)) {}
 
   bool locate(const Place& place, LiveStop& stop);
+  /// False: there is more to look at.
+  bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// Of `way`.
   void give(Path& path);
   /// What a straight line from its end to the goal meets first.

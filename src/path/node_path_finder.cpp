@@ -107,9 +107,7 @@ struct NodePathFinder::Scratch {
 namespace {
 
 SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
-  SearchBudget left = budget;
-  left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, path.nodes);
-  return left;
+  return budget.after(path.nodes);
 }
 
 }  // namespace
@@ -554,6 +552,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   path.length = path.cost = path.searched_cost = 0;
   path.obstacle = Obstacle::kNone;
   path.nodes = 0;
+  path.spent = SpentBudget::kNone;
   const auto block_of = [&](const NodePlace& place) {
     BlockPoint at{kNoNode, place.s, place.t};
     if (!place || place.node1 > mesh.nodes().node_count()) return at;
@@ -608,7 +607,10 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
                          : scratch.find_nearest(start, goal, budget, path);
     reachable = reachable && path.end == PathEnd::kReached;
   }
-  if (path.end == PathEnd::kBudgetExhausted) return;
+  if (path.end == PathEnd::kBudgetExhausted) {
+    path.spent = budget.spent(path.nodes);
+    return;
+  }
   BlockPoint last = goal;
   if (!reachable) {
     last = scratch.way.empty() ? start : ends_of(view, scratch.way.back()).in;

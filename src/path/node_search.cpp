@@ -73,6 +73,7 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
     const Vec3d there = position(*view_, in);
     next += portal_length(portal, here, there);
     if (state.query == query_ && state.cost <= next) return;
+    met_ += state.query == query_ ? 0 : 1;
     state = {query_, parent, next, there, false};
     push(next + length(goal_ - there), id);
   });
@@ -81,7 +82,7 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
 PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                          std::vector<Crossing>& way, const SearchBounds& within, double less_than) {
   way.clear();
-  expanded_ = 0;
+  expanded_ = met_ = 0;
   within_ = within;
   states_.resize(2 * view_->portal_count());
   if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
@@ -89,6 +90,27 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
     query_ = 1;
   }
   open_.clear();
+  const PathEnd end = search(from, to, budget, way, less_than);
+  give_back();
+  return end;
+}
+
+uint64_t NodeSearch::used_bytes() const {
+  return met_ * sizeof(State) + 3 * open_.size() * sizeof(Open);  // as PathSearch::used_bytes
+}
+
+uint64_t NodeSearch::allocated_bytes() const {
+  return states_.allocated_bytes() + open_.capacity() * sizeof(Open);
+}
+
+void NodeSearch::give_back() {
+  if (allocated_bytes() <= kKeptBytes) return;
+  states_.clear();
+  std::vector<Open>().swap(open_);
+}
+
+PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                           std::vector<Crossing>& way, double less_than) {
   goal_ = position(*view_, to);
   const Vec3d start = position(*view_, from);
   constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
@@ -121,7 +143,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
     State& state = states_[top.state];
     if (state.closed) continue;
     state.closed = true;
-    if (budget.is_spent(++expanded_)) return PathEnd::kBudgetExhausted;
+    if (budget.is_spent(++expanded_, used_bytes())) return PathEnd::kBudgetExhausted;
     const BlockPoint in = ends_of(*view_, {top.state / 2, (top.state & 1) != 0}).in;
     const Vec3d at = state.at;
     const double cost = state.cost;

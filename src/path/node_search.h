@@ -49,6 +49,9 @@ class NodeSearch {
                double less_than = std::numeric_limits<double>::infinity());
   [[nodiscard]] double cost() const { return best_cost_; }
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
+  [[nodiscard]] uint64_t allocated_bytes() const;
+  /// Of these, what stays allocated from one query to the next, at most. [bytes]
+  static constexpr uint64_t kKeptBytes = uint64_t{64} << 20;
 
  private:
   // A portal has two states: where it leads to b and where it leads to a.
@@ -64,6 +67,10 @@ class NodeSearch {
     uint32_t state;
   };
 
+  PathEnd search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                 std::vector<Crossing>& way, double less_than);
+  [[nodiscard]] uint64_t used_bytes() const;
+  void give_back();
   void expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent);
   void push(double estimate, uint32_t state);
   void trace(uint32_t state, std::vector<Crossing>& way);
@@ -77,6 +84,7 @@ class NodeSearch {
   Vec3d goal_;
   double best_cost_ = 0;
   uint64_t expanded_ = 0;
+  uint64_t met_ = 0;  // states that this query has reached
 };
 
 }  // namespace throng

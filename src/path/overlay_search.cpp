@@ -196,7 +196,8 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
   }
   for (Open top; next(top);) {
     if (top.estimate >= found) break;
-    if (budget.is_spent(++expanded_)) return PathEnd::kBudgetExhausted;
+    if (budget.is_spent(++expanded_, 3 * open_.size() * sizeof(Open)))
+      return PathEnd::kBudgetExhausted;
     const uint32_t entry = top.entry;
     const double cost = states_[entry].cost;
     if (overlay_levels.front().of_entry[entry] == goal_cell) {

@@ -156,11 +156,13 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
     return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&
            scratch_->stops.back().rect == goal.rect;
   };
+  if (result == SearchResult::kBudget) path.spent = budget.spent(path.nodes);
   if (result == SearchResult::kNone || (result == SearchResult::kFound && !is_drawn())) {
-    const SearchBudget rest(budget.max_nodes - std::min(budget.max_nodes, path.nodes),
-                            budget.cancel);
+    const SearchBudget rest = budget.after(path.nodes);
     result = scratch_->portals.find(mesh, start, goal, rest, scratch_->stops, length);
-    path.nodes += scratch_->portals.expanded();
+    const uint64_t nodes = scratch_->portals.expanded();
+    if (result == SearchResult::kBudget) path.spent = rest.spent(nodes);
+    path.nodes += nodes;
   }
   if (result != SearchResult::kFound) {
     path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kBudgetExhausted;

@@ -18,16 +18,41 @@ double between(GroundPoint a, GroundPoint b) { return distance(in_cells(a), in_c
 SearchResult PortalSearch::find(const PathMesh& mesh, const Stop& from, const Stop& to,
                                 const SearchBudget& budget, std::vector<Stop>& stops,
                                 double& length) {
-  mesh_ = &mesh;
-  if (reached_.size() != mesh.portals.size() * kPoints) {
-    reached_.assign(mesh.portals.size() * kPoints, {});
+  if (mesh_ != &mesh) {
+    mesh_ = &mesh;
+    reached_.clear();
+    reached_.resize(mesh.portals.size() * kPoints);
     search_ = 0;
   }
   if (++search_ == 0) {
-    std::fill(reached_.begin(), reached_.end(), Reached{});
+    reached_.clear();
     search_ = 1;
   }
+  const SearchResult result = search(from, to, budget, stops, length);
+  give_back();
+  return result;
+}
+
+uint64_t PortalSearch::used_bytes() const {
+  return met_ * sizeof(Reached) + 3 * open_.size() * sizeof(Open);  // as PathSearch::used_bytes
+}
+
+uint64_t PortalSearch::allocated_bytes() const {
+  return reached_.allocated_bytes() + open_.capacity() * sizeof(Open) +
+         all_.capacity() * sizeof(Stop);
+}
+
+void PortalSearch::give_back() {
+  if (allocated_bytes() <= kKeptBytes) return;
+  reached_.clear();
+  std::vector<Open>().swap(open_);
+  std::vector<Stop>().swap(all_);
+}
+
+SearchResult PortalSearch::search(const Stop& from, const Stop& to, const SearchBudget& budget,
+                                  std::vector<Stop>& stops, double& length) {
   goal_ = to.at;
+  met_ = 0;
   expanded_ = 0;
   open_.clear();
   uint32_t last = kStart;
@@ -42,9 +67,9 @@ SearchResult PortalSearch::find(const PathMesh& mesh, const Stop& from, const St
     std::pop_heap(open_.begin(), open_.end());
     open_.pop_back();
     const auto [search, before, rect, cost] = reached_[next.point];
-    const Stop at{crossing(rect, next.point).beyond, mesh.portals[next.point / kPoints].rect};
+    const Stop at{crossing(rect, next.point).beyond, mesh_->portals[next.point / kPoints].rect};
     if (next.estimate > cost + between(at.at, goal_)) continue;  // It was reached more cheaply.
-    if (budget.is_spent(++expanded_)) return SearchResult::kBudget;
+    if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
     if (at.rect == to.rect) {
       best = cost + between(at.at, to.at);
       last = next.point;
@@ -91,6 +116,7 @@ void PortalSearch::expand(const Stop& at, double cost, uint32_t before) {
     const double whole = cost + between(at.at, to);
     Reached& reached = reached_[p];
     if (reached.search == search_ && reached.cost <= whole) continue;
+    met_ += reached.search == search_ ? 0 : 1;
     reached = {search_, before, at.rect, whole};
     open_.push_back({whole + between(to, goal_), p});
     std::push_heap(open_.begin(), open_.end());

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/paged.h"
 #include "path/mesh.h"
 #include "path/search.h"
 
@@ -14,8 +15,8 @@ namespace throng {
 /// Where neighbouring cells that can both be stood on lie a step apart, two sides of one line touch
 /// and a shortest way over corners may be drawn across it: nothing is missing there that it could
 /// keep a distance from. This search tells the way then. A* over the ends and the middles of
-/// portals; stops that a straight leg makes needless are left out. Owns its memory: one per thread,
-/// no allocation once it has grown.
+/// portals; stops that a straight leg makes needless are left out. Owns its memory:
+/// one per thread, no allocation once it has grown; what a large query took is given back.
 class PortalSearch {
  public:
   /// The stops from `from` to `to`, and their length in cells. Finds a way wherever both are of one
@@ -24,6 +25,9 @@ class PortalSearch {
   SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to,
                     const SearchBudget& budget, std::vector<Stop>& stops, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
+  [[nodiscard]] uint64_t allocated_bytes() const;
+  /// Of these, what stays allocated from one query to the next, at most. [bytes]
+  static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
  private:
   static constexpr uint32_t kPoints = 3;  // of a portal
@@ -48,6 +52,10 @@ class PortalSearch {
   };
 
   [[nodiscard]] Crossing crossing(uint32_t rect, uint32_t point) const;
+  SearchResult search(const Stop& from, const Stop& to, const SearchBudget& budget,
+                      std::vector<Stop>& stops, double& length);
+  [[nodiscard]] uint64_t used_bytes() const;
+  void give_back();
   void expand(const Stop& at, double cost, uint32_t before);
   void draw(uint32_t last, const Stop& from, const Stop& to, std::vector<Stop>& stops);
 
@@ -55,7 +63,8 @@ class PortalSearch {
   GroundPoint goal_;
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
-  std::vector<Reached> reached_;
+  uint64_t met_ = 0;  // points that this search has reached
+  Paged<Reached> reached_;
   std::vector<Open> open_;
   std::vector<Stop> all_;
 };

@@ -15,6 +15,7 @@ inline void reset(Path& path) {
   path.length = path.cost = 0;
   path.obstacle = Obstacle::kNone;
   path.nodes = 0;
+  path.spent = SpentBudget::kNone;
 }
 
 }  // namespace throng

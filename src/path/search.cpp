@@ -11,6 +11,12 @@
 // portals do. Of a node that looks in through [right, left], what lies from `right` on comes first,
 // then what the root sees, then what lies beyond `left`.
 namespace throng {
+namespace {
+
+constexpr size_t kDropFrom = 1 << 16;        // open intervals, before it pays to drop any
+constexpr uint32_t kMaxPushed = 0xf0000000;  // numbers of pushes that can be told apart
+
+}  // namespace
 
 SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop& to,
                               const SearchBudget& budget, std::vector<uint32_t>& corners,
@@ -31,26 +37,83 @@ SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop
   }
   roots_.clear();
   nodes_.clear();
+  free_.clear();
   open_.clear();
+  pushed_ = 0;
   found_length_ = longest;
   found_root_ = UINT32_MAX;
   start(from.rect, in_cells(from.at));
+  const SearchResult result = run(budget);
+  if (result == SearchResult::kFound) {
+    length = found_length_;
+    for (uint32_t r = found_root_; roots_[r].corner != kNoCorner; r = roots_[r].before)
+      corners.push_back(roots_[r].corner);
+    std::reverse(corners.begin(), corners.end());
+  }
+  give_back();
+  return result;
+}
+
+// An interval is forgotten as soon as it is looked at, and those that can lead to nothing shorter
+// are when the memory is used up; what is given up then is seldom worth looking at.
+SearchResult PathSearch::run(const SearchBudget& budget) {
+  size_t drop_at = kDropFrom;
   while (!open_.empty()) {
+    if (open_.size() >= drop_at || used_bytes() > budget.max_bytes || pushed_ > kMaxPushed) {
+      drop_useless();
+      drop_at = std::max(kDropFrom, 2 * open_.size());
+      // So much is to be free that it takes a while until it is full again.
+      if (used_bytes() > budget.max_bytes - budget.max_bytes / 8 || pushed_ > kMaxPushed)
+        return SearchResult::kBudget;
+      if (open_.empty()) break;
+    }
     std::pop_heap(open_.begin(), open_.end());
     const Entry entry = open_.back();
     open_.pop_back();
     if (entry.estimate >= found_length_) break;
     const Node node = nodes_[entry.node];
+    free_.push_back(entry.node);
     if (is_stale(node.root)) continue;
     if (budget.is_spent(++expanded_)) return SearchResult::kBudget;
     expand(node);
   }
-  if (found_root_ == UINT32_MAX) return SearchResult::kNone;
-  length = found_length_;
-  for (uint32_t r = found_root_; roots_[r].corner != kNoCorner; r = roots_[r].before)
-    corners.push_back(roots_[r].corner);
-  std::reverse(corners.begin(), corners.end());
-  return SearchResult::kFound;
+  return found_root_ == UINT32_MAX ? SearchResult::kNone : SearchResult::kFound;
+}
+
+// The vectors hold up to twice what they need, and the old array beside the new one as they grow.
+uint64_t PathSearch::used_bytes() const {
+  constexpr uint64_t kGrowth = 3;
+  return roots_.size() * sizeof(Root) + nodes_.size() * sizeof(Node) +
+         kGrowth * (open_.size() * sizeof(Entry) + free_.size() * sizeof(uint32_t));
+}
+
+uint64_t PathSearch::allocated_bytes() const {
+  return roots_.allocated_bytes() + nodes_.allocated_bytes() + open_.capacity() * sizeof(Entry) +
+         free_.capacity() * sizeof(uint32_t);
+}
+
+// Takes out what would be passed over when its turn came: the order of the others is as it was.
+void PathSearch::drop_useless() {
+  size_t kept = 0;
+  for (const Entry& entry : open_) {
+    if (entry.estimate < found_length_ && !is_stale(nodes_[entry.node].root)) {
+      open_[kept++] = entry;
+    } else {
+      free_.push_back(entry.node);
+    }
+  }
+  open_.resize(kept);
+  std::make_heap(open_.begin(), open_.end());
+}
+
+void PathSearch::give_back() {
+  if (allocated_bytes() <= kKeptBytes) return;
+  roots_.clear();
+  nodes_.clear();
+  roots_.shrink(kKeptBytes / 4 / sizeof(Root));
+  nodes_.shrink(kKeptBytes / 4 / sizeof(Node));
+  if (open_.capacity() * sizeof(Entry) > kKeptBytes / 4) std::vector<Entry>().swap(open_);
+  if (free_.capacity() * sizeof(uint32_t) > kKeptBytes / 8) std::vector<uint32_t>().swap(free_);
 }
 
 void PathSearch::start(uint32_t start_rect, CellPoint from) {
@@ -118,8 +181,15 @@ double PathSearch::estimate(const Node& node) const {
 }
 
 void PathSearch::push(const Node& node) {
-  nodes_.push_back(node);
-  open_.push_back({estimate(node), static_cast<uint32_t>(nodes_.size() - 1)});
+  auto place = static_cast<uint32_t>(nodes_.size());
+  if (free_.empty()) {
+    nodes_.push_back(node);
+  } else {
+    place = free_.back();
+    free_.pop_back();
+    nodes_[place] = node;
+  }
+  open_.push_back({estimate(node), pushed_++, place});
   std::push_heap(open_.begin(), open_.end());
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/chunked_array.h"
 #include "path/mesh.h"
 #include "throng/search_budget.h"
 
@@ -15,7 +16,8 @@ enum class SearchResult { kFound, kNone, kBudget };
 
 /// Polyanya over rectangles (source: [CHG17]): a node is an interval of a portal that is seen from
 /// a root; the way bends at corners only, and the first one to arrive is the shortest over the
-/// mesh. Owns its memory: one per thread, no allocation once it has grown.
+/// mesh. Owns its memory: one per thread, no allocation once it has grown; what a large query took
+/// beyond kKeptBytes is given back after it.
 class PathSearch {
  public:
   /// Corners of the shortest way from `from` to `to`, in order, ends left out; `length` in cells.
@@ -26,6 +28,10 @@ class PathSearch {
                     double longest = kAnyLength);
   static constexpr double kAnyLength = 1e300;  // cells
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
+  /// What it has allocated for queries by now, without what it holds of the mesh. [bytes]
+  [[nodiscard]] uint64_t allocated_bytes() const;
+  /// Of these, what stays allocated from one query to the next, at most. [bytes]
+  static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
  private:
   // Where a way bends, and what it took to get there.
@@ -43,11 +49,13 @@ class PathSearch {
     uint32_t rect = kNoRect;
     uint32_t root = 0;
   };
+  // Of equal estimates, the one that was pushed first comes first.
   struct Entry {
     double estimate;
-    uint32_t node;
+    uint32_t pushed;  // number of the push
+    uint32_t node;    // its place in nodes_
     bool operator<(const Entry& other) const {
-      return estimate != other.estimate ? estimate > other.estimate : node > other.node;
+      return estimate != other.estimate ? estimate > other.estimate : pushed > other.pushed;
     }
   };
   struct Best {
@@ -55,6 +63,7 @@ class PathSearch {
     double length = 0;
   };
 
+  SearchResult run(const SearchBudget& budget);
   void start(uint32_t rect, CellPoint from);
   void expand(const Node& node);
   void add_piece(const MeshRect& rect, const MeshPortal& portal, double from, double to,
@@ -63,6 +72,9 @@ class PathSearch {
   void push(const Node& node);
   [[nodiscard]] double estimate(const Node& node) const;
   [[nodiscard]] bool is_stale(uint32_t root) const;
+  [[nodiscard]] uint64_t used_bytes() const;
+  void drop_useless();
+  void give_back();
 
   const PathMesh* mesh_ = nullptr;
   uint32_t goal_rect_ = kNoRect;
@@ -71,9 +83,11 @@ class PathSearch {
   uint64_t expanded_ = 0;
   uint32_t found_root_ = 0;
   double found_length_ = 0;
-  std::vector<Root> roots_;
-  std::vector<Node> nodes_;
+  ChunkedArray<Root> roots_;
+  ChunkedArray<Node> nodes_;    // of entries of open_, and free places
+  std::vector<uint32_t> free_;  // places of nodes_
   std::vector<Entry> open_;
+  uint32_t pushed_ = 0;
   std::vector<Best> best_;        // per corner
   std::vector<uint32_t> around_;  // rectangles around the start
 };

@@ -46,7 +46,7 @@ bool SegmentWalker::walk(const Stop& from, const std::vector<uint32_t>& corners,
 bool SegmentWalker::segment(GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
   const Stop from = stops.back();
   const uint32_t rect = mesh_ray(*mesh_, from.rect, from.at, to);
-  if (rect != kNoRect && rect != kUnsure) {
+  if (rect != kNoRect) {
     stops.push_back({to, rect});
     return true;
   }

@@ -91,7 +91,12 @@ void Sight::start(uint32_t rect_index) {
 // Most of what looking takes is the wait for the mesh's bytes: they are asked for as soon as it is
 // known which, and views and corners come again in the order in which they were asked for.
 void Sight::run() {
+  constexpr size_t kForgetFrom = 1 << 14;
   for (size_t i = 0; i < views_.size(); ++i) {
+    if (i >= kForgetFrom && i * 2 >= views_.size()) {  // Views that were gone on from are not kept.
+      views_.erase(views_.begin(), views_.begin() + static_cast<ptrdiff_t>(i));
+      i = 0;
+    }
     if (i + 1 < views_.size())
       prefetch(mesh_->portals.data() + mesh_->rects[views_[i + 1].rect].first_portal);
     expand(View(views_[i]));

@@ -316,7 +316,7 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
   // Near ends, or a way that stays in one zone: search for one that is shorter.
   constexpr uint64_t kNearNodes = 4096;
   double near = led ? length : PathSearch::kAnyLength;
-  const SearchBudget least(std::min(budget.max_nodes, kNearNodes), budget.cancel);
+  const SearchBudget least(std::min(budget.max_nodes, kNearNodes), budget.cancel, budget.max_bytes);
   const SearchResult result =
       search_.find(mesh, from, to, led ? least : budget, near_corners_, near, near);
   expanded_ = search_.expanded();

@@ -18,7 +18,7 @@
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 2e6;  // [m]: millimetres fit 32 bits
+constexpr double kFarthest = 2e6;  // from the origin [m]: millimetres fit 32 bits
 constexpr double kWidest = 65.0;   // [m]: millimetres fit 16 bits
 constexpr uint32_t kMinBits = 13;  // of one who has come
 constexpr size_t kUpMean = 4;      // Where in Track::mean those of its axis are.
@@ -144,11 +144,13 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
     track.id = frame.ids[i];
     if (k > 0 && wanted_[k - 1].id == track.id) return bad_avatar(track.id, "is there twice");
     if (track.id == UINT64_MAX) return bad_avatar(track.id, "has a number too large");
-    const Vec3d& p = frame.positions[i];
+    const Vec3d p = frame.positions[i] - origin_;
     const double metres[3] = {p.x, p.y, p.z};
     for (size_t axis = 0; axis < 3; ++axis) {
       if (!(std::fabs(metres[axis]) < kFarthest)) {
-        return bad_avatar(track.id, "is farther than 2000 km off, or nowhere");
+        return bad_avatar(track.id,
+                          "is nowhere, or farther than 2000 km from the recording's origin; set "
+                          "RecordingInfo::origin");
       }
       track.at[axis] = static_cast<int32_t>(std::floor(metres[axis] * 1000 + 0.5));
     }

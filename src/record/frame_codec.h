@@ -20,7 +20,7 @@ inline constexpr int32_t kUpSteps = 2047;
 /// An avatar as the last frame left it. Writer and reader hold the same, in order of id.
 struct Track {
   uint64_t id = 0;
-  std::array<int32_t, 3> at{};     // [mm]
+  std::array<int32_t, 3> at{};     // from the recording's origin [mm]
   std::array<int32_t, 3> by{};     // how far it moved since the frame before [mm]
   std::array<uint16_t, 6> mean{};  // of its last differences, x y z, heading and up, in 1/16
   uint16_t radius = 0;             // [mm]
@@ -38,8 +38,8 @@ struct Track {
 
 class FrameEncoder {
  public:
-  /// `leans`: frames tell who leans, and how.
-  explicit FrameEncoder(bool leans = false) : leans_(leans) {}
+  /// `leans`: frames tell who leans, and how. `origin`: tracks are relative to it [whole metres].
+  explicit FrameEncoder(bool leans = false, Vec3d origin = {}) : leans_(leans), origin_(origin) {}
   /// The next frame is written without any frame before it.
   void forget() { tracks_.clear(); }
   /// Appends a frame, whole bytes, to `bytes`. Fails with kBadInput and the avatar; then nothing
@@ -50,6 +50,7 @@ class FrameEncoder {
   [[nodiscard]] Result<void> quantise(const FrameView& frame);
 
   bool leans_ = false;
+  Vec3d origin_;
   std::vector<Track> tracks_, wanted_, kept_, next_;
   std::vector<uint32_t> order_, removed_, added_;
 };

@@ -25,16 +25,27 @@ flatbuffers::DetachedBuffer info_bytes(const RecordingInfo& info) {
     classes.push_back(
         format::CreateRecordedClass(builder, builder.CreateString(c.name), c.height, c.radius));
   }
-  const uint32_t version = info.leans ? kReplayVersionThatLeans : kReplayVersion;
-  builder.Finish(format::CreateRecording(builder, version, builder.CreateString(info.world),
-                                         info.world_hash, info.dt, builder.CreateVector(classes),
-                                         builder.CreateString(info.model),
-                                         builder.CreateString(info.settings)),
-                 format::RecordingIdentifier());
+  // Without an origin, as it was before there were any: also programs that know none read it.
+  const bool has_origin = info.origin != Vec3d{};
+  const uint32_t version = has_origin   ? kReplayVersionWithOrigin
+                           : info.leans ? kReplayVersionThatLeans
+                                        : kReplayVersion;
+  const auto settings = builder.CreateString(info.settings);
+  const auto model = builder.CreateString(info.model);
+  const auto all_classes = builder.CreateVector(classes);
+  const auto world = builder.CreateString(info.world);
+  const auto whole = [](double v) { return static_cast<int64_t>(v); };
+  builder.Finish(
+      format::CreateRecording(builder, version, world, info.world_hash, info.dt, all_classes, model,
+                              settings, whole(info.origin.x), whole(info.origin.y),
+                              whole(info.origin.z), has_origin && info.leans),
+      format::RecordingIdentifier());
   return builder.Release();
 }
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "recording: " + what}; }
+
+bool is_origin(double v) { return std::fabs(v) <= kFarthestOrigin && v == std::floor(v); }
 
 }  // namespace
 
@@ -105,6 +116,17 @@ struct Recorder::State {
   }
 };
 
+Vec3d recording_origin(const Box3d& bounds) {
+  constexpr double kNear = 1e6;  // [m] Half of what a frame reaches.
+  if (bounds.empty()) return {};
+  const auto axis = [](double low, double high) {
+    if (low >= -kNear && high <= kNear) return 0.0;
+    return std::floor(low + (high - low) / 2 + 0.5) + 0.0;  // never -0
+  };
+  return {axis(bounds.min.x, bounds.max.x), axis(bounds.min.y, bounds.max.y),
+          axis(bounds.min.z, bounds.max.z)};
+}
+
 Recorder::Recorder(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&& other) noexcept {
@@ -119,11 +141,17 @@ Recorder::~Recorder() {
 Result<Recorder> Recorder::create(const std::string& path, const RecordingInfo& info,
                                   const RecorderConfig& config) {
   constexpr uint32_t kMax = 65536;
-  if (!(info.dt > 0 && info.dt < 1e6)) return bad_config("dt must be above 0");
+  constexpr double kMinDt = 1e-6, kMaxDt = 1e6;  // [s]
+  if (!(info.dt >= kMinDt && info.dt <= kMaxDt)) {
+    return bad_config("dt must be 0.000001 to 1000000 s");
+  }
   if (info.classes.empty() || info.classes.size() > 256) return bad_config("1 to 256 classes");
   for (const RecordedClass& c : info.classes) {
     if (std::isfinite(c.height) && std::isfinite(c.radius)) continue;
     return bad_config("class " + c.name + " has no finite size");
+  }
+  if (!is_origin(info.origin.x) || !is_origin(info.origin.y) || !is_origin(info.origin.z)) {
+    return bad_config("the origin must be whole metres within 1 000 000 km");
   }
   if (config.chunk_frames < 1 || config.chunk_frames > kMax || config.key_frames < 1 ||
       config.key_frames > kMax || config.chunk_bytes < 1) {
@@ -133,7 +161,7 @@ Result<Recorder> Recorder::create(const std::string& path, const RecordingInfo& 
   state->path = path;
   state->config = config;
   state->classes = info.classes.size();
-  state->encoder = FrameEncoder(info.leans);
+  state->encoder = FrameEncoder(info.leans, info.origin);
   state->file = std::fopen(path.c_str(), "wb");
   if (state->file == nullptr) {
     state->reason = errno;
@@ -197,14 +225,15 @@ Result<void> Recorder::append(const FrameView& frame) {
 
 Result<void> Recorder::flush() { return state_->flush(); }
 
-Result<void> Recorder::finish() {
+Result<void> Recorder::finish(std::string_view outcome) {
   State& s = *state_;
   if (auto ok = s.flush(); !ok) return ok;
   ChunkHead head;
   head.kind = static_cast<uint32_t>(ChunkKind::kEnd);
   head.first_frame = s.frames;
   head.first_time = head.last_time = s.last_time;
-  if (auto ok = s.write(head, {}); !ok) return ok;
+  const auto* text = reinterpret_cast<const uint8_t*>(outcome.data());
+  if (auto ok = s.write(head, {{text, outcome.size()}}); !ok) return ok;
   if (std::fclose(std::exchange(s.file, nullptr)) != 0) {
     s.reason = errno != 0 ? errno : EIO;
     return s.io_error();

@@ -3,6 +3,7 @@
 #include <flatbuffers/flatbuffers.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -39,7 +40,8 @@ struct Replay::State {
   FileMap map;
   std::span<const uint8_t> bytes;
   RecordingInfo info;
-  std::string damage;
+  std::array<int64_t, 3> origin{};  // [m]
+  std::string damage, outcome;
   std::vector<Chunk> chunks;
   uint64_t frames = 0;
   uint64_t good_bytes = 0;
@@ -124,12 +126,19 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
     return bad(kBadSettings);
   }
   const format::Recording& root = *format::GetRecording(data);
-  if (root.version() != kReplayVersion && root.version() != kReplayVersionThatLeans) {
-    return bad("recording version " + std::to_string(root.version()) + ", this program reads " +
-               std::to_string(kReplayVersion) + " and " + std::to_string(kReplayVersionThatLeans));
+  const uint32_t version = root.version();
+  if (version < kReplayVersion || version > kReplayVersionWithOrigin) {
+    return bad("recording version " + std::to_string(version) + ", this program reads " +
+               std::to_string(kReplayVersion) + " to " + std::to_string(kReplayVersionWithOrigin) +
+               "; open it with the program that recorded it");
+  }
+  const bool has_origin = version == kReplayVersionWithOrigin;
+  if (has_origin) origin = {root.origin_x(), root.origin_y(), root.origin_z()};
+  for (const int64_t v : origin) {
+    if (std::fabs(static_cast<double>(v)) > kFarthestOrigin) return bad(kBadSettings);
   }
   if (!root.classes() || root.classes()->size() == 0 || root.classes()->size() > 256 ||
-      !(root.dt() > 0 && root.dt() < 1e6)) {
+      !(root.dt() >= 1e-6 && root.dt() <= 1e6)) {
     return bad(kBadSettings);
   }
   info = {.world = text_of(root.world()),
@@ -138,7 +147,9 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
           .classes = {},
           .model = text_of(root.model()),
           .settings = text_of(root.settings()),
-          .leans = root.version() == kReplayVersionThatLeans};
+          .leans = has_origin ? root.leans() : version == kReplayVersionThatLeans,
+          .origin = {static_cast<double>(origin[0]), static_cast<double>(origin[1]),
+                     static_cast<double>(origin[2])}};
   decoder = FrameDecoder(info.leans);
   for (const format::RecordedClass* c : *root.classes()) {
     info.classes.push_back({text_of(c->name()), c->height(), c->radius()});
@@ -181,7 +192,14 @@ Result<void> Replay::State::walk() {
       if (kind != ChunkKind::kRun) break;
       if (auto ok = read_info(head, chunk.at); !ok) return ok;
     } else if (kind == ChunkKind::kEnd) {
-      ended = true;
+      ended = check(chunk);
+      if (!ended) {
+        why = "is corrupt";
+        break;
+      }
+      const auto* text = reinterpret_cast<const char*>(bytes.data() + chunk.at);
+      outcome.assign(text, head.bytes);
+      outcome.resize(outcome.find_last_not_of('\0') + 1);  // what it was padded with
     } else {
       const bool key = kind == ChunkKind::kKeyFrames;
       const uint64_t table =
@@ -272,6 +290,7 @@ Result<Replay> Replay::from_bytes(std::span<const uint8_t> bytes, const std::str
   return Replay(std::move(state));
 }
 
+const std::string& Replay::outcome() const { return state_->outcome; }
 const RecordingInfo& Replay::info() const { return state_->info; }
 uint64_t Replay::frame_count() const { return state_->frames; }
 uint64_t Replay::bytes() const { return state_->good_bytes; }
@@ -325,7 +344,11 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
     const Track& t = tracks[i];
     frame.ids[i] = t.id;
     frame.classes[i] = t.avatar_class;
-    frame.positions[i] = {t.at[0] / 1000.0, t.at[1] / 1000.0, t.at[2] / 1000.0};
+    // Summed as whole millimetres: what comes out is the number next to them.
+    const auto metres = [&](size_t axis) {
+      return static_cast<double>(s.origin[axis] * 1000 + t.at[axis]) / 1000.0;
+    };
+    frame.positions[i] = {metres(0), metres(1), metres(2)};
     frame.radii[i] = static_cast<float>(t.radius) / 1000.0F;
     frame.headings[i] = heading_of(t.heading);
     if (s.info.leans) frame.ups[i] = up_of(t.up);

@@ -13,13 +13,15 @@
 namespace throng {
 
 inline constexpr uint32_t kReplayVersion = 1, kReplayVersionThatLeans = 2;
+inline constexpr uint32_t kReplayVersionWithOrigin = 3;  // Tells by a field whether it leans.
+inline constexpr double kFarthestOrigin = 1e9;           // [m]
 inline constexpr std::array<char, 4> kChunkMark{'T', 'H', 'R', 'C'};
 
 enum class ChunkKind : uint32_t {
   kRun = 1,        ///< replay.fbs; the first, and there is one.
   kFrames = 2,     ///< FrameEntry, StepHash, then the frames' bytes.
   kKeyFrames = 3,  ///< The same; its first frame stands alone.
-  kEnd = 4,        ///< Nothing: the recording was finished.
+  kEnd = 4,        ///< The recording was finished: the text of its outcome, or nothing.
 };
 
 struct ChunkHead {

@@ -76,21 +76,40 @@ void draw_bar(Canvas& canvas, const Rect& bar, double top, const std::string& un
   draw_text(canvas, {bar.x, bar.y - text}, unit, {.size = text, .colour = kFaintInk});
 }
 
-void draw_ticks(Canvas& canvas, const Rect& plot, const HeatMap& map, double scale, double text) {
-  const double width = map.width * map.cell, depth = map.depth * map.cell;
-  const double longer = std::max(width, depth);
+// Between ticks. [m]
+double tick_step(const HeatMap& map) {
+  const double longer = std::max(map.width, map.depth) * map.cell;
   double step = round_below(longer / 6);
   while (longer / step > 10) step = round_below(step * 2.5);
+  return step;
+}
+
+// All digits: in a national grid coordinates are large and close to each other.
+std::string tick_text(double metres) { return fmt::format("{:.12g}", metres + 0.0); }
+
+// How far the ticks' texts along z reach to the left of the plot. [px]
+double left_of_plot(const HeatMap& map, double text) {
+  const double step = tick_step(map), last = map.z0 + map.depth * map.cell;
+  double widest = 0;
+  for (double n = std::ceil(map.z0 / step - 1e-9); n * step <= last + 1e-9; ++n) {
+    widest = std::max(widest, text_width(tick_text(n * step), {.size = text}));
+  }
+  return text * 0.8 + widest;
+}
+
+void draw_ticks(Canvas& canvas, const Rect& plot, const HeatMap& map, double scale, double text) {
+  const double width = map.width * map.cell, depth = map.depth * map.cell;
+  const double step = tick_step(map);
   for (double n = std::ceil(map.x0 / step - 1e-9); n * step <= map.x0 + width + 1e-9; ++n) {
     const double x = plot.x + (n * step - map.x0) * scale;
     canvas.line({x, plot.y + plot.height}, {x, plot.y + plot.height + text * 0.4}, 1, kFaintInk);
-    draw_text(canvas, {x, plot.y + plot.height + text * 1.8}, fmt::format("{:g}", n * step + 0.0),
+    draw_text(canvas, {x, plot.y + plot.height + text * 1.8}, tick_text(n * step),
               {.size = text, .align = Align::kCentre});
   }
   for (double n = std::ceil(map.z0 / step - 1e-9); n * step <= map.z0 + depth + 1e-9; ++n) {
     const double y = plot.y + (n * step - map.z0) * scale;
     canvas.line({plot.x - text * 0.4, y}, {plot.x, y}, 1, kFaintInk);
-    draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, fmt::format("{:g}", n * step + 0.0),
+    draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, tick_text(n * step),
               {.size = text, .align = Align::kRight});
   }
   draw_text(canvas, {plot.x + plot.width, plot.y + plot.height + text * 3.6}, "x, z [m]",
@@ -105,9 +124,10 @@ Result<Image> draw_heat_map(const HeatMap& map) {
   const double head = (74 + 22 * static_cast<double>(map.notes.size())) * u;
   const double width = map.width * map.cell, depth = map.depth * map.cell;
   // As large as fits the width, and no taller than it is wide.
-  const double scale =
-      std::min((map.picture_width - 220 * u) / width, (map.picture_width - 220 * u) / depth);
-  const Rect plot{80 * u, head + 20 * u, std::max(1.0, std::floor(width * scale)),
+  const double left = std::max(80 * u, std::ceil(left_of_plot(map, text) + 8 * u));
+  const double room = map.picture_width - 140 * u - left;
+  const double scale = std::min(room / width, room / depth);
+  const Rect plot{left, head + 20 * u, std::max(1.0, std::floor(width * scale)),
                   std::max(1.0, std::floor(depth * scale))};
   const double tall = std::max(plot.height, 160 * u);
   Canvas canvas(map.picture_width, static_cast<int32_t>(plot.y + tall + 70 * u), kPaper);

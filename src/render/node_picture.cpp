@@ -10,6 +10,7 @@
 #include <map>
 #include <vector>
 
+#include "core/float_origin.h"
 #include "render/air_lines.h"
 #include "render/canvas.h"
 #include "render/text.h"
@@ -276,6 +277,7 @@ class NodePicture {
     high_x_ = std::max(high_x_, s.x);
     low_y_ = std::min(low_y_, s.y);
     high_y_ = std::max(high_y_, s.y);
+    low_depth_ = std::min(low_depth_, s.depth);
   }
 
   void fit() {
@@ -283,13 +285,15 @@ class NodePicture {
     const double across = std::max(high_x_ - low_x_, 1e-3), down = std::max(high_y_ - low_y_, 1e-3);
     scale_ = std::min(width_ / across, 1.1 * width_ / down);
     height_ = std::ceil(down * scale_) + 8;
+    depth_origin_ = float_origin({0, 0, low_depth_}).z;
   }
 
   [[nodiscard]] Seen at(Vec3d p, double nearer = 0) const {
     const Seen s = view_(p);
     const double k = scale_ * kSamples;
     const double left = (width_ - (high_x_ - low_x_) * scale_) / 2 * kSamples;
-    return {(s.x - low_x_) * k + left, (s.y - low_y_) * k + 4 * kSamples, s.depth - nearer};
+    return {(s.x - low_x_) * k + left, (s.y - low_y_) * k + 4 * kSamples,
+            s.depth - depth_origin_ - nearer};
   }
 
   // Of the parameters of a patch.
@@ -576,6 +580,7 @@ class NodePicture {
   std::map<uint32_t, uint32_t> first_of_patch_;  // a node of each Bezier patch
   uint64_t terminal_ = 0;
   double low_x_ = 1e30, high_x_ = -1e30, low_y_ = 1e30, high_y_ = -1e30;
+  double low_depth_ = 1e30, depth_origin_ = 0;  // the latter for floats
   double scale_ = 1, width_ = 0, height_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <numbers>
 #include <span>
 
 #include "core/classes_file.h"
@@ -17,8 +18,9 @@
 namespace throng {
 namespace {
 
-constexpr double kFar = 1e6;   // [m]
-constexpr double kLong = 1e9;  // [s]
+constexpr double kFarthest = 1e9;  // [m] Coordinates, as those of models.
+constexpr double kHighest = 1e6;   // [m] Heights, as those of worlds.
+constexpr double kLong = 1e9;      // [s]
 constexpr int kCircleSides = 32;
 constexpr double kMaxStages = 10000;  // of a journey
 
@@ -53,6 +55,16 @@ bool is_number(const ConfigNode& node) {
 void Reader::distribution(const char* key, Distribution& out, double low, double high) {
   if (const ConfigNode* node = find(key); node != nullptr)
     distribution_of(*node, key, out, low, high);
+}
+
+// How many draws of a hundred lie within the limits of a distribution.
+double percent_within(const Distribution& d) {
+  const auto below = [&](double x) {
+    if (d.kind == Distribution::Kind::kExponential) return x > 0 ? 1 - std::exp(-x / d.a) : 0.0;
+    return d.b > 0 ? 0.5 * std::erfc((d.a - x) / (d.b * std::numbers::sqrt2))
+                   : (x >= d.a ? 1 : 0.0);
+  };
+  return 100 * (below(d.high) - below(d.low));
 }
 
 // A number, or { uniform = [a, b] }, { normal = [mean, deviation] }, { exponential = mean }, the
@@ -113,6 +125,14 @@ void Reader::distribution_of(const ConfigNode& node, const std::string& key, Dis
   if (has_within && out.kind == Distribution::Kind::kUniform) {
     fail(node, fmt::format("{}: a uniform number has its limits already", key));
   }
+  // Others are drawn again, but not for ever: the last would all lie on a limit.
+  constexpr double kMinPercent = 5;
+  if (has_within && out.kind != Distribution::Kind::kUniform && percent_within(out) < kMinPercent) {
+    fail(node,
+         fmt::format("{}: under {} % of what is drawn lies within {} to {}; give wider limits "
+                     "or another mean",
+                     key, kMinPercent, out.low, out.high));
+  }
 }
 
 template <class Thing>
@@ -170,8 +190,8 @@ bool Reader::corners(const ConfigNode& node, const char* key,
   for (size_t i = 0; good && i < node.items.size(); ++i) {
     const ConfigNode& p = node.items[i];
     good = p.kind == Kind::kArray && p.items.size() == 2 && is_number(p.items[0]) &&
-           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kFar &&
-           std::fabs(p.items[1].number) <= kFar;
+           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kFarthest &&
+           std::fabs(p.items[1].number) <= kFarthest;
     if (good) out.push_back({p.items[0].number, p.items[1].number});
   }
   if (!good) fail(node, fmt::format("{} must be a list of [x, z]", key));
@@ -263,8 +283,8 @@ class File {
 void File::read_top() {
   Reader r(name_, root_, "scenario");
   r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
-          "steering", "area", "density", "profile", "queue", "link", "journey", "source",
-          "obstacle",
+          "search_memory", "steering", "area", "density", "profile", "queue", "link", "journey",
+          "source", "obstacle",
           // What is expected of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
@@ -284,6 +304,10 @@ void File::read_top() {
   r.number("seconds", out_.seconds, 0, kLong);
   r.number("dt", out_.dt, 1e-3, 1);
   r.count("seed", out_.seed, 0, 9007199254740992.0);
+  constexpr double kMebibyte = 1 << 20;
+  double search_memory = static_cast<double>(out_.search_bytes) / kMebibyte;
+  r.number("search_memory", search_memory, 1, kMebibyte);
+  out_.search_bytes = static_cast<uint64_t>(search_memory * kMebibyte);
   std::string ways = "corners";
   r.text("ways", ways);
   if (const ConfigNode* node = r.find("ways");
@@ -360,8 +384,8 @@ void File::read_plane(const ConfigNode& table) {
 }
 
 void File::heights(Reader& r, double& low, double& high) {
-  low = -kFar;
-  high = kFar;
+  low = -kHighest;
+  high = kHighest;
   double y[2] = {};
   if (!r.numbers("y", y, 2)) return;
   if (!(y[0] < y[1])) return r.fail(*r.find("y"), "y must be [low, high], low below high");
@@ -415,8 +439,15 @@ void File::read_area(Reader& r) {
 
 void File::read_obstacle(Reader& r) {
   ScenarioObstacle obstacle;
-  r.only({"name", "box", "polygon", "circle", "y", "begin", "end"});
+  r.only({"name", "box", "polygon", "circle", "y", "begin", "end", "policy"});
   name_of(r, out_.obstacles, obstacle.name);
+  std::string policy = throng::name_of(obstacle.policy);
+  r.text("policy", policy);
+  if (policy == throng::name_of(ObstaclePolicy::kWait)) {
+    obstacle.policy = ObstaclePolicy::kWait;
+  } else if (policy != throng::name_of(obstacle.policy)) {
+    return r.fail(*r.find("policy"), "policy: write \"shut\" or \"wait\"");
+  }
   r.number("begin", obstacle.begin, 0, kLong);
   r.number("end", obstacle.end, 0, kLong);
   if (!read_shape(r, obstacle.prism)) return;
@@ -678,6 +709,10 @@ Result<Scenario> parse_scenario(const std::string& text, const std::string& name
   const auto root = parse_config(text, name);
   if (!root) return root.error();
   return File(name, *root).read();
+}
+
+const char* name_of(ObstaclePolicy policy) {
+  return policy == ObstaclePolicy::kWait ? "wait" : "shut";
 }
 
 Result<Scenario> load_scenario(const std::string& path) {

@@ -60,6 +60,7 @@ Result<Simulation> Simulation::make(const World& world, const Scenario& scenario
                                      .model = scenario.steering,
                                      .labels = scenario.labels,
                                      .zones = scenario.zones,
+                                     .search_bytes = scenario.search_bytes,
                                      .nodes = *std::move(nodes)});
   if (!crowd) return crowd.error();
   auto state = std::make_unique<State>(world, scenario, std::move(*crowd));
@@ -175,6 +176,7 @@ Result<void> Simulation::State::prepare(Context& context) {
     }
   }
   obstacles.resize(scenario.obstacles.size());
+  obstacle_times.resize(scenario.obstacles.size());
   mind_obstacles();
   call_in();
   return let_in(coming, context);
@@ -186,13 +188,27 @@ void Simulation::State::mind_obstacles() {
     const ScenarioObstacle& obstacle = scenario.obstacles[n];
     const bool wanted = time() >= obstacle.begin && time() < obstacle.end;
     if (wanted && !obstacles[n]) {
-      const auto added = crowd.add_obstacle(obstacle.prism);
+      const auto added = crowd.add_obstacle(obstacle.prism, ObstacleKind::kStatic, obstacle.policy);
       THRONG_ASSERT(added);  // The prism was checked.
       obstacles[n] = *added;
+      obstacle_times[n].asked = time();
+      note_obstacles();
+      obstacle_times[n].inside = obstacle_times[n].waits_for;
     } else if (!wanted && obstacles[n]) {
       crowd.remove_obstacle(obstacles[n]);
       obstacles[n] = {};
+      obstacle_times[n].gone = time();
+      obstacle_times[n].waits_for = 0;
     }
+  }
+}
+
+void Simulation::State::note_obstacles() {
+  for (size_t n = 0; n < obstacles.size(); ++n) {
+    const auto state = crowd.obstacle(obstacles[n]);
+    if (!state) continue;
+    obstacle_times[n].up = state->up_at;
+    obstacle_times[n].waits_for = state->occupants;
   }
 }
 
@@ -217,6 +233,7 @@ Result<SimulationReport> Simulation::step() {
   SimulationReport report;
   report.crowd = s.crowd.step();
   ++s.steps;
+  s.note_obstacles();
   for (const AvatarId id : s.crowd.arrived()) {
     if (s.is_here(id.slot1 - 1)) s.arrive(s.persons[id.slot1 - 1]);
   }
@@ -242,6 +259,7 @@ bool Simulation::is_over() const {
 }
 
 const Crowd& Simulation::crowd() const { return state_->crowd; }
+std::span<const ObstacleTimes> Simulation::obstacle_times() const { return state_->obstacle_times; }
 std::span<const Visit> Simulation::visits() const { return state_->visits; }
 
 void Simulation::read(std::vector<AvatarState>& out) const {

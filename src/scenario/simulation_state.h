@@ -106,6 +106,7 @@ struct Simulation::State {
   std::vector<std::vector<uint64_t>> groups;  // numbers
   std::vector<DoorQueue> doors;               // by area: who chose it
   std::vector<ObstacleId> obstacles;  // by obstacle; none before it begins, and after it ends
+  std::vector<ObstacleTimes> obstacle_times;
   uint64_t entered = 0, left = 0;
 
   [[nodiscard]] double time() const { return static_cast<double>(steps) * scenario.dt; }
@@ -139,6 +140,7 @@ struct Simulation::State {
                            Context& context);
 
   void mind_obstacles();
+  void note_obstacles();
 
   // coming.cpp
   void call_in();

@@ -42,7 +42,9 @@ Error bad_input(const char* what, size_t index) {
 
 Result<Simulation> Simulation::create(Space space, const Model& model, double dt) {
   if (auto ok = check_model(model); !ok) return ok.error();
-  if (!(dt > 0 && dt <= 1e6)) return Error{Errc::kBadConfig, "caacd: dt must be above 0"};
+  if (!(dt >= 1e-3 && dt <= 1e3)) {
+    return Error{Errc::kBadConfig, "caacd: dt must be 0.001 to 1000 frames"};
+  }
   const size_t n = space.bodies.size();
   if (space.targets.size() != n) {
     return Error{Errc::kBadInput, "caacd: need one target for each body"};

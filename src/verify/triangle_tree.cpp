@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/float_origin.h"
 #include "core/parallel.h"
 
 // Builds a balanced box tree by median splits. n log n.
@@ -52,6 +53,8 @@ bool TriangleTree::overlaps(const Corners& c, const Box3d& box) {
 
 TriangleTree::TriangleTree(const Scene& scene, int32_t workers) : scene_(&scene) {
   const size_t count = scene.triangles.size();
+  // Any triangle will do: what lies far away has wider boxes, and is rare.
+  base_ = float_origin(corners(static_cast<uint32_t>(count / 2))[0]);
   while ((count >> depth_) > kLeafTriangles) ++depth_;
   first_leaf_ = (1u << depth_) - 1;
 
@@ -60,7 +63,7 @@ TriangleTree::TriangleTree(const Scene& scene, int32_t workers) : scene_(&scene)
   parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
     for (size_t t = begin; t < end; ++t) {
       const Corners c = corners(static_cast<uint32_t>(t));
-      items[t] = {to_float((c[0] + c[1] + c[2]) * (1.0 / 3.0)), static_cast<uint32_t>(t)};
+      items[t] = {to_float((c[0] + c[1] + c[2]) * (1.0 / 3.0) - base_), static_cast<uint32_t>(t)};
     }
   });
 
@@ -83,7 +86,7 @@ TriangleTree::TriangleTree(const Scene& scene, int32_t workers) : scene_(&scene)
       for (size_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
         for (const Vec3d& p : corners(order_[i])) box.add(p);
       }
-      nodes_[first_leaf_ + leaf] = {to_float(box.min), to_float(box.max)};
+      nodes_[first_leaf_ + leaf] = {to_float(box.min - base_), to_float(box.max - base_)};
     }
   });
   for (size_t i = first_leaf_; i-- > 0;) {

@@ -32,8 +32,8 @@ class TriangleTree {
   /// returns true; returns whether one did. The order is the same on every run.
   template <class Visit>
   bool find(const Box3d& box, Visit&& visit) const {
-    const auto low = to_float(box.min);
-    const auto high = to_float(box.max);
+    const auto low = to_float(box.min - base_);
+    const auto high = to_float(box.max - base_);
     std::array<uint32_t, 64> stack;
     size_t depth = 0;
     stack[depth++] = 0;
@@ -59,8 +59,8 @@ class TriangleTree {
   }
 
  private:
-  /// In floats. Rounding keeps the order of numbers, and queries are rounded too: what overlaps in
-  /// double overlaps here; what does not is sorted out by the triangles' own boxes.
+  /// From base_, in floats. Rounding keeps the order of numbers, and queries are rounded too: what
+  /// overlaps in double overlaps here; what does not is sorted out by the triangles' own boxes.
   struct Node {
     std::array<float, 3> low;
     std::array<float, 3> high;
@@ -73,6 +73,7 @@ class TriangleTree {
   [[nodiscard]] size_t leaf_begin(size_t leaf) const { return order_.size() * leaf >> depth_; }
 
   const Scene* scene_;
+  Vec3d base_;
   int depth_ = 0;
   uint32_t first_leaf_ = 0;
   std::vector<uint32_t> order_;

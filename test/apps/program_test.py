@@ -175,6 +175,27 @@ class Program(ProgramCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIsInstance(json.loads(done.stdout), dict)
 
+    def test_a_run_tells_where_its_time_went_and_the_mean_of_all_steps_first(self):
+        parts = ("open", "prepare", "plan", "sort", "steer", "commit", "settle", "obstacles", "events", "goals", "write", "check")
+        for goals, names in (((), ("open", "prepare", "sort", "move", "write", "check")), (("--goals", "random"), parts)):
+            arguments = ("run", self.world, "--avatars", 50, "--steps", 30, *goals)
+            told = json.loads(self.run_throng(*arguments, "--json").stdout)
+            known = sum(told[f"seconds_{name}"] for name in (*names, "other"))
+            self.assertAlmostEqual(known, told["seconds_wall"], delta=1e-6 + 1e-3 * told["seconds_wall"])
+            self.assertAlmostEqual(told["ns_per_avatar_step_mean"], told["seconds_total"] * 1e9 / 50 / 30, delta=1)
+            self.assertEqual(told["ns_per_avatar_step"], told["ns_per_avatar_step_median"])
+            lines = self.run_throng(*arguments).stdout.splitlines()
+            self.assertRegex(lines[0], r": [0-9.]+ ns an avatar a step \(mean; [0-9.]+ median\)$")
+            self.assertRegex(lines[1], r"^time [0-9.]+ s: open [0-9.]+ s \([0-9]+ %\), .*, other [0-9.]+ s \([0-9]+ %\)$")
+
+    def test_lengths_of_steps_that_cannot_be_walked_are_refused_with_a_sentence(self):
+        for length in ("0", "-1", "1e-300", "1e-20", "1e-9", "1e9", "inf", "nan"):
+            for goals in ((), ("--goals", "random")):
+                done = self.run_throng("run", self.world, "--avatars", 5, "--steps", 2, "--dt", length, *goals)
+                self.assertEqual(done.returncode, 2, (length, done.stderr))
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertEqual(self.run_throng("caacd", "--dt", length, "--avatars", 5).returncode, 2)
+
     def test_a_run_has_the_same_state_for_any_threads_and_another_for_another_seed(self):
         def state(**options):
             words = [word for key, value in options.items() for word in (f"--{key}", value)]
@@ -198,7 +219,29 @@ class Program(ProgramCase):
         self.assertEqual([entry.name for entry in self.path.iterdir()], ["walk.csv"])
 
     def test_a_recording_holds_what_trajectories_hold_in_every_format(self):
-        done = self.run_throng("run", self.world, "--avatars", 30, "--steps", 12, "--every", 3, "--dt", 0.2, "--trajectories",
+        self.assert_formats_hold_trajectories(self.world)
+
+    def test_a_recording_in_a_national_grid_holds_the_millimetre_in_every_format(self):
+        for name, east, north in (("utm", 678000, 5403500), ("south", -9999970, 9999970)):
+            with self.subTest(name):
+                corners = ((0, 0), (30, 0), (30, 30), (0, 30))
+                lines = [f"v {east + x}.000 {north + y}.000 370.000" for x, y in corners] + ["f 1 2 3", "f 1 3 4"]
+                (self.path / "utm.obj").write_text("\n".join(lines) + "\n")
+                self.assertEqual(self.run_throng("bake", "utm.obj", "--up", "z", "-o", name).returncode, 0)
+                self.assert_formats_hold_trajectories(name)
+                said = json.loads(self.run_throng("replay", "walk.replay", "--json").stdout)
+                self.assertEqual(said["origin"], [0 if abs(east) < 1e6 else east + 15, 0, -north - 15])
+                done = self.run_throng("replay", "walk.replay", "--check")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                at = json.loads(self.run_throng("replay", "walk.replay", "--at", 1, "--json").stdout)
+                for avatar in at["avatars"]:
+                    x, y, z = avatar["position"]
+                    self.assertTrue(east < x < east + 30 and y == 370 and -north - 30 < z < -north, avatar)
+                done = self.run_throng("report", "walk.replay", "-o", "out.html", "--line", f"{east + 15},{-north - 30},{east + 15},{-north}")
+                self.assertEqual(done.returncode, 0, done.stderr)
+
+    def assert_formats_hold_trajectories(self, world):
+        done = self.run_throng("run", world, "--avatars", 30, "--steps", 12, "--every", 3, "--dt", 0.2, "--trajectories",
                                "walk.csv", "--record", "walk.replay")
         self.assertEqual(done.returncode, 0, done.stderr)
         done = self.run_throng("replay", "walk.replay", "--csv", "out.csv", "--txt", "out.txt", "--sqlite", "out.sqlite", "--json")
@@ -680,6 +723,25 @@ class Program(ProgramCase):
                                "--camera", "30,12,40,20,2,20", "--width", "320", "--height", "240", "-o", "walk.png", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads(done.stdout)["avatars"], 30)
+
+    def test_gl_a_national_grid_is_drawn_pixel_by_pixel_as_the_coordinate_origin(self):
+        pictures = []
+        for x, y, z in ((0, 0, 0), (678000, 370, -5403500), (-10000000, 0, 10000000)):
+            corners = ((0, 0, 0), (30, 0, 0), (30, 0, -30), (0, 0, -30), (10, 0, -5), (10, 3, -5), (20, 3, -25), (20, 0, -25))
+            lines = [f"v {x + a} {y + b} {z + c}" for a, b, c in corners] + ["f 1 2 3 4", "f 5 6 7 8"]
+            (self.path / "hall.obj").write_text("\n".join(lines) + "\n")
+            self.assertEqual(self.run_throng("bake", "hall.obj", "-o", "hall", "--cell", 0.125, "--fresh").returncode, 0)
+            run = self.run_throng("run", "hall", "--avatars", 30, "--steps", 20, "--record", "hall.replay", "--trajectories", "hall.csv")
+            self.assertEqual(run.returncode, 0, run.stderr)
+            camera = f"{x + 40},{y + 14},{z + 20},{x + 15},{y},{z - 15}"
+            look = ("--source", "hall.obj", "--camera", camera, "--width", 320, "--height", 200)
+            drawn = self.run_throng("picture", "hall", "--avatars", "hall.csv", *look, "-o", "seen.png")
+            self.assertEqual(drawn.returncode, 0, drawn.stderr)
+            viewed = self.run_throng("view", "hall.replay", *look, "--forget", "--after", 1, "--overlay", "Clearance", "--picture", "view.png")
+            self.assertEqual(viewed.returncode, 0, viewed.stderr)
+            pictures.append([(self.path / name).read_bytes() for name in ("seen.png", "view.png")])
+        for picture in pictures[1:]:
+            self.assertEqual(picture, pictures[0])
 
     def test_gl_pictures_that_cannot_be_drawn_are_refused_in_one_sentence(self):
         camera = ("--camera", "30,12,40,20,2,20", "-o", "x.png")

@@ -19,8 +19,9 @@
 namespace throng {
 namespace {
 
-ObstacleId put_up(Crowd& crowd, const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic) {
-  const auto id = crowd.add_obstacle(prism, kind);
+ObstacleId put_up(Crowd& crowd, const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic,
+                  ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry) {
+  const auto id = crowd.add_obstacle(prism, kind, policy);
   EXPECT_TRUE(id) << id.error().message;
   return id ? *id : ObstacleId{};
 }
@@ -168,7 +169,8 @@ TEST(CrowdObstacles, ADoorWaitsForWhoStandsInItAndOpensAtOnce) {
   const AvatarId id = added(crowd, world.find_place(0, kNearDoor, 0.5));
   const AvatarId other = added(crowd, world.find_place(0, {20, 0, 20}, 0.5));
   ASSERT_TRUE(id && other);
-  const ObstacleId door = put_up(crowd, crate_at(kNearDoor, 0.5));
+  const ObstacleId door =
+      put_up(crowd, crate_at(kNearDoor, 0.5), ObstacleKind::kStatic, ObstaclePolicy::kWait);
   EXPECT_FALSE(is_up(crowd, door));
   EXPECT_TRUE(waits(crowd, door));
   for (int step = 0; step < 20; ++step) {
@@ -401,7 +403,8 @@ struct Chaos {
     for (int k = 0; k < 3; ++k) {
       if (ids.size() < 40) {
         const auto kind = draw() < 0.6 ? ObstacleKind::kStatic : ObstacleKind::kKinematic;
-        ids.push_back(put_up(crowd, prism(somewhere()), kind));
+        const auto policy = draw() < 0.7 ? ObstaclePolicy::kRefuseEntry : ObstaclePolicy::kWait;
+        ids.push_back(put_up(crowd, prism(somewhere()), kind, policy));
         came_up += is_up(crowd, ids.back()) ? 1 : 0;
       }
       const size_t i = static_cast<size_t>(draw() * static_cast<double>(ids.size()));

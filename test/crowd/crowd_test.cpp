@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "baked.h"
+#include "core/random.h"
 #include "crowds.h"
 #include "simd_targets.h"
+#include "throng/bake.h"
+#include "throng/cells.h"
 #include "worlds.h"
 
 namespace throng {
@@ -101,6 +104,45 @@ TEST(Crowd, AnAvatarWalksThroughADoorAndUpStairs) {
   climbers.set_goals(std::span(&climber, 1), std::span(&high, 1));
   EXPECT_LT(steps_to_arrive(climbers, climber, 400), 400);
   EXPECT_NEAR(position(climbers, climber).y, high.position.y, 0.45);
+}
+
+// Among pillars around the corner of four tiles, along lines that run exactly through points that
+// four cells share.
+TEST(Crowd, PathsThatAreLookedUpAreAsShortAsThoseOfTheSearch) {
+  constexpr int32_t kSide = 80, kFirst = 54, kWindow = 20;
+  FlatCells cells{.width = kSide, .depth = kSide, .passable = {}};
+  for (uint64_t i = 0; i < uint64_t{kSide} * kSide; ++i)
+    cells.passable.push_back(random_below(1, 0, i, 60) == 0 ? 0 : 1);
+  const auto world = bake_flat_cells(cells, 2);
+  ASSERT_TRUE(world);
+  std::vector<Crowd> crowds;
+  crowds.push_back(made(*world));
+  crowds.push_back(made(*world, {.labels = true}));
+  crowds.push_back(made(*world, {.zones = true}));
+  int straight = 0;
+  for (uint64_t n = 0; n < 100; ++n) {
+    const auto middle = [&](uint64_t use) {
+      return 2 *
+             (static_cast<double>(kFirst + random_below(2, n, use, kWindow)) + 0.5 + 1.0 / 8192);
+    };
+    const Place from = world->find_place(0, {middle(0), 0, middle(1)}, 0.1);
+    const Place to = world->find_place(0, {middle(2), 0, middle(3)}, 0.1);
+    if (!from || !to) continue;
+    const double x = to.position.x - from.position.x, z = to.position.z - from.position.z;
+    if (world->move(0, from, x, z).end != MoveEnd::kArrived) continue;
+    SCOPED_TRACE(testing::Message() << "pair " << n);
+    int searched = 0;
+    for (Crowd& crowd : crowds) {
+      const AvatarId id = added(crowd, from);
+      crowd.set_goals(std::span(&id, 1), std::span(&to, 1));
+      const int steps = steps_to_arrive(crowd, id, 2000);
+      if (&crowd == &crowds[0]) searched = steps;
+      EXPECT_EQ(steps, searched) << "crowd " << &crowd - crowds.data();
+      crowd.remove(std::span(&id, 1));
+    }
+    ++straight;
+  }
+  EXPECT_GT(straight, 20);
 }
 
 TEST(Crowd, WhoseGoalCannotBeReachedIsTold) {
@@ -288,8 +330,8 @@ TEST(Crowd, BadSettingsAreNamed) {
     const auto crowd = Crowd::create(world, config);
     return crowd ? std::string("accepted") : crowd.error().message;
   };
-  EXPECT_EQ(refused({.dt = 0}), "crowd: dt must be above 0 and at most 1 s");
-  EXPECT_EQ(refused({.dt = NAN}), "crowd: dt must be above 0 and at most 1 s");
+  EXPECT_EQ(refused({.dt = 0}), "crowd: dt must be 0.001 to 1 s");
+  EXPECT_EQ(refused({.dt = NAN}), "crowd: dt must be 0.001 to 1 s");
   EXPECT_EQ(refused({.workers = -1}), "crowd: workers must be 0 (all cores) or more");
   EXPECT_EQ(refused({.labels = true, .zones = true}), "crowd: choose labels or zones, not both");
   EXPECT_EQ(refused({.sight = 0}), "crowd: sight must be 1 to 50 m");

@@ -79,7 +79,7 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
       if (path.end != PathEnd::kReached) continue;
       const double least = path.length;
       const bool was_open = is_open(c, path);
-      lead_around(*c.world.data(), c.live, ground, path, scratch);
+      lead_around(*c.world.data(), c.live, ground, {}, path, scratch);
       c.live.find(from, to, best);
       ASSERT_EQ(path.end, best.end) << name << ' ' << i;
       if (was_open) {

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "baked.h"
 #include "core/random.h"
+#include "grid_oracle.h"
 #include "path/label_search.h"
 #include "path/mesh.h"
 #include "path/search.h"
 #include "path/segments.h"
 #include "path/string_puller.h"
+#include "throng/bake.h"
+#include "throng/cells.h"
 #include "world/place.h"
 
 // Ways that are pulled taut, and ways looked up by the middles of blocks, against the search.
@@ -151,6 +156,167 @@ TEST(Labels, NoCornerIsLostToRounding) {
     double length = 0;
     ASSERT_TRUE(look_up.find(ways.mesh, *labels, from, to, corners, length)) << n;
     EXPECT_TRUE(ways.can_be_gone(from, corners, to)) << n;
+  }
+}
+
+// The middle of a cell, or another point of it.
+Stop stop_in(const World& world, const PathMesh& mesh, int32_t x, int32_t z,
+             GroundPoint within = {kUnitsPerCell / 2, kUnitsPerCell / 2}) {
+  Stop stop{{(int64_t{x} << kUnitBits) + within.x, (int64_t{z} << kUnitBits) + within.z}, kNoRect};
+  const Place place = world.find_place(0, {x + 0.5, 0, z + 0.5}, 0.1);
+  if (place) stop.rect = mesh.rect_at(place.level1 - 1, x, z);
+  return stop;
+}
+
+HubLabels labels_of(const PathMesh& mesh) {
+  Context context;
+  auto labels = build_labels(mesh, 0, context);
+  EXPECT_TRUE(labels);
+  return *std::move(labels);
+}
+
+// Lines between middles of cells run exactly through points that four cells share, and those
+// between low corners of cells along the lines between cells: where rectangles meet, as they do at
+// the borders of tiles, 64 cells apart.
+TEST(Labels, StraightLinesThroughPointsOfFourCellsAreFound) {
+  const std::vector<std::string> rows{"............", "..#.........", "............",
+                                      ".......#....", "............", "...#........",
+                                      "............", "............", "............",
+                                      "#...........", "............", "............"};
+  constexpr int32_t kSide = 80, kFirst = 58, kWindow = 12;
+  FlatCells cells{.width = kSide, .depth = kSide, .passable = {}};
+  cells.passable.assign(size_t{kSide} * kSide, 1);
+  for (size_t z = 0; z < kWindow; ++z) {
+    for (size_t x = 0; x < kWindow; ++x)
+      cells.passable[(kFirst + z) * kSide + kFirst + x] = rows[z][x] == '.' ? 1 : 0;
+  }
+  const auto world = bake_flat_cells(cells, 1);
+  ASSERT_TRUE(world);
+  const test::GridOracle oracle(cells);
+  Ways ways(*world, 0);
+  for (const int32_t side : {kSmallBlock, kLargeBlock}) {
+    cut_into_blocks(ways.mesh, side);
+    const HubLabels labels = labels_of(ways.mesh);
+    LabelSearch look_up;
+    std::vector<uint32_t> corners;
+    for (const int32_t half : {1, 0}) {
+      for (int32_t n = 0; n < kWindow * kWindow * kWindow * kWindow; ++n) {
+        const int32_t from = n / (kWindow * kWindow), to = n % (kWindow * kWindow);
+        const auto stop_at = [&](int32_t cell) {
+          const GroundPoint within{half * kUnitsPerCell / 2, half * kUnitsPerCell / 2};
+          return stop_in(*world, ways.mesh, kFirst + cell % kWindow, kFirst + cell / kWindow,
+                         within);
+        };
+        const auto point = [&](int32_t cell) {
+          return test::HalfPoint{2 * (kFirst + cell % kWindow) + half,
+                                 2 * (kFirst + cell / kWindow) + half};
+        };
+        const Stop a = stop_at(from), b = stop_at(to);
+        if (a.rect == kNoRect || b.rect == kNoRect) continue;
+        double length = 0;
+        ASSERT_TRUE(look_up.find(ways.mesh, labels, a, b, corners, length));
+        const auto best = oracle.shortest(point(from), point(to), length * (1 + 1e-9) + 1e-9);
+        ASSERT_TRUE(best) << from << " to " << to;
+        EXPECT_LE(length, *best * (side == kSmallBlock ? 1 : 1.02) + 1e-6)
+            << from << " to " << to << ", half " << half << ", side " << side;
+      }
+    }
+  }
+}
+
+// Ends anywhere and on halves and quarters of cells, over one tile and over several.
+TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
+  int asked = 0, straight = 0;
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    const int32_t width = seed < 3 ? 140 : 30, depth = seed < 3 ? 80 : 24;
+    FlatCells cells{.width = width, .depth = depth, .passable = {}};
+    for (uint64_t i = 0; i < static_cast<uint64_t>(width * depth); ++i)
+      cells.passable.push_back(random_below(seed, 0, i, 200) < 2 + seed ? 0 : 1);
+    const auto world = bake_flat_cells(cells, 1);
+    ASSERT_TRUE(world);
+    Ways ways(*world, 0);
+    for (const int32_t side : {kSmallBlock, kLargeBlock}) {
+      cut_into_blocks(ways.mesh, side);
+      const HubLabels labels = labels_of(ways.mesh);
+      ASSERT_EQ(labels.by_middle.first.empty(), side == kSmallBlock);
+      LabelSearch look_up;
+      std::vector<uint32_t> corners, exact;
+      for (uint64_t n = 0; n < 400; ++n) {
+        const auto random_stop = [&](uint64_t use) {
+          const auto below = [&](uint64_t more, int32_t most) {
+            const auto count = static_cast<uint64_t>(most);
+            return static_cast<int32_t>(random_below(seed, n + 1, 8 * use + more, count));
+          };
+          const int32_t parts = 1 << std::min(below(0, 14), kUnitBits);
+          const int32_t part = kUnitsPerCell / parts;
+          const GroundPoint within{below(1, parts) * part, below(2, parts) * part};
+          return stop_in(*world, ways.mesh, below(3, width), below(4, depth), within);
+        };
+        const Stop from = random_stop(0), to = random_stop(1);
+        if (from.rect == kNoRect || to.rect == kNoRect || !ways.together(from, to)) continue;
+        SCOPED_TRACE(testing::Message() << "seed " << seed << ", pair " << n << ", side " << side);
+        double length = 0;
+        ASSERT_TRUE(look_up.find(ways.mesh, labels, from, to, corners, length));
+        EXPECT_TRUE(ways.can_be_gone(from, corners, to));
+        const double least = ways.search(from, to, exact);
+        EXPECT_GE(length, least - 1e-5);
+        EXPECT_LE(length, least * (side == kSmallBlock ? 1 : 1.02) + 1e-5);
+        ++asked;
+        straight += exact.empty();
+      }
+    }
+  }
+  EXPECT_GT(asked, 10000);
+  EXPECT_GT(straight, 2000);
+}
+
+// Labels know of ways over corners only, so of none between two middles that see each other: what
+// they tell must prove nothing there. Ends behind a wall from each other, middles that are not.
+TEST(Labels, WaysAreHardlyLongerWhereMiddlesSeeEachOther) {
+  constexpr int32_t kWidth = 190, kDepth = 120;
+  for (uint64_t seed = 200; seed < 210; ++seed) {
+    FlatCells cells{.width = kWidth, .depth = kDepth, .passable = {}};
+    cells.passable.assign(size_t{kWidth} * kDepth, 1);
+    const uint64_t walls = 1 + random_below(seed, 1, 0, 8);
+    for (uint64_t wall = 2; wall < 2 + walls; ++wall) {
+      const auto below = [&](uint64_t use, uint64_t most) {
+        return static_cast<int32_t>(random_below(seed, wall, use, most));
+      };
+      const int32_t x0 = below(0, kWidth), z0 = below(1, kDepth);
+      int32_t width = 1, depth = 1;
+      if (below(2, 2) != 0) {
+        width += below(3, 100);
+      } else {
+        depth += below(3, 80);
+      }
+      if (below(4, 4) == 0) {
+        width = 1 + below(5, 12);
+        depth = 1 + below(6, 12);
+      }
+      for (int32_t z = z0; z < std::min(kDepth, z0 + depth); ++z) {
+        for (int32_t x = x0; x < std::min(kWidth, x0 + width); ++x)
+          cells.passable[static_cast<size_t>(z * kWidth + x)] = 0;
+      }
+    }
+    const auto world = bake_flat_cells(cells, 1);
+    ASSERT_TRUE(world);
+    Ways ways(*world, 0);
+    cut_into_blocks(ways.mesh, kLargeBlock);
+    const HubLabels labels = labels_of(ways.mesh);
+    LabelSearch look_up;
+    std::vector<uint32_t> corners, exact;
+    for (uint64_t n = 0; n < 2000; ++n) {
+      const auto random_stop = [&](uint64_t use) {
+        return stop_in(*world, ways.mesh,
+                       static_cast<int32_t>(random_below(seed, 100 + n, use, kWidth)),
+                       static_cast<int32_t>(random_below(seed, 100 + n, use + 1, kDepth)));
+      };
+      const Stop from = random_stop(0), to = random_stop(2);
+      if (from.rect == kNoRect || to.rect == kNoRect || !ways.together(from, to)) continue;
+      double length = 0;
+      ASSERT_TRUE(look_up.find(ways.mesh, labels, from, to, corners, length));
+      EXPECT_LE(length, ways.search(from, to, exact) * 1.02 + 1e-5) << seed << ", " << n;
+    }
   }
 }
 

@@ -354,6 +354,51 @@ TEST(Path, WaysOverManyZonesAreHardlyLonger) {
   EXPECT_LT(sum, shortest * 1.005);
 }
 
+// Between middles of cells, by slopes that lead through points that four cells share: near, in the
+// same zone, and far.
+TEST(Path, StraightLinesOverManyZonesAreFound) {
+  const World world = bake(test::builtin({.name = "city", .size = 250}), 0.4);
+  const WorldSummary summary = world.summary();
+  const double cell = summary.cell;
+  Context context;
+  auto made = PathFinder::make(world, {.zones = true}, context);
+  ASSERT_TRUE(made);
+  PathFinder over_zones = *std::move(made), search = finder(world, 0),
+             labels = finder(world, 0, true);
+  Path path;
+  uint64_t straight = 0;
+  for (uint64_t n = 0; n < 4000; ++n) {
+    const Place place = world.random_place(0, 6, n);
+    const auto move = [&](const Place& at, double cells_x, double cells_z) {
+      // So little past the middle of a cell that it is rounded to that.
+      const auto by = [&](double from, double origin, double cells) {
+        return origin + (std::floor((from - origin) / cell) + cells + 0.5 + 1.0 / 8192) * cell -
+               from;
+      };
+      return world.move(0, at, by(at.position.x, summary.origin.x, cells_x),
+                        by(at.position.z, summary.origin.z, cells_z));
+    };
+    const MoveResult from = move(place, 0, 0);
+    const auto random = [&](uint64_t use, uint64_t most) {
+      return static_cast<double>(random_below(7, n, use, most));
+    };
+    const double times = 1 + random(0, 120);
+    const MoveResult to =
+        move(from.place, (2 * random(1, 3) - 1) * times, (2 * random(2, 3) - 1) * times);
+    if (from.end != MoveEnd::kArrived || to.end != MoveEnd::kArrived) continue;
+    SCOPED_TRACE(testing::Message() << "pair " << n);
+    const double length = plan_distance(from.place.position, to.place.position);
+    for (PathFinder* by : {&search, &labels, &over_zones}) {
+      SCOPED_TRACE(by == &search ? "search" : by == &labels ? "labels" : "zones");
+      by->find(from.place, to.place, path);
+      ASSERT_EQ(path.end, PathEnd::kReached);
+      EXPECT_NEAR(path.length, length, 2 * cell / 2048);  // to a unit
+    }
+    ++straight;
+  }
+  EXPECT_GT(straight, 400u);
+}
+
 TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
   const BakeConfig config{.cell = 0.5, .resolution = 0.1, .zone = 32};
   Context context;

@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "core/random.h"
 #include "record/frame_codec.h"
+#include "record/replay_file.h"
+#include "record/replay_generated.h"
 #include "scratch_folder.h"
 
 namespace throng {
@@ -247,6 +250,187 @@ TEST(Recording, WithoutAnybodyWhoLeansStaysAsItWas) {
   run[5].ups.pop_back();
   refused(*leans, run[5], "as many axes as ids");
   EXPECT_TRUE(leans->append(run[6].view()));
+}
+
+// The file without its first chunk, the settings.
+std::string frames_of(const std::string& bytes) {
+  ChunkHead head;
+  std::memcpy(&head, bytes.data(), sizeof head);
+  return bytes.substr(sizeof head + head.bytes);
+}
+
+// What holds near the coordinate origin holds wherever the recording's origin is: the same
+// millimetres, in the same bytes.
+TEST(Recording, KeepsTheMillimetreFarFromTheCoordinateOrigin) {
+  const ScratchFolder folder;
+  const std::string near_path = folder.path() + "/near.replay",
+                    path = folder.path() + "/run.replay";
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    const auto coordinate = [&](uint64_t axis) {
+      const double far = seed % 3 == 0 ? 1e9 : 1e7;
+      if (seed <= 4) return seed % 2 == 0 ? far : -far;
+      return std::floor((2 * random_unit(seed, 5, axis) - 1) * far);
+    };
+    RecordingInfo info = two_classes();
+    info.leans = seed % 4 == 0;
+    auto run = info.leans ? leaning_run(seed, 40, 30) : random_run(seed, 40, 30);
+    for (RecordedFrame& frame : run) {
+      // Steps of 1/1024 m: exact in all places.
+      for (Vec3d& p : frame.positions) {
+        p = {std::floor(p.x * 1024) / 1024, std::floor(p.y * 1024) / 1024,
+             std::floor(p.z * 1024) / 1024};
+      }
+    }
+    const auto write = [&](const std::string& to) {
+      auto recorder = Recorder::create(to, info, {.chunk_frames = 7, .key_frames = 14});
+      ASSERT_TRUE(recorder) << recorder.error().message;
+      for (RecordedFrame frame : run) {
+        for (Vec3d& p : frame.positions) p = p + info.origin;
+        const auto ok = recorder->append(frame.view());
+        ASSERT_TRUE(ok) << ok.error().message;
+      }
+      ASSERT_TRUE(recorder->finish());
+    };
+    write(near_path);
+    info.origin = {coordinate(0), coordinate(1), coordinate(2)};
+    write(path);
+    EXPECT_EQ(frames_of(bytes_of(path)), frames_of(bytes_of(near_path)));
+
+    auto replay = Replay::open(path), near = Replay::open(near_path);
+    ASSERT_TRUE(replay) << replay.error().message;
+    ASSERT_TRUE(near) << near.error().message;
+    EXPECT_EQ(replay->info().origin, info.origin);
+    EXPECT_EQ(replay->info().leans, info.leans);
+    EXPECT_EQ(replay->info().classes, info.classes);
+    EXPECT_EQ(near->info().origin, Vec3d{});
+    RecordedFrame frame, near_frame;
+    for (uint64_t k = 0; k < 2 * run.size(); ++k) {
+      const uint64_t f = k < run.size() ? k : random_below(seed, 9, k, run.size());
+      ASSERT_TRUE(replay->read(f, frame));
+      ASSERT_TRUE(near->read(f, near_frame));
+      RecordedFrame wrote = run[f];
+      for (Vec3d& p : wrote.positions) p = p + info.origin;
+      expect_same(wrote, frame);
+      if (info.leans) expect_same_axes(wrote, frame);
+      for (size_t i = 0; i < frame.size(); ++i) {
+        const Vec3d off = frame.positions[i] - info.origin - near_frame.positions[i];
+        EXPECT_LT(length(off), 4e-7);  // [m] What doubles can tell at 10^9 m.
+      }
+    }
+  }
+}
+
+TEST(Recording, ReadsThePositionNextToTheMillimetre) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  RecordingInfo info = two_classes();
+  info.origin = {678015, 0, -5403515};
+  RecordedFrame frame;
+  frame.resize(1);
+  frame.positions[0] = {678012.3454, 370.1236, -5403500.1238};
+  auto recorder = Recorder::create(path, info);
+  ASSERT_TRUE(recorder);
+  ASSERT_TRUE(recorder->append(frame.view()));
+  ASSERT_TRUE(recorder->finish());
+  auto replay = Replay::open(path);
+  ASSERT_TRUE(replay);
+  ASSERT_TRUE(replay->read(0, frame));
+  EXPECT_EQ(frame.positions[0], (Vec3d{678012.345, 370.124, -5403500.124}));  // To the bit.
+}
+
+TEST(Recording, TakesWholeMetresWithinReachAsItsOrigin) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  RecordingInfo info = two_classes();
+  for (const double bad : {0.5, -1e7 - 0.25, 1.1e9, -1.1e9, double{NAN}, double{INFINITY}}) {
+    for (const Vec3d& origin : {Vec3d{bad, 0, 0}, Vec3d{0, bad, 0}, Vec3d{0, 0, bad}}) {
+      info.origin = origin;
+      const auto refused = Recorder::create(path, info);
+      ASSERT_FALSE(refused) << bad;
+      EXPECT_EQ(refused.error().code, Errc::kBadConfig);
+      EXPECT_EQ(refused.error().message,
+                "recording: the origin must be whole metres within 1 000 000 km");
+    }
+  }
+  info.origin = {0, 0, -1e7};
+  auto recorder = Recorder::create(path, info);
+  ASSERT_TRUE(recorder);
+  RecordedFrame frame;
+  frame.resize(1);
+  for (const double z : {0.0, -7.99e6, -1.201e7, 1e7}) {
+    frame.positions[0] = {0, 0, z};
+    const auto far = recorder->append(frame.view());
+    ASSERT_FALSE(far) << z;
+    EXPECT_EQ(far.error().message,
+              "recording: avatar 0 is nowhere, or farther than 2000 km from the recording's "
+              "origin; set RecordingInfo::origin");
+  }
+  frame.positions[0] = {1.99e6, -1.99e6, -1.19e7};
+  EXPECT_TRUE(recorder->append(frame.view()));
+}
+
+TEST(Recording, TheOriginOfAWorldReachesAllOfIt) {
+  const auto of = [](Vec3d low, Vec3d high) { return recording_origin({low, high}); };
+  EXPECT_EQ(recording_origin({}), Vec3d{});
+  EXPECT_EQ(of({0, 0, 0}, {30, 3, 30}), Vec3d{});
+  EXPECT_EQ(of({-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}), Vec3d{});
+  EXPECT_EQ(of({678000, 370, -5403530}, {678030, 370, -5403500}), (Vec3d{0, 0, -5403515}));
+  EXPECT_EQ(of({-1e7, 0, 9999999.4}, {-9999999, 0, 1e7}), (Vec3d{-9999999, 0, 1e7}));
+  EXPECT_EQ(of({1e6, 0, -1.5e6}, {2e6 + 1, 0, 1.9e6}), (Vec3d{1500001, 0, 200000}));
+  EXPECT_FALSE(std::signbit(of({-2e6, 0, 0}, {2e6, 0, 0}).x));
+  for (uint64_t n = 0; n < 1000; ++n) {
+    const auto unit = [&](uint64_t k) { return random_unit(3, n, k); };
+    const Vec3d low{2e9 * unit(0) - 1e9, 2e6 * unit(1) - 1e6, 2e7 * unit(2) - 1e7};
+    const Vec3d size{1e6 * unit(3), 100 * unit(4), 1e6 * unit(5)};
+    const Vec3d from = of(low, low + size);
+    for (const Vec3d& p : {low - from, low + size - from}) {
+      EXPECT_LE(std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}), 1e6);
+    }
+  }
+}
+
+// A recording of a version to come, or whose origin lies where none can.
+TEST(Recording, RefusesOtherVersionsAndSaysWhatToDo) {
+  const auto settings = [](uint32_t version, int64_t origin) {
+    flatbuffers::FlatBufferBuilder builder;
+    const std::vector<flatbuffers::Offset<format::RecordedClass>> classes{
+        format::CreateRecordedClass(builder, builder.CreateString("adult"), 1.75, 0.25)};
+    const auto all = builder.CreateVector(classes);
+    builder.Finish(
+        format::CreateRecording(builder, version, 0, 0, 0.1, all, 0, 0, origin, -origin, 5, true),
+        format::RecordingIdentifier());
+    std::string bytes(reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize());
+    bytes.resize((bytes.size() + 7) / 8 * 8);
+    ChunkHead head;
+    head.kind = static_cast<uint32_t>(ChunkKind::kRun);
+    head.bytes = bytes.size();
+    head.sum = hash_bytes(bytes.data(), bytes.size());
+    head.head_sum = head.own_sum();
+    return std::string(reinterpret_cast<const char*>(&head), sizeof head) + bytes;
+  };
+  for (const uint32_t version : {0u, 4u, 5u, 4000000000u}) {
+    const std::string bytes = settings(version, 0);
+    const auto replay = Replay::from_bytes(span_of(bytes), "a.replay");
+    ASSERT_FALSE(replay);
+    EXPECT_EQ(replay.error().code, Errc::kBadFile);
+    EXPECT_EQ(replay.error().message, "a.replay: recording version " + std::to_string(version) +
+                                          ", this program reads 1 to 3; open it with the program "
+                                          "that recorded it");
+  }
+  for (const int64_t origin : {int64_t{1'000'000'001}, INT64_MAX, INT64_MIN + 1}) {
+    const std::string bytes = settings(3, origin);
+    const auto replay = Replay::from_bytes(span_of(bytes), "a.replay");
+    ASSERT_FALSE(replay);
+    EXPECT_EQ(replay.error().message, "a.replay: its settings are corrupt; record the run again");
+  }
+  // Versions before the third have no origin, whatever stands there.
+  for (const uint32_t version : {1u, 2u, 3u}) {
+    const std::string bytes = settings(version, 10'000'000);
+    const auto replay = Replay::from_bytes(span_of(bytes), "a.replay");
+    ASSERT_TRUE(replay) << replay.error().message;
+    EXPECT_EQ(replay->info().leans, version >= 2);
+    EXPECT_EQ(replay->info().origin, version == 3 ? (Vec3d{1e7, -1e7, 5}) : Vec3d{});
+  }
 }
 
 TEST(Recording, FindsTheFrameOfATime) {

@@ -37,7 +37,8 @@ std::vector<RecordedFrame> uneven_run() {
   return run;
 }
 
-Replay recorded(const test::ScratchFolder& folder, const std::vector<RecordedFrame>& run) {
+Replay recorded(const test::ScratchFolder& folder, const std::vector<RecordedFrame>& run,
+                Vec3d origin = {}) {
   const std::string path = folder.path() + "/run.replay";
   auto recorder = Recorder::create(
       path, {.world = "x",
@@ -45,7 +46,8 @@ Replay recorded(const test::ScratchFolder& folder, const std::vector<RecordedFra
              .dt = 0.05,
              .classes = {{.name = "adult"}, {.name = "child", .height = 1.1, .radius = 0.18}},
              .model = "",
-             .settings = ""});
+             .settings = "",
+             .origin = origin});
   EXPECT_TRUE(recorder);
   for (const RecordedFrame& frame : run) EXPECT_TRUE(recorder->append(frame.view()));
   EXPECT_TRUE(recorder->finish());
@@ -68,10 +70,14 @@ TEST(ReplayExport, TheFilmTakesTheWidestEvenSpacing) {
   EXPECT_DOUBLE_EQ(film_rate(one)->rate, 20);
 }
 
-TEST(ReplayExport, TextsHoldEachPositionToTheMillimetre) {
+// Of a run whose positions are moved by `origin`.
+void expect_texts_to_the_millimetre(Vec3d origin) {
   const test::ScratchFolder folder;
-  const auto run = uneven_run();
-  Replay replay = recorded(folder, run);
+  auto run = uneven_run();
+  for (RecordedFrame& frame : run) {
+    for (Vec3d& p : frame.positions) p = p + origin;
+  }
+  Replay replay = recorded(folder, run, origin);
   Context context;
   const std::string csv = folder.path() + "/a.csv", txt = folder.path() + "/a.txt";
   ASSERT_TRUE(export_csv(replay, csv, {}, context));
@@ -115,6 +121,13 @@ TEST(ReplayExport, TextsHoldEachPositionToTheMillimetre) {
   }
   EXPECT_FALSE(std::getline(csv_file, line));
   EXPECT_FALSE(txt_file >> line);
+}
+
+TEST(ReplayExport, TextsHoldEachPositionToTheMillimetre) { expect_texts_to_the_millimetre({}); }
+
+TEST(ReplayExport, TextsHoldEachPositionToTheMillimetreFarFromTheCoordinateOrigin) {
+  expect_texts_to_the_millimetre({678015, 0, -5403515});
+  expect_texts_to_the_millimetre({-1e7, 0, 1e7});
 }
 
 TEST(ReplayExport, TablesHaveColumnsForAxesOnlyWhereSomeMayLean) {

@@ -110,6 +110,29 @@ TEST(WalkableSurface, IsReadBackFromBothFormats) {
   }
 }
 
+TEST(WalkableSurface, IsReadBackFromBothFormatsFarFromTheCoordinateOrigin) {
+  const test::ScratchFolder folder;
+  for (const Vec3d by : {Vec3d{678000, 370, -5403500}, Vec3d{-1e7, 0, 1e7}}) {
+    Scene source = worlds::two_floors();
+    for (Vec3d& p : source.positions) p = p + by;
+    const Scene scene = surface(bake(source, 0.1));
+    for (const char* extension : {".glb", ".obj"}) {
+      const std::string path = folder.path() + "/surface" + extension;
+      ASSERT_TRUE(extension == std::string(".glb") ? write_glb(scene, path)
+                                                   : write_obj(scene, path));
+      Context context;
+      SceneConfig config;
+      config.sources.emplace_back().path = path;
+      const auto read = load_scene(config, context);
+      ASSERT_TRUE(read) << read.error().message;
+      const Box3d wrote = scene.bounds(), found = read->bounds();
+      EXPECT_LT(length(found.min - wrote.min), 5e-6) << extension;
+      EXPECT_LT(length(found.max - wrote.max), 5e-6) << extension;
+      EXPECT_NEAR(area_of(*read, false), area_of(scene, false), 1e-3) << extension;
+    }
+  }
+}
+
 TEST(WalkableSurface, RefusesNonsense) {
   Context context;
   EXPECT_FALSE(walkable_surface(World(), 0, context));

@@ -41,6 +41,29 @@ TEST(HeatMap, CellsFillThePlotAndZeroStaysPaper) {
   EXPECT_NEAR(static_cast<double>(pixels_like_the_middle(*image)), cells * 0.98, cells * 0.005);
 }
 
+// Coordinates of national grids differ in the last of many digits.
+TEST(HeatMap, TicksOfNationalGridsKeepAllTheirDigits) {
+  HeatMap map = map_of(60, 60, 0);
+  map.x0 = 678000;
+  map.z0 = -5403530;
+  const auto image = draw_heat_map(map);
+  map.x0 += 5;
+  const auto right = draw_heat_map(map);
+  map.x0 -= 5;
+  map.z0 += 5;
+  const auto below = draw_heat_map(map);
+  ASSERT_TRUE(image && right && below);
+  EXPECT_NE(image->rgb, right->rgb);
+  EXPECT_NE(image->rgb, below->rgb);
+  // No text is cut off at the picture's edge.
+  for (int32_t y = 0; y < image->height; ++y) {
+    for (int32_t x = 0; x < 4; ++x) {
+      const auto i = static_cast<size_t>(y * image->width + x) * 3;
+      EXPECT_EQ(image->rgb[i], image->rgb[0]) << x << ' ' << y;
+    }
+  }
+}
+
 TEST(HeatMap, MoreCellsThanPixelsAreAveraged) {
   HeatMap map = map_of(3000, 1500, 3);
   for (size_t c = 0; c < map.values.size(); ++c) map.values[c] = c % 2 == 0 ? 0.0 : 2.0;

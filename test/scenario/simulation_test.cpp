@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "throng/simulation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,6 +64,78 @@ double run_out(Simulation& simulation, double most) {
     EXPECT_EQ(found.overlaps + found.wall_entries, 0U) << "at " << last.time;
   } while (!simulation.is_over() && last.time < most);
   return last.time;
+}
+
+// The hall's like at a place of the world, with all that names coordinates.
+Hall hall_at(double x, double z) {
+  const auto box = [&](double u0, double v0, double u1, double v1) {
+    return fmt::format("[{}, {}, {}, {}]", x + u0, z + v0, x + u1, z + v1);
+  };
+  const auto ring = [&](double u0, double v0, double u1, double v1) {
+    return fmt::format("[[{0}, {1}], [{2}, {1}], [{2}, {3}], [{0}, {3}]]", x + u0, z + v0, x + u1,
+                       z + v1);
+  };
+  const std::string text = fmt::format(
+      R"(seconds = 60
+seed = 3
+cell = 0.125
+[plane]
+floor = {}
+obstacles = [{}, {}]
+[[area]]
+name = "west"
+box = {}
+[[area]]
+name = "out"
+circle = [{}, {}, 1]
+[[density]]
+name = "all"
+box = {}
+pixel = 1
+paint = [{{ area = "west", weight = 200 }}]
+[[queue]]
+name = "till"
+line = [[{}, 0, {}], [{}, 0, {}]]
+spacing = 0.75
+service = 0.5
+[[journey]]
+name = "out"
+stages = [{{ queue = "till" }}, {{ leave = "out" }}]
+[[source]]
+name = "all"
+density = "all"
+journey = "out"
+count = 40
+)",
+      ring(0, 0, 20, 10), ring(10, 0, 10.25, 4), ring(10, 7, 10.25, 10), box(0.5, 0.5, 8, 9.5),
+      x + 18, z + 2, box(0, 0, 8, 10), x + 13, z + 5, x + 17, z + 5);
+  auto scenario = parse_scenario(text, "hall.toml");
+  EXPECT_TRUE(scenario) << scenario.error().message;
+  if (!scenario) return {};
+  Context context;
+  auto world = open_world(*scenario, context);
+  EXPECT_TRUE(world) << world.error().message;
+  return {*scenario, *world};
+}
+
+TEST(Simulation, a_scenario_in_a_national_grid_goes_as_near_the_coordinate_origin) {
+  for (const auto& [x, z] : {std::pair{678000.0, -5403500.0}, std::pair{-1e7, 1e7}}) {
+    Simulation near = made(hall_at(0, 0)), far = made(hall_at(x, z));
+    std::vector<AvatarState> near_states, far_states;
+    for (int step = 0; step < 300; ++step) {
+      ASSERT_TRUE(near.step());
+      ASSERT_TRUE(far.step());
+      near.crowd().read(near_states);
+      far.crowd().read(far_states);
+      ASSERT_EQ(near_states.size(), far_states.size()) << step;
+      for (size_t i = 0; i < near_states.size(); ++i) {
+        EXPECT_EQ(near_states[i].id, far_states[i].id);
+        const Vec3d off = far_states[i].position - Vec3d{x, 0, z} - near_states[i].position;
+        ASSERT_LT(length(off), 1e-3) << step;  // [m]
+      }
+    }
+    EXPECT_EQ(far.crowd().check().wall_entries, 0U);
+  }
 }
 
 TEST(Simulation, people_come_and_leave_by_the_nearest_exit) {

@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "crowd/crowd_state.h"
+#include "crowd/leaving_ground.h"
+#include "throng/crowd.h"
+#include "world/place.h"
+
+// What avatars do that are in an obstacle when it closes: they get out of it, on along their paths
+// if these lead out soon, else the nearest way. What they may do, StrideGround::move and the other
+// engines' is_blocked say, whatever they wish. docs/design/008-engine.md, "Obstacles".
+namespace throng {
+namespace {
+
+constexpr double kMaxDetour = 2;    // times the nearest way out, for a path that leads out
+constexpr double kMaxPath = 2;      // [m] more than that
+constexpr float kPatience = 0.4f;   // [radians] of a turn, before one gives its path up
+constexpr uint64_t kLookEvery = 4;  // steps of one who finds no exit
+constexpr std::array<double, 4> kReaches = {1, 2, 4, 8};  // [m] to a node's free place
+
+AirSpot here(const Body& body) { return {body.x, body.z, body.y}; }
+
+// Of any height.
+AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
+  constexpr double kHigh = 1e5;  // [m]
+  return {{prism.corners, -kHigh, kHigh}, origin, unit};
+}
+
+}  // namespace
+
+bool Crowd::State::is_occupied(uint32_t slot,
+                               std::span<const std::pair<uint32_t, uint32_t>> found) const {
+  const Prism& prism = obstacles.all()[slot].wanted;
+  const AirObstacle solid(prism, world.data()->summary.origin, unit);
+  return std::any_of(found.begin(), found.end(), [&](const auto& pair) {
+    const Body& body = engine.bodies()[pair.second];
+    const AvatarClass& avatar = body_class(body.avatar_class);
+    if (body.climbs) {
+      const Climb& climb = climbs[body.slot];
+      return climbers.in_counterflow(*classes[body.avatar_class]->nodes,
+                                     {here(body), body.radius, body.height},
+                                     {climb.feet, climb.axis}, climb.radius, solid, {prism, {}});
+    }
+    AirSpot feet = here(body);
+    int32_t height = body.height;
+    if (!body.has(Body::kFlying)) {
+      const auto bottom = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
+      feet.y += bottom;
+      height -= bottom;
+    }
+    return solid.holds(feet, avatar.radius, height);
+  });
+}
+
+void Crowd::State::mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> found, bool all) {
+  std::vector<std::pair<uint32_t, uint32_t>> by_body;  // index, obstacle
+  for (const auto& pair : found) {
+    const bool is_climber = engine.bodies()[pair.second].climbs;
+    if (!is_climber || is_occupied(pair.first, {&pair, 1}))
+      by_body.emplace_back(pair.second, pair.first);
+  }
+  std::sort(by_body.begin(), by_body.end());
+  if (all && some_leave) {
+    for (uint32_t i = 0; i < engine.bodies().size(); ++i) {
+      Body& body = engine.bodies()[i];
+      if (!body.leaves) continue;
+      const auto at = std::lower_bound(by_body.begin(), by_body.end(), std::pair(i, uint32_t{0}));
+      if (at == by_body.end() || at->first != i) end_leaving(body);
+    }
+  }
+  some_leave = !by_body.empty() || (!all && some_leave);
+  std::vector<uint32_t> slots;
+  for (size_t n = 0; n < by_body.size();) {
+    Body& body = engine.bodies()[by_body[n].first];
+    slots.clear();
+    for (const uint32_t i = by_body[n].first; n < by_body.size() && by_body[n].first == i; ++n) {
+      slots.push_back(by_body[n].second);
+    }
+    if (!body.leaves) begin_to_leave(body, slots);
+  }
+}
+
+void Crowd::State::begin_to_leave(Body& body, std::span<const uint32_t> slots) {
+  body.leaves = true;
+  body.clear(Body::kKeeps);
+  body.turn = 0;
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kExternal | Body::kArrived | Body::kLost;
+  if ((body.flags & kAll) != Body::kHasGoal || body.climbs) return;
+  if (!leads_out(body, slots)) body.flags |= Body::kLost;
+}
+
+// Does its path lead out of obstacles soon, and never back?
+bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) const {
+  const Vec3d& origin = world.data()->summary.origin;
+  std::vector<AirObstacle> columns;
+  for (const uint32_t slot : slots) {
+    columns.push_back(column_of(obstacles.all()[slot].wanted, origin, unit));
+  }
+  const double radius = body_class(body.avatar_class).radius;
+  std::vector<std::pair<double, double>> points;  // [units]
+  const auto add = [&](int32_t x, int32_t z) { points.emplace_back(x, z); };
+  if (body.flies()) {
+    const Flight& flight = flights[body.slot];
+    for (size_t i = flight.next; i < flight.count; ++i) add(flight.points[i].x, flight.points[i].z);
+  } else if (config.ways == Routing::kStraight) {
+    add(body.local_target_x, body.local_target_z);
+  } else {
+    const Route& route = routes[body.slot];
+    for (size_t i = route.next; i < route.count; ++i) add(route.corners[i].x, route.corners[i].z);
+  }
+  const CrowdGround& ground = classes[body.avatar_class]->ground;
+  const uint16_t steps = body.flies()
+                             ? uint16_t{0}
+                             : ground.left().steps_out({body.level, body.point().cell_x() & 63,
+                                                        body.point().cell_z() & 63});
+  const double least = steps == LeftCells::kNone ? HUGE_VAL : steps * world.data()->summary.cell;
+  const double limit = (kMaxDetour * least + kMaxPath) / unit;
+  const double step_size = radius / 2 / unit;
+  double gone = 0, x = body.x, z = body.z;
+  bool is_out = false;
+  for (const auto& [to_x, to_z] : points) {
+    const double dx = to_x - x, dz = to_z - z, size = std::sqrt(dx * dx + dz * dz);
+    const auto count = static_cast<int64_t>(size / step_size) + 1;
+    for (int64_t i = 1; i <= count; ++i) {
+      const double part = static_cast<double>(i) / static_cast<double>(count);
+      const AirSpot spot{static_cast<int32_t>(x + part * dx), static_cast<int32_t>(z + part * dz),
+                         0};
+      const bool held = std::any_of(columns.begin(), columns.end(), [&](const AirObstacle& column) {
+        return column.holds(spot, radius, 1);
+      });
+      if (is_out && held) return false;
+      is_out = is_out || !held;
+      if (!is_out && gone + part * size > limit) return false;
+    }
+    gone += size;
+    x = to_x;
+    z = to_z;
+  }
+  return is_out;
+}
+
+void Crowd::State::end_leaving(Body& body) {
+  body.leaves = false;
+  if (body.has(Body::kExternal)) return;
+  if (body.climbs) {
+    Climb& climb = climbs[body.slot];
+    const bool rests = !body.has(Body::kHasGoal) || body.has(Body::kArrived);
+    if (!rests || !climb.is_on_ground()) return;
+    climb.count = 0;
+    climb.at.next = 0;
+    climb.whole = body.has(Body::kArrived) ? 1 : 0;
+    return;
+  }
+  if (!body.has(Body::kHasGoal)) return;
+  if (body.has(Body::kArrived)) {  // It stays where it is now.
+    body.flags |= Body::kLast;
+    body.local_target_x = body.x;
+    body.local_target_z = body.z;
+    if (body.flies()) flights[body.slot].local_target_y = body.y;
+    return;
+  }
+  const bool walks_straight = config.ways == Routing::kStraight && !body.flies();
+  if (!walks_straight || !body.has(Body::kLost)) return;  // A path is asked for.
+  Spot goal = routes[body.slot].goal;
+  if (air_of(body) != nullptr) {
+    const Flight& flight = flights[body.slot];
+    if (flight.goal_level == Flight::kInAir) return;
+    goal = {flight.goal.x, flight.goal.z, flight.goal_level};
+  }
+  body.local_target_x = goal.x;
+  body.local_target_z = goal.z;
+  body.clear(Body::kLost);
+  body.flags |= Body::kLast;
+}
+
+// Does it take its path again, as it does not get on by the nearest way out either?
+bool Crowd::State::tries_path_again(Body& body) const {
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kArrived | Body::kLost;
+  if ((body.flags & kAll) != (Body::kHasGoal | Body::kLost)) return false;
+  const Route& route = routes[body.slot];
+  if (std::fabs(body.turn) <= kPatience || route.next >= route.count) return false;
+  body.turn = 0;
+  std::vector<uint32_t> slots;
+  const GroundPoint at = body.point();
+  classes[body.avatar_class]->ground.left().list_obstacles(
+      {body.level, at.cell_x() & 63, at.cell_z() & 63}, slots);
+  if (slots.empty() || !leads_out(body, slots)) return false;
+  const Spot& corner = route.corners[route.next];
+  body.local_target_x = corner.x;
+  body.local_target_z = corner.z;
+  body.clear(Body::kLost);
+  if (route.whole && route.next + 1 == route.count) body.flags |= Body::kLast;
+  return true;
+}
+
+void Crowd::State::plan_exit(Body& body) {
+  if (body.has(Body::kExternal)) return;
+  const CrowdGround& cells = classes[body.avatar_class]->ground;
+  const int32_t step_height = step_mm(body_class(body.avatar_class));
+  const StrideGround ground(cells, step_height);
+  const bool has_path =
+      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kLost);
+  if (has_path) {
+    if (config.ways == Routing::kPaths && !body.has(Body::kKeeps)) {
+      const uint64_t nth = (sub_step - 1 + body.slot) / engine.steps_of_reaction(body);
+      follow(body, routes[body.slot], ground, nth, static_cast<float>(1 / unit));
+    }
+    if (std::fabs(body.turn) > kPatience) {
+      body.flags |= Body::kLost;
+      body.turn = 0;
+    }
+    if (!body.has(Body::kLost)) return;
+  } else if (tries_path_again(body)) {
+    return;
+  }
+  body.clear(Body::kLast);
+  body.clear(Body::kKeeps);
+  const GroundPoint from = body.point();
+  if (!is_leaving(cells, body.level, from.cell_x(), from.cell_z())) return;  // It is out.
+  body.local_target_x = body.x;
+  body.local_target_z = body.z;
+  constexpr int32_t kHalf = kUnitsPerCell / 2;
+  for (uint32_t most = cells.left().steps_out({body.level, from.cell_x() & 63, from.cell_z() & 63});
+       most > 0 && most != LeftCells::kNone; most /= 2) {
+    uint32_t level = body.level;
+    int32_t x = from.cell_x(), z = from.cell_z();
+    if (!find_exit(cells, step_height, most, level, x, z)) return;
+    const GroundPoint to{(int64_t{x} << kUnitBits) + kHalf, (int64_t{z} << kUnitBits) + kHalf};
+    if (most > 1 && !ground.sees(body.level, from, to, level, HUGE_VALF)) continue;
+    body.local_target_x = static_cast<int32_t>(to.x);
+    body.local_target_z = static_cast<int32_t>(to.z);
+    return;
+  }
+}
+
+bool Crowd::State::plan_exit_in_air(Body& body, Flight& flight) const {
+  if (body.has(Body::kExternal)) return false;
+  if (flight.in_port != 0) {
+    flight.descends = 0;  // It may not stand there.
+    return true;
+  }
+  const bool has_path =
+      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kLost);
+  if (has_path && std::fabs(body.turn) <= kPatience) return false;
+  if (has_path) body.flags |= Body::kLost;
+  const FlyerAir& air = *air_of(body);
+  const AirSpot at = here(body);
+  body.clear(Body::kLast);
+  body.local_target_x = body.x;
+  body.local_target_z = body.z;
+  flight.local_target_y = body.y;
+  std::vector<AirSpot> exits;
+  flyers.list_exits(body, exits);
+  double least = HUGE_VAL;
+  for (const AirSpot& exit : exits) {
+    const double dx = (static_cast<double>(exit.x) - at.x) * unit;
+    const double dz = (static_cast<double>(exit.z) - at.z) * unit;
+    const double dy = (static_cast<double>(exit.y) - at.y) * 1e-3;
+    const double square = dx * dx + dy * dy + dz * dz;
+    if (square >= least || !air.is_legal(exit) || !air.sees(at, exit)) continue;
+    if (flyers.is_taken(body, exit) || !is_clear_of_obstacles(body, at, exit)) continue;
+    least = square;
+    body.local_target_x = exit.x;
+    body.local_target_z = exit.z;
+    flight.local_target_y = exit.y;
+  }
+  return true;
+}
+
+bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) {
+  if (!climb.is_on_ground()) return false;
+  const bool rests = !body.has(Body::kHasGoal) || body.has(Body::kArrived);
+  const bool goes = climb.count > 0 && climb.at.next < climb.count;
+  if (!rests && goes && !body.has(Body::kLost)) return false;  // on along its path
+  if (rests && goes && climb.whole == 0) return true;          // on its way out
+  if ((sub_step + body.slot) % kLookEvery != 0) return true;
+  for (const double reach : kReaches) {
+    if (step_off(body, climb, worker, reach)) return true;
+  }
+  return true;
+}
+
+}  // namespace throng

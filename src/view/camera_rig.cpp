@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-// Eye and target by yaw, pitch and distance. Each move keeps one of them, or a point of the
-// picture.
+// Eye and target by yaw, pitch and distance; each move keeps one of them or a point in the picture.
 namespace throng {
 namespace {
 

@@ -13,8 +13,7 @@
 #include "throng/flight.h"
 #include "throng/partial_runs.h"
 
-// Each overlay is a list of triangles and lines. Time and memory: linear in cells, nodes or
-// avatars.
+// Each overlay is a list of triangles and lines, linear in cells, nodes or avatars.
 namespace throng {
 namespace {
 

@@ -12,8 +12,7 @@
 #include "view/side_task.h"
 #include "view/timeline_frame.h"
 
-/// Frames made beside the window, a little ahead of the time shown, so that no drawing waits for a
-/// step.
+/// Frames made beside the window, a little ahead of the time shown: drawing waits for no step.
 namespace throng {
 
 /// Makes the frames of a timeline: a crowd, a scenario or a recording. One thread at a time.

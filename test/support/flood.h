@@ -20,8 +20,7 @@ struct Flood {
   [[nodiscard]] double around(double height) const;
 };
 
-/// From the place nearest to `start` (within a metre up or down). Empty if the class cannot stand
-/// there.
+/// From the place nearest to `start` (vertical tolerance: a metre). Empty if there is none.
 Flood flood_from(const World& world, int32_t avatar_class, Vec3d start);
 
 }  // namespace throng

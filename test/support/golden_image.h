@@ -15,8 +15,7 @@ struct ImageLimits {
   double far_share = 0.002;  ///< Of values that differ by more than 32.
 };
 
-/// Expects that a picture equals the PNG within tolerances; with THRONG_WRITE_GOLDEN, writes the
-/// PNG first.
+/// Expects a picture within tolerances of the PNG; THRONG_WRITE_GOLDEN writes the PNG first.
 void expect_golden(const Image& image, const std::string& golden, const ImageLimits& limits = {});
 
 }  // namespace throng::test

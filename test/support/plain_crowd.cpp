@@ -238,7 +238,7 @@ void PlainCrowd::resolve_conflicts() {
         return true;
       };
       const auto move_of = [&](Plane velocity) {
-        return Spot{config_.units.way(velocity.x), config_.units.way(velocity.z)};
+        return Spot{config_.units.displacement(velocity.x), config_.units.displacement(velocity.z)};
       };
       const auto propose = [&](Plane velocity) { return propose_move(move_of(velocity)); };
       if (keeping[i] != 0) {

@@ -298,7 +298,7 @@ Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
 // The eye moves on before this step is shown: an avatar that is added must be hidden from where the
 // eye was, is, and may be by then.
 Result<void> CrowdPlayer::keep_populated() {
-  constexpr double kMaxEyeMove = 10;  // [m] A larger move starts afresh.
+  constexpr double kMaxEyeMove = 10;  // [m] After a larger one the crowd is populated again.
   constexpr double kAhead = 3;        // [steps]
   SeenOnly& s = *seen_only_;
   Context quiet;

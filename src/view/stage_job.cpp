@@ -122,7 +122,7 @@ void StageParts::set_atlases(std::vector<std::vector<Atlas>> of_class) {
 void StageParts::set_figures(std::vector<std::vector<ViewFigure>> of_class) {
   for (auto& row : of_class) {
     for (auto& [atlas, model] : row) {
-      // No graphics card reads this format; block formats stay if the card reads them.
+      // The drawing does not read this format; it unpacks block formats if the card cannot.
       if (atlas.format == AtlasFormat::kRgb5a1) atlas = convert_atlas(atlas, AtlasFormat::kRgba8);
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// node make_figure.cjs SITE: writes SITE/people.atlas, who walks in the page, and SITE/people_etc2.atlas, the same for the
-// graphics cards of phones, with the code that will draw it.
+// node make_figure.cjs SITE: writes SITE/people.atlas, the avatars' atlas of the page, and SITE/people_etc2.atlas, the same
+// for the graphics cards of phones, with the code that will draw it.
 const fs = require('fs');
 const path = require('path');
 

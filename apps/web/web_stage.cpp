@@ -7,7 +7,7 @@
 #include "command.h"
 #include "rerun.h"
 
-// What apps/throng/view_stage.cpp asks of the program, as a page answers it.
+// The functions that apps/throng/view_stage.cpp needs of a program, for a page.
 namespace throng::app {
 
 void note(const std::string& sentence) { std::printf("throng: %s\n", sentence.c_str()); }

@@ -15,15 +15,15 @@
 #include "throng_view/viewer.h"
 #include "view_stage.h"
 
-// The viewer as a page sees it: functions for JavaScript, which has the canvas, the pointer and the
-// network (page/throng.js). Nothing of the viewer itself is here.
+// The viewer's functions for JavaScript, which has the canvas, the pointer and the network
+// (page/throng.js).
 namespace throng::app {
 namespace {
 
 struct Page {
   std::unique_ptr<Viewer> viewer;
-  std::string error;  // Of the last call that said it failed.
-  std::string text;   // What the last call that returned text returned.
+  std::string error;  // Of the last call that failed.
+  std::string text;   // Result of the last call that returned text.
 };
 
 Page& page() {
@@ -36,7 +36,7 @@ bool fail_with(const std::string& sentence) {
   return false;
 }
 
-// By the names that KeyboardEvent.code has, which mean places on the keyboard, as GLFW's do.
+// By KeyboardEvent.code, which names a key by its position, as GLFW does.
 Key key_of_code(const std::string& code) {
   if (code.size() == 4 && code.starts_with("Key")) return static_cast<Key>(code[3]);
   if (code.size() == 6 && code.starts_with("Digit")) return static_cast<Key>(code[5]);
@@ -87,7 +87,7 @@ bool make_context(const char* canvas) {
   if (context <= 0 || emscripten_webgl_make_context_current(context) != EMSCRIPTEN_RESULT_SUCCESS) {
     return false;
   }
-  // So that the drawing can say what draws.
+  // The drawing reports the renderer's name.
   (void)emscripten_webgl_enable_extension(context, "WEBGL_debug_renderer_info");
   return true;
 }
@@ -96,7 +96,7 @@ bool make_context(const char* canvas) {
 
 extern "C" {
 
-/// Begins with the canvas that a CSS selector names. False: throng_error() says why.
+/// Creates the viewer on the canvas of a CSS selector. False: throng_error() returns the reason.
 EMSCRIPTEN_KEEPALIVE bool throng_start(const char* canvas, const char* settings,
                                        double pixel_ratio) {
   if (!make_context(canvas)) return fail_with("this browser gives no WebGL 2 context");
@@ -114,8 +114,8 @@ EMSCRIPTEN_KEEPALIVE bool throng_start(const char* canvas, const char* settings,
 
 EMSCRIPTEN_KEEPALIVE const char* throng_error() { return page().error.c_str(); }
 
-/// Shows files that the page has put into its file system: what throng view shows. `what` is an
-/// object of path, and perhaps world, source, atlas, avatars, cell, seed.
+/// Shows a file that the page has put into its file system, as `throng view` does. `what` is a JSON
+/// object: path, optionally world, source, atlas, avatars, cell, seed.
 EMSCRIPTEN_KEEPALIVE bool throng_open(const char* what) {
   const Json json = Json::parse(what, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("path")) return fail_with("nothing to open");
@@ -132,7 +132,7 @@ EMSCRIPTEN_KEEPALIVE bool throng_open(const char* what) {
   return true;
 }
 
-/// Draws a frame. Where something is being loaded or stepped, it gets its share of time here.
+/// Draws a frame. Loads and steps get their share of time here.
 EMSCRIPTEN_KEEPALIVE void throng_frame(double seconds, int32_t width, int32_t height) {
   const Result<void> ok = page().viewer->frame(seconds, width, height);
   page().error = ok ? "" : ok.error().message;
@@ -180,7 +180,7 @@ EMSCRIPTEN_KEEPALIVE void throng_gamepad(double walk_x, double walk_y, double lo
   page().viewer->set_gamepad({walk_x, walk_y, look_x, look_y, hurry});
 }
 
-/// Nothing is held any more.
+/// All keys and buttons are up.
 EMSCRIPTEN_KEEPALIVE void throng_leave() { page().viewer->handle({.kind = ViewEventKind::kLeave}); }
 
 EMSCRIPTEN_KEEPALIVE void throng_look(double x, double y, double z, double to_x, double to_y,
@@ -192,7 +192,7 @@ EMSCRIPTEN_KEEPALIVE void throng_show_overlay(const char* name) {
   page().viewer->show_overlay(name);
 }
 
-/// What is going on, as an object. Wishes are told once.
+/// The viewer's status and requests as a JSON object. Each request is reported once.
 EMSCRIPTEN_KEEPALIVE const char* throng_status() {
   const ViewerStatus s = page().viewer->status();
   const ViewerRequests requests = page().viewer->take_requests();
@@ -204,7 +204,7 @@ EMSCRIPTEN_KEEPALIVE const char* throng_status() {
                      {"avatars", s.avatars},
                      {"drawn", s.drawn},
                      {"picked", s.picked},
-                     {"driven", s.driven},
+                     {"controlled", s.controlled},
                      {"grab_mouse", requests.grab_mouse},
                      {"save_picture", requests.save_picture},
                      {"camera",
@@ -214,7 +214,7 @@ EMSCRIPTEN_KEEPALIVE const char* throng_status() {
   return page().text.c_str();
 }
 
-/// To be given to throng_start() the next time.
+/// To pass to throng_start() at the next start.
 EMSCRIPTEN_KEEPALIVE const char* throng_settings() {
   page().text = page().viewer->settings();
   return page().text.c_str();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// What a step of a crowd with goals costs: the random scene of the table, on a plane. One JSON
+// Measures a step of a crowd with goals: the random scene of the table, on a plane. Prints a JSON
 // object.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,13 +23,13 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   uint32_t avatars = 10000;
-  double area = 4;  // for each [m2]
+  double area = 4;  // Per avatar. [m2]
   double near = 50;
   bench::StepTiming timing;
   uint64_t seed = 1;
   int32_t threads = 0;
   double radius = 0.3, speed = 1.3;
-  double view = -1;  // radius of a view in the middle [m]; below 0: none
+  double view = -1;  // Radius of a view in the middle [m]; negative: none.
   double dt = 0.1;
   int32_t low_detail_steps = CrowdConfig().low_detail_steps;
   double low_detail_reaction = CrowdConfig().low_detail_reaction;
@@ -38,7 +38,7 @@ struct Options {
 Json fail(const Error& error) { return {{"error", error.message}}; }
 
 Json run(const Options& o) {
-  constexpr double kRim = 2;  // [m] where no goals are
+  constexpr double kRim = 2;  // [m] Without goals.
   const double side = std::sqrt(o.area * o.avatars) + 2 * kRim;
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, side}, {side, 0, side}, {side, 0, 0});
@@ -82,15 +82,15 @@ Json run(const Options& o) {
     crowd->set_goals(to, goals);
   };
   give(*ids);
-  Json told = {{"avatars", o.avatars}, {"area", o.area}, {"threads", o.threads}};
-  told.update(bench::time_steps(*crowd, o.timing, give));
-  return told;
+  Json report = {{"avatars", o.avatars}, {"area", o.area}, {"threads", o.threads}};
+  report.update(bench::time_steps(*crowd, o.timing, give));
+  return report;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App parser{"What a step of a crowd with goals costs"};
+  CLI::App parser{"Measures a step of a crowd with goals"};
   Options options;
   parser.add_option("--avatars", options.avatars)->check(CLI::Range(1, 10000000));
   parser.add_option("--area", options.area)->check(CLI::Range(0.3, 1000.0));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// What a step costs of those who fly: goals at random in open air, or 500 who cross a sphere. One
+// Measures a step of flyers: random goals in open air, or avatars that cross a sphere. Prints a
 // JSON object.
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -25,21 +25,21 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string scene = "random";
   uint32_t avatars = 10000;
-  double volume = 64;  // for each [m3]
+  double volume = 64;  // Per avatar. [m3]
   double near = 50;
   bench::StepTiming timing{.warm = 30, .steps = 30, .check_every = 30};
   uint64_t seed = 1;
   int32_t threads = 0;
 };
 
-constexpr double kHigh = 40;  // [m] of air
+constexpr double kHigh = 40;  // [m] Height of the air.
 
 Json fail(const Error& error) { return {{"error", error.message}}; }
 
 Result<World> open_air(double side, double high, double cell) {
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, side}, {side, 0, side}, {side, 0, 0});
-  scene.add_box({0, high, 0}, {1, high + 0.5, 1});  // there is air up to it
+  scene.add_box({0, high, 0}, {1, high + 0.5, 1});  // The air ends at its top.
   Context context;
   return bake_world(scene, {.cell = cell, .classes = {flyer_class()}}, context);
 }
@@ -77,12 +77,12 @@ Json run_random(const Options& o) {
     crowd->set_goals(to, goals);
   };
   give(*ids);
-  Json told = {{"avatars", o.avatars}, {"volume", o.volume}, {"threads", o.threads}};
-  told.update(bench::time_steps(*crowd, o.timing, give));
-  return told;
+  Json report = {{"avatars", o.avatars}, {"volume", o.volume}, {"threads", o.threads}};
+  report.update(bench::time_steps(*crowd, o.timing, give));
+  return report;
 }
 
-// To the other side of a sphere of a radius of 25 m, evenly from everywhere.
+// Each starts on a sphere of radius 25 m, evenly distributed, and flies to the opposite point.
 Json run_sphere(const Options& o) {
   const auto world = open_air(80, 60, 0.2);
   if (!world) return fail(world.error());
@@ -94,9 +94,9 @@ Json run_sphere(const Options& o) {
   for (uint32_t i = 0; i < o.avatars; ++i) {
     const double y = 1 - (2.0 * i + 1) / o.avatars;
     const double r = std::sqrt(1 - y * y), turn = 2.399963 * i + static_cast<double>(o.seed);
-    const Vec3d way{25 * r * std::cos(turn), 25 * y, 25 * r * std::sin(turn)};
-    spawns.push_back({.place = air_place(middle + way)});
-    goals.push_back(air_place(middle - way));
+    const Vec3d offset{25 * r * std::cos(turn), 25 * y, 25 * r * std::sin(turn)};
+    spawns.push_back({.place = air_place(middle + offset)});
+    goals.push_back(air_place(middle - offset));
   }
   Context context;
   const auto ids = crowd->add(spawns, context);
@@ -125,11 +125,11 @@ Json run_sphere(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App parser{"What a step of those who fly costs"};
+  CLI::App parser{"Measures a step of flyers"};
   Options options;
   parser.add_option("--scene", options.scene)->check(CLI::IsMember({"random", "sphere"}));
   parser.add_option("--avatars", options.avatars)->check(CLI::Range(1, 1000000));
-  parser.add_option("--volume", options.volume, "For each [m3]")->check(CLI::Range(2.0, 1e4));
+  parser.add_option("--volume", options.volume, "Per avatar [m3]")->check(CLI::Range(2.0, 1e4));
   parser.add_option("--near", options.near)->check(CLI::Range(1.0, 1e6));
   parser.add_option("--warm", options.timing.warm);
   parser.add_option("--steps", options.timing.steps)->check(CLI::PositiveNumber);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// A crowd with goals in a baked world, first alone, then with crates that come and go and carts
-// that drive through it: what that costs, and whether anybody is ever in one. One JSON object.
+// A crowd with goals in a baked world, first alone, then with crates that are added and removed and
+// carts that move: measures both and counts avatars inside obstacles. Prints a JSON object.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -44,7 +44,7 @@ void time_of(std::vector<double>& us, Do act) {
 struct Cart {
   ObstacleId id;
   Prism prism;
-  double dx = 0, dz = 0;  // a step [m]
+  double dx = 0, dz = 0;  // Per step. [m]
 };
 
 class Run {
@@ -60,7 +60,7 @@ class Run {
     crowd_.set_goals(to, goals);
   }
 
-  // Steps of one kind. Returns what they say.
+  // Runs the steps of one kind and returns their measures.
   Json steps(bool with_obstacles) {
     std::vector<double> ns, plan_ns;
     CrowdCheck found;
@@ -204,7 +204,7 @@ Json run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App parser{"A crowd with obstacles that come, move and go"};
+  CLI::App parser{"A crowd with obstacles that are added, moved and removed"};
   Options options;
   parser.add_option("world", options.world, "baked world")->required();
   parser.add_option("--avatars", options.avatars)->check(CLI::Range(1, 10000000));

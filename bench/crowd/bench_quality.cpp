@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// How well avatars flow without ever touching: the scenes of the quality table, by the crowd's step
-// as the tests have it. One JSON object.
+// How well avatars flow without overlaps: the scenes of the quality table, by the tests' plain
+// version of the crowd's step. Prints a JSON object.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -26,7 +26,7 @@ struct Options {
 Json run(const Options& options) {
   test::PlainConfig config = options.config;
   config.seed = options.seed;
-  if (config.model != SteeringModel::kSampled) {  // as Crowd has it
+  if (config.model != SteeringModel::kSampled) {  // As in Crowd.
     config.deadlock_avoidance = false;
     config.reaction = 0;
     config.steering.neighbours = steer::kMaxNear;
@@ -74,7 +74,7 @@ Json run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App parser{"How well avatars flow without ever touching"};
+  CLI::App parser{"How well avatars flow without overlaps"};
   Options options;
   parser.add_option("--scene", options.scene)
       ->check(CLI::IsMember({"sparse", "dense", "circle"}))
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   parser
       .add_option("--reaction", options.config.reaction,
-                  "Who does as he wants decides anew after it [s]")
+                  "Time after which an avatar that moves as preferred decides again [s]")
       ->capture_default_str();
   parser
       .add_option_function<std::string>("--model",

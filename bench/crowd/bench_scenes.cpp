@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// Does everybody arrive, and does nobody ever touch anybody? One scene, one JSON object.
+// Do all avatars arrive, and without overlaps? One scene; prints a JSON object.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ struct Options {
 
 Json fail(const Error& error) { return {{"error", error.message}}; }
 
-// What was counted on the way.
+// Counts over all steps.
 struct Tally {
   uint64_t steps = 0, avatar_steps = 0, checked = 0;
   CrowdCheck faults;
@@ -62,7 +62,7 @@ Result<World> bake(const Scene& scene, const AvatarClass& avatar, double cell) {
   return bake_world(scene, {.cell = cell, .resolution = 0.1, .classes = {avatar}}, context);
 }
 
-// Each walks to his goal, once.
+// Each avatar walks to its goal, once.
 Json run_play(const Play& play, const Options& o) {
   Context context;
   const auto world = bake(play.scene, play.avatar, o.cell);
@@ -82,7 +82,7 @@ Json run_play(const Play& play, const Options& o) {
   if (!ids) return fail(ids.error());
   const auto placed = std::count_if(ids->begin(), ids->end(), [](AvatarId id) { return bool(id); });
   if (placed < static_cast<std::ptrdiff_t>(ids->size())) {
-    return fail({Errc::kLimit, play.name + ": not everybody can stand where he begins"});
+    return fail({Errc::kLimit, play.name + ": not all avatars fit at their starts"});
   }
   crowd->set_goals(*ids, goals);
   Tally tally;
@@ -105,7 +105,7 @@ Json run_play(const Play& play, const Options& o) {
   return json;
 }
 
-// Scattered over a built-in world, to one goal near by after the other.
+// Scattered over a built-in world; each gets one nearby goal after the other.
 Json run_world(const Options& o) {
   const auto scene = make_builtin_world({.name = o.scene, .seed = o.seed});
   if (!scene) return fail(scene.error());
@@ -129,7 +129,7 @@ Json run_world(const Options& o) {
       const Vec3d& at = states[id.slot1 - 1].position;
       Place goal;
       double far = INFINITY;
-      for (int n = 0; n < kDraws && far > o.near; ++n) {  // else the nearest of these
+      for (int n = 0; n < kDraws && far > o.near; ++n) {  // Or the nearest of these.
         const Place place = world->random_place(0, o.seed, ++drawn);
         const double here = std::hypot(place.position.x - at.x, place.position.z - at.z);
         if (here < far) goal = place;
@@ -168,12 +168,12 @@ Json run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App parser{"Does everybody arrive, and does nobody ever touch anybody?"};
+  CLI::App parser{"Do all avatars arrive, and without overlaps?"};
   Options options;
   parser.add_option("scene", options.scene, "corridor, crossing, a SteerBench file, or a world")
       ->required();
   parser.add_option("--bodies", options.bodies)->check(CLI::Range(4, 10000000));
-  parser.add_option("--area", options.area, "For each, in corridors [m2]")
+  parser.add_option("--area", options.area, "Per avatar, in corridors [m2]")
       ->check(CLI::Range(0.5, 1000.0));
   parser.add_option("--near", options.near, "Goals in worlds [m]")->capture_default_str();
   parser.add_option("--seconds", options.seconds, "At most")->check(CLI::PositiveNumber);

@@ -9,6 +9,7 @@
 
 #include "core/random.h"
 
+// The scenes as boxes, quads and lists of walkers, and a reader of SteerBench files.
 namespace throng::bench {
 namespace {
 
@@ -19,7 +20,7 @@ void add_floor(Scene& scene, double x0, double z0, double x1, double z1) {
   scene.add_quad({x0, 0, z0}, {x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0});
 }
 
-// Somewhere around a point, as the seed says.
+// A random point near another one.
 Vec3d shaken(Vec3d at, double by, uint64_t seed, uint64_t n) {
   return {at.x + by * (2 * random_unit(seed, 2 * n, 0) - 1), at.y,
           at.z + by * (2 * random_unit(seed, 2 * n + 1, 0) - 1)};
@@ -28,18 +29,18 @@ Vec3d shaken(Vec3d at, double by, uint64_t seed, uint64_t n) {
 }  // namespace
 
 Play corridor(uint32_t side, double area, uint64_t seed) {
-  constexpr double kWidth = 4, kGap = 20;
+  constexpr double kWidth = 4, kApart = 20;
   constexpr uint32_t kAcross = 4;
   const double row = area * kAcross / kWidth;  // [m]
   const double group = std::ceil(static_cast<double>(side) / kAcross) * row;
-  const double length = 2 * group + kGap;
+  const double length = 2 * group + kApart;
   Play play{.name = "corridor", .scene = {}, .avatar = {}, .walkers = {}};
   add_floor(play.scene, 0, 0, length, kWidth);
   for (uint32_t n = 0; n < 2 * side; ++n) {
     const uint32_t i = n / 2;
     const Vec3d at{(i / kAcross + 0.5) * row, 0, (i % kAcross + 0.5) * kWidth / kAcross};
     const Vec3d from = shaken(at, 0.15, seed, n);
-    const Vec3d to = {from.x + group + kGap, 0, from.z};
+    const Vec3d to = {from.x + group + kApart, 0, from.z};
     const auto turned = [&](Vec3d p) {  // half around
       return n % 2 == 0 ? p : Vec3d{length - p.x, 0, kWidth - p.z};
     };

@@ -10,7 +10,7 @@
 #include "throng/result.h"
 #include "throng/scene.h"
 
-/// Scenes that crowds have to get through.
+/// Scenes for crowds: a world, and avatars with one goal each.
 namespace throng::bench {
 
 struct Walker {
@@ -18,7 +18,7 @@ struct Walker {
   double speed = 0;  ///< [m/s]
 };
 
-/// A world and who walks in it, each to one goal.
+/// A world and its walkers, each with one goal.
 struct Play {
   std::string name;
   Scene scene;
@@ -26,15 +26,15 @@ struct Play {
   std::vector<Walker> walkers;
 };
 
-/// A corridor 4 m wide; `side` walkers at each end, one in `area` m2, change ends.
+/// A corridor 4 m wide; `side` walkers at each end, one per `area` m2, change ends.
 Play corridor(uint32_t side, double area, uint64_t seed);
 
-/// Two corridors 10 m wide that cross; `arm` walkers in each of the four arms, one in `area` m2, go
-/// to the one beyond.
+/// Two corridors 10 m wide that cross; `arm` walkers in each of the four arms, one per `area` m2,
+/// walk to the opposite arm.
 Play crossing(uint32_t arm, double area, uint64_t seed);
 
 /// A case of SteerBench (XML): its agents with their first targets, and its boxes. Fails with
-/// kBadFile and what cannot be used.
+/// kBadFile and the element that is not supported.
 Result<Play> steer_bench_case(const std::string& path);
 
 }  // namespace throng::bench

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+// Sums the reports of steps, and checks the crowd between them.
 namespace throng::bench {
 namespace {
 

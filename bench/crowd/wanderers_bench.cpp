@@ -9,9 +9,10 @@
 #include "throng/builtin_worlds.h"
 #include "throng/wanderers.h"
 
+// Steps of wanderers, and the moves that they make.
 namespace {
 
-// Whole steps in a garage of four storeys with about four square metres an avatar; items are
+// Whole steps in a garage of four storeys with about four square metres per avatar; items are
 // avatars.
 void wander_step(benchmark::State& state) {
   const auto avatars = static_cast<uint32_t>(state.range(0));
@@ -34,18 +35,18 @@ BENCHMARK(wander_step)
     ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})
     ->UseRealTime();
 
-// The straight line of a single body, looked up cell by cell; items are moves.
+// Straight moves of one body, tested cell by cell; items are moves.
 void world_move(benchmark::State& state) {
   const auto scene = throng::make_builtin_world({.name = "garage"});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   throng::Context context;
   const auto world = throng::bake_world(*scene, {.cell = 0.1}, context);
   if (!world) return state.SkipWithError(world.error().message.c_str());
-  const double reach = static_cast<double>(state.range(0)) * 0.1;
+  const double distance = static_cast<double>(state.range(0)) * 0.1;
   uint64_t n = 0;
   throng::Place place = world->random_place(0, 1, n);
   for (auto _ : state) {
-    const throng::MoveResult move = world->move(0, place, reach, reach / 2);
+    const throng::MoveResult move = world->move(0, place, distance, distance / 2);
     place = move.end == throng::MoveEnd::kArrived ? move.place : world->random_place(0, 1, ++n);
     benchmark::DoNotOptimize(place);
   }

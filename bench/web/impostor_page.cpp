@@ -12,8 +12,8 @@
 #include "throng/character.h"
 #include "throng_draw/draw.h"
 
-// Impostors in a browser, for scripts/results web: the page says where everybody stands and where one
-// looks from, and takes the time.
+// Impostors in a browser, for scripts/results web: the page sets the places of all avatars and the
+// camera, and measures the time.
 namespace throng {
 namespace {
 
@@ -58,7 +58,7 @@ EMSCRIPTEN_KEEPALIVE bool bench_start(const char* canvas, int32_t width, int32_t
   return true;
 }
 
-/// Room for so many; the page writes their places into bench_x() and bench_z().
+/// Sets the number of avatars; the page writes their places into bench_x() and bench_z().
 EMSCRIPTEN_KEEPALIVE void bench_resize(uint32_t avatars) {
   Bench& b = bench();
   for (auto* array : {&b.x, &b.y, &b.z}) array->assign(avatars, 0.0F);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// The same people at the same places, seen by the same camera: as this library's impostors, textured and
+// The same avatars at the same places, seen by the same camera: as this library's impostors, textured and
 // lit, and as plain quads by three.js. Each frame is timed until one of its pixels has been read.
 import * as THREE from 'three';
 
@@ -9,7 +9,7 @@ const kHeight = 720;
 const kView = 1.0;  // [rad] top to bottom
 const kDensity = 0.25;  // avatars a square metre
 
-// Where everybody stands, the same on every machine.
+// The places of all avatars, the same on every machine.
 function places(count) {
   const side = Math.sqrt(count / kDensity);
   let state = 12345;
@@ -82,11 +82,11 @@ function make_theirs() {
         mesh.dispose();
       }
       mesh = new THREE.InstancedMesh(new THREE.PlaneGeometry(0.6, 1.8), new THREE.MeshBasicMaterial({ color: 0x40506a, side: THREE.DoubleSide }), at.x.length);
-      mesh.frustumCulled = false;  // One sphere around all of them, which is always in the picture.
+      mesh.frustumCulled = false;  // Its one bounding sphere is always in the picture.
       scene.add(mesh);
       place(camera_of(at.side, 0).angle);
     },
-    // Crowds move: then the matrices must be made and sent again, as we make and send our instances.
+    // If the crowd moves, the matrices are made and sent again, as this library's instances are.
     draw: ({ eye, target, angle }, moves) => {
       if (moves) place(angle);
       camera.position.set(...eye);
@@ -97,14 +97,14 @@ function make_theirs() {
   };
 }
 
-const kNobody = { side: 0, x: new Float32Array(0), z: new Float32Array(0) };
+const kEmptyCrowd = { side: 0, x: new Float32Array(0), z: new Float32Array(0) };
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 window.bench = async (counts, rounds) => {
   const ours = await make_ours();
   const theirs = make_theirs();
   const rows = [];
-  // What a frame costs before anybody is in it, seen as each of the crowds is.
+  // Times of frames without avatars, seen by the camera of each crowd.
   const empty = { ours: [], theirs: [] };
   for (const count of counts) {
     const at = places(count);
@@ -114,8 +114,8 @@ window.bench = async (counts, rounds) => {
       run();
       list.push(performance.now() - start);
     };
-    ours.set(kNobody);
-    theirs.set(kNobody);
+    ours.set(kEmptyCrowd);
+    theirs.set(kEmptyCrowd);
     for (let round = -1; round < rounds; ++round) {
       const camera = camera_of(at.side, round + 1);
       const keep = round < 0 ? { ours: [], theirs: [] } : empty;
@@ -135,7 +135,7 @@ window.bench = async (counts, rounds) => {
     rows.push({ avatars: count, drawn: ours.drawn(), ours: median(times.ours), still: median(times.still), moving: median(times.moving), least: Math.min(...times.ours), most: Math.max(...times.ours) });
   }
   const gl = document.getElementById('ours').getContext('webgl2');
-  const told = gl.getExtension('WEBGL_debug_renderer_info');
-  const nobody = { ours: median(empty.ours), theirs: median(empty.theirs) };
-  return { rows, nobody, renderer: gl.getParameter(told.UNMASKED_RENDERER_WEBGL), three: THREE.REVISION };
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const without_avatars = { ours: median(empty.ours), theirs: median(empty.theirs) };
+  return { rows, nobody: without_avatars, renderer: gl.getParameter(info.UNMASKED_RENDERER_WEBGL), three: THREE.REVISION };
 };

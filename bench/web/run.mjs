@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// node run.mjs BUILD MODULES ROUNDS: prints what page.js measures as one JSON object.
+// node run.mjs BUILD MODULES ROUNDS: prints the results of page.js as one JSON object.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -14,8 +14,8 @@ const page = await new_page(browser, { viewport: { width: 1300, height: 1480 } }
 page.setDefaultTimeout(900000);
 await page.goto(`${server.url}page.html`);
 await page.waitForFunction(() => window.bench && window.make_throng);
-const told = await page.evaluate(([n]) => window.bench([10000, 100000], n), [Number(rounds)]);
+const results = await page.evaluate(([n]) => window.bench([10000, 100000], n), [Number(rounds)]);
 if (process.env.PICTURES) writeFileSync(path.join(process.env.PICTURES, 'web_bench.png'), await page.screenshot({ timeout: 120000 }));
 await browser.close();
 server.close();
-console.log(JSON.stringify({ ...told, chromium: browser.version() }));
+console.log(JSON.stringify({ ...results, chromium: browser.version() }));

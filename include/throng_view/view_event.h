@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// What happens to a window, as plain data: from GLFW, from a browser, from a test.
+/// Events of a window as plain data: from GLFW, from a browser, from a test.
 namespace throng {
 
 /// Keys that the viewer knows. Letters and digits are their ASCII codes.
@@ -52,7 +52,7 @@ enum class ViewEventKind : uint8_t {
   kMouseDown,  ///< `button` at `x`, `y`.
   kMouseUp,    ///< `button` at `x`, `y`.
   kWheel,      ///< `y`: notches away from the user.
-  kLeave,      ///< The window lost the keyboard: nothing is held any more.
+  kLeave,      ///< The window lost the keyboard: no key or button is down any more.
   kDrop,       ///< `path`: a file was dropped on the window.
 };
 

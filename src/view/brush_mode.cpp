@@ -8,13 +8,13 @@
 #include "view/ground_pick.h"
 #include "view/viewer_state.h"
 
-// Brushes on the ground: painting where people go, and the rim of every brush under the pointer.
+// Brushes on the ground: painting densities of goals, and the outline of a brush under the pointer.
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 3000;  // [m] that a pointer reaches
-constexpr double kDab = 6;          // [px] between two dabs of a stroke
-constexpr double kMaxDabs = 24;     // of one move of the pointer
+constexpr double kFarthest = 3000;  // [m] From the eye.
+constexpr double kDab = 6;          // [px] Between two dabs of a stroke.
+constexpr double kMaxDabs = 24;     // Per move of the pointer.
 
 }  // namespace
 
@@ -25,10 +25,10 @@ std::optional<Vec3d> Viewer::State::ground_under(double x, double y) const {
   return ground_on(world, {line.eye + origin, line.direction}, cut, kFarthest);
 }
 
-// From where the pointer was: a fast hand leaves no gaps.
+// Paints from the pointer's last position on, without gaps in fast strokes.
 void Viewer::State::paint_to(double x, double y) {
-  const double way = std::hypot(x - mouse_x, y - mouse_y);
-  const double dabs = std::clamp(std::ceil(way / kDab), 1.0, kMaxDabs);
+  const double moved = std::hypot(x - mouse_x, y - mouse_y);
+  const double dabs = std::clamp(std::ceil(moved / kDab), 1.0, kMaxDabs);
   const auto weight = static_cast<uint8_t>(
       panel.tool == Tool::kUnpaint ? 0
                                    : std::clamp(std::lround(panel.brush_weight * 255), 1L, 255L));

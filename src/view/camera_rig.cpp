@@ -6,11 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+// Eye and target by yaw, pitch and distance; each move keeps one of them or a point in the picture.
 namespace throng {
 namespace {
 
-constexpr double kSteepest = 1.55;  // [rad] A little less than straight down: up stays up.
-constexpr double kNotch = 0.85;     // What a notch of the wheel leaves of the distance.
+constexpr double kSteepest = 1.55;  // [rad] Below pi / 2: straight down has no up.
+constexpr double kNotch = 0.85;     // Factor of the distance for a notch of the wheel.
 constexpr double kClosest = 0.3;    // [m]
 constexpr double kFarthest = 50000;
 
@@ -28,7 +29,7 @@ EyeCamera CameraRig::camera(double aspect) const {
   camera.target = target;
   camera.field_of_view = field_of_view;
   camera.aspect = aspect;
-  // A 24 bit depth tells a thousandth of the nearest from the next at a thousand times it.
+  // 24 bits of depth resolve, at 1000 times the near plane, steps of a thousandth of that depth.
   camera.nearest = std::clamp(distance * 0.004, 0.05, 2.0);
   camera.furthest = std::max(8000.0, distance * 12);
   return camera;
@@ -53,9 +54,9 @@ void CameraRig::show(const Box3d& box, double aspect) {
         Vec3d{(corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
               (corner & 4) != 0 ? box.max.z : box.min.z} -
         target;
-    const double wants =
+    const double needed =
         std::max(std::abs(dot(p, axes.up)) / up, std::abs(dot(p, axes.right)) / right);
-    distance = std::max(distance, 1.06 * wants - dot(p, axes.forward));
+    distance = std::max(distance, 1.06 * needed - dot(p, axes.forward));
   }
 }
 
@@ -81,7 +82,7 @@ void CameraRig::zoom(double notches, double x, double y, double width, double he
   const double after = std::clamp(distance * std::pow(kNotch, notches), kClosest, kFarthest);
   const EyeCamera now = camera(width / std::max(1.0, height));
   const Vec3d ray = pixel_ray(now, x, y, width, height);
-  // The point on the ray as deep as the target stays where it is in the picture.
+  // The point on the ray at the target's depth keeps its place in the picture.
   const double ahead = dot(ray, camera_axes(now).forward);
   const Vec3d held = now.eye + ray * (distance / std::max(0.1, ahead));
   const double share = after / distance;

@@ -16,8 +16,8 @@ enum class CameraMode : uint8_t {
   kWalk,   ///< With an avatar.
 };
 
-/// An eye at `distance` from a target. `yaw` turns from +Z towards +X, `pitch` is up: where the eye
-/// is, as seen from the target.
+/// An eye at `distance` from a target. `yaw` (from +Z towards +X) and `pitch` (up) are the
+/// direction from the target to the eye.
 struct CameraRig {
   Vec3d target;
   double yaw = 0.8;      ///< [rad]
@@ -29,21 +29,21 @@ struct CameraRig {
   [[nodiscard]] Vec3d towards_eye() const;  ///< Unit vector.
   [[nodiscard]] EyeCamera camera(double aspect) const;
   void look(Vec3d eye, Vec3d at);
-  /// Puts all of a box into the picture.
+  /// Moves the eye so that all of a box is in the picture.
   void show(const Box3d& box, double aspect);
 
-  /// By pixels of a picture of that height: a drag of its height is half a turn.
+  /// By pixels in a picture of that height: a drag over the whole height is half a turn.
   void orbit(double dx, double dy, double height);
   void turn_head(double dx, double dy, double height);  ///< The eye stays.
-  /// What is under the pointer, at the target's distance, stays under it.
+  /// The point under the pointer, at the target's distance, stays under it.
   void pan(double dx, double dy, double height);
-  /// By notches, towards what the pointer is on: (x, y) of a picture of width x height.
+  /// By notches, towards the point under the pointer: (x, y) of a picture of width x height.
   void zoom(double notches, double x, double y, double width, double height);
   /// By metres: right, up, and ahead over the ground.
   void go(double right, double up, double ahead);
 };
 
-/// Where a pixel looks: unit vector.
+/// The direction of the ray through a pixel: unit vector.
 [[nodiscard]] Vec3d pixel_ray(const EyeCamera& camera, double x, double y, double width,
                               double height);
 

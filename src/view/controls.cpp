@@ -7,13 +7,13 @@
 #include "view/ground_pick.h"
 #include "view/viewer_state.h"
 
-// What keys and mouse do: left drag turns, right and middle drag move sideways, the wheel goes
-// nearer, W A S D goes, as in other programs that show three dimensions.
+// Keys and mouse: left drag turns, right and middle drag move sideways, the wheel goes nearer,
+// W A S D moves, as in other 3D programs.
 namespace throng {
 namespace {
 
-constexpr double kClick = 5;        // [px] A pointer that has moved less has clicked.
-constexpr double kFarthest = 3000;  // [m] that a click reaches
+constexpr double kClick = 5;        // [px] A pointer that moves less makes a click.
+constexpr double kFarthest = 3000;  // [m] From the eye to the picked avatar.
 constexpr double kSpeedStep = 1.4142135623730951;
 
 }  // namespace
@@ -25,12 +25,12 @@ SightLine Viewer::State::sight_line(double x, double y) const {
 
 void Viewer::handle(const ViewEvent& event) {
   State& s = *state_;
-  const bool taken = s.ui->handle(event);
+  const bool is_for_panel = s.ui->handle(event);
   const auto key = static_cast<size_t>(event.key);
   const auto button = static_cast<size_t>(event.button);
   switch (event.kind) {
     case ViewEventKind::kKeyDown:
-      if (taken) return;
+      if (is_for_panel) return;
       s.keys[key] = true;
       s.press(event.key);
       return;
@@ -39,7 +39,7 @@ void Viewer::handle(const ViewEvent& event) {
       return;
     case ViewEventKind::kMouseDown:
       s.move_pointer(event.x, event.y);
-      if (taken && !s.requests.grab_mouse) return;
+      if (is_for_panel && !s.requests.grab_mouse) return;
       s.buttons[button] = true;
       s.pressed_x = event.x;
       s.pressed_y = event.y;
@@ -49,7 +49,7 @@ void Viewer::handle(const ViewEvent& event) {
       if (s.paints) s.paint_to(event.x, event.y);
       return;
     case ViewEventKind::kMouseUp:
-      // A drag may come up where no move has told of.
+      // The button may come up at a point that no move event has reported.
       s.move_pointer(event.x, event.y);
       if (!std::exchange(s.buttons[button], false)) return;
       if (event.button != MouseButton::kLeft) return;
@@ -64,7 +64,7 @@ void Viewer::handle(const ViewEvent& event) {
       s.show_brush(event.x, event.y);
       return;
     case ViewEventKind::kWheel:
-      if (taken) return;
+      if (is_for_panel) return;
       if (s.panel.mode == CameraMode::kWalk) {
         s.walk_distance = std::clamp(s.walk_distance * std::pow(0.85, event.y), 0.6, 30.0);
         return;
@@ -105,7 +105,7 @@ void Viewer::State::press(Key key) {
   if (key == Key::kTab) panel.settings.panel = !panel.settings.panel;
   if (key == Key::kSpace) {
     panel.playing = !panel.playing;
-    // A recording at its end begins again.
+    // At its end, a recording starts again.
     if (panel.playing && panel.replay && time >= panel.replay->last) {
       panel.seek = panel.replay->first;
     }
@@ -194,7 +194,7 @@ void Viewer::State::click() {
     });
     return;
   }
-  // Who stands behind the ground that was hit is not seen.
+  // Avatars behind the ground at the pointer are hidden.
   const double farthest = ground ? length(*ground - origin - line.eye) + 1 : kFarthest;
   const size_t i = avatar_on(crowd.now(), panel.class_heights, line, cut, farthest);
   panel.status.picked =
@@ -212,13 +212,13 @@ void Viewer::State::move_eye(double seconds) {
   double ahead = axis(key_of('W'), Key::kUp, key_of('S'), Key::kDown) - gamepad.walk_y;
   double up = axis(key_of('E'), Key::kNone, key_of('Q'), Key::kNone);
   rig.turn_head(gamepad.look_x * -800 * seconds, gamepad.look_y * -800 * seconds, 800);
-  // Around a town one goes faster than around a room.
+  // Faster where the eye is far from its target.
   double speed =
       panel.mode == CameraMode::kFly ? panel.settings.fly_speed : std::max(2.0, 0.6 * rig.distance);
   if (held(Key::kShift) || gamepad.hurry) speed *= 3;
   const double by = speed * seconds;
   if (panel.mode == CameraMode::kFly) {
-    up -= ahead * std::sin(rig.pitch);  // Ahead is where one looks.
+    up -= ahead * std::sin(rig.pitch);  // Ahead is the direction of view.
     ahead *= std::cos(rig.pitch);
   }
   rig.go(right * by, up * by, ahead * by);

@@ -9,13 +9,15 @@
 
 #include "core/random.h"
 
+// Adds avatars and gives them goals, all drawn from (seed, number), so that the same start gives
+// the same steps. With only_seen, generators add and remove avatars outside the eye's sight.
 namespace throng {
 namespace {
 
-constexpr double kStorey = 4;       // [m] up or down a goal may be
-constexpr uint64_t kTries = 24;     // to find one
-constexpr double kNearGround = 1;   // [m] from the ground a place may be
-constexpr double kLookMargin = 10;  // [m] Bodies and tiles that begin within sight end there.
+constexpr double kStorey = 4;       // [m] Vertical tolerance of goals.
+constexpr uint64_t kTries = 24;     // To find a place.
+constexpr double kNearGround = 1;   // [m] Vertical tolerance of places on the ground.
+constexpr double kLookMargin = 10;  // [m] Beyond sight: bodies and tiles that begin within it.
 
 }  // namespace
 
@@ -53,7 +55,7 @@ Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, Nodes nodes,
   player->graph_ = *std::move(graph);
   player->workers_ = workers;
   if (start.only_seen && start.avatars > 0 && occluders) {
-    if (context.on_progress) context.on_progress({"what hides what", 0, 0});
+    if (context.on_progress) context.on_progress({"visibility", 0, 0});
     SeenOnly& seen_only = player->seen_only_.emplace();
     seen_only.sights.assign(3, EyeSight(std::move(occluders)));
     return player;
@@ -70,12 +72,12 @@ AvatarSpawn CrowdPlayer::spawn_like(uint64_t number) const {
                                          static_cast<ptrdiff_t>(mix_up_to_.size()) - 1);
   const auto avatar_class = static_cast<int32_t>(index);
   const double base = start_.speed > 0 ? start_.speed : classes_[static_cast<size_t>(index)].speed;
-  // People differ: within a fifth of the speed, as walkers in a street do.
+  // Speeds vary by a fifth to both sides, as those of walkers in a street.
   const double speed = base * (0.8 + 0.4 * random_unit(start_.seed, 12, number));
   return {.place = {}, .avatar_class = avatar_class, .radius = 0, .speed = speed};
 }
 
-// Places are drawn for each, and who does not fit is left out, a few times over.
+// Draws a place for each avatar; draws again, a few times, for those that do not fit.
 Result<uint32_t> CrowdPlayer::scatter(uint32_t count, Context& context) {
   uint32_t added = 0;
   for (int32_t round = 0; round < 8 && added < count; ++round) {
@@ -89,20 +91,20 @@ Result<uint32_t> CrowdPlayer::scatter(uint32_t count, Context& context) {
     if (spawns.empty()) break;
     const auto ids = crowd_.add(spawns, context);
     if (!ids) return ids.error();
-    added += add_people(*ids, spawns);
+    added += add_avatars(*ids, spawns);
   }
   return added;
 }
 
-// Who was left out has no id.
-uint32_t CrowdPlayer::add_people(const std::vector<AvatarId>& ids,
-                                 const std::vector<AvatarSpawn>& spawns) {
+// An avatar that did not fit has no id.
+uint32_t CrowdPlayer::add_avatars(const std::vector<AvatarId>& ids,
+                                  const std::vector<AvatarSpawn>& spawns) {
   std::vector<AvatarId> there;
   for (size_t i = 0; i < ids.size(); ++i) {
     if (!ids[i]) continue;
     const uint32_t slot = ids[i].slot1 - 1;
-    if (people_.size() <= slot) people_.resize(slot + size_t{1});
-    people_[slot] = {
+    if (avatars_.size() <= slot) avatars_.resize(slot + size_t{1});
+    avatars_[slot] = {
         .id = ids[i], .avatar_class = spawns[i].avatar_class, .speed = spawns[i].speed};
     there.push_back(ids[i]);
   }
@@ -117,8 +119,7 @@ bool CrowdPlayer::is_on_large_ground(int32_t avatar_class, Place place) const {
   return ground >= 0 && grounds[static_cast<size_t>(ground)].area >= kShare * grounds[0].area;
 }
 
-// Not on a roof that nobody can reach: on ground that holds together over a tenth of what the
-// largest such ground has.
+// Not on an isolated roof: in a component of at least a tenth of the largest one's area.
 Place CrowdPlayer::place_of(int32_t avatar_class, uint64_t seed, uint64_t stream) const {
   for (uint64_t n = 0; n < kTries; ++n) {
     const Place place = world_.random_place(avatar_class, seed, stream + (n << 48));
@@ -128,12 +129,12 @@ Place CrowdPlayer::place_of(int32_t avatar_class, uint64_t seed, uint64_t stream
 }
 
 Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const {
-  const int32_t avatar_class = people_[slot].avatar_class;
+  const int32_t avatar_class = avatars_[slot].avatar_class;
   const uint64_t stream = uint64_t{slot} << 32 | nth;
   for (uint64_t n = 0; n < kTries && !painted_.empty(); ++n) {
     const auto unit = [&](uint64_t k) { return random_unit(start_.seed + 1, stream, 3 * n + k); };
     const WeightedPlaces::Point point = painted_.draw(unit(0), unit(1), unit(2));
-    const Place place = world_.find_place(avatar_class, point.at, point.reach);
+    const Place place = world_.find_place(avatar_class, point.at, point.vertical_tolerance);
     if (place) return place;
   }
   if (start_.near <= 0) return place_of(avatar_class, start_.seed, stream);
@@ -151,20 +152,20 @@ Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const
 void CrowdPlayer::give_goals(std::span<const AvatarId> ids) {
   if (ids.empty()) return;
   crowd_.read(states_);
-  std::vector<AvatarId> led;
+  std::vector<AvatarId> receivers;
   goals_.clear();
   for (const AvatarId id : ids) {
     const uint32_t slot = id.slot1 - 1;
-    Person& person = people_[slot];
-    if (person.driven || person.generated) continue;
+    Played& avatar = avatars_[slot];
+    if (avatar.controlled || avatar.generated) continue;
     const auto at = std::lower_bound(states_.begin(), states_.end(), slot,
                                      [](const AvatarState& s, uint32_t i) { return s.id < i; });
     if (at == states_.end() || at->id != slot) continue;
-    person.goal = goal_of(slot, person.goals_given++, at->position);
-    led.push_back(id);
-    goals_.push_back(person.goal);
+    avatar.goal = goal_of(slot, avatar.goals_given++, at->position);
+    receivers.push_back(id);
+    goals_.push_back(avatar.goal);
   }
-  crowd_.set_goals(led, goals_);
+  crowd_.set_goals(receivers, goals_);
 }
 
 void CrowdPlayer::set_density(const std::vector<DensityMap>& maps) {
@@ -174,10 +175,10 @@ void CrowdPlayer::set_density(const std::vector<DensityMap>& maps) {
   std::vector<AvatarId> elsewhere;
   crowd_.read(states_);
   for (const AvatarState& s : states_) {
-    const Person& person = people_[s.id];
-    if (person.generated) continue;
-    if (!person.goal || painted_.weight_at(person.goal.position) == 0) {
-      elsewhere.push_back(person.id);
+    const Played& avatar = avatars_[s.id];
+    if (avatar.generated) continue;
+    if (!avatar.goal || painted_.weight_at(avatar.goal.position) == 0) {
+      elsewhere.push_back(avatar.id);
     }
   }
   give_goals(elsewhere);
@@ -201,31 +202,31 @@ std::shared_ptr<const TimelineFrame> CrowdPlayer::next() {
 
 std::shared_ptr<const TimelineFrame> CrowdPlayer::again() {
   crowd_.read(states_);
-  const auto moment = std::make_shared<TimelineFrame>();
-  moment->time = time_;
-  moment->report = report_;
-  put_states(states_, origin_, *moment);
+  const auto frame = std::make_shared<TimelineFrame>();
+  frame->time = time_;
+  frame->report = report_;
+  put_states(states_, origin_, *frame);
   if (seen_only_) {
-    moment->fault = seen_only_->fault;
-    for (const AvatarState& s : states_) moment->lives.push_back(people_[s.id].id.generation);
+    frame->fault = seen_only_->fault;
+    for (const AvatarState& s : states_) frame->generations.push_back(avatars_[s.id].id.generation);
   }
-  follow(last_ ? *last_ : TimelineFrame{}, *moment);
-  last_ = moment;
-  return moment;
+  follow(last_ ? *last_ : TimelineFrame{}, *frame);
+  last_ = frame;
+  return frame;
 }
 
 void CrowdPlayer::set_count(uint32_t avatars, Context& context) {
   if (crowd_.size() < avatars) {
-    // A world that is full stays so: the report of the next step shows how many there are.
+    // In a full world this fails; the next frame shows how many avatars there are.
     (void)scatter(avatars - crowd_.size(), context);
     return;
   }
-  std::vector<AvatarId> gone;
+  std::vector<AvatarId> removed;
   crowd_.read(states_);
-  for (size_t i = states_.size(); i-- > 0 && crowd_.size() - gone.size() > avatars;) {
-    if (!people_[states_[i].id].driven) gone.push_back(people_[states_[i].id].id);
+  for (size_t i = states_.size(); i-- > 0 && crowd_.size() - removed.size() > avatars;) {
+    if (!avatars_[states_[i].id].controlled) removed.push_back(avatars_[states_[i].id].id);
   }
-  crowd_.remove(gone);
+  crowd_.remove(removed);
 }
 
 uint32_t CrowdPlayer::spawn(Vec3d where, double radius, uint32_t count, Context& context) {
@@ -240,32 +241,32 @@ uint32_t CrowdPlayer::spawn(Vec3d where, double radius, uint32_t count, Context&
     if (spawn.place) spawns.push_back(spawn);
   }
   const auto ids = crowd_.add(spawns, context);
-  return ids ? add_people(*ids, spawns) : 0;
+  return ids ? add_avatars(*ids, spawns) : 0;
 }
 
 uint32_t CrowdPlayer::erase(Vec3d where, double radius) {
   crowd_.read(states_);
-  std::vector<AvatarId> gone;
+  std::vector<AvatarId> removed;
   for (const AvatarState& s : states_) {
     const double away = std::hypot(s.position.x - where.x, s.position.z - where.z);
     if (away > radius || std::abs(s.position.y - where.y) > 2) continue;
-    if (!people_[s.id].driven) gone.push_back(people_[s.id].id);
+    if (!avatars_[s.id].controlled) removed.push_back(avatars_[s.id].id);
   }
-  crowd_.remove(gone);
-  return static_cast<uint32_t>(gone.size());
+  crowd_.remove(removed);
+  return static_cast<uint32_t>(removed.size());
 }
 
 std::optional<AvatarDetail> CrowdPlayer::detail(uint64_t id) const {
-  if (id >= people_.size() || !crowd_.is_alive(people_[id].id)) return std::nullopt;
-  const Person& person = people_[id];
+  if (id >= avatars_.size() || !crowd_.is_alive(avatars_[id].id)) return std::nullopt;
+  const Played& avatar = avatars_[id];
   AvatarDetail detail{.id = id,
-                      .avatar_class = person.avatar_class,
+                      .avatar_class = avatar.avatar_class,
                       .position = {},
-                      .speed = person.speed,
+                      .speed = avatar.speed,
                       .goal = {},
-                      .goals_given = person.goals_given,
-                      .driven = person.driven};
-  if (person.goal) detail.goal = person.goal.position;
+                      .goals_given = avatar.goals_given,
+                      .controlled = avatar.controlled};
+  if (avatar.goal) detail.goal = avatar.goal.position;
   return detail;
 }
 
@@ -278,7 +279,7 @@ int32_t CrowdPlayer::commonest_class() const {
   return static_cast<int32_t>(best);
 }
 
-// Ground that many can walk to: below the eye, else near it, else anywhere.
+// A place on large ground: below the eye, else near it, else anywhere.
 Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
   constexpr double kDeep = 60, kStep = 0.5, kAround = 40;  // [m]
   for (uint64_t n = 0; n < 4 * kTries; ++n) {
@@ -294,16 +295,16 @@ Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
   return place_of(avatar_class, start_.seed, 0);
 }
 
-// The eye goes on while what is made now is shown: who is added must be hidden from where it was,
-// is, and may be by then.
+// The eye moves on before this step is shown: an avatar that is added must be hidden from where the
+// eye was, is, and may be by then.
 Result<void> CrowdPlayer::keep_populated() {
-  constexpr double kOffMesh = 10;  // [m] a step
-  constexpr double kAhead = 3;     // [steps]
+  constexpr double kMaxEyeMove = 10;  // [m] After a larger one the crowd is populated again.
+  constexpr double kAhead = 3;        // [steps]
   SeenOnly& s = *seen_only_;
   Context quiet;
   const EyePlace now = *place_;
   const bool jumped =
-      !s.looked || length(now.eye - s.looked->eye) > kOffMesh || now.cut != s.looked->cut;
+      !s.looked || length(now.eye - s.looked->eye) > kMaxEyeMove || now.cut != s.looked->cut;
   if (jumped || !(now == *s.looked)) {
     if (!jumped) std::swap(s.sights[0], s.sights[1]);
     s.sights[0].look_from(now, start_.sight + kLookMargin);
@@ -337,33 +338,33 @@ Result<void> CrowdPlayer::keep_populated() {
                                            : s.generators->update(crowd_, now.eye, can_see, quiet);
   if (!done) return done.error();
   s.looked = now;
-  std::vector<AvatarId> fresh;
+  std::vector<AvatarId> new_ids;
   std::vector<double> speeds;
   for (const AvatarId id : s.generators->members()) {
     const uint32_t slot = id.slot1 - 1;
-    if (people_.size() <= slot) people_.resize(slot + size_t{1});
-    if (people_[slot].id == id) continue;
+    if (avatars_.size() <= slot) avatars_.resize(slot + size_t{1});
+    if (avatars_[slot].id == id) continue;
     AvatarSpawn like = spawn_like(added_++);
     const int32_t avatar_class = commonest_class();
     like.speed *= start_.speed > 0 ? 1
                                    : classes_[static_cast<size_t>(avatar_class)].speed /
                                          classes_[static_cast<size_t>(like.avatar_class)].speed;
-    people_[slot] = {.id = id,
-                     .avatar_class = avatar_class,
-                     .speed = like.speed,
-                     .goal = {},
-                     .goals_given = 0,
-                     .driven = false,
-                     .generated = true};
-    fresh.push_back(id);
+    avatars_[slot] = {.id = id,
+                      .avatar_class = avatar_class,
+                      .speed = like.speed,
+                      .goal = {},
+                      .goals_given = 0,
+                      .controlled = false,
+                      .generated = true};
+    new_ids.push_back(id);
     speeds.push_back(like.speed);
   }
-  crowd_.set_speeds(fresh, speeds);
+  crowd_.set_speeds(new_ids, speeds);
   return {};
 }
 
-// Who takes four steps at once is shown to jump by half a metre: from where that is a pixel and a
-// half of a picture 720 high, nobody sees it.
+// An avatar in low detail moves by up to half a metre at once: beyond this distance, 1.5 pixels of
+// a picture 720 high.
 void CrowdPlayer::set_views() {
   if (!start_.coarse_far || !place_) return;
   constexpr double kUnseen = 300;  // [m]
@@ -373,7 +374,7 @@ void CrowdPlayer::set_views() {
 
 std::optional<uint64_t> CrowdPlayer::add_external(Vec3d where, int32_t avatar_class, double speed,
                                                   Context& context) {
-  // The nearest free place of a few around the point.
+  // The first free place of 64 on a spiral around the point.
   for (uint64_t n = 0; n < 64; ++n) {
     const double angle = 2.4 * static_cast<double>(n),
                  far = 0.25 * std::sqrt(static_cast<double>(n));
@@ -385,25 +386,25 @@ std::optional<uint64_t> CrowdPlayer::add_external(Vec3d where, int32_t avatar_cl
     if (!ids) return std::nullopt;
     if (!ids->front()) continue;
     const uint32_t slot = ids->front().slot1 - 1;
-    if (people_.size() <= slot) people_.resize(slot + size_t{1});
-    people_[slot] = {.id = ids->front(),
-                     .avatar_class = avatar_class,
-                     .speed = speed,
-                     .goal = {},
-                     .goals_given = 0,
-                     .driven = true};
-    drive(slot, {});
+    if (avatars_.size() <= slot) avatars_.resize(slot + size_t{1});
+    avatars_[slot] = {.id = ids->front(),
+                      .avatar_class = avatar_class,
+                      .speed = speed,
+                      .goal = {},
+                      .goals_given = 0,
+                      .controlled = true};
+    set_velocity(slot, {});
     return slot;
   }
   return std::nullopt;
 }
 
-void CrowdPlayer::drive(uint64_t id, Vec3d velocity) {
-  if (id < people_.size()) crowd_.set_velocities({&people_[id].id, 1}, {&velocity, 1});
+void CrowdPlayer::set_velocity(uint64_t id, Vec3d velocity) {
+  if (id < avatars_.size()) crowd_.set_velocities({&avatars_[id].id, 1}, {&velocity, 1});
 }
 
-void CrowdPlayer::take_away(uint64_t id) {
-  if (id < people_.size()) crowd_.remove({&people_[id].id, 1});
+void CrowdPlayer::remove(uint64_t id) {
+  if (id < avatars_.size()) crowd_.remove({&avatars_[id].id, 1});
 }
 
 }  // namespace throng

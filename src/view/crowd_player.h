@@ -21,37 +21,37 @@
 
 namespace throng {
 
-/// What is known of one avatar.
+/// Details of one avatar, for the panel.
 struct AvatarDetail {
   uint64_t id = 0;
   int32_t avatar_class = 0;
   Vec3d position;             ///< In the world. [m]
-  double speed = 0;           ///< Wished. [m/s]
+  double speed = 0;           ///< Desired. [m/s]
   std::optional<Vec3d> goal;  ///< [m]
   uint32_t goals_given = 0;
-  bool driven = false;
+  bool controlled = false;
 };
 
-/// What CrowdStart::only_seen needs.
+/// The state of CrowdStart::only_seen.
 struct SeenOnly {
-  std::vector<EyeSight> sights;  // From where the eye is, was, and may be soon.
+  std::vector<EyeSight> sights;  // From where the eye is, was, and may be soon; `used` are valid.
   size_t used = 0;
   std::optional<AvatarGenerators> generators;
   std::optional<EyePlace> looked;
   std::string fault;
 };
 
-/// Steps a crowd in which everybody gets one goal after the other. The same start, the same steps,
-/// until somebody meddles.
-class CrowdPlayer final : public MomentSource {
+/// Steps a crowd in which each avatar gets one goal after the other. The same start gives the same
+/// steps, unless a caller changes the crowd.
+class CrowdPlayer final : public TimelinePlayer {
  public:
-  /// Fails as Crowd::create and Crowd::scatter do, save that a world too small for all is filled
-  /// with as many as fit in a few tries. With CrowdStart::only_seen nobody is there, and no moment
-  /// comes, before it is told from where one looks. [nodes: CrowdConfig::nodes]
+  /// Fails as Crowd::create and Crowd::scatter do, except that a world too small for all gets as
+  /// many as fit in a few tries. With CrowdStart::only_seen there are no avatars, and next()
+  /// returns nothing, before look_from(). [nodes: CrowdConfig::nodes]
   [[nodiscard]] static Result<std::unique_ptr<CrowdPlayer>> make(
       World world, Nodes nodes, const CrowdStart& start, int32_t workers, Vec3d origin,
       std::shared_ptr<const Occluders> occluders, Context& context);
-  /// From where one looks from the next step on.
+  /// Sets the eye, from the next step on.
   void look_from(const EyePlace& place) { place_ = place; }
   std::shared_ptr<const TimelineFrame> next() override;
   std::shared_ptr<const TimelineFrame> seek(double) override {
@@ -59,42 +59,42 @@ class CrowdPlayer final : public MomentSource {
   }  // Time only goes on.
 
   std::shared_ptr<const TimelineFrame> again() override;
-  /// Adds or takes away avatars until there are so many, or no more fit.
+  /// Adds or removes avatars until there are so many, or no more fit.
   void set_count(uint32_t avatars, Context& context);
   /// Adds `count` avatars within `radius` of a point where they fit. Returns how many.
   uint32_t spawn(Vec3d where, double radius, uint32_t count, Context& context);
-  /// Takes away who is within `radius` of a point, at its height. Returns how many.
+  /// Removes the avatars within `radius` of a point, at its height. Returns how many.
   uint32_t erase(Vec3d where, double radius);
-  /// Goals lie where the maps say from now on, anywhere if all is 0; who is bound for a place of
-  /// weight 0 gets another goal.
+  /// From now on, goals are drawn from the maps, or anywhere if all weights are 0. An avatar whose
+  /// goal has weight 0 gets another one.
   void set_density(const std::vector<DensityMap>& maps);
   [[nodiscard]] std::optional<AvatarDetail> detail(uint64_t id) const;
 
-  /// One that the caller leads: added at a place near `where`, if there is one.
+  /// Adds an externally controlled avatar at a free place near `where`, if there is one.
   std::optional<uint64_t> add_external(Vec3d where, int32_t avatar_class, double speed,
                                        Context& context);
-  /// What it wants to do until told otherwise. [m/s along X and Z]
-  void drive(uint64_t id, Vec3d velocity);
-  void take_away(uint64_t id);
+  /// Sets its preferred velocity until the next call. [m/s along X and Z]
+  void set_velocity(uint64_t id, Vec3d velocity);
+  void remove(uint64_t id);
   [[nodiscard]] uint32_t size() const { return crowd_.size(); }
   [[nodiscard]] const World& world() const { return world_; }
 
  private:
   // By slot.
-  struct Person {
+  struct Played {
     AvatarId id = {};
     int32_t avatar_class = 0;
     double speed = 0;
     Place goal = {};
     uint32_t goals_given = 0;
-    bool driven = false;
-    bool generated = false;  // Its goals are not ours to give.
+    bool controlled = false;
+    bool generated = false;  // By SeenOnly::generators, which give it goals.
   };
 
   CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Crowd&& crowd);
   Result<uint32_t> scatter(uint32_t count, Context& context);
   Place place_of(int32_t avatar_class, uint64_t seed, uint64_t stream) const;
-  uint32_t add_people(const std::vector<AvatarId>& ids, const std::vector<AvatarSpawn>& spawns);
+  uint32_t add_avatars(const std::vector<AvatarId>& ids, const std::vector<AvatarSpawn>& spawns);
   void give_goals(std::span<const AvatarId> ids);
   [[nodiscard]] Place goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] AvatarSpawn spawn_like(uint64_t number) const;
@@ -112,7 +112,7 @@ class CrowdPlayer final : public MomentSource {
   WeightedPlaces painted_;
   std::vector<AvatarClass> classes_;
   std::vector<double> mix_up_to_;  // Running sums of the mix, the last is 1.
-  std::vector<Person> people_;     // By slot.
+  std::vector<Played> avatars_;    // By slot.
   std::vector<AvatarState> states_;
   std::vector<Place> goals_;
   uint64_t added_ = 0;

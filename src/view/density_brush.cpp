@@ -6,12 +6,14 @@
 #include <cmath>
 #include <utility>
 
+// Density maps are painted pixel by pixel; points are drawn by binary search in the running sums of
+// the weights, in O(log pixels).
 namespace throng {
 namespace {
 
-constexpr double kPixel = 0.5;     // [m] of maps made here, if that is not too many
+constexpr double kPixel = 0.5;     // [m] Of maps made here; larger if a side would exceed kMaxSide.
 constexpr double kMaxSide = 1024;  // [pixels]
-constexpr double kStorey = 1.25;   // [m] to both sides: a map is for one storey
+constexpr double kStorey = 1.25;   // [m] Half of the height that a map covers.
 
 size_t index_of(const DensityMap& map, int32_t row, int32_t column) {
   return static_cast<size_t>(row) * static_cast<size_t>(map.width) + static_cast<size_t>(column);
@@ -26,15 +28,15 @@ bool paint(DensityMap& map, Vec3d where, double radius, uint8_t weight) {
   const auto last = [](double v, int32_t size) {
     return static_cast<int32_t>(std::clamp(std::ceil(v), 0.0, static_cast<double>(size)));
   };
-  // A brush smaller than a pixel paints the one that it is on.
-  const double reach = std::max(radius, 0.71 * std::max(wide, deep));
+  // A brush smaller than a pixel paints the one under it.
+  const double brush = std::max(radius, 0.71 * std::max(wide, deep));
   bool changed = false;
-  for (int32_t row = first((where.z - reach - map.z0) / deep);
-       row < last((where.z + reach - map.z0) / deep, map.height); ++row) {
-    for (int32_t column = first((where.x - reach - map.x0) / wide);
-         column < last((where.x + reach - map.x0) / wide, map.width); ++column) {
+  for (int32_t row = first((where.z - brush - map.z0) / deep);
+       row < last((where.z + brush - map.z0) / deep, map.height); ++row) {
+    for (int32_t column = first((where.x - brush - map.x0) / wide);
+         column < last((where.x + brush - map.x0) / wide, map.width); ++column) {
       const double x = map.x0 + (column + 0.5) * wide, z = map.z0 + (row + 0.5) * deep;
-      if (std::hypot(x - where.x, z - where.z) > reach) continue;
+      if (std::hypot(x - where.x, z - where.z) > brush) continue;
       uint8_t& pixel = map.weights[index_of(map, row, column)];
       changed = changed || pixel != weight;
       pixel = weight;
@@ -58,7 +60,7 @@ DensityMap& map_at(std::vector<DensityMap>& maps, const Box3d& bounds, double he
   map.height = static_cast<int32_t>(std::ceil(deep / pixel));
   map.low = height - kStorey, map.high = height + kStorey;
   map.weights.assign(static_cast<size_t>(map.width) * static_cast<size_t>(map.height), 0);
-  // Storeys nearer than that share what lies between them.
+  // Maps of nearby storeys do not overlap.
   for (const DensityMap& other : maps) {
     if (other.high < height) map.low = std::max(map.low, other.high + 1e-6);
     if (other.low > height) map.high = std::min(map.high, other.low - 1e-6);
@@ -85,11 +87,11 @@ WeightedPlaces::Point WeightedPlaces::draw(double which, double along_x, double 
   return {
       .at = {map.x0 + (column + along_x) * (map.x1 - map.x0) / map.width,
              0.5 * (map.low + map.high), map.z0 + (row + along_z) * (map.z1 - map.z0) / map.height},
-      .reach = 0.5 * (map.high - map.low)};
+      .vertical_tolerance = 0.5 * (map.high - map.low)};
 }
 
 uint8_t WeightedPlaces::weight_at(Vec3d point) const {
-  uint8_t most = 0;
+  uint8_t max_weight = 0;
   for (const DensityMap& map : maps_) {
     if (point.y < map.low || point.y > map.high || point.x < map.x0 || point.x >= map.x1 ||
         point.z < map.z0 || point.z >= map.z1) {
@@ -97,11 +99,11 @@ uint8_t WeightedPlaces::weight_at(Vec3d point) const {
     }
     const auto column = static_cast<int32_t>((point.x - map.x0) / (map.x1 - map.x0) * map.width);
     const auto row = static_cast<int32_t>((point.z - map.z0) / (map.z1 - map.z0) * map.height);
-    most = std::max(
-        most,
+    max_weight = std::max(
+        max_weight,
         map.weights[index_of(map, std::min(row, map.height - 1), std::min(column, map.width - 1))]);
   }
-  return most;
+  return max_weight;
 }
 
 }  // namespace throng

@@ -9,32 +9,32 @@
 #include "throng/math.h"
 #include "throng/scenario.h"
 
-/// Painting where people go: maps of weights that a brush changes, and places drawn from them.
+/// Density maps that a brush changes, and random points drawn from them.
 namespace throng {
 
-/// Gives all pixels whose middles are within `radius` of a point the weight, if the map is for its
-/// height. Returns whether any changed.
+/// Sets the weight of all pixels whose middles are within `radius` of a point, if the map covers
+/// its height. Returns whether any changed.
 bool paint(DensityMap& map, Vec3d where, double radius, uint8_t weight);
 
-/// The map for a height among maps of one storey each; made, empty, if there is none. `bounds` are
-/// those of the world. [m]
+/// The map that covers a height, among maps of one storey each; adds an empty one if there is none.
+/// `bounds` are those of the world. [m]
 DensityMap& map_at(std::vector<DensityMap>& maps, const Box3d& bounds, double height);
 
-/// Points of several maps, each as likely as its weight says.
+/// Random points of several maps, with probabilities proportional to the weights.
 class WeightedPlaces {
  public:
   WeightedPlaces() = default;
   explicit WeightedPlaces(std::vector<DensityMap> maps);
 
   [[nodiscard]] bool empty() const { return up_to_.empty() || up_to_.back() == 0; }
-  /// What three numbers of [0, 1) give: a point at the middle of its map's heights, and how far up
-  /// or down its floor may be. Not of an empty one.
+  /// A point at the middle of its map's heights, and half of these: the vertical tolerance.
   struct Point {
     Vec3d at;
-    double reach = 0;  ///< [m]
+    double vertical_tolerance = 0;  ///< [m]
   };
+  /// The point of three random numbers of [0, 1). Not while empty.
   [[nodiscard]] Point draw(double which, double along_x, double along_z) const;
-  /// The largest weight that a map has at a point of its heights.
+  /// The largest weight of all maps that cover a point.
   [[nodiscard]] uint8_t weight_at(Vec3d point) const;
 
  private:

@@ -9,23 +9,23 @@
 #include <tuple>
 #include <utility>
 
-// A pixel counts as covered if one triangle covers it whole, or two that meet in a side cover it
-// together; where three meet at a corner it stays open. So nothing that can be seen is ever hidden,
-// however narrow the gap, and walls of few triangles hide nearly all that they do. Triangles are
-// drawn as cones around the eye [Olano and Greer 1997, Triangle scan conversion using 2D
-// homogeneous coordinates], so none must be clipped.
+// A pixel is covered if one triangle covers it completely, or two that share a side do so together;
+// where three meet at a corner it stays open. So nothing visible is ever reported as hidden,
+// however narrow the slit, and walls of few triangles hide nearly all that lies behind them.
+// Triangles are drawn as cones around the eye [Olano and Greer 1997, Triangle scan conversion using
+// 2D homogeneous coordinates], so none must be clipped. Time: triangles x pixels that they cover.
 namespace throng {
 namespace {
 
-constexpr double kEdgeOn = 1e-7;     // Volumes of cones that are none. [m^3]
-constexpr double kRoundDown = 1e-6;  // Of nearness, for floats.
-constexpr double kWide = 2.5;  // How far off the nearest plane reaches in a picture's corners.
+constexpr double kEdgeOn = 1e-7;     // Cones of a smaller volume are seen edge-on. [m^3]
+constexpr double kRoundDown = 1e-6;  // Relative, of nearness: covers the rounding to float.
+constexpr double kWide = 2.5;  // Distance of a near plane's corner from the eye, in near planes.
 
 double part(Vec3d p, size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
 Vec3d to_vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
-// For each corner the first one at its place.
+// The first corner at the same position, for each corner.
 std::vector<uint32_t> weld(const std::vector<std::array<float, 3>>& corners) {
   std::vector<uint32_t> order(corners.size()), first(corners.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -41,7 +41,7 @@ std::vector<uint32_t> weld(const std::vector<std::array<float, 3>>& corners) {
 
 }  // namespace
 
-// One of six, with z towards its middle.
+// One of six faces of a cube: maps points so that z points to the middle of the face.
 struct EyeSight::Face {
   size_t number = 0;
   [[nodiscard]] Vec3d operator()(Vec3d p) const {
@@ -51,14 +51,14 @@ struct EyeSight::Face {
   }
 };
 
-// a u + b v + c >= 0 at the middle of a pixel.
+// The half plane a u + b v + c >= 0, evaluated at the middle of a pixel.
 struct EyeSight::Line {
   double a = 0, b = 0, c = 0;
-  // Of pixels that lie whole on the positive side of a plane through the eye.
+  // Pixels completely on the positive side of a plane through the eye.
   static Line inside(Vec3d n, double half) {
     return {n.x, n.y, n.z - half * (std::abs(n.x) + std::abs(n.y))};
   }
-  // Of those that do not lie whole on the negative side.
+  // Pixels not completely on its negative side.
   static Line touching(Vec3d n, double half) {
     return {n.x, n.y, n.z + half * (std::abs(n.x) + std::abs(n.y))};
   }
@@ -74,7 +74,7 @@ std::shared_ptr<const Occluders> occluders_of(const Scene& scene, Vec3d origin) 
            t >= size_t{scene.parts[part].first_triangle} + scene.parts[part].triangle_count) {
       ++part;
     }
-    // What one can see through hides nothing.
+    // Transparent surfaces hide nothing.
     const uint32_t material1 = part < scene.parts.size() && t >= scene.parts[part].first_triangle
                                    ? scene.parts[part].material1
                                    : 0;
@@ -121,7 +121,7 @@ EyeSight::EyeSight(std::shared_ptr<const Occluders> occluders, int32_t pixels)
   nearness_.resize(size_t{6} * static_cast<size_t>(pixels_) * static_cast<size_t>(pixels_));
 }
 
-// Rows from `low` to `high` [-1 to 1]. Planes are of one by depth: p . (u, v, 1).
+// Fills rows from `low` to `high` [-1 to 1]. 1 / depth of a plane p is p . (u, v, 1).
 template <size_t kLines, size_t kPlanes>
 void EyeSight::fill(const Face& face, const std::array<Line, kLines>& lines,
                     const std::array<Vec3d, kPlanes>& planes, double low, double high) {
@@ -129,16 +129,16 @@ void EyeSight::fill(const Face& face, const std::array<Line, kLines>& lines,
   const auto row_of = [&](double v) {
     return static_cast<int32_t>(std::clamp((v + 1) * scale, 0.0, pixels_ - 1.0));
   };
-  const double most = 1 / (kWide * place_.nearest);
+  const double max_nearness = 1 / (kWide * place_.nearest);
   float* const image =
       nearness_.data() + face.number * static_cast<size_t>(pixels_) * static_cast<size_t>(pixels_);
-  // Parts of a pixel that may be too near to be drawn leave it open.
+  // A pixel stays open if a part of it can be nearer than the near plane.
   std::array<Line, kLines + kPlanes> all;
   std::copy(lines.begin(), lines.end(), all.begin());
   std::array<double, kPlanes> around;
   for (size_t k = 0; k < kPlanes; ++k) {
     around[k] = half * (std::abs(planes[k].x) + std::abs(planes[k].y));
-    all[kLines + k] = {-planes[k].x, -planes[k].y, most - around[k] - planes[k].z};
+    all[kLines + k] = {-planes[k].x, -planes[k].y, max_nearness - around[k] - planes[k].z};
   }
   for (int32_t y = row_of(low); y <= row_of(high); ++y) {
     const double v = (y + 0.5) / scale - 1;
@@ -159,23 +159,24 @@ void EyeSight::fill(const Face& face, const std::array<Line, kLines>& lines,
     const int32_t x1 =
         std::min(static_cast<int32_t>(std::floor((right + 1) * scale - 0.5 - 1e-9)), pixels_ - 1);
     float* const row = image + static_cast<size_t>(y) * static_cast<size_t>(pixels_);
-    std::array<double, kPlanes> start, step;  // Nearness at the far corner of pixel 0, and on.
+    std::array<double, kPlanes> start,
+        step;  // Nearness at the farthest corner of pixel 0, and its change per pixel.
     for (size_t k = 0; k < kPlanes; ++k) {
       const Vec3d& p = planes[k];
       start[k] = (p.x * (half - 1) + p.y * v + p.z - around[k]) * (1 - kRoundDown);
       step[k] = p.x / scale * (1 - kRoundDown);
     }
     for (int32_t x = x0; x <= x1; ++x) {
-      double least = start[0] + x * step[0];
-      if constexpr (kPlanes == 2) least = std::min(least, start[1] + x * step[1]);
-      row[x] = std::max(row[x], static_cast<float>(least));
+      double min_nearness = start[0] + x * step[0];
+      if constexpr (kPlanes == 2) min_nearness = std::min(min_nearness, start[1] + x * step[1]);
+      row[x] = std::max(row[x], static_cast<float>(min_nearness));
     }
   }
 }
 
 namespace {
 
-// Where a shape's rows begin and end; all of them if it reaches behind the eye.
+// First and last row of a shape; all rows if a corner is behind the eye.
 template <size_t kCorners>
 std::pair<double, double> rows_of(const std::array<Vec3d, kCorners>& corners) {
   double low = 1, high = -1;
@@ -187,7 +188,7 @@ std::pair<double, double> rows_of(const std::array<Vec3d, kCorners>& corners) {
   return {low, high};
 }
 
-// Does it lie whole beyond one side of the face, or behind the eye?
+// Does the shape lie completely beyond one side of the face, or behind the eye?
 template <size_t kCorners>
 bool is_outside(const std::array<Vec3d, kCorners>& corners) {
   bool left = true, right = true, under = true, over = true;
@@ -200,7 +201,7 @@ bool is_outside(const std::array<Vec3d, kCorners>& corners) {
   return left || right || under || over;
 }
 
-// One by depth in the plane of three corners, whose cone has the volume `c`.
+// 1 / depth in the plane of three corners, whose cone has the volume `c`.
 Vec3d nearness_in(Vec3d a, Vec3d b, Vec3d d, double c) { return cross(b - a, d - a) * (1 / c); }
 
 }  // namespace
@@ -217,12 +218,12 @@ void EyeSight::draw_triangle(const Face& face, const std::array<Vec3d, 3>& t) {
       {nearness_in(t[0], t[1], t[2], c)}, low, high);
 }
 
-// Corners: the side's two, and one on either hand of it.
+// Corners: the two of the shared side, and one of each triangle.
 void EyeSight::draw_seam(const Face& face, const std::array<Vec3d, 4>& s) {
   const auto& [u, v, a, b] = s;
   const Vec3d along = cross(u, v);
   const double ca = dot(a, along), cb = dot(b, along);
-  // Both on one hand: beyond the side there is nothing.
+  // Both triangles on one side of it: the shared side is an outline.
   if (std::abs(ca) < kEdgeOn || std::abs(cb) < kEdgeOn || (ca > 0) == (cb > 0)) return;
   const double half = 1.0 / pixels_, sa = ca > 0 ? 1 : -1;
   const auto [low, high] = rows_of(std::array{u, v});
@@ -233,13 +234,13 @@ void EyeSight::draw_seam(const Face& face, const std::array<Vec3d, 4>& s) {
              {nearness_in(u, v, a, ca), nearness_in(u, v, b, cb)}, low - 2 * half, high + 2 * half);
 }
 
-void EyeSight::look_from(const EyePlace& place, double reach) {
+void EyeSight::look_from(const EyePlace& place, double max_distance) {
   place_ = place;
   std::fill(nearness_.begin(), nearness_.end(), 0.0F);
   const Vec3d eye = place.eye - occluders_->origin;
   const double cut = place.cut - occluders_->origin.y;
   const auto& corners = occluders_->corners;
-  // Nothing if the shape does not count.
+  // Skips shapes above the cut and beyond max_distance.
   const auto draw = [&](const auto& ids, auto each) {
     std::array<Vec3d, std::tuple_size_v<std::decay_t<decltype(ids)>>> at;
     Vec3d low{1e300, 1e300, 1e300}, high = low * -1.0;
@@ -250,7 +251,9 @@ void EyeSight::look_from(const EyePlace& place, double reach) {
       low = {std::min(low.x, at[k].x), 0, std::min(low.z, at[k].z)};
       high = {std::max(high.x, at[k].x), 0, std::max(high.z, at[k].z)};
     }
-    if (low.x > reach || low.z > reach || high.x < -reach || high.z < -reach) return;
+    if (low.x > max_distance || low.z > max_distance || high.x < -max_distance ||
+        high.z < -max_distance)
+      return;
     for (size_t number = 0; number < 6; ++number) {
       const Face face{number};
       auto seen = at;

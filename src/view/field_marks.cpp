@@ -10,15 +10,16 @@
 #include "throng/caacd.h"
 #include "view/overlays.h"
 
-// [CAACD] II: three concentric fields around everybody, the zone ahead, and what state they are in.
-// The crowd itself steers by trying velocities; this shows how the paper would judge it.
+// [CAACD] II: three concentric fields around each avatar, the probe ahead, and the state that
+// results from the other avatars, in O(n^2) for at most 300 avatars. The `sampled` model does not
+// use them.
 namespace throng {
 namespace {
 
 constexpr double kAbove = 0.05;                     // [m]
-constexpr double kPrecaution = 0.25, kAlert = 0.7;  // [m] beyond the body
-constexpr size_t kMax = 300;                        // So many are shown, the nearest.
-constexpr double kAround = 8;                       // [m] from who is picked
+constexpr double kPrecaution = 0.25, kAlert = 0.7;  // [m] Beyond the body's radius.
+constexpr size_t kMax = 300;                        // Avatars that are shown, the nearest first.
+constexpr double kAround = 8;                       // [m] Around the picked avatar.
 
 caacd::Model model_of_metres() {
   caacd::Model model;
@@ -59,7 +60,7 @@ void add_circle(Marks& marks, Vec3d middle, double radius, Rgba colour) {
   }
 }
 
-void add_zone(Marks& marks, const caacd::Body& body, const caacd::Model& model, Rgba colour) {
+void add_probe(Marks& marks, const caacd::Body& body, const caacd::Model& model, Rgba colour) {
   const Vec3d ahead = body.forward * caacd::zone_length(body, model);
   const Vec3d side = caacd::right_of(body.forward) * body.fields.repulsive;
   const std::array<Vec3d, 4> c = {body.position + side, body.position + side + ahead,
@@ -74,13 +75,13 @@ caacd::Body body_of(const TimelineFrame& crowd, size_t i, const std::vector<doub
   caacd::Body body;
   body.position = {crowd.x[i], crowd.y[i] + kAbove, crowd.z[i]};
   body.forward = {std::sin(angle), 0, std::cos(angle)};
-  body.velocity = body.forward * static_cast<double>(crowd.pace[i]);
+  body.velocity = body.forward * static_cast<double>(crowd.speed[i]);
   body.fields = {radius, radius + kPrecaution, radius + kAlert};
   body.id = static_cast<uint32_t>(i);
   return body;
 }
 
-// The worst of how near others are now and how near they will come.
+// The worst state: of the distances to others now, and of the predicted ones.
 caacd::State state_of(const caacd::Body& self, const std::vector<caacd::Body>& all,
                       const caacd::Model& model) {
   auto worst = caacd::State::kTolerable;
@@ -113,7 +114,7 @@ Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
   Marks marks;
   for (const caacd::Body& body : bodies) {
     const caacd::State state = state_of(body, bodies, model);
-    add_zone(marks, body, model, colour_of(state, 90));
+    add_probe(marks, body, model, colour_of(state, 90));
     add_circle(marks, body.position, body.fields.repulsive, colour_of(state, 255));
     add_circle(marks, body.position, body.fields.precaution, colour_of(state, 190));
     add_circle(marks, body.position, body.fields.alert, colour_of(state, 110));

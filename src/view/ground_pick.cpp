@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// What is under the pointer. Ground: samples of the sight line, a place query each; avatars: one
+// distance of lines each.
 namespace throng {
 
 std::optional<Vec3d> ground_on(const World& world, const SightLine& line, double cut,
@@ -26,7 +28,7 @@ std::optional<Vec3d> ground_on(const World& world, const SightLine& line, double
 
 size_t avatar_on(const TimelineFrame& crowd, const std::vector<double>& class_heights,
                  const SightLine& line, double cut, double farthest) {
-  constexpr double kReach = 0.35;
+  constexpr double kPickRadius = 0.35;  // [m]
   size_t best = crowd.size();
   double nearest = farthest;
   const double flat = std::hypot(line.direction.x, line.direction.z);
@@ -36,15 +38,16 @@ size_t avatar_on(const TimelineFrame& crowd, const std::vector<double>& class_he
     const double height = class_heights.empty() ? 1.75 : class_heights[c];
     const Vec3d feet{crowd.x[i], crowd.y[i], crowd.z[i]};
     const Vec3d to = feet + Vec3d{0, 0.5 * height, 0} - line.eye;
-    // Where the line is nearest to the body's axis, seen from above; for a line straight down,
-    // where it is as high as the body's middle.
+    // The point of the line nearest to the body's axis, seen from above; of a vertical line, the
+    // point at the height of the body's middle.
     double along = dot(to, line.direction);
     if (flat > 0.05) along = (to.x * line.direction.x + to.z * line.direction.z) / (flat * flat);
     if (along < 0 || along >= nearest) continue;
     const Vec3d p = line.eye + line.direction * along - feet;
-    const double lean = flat > 0.05 ? std::abs(line.direction.y) / flat * kReach : 0.5 * height;
+    const double lean =
+        flat > 0.05 ? std::abs(line.direction.y) / flat * kPickRadius : 0.5 * height;
     if (p.y < -lean || p.y > height + lean) continue;
-    if (std::hypot(p.x, p.z) > kReach) continue;
+    if (std::hypot(p.x, p.z) > kPickRadius) continue;
     nearest = along;
     best = i;
   }

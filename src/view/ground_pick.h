@@ -10,19 +10,18 @@
 
 namespace throng {
 
-/// A half-line from an eye. `direction` is a unit vector.
+/// A ray from an eye. `direction` is a unit vector.
 struct SightLine {
   Vec3d eye, direction;
 };
 
-/// The first ground that a sight line meets, of any of the first `classes` classes, not above
-/// `cut`; in the world's coordinates, as the line. Found by steps of a quarter of a metre.
+/// The first ground of any class that a sight line meets, not above `cut`. Line and result are in
+/// the world's coordinates. Samples the line every quarter of a metre.
 [[nodiscard]] std::optional<Vec3d> ground_on(const World& world, const SightLine& line, double cut,
                                              double farthest);
 
-/// The nearest avatar that a sight line passes within a third of a metre, or `crowd.size()`. Who
-/// stands farther than `farthest` or above `cut` is passed over. All relative to the stage's
-/// origin.
+/// The nearest avatar whose axis a sight line passes within 0.35 m, or `crowd.size()`. Avatars
+/// farther than `farthest` or above `cut` are skipped. All relative to the stage's origin.
 [[nodiscard]] size_t avatar_on(const TimelineFrame& crowd, const std::vector<double>& class_heights,
                                const SightLine& line, double cut, double farthest);
 

@@ -6,26 +6,27 @@
 #include <cmath>
 #include <map>
 
+// Storeys are the peaks of a histogram of floor heights, largest first. Time: linear in cells.
 namespace throng {
 namespace {
 
-constexpr int32_t kBin = 250;        // [mm]
-constexpr int32_t kStorey = 8;       // [bins] Storeys are so far apart at least.
-constexpr double kShare = 0.08;      // Of the ground of the largest storey that makes one, too.
-constexpr uint32_t kLooks = 20'000;  // Tiles are looked at; of more, a sample.
+constexpr int32_t kBin = 250;           // [mm]
+constexpr int32_t kStorey = 8;          // [bins] Smallest distance of two storeys.
+constexpr double kShare = 0.08;         // Smallest area of a storey, as a share of the largest one.
+constexpr uint32_t kMaxTiles = 20'000;  // Of more tiles, every n-th is read.
 
 }  // namespace
 
 std::vector<double> storey_heights(const World& world, Context& context) {
   const WorldSummary summary = world.summary();
   std::map<int32_t, uint64_t> cells;  // By bin of height.
-  const uint32_t tiles = world.level_tile_count(), stride = tiles / kLooks + 1;
+  const uint32_t tiles = world.level_tile_count(), stride = tiles / kMaxTiles + 1;
   for (uint32_t tile = 0; tile < tiles && !context.cancel; tile += stride) {
     const LevelTileContent content = world.level_tile(tile);
     for (size_t i = 0; i < content.floor.size(); ++i) {
-      const bool anyone = std::any_of(content.clearance.begin(), content.clearance.end(),
-                                      [i](const auto& of_class) { return of_class[i] > 0; });
-      if (content.floor[i] == kNoFloor || !anyone) continue;
+      const bool is_legal = std::any_of(content.clearance.begin(), content.clearance.end(),
+                                        [i](const auto& of_class) { return of_class[i] > 0; });
+      if (content.floor[i] == kNoFloor || !is_legal) continue;
       ++cells[content.floor[i] / kBin];
     }
   }

@@ -9,8 +9,8 @@
 
 namespace throng {
 
-/// Heights of the storeys of a world, lowest first: where much of the ground lies level, two metres
-/// apart or more. Of a landscape there may be one or none. Reads every zone. [m]
+/// Heights of the storeys of a world, lowest first: heights of large level areas, at least two
+/// metres apart. A landscape may have one or none. Reads every zone. [m]
 [[nodiscard]] std::vector<double> storey_heights(const World& world, Context& context);
 
 }  // namespace throng

@@ -7,11 +7,12 @@
 
 #include "view/viewer_state.h"
 
+// Orders overlays as the panel switches them on, and shows them when they are made.
 namespace throng {
 
 OverlayMaker::OverlayMaker(World world, std::optional<Nodes> nodes, Vec3d origin)
     : world_(std::move(world)), nodes_(std::move(nodes)), origin_(origin) {
-  context_.on_progress = [](const Progress&) { SideTask::breathe(); };
+  context_.on_progress = [](const Progress&) { SideTask::pause_if_due(); };
 }
 
 OverlayMaker::~OverlayMaker() {
@@ -37,7 +38,7 @@ std::optional<OverlayMaker::Made> OverlayMaker::take() {
   return std::exchange(made_, std::nullopt);
 }
 
-Result<std::vector<Vec3d>> OverlayMaker::way(const Order& order) {
+Result<std::vector<Vec3d>> OverlayMaker::find_path(const Order& order) {
   if (!finder_ || finder_class_ != order.avatar_class) {
     Result<PathFinder> finder =
         PathFinder::make(world_, {.avatar_class = order.avatar_class}, context_);
@@ -82,7 +83,7 @@ OverlayMaker::Made OverlayMaker::make(const Order& order) {
       }
       break;
     case Overlay::kPath:
-      if (auto points = way(order)) {
+      if (auto points = find_path(order)) {
         made.marks = path_marks(*points, origin_);
       } else {
         made.fault = points.error().message;
@@ -94,12 +95,12 @@ OverlayMaker::Made OverlayMaker::make(const Order& order) {
     case Overlay::kDensity:
     case Overlay::kNeighbours:
     case Overlay::kFields:
-      break;  // Made anew for each frame.
+      break;  // Made in each frame.
   }
   return made;
 }
 
-// Starts what is wanted and not there, and shows what is there and wanted.
+// Orders the overlays that are on and not made, and shows those that have been made.
 void Viewer::State::show_overlays() {
   const auto slot = [](Overlay overlay) { return static_cast<size_t>(overlay); };
   const auto set = [&](Overlay overlay, const Marks& marks) {
@@ -113,7 +114,7 @@ void Viewer::State::show_overlays() {
                             : crowd.now().find(static_cast<uint64_t>(panel.status.picked));
   const bool has_picked = picked < crowd.now().size();
   if (overlay_maker) {
-    overlay_maker->turn();
+    overlay_maker->run_slice();
     if (auto made = overlay_maker->take()) {
       if (!made->fault.empty()) {
         panel.status.error = made->fault;
@@ -149,8 +150,8 @@ void Viewer::State::show_overlays() {
           ordered[i] = false;
           continue;
         }
-        if (ordered[i] && way_asked && *last_now - *way_asked < 0.5) continue;
-        way_asked = last_now;
+        if (ordered[i] && path_ordered_at && *last_now - *path_ordered_at < 0.5) continue;
+        path_ordered_at = last_now;
         order.avatar_class = panel.picked->avatar_class;
         order.from = panel.picked->position;
         order.to = *panel.picked->goal;

@@ -16,8 +16,7 @@
 
 namespace throng {
 
-/// Overlays that take their time, made beside the window: one thing at a time, the last one asked
-/// for.
+/// Makes overlays that take long on a task beside the window, one at a time.
 class OverlayMaker {
  public:
   OverlayMaker(World world, std::optional<Nodes> nodes, Vec3d origin);
@@ -30,25 +29,25 @@ class OverlayMaker {
     double height = 0;                                         ///< Of air. [m, world]
     int32_t avatar_class = 0;                                  ///< Of clearance and path.
     Vec3d from, to;                                            ///< Of a path.
-    std::shared_ptr<const std::vector<DensityMap>> maps = {};  ///< Of what is painted.
+    std::shared_ptr<const std::vector<DensityMap>> maps = {};  ///< Of painted densities.
   };
   struct Made {
     Overlay overlay = Overlay::kClearance;
     Marks marks;
-    std::string fault;  ///< Why there are none, or empty.
+    std::string fault;  ///< Why the marks are missing, or empty.
   };
   [[nodiscard]] bool is_busy() const { return busy_; }
-  /// Only while it is not busy.
+  /// Call only while it is not busy.
   void start(const Order& order);
   [[nodiscard]] std::optional<Made> take();
-  /// Where there are no threads: works for a while.
-  void turn() {
-    if (task_) task_->turn();
+  /// Without threads: works for a share of the frame.
+  void run_slice() {
+    if (task_) task_->run_slice();
   }
 
  private:
   Made make(const Order& order);
-  Result<std::vector<Vec3d>> way(const Order& order);
+  Result<std::vector<Vec3d>> find_path(const Order& order);
 
   World world_;
   std::optional<Nodes> nodes_;
@@ -57,7 +56,7 @@ class OverlayMaker {
   std::atomic<bool> busy_ = false;
   std::mutex mutex_;
   std::optional<Made> made_;
-  // Made when first needed, of one class.
+  // Made on first use, for one class.
   std::optional<PathFinder> finder_;
   int32_t finder_class_ = -1;
   std::optional<SideTask> task_;

@@ -13,11 +13,12 @@
 #include "throng/flight.h"
 #include "throng/partial_runs.h"
 
+// Each overlay is a list of triangles and lines, linear in cells, nodes or avatars.
 namespace throng {
 namespace {
 
 constexpr double kAbove = 0.04;      // [m] over the ground
-constexpr size_t kMax = 12'000'000;  // Vertices: what is more is left out.
+constexpr size_t kMax = 12'000'000;  // Vertices; further marks are left out.
 
 MarkVertex at(Vec3d p, Rgba colour) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), colour};
@@ -67,9 +68,9 @@ void add_tile(Marks& marks, const LevelTileContent& tile, const WorldSummary& su
       while (end < kTileCells) {
         const auto i = static_cast<size_t>(row * kTileCells + end);
         if (colour_of(i) != colour) break;
-        const int32_t gone = end - begin;
-        if (gone == 1) rise = height(i) - height(first);
-        if (std::abs(height(i) - height(first) - rise * gone) > 0.015 || std::abs(rise) > cell) {
+        const int32_t run = end - begin;
+        if (run == 1) rise = height(i) - height(first);
+        if (std::abs(height(i) - height(first) - rise * run) > 0.015 || std::abs(rise) > cell) {
           break;
         }
         ++end;
@@ -97,18 +98,17 @@ const char* word_for(Overlay overlay) {
 
 const char* legend_of(Overlay overlay) {
   static constexpr std::array<const char*, kOverlays> kLegends = {
-      "Where the first class may stand: red beside what stops it, blue where there is most room",
-      "Sheets of ground, each in its colour",
+      "Where the first class may stand: red beside blockers, blue where the clearance is largest",
+      "Levels, each in its colour",
       "Terminal nodes: green level, red steep. A world baked with --nodes has them",
-      "Between nodes: white walk, orange step, magenta climb, blue jump, red drop",
+      "Between nodes: white walk, orange step, magenta climb, blue off-mesh link, red drop link",
       "Where a flyer's feet may be, at the height of the cut. A world baked with a flying class "
-      "has "
-      "it",
-      "Avatars a square metre, over 2 m: blue few, red four and more",
-      "The shortest way of the avatar picked to its goal",
-      "Whom the avatar picked may see: within 5 m",
-      "Where people are sent: painted with the brush, or by the scenario; the stronger, the more",
-      "Protection fields of [CAACD] and the zone ahead: green tolerable, yellow alert, orange "
+      "has it",
+      "Avatars per square metre, over 2 m: blue few, red four and more",
+      "The shortest path of the picked avatar to its goal",
+      "The avatars within 5 m of the picked avatar",
+      "Weights of goals, painted with the brush or by the scenario; the larger, the more opaque",
+      "Protection fields of [CAACD] and the probe ahead: green tolerable, yellow alert, orange "
       "critical, red collision"};
   return kLegends[static_cast<size_t>(overlay)];
 }
@@ -136,9 +136,9 @@ Marks level_marks(const World& world, Vec3d origin, Context& context) {
     const LevelTileContent tile = world.level_tile(t);
     const Rgba colour = own_colour(static_cast<uint64_t>(storeys[t]), 150);
     add_tile(marks, tile, summary, origin, [&](size_t i) {
-      const bool anyone = std::any_of(tile.clearance.begin(), tile.clearance.end(),
-                                      [i](const auto& of_class) { return of_class[i] > 0; });
-      return anyone ? colour : 0;
+      const bool is_legal = std::any_of(tile.clearance.begin(), tile.clearance.end(),
+                                        [i](const auto& of_class) { return of_class[i] > 0; });
+      return is_legal ? colour : 0;
     });
     if (context.on_progress) context.on_progress({"levels", t, tiles});
   }
@@ -164,7 +164,7 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     const NodeInfo info = nodes.node(n);
     if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMax) continue;
-    // What nodes of level tiles promise is a limit of some class: the floor may be less steep.
+    // The inclination of a node of a level tile is a limit of a class: the floor may be less steep.
     const auto add = [&](const std::array<Vec3d, 4>& c) {
       double steep = bins.inclination_of(info.inclination);
       if (info.kind == PatchKind::kLevelTile) steep = std::min(steep, inclination_of(c));
@@ -179,7 +179,7 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
       for (size_t k = 0; k < 4; ++k) add_line(marks, c[k], c[(k + 1) % 4], rim);
       continue;
     }
-    // A ragged node row by row: its block's corners need not have a floor.
+    // A partial node is drawn row by row: its block's corners may have no floor.
     constexpr double kCell = 1.0 / 64, kSide = kCell - 1e-5;
     for_partial_runs(info.cells, [&](int32_t first, int32_t row, int32_t count) {
       const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
@@ -197,7 +197,7 @@ Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   const Vec3d lift = Vec3d{0, 3 * kAbove, 0} - origin;
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     for (const NodeArc& arc : nodes.arcs(n)) {
-      // Both directions of a link are arcs: one is enough, but for drops.
+      // An undirected link has two arcs: one is drawn. Drop links have one.
       const bool drops = arc.kind == LinkKind::kDrop;
       if ((arc.to < n && !drops) || marks.lines.size() > kMax) continue;
       if (drops) {
@@ -232,7 +232,7 @@ Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context
   if (!finder) return finder.error();
   const Result<AirSummary> air = air_summary(world);
   if (!air) return air.error();
-  // At most a million cells: of large worlds a coarser lattice.
+  // At most a million cells: larger worlds get a coarser lattice.
   const Box3d& box = summary.bounds;
   const double area = (box.max.x - box.min.x) * (box.max.z - box.min.z);
   const double cell = std::max(air->cell, std::sqrt(area / 1e6));
@@ -290,7 +290,7 @@ Marks painted_marks(const World& world, const std::vector<DensityMap>& maps, Vec
     // A map of all heights is shown on the highest floor of each place.
     const double low = std::max(map.low, world.summary().bounds.min.y - 1);
     const double high = std::min(map.high, world.summary().bounds.max.y + 1);
-    const double middle = 0.5 * (low + high), reach = 0.5 * (high - low);
+    const double middle = 0.5 * (low + high), tolerance = 0.5 * (high - low);
     for (size_t i = 0; i < map.weights.size() && !context.cancel; ++i) {
       if (map.weights[i] == 0 || marks.triangles.size() > kMax) continue;
       const auto column = static_cast<double>(i % static_cast<size_t>(map.width));
@@ -298,7 +298,7 @@ Marks painted_marks(const World& world, const std::vector<DensityMap>& maps, Vec
       const double x = map.x0 + column * wide, z = map.z0 + row * deep;
       Place place;
       for (int32_t c = 0; c < classes && !place; ++c) {
-        place = world.find_place(c, {x + wide / 2, middle, z + deep / 2}, reach);
+        place = world.find_place(c, {x + wide / 2, middle, z + deep / 2}, tolerance);
       }
       if (!place) continue;
       const double y = place.position.y + kAbove;
@@ -332,7 +332,7 @@ Marks path_marks(const std::vector<Vec3d>& points, Vec3d origin) {
   for (size_t i = 0; i + 1 < points.size(); ++i) {
     add_line(marks, points[i] + lift, points[i + 1] + lift, colour);
   }
-  if (!points.empty()) {  // A pole where it leads.
+  if (!points.empty()) {  // A pole at the goal.
     add_line(marks, points.back() + lift, points.back() + lift + Vec3d{0, 2.2, 0},
              rgba(255, 80, 60));
   }

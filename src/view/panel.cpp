@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+// The windows of the panel in Dear ImGui.
 namespace throng {
 namespace {
 
@@ -57,13 +58,13 @@ void draw_crowd(PanelState& s) {
     ImGui::TreePop();
   }
   if (ImGui::Checkbox("Only what is seen", &s.settings.only_seen)) s.restart = true;
-  tip("For eyes in a street: who cannot be seen from there is not simulated, and nobody comes or\n"
-      "goes in sight. As many a square metre as the avatars above would be in all of the ground");
+  tip("For an eye in a street: avatars that cannot be seen from there are not simulated, and none\n"
+      "appears or disappears in sight. The density is that of the avatars above on all ground");
   if (s.crowd.only_seen && s.status.avatars == 0 && !s.status.loading) {
-    ImGui::TextWrapped("Nobody: no ground within %.0f m of the eye. Go nearer.", s.crowd.sight);
+    ImGui::TextWrapped("No avatars: no ground within %.0f m of the eye. Go nearer.", s.crowd.sight);
   }
   if (ImGui::Checkbox("Far ones coarser", &s.settings.coarse_far)) s.restart = true;
-  tip("Who is more than 300 m away decides and moves in longer steps");
+  tip("Avatars more than 300 m away decide and move in longer steps");
   if (ImGui::Button("Start again")) s.restart = true;
   tip("A new crowd with these settings");
 }
@@ -108,26 +109,26 @@ void draw_tools(PanelState& s) {
       ImGui::EndCombo();
     }
   }
-  // A scenario's people must be able to go somewhere.
+  // A scenario's avatars need goals.
   if (s.has_crowd && ImGui::Button("Wipe all away")) s.unpaint_all = true;
 }
 
 void draw_scenario(PanelState& s) {
   const SceneFlow& flow = s.flow;
   ImGui::Text("%.1f of %.0f s", s.status.time, s.scenario->seconds);
-  ImGui::Text("came %llu, left %llu", static_cast<unsigned long long>(flow.entered),
+  ImGui::Text("entered %llu, left %llu", static_cast<unsigned long long>(flow.entered),
               static_cast<unsigned long long>(flow.left));
-  const auto told = [](const char* what, uint64_t count) {
+  const auto show = [](const char* what, uint64_t count) {
     if (count > 0) ImGui::Text("%s %llu", what, static_cast<unsigned long long>(count));
   };
-  told("wait outside", flow.outside);
-  told("in lifts", flow.in_links);
-  told("find no way", flow.goal_unreachable);
+  show("wait outside", flow.outside);
+  show("in lifts", flow.in_links);
+  show("goal unreachable", flow.goal_unreachable);
   if (ImGui::Button("Start again")) s.restart = true;
-  tip("From its beginning, with what was painted");
+  tip("From its beginning, with the painted densities");
 }
 
-// Just over the heads of who stands on a storey, under the floor of the next.
+// Just over the heads of avatars on a storey, under the floor of the next.
 double cut_over(const PanelState& s, size_t storey) {
   const double cut = s.storeys[storey] + 2.1;
   return storey + 1 < s.storeys.size() ? std::min(cut, s.storeys[storey + 1] - 0.3) : cut;
@@ -141,7 +142,7 @@ void draw_levels(PanelState& s) {
     if (slide("##cut", s.cut, s.bounds.min.y, s.bounds.max.y + 1, "%.2f m")) s.is_cut = true;
   }
   for (size_t k = 0; k < s.storeys.size() && k < 24; ++k) {
-    const size_t i = s.storeys.size() - 1 - k;  // The highest first, as they lie.
+    const size_t i = s.storeys.size() - 1 - k;  // The highest first.
     ImGui::PushID(static_cast<int>(i));
     const double top =
         i + 1 < s.storeys.size() ? s.storeys[i + 1] - 0.6 : std::numeric_limits<double>::infinity();
@@ -194,7 +195,7 @@ void draw_times(const PanelState& s) {
   if (s.has_crowd || s.scenario) {
     ImGui::Separator();
     row("step", s.report.seconds_total);
-    row("  ways", s.report.seconds_plan);
+    row("  paths", s.report.seconds_plan);
     row("  sort", s.report.seconds_sort);
     row("  steer", s.report.seconds_steer);
     row("  commit", s.report.seconds_commit);
@@ -292,15 +293,15 @@ void draw_picked(PanelState& s, float scale, int32_t width) {
     const auto index = static_cast<size_t>(a.avatar_class);
     if (index < s.class_names.size()) ImGui::Text("class      %s", s.class_names[index].c_str());
     ImGui::Text("at         %.2f, %.2f, %.2f", a.position.x, a.position.y, a.position.z);
-    ImGui::Text("walks      %.2f m/s", s.picked_pace);
-    if (a.speed > 0) ImGui::Text("wishes     %.2f m/s", a.speed);
+    ImGui::Text("walks      %.2f m/s", s.picked_speed);
+    if (a.speed > 0) ImGui::Text("desired    %.2f m/s", a.speed);
     ImGui::Text("has walked %.1f m", s.picked_walked);
     if (a.goal) {
       ImGui::Text("goal       %.1f, %.1f, %.1f", a.goal->x, a.goal->y, a.goal->z);
       ImGui::Text("away       %.1f m", length(*a.goal - a.position));
       ImGui::Text("its goal number %u", a.goals_given);
     }
-    if (a.driven) ImGui::Text("that is you");
+    if (a.controlled) ImGui::Text("controlled by you");
   }
   ImGui::TextDisabled("F looks at it, Escape lets go");
   ImGui::End();
@@ -318,21 +319,21 @@ void draw_help(PanelState& s, int32_t width, int32_t height) {
         {"Left drag", "turn around the middle; in Fly and Walk: look around"},
         {"Right or middle drag", "move sideways; with Shift, also the left"},
         {"Wheel", "nearer to what is under the pointer, or away"},
-        {"Click", "pick an avatar, or spawn, erase, paint where people go (panel: Crowd)"},
+        {"Click", "pick an avatar, or spawn, erase, paint goals (panel: Crowd)"},
         {"W A S D, arrows", "go; Q down, E up; Shift: faster"},
-        {"1, 2, 3", "Orbit, Fly, Walk yourself"},
+        {"1, 2, 3", "Orbit, Fly, Walk as an avatar"},
         {"V", "in Walk: through its eyes, or from behind"},
-        {"F", "look at the avatar picked"},
-        {"T", "paint where people go; again: wipe that away; again: pick"},
+        {"F", "look at the picked avatar"},
+        {"T", "paint goals; again: wipe them away; again: pick"},
         {"Home", "see all"},
         {"Page Up, Page Down", "storey by storey; End: all of them"},
         {"Space, period", "pause or play; one step"},
         {"Comma, M", "slower, faster"},
         {"C, L, N, K", "clearance, levels, nodes, links"},
-        {"X, H, P, B", "air, density (heat), path and neighbours of the avatar picked"},
-        {"O, G", "where people are sent; protection fields"},
+        {"X, H, P, B", "air, density (heat), path and neighbours of the picked avatar"},
+        {"O, G", "painted goals; protection fields"},
         {"Tab", "panel"},
-        {"F11, F12", "full screen; keep a picture"},
+        {"F11, F12", "full screen; save a picture"},
         {"Escape", "leave Walk, let go of the avatar, close this"},
         {"Ctrl+Q", "quit"},
     };
@@ -375,14 +376,14 @@ void draw_panel(PanelState& s, float scale, int32_t width, int32_t height) {
 
 void step_cut(PanelState& s, int32_t by) {
   if (s.storeys.empty() || (by > 0 && !s.is_cut)) return;
-  // The storey that is on top now; one above all if nothing is cut away.
+  // The storey on top now; one above all if nothing is cut away.
   const auto all = static_cast<int32_t>(s.storeys.size());
   int32_t top = all;
   if (s.is_cut) {
     top = 0;
     while (top + 1 < all && s.storeys[static_cast<size_t>(top) + 1] < s.cut) ++top;
   }
-  // A cut above everything would show no difference: on to the next.
+  // A cut above everything changes nothing: on to the next.
   for (top += by; top >= 0; top += by) {
     if (top >= all) {
       s.is_cut = false;

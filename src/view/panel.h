@@ -16,45 +16,45 @@
 
 namespace throng {
 
-/// What a click on the ground does.
+/// The tool that a click on the ground uses.
 enum class Tool : uint8_t {
   kPick,
   kSpawn,
   kErase,
-  kPaint,    ///< Where people go, with the brush's weight.
-  kUnpaint,  ///< The same with weight 0.
+  kPaint,    ///< Paints density, with the brush's weight.
+  kUnpaint,  ///< Paints weight 0.
 };
 
-/// Of a scenario that runs.
+/// The scenario that runs.
 struct ScenarioPanel {
-  double seconds = 0;                  ///< How long it takes.
+  double seconds = 0;                  ///< Duration.
   std::vector<std::string> densities;  ///< Names of its maps.
-  int32_t painted = 0;                 ///< The one that the brush paints.
+  int32_t painted = 0;                 ///< Index of the map that the brush paints.
 };
 
-/// Seconds of a frame, by what they went into.
+/// Durations of the parts of a frame. [s]
 struct FrameTimes {
   double frame = 0;  ///< From one frame to the next.
   double blend = 0, pack = 0, draw = 0, panel = 0;
 };
 
-/// What the panel shows and changes. Its owner acts on what has changed.
+/// What the panel shows and changes; its owner applies the changes.
 struct PanelState {
   ViewSettings settings;
   CameraMode mode = CameraMode::kOrbit;
   Tool tool = Tool::kPick;
   double brush_radius = 2;  ///< [m]
   int32_t brush_count = 20;
-  double brush_weight = 1;  ///< Of what is painted. [0.05 to 1]
+  double brush_weight = 1;  ///< [0.05 to 1]
   bool playing = true;
   bool help = false;
-  double cut = 0;  ///< Height above which the scene is left out, if `is_cut`. [m, world]
+  double cut = 0;  ///< Height above which nothing is drawn, if `is_cut`. [m, world]
   bool is_cut = false;
   std::array<bool, kOverlays> overlays{};
-  CrowdStart crowd;  ///< As it would be started again.
+  CrowdStart crowd;  ///< The start of the next restart.
   int32_t avatars_wanted = 0;
 
-  // Shown only.
+  // Read only.
   ViewerStatus status;
   std::string renderer;
   std::string progress_stage;
@@ -71,9 +71,9 @@ struct PanelState {
   FrameTimes times;
   CrowdReport report;
   std::optional<AvatarDetail> picked;
-  double picked_pace = 0, picked_walked = 0;
+  double picked_speed = 0, picked_walked = 0;
 
-  // Asked for in this frame; the owner clears them.
+  // Requests of this frame; the owner clears them.
   bool unpaint_all = false;
   bool step = false, restart = false, frame_all = false, set_count = false, walk = false;
   std::optional<double> seek;
@@ -82,7 +82,7 @@ struct PanelState {
 /// Draws all windows of the panel; between Ui::begin and Ui::end.
 void draw_panel(PanelState& state, float scale, int32_t width, int32_t height);
 
-/// Goes a storey up (1) or down (-1) with the cut.
+/// Moves the cut a storey up (1) or down (-1).
 void step_cut(PanelState& state, int32_t by);
 
 }  // namespace throng

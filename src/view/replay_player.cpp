@@ -7,15 +7,16 @@
 #include <numbers>
 #include <utility>
 
+// A frame per frame of a recording.
 namespace throng {
 
 ReplayPlayer::ReplayPlayer(Replay replay, Vec3d origin)
     : replay_(std::move(replay)), origin_(origin) {}
 
 std::shared_ptr<const TimelineFrame> ReplayPlayer::next() {
-  // Frames of a corrupt chunk are passed over: the rest can still be seen.
+  // Frames of a corrupt chunk are skipped: the rest can still be shown.
   while (next_ < replay_.frame_count()) {
-    if (auto moment = read(next_++)) return moment;
+    if (auto frame = read(next_++)) return frame;
   }
   return nullptr;
 }
@@ -27,28 +28,28 @@ std::shared_ptr<const TimelineFrame> ReplayPlayer::seek(double time) {
 }
 
 std::shared_ptr<const TimelineFrame> ReplayPlayer::read(uint64_t index) {
-  if (!replay_.read(index, frame_)) return nullptr;
-  const auto moment = std::make_shared<TimelineFrame>();
-  moment->time = frame_.time;
-  moment->resize(frame_.size());
-  moment->ids = frame_.ids;
-  moment->classes = frame_.classes;
-  const bool lean = std::any_of(frame_.ups.begin(), frame_.ups.end(), [](Vec3d up) {
+  if (!replay_.read(index, recorded_)) return nullptr;
+  const auto frame = std::make_shared<TimelineFrame>();
+  frame->time = recorded_.time;
+  frame->resize(recorded_.size());
+  frame->ids = recorded_.ids;
+  frame->classes = recorded_.classes;
+  const bool lean = std::any_of(recorded_.ups.begin(), recorded_.ups.end(), [](Vec3d up) {
     return !(up == Vec3d{0, 1, 0});
   });
-  if (lean) moment->ups = frame_.ups;
-  for (size_t i = 0; i < frame_.size(); ++i) {
-    const Vec3d p = frame_.positions[i] - origin_;
-    moment->x[i] = static_cast<float>(p.x);
-    moment->y[i] = static_cast<float>(p.y);
-    moment->z[i] = static_cast<float>(p.z);
-    const Heading& h = frame_.headings[i];
+  if (lean) frame->ups = recorded_.ups;
+  for (size_t i = 0; i < recorded_.size(); ++i) {
+    const Vec3d p = recorded_.positions[i] - origin_;
+    frame->x[i] = static_cast<float>(p.x);
+    frame->y[i] = static_cast<float>(p.y);
+    frame->z[i] = static_cast<float>(p.z);
+    const Heading& h = recorded_.headings[i];
     const double turns = std::atan2(h.x, h.z) / (2 * std::numbers::pi);
-    moment->heading[i] = static_cast<float>(turns - std::floor(turns));
+    frame->heading[i] = static_cast<float>(turns - std::floor(turns));
   }
-  follow(last_ ? *last_ : TimelineFrame{}, *moment);
-  last_ = moment;
-  return moment;
+  follow(last_ ? *last_ : TimelineFrame{}, *frame);
+  last_ = frame;
+  return frame;
 }
 
 ReplaySpan replay_span(Replay& replay) {

@@ -8,7 +8,7 @@
 namespace throng {
 
 /// Plays a recording, forwards; seeks by time.
-class ReplayPlayer final : public MomentSource {
+class ReplayPlayer final : public TimelinePlayer {
  public:
   ReplayPlayer(Replay replay, Vec3d origin);
   std::shared_ptr<const TimelineFrame> next() override;
@@ -20,7 +20,7 @@ class ReplayPlayer final : public MomentSource {
   Replay replay_;
   Vec3d origin_;
   uint64_t next_ = 0;
-  RecordedFrame frame_;
+  RecordedFrame recorded_;
   std::shared_ptr<const TimelineFrame> last_;
 };
 

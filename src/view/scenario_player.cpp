@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+// A frame per step of a simulation; obstacles are shared between frames while they stay the same.
 namespace throng {
 namespace {
 
@@ -44,24 +45,24 @@ std::shared_ptr<const TimelineFrame> ScenarioPlayer::next() {
 
 std::shared_ptr<const TimelineFrame> ScenarioPlayer::again() {
   simulation_.read(states_);
-  const auto moment = std::make_shared<TimelineFrame>();
-  moment->time = report_.time;
-  moment->report = report_.crowd;
-  moment->fault = fault_;
-  moment->flow = {.entered = std::max<uint64_t>(report_.entered, states_.size()),
-                  .left = report_.left,
-                  .outside = report_.outside,
-                  .in_links = report_.in_links,
-                  .goal_unreachable = report_.goal_unreachable};
+  const auto frame = std::make_shared<TimelineFrame>();
+  frame->time = report_.time;
+  frame->report = report_.crowd;
+  frame->fault = fault_;
+  frame->flow = {.entered = std::max<uint64_t>(report_.entered, states_.size()),
+                 .left = report_.left,
+                 .outside = report_.outside,
+                 .in_links = report_.in_links,
+                 .goal_unreachable = report_.goal_unreachable};
   std::vector<Prism> obstacles = simulation_.crowd().obstacles();
   if (!obstacles_ || !are_alike(*obstacles_, obstacles)) {
     obstacles_ = std::make_shared<const std::vector<Prism>>(std::move(obstacles));
   }
-  moment->obstacles = obstacles_;
-  put_states(states_, origin_, *moment);
-  follow(last_ ? *last_ : TimelineFrame{}, *moment);
-  last_ = moment;
-  return moment;
+  frame->obstacles = obstacles_;
+  put_states(states_, origin_, *frame);
+  follow(last_ ? *last_ : TimelineFrame{}, *frame);
+  last_ = frame;
+  return frame;
 }
 
 }  // namespace throng

@@ -12,8 +12,8 @@
 
 namespace throng {
 
-/// Runs a scenario: until its time is over or everybody has left.
-class ScenarioPlayer final : public MomentSource {
+/// Runs a scenario until its time is over or all avatars have left.
+class ScenarioPlayer final : public TimelinePlayer {
  public:
   /// Fails as Simulation::make does.
   [[nodiscard]] static Result<std::unique_ptr<ScenarioPlayer>> make(const World& world,

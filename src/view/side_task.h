@@ -6,8 +6,8 @@
 #include <memory>
 #include <mutex>
 
-/// Work beside a window, which must not wait for it: on a thread of its own, or, where there are no
-/// threads, on a stack of its own that gets a share of each frame.
+/// Work beside a window, which must not wait for it: on a thread of its own or, without threads, on
+/// a fiber that gets a share of each drawn frame.
 namespace throng {
 
 class SideTask {
@@ -16,15 +16,15 @@ class SideTask {
   explicit SideTask(std::function<void()> work);
   SideTask(const SideTask&) = delete;
   SideTask& operator=(const SideTask&) = delete;
-  ~SideTask();  ///< Waits for its end.
+  ~SideTask();  ///< Waits for the end of the work.
 
-  /// Lets it run until it has paused. Only for who owns it; does nothing where it has a thread.
-  void turn();
-  /// For the work itself, now and then: pauses if its share of the frame is used up. Does nothing
-  /// on threads, or outside any task.
-  static void breathe();
-  /// For an owner who asks again and again: leaves a thread some time.
-  static void nap();
+  /// Runs a fiber until it pauses. Only for the owner; does nothing with threads.
+  void run_slice();
+  /// Pauses a fiber whose share of the frame is used up. The work calls it now and then; does
+  /// nothing with threads, or outside a task.
+  static void pause_if_due();
+  /// For an owner that polls: sleeps for a millisecond, with threads.
+  static void sleep_briefly();
 
  private:
   friend class SideSignal;
@@ -33,15 +33,15 @@ class SideTask {
   std::unique_ptr<State> state_;
 };
 
-/// Lets a task and its owner wait for each other.
+/// A condition variable between a task and its owner.
 class SideSignal {
  public:
   SideSignal();
   ~SideSignal();
   void notify_all();
-  /// For the work: returns when `is_so`, which is asked with the lock held.
+  /// For the work: returns when `is_so`, which is called with the lock held.
   void wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_so);
-  /// For the task's owner, who lets it run meanwhile.
+  /// For the task's owner; a fiber runs meanwhile.
   void wait_for(SideTask& task, std::unique_lock<std::mutex>& lock,
                 const std::function<bool()>& is_so);
 

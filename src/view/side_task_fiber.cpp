@@ -10,9 +10,9 @@
 
 #include "view/side_task.h"
 
-// A browser's page without threads: the work has a stack of its own, which is left in the middle of
-// any call when its share of a frame is over, and entered again in the next. Emscripten's Asyncify
-// makes that possible.
+// Tasks of a browser page without threads: the work has a stack of its own. It is left in the
+// middle of any call when its share of a frame is used up, and entered again in the next frame, by
+// means of Emscripten's Asyncify.
 namespace throng {
 namespace {
 
@@ -20,9 +20,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kShare = std::chrono::milliseconds(12);  // Of a frame, for each task.
 constexpr size_t kStack = 1 << 21;                      // [bytes]
-constexpr size_t kUnwound = 1 << 18;                    // [bytes] What a paused stack is kept in.
+constexpr size_t kUnwound = 1 << 18;  // [bytes] Buffer for the unwound stack of a paused task.
 
-// What code expects of its stack; malloc gives less.
+// Compiled code expects a stack aligned to 16 bytes; malloc gives less.
 struct alignas(16) StackBlock {
   std::array<uint8_t, 16> bytes;
 };
@@ -52,8 +52,8 @@ struct SideTask::State {
   std::vector<StackBlock> stack;
   std::vector<uint8_t> unwound;
   emscripten_fiber_t fiber{};
-  emscripten_fiber_t* back = nullptr;  // Whoever let it run.
-  State* caller = nullptr;             // The same, if that is a task, too.
+  emscripten_fiber_t* back = nullptr;  // The fiber that runs it.
+  State* caller = nullptr;             // That fiber's task, or null.
   Clock::time_point until;
   bool done = false;
 
@@ -64,7 +64,7 @@ SideTask::State* SideTask::State::running = nullptr;
 
 namespace {
 
-// The stack that the page calls on.
+// The fiber of the page's own stack.
 emscripten_fiber_t* page() {
   static emscripten_fiber_t fiber{};
   static std::array<uint8_t, kUnwound> unwound;
@@ -81,10 +81,10 @@ emscripten_fiber_t* page() {
 SideTask::SideTask(std::function<void()> work) : state_(std::make_unique<State>(std::move(work))) {}
 
 SideTask::~SideTask() {
-  while (!state_->done) turn();
+  while (!state_->done) run_slice();
 }
 
-void SideTask::turn() {
+void SideTask::run_slice() {
   State& s = *state_;
   if (s.done) return;
   s.caller = State::running;
@@ -94,11 +94,11 @@ void SideTask::turn() {
   emscripten_fiber_swap(s.back, &s.fiber);
 }
 
-void SideTask::breathe() {
+void SideTask::pause_if_due() {
   if (State::running != nullptr && Clock::now() >= State::running->until) State::leave();
 }
 
-void SideTask::nap() {}
+void SideTask::sleep_briefly() {}
 void SideTask::pause() { State::leave(); }
 
 struct SideSignal::State {};
@@ -120,7 +120,7 @@ void SideSignal::wait_for(SideTask& task, std::unique_lock<std::mutex>& lock,
                           const std::function<bool()>& is_so) {
   while (!is_so()) {
     lock.unlock();
-    task.turn();
+    task.run_slice();
     lock.lock();
   }
 }

@@ -7,6 +7,7 @@
 
 #include "view/side_task.h"
 
+// Tasks as threads: the functions for fibers do nothing.
 namespace throng {
 
 struct SideTask::State {
@@ -18,9 +19,9 @@ SideTask::SideTask(std::function<void()> work)
 
 SideTask::~SideTask() { state_->thread.join(); }
 
-void SideTask::turn() {}
-void SideTask::breathe() {}
-void SideTask::nap() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+void SideTask::run_slice() {}
+void SideTask::pause_if_due() {}
+void SideTask::sleep_briefly() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
 void SideTask::pause() {}
 
 struct SideSignal::State {

@@ -8,6 +8,7 @@
 
 #include "view/levels.h"
 
+// Runs a LoadStage on a task and passes what it sets to the window through StageMail.
 namespace throng {
 
 StageJob::StageJob(std::string name, LoadStage load, int32_t workers, StageBefore before)
@@ -20,7 +21,7 @@ StageJob::StageJob(std::string name, LoadStage load, int32_t workers, StageBefor
                    ? static_cast<double>(progress.done) / static_cast<double>(progress.total)
                    : -1;
     }
-    SideTask::breathe();
+    SideTask::pause_if_due();
   };
   task_.emplace([this, load = std::move(load)] { run(load); });
 }
@@ -35,7 +36,7 @@ void StageJob::run(const LoadStage& load) {
   try {
     StageParts parts(*this);
     ok = load(parts, context_);
-    if (ok) ok = start_walking();
+    if (ok) ok = start_player();
   } catch (const std::bad_alloc&) {
     ok = Error{Errc::kLimit, name_ + ": out of memory; use larger cells or a smaller world"};
   }
@@ -44,24 +45,23 @@ void StageJob::run(const LoadStage& load) {
   done_ = true;
 }
 
-Result<void> StageJob::start_walking() {
+Result<void> StageJob::start_player() {
   if (!crowd_ && !scenario_) return {};
-  context_.on_progress({"ways", 0, 0});
-  std::unique_ptr<MomentSource> source;
+  context_.on_progress({"paths", 0, 0});
+  std::unique_ptr<TimelinePlayer> player;
   if (scenario_) {
-    auto player =
-        ScenarioPlayer::make(before_.world, *scenario_, workers_, before_.origin, context_);
-    if (!player) return player.error();
-    source = *std::move(player);
+    auto made = ScenarioPlayer::make(before_.world, *scenario_, workers_, before_.origin, context_);
+    if (!made) return made.error();
+    player = *std::move(made);
   } else {
-    auto player = CrowdPlayer::make(before_.world, before_.nodes, *crowd_, workers_, before_.origin,
-                                    before_.occluders, context_);
-    if (!player) return player.error();
-    source = *std::move(player);
+    auto made = CrowdPlayer::make(before_.world, before_.nodes, *crowd_, workers_, before_.origin,
+                                  before_.occluders, context_);
+    if (!made) return made.error();
+    player = *std::move(made);
   }
-  auto feed = std::make_unique<MomentFeed>(std::move(source));
+  auto source = std::make_unique<TimelineSource>(std::move(player));
   const std::lock_guard lock(mutex_);
-  mail_.feed = std::move(feed);
+  mail_.source = std::move(source);
   return {};
 }
 
@@ -84,7 +84,7 @@ Result<void> StageParts::set_scene(const Scene& scene) {
   StageJob& job = job_;
   const Box3d bounds = scene.bounds();
   const Vec3d middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
-  // Whole metres, so that positions relative to it read like those of the world.
+  // Whole metres: relative positions then keep the decimals of the world's.
   job.before_.origin = {std::round(middle.x), std::round(bounds.empty() ? 0 : bounds.min.y),
                         std::round(middle.z)};
   Result<PreparedScene> prepared = PreparedScene::make(scene, job.before_.origin);
@@ -122,7 +122,7 @@ void StageParts::set_atlases(std::vector<std::vector<Atlas>> of_class) {
 void StageParts::set_figures(std::vector<std::vector<ViewFigure>> of_class) {
   for (auto& row : of_class) {
     for (auto& [atlas, model] : row) {
-      // Cards read neither; blocks stay as they are where they do.
+      // The drawing does not read this format; it unpacks block formats if the card cannot.
       if (atlas.format == AtlasFormat::kRgb5a1) atlas = convert_atlas(atlas, AtlasFormat::kRgba8);
     }
   }
@@ -149,12 +149,12 @@ void StageParts::set_replay(Replay replay) {
   const ReplaySpan span = replay_span(replay);
   std::vector<std::string> names;
   for (const RecordedClass& c : replay.info().classes) names.push_back(c.name);
-  auto feed = std::make_unique<MomentFeed>(
+  auto source = std::make_unique<TimelineSource>(
       std::make_unique<ReplayPlayer>(std::move(replay), job.before_.origin));
   const std::lock_guard lock(job.mutex_);
   job.mail_.replay = span;
   job.mail_.class_names = std::move(names);
-  job.mail_.feed = std::move(feed);
+  job.mail_.source = std::move(source);
 }
 
 }  // namespace throng

@@ -19,7 +19,7 @@
 
 namespace throng {
 
-/// What came of a load so far, and has not been taken yet.
+/// The parts of a stage that have been loaded and not yet taken.
 struct StageMail {
   std::optional<PreparedScene> scene;
   std::optional<World> world;
@@ -31,19 +31,19 @@ struct StageMail {
   std::optional<Scenario> scenario;
   std::shared_ptr<const Occluders> occluders;
   std::vector<std::string> class_names;
-  std::unique_ptr<MomentFeed> feed;
+  std::unique_ptr<TimelineSource> source;
 };
 
-/// What a load that sets no scene goes on from, and what the user has set.
+/// The stage before a load, for loads that set no scene, and the user's settings.
 struct StageBefore {
   Vec3d origin = {};
   World world = {};
   Nodes nodes = {};  // Of the world, if it has any.
   std::shared_ptr<const Occluders> occluders = {};
-  bool only_seen = false, coarse_far = false;  // Besides those of CrowdStart.
+  bool only_seen = false, coarse_far = false;  // In addition to those of CrowdStart.
 };
 
-/// A load beside the window.
+/// Loads a stage on a task beside the window.
 class StageJob {
  public:
   StageJob(std::string name, LoadStage load, int32_t workers, StageBefore before);
@@ -53,18 +53,18 @@ class StageJob {
 
   [[nodiscard]] StageMail take();
   void cancel() { context_.cancel = true; }
-  /// Where there are no threads: loads for a while.
-  void turn() { task_->turn(); }
+  /// Without threads: loads for a share of the frame.
+  void run_slice() { task_->run_slice(); }
   [[nodiscard]] bool done() const { return done_; }
   [[nodiscard]] std::string error() const;  ///< Of a load that failed, or empty.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// What it does now and how far it is, -1 if that is not known.
+  /// The current stage of work and its progress [0 to 1], -1 if not known.
   [[nodiscard]] std::pair<std::string, double> progress() const;
 
  private:
   friend class StageParts;
   void run(const LoadStage& load);
-  Result<void> start_walking();
+  Result<void> start_player();
 
   std::string name_;
   int32_t workers_;
@@ -74,11 +74,11 @@ class StageJob {
   std::string error_, stage_;
   double share_ = -1;
   std::atomic<bool> done_ = false;
-  // Of the task.
+  // Used by the task only.
   StageBefore before_;
   std::optional<CrowdStart> crowd_;
   std::optional<Scenario> scenario_;
-  std::optional<SideTask> task_;  // Last, so that it ends before what it uses.
+  std::optional<SideTask> task_;  // Last: it ends before the members that it uses.
 };
 
 }  // namespace throng

@@ -9,27 +9,28 @@
 #include "core/random.h"
 #include "throng/lean.h"
 
+// Frames are matched by id and generation, as sorted lists; positions and headings are interpolated
+// linearly, headings of climbers after parallel transport between their axes. Time: linear.
 namespace throng {
 namespace {
 
-constexpr double kStands = 0.12;     // [m/s] Slower is standing.
-constexpr double kTurnSpeed = 0.9;   // [turns/s]
-constexpr double kPaceMemory = 0.4;  // [s]
+constexpr double kStands = 0.12;      // [m/s] Slower is standing.
+constexpr double kTurnSpeed = 0.9;    // [turns/s]
+constexpr double kSpeedMemory = 0.4;  // [s]
 
-// Between two angles the short way, in turns.
+// The smaller of the two rotations between two angles, in turns.
 double turn_between(double from, double to) { return std::remainder(to - from, 1.0); }
 
 float in_turn(double turns) { return static_cast<float>(turns - std::floor(turns)); }
 
 constexpr Vec3d kUpright{0, 1, 0};
 
-// A heading of a body that turns from one axis to another by the least turn: where he looks stays,
-// but for that. In turns.
-float carried(float heading, Vec3d from, Vec3d to) {
+// Parallel transport: the heading after the smallest rotation from one axis to another. In turns.
+float transported(float heading, Vec3d from, Vec3d to) {
   if (from == to) return heading;
   const double angle = 2 * std::numbers::pi * heading;
   const Vec3d ahead = leaned({std::sin(angle), 0, std::cos(angle)}, from);
-  // The least turn: by the mirror images at the plane across one axis, then at that half way.
+  // The rotation as two reflections: at the plane normal to `from`, then normal to from + to.
   const Vec3d half = from + to;
   const double size = dot(half, half);
   if (!(size > 1e-9)) return heading;
@@ -42,7 +43,7 @@ uint16_t steps_of(double turns) {
   return static_cast<uint16_t>(static_cast<int64_t>(std::floor(turns * 65536)) & 0xffff);
 }
 
-// Who moves, walks; who stands, stands in the first clip of his atlas that stands.
+// The first clip that walks, for an avatar that moves; else the first that stands.
 size_t clip_for(const Atlas& atlas, bool moves) {
   for (size_t i = 0; i < atlas.clips.size(); ++i) {
     if ((atlas.clips[i].stride != 0) == moves) return i;
@@ -50,16 +51,16 @@ size_t clip_for(const Atlas& atlas, bool moves) {
   return 0;
 }
 
-// Calls each(i, j) for all i of `b`; j is the index of the same one in `a`, or a.size().
+// Calls each(i, j) for all i of `b`; j is the index of the same avatar in `a`, or a.size().
 template <class Each>
 void for_each_pair(const TimelineFrame& a, const TimelineFrame& b, Each each) {
-  const auto life = [](const TimelineFrame& m, size_t k) {
-    return m.lives.empty() ? 0 : m.lives[k];
+  const auto generation = [](const TimelineFrame& m, size_t k) {
+    return m.generations.empty() ? 0 : m.generations[k];
   };
   size_t j = 0;
   for (size_t i = 0; i < b.size(); ++i) {
     while (j < a.size() && a.ids[j] < b.ids[i]) ++j;
-    const bool same = j < a.size() && a.ids[j] == b.ids[i] && life(a, j) == life(b, i);
+    const bool same = j < a.size() && a.ids[j] == b.ids[i] && generation(a, j) == generation(b, i);
     each(i, same ? j : a.size());
   }
 }
@@ -69,7 +70,7 @@ void for_each_pair(const TimelineFrame& a, const TimelineFrame& b, Each each) {
 void TimelineFrame::resize(size_t avatars) {
   ids.resize(avatars);
   classes.resize(avatars);
-  for (auto* array : {&x, &y, &z, &heading, &walked, &pace}) array->resize(avatars);
+  for (auto* array : {&x, &y, &z, &heading, &walked, &speed}) array->resize(avatars);
 }
 
 size_t TimelineFrame::find(uint64_t id) const {
@@ -77,22 +78,22 @@ size_t TimelineFrame::find(uint64_t id) const {
   return at != ids.end() && *at == id ? static_cast<size_t>(at - ids.begin()) : ids.size();
 }
 
-void put_states(const std::vector<AvatarState>& states, Vec3d origin, TimelineFrame& moment) {
-  moment.resize(states.size());
+void put_states(const std::vector<AvatarState>& states, Vec3d origin, TimelineFrame& frame) {
+  frame.resize(states.size());
   const bool lean = std::any_of(states.begin(), states.end(),
                                 [](const AvatarState& s) { return !(s.up == kUpright); });
-  moment.ups.resize(lean ? states.size() : 0);
+  frame.ups.resize(lean ? states.size() : 0);
   for (size_t i = 0; i < states.size(); ++i) {
     const AvatarState& s = states[i];
     const Vec3d p = s.position - origin;
-    moment.ids[i] = s.id;
-    moment.classes[i] = static_cast<uint8_t>(s.avatar_class);
-    moment.x[i] = static_cast<float>(p.x);
-    moment.y[i] = static_cast<float>(p.y);
-    moment.z[i] = static_cast<float>(p.z);
+    frame.ids[i] = s.id;
+    frame.classes[i] = static_cast<uint8_t>(s.avatar_class);
+    frame.x[i] = static_cast<float>(p.x);
+    frame.y[i] = static_cast<float>(p.y);
+    frame.z[i] = static_cast<float>(p.z);
     const double turns = std::atan2(s.heading_x, s.heading_z) / (2 * std::numbers::pi);
-    moment.heading[i] = in_turn(turns);
-    if (lean) moment.ups[i] = s.up;
+    frame.heading[i] = in_turn(turns);
+    if (lean) frame.ups[i] = s.up;
   }
 }
 
@@ -101,22 +102,22 @@ void follow(const TimelineFrame& before, TimelineFrame& now) {
   for_each_pair(before, now, [&](size_t i, size_t j) {
     if (j == before.size()) {
       now.walked[i] = static_cast<float>(2 * random_unit(3, 0, now.ids[i]));
-      now.pace[i] = 0;
+      now.speed[i] = 0;
       if (now.heading[i] == 0) now.heading[i] = in_turn(random_unit(3, 1, now.ids[i]));
       return;
     }
     const bool leans = !(now.up(i) == kUpright) || !(before.up(j) == kUpright);
     const double flat = std::hypot(now.x[i] - before.x[j], now.z[i] - before.z[j]);
-    const double gone = leans ? std::hypot(flat, now.y[i] - before.y[j]) : flat;
-    const float was = carried(before.heading[j], before.up(j), now.up(i));
-    now.walked[i] = static_cast<float>(before.walked[j] + (seconds < 0 ? -gone : gone));
-    const double keep = std::exp(-apart / kPaceMemory);
-    now.pace[i] = static_cast<float>(before.pace[j] * keep + gone / apart * (1 - keep));
-    // Who stands has no heading of his own: sources give straight along +Z then.
-    const bool stands = gone < 1e-3 * apart && now.heading[i] == 0;
+    const double moved = leans ? std::hypot(flat, now.y[i] - before.y[j]) : flat;
+    const float was = transported(before.heading[j], before.up(j), now.up(i));
+    now.walked[i] = static_cast<float>(before.walked[j] + (seconds < 0 ? -moved : moved));
+    const double keep = std::exp(-apart / kSpeedMemory);
+    now.speed[i] = static_cast<float>(before.speed[j] * keep + moved / apart * (1 - keep));
+    // A standing avatar has no heading: players give that along +Z then.
+    const bool stands = moved < 1e-3 * apart && now.heading[i] == 0;
     const double turn = stands ? 0 : turn_between(was, now.heading[i]);
-    const double most = kTurnSpeed * apart;
-    now.heading[i] = in_turn(was + std::clamp(turn, -most, most));
+    const double max_turn = kTurnSpeed * apart;
+    now.heading[i] = in_turn(was + std::clamp(turn, -max_turn, max_turn));
   });
 }
 
@@ -136,7 +137,7 @@ void BlendedCrowd::blend(const TimelineFrame& a, const TimelineFrame& b, double 
   for_each_pair(a, b, [&](size_t i, size_t j) {
     now_.ids[i] = b.ids[i];
     now_.classes[i] = b.classes[i];
-    now_.pace[i] = b.pace[i];
+    now_.speed[i] = b.speed[i];
     const bool both = j < a.size();
     const auto between = [&](const std::vector<float>& p, const std::vector<float>& q) {
       return both ? p[j] + (q[i] - p[j]) * s : q[i];
@@ -150,8 +151,8 @@ void BlendedCrowd::blend(const TimelineFrame& a, const TimelineFrame& b, double 
       const double size = length(up);
       now_.ups[i] = size > 1e-3 ? up * (1 / size) : b.up(i);
     }
-    const float from = both ? carried(a.heading[j], a.up(j), now_.up(i)) : 0;
-    const float to = carried(b.heading[i], b.up(i), now_.up(i));
+    const float from = both ? transported(a.heading[j], a.up(j), now_.up(i)) : 0;
+    const float to = transported(b.heading[i], b.up(i), now_.up(i));
     now_.heading[i] = both ? in_turn(from + turn_between(from, to) * share) : to;
     if (now_.y[i] > cut || static_cast<int64_t>(now_.ids[i]) == hidden_) return;
     if (!figures.of_class.empty()) put(i, figures);
@@ -172,7 +173,7 @@ void BlendedCrowd::put(size_t i, const Figures& figures) {
   const std::vector<size_t>& choice = figures.of_class[row];
   const auto pick = static_cast<size_t>(random_unit(5, 0, id) * static_cast<double>(choice.size()));
   const size_t atlas = choice[std::min(pick, choice.size() - 1)];
-  const size_t clip = clip_for(figures.shapes[atlas], now_.pace[i] > kStands);
+  const size_t clip = clip_for(figures.shapes[atlas], now_.speed[i] > kStands);
   const Vec3d up = now_.up(i);
   const bool leans = !(up == kUpright);
   Group& group = groups_[{atlas, clip, leans}];

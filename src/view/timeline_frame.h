@@ -15,10 +15,10 @@
 #include "throng/prism.h"
 #include "throng_draw/draw.h"
 
-/// Where everybody is at one time, and what lies between two of these.
+/// The avatars at one time, and the blend of two such frames.
 namespace throng {
 
-/// How many came and left, and who does not get on.
+/// How many avatars of a scenario entered, left, or do not get on.
 struct SceneFlow {
   uint64_t entered = 0, left = 0;  ///< So far.
   uint64_t outside = 0, in_links = 0, goal_unreachable = 0;
@@ -28,20 +28,20 @@ struct SceneFlow {
 struct TimelineFrame {
   double time = 0;
   std::vector<uint64_t> ids;
-  /// Who has an id that was another's tells so by another number; empty: no id is given twice.
-  std::vector<uint32_t> lives;
+  /// Differs between avatars that had the same id one after the other; empty: ids are never reused.
+  std::vector<uint32_t> generations;
   std::vector<uint8_t> classes;
   std::vector<float> x, y, z;
   std::vector<float> heading;  ///< From +Z towards +X. [turns, 0 to 1]
   std::vector<float> walked;   ///< Since first seen. [m]
-  std::vector<float> pace;     ///< Mean speed of late. [m/s]
-  /// Along each body from its feet; nothing: all are upright. Of who leans, `heading` is the one
-  /// before he leans (lean.h). [unit length]
+  std::vector<float> speed;    ///< Running mean. [m/s]
+  /// The axis of each body from its feet; empty: all are upright. Of a body that leans, `heading`
+  /// is the one before leaning (lean.h). [unit length]
   std::vector<Vec3d> ups = {};
-  CrowdReport report = {};  ///< Of the step that led here; empty for recordings.
-  std::shared_ptr<const std::vector<Prism>> obstacles = {};  ///< That are up now, or none.
+  CrowdReport report = {};  ///< Of the step that made the frame; empty for recordings.
+  std::shared_ptr<const std::vector<Prism>> obstacles = {};  ///< That are up now, or null.
   SceneFlow flow = {};                                       ///< Of scenarios.
-  std::string fault = {};                                    ///< Why no more can come, or empty.
+  std::string fault = {};  ///< Why this is the last frame, or empty.
 
   [[nodiscard]] size_t size() const { return ids.size(); }
   void resize(size_t avatars);
@@ -50,31 +50,31 @@ struct TimelineFrame {
   [[nodiscard]] size_t find(uint64_t id) const;
 };
 
-/// Fills in who is where, relative to an origin.
-void put_states(const std::vector<AvatarState>& states, Vec3d origin, TimelineFrame& moment);
+/// Fills in the avatars, with positions relative to an origin.
+void put_states(const std::vector<AvatarState>& states, Vec3d origin, TimelineFrame& frame);
 
-/// Fills in `walked` and `pace` of `now` from the moment before it and softens its headings: a
-/// figure turns, it does not flip. `before` may be empty, or later: then time runs backwards.
+/// Fills in `walked` and `speed` of `now` from the frame before it and limits the turns of its
+/// headings. `before` may be empty, or later: then time runs backwards.
 void follow(const TimelineFrame& before, TimelineFrame& now);
 
-/// Which pictures serve which class: atlases by number, at least one a class.
+/// The atlases of each class, by number, at least one per class.
 struct Figures {
   std::vector<std::vector<size_t>> of_class;
   std::vector<Atlas> shapes;  ///< By number of the atlas, without texels.
 };
 
-/// Arrays of a crowd between two moments, grouped as they are drawn.
+/// A crowd between two frames, as arrays grouped for drawing.
 class BlendedCrowd {
  public:
-  /// Everybody of `b`, where he is at `share` of the way from `a`; who is only in `b` stands there.
-  /// Who stands above `cut` is left out.
+  /// The avatars of `b`, interpolated at `share` between `a` (0) and `b` (1); those that are only
+  /// in `b` stand still. Avatars above `cut` are not drawn.
   void blend(const TimelineFrame& a, const TimelineFrame& b, double share, const Figures& figures,
              double cut);
   [[nodiscard]] const std::vector<DrawnCrowd>& crowds() const { return crowds_; }
-  /// Leaves out one avatar from the next blend on: through whose eyes one looks. -1: nobody.
+  /// From the next blend on, does not draw this avatar: the eye is in its head. -1: none.
   void hide(int64_t id) { hidden_ = id; }
 
-  /// All of `b` at that time, also those that are not drawn.
+  /// All avatars of `b` at the blended time, also those that are not drawn.
   [[nodiscard]] const TimelineFrame& now() const { return now_; }
 
  private:
@@ -86,7 +86,7 @@ class BlendedCrowd {
   void put(size_t i, const Figures& figures);
 
   TimelineFrame now_;
-  // By atlas and clip, those who lean apart from the others.
+  // By atlas, clip, and whether the avatars lean.
   std::map<std::tuple<size_t, size_t, bool>, Group> groups_;
   std::vector<DrawnCrowd> crowds_;
   int64_t hidden_ = -1;

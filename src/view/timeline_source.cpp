@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <utility>
 
+// One producer (the player's task) and one consumer (the window) around a short queue of frames.
 namespace throng {
 
-MomentFeed::MomentFeed(std::unique_ptr<MomentSource> source) : source_(std::move(source)) {
+TimelineSource::TimelineSource(std::unique_ptr<TimelinePlayer> player)
+    : player_(std::move(player)) {
   task_.emplace([this] { run(); });
 }
 
-MomentFeed::~MomentFeed() {
+TimelineSource::~TimelineSource() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -20,14 +22,14 @@ MomentFeed::~MomentFeed() {
   task_.reset();
 }
 
-// Two moments around what is shown, and one more so that the next is there in time.
-bool MomentFeed::wants_more() const {
+// The two frames around the time shown, and one more, made ahead.
+bool TimelineSource::wants_more() const {
   if (ended_) return false;
   if (made_.size() < 2) return made_.empty() || made_.back()->time <= wanted_;
   return made_[made_.size() - 2]->time <= wanted_;
 }
 
-void MomentFeed::run() {
+void TimelineSource::run() {
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [&] { return stopping_ || seeking_ || !posted_.empty() || wants_more(); });
@@ -37,15 +39,15 @@ void MomentFeed::run() {
       const Posted posted = std::move(posted_.front());
       posted_.pop_front();
       lock.unlock();
-      posted.work(*source_);
-      std::shared_ptr<const TimelineFrame> again = posted.at_once ? source_->again() : nullptr;
+      posted.work(*player_);
+      std::shared_ptr<const TimelineFrame> again = posted.at_once ? player_->again() : nullptr;
       lock.lock();
       if (again) made_.assign(1, std::move(again));
     } else if (seeking_) {
       const double time = seek_to_;
       seeking_ = false;
       lock.unlock();
-      std::shared_ptr<const TimelineFrame> first = source_->seek(time);
+      std::shared_ptr<const TimelineFrame> first = player_->seek(time);
       lock.lock();
       if (first && !seeking_) {
         made_.clear();
@@ -54,7 +56,7 @@ void MomentFeed::run() {
       }
     } else {
       lock.unlock();
-      std::shared_ptr<const TimelineFrame> next = source_->next();
+      std::shared_ptr<const TimelineFrame> next = player_->next();
       lock.lock();
       if (next) {
         made_.push_back(std::move(next));
@@ -66,13 +68,13 @@ void MomentFeed::run() {
     working_ = false;
     idle_.notify_all();
     lock.unlock();
-    SideTask::breathe();
+    SideTask::pause_if_due();
     lock.lock();
   }
 }
 
-MomentPair MomentFeed::at(double time) {
-  MomentPair pair;
+FramePair TimelineSource::at(double time) {
+  FramePair pair;
   {
     const std::lock_guard lock(mutex_);
     wanted_ = time;
@@ -91,7 +93,7 @@ MomentPair MomentFeed::at(double time) {
   return pair;
 }
 
-void MomentFeed::seek(double time) {
+void TimelineSource::seek(double time) {
   {
     const std::lock_guard lock(mutex_);
     seeking_ = true;
@@ -101,7 +103,7 @@ void MomentFeed::seek(double time) {
   wake_.notify_all();
 }
 
-void MomentFeed::post(std::function<void(MomentSource&)> work, bool at_once) {
+void TimelineSource::post(std::function<void(TimelinePlayer&)> work, bool at_once) {
   {
     const std::lock_guard lock(mutex_);
     posted_.push_back({std::move(work), at_once});
@@ -110,18 +112,18 @@ void MomentFeed::post(std::function<void(MomentSource&)> work, bool at_once) {
   wake_.notify_all();
 }
 
-void MomentFeed::finish_posted() {
+void TimelineSource::finish_posted() {
   std::unique_lock lock(mutex_);
   idle_.wait_for(*task_, lock, [&] { return posted_.empty() && !working_; });
 }
 
-void MomentFeed::finish() {
+void TimelineSource::finish() {
   std::unique_lock lock(mutex_);
   idle_.wait_for(*task_, lock,
                  [&] { return posted_.empty() && !working_ && !seeking_ && !wants_more(); });
 }
 
-void MomentFeed::wait_for(double time) {
+void TimelineSource::wait_for(double time) {
   std::unique_lock lock(mutex_);
   wanted_ = time;
   wake_.notify_all();
@@ -130,7 +132,7 @@ void MomentFeed::wait_for(double time) {
   });
 }
 
-double MomentFeed::latest() const {
+double TimelineSource::latest() const {
   const std::lock_guard lock(mutex_);
   return made_.empty() ? 0 : made_.back()->time;
 }

@@ -12,72 +12,72 @@
 #include "view/side_task.h"
 #include "view/timeline_frame.h"
 
-/// Moments made beside the window, a little ahead of what is shown: it never waits for a step.
+/// Frames made beside the window, a little ahead of the time shown: drawing waits for no step.
 namespace throng {
 
-/// Where moments come from. One thread at a time.
-class MomentSource {
+/// Makes the frames of a timeline: a crowd, a scenario or a recording. One thread at a time.
+class TimelinePlayer {
  public:
-  virtual ~MomentSource() = default;
-  /// The moment after the last one; nothing at the end.
+  virtual ~TimelinePlayer() = default;
+  /// The frame after the last one; null at the end.
   virtual std::shared_ptr<const TimelineFrame> next() = 0;
-  /// The last moment at or before a time, after which next() goes on. Nothing if the source cannot
-  /// go back.
+  /// The last frame at or before a time; next() continues after it. Null if the player cannot seek.
   virtual std::shared_ptr<const TimelineFrame> seek(double time) = 0;
-  /// The last one again, as it is now that something was changed. Nothing if nothing can be.
+  /// The last frame made again, after a change; null if the player cannot be changed.
   virtual std::shared_ptr<const TimelineFrame> again() { return nullptr; }
 };
 
-/// The two moments around a time, and where between them it lies.
-struct MomentPair {
+/// The two frames around a time, and where between them it lies.
+struct FramePair {
   std::shared_ptr<const TimelineFrame> a, b;
   double share = 0;  ///< [0 to 1]
 };
 
-class MomentFeed {
+/// Buffers the frames of a player, which runs on a task of its own.
+class TimelineSource {
  public:
-  explicit MomentFeed(std::unique_ptr<MomentSource> source);
-  MomentFeed(const MomentFeed&) = delete;
-  MomentFeed& operator=(const MomentFeed&) = delete;
-  ~MomentFeed();
+  explicit TimelineSource(std::unique_ptr<TimelinePlayer> player);
+  TimelineSource(const TimelineSource&) = delete;
+  TimelineSource& operator=(const TimelineSource&) = delete;
+  ~TimelineSource();
 
-  /// What is known around `time`, or the nearest to it; asks for more if that is not enough. Empty
-  /// until there is a first moment.
-  MomentPair at(double time);
-  /// Drops what is ahead and goes on from `time`, where the source can.
+  /// The frames around `time`, or the nearest ones made so far; requests more if needed. Empty
+  /// until there is a first frame.
+  FramePair at(double time);
+  /// Drops the frames ahead and continues from `time`, if the player can seek.
   void seek(double time);
-  /// Runs `work` beside the window, between two moments. What is made after it shows its effect;
-  /// `at_once` (while nothing plays) shows it in the moment that stands.
-  void post(std::function<void(MomentSource&)> work, bool at_once);
-  /// Waits until all work that was posted has been done.
+  /// Runs `work` on the player's task, between two frames. Later frames show its effect; `at_once`
+  /// (while paused) makes the last frame again.
+  void post(std::function<void(TimelinePlayer&)> work, bool at_once);
+  /// Waits until all posted work is done.
   void finish_posted();
-  /// Waits until that, and until all moments are there that at() has asked for.
+  /// Waits for the posted work and all frames that at() has requested.
   void finish();
-  /// Waits until there is a moment after `time`, or no more come: then at(time) is the same however
-  /// fast the source is.
+  /// Waits until there is a frame after `time`, or the timeline ends: then at(time) does not depend
+  /// on the speed of the player.
   void wait_for(double time);
-  /// Time of the last moment made.
+  /// Time of the last frame made.
   [[nodiscard]] double latest() const;
-  /// Where there are no threads: makes moments for a while.
-  void turn() { task_->turn(); }
+  /// Without threads: makes frames for a share of the drawn frame.
+  void run_slice() { task_->run_slice(); }
 
  private:
   void run();
   [[nodiscard]] bool wants_more() const;  // With the lock held.
 
-  std::unique_ptr<MomentSource> source_;
+  std::unique_ptr<TimelinePlayer> player_;
   mutable std::mutex mutex_;
   SideSignal wake_, idle_;
   std::deque<std::shared_ptr<const TimelineFrame>> made_;  // In order of time.
   struct Posted {
-    std::function<void(MomentSource&)> work;
+    std::function<void(TimelinePlayer&)> work;
     bool at_once = false;
   };
   std::deque<Posted> posted_;
   double wanted_ = 0;
   double seek_to_ = 0;
   bool seeking_ = false, ended_ = false, stopping_ = false, working_ = false;
-  std::optional<SideTask> task_;  // Last, so that it ends before what it uses.
+  std::optional<SideTask> task_;  // Last: it ends before the members that it uses.
 };
 
 }  // namespace throng

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <utility>
 
+// Events become ImGui's input; its draw lists become one list of vertices, indices and runs.
 namespace throng {
 namespace {
 
@@ -115,7 +116,7 @@ bool Ui::handle(const ViewEvent& event) {
       return io.WantTextInput;
     case ViewEventKind::kKeyUp:
       hold(false);
-      return false;  // Who saw a key go down must see it come up.
+      return false;  // What saw the key go down must see it come up.
     case ViewEventKind::kText:
       io.AddInputCharacter(event.text);
       return io.WantTextInput;

@@ -12,7 +12,7 @@
 
 struct ImGuiContext;
 
-/// Dear ImGui between events and a PanelView: it knows neither windows nor graphics libraries here.
+/// Dear ImGui between events and a PanelView, without windows and graphics libraries.
 namespace throng {
 
 class Ui {
@@ -23,23 +23,23 @@ class Ui {
   Ui& operator=(const Ui&) = delete;
   ~Ui();
 
-  /// Gives the letters to a drawing.
+  /// Passes the font's texture to a drawing.
   [[nodiscard]] Result<void> set_texture(Drawing& drawing) const;
-  /// Tells of an event; true if the panel is what it was meant for.
+  /// Passes an event on; true if it was meant for the panel.
   bool handle(const ViewEvent& event);
   /// Between these two, ImGui calls are for this frame.
   void begin(double seconds, int32_t width, int32_t height);
   /// Valid until the next begin().
   [[nodiscard]] PanelView end();
   [[nodiscard]] float scale() const { return scale_; }
-  [[nodiscard]] std::string layout() const;  ///< Where windows are, to keep.
+  [[nodiscard]] std::string layout() const;  ///< Places of the windows, to save.
   void set_layout(const std::string& layout);
 
  private:
   ImGuiContext* context_ = nullptr;
   float scale_ = 1;
-  // What is down, and what went down since the last frame, even if it came up again: ImGui sees
-  // only what is down when a frame begins.
+  // Buttons that are down, and those that went down since the last frame even if they came up
+  // again: ImGui sees only buttons that are down when a frame begins.
   std::array<bool, 3> down_{}, pressed_{};
   std::vector<PanelVertex> vertices_;
   std::vector<uint32_t> indices_;

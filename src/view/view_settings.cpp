@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+// Settings as a JSON object.
 namespace throng {
 namespace {
 

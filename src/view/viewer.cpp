@@ -20,11 +20,12 @@
 #include "view/view_settings.h"
 #include "view/viewer_state.h"
 
-// A frame: take what loads have brought, move the eye, look up where everybody is, draw.
+// A frame: take the loaded parts, move the eye, blend the crowd of the time shown, draw.
 namespace throng {
 namespace {
 
-constexpr double kMemory = 0.9;  // Of the means of times that the panel shows.
+constexpr double kMemory =
+    0.9;  // Weight of the old value in the running means of the panel's times.
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -38,14 +39,14 @@ void mean(double& value, double now) {
 
 void Viewer::State::take_parts() {
   if (!job) return;
-  job->turn();
-  const bool done = job->done();  // Asked first: what comes later is taken in the next frame.
+  job->run_slice();
+  const bool done = job->done();  // Read first: parts that come later are taken in the next frame.
   StageMail mail = job->take();
   const auto keep = [&](const Result<void>& ok) {
     if (!ok) panel.status.error = ok.error().message;
   };
   if (mail.scene) {
-    feed.reset();
+    source.reset();
     world = {};
     nodes.reset();
     overlay_maker.reset();
@@ -69,7 +70,7 @@ void Viewer::State::take_parts() {
     panel.class_heights.clear();
     panel.class_radii.clear();
     panel.is_cut = false;
-    panel.status.picked = panel.status.driven = -1;
+    panel.status.picked = panel.status.controlled = -1;
     origin = mail.scene->origin();
     bounds = mail.scene->bounds();
     panel.bounds = {bounds.min + origin, bounds.max + origin};
@@ -128,12 +129,12 @@ void Viewer::State::take_parts() {
     for (const DensityMap& map : painted) panel.scenario->densities.push_back(map.name);
     ordered[static_cast<size_t>(Overlay::kPainted)] = false;
   }
-  if (mail.feed) {
-    feed = std::move(mail.feed);
+  if (mail.source) {
+    source = std::move(mail.source);
     panel.has_crowd = !panel.replay && !panel.scenario;
     time = panel.replay ? panel.replay->first : 0;
-    told_place.reset();
-    tell_place();
+    sent_eye.reset();
+    send_eye();
   }
   if (done) {
     if (!job->error().empty()) panel.status.error = job->error();
@@ -142,7 +143,7 @@ void Viewer::State::take_parts() {
 }
 
 void Viewer::State::reap() {
-  for (const auto& old : retired) old->turn();
+  for (const auto& old : retired) old->run_slice();
   std::erase_if(retired, [](const auto& old) { return old->done(); });
 }
 
@@ -153,7 +154,7 @@ void Viewer::State::act_on_panel() {
     const auto count = static_cast<uint32_t>(std::max(0, panel.avatars_wanted));
     panel.crowd.avatars = count;
     if (panel.crowd.only_seen) {
-      panel.restart = true;  // As many more or fewer where nobody looks would be a strange sight.
+      panel.restart = true;  // Avatars must not appear or disappear in sight.
     } else {
       change_crowd(
           [count](CrowdPlayer& player, Context& context) { player.set_count(count, context); });
@@ -169,22 +170,23 @@ void Viewer::State::act_on_panel() {
   }
   if (panel.seek && panel.replay) {
     time = std::clamp(*panel.seek, panel.replay->first, panel.replay->last);
-    if (feed) feed->seek(time);
+    if (source) source->seek(time);
   }
   panel.seek.reset();
   if (std::exchange(panel.walk, false)) begin_walk();
 }
 
-// From where one looks: who simulates only what is seen, or less of what is far, must know.
-void Viewer::State::tell_place() {
+// Sends the eye to a crowd that depends on it: only_seen or coarse_far.
+void Viewer::State::send_eye() {
   if (!panel.has_crowd || !(panel.crowd.only_seen || panel.crowd.coarse_far)) return;
   const EyePlace place{.eye = rig.eye() + origin,
                        .nearest = rig.camera(aspect).nearest,
                        .cut = panel.is_cut ? panel.cut : 1e9};
-  if (told_place && *told_place == place) return;
-  told_place = place;
-  feed->post([place](MomentSource& source) { static_cast<CrowdPlayer&>(source).look_from(place); },
-             /*at_once=*/false);
+  if (sent_eye && *sent_eye == place) return;
+  sent_eye = place;
+  source->post(
+      [place](TimelinePlayer& player) { static_cast<CrowdPlayer&>(player).look_from(place); },
+      /*at_once=*/false);
 }
 
 StageBefore Viewer::State::stage_before() const {
@@ -197,27 +199,27 @@ StageBefore Viewer::State::stage_before() const {
 }
 
 void Viewer::State::change_crowd(std::function<void(CrowdPlayer&, Context&)> change) {
-  if (!feed || !panel.has_crowd) return;
-  feed->post(
-      [change = std::move(change)](MomentSource& source) {
+  if (!source || !panel.has_crowd) return;
+  source->post(
+      [change = std::move(change)](TimelinePlayer& player) {
         Context quiet;
-        change(static_cast<CrowdPlayer&>(source), quiet);
+        change(static_cast<CrowdPlayer&>(player), quiet);
       },
       !panel.playing);
 }
 
 void Viewer::State::change_scenario(std::function<Result<void>(ScenarioPlayer&)> change) {
-  if (!feed || !panel.scenario) return;
-  feed->post(
-      [change = std::move(change), answers = answers](MomentSource& source) {
-        const Result<void> ok = change(static_cast<ScenarioPlayer&>(source));
+  if (!source || !panel.scenario) return;
+  source->post(
+      [change = std::move(change), answers = answers](TimelinePlayer& player) {
+        const Result<void> ok = change(static_cast<ScenarioPlayer&>(player));
         const std::lock_guard lock(answers->lock);
         answers->fault = ok ? std::string() : ok.error().message;
       },
       !panel.playing);
 }
 
-// The scene and the figures stay: only who walks is made again.
+// Makes the crowd or scenario again; scene, world and figures stay.
 void Viewer::State::restart_crowd() {
   leave_walk();
   CrowdStart start = panel.crowd;
@@ -247,9 +249,9 @@ void Viewer::State::retire_job() {
 
 void Viewer::State::step_once() {
   panel.playing = false;
-  if (!feed) return;
-  const MomentPair pair = feed->at(time);
-  // To the next moment that is there: its time is a step on.
+  if (!source) return;
+  const FramePair pair = source->at(time);
+  // To the next frame if there is one, else by a step.
   if (pair.b) time = pair.share < 1 ? pair.b->time : pair.b->time + panel.crowd.dt;
 }
 
@@ -260,23 +262,23 @@ void Viewer::State::advance_time(double seconds) {
       time = panel.replay->last;
       panel.playing = false;
     }
-  } else if (feed) {
-    time = std::min(time, feed->latest());  // Steps that take longer than they last slow time.
+  } else if (source) {
+    time = std::min(time, source->latest());  // Time waits for the steps.
   }
 }
 
 void Viewer::State::look_up_crowd() {
   panel.status.avatars = 0;
-  if (!feed) {
+  if (!source) {
     crowd = {};
     return;
   }
   const auto start = std::chrono::steady_clock::now();
-  const MomentPair pair = feed->at(time);
-  feed->turn();
+  const FramePair pair = source->at(time);
+  source->run_slice();
   if (!pair.a) return;
   const double cut = panel.is_cut ? panel.cut - origin.y - 0.05 : 1e9;
-  crowd.hide(through_eyes() ? panel.status.driven : -1);
+  crowd.hide(through_eyes() ? panel.status.controlled : -1);
   crowd.blend(*pair.a, *pair.b, pair.share, figures, cut);
   panel.report = pair.b->report;
   panel.flow = pair.b->flow;
@@ -286,9 +288,9 @@ void Viewer::State::look_up_crowd() {
   mean(panel.times.blend, seconds_since(start));
 }
 
-void Viewer::State::show_props(const TimelineFrame& moment) {
-  if (moment.obstacles == props) return;
-  props = moment.obstacles;
+void Viewer::State::show_props(const TimelineFrame& frame) {
+  if (frame.obstacles == props) return;
+  props = frame.obstacles;
   Scene scene;
   for (size_t p = 0; props && p < props->size(); ++p) {
     const Prism& prism = (*props)[p];
@@ -343,7 +345,7 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
     if (!answers->fault.empty()) panel.status.error = std::exchange(answers->fault, {});
   }
   follow_external(seconds);
-  if (feed) tell_place();
+  if (source) send_eye();
   look_up_picked();
   show_overlays();
   panel.status.time = time;
@@ -378,7 +380,7 @@ Result<Viewer> Viewer::create(Drawing drawing, const ViewerConfig& config) {
   auto state = std::make_unique<State>(std::move(drawing));
   state->config = config;
   state->panel.renderer = state->drawing.renderer();
-  // A processor that draws has no time for four samples a pixel; a stored setting is the user's.
+  // Software renderers are too slow for four samples a pixel; stored settings override this.
   const std::string& renderer = state->panel.renderer;
   if (config.panel && (renderer.find("llvmpipe") != std::string::npos ||
                        renderer.find("SwiftShader") != std::string::npos)) {
@@ -450,40 +452,41 @@ void Viewer::wait_for_overlays() {
     if (is_of_frame) return false;
     return overlay != Overlay::kPath || (s.panel.status.picked >= 0 && s.panel.has_crowd);
   };
-  // Who was picked may have no goal, so a path need not come.
+  // The picked avatar may have no goal, so that no path is made.
   for (int32_t tries = 0; tries < 100 || (s.overlay_maker && s.overlay_maker->is_busy()); ++tries) {
     s.look_up_crowd();
     s.look_up_picked();
-    if (s.feed) s.feed->finish_posted();
+    if (s.source) s.source->finish_posted();
     s.show_overlays();
     bool missing = s.overlay_maker && s.overlay_maker->is_busy();
     for (size_t i = 0; i < kOverlays; ++i) missing |= is_missing(static_cast<Overlay>(i));
     if (!missing) break;
-    SideTask::nap();
+    SideTask::sleep_briefly();
   }
-  s.show_overlays();  // Takes what came last.
+  s.show_overlays();  // Takes the last one made.
 }
 
 void Viewer::wait_until_loaded() {
   while (state_->job) {
     state_->take_parts();
-    if (state_->job) SideTask::nap();
+    if (state_->job) SideTask::sleep_briefly();
   }
   state_->panel.status.loading = false;
 }
 
 void Viewer::play_for(double seconds) {
   State& s = *state_;
-  if (!s.feed) return;
-  const double most = s.panel.replay ? s.panel.replay->last : std::numeric_limits<double>::max();
-  // Whatever was made so far was made as one looked then, on every machine.
-  s.feed->finish();
-  s.tell_place();
-  // In small steps, so that no moment is passed over.
-  const double end = std::min(s.time + seconds * s.panel.settings.speed, most);
+  if (!s.source) return;
+  const double max_time =
+      s.panel.replay ? s.panel.replay->last : std::numeric_limits<double>::max();
+  // The frames up to here were made for the old eye, on every machine.
+  s.source->finish();
+  s.send_eye();
+  // In small increments, so that no frame is skipped.
+  const double end = std::min(s.time + seconds * s.panel.settings.speed, max_time);
   while (true) {
-    s.feed->wait_for(s.time);
-    (void)s.feed->at(s.time);
+    s.source->wait_for(s.time);
+    (void)s.source->at(s.time);
     if (s.time >= end) return;
     s.time = std::min(end, s.time + 0.02);
   }

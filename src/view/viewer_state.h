@@ -25,8 +25,8 @@ namespace throng {
 
 inline constexpr size_t kBrushSlot = kMarkSlots - 1;  // Of the drawing's marks.
 
-/// All that a viewer knows. Frames are in viewer.cpp, what keys and mouse do in controls.cpp,
-/// walking in walk_mode.cpp, overlays in overlay_view.cpp.
+/// The state of a viewer. Frames are in viewer.cpp, keys and mouse in controls.cpp, the controlled
+/// avatar in walk_mode.cpp, brushes in brush_mode.cpp, overlays in overlay_view.cpp.
 struct Viewer::State {
   explicit State(Drawing given) : drawing(std::move(given)) {}
 
@@ -44,29 +44,29 @@ struct Viewer::State {
   PanelState panel;
   ViewerRequests requests;
 
-  // What there is to see.
+  // The stage.
   Vec3d origin;
   Box3d bounds;  // Relative to the origin.
   World world;
   Figures figures;
   std::unique_ptr<StageJob> job;
-  std::vector<std::unique_ptr<StageJob>> retired;  // Cancelled, not yet at their ends.
-  std::unique_ptr<MomentFeed> feed;
+  std::vector<std::unique_ptr<StageJob>> retired;  // Cancelled, still running.
+  std::unique_ptr<TimelineSource> source;
   std::shared_ptr<const Occluders> occluders;
-  std::optional<EyePlace> told_place;  // To the crowd.
+  std::optional<EyePlace> sent_eye;  // The last one sent to the crowd.
   BlendedCrowd crowd;
   std::optional<Nodes> nodes;
   std::unique_ptr<OverlayMaker> overlay_maker;
-  std::array<bool, kOverlays> shown{}, ordered{};  // In the drawing; asked for since switched on.
+  std::array<bool, kOverlays> shown{}, ordered{};  // In the drawing; ordered since switched on.
   double air_height = 0;
   std::shared_ptr<const std::vector<Prism>> props;  // In the drawing.
   std::optional<Scenario> scenario;
-  std::vector<DensityMap> painted;  // Of the scenario, or by the brush for the crowd.
-  bool paints = false;              // The brush is down.
-  bool brush_shown = false;         // In the drawing.
-  std::optional<double> way_asked;
+  std::vector<DensityMap> painted;        // Of the scenario, or by the brush for the crowd.
+  bool paints = false;                    // The brush is down.
+  bool brush_shown = false;               // In the drawing.
+  std::optional<double> path_ordered_at;  // [s]
 
-  // Where one looks from.
+  // The eye.
   CameraRig rig;
   std::optional<GivenCamera> camera_given;
   double aspect = 16.0 / 9;
@@ -76,19 +76,19 @@ struct Viewer::State {
   std::optional<double> last_now;
   double time = 0;
 
-  // What is held.
+  // Input.
   std::array<bool, 256> keys{};
   std::array<bool, 3> buttons{};
   double mouse_x = 0, mouse_y = 0, pressed_x = 0, pressed_y = 0;
-  bool dragged = false;  // Since a button went down: no click any more.
+  bool dragged = false;  // Since a button went down: then it is no click.
   GamepadState gamepad;
 
-  // Of walking oneself.
+  // The controlled avatar.
   bool first_person = false;
-  double walk_distance = 4;  // From the eye to who is walked as, if nothing is between. [m]
+  double walk_distance = 4;  // From the eye to the avatar, if nothing is between. [m]
   std::optional<GroundQuery> ground_query;
   Vec3d last_preferred;
-  // What the crowd's thread answers.
+  // Results from the crowd's task.
   struct Answers {
     std::mutex lock;
     std::optional<int64_t> joined;
@@ -103,11 +103,11 @@ struct Viewer::State {
   void retire_job();
   void restart_crowd();
   void change_scenario(std::function<Result<void>(ScenarioPlayer&)> change);
-  void show_props(const TimelineFrame& moment);
+  void show_props(const TimelineFrame& frame);
   void send_painted();
   void change_crowd(std::function<void(CrowdPlayer&, Context&)> change);
   void act_on_panel();
-  void tell_place();
+  void send_eye();
   [[nodiscard]] StageBefore stage_before() const;
   void advance_time(double seconds);
   void step_once();
@@ -137,7 +137,7 @@ struct Viewer::State {
   void follow_external(double seconds);
   [[nodiscard]] double free_behind(Vec3d feet, int32_t avatar_class);
   [[nodiscard]] bool through_eyes() const {
-    return panel.mode == CameraMode::kWalk && first_person && panel.status.driven >= 0;
+    return panel.mode == CameraMode::kWalk && first_person && panel.status.controlled >= 0;
   }
 };
 

@@ -8,14 +8,14 @@
 #include "view/ground_pick.h"
 #include "view/viewer_state.h"
 
-// Walking oneself: one avatar of the crowd gets its wishes from keys and sticks, and keeps to the
-// same rules as all.
+// Walk mode: keys and sticks set the preferred velocity of one avatar of the crowd, which otherwise
+// moves as all others do. The eye is behind it or in its head.
 namespace throng {
 namespace {
 
 constexpr double kWalk = 1.5, kHurry = 3.0;  // [m/s]
-constexpr double kBehind = 4;                // [m] from the eye to who is walked as
-constexpr double kAsk = 0.2;                 // [s] between two looks at who is picked
+constexpr double kBehind = 4;                // [m] From the eye to the controlled avatar.
+constexpr double kAsk = 0.2;                 // [s] Between two queries of the picked avatar.
 
 Vec3d head_of(const TimelineFrame& now, size_t i, double share_of_height,
               const std::vector<double>& class_heights) {
@@ -31,7 +31,7 @@ void Viewer::State::begin_walk() {
   const SightLine line = sight_line(0.5 * picture_width, 0.5 * picture_height);
   const double cut = panel.is_cut ? panel.cut : panel.bounds.max.y + 1;
   std::optional<Vec3d> where = ground_on(world, {line.eye + origin, line.direction}, cut, 3000);
-  // Nothing to stand on in the middle of the picture: by somebody who is there, or anywhere.
+  // No ground in the middle of the picture: beside an avatar, or anywhere.
   if (!where && crowd.now().size() > 0) {
     where = head_of(crowd.now(), 0, 0, panel.class_heights) + origin;
   }
@@ -47,18 +47,17 @@ void Viewer::State::begin_walk() {
 void Viewer::State::leave_walk() {
   if (panel.mode == CameraMode::kWalk) panel.mode = CameraMode::kOrbit;
   requests.grab_mouse = false;
-  const int64_t id = std::exchange(panel.status.driven, -1);
+  const int64_t id = std::exchange(panel.status.controlled, -1);
   if (id < 0) return;
   rig.distance = std::max(rig.distance, 8.0);
-  change_crowd(
-      [id](CrowdPlayer& player, Context&) { player.take_away(static_cast<uint64_t>(id)); });
+  change_crowd([id](CrowdPlayer& player, Context&) { player.remove(static_cast<uint64_t>(id)); });
 }
 
 void Viewer::State::follow_external(double seconds) {
   {
     const std::lock_guard lock(answers->lock);
     if (const auto id = std::exchange(answers->joined, std::nullopt)) {
-      panel.status.driven = *id;
+      panel.status.controlled = *id;
       panel.mode = CameraMode::kWalk;
       walk_distance = kBehind;
       ground_query.reset();
@@ -67,8 +66,8 @@ void Viewer::State::follow_external(double seconds) {
     }
   }
   requests.grab_mouse = through_eyes();
-  if (panel.status.driven < 0) return;
-  const auto id = static_cast<uint64_t>(panel.status.driven);
+  if (panel.status.controlled < 0) return;
+  const auto id = static_cast<uint64_t>(panel.status.controlled);
   rig.turn_head(gamepad.look_x * -600 * seconds, gamepad.look_y * -600 * seconds, 600);
   const auto either = [&](Key a, Key b) { return held(a) || held(b) ? 1.0 : 0.0; };
   const double right =
@@ -79,10 +78,11 @@ void Viewer::State::follow_external(double seconds) {
   const double speed = held(Key::kShift) || gamepad.hurry ? kHurry : kWalk;
   const double scale = size > 0.1 ? speed * std::min(1.0, size) / size : 0;
   const Vec3d flat{-std::sin(rig.yaw), 0, -std::cos(rig.yaw)};
-  const Vec3d wish = (flat * ahead + Vec3d{-flat.z, 0, flat.x} * right) * scale;
-  if (!(wish == last_preferred)) {
-    last_preferred = wish;
-    change_crowd([id, wish](CrowdPlayer& player, Context&) { player.drive(id, wish); });
+  const Vec3d preferred = (flat * ahead + Vec3d{-flat.z, 0, flat.x} * right) * scale;
+  if (!(preferred == last_preferred)) {
+    last_preferred = preferred;
+    change_crowd(
+        [id, preferred](CrowdPlayer& player, Context&) { player.set_velocity(id, preferred); });
   }
   const TimelineFrame& now = crowd.now();
   const size_t i = now.find(id);
@@ -97,7 +97,7 @@ void Viewer::State::follow_external(double seconds) {
   rig.distance = std::min(walk_distance, free_behind(feet, now.classes[i]));
 }
 
-// How far the eye may be behind somebody: to the wall that one would meet who walked there.
+// The distance that the eye may be behind an avatar: to the first wall on the ground behind it.
 double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
   constexpr double kMin = 0.6;
   const Place place = world.find_place(avatar_class, feet, 0.5);
@@ -109,10 +109,10 @@ double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
   const double flat = walk_distance * std::cos(rig.pitch);
   const GroundRay ray =
       ground_query->ray(place, flat * std::sin(rig.yaw), flat * std::cos(rig.yaw));
-  // Over an edge one sees freely.
+  // An edge does not block the view.
   if (ray.arrived || ray.obstacle == Obstacle::kGap) return walk_distance;
-  const double gone = std::hypot(ray.place.position.x - feet.x, ray.place.position.z - feet.z);
-  return std::max(kMin, gone / std::max(0.2, std::cos(rig.pitch)));
+  const double clear = std::hypot(ray.place.position.x - feet.x, ray.place.position.z - feet.z);
+  return std::max(kMin, clear / std::max(0.2, std::cos(rig.pitch)));
 }
 
 void Viewer::State::look_up_picked() {
@@ -131,20 +131,20 @@ void Viewer::State::look_up_picked() {
                       .speed = 0,
                       .goal = {},
                       .goals_given = 0,
-                      .driven = false};
+                      .controlled = false};
   if (panel.has_crowd) {
     const std::lock_guard lock(answers->lock);
     if (answers->detail && answers->detail->id == id) detail = *answers->detail;
   }
   detail.position = head_of(now, i, 0, panel.class_heights) + origin;
   panel.picked = detail;
-  panel.picked_pace = now.pace[i];
+  panel.picked_speed = now.speed[i];
   panel.picked_walked = now.walked[i];
   if (!panel.has_crowd || (last_asked && *last_now - *last_asked < kAsk)) return;
   last_asked = last_now;
-  feed->post(
-      [id, answers = answers](MomentSource& source) {
-        const auto found = static_cast<CrowdPlayer&>(source).detail(id);
+  source->post(
+      [id, answers = answers](TimelinePlayer& player) {
+        const auto found = static_cast<CrowdPlayer&>(player).detail(id);
         const std::lock_guard lock(answers->lock);
         answers->detail = found;
       },

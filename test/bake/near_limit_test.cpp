@@ -19,7 +19,7 @@
 namespace throng {
 namespace {
 
-using test::add_box, test::expect_nobody_enters, test::for_legal_cells, test::ground, test::Height;
+using test::add_box, test::expect_no_body_enters, test::for_legal_cells, test::ground, test::Height;
 
 constexpr int32_t kWheelchair = 2;  // of the default classes
 
@@ -32,7 +32,7 @@ TEST(NearLimit, APlaneIsLegalUpToNearlyTheLimitAndNotBeyond) {
           ground(kSide, 1.5, 3, [&](double x, double z) { return 50 + gx * x + gz * z; });
       const World world = test::bake(scene, 0.1);
       const std::string what = std::to_string(percent) + " %, turned by " + std::to_string(turn);
-      const int64_t cells = expect_nobody_enters(world, scene, kWheelchair, what);
+      const int64_t cells = expect_no_body_enters(world, scene, kWheelchair, what);
       int64_t inner = 0;
       for_legal_cells(world, kWheelchair, [&](Vec3d p, double) {
         inner += p.x > kRim && p.z > kRim && p.x < kSide - kRim && p.z < kSide - kRim;
@@ -74,7 +74,7 @@ TEST(NearLimit, NoBodyEntersCreasesKerbsAndPosts) {
     const World world = test::bake(scene, seed % 5 == 0 ? 0.07 : 0.1, classes);
     for (int32_t c : {kWheelchair, 4, 5}) {
       cells[static_cast<size_t>(c)] +=
-          expect_nobody_enters(world, scene, c, "seed " + std::to_string(seed));
+          expect_no_body_enters(world, scene, c, "seed " + std::to_string(seed));
     }
   }
   EXPECT_GT(cells[kWheelchair], 10000);

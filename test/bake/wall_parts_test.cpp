@@ -19,7 +19,7 @@
 namespace throng {
 namespace {
 
-using test::add_box, test::expect_nobody_enters, test::for_legal_cells, test::ground;
+using test::add_box, test::expect_no_body_enters, test::for_legal_cells, test::ground;
 
 Scene floor_of(double side) {
   return ground(side, side, 1, [](double, double) { return 10.0; });
@@ -53,8 +53,8 @@ TEST(WallParts, NoBodyEntersWallsKerbsAndBeamsAtAnyAngle) {
     const Scene scene = clutter(seed, std::array{0.0, 0.04, 0.12, 0.3}[seed % 4]);
     const World world = test::bake(scene, seed % 3 == 0 ? 0.07 : 0.1, classes, true);
     for (size_t c = 0; c < classes.size(); ++c) {
-      cells[c] += expect_nobody_enters(world, scene, static_cast<int32_t>(c),
-                                       "seed " + std::to_string(seed));
+      cells[c] += expect_no_body_enters(world, scene, static_cast<int32_t>(c),
+                                        "seed " + std::to_string(seed));
     }
   }
   for (const size_t c : {0, 1, 3, 4, 5}) EXPECT_GT(cells[c], 20000) << classes[c].name;

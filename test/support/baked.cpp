@@ -8,6 +8,7 @@
 
 #include "throng/bake.h"
 
+// Bakes in zones of few tiles.
 namespace throng::test {
 
 Scene builtin(const BuiltinWorldConfig& config) {

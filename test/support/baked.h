@@ -9,7 +9,7 @@
 #include "throng/scene.h"
 #include "throng/world.h"
 
-/// Worlds to walk in, in small zones. A failure, and an empty world, if they cannot be made.
+/// Baked worlds in small zones. Fails the test and returns an empty world if a bake fails.
 namespace throng::test {
 
 Scene builtin(const BuiltinWorldConfig& config);

@@ -10,7 +10,7 @@
 
 #include "throng/crowd.h"
 
-/// Crowds for tests; what cannot be made is a failure.
+/// Crowds for tests; a test fails if they cannot be made.
 namespace throng {
 
 inline Crowd made(const World& world, const CrowdConfig& config = {}) {

@@ -10,6 +10,7 @@
 #include "core/random.h"
 #include "verify/body_check.h"
 
+// Body tests by verify's triangle tree, at nine points of each legal cell.
 namespace throng::test {
 
 Scene ground(double side, double spacing, uint64_t seed, const Height& height) {
@@ -69,8 +70,8 @@ void for_legal_cells(const World& world, int32_t avatar_class,
   }
 }
 
-int64_t expect_nobody_enters(const World& world, const Scene& scene, int32_t avatar_class,
-                             const std::string& what) {
+int64_t expect_no_body_enters(const World& world, const Scene& scene, int32_t avatar_class,
+                              const std::string& what) {
   const verify::TriangleTree tree(scene, 0);
   const AvatarClass avatar = world.summary().classes[static_cast<size_t>(avatar_class)];
   const verify::BodyCheck body(tree, avatar, world.summary().cell);

@@ -7,10 +7,10 @@
 
 #include "throng/prism.h"
 
-/// An upright cylinder against a prism, exactly, by nothing that the library uses.
+/// An exact test of an upright cylinder against a prism, independent of the library's.
 namespace throng::test {
 
-/// How far a point of the plane is from the prism's polygon; 0 inside. [m]
+/// Distance of a point of the plane from the prism's polygon; 0 inside. [m]
 inline double plan_distance(const Prism& prism, double x, double z) {
   bool left = false, right = false;
   double least = HUGE_VAL;
@@ -27,7 +27,7 @@ inline double plan_distance(const Prism& prism, double x, double z) {
   return left && right ? least : 0;
 }
 
-/// Does a body from `low` to `high` around (x, z) reach into it?
+/// Does a body from `low` to `high` around (x, z) overlap it?
 inline bool is_touched(const Prism& prism, double x, double z, double low, double high,
                        double radius) {
   return high > prism.low && low < prism.high && plan_distance(prism, x, z) < radius;

@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
+// A flood fill with World::move, one place per level and cell.
 namespace throng {
 
 double Flood::around(double height) const {

@@ -7,7 +7,7 @@
 
 #include "throng/world.h"
 
-/// Everywhere that a body gets on foot: a flood over World::move, one cell at a time.
+/// All ground that a body can walk to: a flood over World::move, one cell at a time.
 namespace throng {
 
 struct Flood {
@@ -20,7 +20,7 @@ struct Flood {
   [[nodiscard]] double around(double height) const;
 };
 
-/// From the place nearest to `start` (within a metre up or down). Empty if nobody can stand there.
+/// From the place nearest to `start` (vertical tolerance: a metre). Empty if there is none.
 Flood flood_from(const World& world, int32_t avatar_class, Vec3d start);
 
 }  // namespace throng

@@ -9,10 +9,11 @@
 
 #include "core/random.h"
 
+// Solids as columns of spans, and the rule of free spans written with plain loops.
 namespace throng::naive {
 namespace {
 
-using Height = std::function<double(double, double)>;  // of cells, in mm
+using Height = std::function<double(double, double)>;  // height over cells [mm]
 
 class Dice {
  public:
@@ -58,8 +59,7 @@ Height make_ground(int32_t kind, Dice& dice) {
   return [](double, double) { return 0.0; };
 }
 
-// Adds a slab whose upper side is `height`; what it covers of a cell is as high as its highest
-// corner.
+// Adds a slab whose upper side is `height`; in a cell it is as high as its highest corner there.
 void add_slab(SolidBlock& block, std::array<int32_t, 4> rect, const Height& height, double thick,
               int32_t code) {
   const double in = 1e-9;  // corners seen from inside the cell
@@ -210,14 +210,14 @@ SolidBlock random_solids(const RandomBlock& config) {
       const double thick = dice.from(50, 300);
       add_slab(
           block, deck, [=](double, double) { return level; }, thick, 0);
-      const bool under = dice.unit() < 0.3;  // a spiral's way: the deck lies over its own ramp
+      const bool under = dice.unit() < 0.3;  // as in a spiral: the deck lies over its own ramp
       const int32_t length = 8 + dice.below(60), wide = 6 + dice.below(20);
       const int32_t start = under ? deck[0] + length : deck[0];
       const auto slope = [=](double x, double) {
         return foot + (level - foot) * std::clamp(1 - (start - x) / length, 0.0, 1.0);
       };
       add_slab(block, {start - length, deck[1], start, deck[1] + wide}, slope, thick, 0);
-      if (dice.unit() < 0.5) {  // low over a part of it
+      if (dice.unit() < 0.5) {  // a low ceiling over a part of it
         const double room = dice.from(1000, 2600);
         const int32_t from = start - dice.below(length);
         const auto roof = [=](double x, double z) { return slope(x, z) + room + 100; };
@@ -247,7 +247,7 @@ SolidBlock random_solids(const RandomBlock& config) {
         for (int32_t x = rect[0]; x < std::min(rect[2], block.kEnd); ++x) block.at(x, z).clear();
       }
     }
-    for (auto& column : block.cells) {  // cracks: matter without a surface under the centre
+    for (auto& column : block.cells) {  // cracks: solids without a surface under the centre
       if (!column.empty() && dice.unit() < 0.001) column.front().support = kNoSupport;
     }
   }

@@ -17,6 +17,7 @@
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
+// Compares pixel values one by one.
 namespace throng::test {
 
 void expect_golden(const Image& image, const std::string& golden, const ImageLimits& limits) {

@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+// A* over all corners of blocked cells [LPW79]; visibility row by row, in integers.
 namespace throng::test {
 namespace {
 
@@ -58,7 +59,7 @@ bool GridOracle::sees(HalfPoint a, HalfPoint b) const {
     for (int64_t x = first; x < last; ++x) {
       if (!is_open(x, row)) return false;
     }
-    // Through a corner: one of the two cells beside the way must be open.
+    // Through a corner: one of the two cells beside the segment must be open.
     if (z1 == 2 * row + 2 && z1 < b.z) {
       const int64_t at = a.x * dz + dx * (z1 - a.z);
       if (at % (2 * dz) != 0) continue;
@@ -73,7 +74,7 @@ bool GridOracle::sees(HalfPoint a, HalfPoint b) const {
 std::vector<HalfPoint> GridOracle::corners_within(HalfPoint from, HalfPoint to,
                                                   double limit) const {
   std::vector<HalfPoint> corners;
-  // Half of the ellipse's width: it is wider than it is longer than the way straight on. [cells]
+  // Half of the width of the ellipse of points on paths within the limit. [cells]
   const double straight = length(from, to);
   const double width = std::sqrt(std::max(0.0, limit * limit - straight * straight)) / 2;
   const auto spare = static_cast<int64_t>(width) + 2;

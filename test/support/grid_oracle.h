@@ -8,7 +8,7 @@
 
 #include "throng/cells.h"
 
-/// Shortest any-angle ways over flat cells, by brute force: knows nothing of meshes or intervals.
+/// Shortest any-angle paths over flat cells, by brute force: independent of meshes and intervals.
 namespace throng::test {
 
 /// A point in half cells, so that the middles of cells are whole numbers.
@@ -24,12 +24,12 @@ class GridOracle {
   explicit GridOracle(const FlatCells& cells) : cells_(cells) {}
 
   [[nodiscard]] bool is_open(int64_t x, int64_t z) const;
-  /// Can a point go straight from one to the other? It may slide along walls and touch corners, but
-  /// not slip between two blocked cells that touch at a corner. In whole numbers, exact.
+  /// Can a point move straight from a to b? It may slide along walls and touch corners, but not
+  /// pass between two blocked cells that touch at a corner. Exact, in integers.
   [[nodiscard]] bool sees(HalfPoint a, HalfPoint b) const;
-  /// Length of the shortest way that is not longer than `limit`, in cells: A* over all corners of
-  /// blocked cells, where any two that see each other are joined. Nothing: there is no such way.
-  /// Source: [LPW79].
+  /// Length of the shortest path not longer than `limit`, in cells: A* over all corners of blocked
+  /// cells, where any two that see each other are joined. Nothing: there is no such path. Source:
+  /// [LPW79].
   [[nodiscard]] std::optional<double> shortest(HalfPoint from, HalfPoint to, double limit) const;
 
  private:

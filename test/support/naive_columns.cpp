@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+// Sutherland-Hodgman clipping of every triangle by every cell under it.
 namespace throng::naive {
 namespace {
 
@@ -88,8 +89,7 @@ Columns make_columns(const Scene& scene, const Grid& grid) {
       triangle.push_back(local);
       box.add(local);
     }
-    // One cell more on each side than the box needs: the clip decides, not this
-    // rounding.
+    // One cell more on each side: the clip decides, not the rounding here.
     const auto begin = [&](double low) {
       return static_cast<int32_t>(std::max(0.0, std::floor(low / grid.cell - grid.widen) - 1));
     };

@@ -10,7 +10,7 @@
 #include "throng/scene.h"
 
 /// The oracle of the rasteriser: columns of spans by clipping every triangle
-/// against every cell, in double precision, with no thought for speed.
+/// against every cell, in double precision.
 namespace throng::naive {
 
 /// Columns row by row: cell = z * width + x owns the spans first[cell] to
@@ -34,7 +34,7 @@ struct Grid {
   double cell = 0.1;
   int32_t width = 0;
   int32_t depth = 0;
-  double widen = 0;  ///< Grows every square on all sides, for bounds from above. [cells]
+  double widen = 0;  ///< Grows every square on all sides, for upper bounds. [cells]
 };
 
 /// Whole millimetres at or below / above `metres`; within 1 um of a whole one

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+// [ML06] algorithms 2 and 3, without the shortcuts of the sweep.
 namespace throng::naive {
 namespace {
 

@@ -9,11 +9,11 @@
 #include "naive_columns.h"
 
 /// [ML06] algorithms 2 and 3 to the letter: every slice is cut again from the columns, every test
-/// looks at every cell. What the sweep is held against.
+/// reads every cell. The oracle of the sweep.
 namespace throng::naive {
 
 struct SliceRun {
-  std::vector<Slice> taken;  ///< Every slice, kept or not.
+  std::vector<Slice> taken;  ///< All slices, kept or not.
   std::vector<Slice> kept;
 };
 
@@ -24,7 +24,7 @@ Slice cut(const Columns& columns, int32_t height, int32_t far_plane);
 /// Algorithm 3 with `config`'s avatar height, resolution and bounds.
 SliceRun slice(const Columns& columns, const SweepConfig& config);
 
-/// Columns dealt to the 64 x 64 tiles that the sweep reads.
+/// Columns split into the 64 x 64 tiles that the sweep reads.
 std::vector<SliceTile> make_tiles(const Columns& columns);
 
 /// A config with the bounds and grid of `columns`; heights in mm.

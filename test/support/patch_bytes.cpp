@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "throng/patch.h"
 
+// Prefixes and single changed bytes of a file of patches.
 namespace throng::test {
 
 Result<RawScene> PatchReader::read(const std::string& bytes) const {

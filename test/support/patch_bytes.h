@@ -8,20 +8,20 @@
 
 #include "import/raw_scene.h"
 
-/// What the tests of all readers of patches do with bytes.
+/// Tests of damaged bytes for all readers of patches.
 namespace throng::test {
 
-/// A reader, and the name under which it is given bytes.
+/// A reader, and the file name that it gets.
 struct PatchReader {
   Result<RawScene> (*read_bytes)(std::string_view, const ReadOptions&, Context&);
   const char* name;
 
   [[nodiscard]] Result<RawScene> read(const std::string& bytes) const;
-  /// The sentence with which the bytes are refused; empty, and a failure, if they are not.
+  /// The message with which the bytes are refused; empty, and a failed test, if they are not.
   [[nodiscard]] std::string fault_of(const std::string& bytes) const;
-  /// Reads every `stride`-th beginning of the bytes, and `count` copies with one byte changed, to
-  /// any or to a digit: each is refused with a sentence that begins with `where`, or can be
-  /// tessellated. How many are not refused.
+  /// Reads every `stride`-th prefix of the bytes, and `count` copies with one byte changed, to any
+  /// byte or to a digit. Expects that each is refused with a message that begins with `where`, or
+  /// can be tessellated. Returns how many are not refused.
   [[nodiscard]] uint64_t survive(const std::string& whole, const std::string& where, size_t stride,
                                  uint64_t seed, uint64_t count) const;
 };

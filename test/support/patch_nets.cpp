@@ -12,6 +12,7 @@
 
 #include "core/random.h"
 
+// Nets of random patches, and their meshes checked edge by edge.
 namespace throng::test {
 namespace {
 
@@ -193,7 +194,7 @@ class Net {
 
 bool less(Vec3d a, Vec3d b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
-// A number for each place, so that places can be compared like indices.
+// A number per position, so that positions can be compared like indices.
 std::vector<uint32_t> number_places(const std::vector<Vec3d>& positions) {
   std::map<Vec3d, uint32_t, decltype(&less)> places(&less);
   std::vector<uint32_t> number;
@@ -208,7 +209,7 @@ bool on_open_edge(const PatchSet& set, uint32_t p, Vec3d a, Vec3d b) {
     if (set.edges[p][e].bind != EdgeBind::kOpen) continue;
     const auto curve = set.patches[p].edge(static_cast<int32_t>(e));
     const auto lies_on = [&](Vec3d point) {
-      // The nearest of the curve, looked for on ever finer steps around the nearest so far.
+      // The nearest point of the curve, by ever finer steps around the nearest so far.
       double nearest = INFINITY, middle = 0.5;
       for (double reach = 0.5; reach > 1e-7; reach /= 32) {
         const double around = middle;

@@ -7,15 +7,15 @@
 #include "throng/patch.h"
 #include "throng/scene.h"
 
-/// Patches to test with, and what must be true of their triangles.
+/// Patches for tests, and checks of their triangles.
 namespace throng::test {
 
-/// How a net is made.
+/// The shape of a net.
 struct NetConfig {
   int32_t side = 4;        ///< Cells along x and z.
   double cell = 16;        ///< [m]
-  double relief = 6;       ///< How far vertices go up and down. [m]
-  double sideways = 3;     ///< How far inner vertices go sideways. [m]
+  double relief = 6;       ///< Largest vertical offset of vertices. [m]
+  double sideways = 3;     ///< Largest horizontal offset of inner vertices. [m]
   double jitter = 0;       ///< Control points of inner borders differ by this between patches. [m]
   bool closed = false;     ///< Closed to a torus, without a border.
   bool split_some = true;  ///< Cells are split into 2 x 2 or 4 x 4 at random.
@@ -30,12 +30,12 @@ Scene net_scene(const NetConfig& config);
 /// Any patches as a scene of their triangles.
 Scene patch_scene(const PatchSet& set);
 
-/// The same surface with vertex k as vertex k + 1, `turns` times.
+/// The same surface with vertex k as vertex k + 1, applied `turns` times.
 BezierPatch turn(BezierPatch patch, uint32_t turns);
 
-/// Expects that each triangle's edge is met by exactly one in the opposite direction, by index and
-/// by place, save on open edges of the triangle's own patch; and that no vertex lies inside an
-/// edge. Returns how many edges have no partner.
+/// Expects that each triangle's edge has exactly one opposite edge, by index and by position,
+/// except on open edges of the triangle's patch; and that no vertex lies inside an edge. Returns
+/// how many edges have no opposite edge.
 size_t expect_watertight(const PatchSet& set, const PatchMesh& mesh);
 
 /// The largest distance from points of patch p to its triangles, over `samples` points.

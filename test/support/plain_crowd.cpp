@@ -12,13 +12,14 @@
 #include "crowd/precedence.h"
 #include "crowd/reaction.h"
 
+// Neighbours by a grid, then the steps of the engine as loops over all bodies.
 namespace throng::test {
 namespace {
 
 using steer::Plane;
 
-constexpr float kThere = 0.3f;  // [m] from its goal a body has arrived
-constexpr float kShorter[] = {0.5f, 0.25f, 0.1f};
+constexpr float kArrivalRadius = 0.3f;                // [m]
+constexpr float kMoveShares[] = {0.5f, 0.25f, 0.1f};  // Of the first choice, if none is clear.
 
 int32_t wrapped(int32_t d, int32_t side) {
   if (side <= 0) return d;
@@ -26,7 +27,7 @@ int32_t wrapped(int32_t d, int32_t side) {
   return d < -side / 2 ? d + side : d;
 }
 
-// Cells as wide as one sees, as many as fit.
+// As many cells as fit, each at least as wide as the sight.
 struct Grid {
   Spot low;
   int64_t cell = 1;
@@ -44,7 +45,7 @@ struct Grid {
     }
     const int32_t across = std::max(high.x - low.x, high.z - low.z);
     width = depth = std::max(1, across / sight);
-    // The cell to the left is then the one to the right, too.
+    // With fewer than 3 cells, the left and right neighbour are the same cell.
     if (side > 0 && width < 3) width = depth = 1;
     cell = std::max(across / width + 1, sight);
     bodies.resize(static_cast<size_t>(width * depth));
@@ -67,8 +68,8 @@ int32_t PlainConfig::to_units(double metres) const {
 PlainCrowd::PlainCrowd(std::vector<PlainBody> bodies, const PlainConfig& config)
     : bodies_(std::move(bodies)), config_(config) {
   for (const PlainBody& b : bodies_) {
-    widest_ = std::max(widest_, b.radius);
-    longest_ = std::max(longest_, config.units.stride(b.speed));
+    max_radius_ = std::max(max_radius_, b.radius);
+    max_stride_ = std::max(max_stride_, config.units.stride(b.speed));
   }
   near_.resize(bodies_.size());
   choices_.resize(bodies_.size());
@@ -79,29 +80,30 @@ Spot PlainCrowd::between(Spot a, Spot b) const {
 }
 
 Plane PlainCrowd::preferred_of(const PlainBody& body) const {
-  const Plane way = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
-  return steer::preferred_towards(way, body.speed, config_.units.dt, body.turn);
+  const Plane to_goal = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
+  return steer::preferred_towards(to_goal, body.speed, config_.units.dt, body.turn);
 }
 
 void PlainCrowd::sense() {
-  // Who could be touched within a step must be seen, however short the sight.
-  const int32_t sight = std::max(config_.to_units(config_.sight), 2 * widest_ + 2 * longest_);
-  const float most = static_cast<float>(sight) * static_cast<float>(sight);
+  // Bodies that can be touched within a step are neighbours, however short the sight.
+  const int32_t sight =
+      std::max(config_.to_units(config_.sight), 2 * max_radius_ + 2 * max_stride_);
+  const float sight_square = static_cast<float>(sight) * static_cast<float>(sight);
   const Grid grid(bodies_, sight, config_.side);
   const bool repeats = config_.side > 0;
   for (uint32_t i = 0; i < bodies_.size(); ++i) {
     near_[i].clear();
     const int32_t cx = grid.column(bodies_[i].at.x - grid.low.x);
     const int32_t cz = grid.column(bodies_[i].at.z - grid.low.z);
-    const int32_t reach = grid.width > 1 || !repeats ? 1 : 0;
-    for (int32_t z = cz - reach; z <= cz + reach; ++z) {
-      for (int32_t x = cx - reach; x <= cx + reach; ++x) {
+    const int32_t ring = grid.width > 1 || !repeats ? 1 : 0;
+    for (int32_t z = cz - ring; z <= cz + ring; ++z) {
+      for (int32_t x = cx - ring; x <= cx + ring; ++x) {
         const bool inside = x >= 0 && z >= 0 && x < grid.width && z < grid.depth;
         if (!inside && !repeats) continue;
         for (const uint32_t j :
              grid.bodies[grid.at((x + grid.width) % grid.width, (z + grid.depth) % grid.depth)]) {
           const Spot at = between(bodies_[i].at, bodies_[j].at);
-          if (j != i && near_square(at.x, at.z) < most) near_[i].push_back({j, at});
+          if (j != i && near_square(at.x, at.z) < sight_square) near_[i].push_back({j, at});
         }
       }
     }
@@ -112,7 +114,7 @@ void PlainCrowd::sense() {
   }
 }
 
-// By another model than ours.
+// The choices by another steering model than `sampled`.
 void PlainCrowd::prefer(uint32_t i) {
   const PlainBody& body = bodies_[i];
   std::vector<steer::Other> others;
@@ -153,8 +155,8 @@ void PlainCrowd::steer_all() {
     for (const Near& n : near_[i]) {
       if (situation.near.size == static_cast<size_t>(config_.steering.neighbours)) break;
       const PlainBody& other = bodies_[n.other];
-      // Who has arrived makes way for those who would pass, were he not there: they may stand.
-      const bool makes_way = body.arrived >= 0 && other.arrived < 0;
+      // A body that has arrived yields to others, of which it assumes that they move as preferred.
+      const bool yields = body.arrived >= 0 && other.arrived < 0;
       const auto bound = [](const PlainBody& b, uint32_t slot) {
         return Bound{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
       };
@@ -167,7 +169,7 @@ void PlainCrowd::steer_all() {
       }
       situation.near.add(
           config_.steering,
-          {config_.units.metres(n.at.x, n.at.z), makes_way ? preferred_of(other) : other.velocity,
+          {config_.units.metres(n.at.x, n.at.z), yields ? preferred_of(other) : other.velocity,
            static_cast<float>(body.radius + other.radius) * config_.units.unit,
            preferred_of(other)});
     }
@@ -188,7 +190,7 @@ void PlainCrowd::steer_all() {
       open = steer::preferred_is_open(config_.steering, situation);
     }
     choices_[i] = steer::choose_velocity(config_.steering, situation);
-    // Who meets nobody does as he wishes.
+    // The preferred velocity comes first if it is open.
     if (open) {
       std::rotate(choices_[i].begin(), choices_[i].end() - 1, choices_[i].end());
       choices_[i][0] = situation.preferred;
@@ -196,28 +198,28 @@ void PlainCrowd::steer_all() {
   }
 }
 
-// Who stood within this when the step began can be touched in it.
+// Could both touch in this step, by their distance at its start?
 bool PlainCrowd::can_touch(uint32_t i, const Near& n) const {
   const PlainBody &a = bodies_[i], &b = bodies_[n.other];
-  const int64_t reach =
+  const int64_t distance =
       int64_t{a.radius} + b.radius + config_.units.stride(a.speed) + config_.units.stride(b.speed);
-  return nearer_than(n.at.x, n.at.z, reach);
+  return nearer_than(n.at.x, n.at.z, distance);
 }
 
-void PlainCrowd::commit() {
+void PlainCrowd::resolve_conflicts() {
   const size_t count = bodies_.size();
   std::vector<Spot> now(count);
   for (size_t i = 0; i < count; ++i) now[i] = bodies_[i].at;
   std::vector<uint8_t> decided(count, 0);
   const uint64_t every = steps_of_reaction(config_.reaction, config_.units.dt);
-  // Who goes on as he does; who still may do what he wants most, and does.
+  // Goes on as before; first choice still possible; moves by its first choice.
   std::vector<uint8_t> keeping(count), first(count, 1), keeps(count, 0);
   for (uint32_t i = 0; i < count; ++i) {
     const PlainBody& b = bodies_[i];
     keeping[i] = b.keeps && !decides(every, steps_, i) &&
                  !is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed));
   }
-  std::vector<std::optional<Spot>> named(count);
+  std::vector<std::optional<Spot>> proposed(count);
   const auto is_clear = [&](uint32_t i, uint32_t j, Spot a, Spot b) {
     const Spot d = between(a, b);
     return !nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
@@ -225,48 +227,48 @@ void PlainCrowd::commit() {
   const auto order = [&](uint32_t i) { return std::pair(random_u64(config_.seed, i, steps_), i); };
   for (int32_t round = 0; round < config_.rounds; ++round) {
     for (uint32_t i = 0; i < count; ++i) {
-      named[i].reset();
+      proposed[i].reset();
       if (decided[i] != 0) continue;
-      const auto consider_way = [&](Spot way) {
-        const Spot to{now[i].x + way.x, now[i].z + way.z};
+      const auto propose_move = [&](Spot move) {
+        const Spot to{now[i].x + move.x, now[i].z + move.z};
         for (const Near& n : near_[i]) {
           if (can_touch(i, n) && !is_clear(i, n.other, to, now[n.other])) return false;
         }
-        named[i] = to;
+        proposed[i] = to;
         return true;
       };
-      const auto way_of = [&](Plane velocity) {
-        return Spot{config_.units.way(velocity.x), config_.units.way(velocity.z)};
+      const auto move_of = [&](Plane velocity) {
+        return Spot{config_.units.displacement(velocity.x), config_.units.displacement(velocity.z)};
       };
-      const auto consider = [&](Plane velocity) { return consider_way(way_of(velocity)); };
+      const auto propose = [&](Plane velocity) { return propose_move(move_of(velocity)); };
       if (keeping[i] != 0) {
-        keeps[i] = consider(bodies_[i].velocity);
+        keeps[i] = propose(bodies_[i].velocity);
         if (keeps[i] != 0) continue;
         keeping[i] = 0;
         if (round > 0) first[i] = 0;
       }
       if (round == 0) bodies_[i].follows = follows_[i] != 0;
-      if (first[i] != 0) first[i] = consider(choices_[i][0]);
+      if (first[i] != 0) first[i] = propose(choices_[i][0]);
       keeps[i] = first[i];
-      bool found = std::any_of(choices_[i].begin(), choices_[i].end(), consider);
-      for (const float part : kShorter) {
-        const Spot best = way_of(choices_[i][0]);
-        const auto shorter = [&](int32_t way) {
-          return static_cast<int32_t>(std::lrint(static_cast<float>(way) * part));
+      bool found = std::any_of(choices_[i].begin(), choices_[i].end(), propose);
+      for (const float share : kMoveShares) {
+        const Spot best = move_of(choices_[i][0]);
+        const auto shorter = [&](int32_t move) {
+          return static_cast<int32_t>(std::lrint(static_cast<float>(move) * share));
         };
-        found = found || consider_way({shorter(best.x), shorter(best.z)});
+        found = found || propose_move({shorter(best.x), shorter(best.z)});
       }
     }
     for (uint32_t i = 0; i < count; ++i) {
-      if (!named[i]) continue;
-      const bool mine = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
-        return can_touch(i, n) && named[n.other] && order(n.other) > order(i) &&
-               !is_clear(i, n.other, *named[i], *named[n.other]);
+      if (!proposed[i]) continue;
+      const bool is_first = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
+        return can_touch(i, n) && proposed[n.other] && order(n.other) > order(i) &&
+               !is_clear(i, n.other, *proposed[i], *proposed[n.other]);
       });
-      if (mine) decided[i] = 1;
+      if (is_first) decided[i] = 1;
     }
     for (uint32_t i = 0; i < count; ++i) {
-      if (named[i] && decided[i] != 0) now[i] = *named[i];
+      if (proposed[i] && decided[i] != 0) now[i] = *proposed[i];
     }
   }
   for (size_t i = 0; i < count; ++i) keeps[i] = keeps[i] & decided[i];
@@ -279,12 +281,12 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
   const StepUnits& units = config_.units;
   for (size_t i = 0; i < bodies_.size(); ++i) {
     PlainBody& body = bodies_[i];
-    const Plane way = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
+    const Plane to_goal = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
     const Plane preferred = preferred_of(body);
-    const float left = size_of(way);
+    const float left = size_of(to_goal);
     body.velocity = {units.velocity(now[i].x - body.at.x), units.velocity(now[i].z - body.at.z)};
     const float towards =
-        left > 1e-6f ? (body.velocity.x * way.x + body.velocity.z * way.z) / left : 0;
+        left > 1e-6f ? (body.velocity.x * to_goal.x + body.velocity.z * to_goal.z) / left : 0;
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
     body.keeps = keeps[i] != 0;
@@ -301,7 +303,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
       body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
     }
     const Plane rest = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
-    if (body.arrived < 0 && size_of(rest) < kThere) body.arrived = time();
+    if (body.arrived < 0 && size_of(rest) < kArrivalRadius) body.arrived = time();
     if (config_.side <= 0) continue;
     for (int32_t Spot::*axis : {&Spot::x, &Spot::z}) {
       const int32_t shift = body.at.*axis < 0               ? config_.side
@@ -316,7 +318,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
 void PlainCrowd::step() {
   sense();
   steer_all();
-  commit();
+  resolve_conflicts();
 }
 
 uint64_t PlainCrowd::overlaps() const {

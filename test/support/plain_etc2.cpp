@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plain_etc2.h"
 
+// Decodes one texel at a time, after [KDF].
 namespace throng::test {
 namespace {
 

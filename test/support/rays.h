@@ -10,7 +10,7 @@
 #include "throng/math.h"
 #include "throng/scene.h"
 
-/// Rays against triangles: what can be seen, told without any of the library's ways.
+/// Rays against triangles: an oracle of visibility that uses no code of the library.
 namespace throng {
 
 /// Where a ray meets a triangle's plane: u and v along its sides, `along` the ray (1: its end).

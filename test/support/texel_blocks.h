@@ -21,7 +21,7 @@ inline uint8_t random_byte(uint64_t seed, uint64_t block, uint64_t i) {
   return static_cast<uint8_t>(random_below(seed, block, i, 256));
 }
 
-/// `kinds` colours, dealt to texels at random, with some noise.
+/// `kinds` colours, assigned to texels at random, with some noise.
 inline ColourBlock random_block(uint64_t seed, uint64_t number, uint64_t kinds, uint64_t noise) {
   ColourBlock block;
   for (uint64_t i = 0; i < 16; ++i) {

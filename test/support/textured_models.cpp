@@ -12,8 +12,8 @@
 #include "throng/picture.h"
 #include "throng/scene.h"
 
-// Written by hand, after the formats' own descriptions, so that neither our readers' nor our
-// writers' idea of what is up in a picture comes in.
+// Written by hand, after the formats' descriptions, independent of what the library's readers and
+// writers take for up in a picture.
 namespace throng::test {
 namespace {
 

@@ -13,14 +13,14 @@
 /// 4 m, facing +z, with texture_of_quarters() on it once.
 namespace throng::test {
 
-/// 16 x 16 texels in quarters: red, green; blue, white, as one reads.
+/// 16 x 16 texels in quarters, row by row: red, green; blue, white.
 [[nodiscard]] Texture texture_of_quarters();
 
 /// An uncompressed TGA, rows from the top, which any program can write.
 [[nodiscard]] std::string tga_bytes(const Texture& texture);
 
 struct TexturedModel {
-  std::string name;                                        ///< Of the format, and how it is held.
+  std::string name;                                        ///< Of the format and its variant.
   std::function<std::string(const ScratchFolder&)> write;  ///< Returns the path to load.
 };
 

@@ -83,7 +83,7 @@ inline std::string make_zonel(const TinyZone& zone) {
       put(bind.edge);
     }
   }
-  if (zone.version >= 4) out += "lights that nobody reads";
+  if (zone.version >= 4) out += "lights that are not read";
   return out;
 }
 

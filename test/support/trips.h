@@ -10,7 +10,7 @@
 
 #include "throng/crowd.h"
 
-/// Crowds that go until they are there, looked at meanwhile.
+/// Steps a crowd until its avatars have arrived, and checks it meanwhile.
 namespace throng {
 
 /// `Stage`: has Faults (overlaps, entered, bodies, pairs) and look(crowd, faults).
@@ -21,12 +21,12 @@ struct Trip {
   typename Stage::Faults faults;
 };
 
-/// Until so many have arrived, or for so many steps; each `every`-th step is looked at.
+/// Steps until `all` have arrived, at most `max_steps`; checks each `every`-th step.
 template <class Stage>
-Trip<Stage> go(Crowd& crowd, Stage& stage, size_t all, int most, int every = 1) {
+Trip<Stage> go(Crowd& crowd, Stage& stage, size_t all, int max_steps, int every = 1) {
   Trip<Stage> trip;
   std::set<uint32_t> there;
-  for (; trip.steps < most && there.size() < all; ++trip.steps) {
+  for (; trip.steps < max_steps && there.size() < all; ++trip.steps) {
     crowd.step();
     for (const AvatarId id : crowd.arrived()) there.insert(id.slot1);
     if (trip.steps % every == 0) stage.look(crowd, trip.faults);

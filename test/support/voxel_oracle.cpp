@@ -9,6 +9,7 @@
 #include <queue>
 #include <utility>
 
+// A* over all convex corners of filled voxels; visibility face by face, in integers.
 namespace throng::test {
 namespace {
 
@@ -43,8 +44,8 @@ bool VoxelOracle::is_open(int64_t x, int64_t y, int64_t z) const {
 
 bool VoxelOracle::is_clear(const Vec3d& a, const Vec3d& b) const {
   constexpr double kTouch = 1e-9;
-  const Vec3d way = b - a;
-  const double length = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+  const Vec3d ray = b - a;
+  const double length = std::sqrt(ray.x * ray.x + ray.y * ray.y + ray.z * ray.z);
   const auto steps = static_cast<int64_t>(length * 100) + 1;
   for (int64_t s = 0; s <= steps; ++s) {
     const double t = static_cast<double>(s) / static_cast<double>(steps);
@@ -54,18 +55,18 @@ bool VoxelOracle::is_clear(const Vec3d& a, const Vec3d& b) const {
         return static_cast<int64_t>(std::floor(v + ((i & bit) != 0 ? kTouch : -kTouch)));
       };
       open =
-          is_open(voxel(a.x + t * way.x, 1), voxel(a.y + t * way.y, 2), voxel(a.z + t * way.z, 4));
+          is_open(voxel(a.x + t * ray.x, 1), voxel(a.y + t * ray.y, 2), voxel(a.z + t * ray.z, 4));
     }
     if (!open) return false;
   }
   return true;
 }
 
-// Those of `to` to which open voxels lead from `from`, face to face. Only voxels within the box of
-// both count: they touch the point where two stretches of a line meet.
-std::vector<VoxelOracle::Voxel> VoxelOracle::led_on(const std::vector<Voxel>& from,
-                                                    const std::vector<Voxel>& to) const {
-  std::vector<Voxel> reached = from, led;
+// The voxels of `to` that are connected to `from` by open voxels, face to face, within the box of
+// both: these touch the point where two pieces of a segment meet.
+std::vector<VoxelOracle::Voxel> VoxelOracle::reachable(const std::vector<Voxel>& from,
+                                                       const std::vector<Voxel>& to) const {
+  std::vector<Voxel> reached = from, found;
   Voxel low = from[0], high = from[0];
   for (const auto* side : {&from, &to}) {
     for (const Voxel& v : *side) {
@@ -77,7 +78,7 @@ std::vector<VoxelOracle::Voxel> VoxelOracle::led_on(const std::vector<Voxel>& fr
   }
   for (size_t r = 0; r < reached.size(); ++r) {
     const Voxel at = reached[r];
-    if (std::find(to.begin(), to.end(), at) != to.end()) led.push_back(at);
+    if (std::find(to.begin(), to.end(), at) != to.end()) found.push_back(at);
     for (size_t axis = 0; axis < 3; ++axis) {
       for (const int64_t step : {-1, 1}) {
         Voxel next = at;
@@ -90,11 +91,11 @@ std::vector<VoxelOracle::Voxel> VoxelOracle::led_on(const std::vector<Voxel>& fr
       }
     }
   }
-  return led;
+  return found;
 }
 
-// A corner once for each part of the open voxels around it that holds together.
-void VoxelOracle::add_sides(int64_t x, int64_t y, int64_t z, std::vector<Spot>& spots) const {
+// Adds a corner once for each connected set of the open voxels around it.
+void VoxelOracle::add_sides(int64_t x, int64_t y, int64_t z, std::vector<Node>& nodes) const {
   std::vector<Voxel> open;
   for (int i = 0; i < 8; ++i) {
     const Voxel v{x - (i & 1), y - (i >> 1 & 1), z - (i >> 2)};
@@ -112,18 +113,18 @@ void VoxelOracle::add_sides(int64_t x, int64_t y, int64_t z, std::vector<Spot>& 
     }
     std::erase_if(
         left, [&](const Voxel& v) { return std::find(side.begin(), side.end(), v) != side.end(); });
-    spots.push_back({{2 * x, 2 * y, 2 * z}, std::move(side)});
+    nodes.push_back({{2 * x, 2 * y, 2 * z}, std::move(side)});
   }
 }
 
-// Stretch by stretch between the planes of voxel faces. On each the line lies inside one voxel, on
-// the face of two or along the edge of four: one of them must be open, and where two stretches
-// meet, open voxels must lead from the one's to the other's.
-bool VoxelOracle::sees(const Spot& from, const Spot& to) const {
+// Piece by piece between the planes of voxel faces. Each piece lies inside one voxel, on the face
+// of two or along the edge of four: one of them must be open. Where two pieces meet, open voxels
+// must connect those of the one with those of the other.
+bool VoxelOracle::sees(const Node& from, const Node& to) const {
   const HalfPoint3 &a = from.at, &b = to.at;
-  const auto is_of = [](const Spot& spot) {
-    return [&spot](const Voxel& v) {
-      return std::find(spot.side.begin(), spot.side.end(), v) != spot.side.end();
+  const auto is_of = [](const Node& node) {
+    return [&node](const Voxel& v) {
+      return std::find(node.side.begin(), node.side.end(), v) != node.side.end();
     };
   };
   const int64_t d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
@@ -131,7 +132,7 @@ bool VoxelOracle::sees(const Spot& from, const Spot& to) const {
   for (size_t i = 0; i < 3; ++i) {
     next[i] = d[i] > 0 ? 2 * (floor_div(a[i], 2) + 1) : 2 * -(floor_div(-a[i], 2) + 1);
   }
-  // The time of plane p on axis i is (p - a) / d: compared by products.
+  // The parameter of plane p on axis i is (p - a) / d: compared by products.
   const auto earlier = [&](size_t i, size_t j) {
     return std::llabs(next[i] - a[i]) * std::llabs(d[j]) <
            std::llabs(next[j] - a[j]) * std::llabs(d[i]);
@@ -162,10 +163,10 @@ bool VoxelOracle::sees(const Spot& from, const Spot& to) const {
     if (before.empty()) {
       std::erase_if(now, std::not_fn(is_of(from)));
     } else if (!now.empty()) {
-      now = led_on(before, now);
+      now = reachable(before, now);
     }
     if (now.empty()) return false;
-    // On to the next plane, or several at once.
+    // To the next plane, or several at once.
     size_t first = 3;
     for (size_t i = 0; i < 3; ++i) {
       if (d[i] == 0) continue;
@@ -186,7 +187,7 @@ bool VoxelOracle::sees(const Spot& from, const Spot& to) const {
 }
 
 // On a convex edge: of the four voxels around a unit edge that ends here, just one is filled.
-bool VoxelOracle::is_bend(int64_t x, int64_t y, int64_t z) const {
+bool VoxelOracle::is_corner(int64_t x, int64_t y, int64_t z) const {
   const Voxel at{x, y, z};
   for (size_t axis = 0; axis < 3; ++axis) {
     const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -206,13 +207,13 @@ bool VoxelOracle::is_bend(int64_t x, int64_t y, int64_t z) const {
 }
 
 VoxelOracle::Answer VoxelOracle::shortest(const HalfPoint3& from, const HalfPoint3& to,
-                                          double limit, size_t most) const {
-  const auto spot_of = [](const HalfPoint3& p) {
-    return Spot{p, {{floor_div(p[0], 2), floor_div(p[1], 2), floor_div(p[2], 2)}}};
+                                          double limit, size_t max_corners) const {
+  const auto node_of = [](const HalfPoint3& p) {
+    return Node{p, {{floor_div(p[0], 2), floor_div(p[1], 2), floor_div(p[2], 2)}}};
   };
-  if (sees(spot_of(from), spot_of(to))) return {.given_up = false, .length = length(from, to)};
-  std::vector<Spot> points;
-  // Half of the width of the ellipsoid: it is wider than it is longer than the way straight on.
+  if (sees(node_of(from), node_of(to))) return {.given_up = false, .length = length(from, to)};
+  std::vector<Node> points;
+  // Half of the width of the ellipsoid of points on paths within the limit.
   const double straight = length(from, to);
   const double width = std::sqrt(std::max(0.0, limit * limit - straight * straight)) / 2;
   const auto spare = static_cast<int64_t>(width) + 2;
@@ -225,15 +226,15 @@ VoxelOracle::Answer VoxelOracle::shortest(const HalfPoint3& from, const HalfPoin
     for (int64_t y = low[1]; y <= high[1]; ++y) {
       for (int64_t x = low[0]; x <= high[0]; ++x) {
         const HalfPoint3 p{2 * x, 2 * y, 2 * z};
-        if (length(from, p) + length(p, to) <= limit && is_bend(x, y, z))
+        if (length(from, p) + length(p, to) <= limit && is_corner(x, y, z))
           add_sides(x, y, z, points);
       }
     }
   }
-  if (points.size() > most) return {.given_up = true, .length = {}};
-  points.push_back(spot_of(to));
+  if (points.size() > max_corners) return {.given_up = true, .length = {}};
+  points.push_back(node_of(to));
   const size_t goal = points.size() - 1;
-  points.push_back(spot_of(from));
+  points.push_back(node_of(from));
   std::vector<double> best(points.size(), 1e300);
   std::vector<uint8_t> done(points.size(), 0);
   using Entry = std::pair<double, size_t>;

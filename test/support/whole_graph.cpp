@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+// Links tile by tile with the library's TileRegions, components by floods over regions.
 namespace throng::test {
 namespace {
 
@@ -90,7 +91,7 @@ WholeGraph whole_graph(const World& of_world) {
   const size_t classes = world.summary.classes.size();
   WholeGraph graph;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> links;
-  std::vector<std::map<uint32_t, uint32_t>> cells(classes);  // per class: of a region
+  std::vector<std::map<uint32_t, uint32_t>> cells(classes);  // per class: cells of a region
   const auto add = [&](const std::vector<RegionLink>& found, uint32_t a, uint32_t b) {
     for (const RegionLink& link : found) {
       const uint32_t from = link.a + a, to = link.b + b;

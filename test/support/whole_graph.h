@@ -8,8 +8,8 @@
 #include "graph/tile_regions.h"
 #include "throng/world.h"
 
-/// The graph of a world made at once, tile by tile, as if it had no zones: the oracle of the two
-/// passes over zones and of their files.
+/// The graph of a whole world, made tile by tile without zones: the oracle of the two passes over
+/// zones and of their files.
 namespace throng::test {
 
 struct WholeGraph {
@@ -20,7 +20,7 @@ struct WholeGraph {
 
   std::vector<Region> regions;                     // in order of levels
   std::vector<RegionLink> links;                   // a < b, by a, then b
-  std::vector<std::vector<int64_t>> component;     // per class and region; -1: it has no part there
+  std::vector<std::vector<int64_t>> component;     // per class and region; -1: illegal there
   std::vector<std::vector<Component>> components;  // per class, the largest first
 };
 

@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 
+// Scenes from quads, boxes and random triangles.
 namespace throng::worlds {
 namespace {
 
@@ -33,7 +34,7 @@ Scene two_floors() {
   Scene scene;
   add_floor(scene, 0, 0, 10, 6, 0);
   scene.add_box({5, 2.8, 0}, {10, 3, 6});
-  for (int i = 0; i + 1 < kSteps; ++i) {  // The last rise is the deck's own edge.
+  for (int i = 0; i + 1 < kSteps; ++i) {  // The last riser is the deck's edge.
     const double x = 5 - (kSteps - 1 - i) * kRun;
     scene.add_box({x, 0, 0}, {x + kRun, millimetres((i + 1) * kRise), 2});
   }

@@ -7,17 +7,17 @@
 #include "throng/scene.h"
 
 /// Tiny hand-made scenes that tests and benchmarks of every stage share. Metres, Y up, floors begin
-/// at (0, 0, 0) and reach towards +x and +z. All of them are the same on every machine.
+/// at (0, 0, 0) and extend towards +x and +z. They are the same on every machine.
 namespace throng::worlds {
 
 /// One square floor at height 0.
 Scene flat(double side);
 
 /// A floor of 10 x 6 at height 0 and a deck over x in [5, 10] at height 3 (underside 2.8), joined
-/// by a flight of 18 solid steps along the z = 0 side, open to the deck at the top.
+/// by a flight of 18 solid risers along the z = 0 side, open to the deck at the top.
 Scene two_floors();
 
-/// A floor (x in [0, 3]), `count` solid steps towards +x, and a landing of 3 m. All 3 m wide.
+/// A floor (x in [0, 3]), `count` solid risers towards +x, and a landing of 3 m. All 3 m wide.
 Scene steps(double rise, double run, int32_t count);
 
 /// A floor (x in [0, 3]), a slope towards +x of horizontal length `length`, a landing of 3 m. All 3

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+// Points of the world in the picture before and after each move of the eye.
 namespace throng {
 namespace {
 
@@ -17,7 +18,7 @@ CameraRig some_rig() {
   return rig;
 }
 
-// Where a point is in the picture. [px]
+// The pixel of a point. [px]
 std::pair<double, double> pixel_of(const CameraRig& rig, Vec3d p) {
   const EyeCamera camera = rig.camera(kWidth / kHeight);
   const CameraAxes axes = camera_axes(camera);
@@ -27,7 +28,7 @@ std::pair<double, double> pixel_of(const CameraRig& rig, Vec3d p) {
           0.5 * kHeight - dot(p - camera.eye, axes.up) / deep * scale};
 }
 
-TEST(CameraRig, LooksWhereItIsTold) {
+TEST(CameraRig, LooksAtTheGivenTarget) {
   const CameraRig rig = some_rig();
   EXPECT_NEAR(length(rig.eye() - Vec3d{10, 8, 20}), 0, 1e-9);
   const auto [x, y] = pixel_of(rig, {1, 2, 3});
@@ -81,7 +82,7 @@ TEST(CameraRig, OrbitKeepsTheTargetAndTurningTheHeadTheEye) {
   const Vec3d eye = rig.eye();
   rig.turn_head(-60, 20, kHeight);
   EXPECT_NEAR(length(rig.eye() - eye), 0, 1e-9);
-  rig.orbit(0, 1e6, kHeight);  // Over the top it does not go.
+  rig.orbit(0, 1e6, kHeight);  // Stops at the top.
   EXPECT_LT(rig.pitch, 1.56);
 }
 
@@ -92,7 +93,7 @@ TEST(CameraRig, GoesOverTheGroundWhereItLooks) {
   EXPECT_NEAR(rig.target.z, -2, 1e-9);
   EXPECT_NEAR(rig.target.x, 0, 1e-9);
   rig.go(3, 0, 0);
-  EXPECT_NEAR(rig.target.x, 3, 1e-9);  // To the right of one who looks along -Z.
+  EXPECT_NEAR(rig.target.x, 3, 1e-9);  // Right of the direction -Z.
 }
 
 TEST(CameraRig, ShowsAllOfABoxFromAnySide) {

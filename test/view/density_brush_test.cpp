@@ -9,6 +9,7 @@
 
 #include "core/random.h"
 
+// Pixels of painted maps, and how often points are drawn.
 namespace throng {
 namespace {
 
@@ -18,7 +19,7 @@ TEST(DensityBrush, PaintsADiscOfPixelsAndWipesItAway) {
   std::vector<DensityMap> maps;
   DensityMap& map = map_at(maps, kBounds, 3);
   EXPECT_TRUE(paint(map, {5, 3, 6}, 3, 200));
-  EXPECT_FALSE(paint(map, {5, 3, 6}, 3, 200));  // Nothing new.
+  EXPECT_FALSE(paint(map, {5, 3, 6}, 3, 200));  // No change.
   size_t painted = 0;
   for (const uint8_t weight : map.weights) painted += weight == 200 ? 1 : 0;
   const double area = (map.x1 - map.x0) / map.width * (map.z1 - map.z0) / map.height;
@@ -87,7 +88,7 @@ TEST(DensityBrush, PlacesAreDrawnAsOftenAsTheirWeightsSay) {
   constexpr int kDraws = 80000;
   for (uint64_t n = 0; n < kDraws; ++n) {
     const auto p = places.draw(random_unit(3, 0, n), random_unit(3, 1, n), random_unit(3, 2, n));
-    EXPECT_EQ(p.reach, 1);
+    EXPECT_EQ(p.vertical_tolerance, 1);
     ++seen[{static_cast<int>(p.at.x), static_cast<int>(p.at.y), static_cast<int>(p.at.z)}];
   }
   ASSERT_EQ(seen.size(), 3U);

@@ -12,6 +12,7 @@
 #include "rays.h"
 #include "throng/builtin_worlds.h"
 
+// EyeSight against rays: what a ray reaches must not be hidden.
 namespace throng {
 namespace {
 
@@ -19,14 +20,14 @@ double drawn(uint64_t stream, uint64_t k, double low, double high) {
   return low + (high - low) * random_unit(77, stream, k);
 }
 
-// By rays against triangles: does nothing lie between, but what is too near to be drawn?
+// By rays against triangles: is the line free of triangles beyond the near plane?
 bool is_free(const Scene& scene, Vec3d eye, Vec3d point, double nearest) {
   const Vec3d ray = point - eye;
   const double far = length(ray);
   return std::none_of(
       scene.triangles.begin(), scene.triangles.end(), [&](const std::array<uint32_t, 3>& t) {
         const auto at = meet(scene, t, eye, ray);
-        // A hair wider than the triangle: the oracle's rays must not slip through its seams.
+        // Slightly wider than the triangle: the oracle's rays must not slip through seams.
         return at && at->u >= -1e-9 && at->v >= -1e-9 && at->u + at->v <= 1 + 1e-9 &&
                at->along * far > nearest && at->along < 1;
       });
@@ -41,7 +42,7 @@ struct Count {
   size_t hidden = 0, truly = 0, wrong = 0;
 };
 
-// Random eyes and boxes of people's and tiles' sizes.
+// Random eyes, and boxes of the sizes of avatars and tiles.
 Count compare(const Scene& scene, uint64_t seed, int32_t eyes, int32_t boxes, int32_t pixels) {
   Count out;
   const Box3d all = scene.bounds();
@@ -110,9 +111,9 @@ TEST(EyeSight, SeesThroughSlitsThinnerThanAPixelAndOverWhatIsCut) {
   sight.look_from(place, 100);
   EXPECT_TRUE(sight.sees(behind));
   EXPECT_FALSE(sight.sees(beside));
-  EXPECT_TRUE(sight.sees({{4, 0, 8}, {5, 2, 9}}));       // Before the wall.
-  EXPECT_TRUE(sight.sees({{4, 0, 20}, {5, 20, 21}}));    // It looks over it.
-  EXPECT_TRUE(sight.sees({{-1, 0, -21}, {1, 2, -20}}));  // At one's back.
+  EXPECT_TRUE(sight.sees({{4, 0, 8}, {5, 2, 9}}));       // In front of the wall.
+  EXPECT_TRUE(sight.sees({{4, 0, 20}, {5, 20, 21}}));    // Visible over the wall.
+  EXPECT_TRUE(sight.sees({{-1, 0, -21}, {1, 2, -20}}));  // Behind the eye.
   place.cut = 7;  // The walls are higher: they are not drawn.
   sight.look_from(place, 100);
   EXPECT_TRUE(sight.sees(beside));

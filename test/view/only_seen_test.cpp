@@ -17,7 +17,7 @@
 #include "view/crowd_player.h"
 #include "view/view_settings.h"
 
-// CrowdStart::only_seen, by the moments that are drawn and by the viewer's pictures.
+// CrowdStart::only_seen, by the frames of the timeline and by the viewer's pictures.
 namespace throng {
 namespace {
 
@@ -53,7 +53,7 @@ bool is_free(Vec3d eye, Vec3d point) {
                       });
 }
 
-// Is any of some points of a body in sight?
+// Is any of 40 random points of a body in sight?
 bool is_body_in_sight(Vec3d eye, Vec3d feet, uint64_t salt) {
   for (uint64_t k = 0; k < 40; ++k) {
     const double turn = 6.283185307 * random_unit(91, salt, 3 * k);
@@ -75,7 +75,7 @@ CrowdStart start_with(uint32_t avatars) {
   return start;
 }
 
-// From moment to moment, as they are shown, with an eye that goes at(step).
+// Frame by frame, with an eye at at(step).
 template <class At>
 void watch(At at, int32_t steps) {
   Context context;
@@ -85,33 +85,32 @@ void watch(At at, int32_t steps) {
                                 occluders_of(town().scene, origin), context);
   ASSERT_TRUE(made) << made.error().message;
   CrowdPlayer& player = **made;
-  EXPECT_EQ(player.next(), nullptr);  // It waits to be told from where one looks.
-  using Who = std::pair<uint64_t, uint32_t>;
+  EXPECT_EQ(player.next(), nullptr);  // It waits for look_from().
+  using Id = std::pair<uint64_t, uint32_t>;
   std::shared_ptr<const TimelineFrame> last;
   uint64_t came = 0, went = 0, in_sight = 0, seen = 0, counted = 0;
-  size_t least = kAll, most = 0, largest = 0;
+  size_t min_seen = kAll, max_seen = 0, largest = 0;
   for (int32_t step = 0; step <= steps; ++step) {
     const Vec3d eye = at(step);
     player.look_from({.eye = eye});
     const auto now = player.next();
     ASSERT_NE(now, nullptr);
     ASSERT_EQ(now->fault, "");
-    ASSERT_EQ(now->lives.size(), now->size());
-    const auto people = [](const TimelineFrame& m) {
-      std::set<Who> out;
-      for (size_t i = 0; i < m.size(); ++i) out.insert({m.ids[i], m.lives[i]});
+    ASSERT_EQ(now->generations.size(), now->size());
+    const auto ids_of = [](const TimelineFrame& m) {
+      std::set<Id> out;
+      for (size_t i = 0; i < m.size(); ++i) out.insert({m.ids[i], m.generations[i]});
       return out;
     };
-    const auto count_seen = [&](const TimelineFrame& m, const std::set<Who>& others,
-                                uint64_t& all) {
+    const auto count_seen = [&](const TimelineFrame& m, const std::set<Id>& others, uint64_t& all) {
       for (size_t i = 0; i < m.size(); ++i) {
-        if (others.count({m.ids[i], m.lives[i]}) > 0) continue;
+        if (others.count({m.ids[i], m.generations[i]}) > 0) continue;
         const Vec3d feet = origin + Vec3d{m.x[i], m.y[i], m.z[i]};
         in_sight += is_body_in_sight(eye, feet, all++) ? 1 : 0;
       }
     };
     if (last) {
-      const std::set<Who> before = people(*last), after = people(*now);
+      const std::set<Id> before = ids_of(*last), after = ids_of(*now);
       count_seen(*now, before, came);
       count_seen(*last, after, went);
     }
@@ -121,8 +120,8 @@ void watch(At at, int32_t steps) {
         const Vec3d feet = origin + Vec3d{now->x[i], now->y[i], now->z[i]};
         here += is_free(eye, feet + Vec3d{0, 1, 0}) ? 1 : 0;
       }
-      least = std::min(least, here);
-      most = std::max(most, here);
+      min_seen = std::min(min_seen, here);
+      max_seen = std::max(max_seen, here);
       seen += here;
       ++counted;
     }
@@ -132,26 +131,26 @@ void watch(At at, int32_t steps) {
   std::printf(
       "%.1f in sight in the mean, %zu to %zu; %llu came, %llu went, %llu in sight; at most "
       "%zu of %u simulated\n",
-      static_cast<double>(seen) / static_cast<double>(counted), least, most,
+      static_cast<double>(seen) / static_cast<double>(counted), min_seen, max_seen,
       static_cast<unsigned long long>(came), static_cast<unsigned long long>(went),
       static_cast<unsigned long long>(in_sight), largest, kAll);
   EXPECT_GT(came, 30U);
   EXPECT_GT(went, 30U);
   EXPECT_EQ(in_sight, 0U);
-  EXPECT_GT(least * counted * 2, seen);  // It does not drain, and does not crowd.
-  EXPECT_LT(most * counted, 2 * seen);
-  EXPECT_LT(largest, kAll * 19 / 20);  // The town is hardly larger than its sight.
+  EXPECT_GT(min_seen * counted * 2, seen);  // The density stays about the same.
+  EXPECT_LT(max_seen * counted, 2 * seen);
+  EXPECT_LT(largest, kAll * 19 / 20);  // The town is hardly larger than the sight.
 }
 
-TEST(OnlySeen, AStreetStaysPopulatedAndNobodyComesOrGoesInSight) {
+TEST(OnlySeen, AStreetStaysPopulatedAndNoAvatarComesOrGoesInSight) {
   watch([](int32_t) { return Vec3d{35, 1.7, 65}; }, 600);
 }
 
-TEST(OnlySeen, SoItDoesForAnEyeThatWalks) {
+TEST(OnlySeen, AStreetStaysPopulatedForAnEyeThatMoves) {
   watch(
       [](int32_t step) {
-        const double way = std::fmod(step * 0.28, 60.0);
-        return Vec3d{35, 1.7, 65 + (way < 30 ? way : 60 - way)};
+        const double along = std::fmod(step * 0.28, 60.0);
+        return Vec3d{35, 1.7, 65 + (along < 30 ? along : 60 - along)};
       },
       600);
 }
@@ -181,7 +180,7 @@ Viewer made_viewer(const std::string& settings) {
   return *std::move(viewer);
 }
 
-TEST(OnlySeenViewer, TellsTheCrowdWhereItLooksFrom) {
+TEST(OnlySeenViewer, SendsTheEyeToTheCrowd) {
   const auto film = [](double from, double turn) {
     Viewer viewer = made_viewer("");
     viewer.look_at({35, 1.7, from}, {35, 1.7, 95});
@@ -202,7 +201,7 @@ TEST(OnlySeenViewer, TellsTheCrowdWhereItLooksFrom) {
     return all;
   };
   const auto once = film(65, 0.3);
-  EXPECT_EQ(film(65, 0.3), once);  // However fast the crowd's thread is.
+  EXPECT_EQ(film(65, 0.3), once);  // Whatever the speed of the crowd's thread.
   EXPECT_NE(film(65, 0), once);
 }
 
@@ -224,7 +223,7 @@ TEST(OnlySeenViewer, KeepsItAsASetting) {
   EXPECT_TRUE(kept->coarse_far);
 }
 
-TEST(OnlySeen, FarOnesAreCoarserIfThatIsAsked) {
+TEST(OnlySeen, FarAvatarsAreInLowDetailIfSet) {
   Context context;
   for (const bool coarse : {false, true}) {
     CrowdStart start;

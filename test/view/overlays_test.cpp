@@ -15,6 +15,7 @@
 #include "throng_view/viewer.h"
 #include "view/density_brush.h"
 
+// Golden pictures of all overlays, and marks against the world that they show.
 namespace throng {
 namespace {
 
@@ -46,7 +47,7 @@ const Baked& hall() {
   return baked;
 }
 
-// Weights are only there for the overlay that shows them: goals would lie elsewhere.
+// Weights are set only for the overlay that shows them: they would change the goals.
 Viewer made_viewer(const std::string& overlay) {
   Result<Drawing> drawing = Drawing::create();
   EXPECT_TRUE(drawing) << drawing.error().message;
@@ -123,8 +124,8 @@ double area_of(const Marks& marks) {
   return area;
 }
 
-TEST(OverlayMarks, FieldsAreColouredByTheStateThatTheyAreIn) {
-  // Two who walk into each other, one far off, one on another storey.
+TEST(OverlayMarks, FieldsAreColouredByTheStateOfTheAvatar) {
+  // Two that walk towards each other, one far off, one on another storey.
   TimelineFrame crowd;
   crowd.resize(4);
   crowd.ids = {1, 2, 3, 4};
@@ -132,7 +133,7 @@ TEST(OverlayMarks, FieldsAreColouredByTheStateThatTheyAreIn) {
   crowd.y = {0, 0, 0, 3};
   crowd.z = {0, 0, 0, 0};
   crowd.heading = {0.25F, 0.75F, 0, 0};
-  crowd.pace = {1, 1, 1, 0};
+  crowd.speed = {1, 1, 1, 0};
   const Marks all = field_marks(crowd, 4, {}, {0.25});
   const size_t each = 3 * 32 * 2;
   ASSERT_EQ(all.lines.size(), 4 * each);
@@ -140,9 +141,9 @@ TEST(OverlayMarks, FieldsAreColouredByTheStateThatTheyAreIn) {
   const auto state_at = [&](size_t n) { return rgb(all.lines[n * each].colour); };
   EXPECT_EQ(state_at(0), state_at(1));  // Critical, from both sides.
   EXPECT_EQ(state_at(0), rgb(rgba(250, 130, 40)));
-  EXPECT_EQ(state_at(2), rgb(rgba(90, 200, 110)));  // The storey above: nearer than who is far.
+  EXPECT_EQ(state_at(2), rgb(rgba(90, 200, 110)));  // The storey above: nearer than the far one.
   EXPECT_EQ(state_at(3), rgb(rgba(90, 200, 110)));
-  EXPECT_EQ(field_marks(crowd, 0, {}, {0.25}).lines.size(), 3 * each);  // Without who is far.
+  EXPECT_EQ(field_marks(crowd, 0, {}, {0.25}).lines.size(), 3 * each);  // Without the far one.
   crowd.x[1] = 0.45F;
   EXPECT_EQ(rgb(field_marks(crowd, 0, {}, {0.25}).lines[0].colour), rgb(rgba(230, 40, 40)));
 }
@@ -187,7 +188,7 @@ TEST(OverlayMarks, NeighboursAreThoseInSightOnTheSameStorey) {
   EXPECT_EQ(marks.lines.size(), 2 * (48U + 2U));  // The circle, and two neighbours.
 }
 
-TEST(OverlayMarks, WhatAWorldDoesNotHaveIsSaid) {
+TEST(OverlayMarks, MissingPartsOfAWorldAreReported) {
   Result<Drawing> drawing = Drawing::create();
   ASSERT_TRUE(drawing);
   Result<Viewer> viewer =

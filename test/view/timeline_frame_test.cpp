@@ -9,23 +9,24 @@
 
 #include "throng/lean.h"
 
+// Hand-made frames of few avatars.
 namespace throng {
 namespace {
 
-struct Someone {
+struct Body {
   uint64_t id;
   float x, z, heading;
 };
 
-TimelineFrame moment_of(double time, const std::vector<Someone>& people) {
+TimelineFrame frame_of(double time, const std::vector<Body>& bodies) {
   TimelineFrame m;
   m.time = time;
-  m.resize(people.size());
-  for (size_t i = 0; i < people.size(); ++i) {
-    m.ids[i] = people[i].id;
-    m.x[i] = people[i].x;
-    m.z[i] = people[i].z;
-    m.heading[i] = people[i].heading;
+  m.resize(bodies.size());
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    m.ids[i] = bodies[i].id;
+    m.x[i] = bodies[i].x;
+    m.z[i] = bodies[i].z;
+    m.heading[i] = bodies[i].heading;
   }
   return m;
 }
@@ -40,34 +41,34 @@ Figures one_figure() {
   return figures;
 }
 
-TEST(TimelineFrame, FollowAddsUpWhatEachHasWalkedThoughOthersComeAndGo) {
-  TimelineFrame a = moment_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
+TEST(TimelineFrame, FollowSumsTheDistanceOfEachAvatarWhileOthersComeAndGo) {
+  TimelineFrame a = frame_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
   follow({}, a);
-  TimelineFrame b = moment_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
+  TimelineFrame b = frame_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
   follow(a, b);
   EXPECT_NEAR(b.walked[0] - a.walked[0], 5, 1e-5);
-  EXPECT_NEAR(b.pace[0], 5 * (1 - std::exp(-1 / 0.4)), 1e-4);
-  EXPECT_EQ(b.pace[1], 0);
-  TimelineFrame back = moment_of(0, {{3, 0, 0, 0.25F}});
-  follow(b, back);  // Backwards: feet go back the way they came.
+  EXPECT_NEAR(b.speed[0], 5 * (1 - std::exp(-1 / 0.4)), 1e-4);
+  EXPECT_EQ(b.speed[1], 0);
+  TimelineFrame back = frame_of(0, {{3, 0, 0, 0.25F}});
+  follow(b, back);  // Backwards in time: the distance shrinks again.
   EXPECT_NEAR(back.walked[0], a.walked[0], 1e-5);
 }
 
-TEST(TimelineFrame, FiguresTurnTheShortWayAndNotAtOnce) {
-  TimelineFrame a = moment_of(0, {{1, 0, 0, 0.95F}});
-  TimelineFrame b = moment_of(0.1, {{1, 0.2F, 0, 0.45F}});
-  follow(a, b);  // Half a turn is asked for; 0.9 turns a second are allowed.
+TEST(TimelineFrame, FiguresTurnByTheSmallerAngleAndNotAtOnce) {
+  TimelineFrame a = frame_of(0, {{1, 0, 0, 0.95F}});
+  TimelineFrame b = frame_of(0.1, {{1, 0.2F, 0, 0.45F}});
+  follow(a, b);  // Half a turn is required; 0.9 turns a second are allowed.
   const double turned = std::abs(std::remainder(b.heading[0] - 0.95, 1.0));
   EXPECT_NEAR(turned, 0.09, 1e-5);
-  TimelineFrame c = moment_of(0.2, {{1, 0.4F, 0, 0.02F}});
+  TimelineFrame c = frame_of(0.2, {{1, 0.4F, 0, 0.02F}});
   a.heading[0] = 0.97F;
   follow(a, c);  // Over zero: 0.05 turns, within the limit of 0.18.
   EXPECT_NEAR(c.heading[0], 0.02, 1e-5);
 }
 
-TEST(TimelineFrame, WhoStandsKeepsHisHeading) {
-  TimelineFrame a = moment_of(0, {{1, 0, 0, 0.4F}});
-  TimelineFrame b = moment_of(0.1, {{1, 0, 0, 0}});
+TEST(TimelineFrame, AStandingAvatarKeepsItsHeading) {
+  TimelineFrame a = frame_of(0, {{1, 0, 0, 0.4F}});
+  TimelineFrame b = frame_of(0.1, {{1, 0, 0, 0}});
   follow(a, b);
   EXPECT_NEAR(b.heading[0], 0.4, 1e-6);
 }
@@ -82,7 +83,7 @@ Vec3d looks(const TimelineFrame& m, size_t i) {
   return leaned({std::sin(angle), 0, std::cos(angle)}, m.up(i));
 }
 
-TEST(TimelineFrame, WhoClimbsLeansAndLooksWhereHeGoes) {
+TEST(TimelineFrame, AClimberLeansAndFacesItsMove) {
   const double r = std::sqrt(0.5);
   TimelineFrame a, b;
   a.time = 1;
@@ -102,7 +103,7 @@ TEST(TimelineFrame, WhoClimbsLeansAndLooksWhereHeGoes) {
   crowd.blend(a, b, 0.5, one_figure(), 1e9);
   EXPECT_NEAR(length(crowd.now().ups[0] - Vec3d{r, r, 0}), 0, 1e-6);
   EXPECT_NEAR(length(looks(crowd.now(), 0) - Vec3d{-r, r, 0}), 0, 1e-5);
-  ASSERT_EQ(crowd.crowds().size(), 2U);  // Who leans, and who does not.
+  ASSERT_EQ(crowd.crowds().size(), 2U);  // One leans, one does not.
   size_t leaning = 0;
   for (const DrawnCrowd& drawn : crowd.crowds()) {
     EXPECT_TRUE(drawn.ups.empty() || drawn.ups.size() == drawn.avatars.x.size());
@@ -113,8 +114,8 @@ TEST(TimelineFrame, WhoClimbsLeansAndLooksWhereHeGoes) {
   EXPECT_TRUE(crowd.now().ups.empty());
 }
 
-// Over a ceiling, where axes are straight down but for a little, to all sides.
-TEST(TimelineFrame, WhoHangsFromAnUnevenCeilingDoesNotSpin) {
+// Along a ceiling, with axes that tilt a little to all sides.
+TEST(TimelineFrame, AnAvatarUnderAnUnevenCeilingDoesNotSpin) {
   TimelineFrame before;
   for (int step = 0; step < 40; ++step) {
     const double turn = 2.1 * step, lean = 0.05;
@@ -125,15 +126,15 @@ TEST(TimelineFrame, WhoHangsFromAnUnevenCeilingDoesNotSpin) {
     now.time = 0.1 * step;
     put_states({climber({0, 0, 0.1 * step}, up, goes)}, {}, now);
     follow(before, now);
-    EXPECT_TRUE(step < 7 || dot(looks(now, 0), goes) > 0.99) << step;  // (once he has turned)
+    EXPECT_TRUE(step < 7 || dot(looks(now, 0), goes) > 0.99) << step;  // (once it has turned)
     before = now;
   }
 }
 
-TEST(TimelineFrame, BlendsBetweenTwoAndShowsWhoCame) {
-  TimelineFrame a = moment_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
-  TimelineFrame b = moment_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
-  b.pace = {1.2F, 0};
+TEST(TimelineFrame, BlendsBetweenTwoFramesAndShowsNewAvatars) {
+  TimelineFrame a = frame_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
+  TimelineFrame b = frame_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
+  b.speed = {1.2F, 0};
   BlendedCrowd crowd;
   crowd.blend(a, b, 0.25, one_figure(), 1e9);
   const TimelineFrame& now = crowd.now();
@@ -151,8 +152,8 @@ TEST(TimelineFrame, BlendsBetweenTwoAndShowsWhoCame) {
   EXPECT_EQ(crowd.crowds()[1].clip, 1U);
 }
 
-TEST(TimelineFrame, LeavesOutWhoIsAboveTheCutOrLooksHimself) {
-  TimelineFrame a = moment_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
+TEST(TimelineFrame, DoesNotDrawAvatarsAboveTheCutOrWithTheEye) {
+  TimelineFrame a = frame_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
   a.y = {0, 6, 0};
   BlendedCrowd crowd;
   crowd.hide(3);

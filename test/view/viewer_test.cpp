@@ -15,7 +15,7 @@
 #include "view/crowd_player.h"
 #include "view/density_brush.h"
 
-// The viewer as a user has it, but for the window: events in, pictures out.
+// The viewer without a window: events in, pictures out.
 namespace throng {
 namespace {
 
@@ -173,13 +173,13 @@ TEST(Viewer, KeysAndMouseMoveTheEyeAsInOtherPrograms) {
   hold(viewer, key_of('W'), false);
   const Vec3d after = viewer.status().camera.target;
   EXPECT_GT(length(after - before), 0.5);
-  EXPECT_NEAR(after.y, before.y, 1e-9);  // Over the ground.
+  EXPECT_NEAR(after.y, before.y, 1e-9);  // At the same height.
   viewer.handle({.kind = ViewEventKind::kLeave});
   (void)picture(viewer, 0.8);
   EXPECT_NEAR(length(viewer.status().camera.target - after), 0, 1e-9);
 }
 
-// As a fast hand and a slow machine give it: all between two frames, and no move told of.
+// All events of a drag between two frames, without a move, as from a fast hand on a slow machine.
 TEST(Viewer, ADragWithinOneFrameCounts) {
   Viewer viewer = made_viewer();
   viewer.load("two floors", stage_with(5));
@@ -290,7 +290,7 @@ TEST(Viewer, RunsAScenarioByItsOwnClockWithItsObstacles) {
   viewer.load("two floors", stage_with(3));
   viewer.wait_until_loaded();
   viewer.look_at({11, 6, 3.1}, {11, 0, 3});
-  EXPECT_LT(warm(picture(viewer, 0)), 200U);  // Gone with its scenario.
+  EXPECT_LT(warm(picture(viewer, 0)), 200U);  // The crate left with its scenario.
 }
 
 size_t pink(const Image& image) {
@@ -362,7 +362,7 @@ TEST(CrowdPlayer, PeopleGoWhereItIsPainted) {
   (*player)->set_density(maps);
   const size_t there = near(*after(300), 3, 15, 4);
   EXPECT_LT(before, 10U);
-  EXPECT_GT(there, 14U);  // The others are up where no way leads down, or yet on it.
+  EXPECT_GT(there, 14U);  // The others are up where no path leads down, or on their paths.
   (*player)->set_density({});
   EXPECT_LT(near(*after(300), 3, 15, 4), 10U);
 }
@@ -373,7 +373,7 @@ TEST(Viewer, AScenarioThatCannotRunSaysWhy) {
   Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
   viewer.load("scenario", stage_of(scenario));
   viewer.wait_until_loaded();
-  EXPECT_NE(viewer.status().error.find("source 'all': nobody"), std::string::npos)
+  EXPECT_NE(viewer.status().error.find("source 'all': no"), std::string::npos)
       << viewer.status().error;
 }
 
@@ -417,16 +417,16 @@ TEST(Viewer, StoreysArePeeledOffFromAbove) {
   EXPECT_LT(pixels_that_differ(whole, again), 20U);
 }
 
-TEST(Viewer, AClickPicksWhoIsThereAndEscapeLetsGo) {
+TEST(Viewer, AClickPicksTheAvatarThereAndEscapeReleasesIt) {
   Viewer viewer = made_viewer({.settings = R"({"shadows": false})", .font = {}, .panel = false});
-  (void)picture(viewer, 0);  // So that its shape is known when the eye goes to see all.
+  (void)picture(viewer, 0);  // Sets the picture's shape, which the first view depends on.
   viewer.load("two floors", stage_with(1));
   viewer.wait_until_loaded();
   viewer.play_for(0.1);
   press(viewer, Key::kSpace);
-  // One avatar: where it differs from the empty world, it is.
+  // One avatar: the pixels that differ from the empty world.
   const Image with = picture(viewer, 0);
-  viewer.load("nobody", stage_with(0));
+  viewer.load("empty", stage_with(0));
   viewer.wait_until_loaded();
   viewer.play_for(0.1);
   const Image without = picture(viewer, 0.1);
@@ -455,7 +455,7 @@ TEST(Viewer, AClickPicksWhoIsThereAndEscapeLetsGo) {
   EXPECT_EQ(viewer.status().picked, -1);
 }
 
-TEST(Viewer, OneWalksOneselfByTheSameRules) {
+TEST(Viewer, AControlledAvatarFollowsTheSameRules) {
   Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
   viewer.load("two floors", stage_with(30));
   viewer.wait_until_loaded();
@@ -465,7 +465,7 @@ TEST(Viewer, OneWalksOneselfByTheSameRules) {
   press(viewer, key_of('3'));
   viewer.play_for(0.3);
   (void)picture(viewer, 0.1);
-  ASSERT_GE(viewer.status().driven, 0);
+  ASSERT_GE(viewer.status().controlled, 0);
   EXPECT_EQ(viewer.status().avatars, 31U);
   viewer.play_for(0.2);
   (void)picture(viewer, 0.2);
@@ -483,12 +483,12 @@ TEST(Viewer, OneWalksOneselfByTheSameRules) {
   press(viewer, Key::kEscape);
   viewer.play_for(0.5);
   (void)picture(viewer, 0.6);
-  EXPECT_EQ(viewer.status().driven, -1);
+  EXPECT_EQ(viewer.status().controlled, -1);
   EXPECT_EQ(viewer.status().avatars, 30U);
   EXPECT_FALSE(viewer.take_requests().grab_mouse);
 }
 
-TEST(Viewer, WishesAreAskedForByKeys) {
+TEST(Viewer, KeysMakeRequests) {
   Viewer viewer = made_viewer();
   press(viewer, Key::kF11);
   press(viewer, Key::kF12);
@@ -550,7 +550,7 @@ TEST(Viewer, SettingsAreKeptAndBadOnesRefused) {
   EXPECT_NE(odd.settings().find("\"speed\": 1.0"), std::string::npos);
 }
 
-TEST(Viewer, ALoadThatFailsSaysWhyAndOneThatIsReplacedMakesWay) {
+TEST(Viewer, ALoadThatFailsSaysWhyAndOneThatIsReplacedIsCancelled) {
   Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
   viewer.load("bad", [](StageParts&, Context&) -> Result<void> {
     return Error{Errc::kBadFile, "bad: has no triangles"};

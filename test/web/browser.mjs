@@ -5,15 +5,15 @@ import { createReadStream, existsSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import path from 'node:path';
 
-// Where npm has put its packages: not beside this file.
+// npm's packages are not beside this file.
 const { chromium } = await import(path.resolve(process.env.NODE_MODULES ?? 'build/web-deps/npm/node_modules', 'playwright-core/index.mjs'));
 
 const kTypes = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm' };
-// A processor draws: the same on every machine.
+// A software renderer: the same on every machine.
 const kSoftware = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 const kQuiet = ['--no-sandbox', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
 
-// Serves files of several folders, the first that has one.
+// Serves the files of several folders, from the first that has one.
 export async function serve(...folders) {
   const server = createServer((request, answer) => {
     const name = decodeURIComponent(new URL(request.url, 'http://host').pathname).replace(/\/$/, '/index.html');
@@ -33,7 +33,7 @@ export async function launch(extra = kSoftware) {
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true, args: [...kQuiet, ...extra] });
 }
 
-// A page whose complaints are kept; small, for a processor draws it.
+// A page that records its complaints; small, because a software renderer draws it.
 export async function new_page(browser, options) {
   const context = await browser.newContext({ viewport: { width: 640, height: 400 }, ...options });
   const page = await context.newPage();

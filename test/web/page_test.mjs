@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// node page_test.mjs SITE FOLDER: drives the page as a visitor does. FOLDER holds walk.replay, garage.throng and
+// node page_test.mjs SITE FOLDER: uses the page as a visitor does. FOLDER holds walk.replay, garage.throng and
 // garage.throng.tar (scripts/test_web makes them); pictures of what went wrong go to $PICTURES.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
@@ -12,7 +12,7 @@ import { changed_pixels } from './pixels.mjs';
 const [site, folder] = process.argv.slice(2);
 const server = await serve(site, folder);
 const browser = await launch();
-// The garage's upper deck from near: dozens of people large enough to count.
+// The garage's upper deck from near: dozens of avatars large enough to count.
 const kNear = 'camera=52,14,46,30,8.5,20';
 
 const kHall = `seconds = 60
@@ -45,10 +45,10 @@ async function wait_for(page, what, is_so, ...given) {
   }
 }
 
-const walking = (page, least = 1) => wait_for(page, 'people who walk', ([n]) => {
+const walking = (page, min_avatars = 1) => wait_for(page, 'avatars that walk', ([n]) => {
   const s = window.throng.status();
   return s && !s.loading && s.avatars >= n && s.time > 0.3;
-}, least);
+}, min_avatars);
 
 async function frames(page, count) {
   const until = (await page.evaluate(() => window.throng.frames())) + count;
@@ -246,8 +246,8 @@ for (const [name, test] of Object.entries(tests)) {
   const page = await new_page(browser);
   const started = Date.now();
   try {
-    const told = await test(page);
-    console.log(`ok    ${name} (${((Date.now() - started) / 1000).toFixed(1)} s${told ? `; ${told}` : ''})`);
+    const details = await test(page);
+    console.log(`ok    ${name} (${((Date.now() - started) / 1000).toFixed(1)} s${details ? `; ${details}` : ''})`);
   } catch (fault) {
     failed += 1;
     console.log(`FAIL  ${name}: ${fault.message}`);

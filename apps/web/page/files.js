@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// Bytes from the network or a drop, into the viewer's file system.
+// Files from the network or a drop, for the viewer's file system.
 
-// Fetches with progress: tell(done, total), total 0 if the server does not say.
-export async function fetch_bytes(url, tell) {
+// Fetches with progress: on_progress(done, total), total 0 if the server does not state it.
+export async function fetch_bytes(url, on_progress) {
   let response;
   try {
     response = await fetch(url);
@@ -11,7 +11,7 @@ export async function fetch_bytes(url, tell) {
     throw new Error(`${url} cannot be reached; if it lies on another server, that one must allow it (CORS)`);
   }
   if (!response.ok) throw new Error(`${url}: the server answers ${response.status}; check the address`);
-  // Of compressed answers the length is not that of what comes out.
+  // The length of a compressed answer is not that of its content.
   const total = response.headers.get('content-encoding') ? 0 : Number(response.headers.get('content-length')) || 0;
   const pieces = [];
   let done = 0;
@@ -21,7 +21,7 @@ export async function fetch_bytes(url, tell) {
     if (piece.done) break;
     pieces.push(piece.value);
     done += piece.value.length;
-    tell(done, total);
+    on_progress(done, total);
   }
   const bytes = new Uint8Array(done);
   let at = 0;
@@ -67,13 +67,13 @@ export async function dropped_files(transfer) {
       for (const inner of some) await take(inner, path + entry.name + '/');
     }
   };
-  // Entries are gone once the event's function waits: first all of them.
+  // Entries are invalid once the event's function waits: get all of them first.
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
   for (const entry of entries) await take(entry, '');
   return files;
 }
 
-// Puts files into a folder of the viewer's and says what was given: a replay, a world, a model.
+// Writes files into a folder of the viewer's file system and returns the paths by kind: replay, world, scenario, model.
 export function store(FS, folder, files) {
   const found = {};
   for (const { name, bytes } of files) {

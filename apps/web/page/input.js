@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// Pointers, wheel, keys and gamepads, as the viewer takes them. A list of calls: a button's change is a
-// frame's last, or the panel would not see one that is over within a frame.
+// Pointers, wheel, keys and gamepads as a list of calls to the viewer. A button's change is the last call of
+// a frame: the panel would miss a click within one frame.
 
 const kNotch = Math.log(1 / 0.85);  // A wheel's notch goes nearer by 15 %.
-// What is left to the browser, whatever the viewer makes of it.
+// Keys that the browser handles, too.
 const kBrowsers = new Set(['F5', 'F11', 'F12']);
 
 export class Input {
@@ -18,7 +18,7 @@ export class Input {
     this.listen();
   }
 
-  // Hands on what has come, up to and including one change of a button.
+  // Makes the calls up to and including one change of a button.
   flush() {
     while (this.waiting.length > 0) {
       const call = this.waiting.shift();
@@ -66,7 +66,7 @@ export class Input {
         this.locked = document.pointerLockElement === canvas;
         return;
       }
-      // The browser keeps the Escape that lets the pointer go.
+      // The browser does not report the Escape that releases the pointer.
       this.locked = false;
       if (this.wants_lock) this.tap('Escape');
     });
@@ -77,7 +77,7 @@ export class Input {
     this.later(() => this.calls.key(code, false));
   }
 
-  // Where the viewer wants the pointer hidden, the browser may still refuse: then one drags.
+  // The browser may refuse to hide the pointer: then drags turn the view.
   grab(wanted) {
     this.wants_lock = wanted;
     if (wanted && !this.locked && !this.asked) {
@@ -154,7 +154,7 @@ export class Input {
     if (this.pinch) {
       this.button(2, false, this.pinch.middle);
       this.pinch = null;
-      this.pointers.clear();  // The finger that is left does nothing any more.
+      this.pointers.clear();  // The remaining finger is ignored.
     } else {
       this.button(0, false, p);
     }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-// The page: loads the viewer, opens what the address names or what is dropped, and says in a sentence
-// what goes wrong. docs/web.md lists the address's parameters.
+// The page: loads the viewer, opens what the address names or what is dropped, and shows a sentence for
+// each fault. docs/web.md lists the address's parameters.
 import { dropped_files, fetch_bytes, store } from './files.js';
 import { Input } from './input.js';
 
@@ -14,7 +14,7 @@ const kSettings = 'throng.settings';
 
 let stopped = false;
 
-function tell(sentence, share) {
+function show_progress(sentence, share) {
   if (stopped) return;
   const notice = $('notice');
   notice.hidden = false;
@@ -30,7 +30,7 @@ function hide_notice() {
   if (!stopped) $('notice').hidden = true;
 }
 
-// A fault that one can go on after, or, if it is the end, not.
+// Shows a fault; with `end`, the page stops.
 function complain(sentence, end = false) {
   if (stopped) return;
   stopped = end;
@@ -70,7 +70,7 @@ function start_sentence() {
   return viewer.ccall('throng_error', 'string', [], []);
 }
 
-// Who walks, in blocks that this card reads: S3TC on desktops, ETC2 on phones. The viewer unpacks what the card does not read.
+// The avatars' atlas in blocks that this card reads: S3TC on desktops, ETC2 on phones. The viewer unpacks other blocks.
 function figure_file() {
   const gl = document.createElement('canvas').getContext('webgl2');
   const s3tc = gl?.getExtension('WEBGL_compressed_texture_s3tc'), etc2 = gl?.getExtension('WEBGL_compressed_texture_etc');
@@ -83,12 +83,12 @@ async function begin() {
     complain(missing, true);
     return;
   }
-  tell('Loading the viewer', 0);
-  const shared = (from, to, what) => (done, total) => tell(what, total > 0 ? from + (to - from) * done / total : undefined);
+  show_progress('Loading the viewer', 0);
+  const shared = (from, to, what) => (done, total) => show_progress(what, total > 0 ? from + (to - from) * done / total : undefined);
   const wasmBinary = await fetch_bytes('throng_web.wasm', shared(0, 0.6, 'Loading the viewer'));
   const figure = await fetch_bytes(figure_file(), shared(0.6, 0.9, 'Loading the people'));
-  const font = await fetch_bytes('panel.ttf', () => {}).catch(() => null);  // Without it there are smaller letters.
-  tell('Starting', 0.95);
+  const font = await fetch_bytes('panel.ttf', () => {}).catch(() => null);  // Without it the built-in font is used.
+  show_progress('Starting', 0.95);
   viewer = await window.make_throng({
     wasmBinary,
     print: (line) => console.log(line),
@@ -123,9 +123,9 @@ function kept_settings() {
   let settings = {};
   try {
     settings = JSON.parse(localStorage.getItem(kSettings) ?? '{}') ?? {};
-  } catch { /* A page that may keep nothing starts anew each time. */ }
+  } catch { /* A page without storage has no settings. */ }
   if (Object.keys(settings).length === 0 && canvas.clientWidth < 700) settings.panel = false;
-  settings.hints = false;  // The page's buttons say it.
+  settings.hints = false;  // The page has buttons for them.
   if (parameters.has('panel')) settings.panel = parameters.get('panel') !== '0';
   return JSON.stringify(settings);
 }
@@ -153,7 +153,7 @@ function folder_for_files() {
   return `/open/${opened}`;
 }
 
-// What files are, and which of them to show.
+// Shows one of some files, by their kinds.
 function open_files(files, name) {
   const found = store(viewer.FS, folder_for_files(), files);
   if (found.world) known_world = found.world;
@@ -174,7 +174,7 @@ async function open_address() {
   const files = [];
   const get = async (url) => {
     const name = decodeURIComponent(new URL(url, location.href).pathname.split('/').pop());
-    const bytes = await fetch_bytes(url, (done, total) => tell(`Loading ${name}`, total > 0 ? done / total : undefined));
+    const bytes = await fetch_bytes(url, (done, total) => show_progress(`Loading ${name}`, total > 0 ? done / total : undefined));
     files.push({ name, bytes });
   };
   await get(address);
@@ -190,7 +190,7 @@ async function open_address() {
   }
 }
 
-// Faults of what one opened leave the viewer as it was.
+// A fault while opening leaves the viewer as it was.
 async function try_to(open_it) {
   try {
     await open_it();
@@ -241,7 +241,7 @@ function frame(milliseconds) {
   requestAnimationFrame(frame);
 }
 
-// In the task that has drawn: later, the canvas is empty.
+// In the task that has drawn: the canvas is empty later.
 function keep_picture() {
   canvas.toBlob((blob) => {
     const link = document.createElement('a');

@@ -79,10 +79,13 @@ def paths_line():
     city = [row for row in rows("city_table") if row.get("apart [m]") == "10000"]
     if not found or not city:
         return
-    listed = ", ".join(f"{float(first_number(row['ratio'])):.1f} on `{world}`" for world, row in found.items())
+    listed = ", ".join(f"{float(first_number(row['ratio'])):.1f} on `{world}` ({row['to make ours']})" for world, row in found.items())
+    searches = [row for row in rows("detour_table") if row["world, ours by"].endswith(", search")]
+    searched = ", ".join(f"{float(first_number(row['ratio'])):.2f} on `{row['world, ours by'].removesuffix(', search')}`" for row in searches)
     shorter = max(float(first_number(row["length, ours / Detour's"])) for row in found.values())
-    yield (f"**Paths** beside Detour's, whole queries, one thread: queries a second, throng's / Detour's, are {listed}; mean lengths are at most {shorter:.3f} of Detour's. "
-           f"10 km through a city of 100 km2: {first_number(city[-1]['median [ms]'])} ms.")
+    yield (f"**Paths** beside Detour's, whole queries, one thread; queries a second, throng's / Detour's: with hub labels {listed}, "
+           f"the time and memory to make them in brackets; by search, without labels, {searched}. Mean lengths are at most {shorter:.3f} of Detour's. "
+           f"10 km through a city of 100 km2, with an overlay over zones ({city[-1]['to make, bytes']}): {first_number(city[-1]['median [ms]'])} ms.")
 
 
 def landscape_line():

@@ -8,29 +8,35 @@
 namespace throng {
 namespace {
 
-// The rectangle that the step from cell (x, z) of `rect` to the neighbouring one (nx, nz) leads to.
-uint32_t neighbour(const PathMesh& mesh, uint32_t rect, int32_t x, int32_t z, int32_t nx,
-                   int32_t nz) {
-  const MeshRect& r = mesh.rects[rect];
-  int32_t cell = 0;  // of the border, counted around the rectangle
-  if (nz < r.z) {
-    cell = x - r.x;
-  } else if (nx >= r.x + r.width) {
-    cell = r.width + (z - r.z);
-  } else if (nz >= r.z + r.depth) {
-    cell = 2 * r.width + r.depth - 1 - (x - r.x);
-  } else if (nx < r.x) {
-    cell = 2 * (r.width + r.depth) - 1 - (z - r.z);
-  } else {
-    return rect;
-  }
+// What lies beyond the border of a rectangle at a cell counted around it.
+uint32_t beyond(const PathMesh& mesh, uint32_t rect, int32_t cell) {
   const uint32_t end = mesh.rects[rect + 1].first_portal;
-  for (uint32_t p = r.first_portal; p < end; ++p) {
+  for (uint32_t p = mesh.rects[rect].first_portal; p < end; ++p) {
     const MeshPortal& portal = mesh.portals[p];
     if (cell < portal.from) break;  // They come in order.
     if (cell < portal.to) return portal.rect;
   }
   return kNoRect;
+}
+
+// What lies beyond the border on the east or the west in row `at`, on the north or the south in
+// column `at`.
+uint32_t beyond_x(const PathMesh& mesh, uint32_t rect, bool east, int32_t at) {
+  const MeshRect& r = mesh.rects[rect];
+  return beyond(mesh, rect, east ? r.width + (at - r.z) : 2 * (r.width + r.depth) - 1 - (at - r.z));
+}
+uint32_t beyond_z(const PathMesh& mesh, uint32_t rect, bool north, int32_t at) {
+  const MeshRect& r = mesh.rects[rect];
+  return beyond(mesh, rect, north ? 2 * r.width + r.depth - 1 - (at - r.x) : at - r.x);
+}
+
+// The rectangle that the step from cell (x, z) of `rect` to the neighbouring one (nx, nz) leads to.
+uint32_t neighbour(const PathMesh& mesh, uint32_t rect, int32_t x, int32_t z, int32_t nx,
+                   int32_t nz) {
+  const MeshRect& r = mesh.rects[rect];
+  if (nx < r.x || nx >= r.x + r.width) return beyond_x(mesh, rect, nx > x, z);
+  if (nz < r.z || nz >= r.z + r.depth) return beyond_z(mesh, rect, nz > z, x);
+  return rect;
 }
 
 // The same through the point that the two cells share, as walk() does it: both cells beside that
@@ -60,26 +66,40 @@ uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, GroundPoint from, GroundP
     // one is met first.
     const int64_t to_x = std::llabs((int64_t{east ? r.x + r.width : r.x} << kUnitBits) - from.x);
     const int64_t to_z = std::llabs((int64_t{up ? r.z + r.depth : r.z} << kUnitBits) - from.z);
-    const bool by_x = in_z || (!in_x && to_x * dz < to_z * dx);
-    int32_t x = east ? r.x + r.width - 1 : r.x, z = up ? r.z + r.depth - 1 : r.z;
-    bool at_point = !in_x && !in_z && to_x * dz == to_z * dx;  // of four cells
-    if (!at_point && by_x) {
+    if (!in_x && !in_z && to_x * dz == to_z * dx) {
+      const int32_t x = east ? r.x + r.width - 1 : r.x, z = up ? r.z + r.depth - 1 : r.z;
+      rect = diagonal(mesh, rect, x, z, x + step_x, z + step_z);
+    } else if (in_z || (!in_x && to_x * dz < to_z * dx)) {
       const int64_t rise = to_x * dz;
       const int64_t at = from.z + (up ? rise / dx : -((rise + dx - 1) / dx));
-      at_point = rise % dx == 0 && (at & (kUnitsPerCell - 1)) == 0 && (rise > 0 || !up);
-      z = static_cast<int32_t>(at >> kUnitBits) - (at_point && up ? 1 : 0);
+      auto z = static_cast<int32_t>(at >> kUnitBits);
+      // The point before the cell is met: then the way is from one row into the next, if it goes
+      // on that far.
+      if ((at & (kUnitsPerCell - 1)) == 0 && rise % dx == 0 && (rise > 0 || !up)) {
+        if (up) --z;
+        if (z != end_z) {
+          const int32_t x = east ? r.x + r.width - 1 : r.x;
+          rect = diagonal(mesh, rect, x, z, x + step_x, z + step_z);
+          continue;
+        }
+      }
       if (z < r.z || z >= r.z + r.depth) return kNoRect;
-      at_point = at_point && z != end_z;
-    } else if (!at_point) {
+      rect = beyond_x(mesh, rect, east, z);
+    } else {
       const int64_t rise = to_z * dx;
       const int64_t at = from.x + (east ? rise / dz : -((rise + dz - 1) / dz));
-      at_point = rise % dz == 0 && (at & (kUnitsPerCell - 1)) == 0 && (rise > 0 || !east);
-      x = static_cast<int32_t>(at >> kUnitBits) - (at_point && east ? 1 : 0);
+      auto x = static_cast<int32_t>(at >> kUnitBits);
+      if ((at & (kUnitsPerCell - 1)) == 0 && rise % dz == 0 && (rise > 0 || !east)) {
+        if (east) --x;
+        if (x != end_x) {
+          const int32_t z = up ? r.z + r.depth - 1 : r.z;
+          rect = diagonal(mesh, rect, x, z, x + step_x, z + step_z);
+          continue;
+        }
+      }
       if (x < r.x || x >= r.x + r.width) return kNoRect;
-      at_point = at_point && x != end_x;
+      rect = beyond_z(mesh, rect, up, x);
     }
-    rect = at_point ? diagonal(mesh, rect, x, z, x + step_x, z + step_z)
-                    : neighbour(mesh, rect, x, z, by_x ? x + step_x : x, by_x ? z : z + step_z);
   }
   return kNoRect;
 }

@@ -276,8 +276,8 @@ void add_run(CLI::App& parser, Session& session) {
       session.exit_code = run_file(session, *command, *options);
       return;
     }
-    for (const auto& [name, path] : {std::pair("--visits", &options->visits),
-                                     std::pair("--obstacles", &options->obstacles)}) {
+    for (const auto& [name, path] :
+         {std::pair("--visits", &options->visits), std::pair("--obstacles", &options->obstacles)}) {
       if (path->empty()) continue;
       const std::string what = name;
       session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});

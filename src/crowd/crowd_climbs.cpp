@@ -34,26 +34,6 @@ ClimbPoint point_of(const NodePathPoint& point, bool drops) {
   return made;
 }
 
-// As much of a way as there is room for: it ends on the ground.
-void set_path(Climb& climb, const NodePath& path) {
-  const size_t all = path.points.size();
-  size_t count = std::min(all, Climb::kPoints);
-  while (count > 0 && !path.points[count - 1].place) --count;
-  for (size_t i = 0; i < count; ++i) {
-    const bool falls = !path.points[i].place || (i > 0 && !path.points[i - 1].place);
-    climb.points[i] = point_of(path.points[i], falls);
-  }
-  climb.count = static_cast<uint8_t>(count);
-  climb.whole = count == all ? 1 : 0;
-  climb.to_station = 0;
-  climb.at.s = climb.points[0].s;
-  climb.at.t = climb.points[0].t;
-  climb.at.node1 = climb.points[0].node1;
-  climb.at.part = 0;
-  climb.at.next = 1;
-  climb.at.in_air = count > 1 && climb.points[1].on_surface == 0 ? 1 : 0;
-}
-
 // Where the rest of a way leads through that there is no room for: not its end, which is the goal.
 void set_stations(Climb& climb, const NodePath& path) {
   climb.station = climb.station_count = 0;
@@ -81,6 +61,26 @@ void clear_way(Climb& climb) {
 }
 
 }  // namespace
+
+// As much of a way as there is room for: it ends on the ground.
+void Crowd::State::take_path(Climb& climb, const NodePath& path) {
+  const size_t all = path.points.size();
+  size_t count = std::min(all, Climb::kPoints);
+  while (count > 0 && !path.points[count - 1].place) --count;
+  for (size_t i = 0; i < count; ++i) {
+    const bool falls = !path.points[i].place || (i > 0 && !path.points[i - 1].place);
+    climb.points[i] = point_of(path.points[i], falls);
+  }
+  climb.count = static_cast<uint8_t>(count);
+  climb.whole = count == all ? 1 : 0;
+  climb.to_station = 0;
+  climb.at.s = climb.points[0].s;
+  climb.at.t = climb.points[0].t;
+  climb.at.node1 = climb.points[0].node1;
+  climb.at.part = 0;
+  climb.at.next = 1;
+  climb.at.in_air = count > 1 && climb.points[1].on_surface == 0 ? 1 : 0;
+}
 
 bool Crowd::State::goes_over_nodes(int32_t number) const {
   const AvatarClass& avatar = body_class(number);
@@ -234,7 +234,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
     path.points.push_back({.place = from, .on_surface = true});
     if (to) path.points.push_back({.place = to, .on_surface = true});
   }
-  set_path(climb, path);
+  take_path(climb, path);
   climb.whole = 0;
 }
 
@@ -252,7 +252,7 @@ bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double bes
   path.points.clear();
   path.points.push_back({.place = from, .on_surface = true});
   path.points.push_back({.place = to, .on_surface = true});
-  set_path(climb, path);
+  take_path(climb, path);
   climb.whole = 0;
   body.clear(Body::kLost);
   return true;
@@ -276,7 +276,7 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
   parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
   // A long way around is none to where it is driven.
   if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_way(climb);
-  set_path(climb, path);
+  take_path(climb, path);
   climb.whole = 0;
 }
 
@@ -314,7 +314,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget());
     note_spent(path.spent);
     if (is_found()) {
-      set_path(climb, path);
+      take_path(climb, path);
       climb.to_station = std::exchange(climb.whole, uint8_t{0});
       return body.clear(Body::kLost);
     }
@@ -330,7 +330,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     clear_way(climb);
     return strand(body);
   }
-  set_path(climb, path);
+  take_path(climb, path);
   set_stations(climb, path);
   body.clear(Body::kLost);
 }

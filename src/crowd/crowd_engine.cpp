@@ -29,7 +29,7 @@ constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
 constexpr uint64_t kSides = 0x51de5;         // stream of chance
 constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
-constexpr float kStepsBack = 1;              // [m] beside it, for one that leaves an obstacle
+constexpr float kSlow = 0.3f;                // of its speed: it is held up
 constexpr float kAtOnce = 0.1f;              // [s] Who goes straight meets nobody within.
 constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
 constexpr float kEnough = 14;                // bodies, to find the nearest among
@@ -355,6 +355,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   const bool may_wait = is_bound(body), turns = turns_corner(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&
                      (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
+  const bool is_slow = size_of(body.velocity) < kSlow * body.speed;
+  const bool yields = rests || (is_slow && !body.leaves && !body.has(Body::kExternal));
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
@@ -375,13 +377,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
       const float back = -0.5f * body.speed / size_of(apart);
       situation.preferred = {apart.x * back, apart.z * back};
     }
-    // Those that stand step back from those beside them that leave an obstacle.
-    const float far = size_of(apart);
-    if (other.leaves && rests && far > 0 && far < room + kStepsBack) {
-      worker.waits = true;
-      const float back = -0.5f * body.speed / far;
-      situation.preferred = {apart.x * back, apart.z * back};
-    }
+    // Those that stand or are held up step back from those beside them that leave an obstacle.
+    if (other.leaves && yields) step_back(body, apart, room, worker);
     // Who has arrived makes way for those who would pass, were he not there: they may stand.
     const bool yields =
         (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);

@@ -188,6 +188,7 @@ class CrowdEngine {
   static void fit_lists(const NeighbourGrid::Around& around, Worker& worker);
   [[nodiscard]] float touch_of(const Body& body) const;
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
+  static void step_back(const Body& body, steer::Plane apart, float room, Worker& worker);
   void prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const;
   bool find_open_preferred(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   bool go_straight(const Body& body, steer::Situation& situation) const;

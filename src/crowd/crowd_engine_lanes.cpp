@@ -64,6 +64,16 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
                (preferred.z + preferred.x * aside) * scale};
 }
 
+// From one that leaves an obstacle, and is so far away.
+void CrowdEngine::step_back(const Body& body, Plane apart, float room, Worker& worker) {
+  constexpr float kStepsBack = 1;  // [m] beside it
+  const float far = size_of(apart);
+  if (!(far > 0 && far < room + kStepsBack)) return;
+  worker.waits = true;
+  const float back = -0.5f * body.speed / far;
+  worker.situation.preferred = {apart.x * back, apart.z * back};
+}
+
 // True if the wish is another one now.
 bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];

@@ -16,10 +16,12 @@
 namespace throng {
 namespace {
 
-constexpr double kMaxDetour = 2;    // times the nearest way out, for a path that leads out
-constexpr double kMaxPath = 2;      // [m] more than that
-constexpr float kPatience = 0.4f;   // [radians] of a turn, before one gives its path up
-constexpr uint64_t kLookEvery = 4;  // steps of one who finds no exit
+constexpr double kMaxDetour = 2;      // times the nearest way out, for a path that leads out
+constexpr double kMaxPath = 2;        // [m] more than that
+constexpr float kPatience = 0.4f;     // [radians] of a turn, before one gives its path up
+constexpr double kNoSpacing = 1e9;    // [m] points of a path only where it bends
+constexpr uint64_t kFewNodes = 8000;  // crossings that a search for an exit looks at
+constexpr uint64_t kLookEvery = 4;    // steps of one who finds no exit
 constexpr std::array<double, 4> kReaches = {1, 2, 4, 8};  // [m] to a node's free place
 
 AirSpot here(const Body& body) { return {body.x, body.z, body.y}; }
@@ -281,6 +283,40 @@ bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) 
   for (const double reach : kReaches) {
     if (step_off(body, climb, worker, reach)) return true;
   }
+  return find_exit_over_nodes(body, climb, worker);
+}
+
+// To the nearest place that is left, by a finder that does not mind what closes around it.
+bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker) {
+  ClassParts& parts = *classes[body.avatar_class];
+  const auto w = static_cast<size_t>(worker);
+  NodePathFinder& finder = parts.node_finders[w];
+  NodePlace to;
+  for (size_t i = 0; i < kReaches.size() && !to; ++i) {
+    to = finder.find_place(climb.feet, kReaches[i]);
+  }
+  const NodePlace from =
+      config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
+  if (!to || !from) return true;
+  const Vec3d& origin = world.data()->summary.origin;
+  const auto let_through = [&](bool lets) {
+    for (const CrowdObstacle& obstacle : obstacles.all()) {
+      if (!obstacle.closes()) continue;
+      const AirObstacle solid(obstacle.place, origin, unit);
+      const bool is_in = climbers.in_counterflow(
+          *parts.nodes, {here(body), body.radius, body.height}, {climb.feet, climb.axis},
+          climb.radius, solid, {obstacle.place, {}});
+      if (is_in) finder.set_active(obstacle.of_class[body.avatar_class].node_change, !lets);
+    }
+  };
+  NodePath& path = parts.node_paths[w];
+  let_through(true);
+  finder.find(from, to, path, kNoSpacing, kFewNodes);
+  let_through(false);
+  if (path.end != PathEnd::kReached || path.points.size() < 2) return true;
+  take_path(climb, path);
+  climb.whole = 0;
+  body.clear(Body::kLost);
   return true;
 }
 

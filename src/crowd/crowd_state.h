@@ -139,6 +139,7 @@ struct Crowd::State {
   bool plan_exit_in_air(Body& body, Flight& flight) const;
   /// Of one who goes over nodes.
   bool plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker);
+  bool find_exit_over_nodes(Body& body, Climb& climb, int32_t worker);
 
   /// Tells the ways of a class, or of all, what an obstacle is to them by now.
   void report_paths(uint32_t slot, size_t number);
@@ -219,6 +220,7 @@ struct Crowd::State {
   [[nodiscard]] bool is_sound_climb(const Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
+  static void take_path(Climb& climb, const NodePath& path);
   bool step_off(Body& body, Climb& climb, int32_t worker, double beside);
   void cut_climbs(std::span<const uint32_t> slots);
 };

@@ -398,6 +398,33 @@ TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_FALSE(added_on(crowd, here));
 }
 
+// On its way, at rest, or as it has just begun.
+TEST(Climbers, GetOutOfWhatClosesAroundThemAndEnterNoOther) {
+  Stage stage(net());
+  for (const uint64_t n : {1, 2, 3, 4}) {
+    Crowd crowd = stage.crowd();
+    const NodePlace here = stage.place(kClimber, 5, n), away = stage.place(kClimber, 6, n);
+    const AvatarId id = added_on(crowd, here);
+    ASSERT_TRUE(id);
+    if (n % 2 == 0) {
+      crowd.set_goals(std::span(&id, 1), std::span(&away, 1));
+      for (int step = 0; step < 20; ++step) crowd.step();
+    }
+    const Vec3d p = crowd.read(id)->position;
+    const auto crate = crowd.add_obstacle(
+        Prism::box({p.x - 0.5, p.y - 0.5, p.z - 0.5}, {p.x + 0.5, p.y + 0.5, p.z + 0.5}));
+    ASSERT_TRUE(crate);
+    EXPECT_TRUE(crowd.obstacle(*crate)->waits);
+    Stage::Faults faults;
+    for (int step = 0; step < 100; ++step) {
+      crowd.step();
+      if (step % 5 == 0) stage.look(crowd, faults);
+    }
+    EXPECT_EQ(faults.overlaps + faults.entered, 0u);
+    EXPECT_TRUE(crowd.obstacle(*crate)->is_up) << n;
+  }
+}
+
 // Walls across everybody's way, put up before they begin or when they are under way, with a gap at
 // one end.
 TEST(Climbers, GoAroundWhatIsPutUpOnTheirWay) {

@@ -283,14 +283,14 @@ TEST(ClosingObstacles, OverlappingOnesAreLeftAndNeverEnteredFromEachOther) {
   const World world = test::bake(worlds::flat(30), 0.1);
   for (const uint64_t seed : {1, 2, 3}) {
     Crowd crowd = made(world, {.seed = seed});
-    const auto ids = scattered(crowd, 600);
+    const auto ids = scattered(crowd, 400);
     std::vector<Place> goals;
     for (size_t i = 0; i < ids.size(); ++i) goals.push_back(world.random_place(0, seed, i));
     crowd.set_goals(ids, goals);
     for (int step = 0; step < 20; ++step) crowd.step();
     const Prism prisms[] = {Prism::box({10, 0, 10}, {14, 2, 13}),
                             Prism::box({12, 0, 11}, {18, 2, 18}),
-                            Prism::circle({20, 0, 20}, 2, 2, 9)};
+                            Prism::circle({24, 0, 8}, 2, 2, 9)};
     std::vector<ObstacleId> obstacles;
     for (const Prism& prism : prisms) obstacles.push_back(*crowd.add_obstacle(prism));
     const auto up = [&](size_t i) { return crowd.obstacle(obstacles[i])->is_up; };

@@ -433,6 +433,30 @@ TEST(Recording, RefusesOtherVersionsAndSaysWhatToDo) {
   }
 }
 
+TEST(Recording, KeepsTheOutcomeItWasFinishedWith) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(3, 5, 4);
+  for (const std::string outcome : {"", "{\"obstacles\": {}}", "12345678"}) {
+    auto recorder = Recorder::create(path, two_classes());
+    ASSERT_TRUE(recorder);
+    for (const RecordedFrame& frame : run) ASSERT_TRUE(recorder->append(frame.view()));
+    ASSERT_TRUE(recorder->finish(outcome));
+    std::string bytes = bytes_of(path);
+    const auto replay = Replay::from_bytes(span_of(bytes), "run");
+    ASSERT_TRUE(replay) << replay.error().message;
+    EXPECT_EQ(replay->outcome(), outcome);
+    EXPECT_EQ(replay->damage(), "");
+    if (outcome.empty()) continue;
+    bytes.back() = static_cast<char>(bytes.back() ^ 1);
+    const auto corrupt = Replay::from_bytes(span_of(bytes), "run");
+    ASSERT_TRUE(corrupt);
+    EXPECT_EQ(corrupt->frame_count(), run.size());
+    EXPECT_EQ(corrupt->outcome(), "");
+    EXPECT_NE(corrupt->damage(), "");
+  }
+}
+
 TEST(Recording, FindsTheFrameOfATime) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay";

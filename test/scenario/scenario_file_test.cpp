@@ -152,6 +152,7 @@ TEST(ScenarioFile, reads_every_key) {
   EXPECT_TRUE(s->sources[1].even);
   ASSERT_EQ(s->obstacles.size(), 1U);
   EXPECT_EQ(s->obstacles[0].end, 9);
+  EXPECT_EQ(s->obstacles[0].policy, ObstaclePolicy::kRefuseEntry);
 }
 
 // A file with one line put in another's place.
@@ -216,6 +217,7 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
       {"density = \"crowd\"\nrates", "density = \"crowd\"\narea = \"in\"\nrates", "say where they"},
       {"rates = [[0, 0.5], [10, 0], [20, 2]]", "", "say how many"},
       {"begin = 5\nend = 9", "begin = 9\nend = 5", "obstacle 'crate': it must begin before"},
+      {"begin = 5\nend = 9", "begin = 5\npolicy = \"open\"", "policy: write \"shut\" or \"wait\""},
       {"name = \"later\"", "name = \"first\"", "the name stands here twice"},
   };
   for (const auto& c : cases) {

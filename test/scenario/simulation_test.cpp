@@ -419,6 +419,41 @@ count = 30
   for (const Visit& visit : simulation.visits()) EXPECT_GT(visit.left, 10 + 8 / 1.5);
 }
 
+// Both doors are to shut while people stream through: by the default policy soon, and nobody comes
+// through then; one that waits stays open.
+TEST(Simulation, a_door_that_is_to_shut_in_a_stream_tells_when_it_did) {
+  const std::string text = R"(
+[[obstacle]]
+name = "door"
+box = [9.9, 3.5, 10.3, 7.5]
+begin = 8
+POLICY
+[[journey]]
+name = "out"
+stages = [{ leave = ["north", "south"] }]
+[[source]]
+name = "all"
+area = "west"
+journey = "out"
+rate = 3
+)";
+  for (const bool waits : {false, true}) {
+    std::string of = text;
+    const Hall run = read(of.replace(of.find("POLICY"), 6, waits ? "policy = \"wait\"" : ""));
+    Simulation simulation = made(run);
+    const ObstacleTimes& times = simulation.obstacle_times()[0];
+    EXPECT_LT(times.asked, 0);
+    for (int step = 0; step < 200; ++step) ASSERT_TRUE(simulation.step());
+    EXPECT_NEAR(times.asked, 8, 1e-9);
+    EXPECT_LT(times.gone, 0);
+    EXPECT_GT(times.inside, 0u);
+    if (waits) continue;
+    EXPECT_GE(times.up, 8);
+    EXPECT_LE(times.up, 11);
+    EXPECT_EQ(times.waits_for, 0u);
+  }
+}
+
 // Two areas, and those who go from the first to the second, in a world of the text's.
 Simulation across(const std::string& text) {
   auto scenario = parse_scenario(text + R"(

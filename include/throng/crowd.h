@@ -62,7 +62,7 @@ struct CrowdConfig {
   double dt = 0.1;  ///< Length of a step. [s, 0.001 to 1]
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
-  Routing ways = Routing::kPaths;
+  Routing routing = Routing::kPaths;
   /// How those on foot avoid each other. `reaction` and `deadlock_avoidance` are of kSampled alone:
   /// others decide in each step.
   SteeringModel model = SteeringModel::kSampled;
@@ -110,9 +110,9 @@ struct CrowdView {
 /// What a crowd holds. [bytes]
 struct CrowdMemory {
   uint64_t avatars = 0;  ///< Bodies, who is near whom, ids, events.
-  uint64_t ways = 0;     ///< The next corners of each, or his way through the air.
+  uint64_t paths = 0;    ///< The next corners of each, or his way through the air.
   uint64_t ground = 0;   ///< Of the classes in use, and obstacles.
-  [[nodiscard]] uint64_t total() const { return avatars + ways + ground; }
+  [[nodiscard]] uint64_t total() const { return avatars + paths + ground; }
 };
 
 /// What one step did.

@@ -31,7 +31,7 @@ Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass
   auto crowd = Crowd::create(*world, {.dt = kStep,
                                       .seed = config.seed,
                                       .workers = config.workers,
-                                      .ways = routing,
+                                      .routing = routing,
                                       .model = config.model});
   if (!crowd) return crowd.error();
   return PlaneCrowd(*std::move(world), *std::move(crowd));

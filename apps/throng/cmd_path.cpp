@@ -277,7 +277,7 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   const auto start = std::chrono::steady_clock::now();
   finder->find({.from = *from,
                 .to = *to,
-                .reach = options.reach,
+                .vertical_tolerance = options.reach,
                 .max_bytes = options.search_bytes,
                 .cancel = &session.context.cancel},
                found);
@@ -286,7 +286,7 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   if (found.end == PathEnd::kNoPlace) {
     // Which end it is: a way from each to itself is told at once.
     for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-      finder->find({.from = position, .to = position, .reach = options.reach}, found);
+      finder->find({.from = position, .to = position, .vertical_tolerance = options.reach}, found);
       if (found.end != PathEnd::kNoPlace) continue;
       return fail(bad_end(options, position, option, "is no place to be now: a --block is there"));
     }

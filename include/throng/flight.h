@@ -47,8 +47,9 @@ struct FlightConfig {
 enum class SegmentKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
 
 struct FlightQuery {
-  Vec3d from, to;      ///< Feet. In the air, or on the ground within `reach` above or below. [m]
-  double reach = 0.5;  ///< [m, >= 0]
+  Vec3d from,
+      to;  ///< Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
+  double vertical_tolerance = 0.5;  ///< [m, >= 0]
   uint64_t max_nodes = UINT64_MAX;  ///< Boxes that may be looked at; nodes, of each way on foot.
   /// As SearchBudget::max_bytes, of each flight and of each way on foot. [bytes]
   uint64_t max_bytes = SearchBudget::kDefaultBytes;
@@ -139,7 +140,7 @@ class THRONG_API FlightFinder {
   struct End;
   explicit FlightFinder(std::shared_ptr<const Shared> shared);
 
-  bool locate(Vec3d at, double reach, End& end) const;
+  bool locate(Vec3d at, double vertical_tolerance, End& end) const;
   void find_flight(const FlightQuery& query, FlightPath& path);
   void find_by_turns(const FlightQuery& query, FlightPath& path);
   size_t follow_route(const FlightQuery& query, const End& from, const End& to, FlightPath& path);

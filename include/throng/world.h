@@ -105,8 +105,9 @@ class THRONG_API World {
   [[nodiscard]] std::vector<int32_t> storeys() const;
 
   /// The legal place of a class under or over `position` whose feet are nearest to position.y
-  /// within `reach` metres, or nowhere. Exact column only.
-  [[nodiscard]] Place find_place(int32_t avatar_class, Vec3d position, double reach) const;
+  /// within `vertical_tolerance` metres, or nowhere. Exact column only.
+  [[nodiscard]] Place find_place(int32_t avatar_class, Vec3d position,
+                                 double vertical_tolerance) const;
   /// The n-th of a reproducible stream of places, uniform over the class's walkable area. Nowhere
   /// only if the class has no place at all.
   [[nodiscard]] Place random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const;

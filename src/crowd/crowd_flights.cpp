@@ -169,7 +169,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   FlightPath& path = parts.flights[w];
   parts.flight_finders[w].find({.from = parts.air->metres(here(body)),
                                 .to = parts.air->metres(flight.goal),
-                                .reach = kReach,
+                                .vertical_tolerance = kReach,
                                 .max_nodes = kMaxBoxes,
                                 .max_bytes = config.search_bytes,
                                 .by_turns = false,
@@ -284,7 +284,7 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   const auto find = [&](const AirSpot& begin, const AirSpot& end) {
     parts.flight_finders[w].find({.from = air.metres(begin),
                                   .to = air.metres(end),
-                                  .reach = kReach,
+                                  .vertical_tolerance = kReach,
                                   .max_nodes = kMaxBoxes,
                                   .max_bytes = config.search_bytes,
                                   .by_turns = false,

@@ -94,9 +94,9 @@ class THRONG_API NodePathFinder {
   NodePathFinder& operator=(NodePathFinder&&) noexcept;
   ~NodePathFinder();
 
-  /// The place of the class that is nearest to a position, or nowhere within `reach`. Queries of
-  /// one finder are for one thread at a time. [m, m]
-  [[nodiscard]] NodePlace find_place(Vec3d position, double reach) const;
+  /// The place of the class that is nearest to a position, or nowhere within `search_radius`.
+  /// Queries of one finder are for one thread at a time. [m, m]
+  [[nodiscard]] NodePlace find_place(Vec3d position, double search_radius) const;
 
   /// A square of a node's patch that holds two of its places, a leg of a way, and on which the
   /// class may go straight from anywhere to anywhere; none if the finder knows none. [s and t 0 to

@@ -155,8 +155,8 @@ struct StudyConfig {
 struct StudyCell {
   double mean = 0;       ///< Collisions a run.
   double deviation = 0;  ///< Standard deviation over seeds, n - 1; 0 for one seed.
-  int64_t least = 0;
-  int64_t most = 0;
+  int64_t min_collisions = 0;
+  int64_t max_collisions = 0;
   double obstacle_mean = 0;  ///< Entries into obstacles a run.
   double arrived = 0;        ///< Of the avatars, at the end. [0 to 1]
   double waiting = 0;        ///< Of the avatars, at the end. [0 to 1]

@@ -35,7 +35,7 @@ struct Chart {
   std::string x_title = {}, y_title = {};
   std::vector<double> x = {};  ///< [finite, ascending, at least 2]
   std::vector<ChartLine> lines = {};
-  double most = 0;       ///< Top of the y axis, 0: from the values. What lies above is cut off.
+  double max = 0;        ///< Top of the y axis, 0: from the values. What lies above is cut off.
   int32_t width = 1200;  ///< [px, 400 to 8000]
 };
 

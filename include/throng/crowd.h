@@ -212,7 +212,7 @@ class THRONG_API Crowd {
   /// Up to some `most` places inside a target where a class can stand, evenly spread. Fails as
   /// `add` does.
   [[nodiscard]] Result<std::vector<Place>> places(TargetId target, int32_t avatar_class,
-                                                  size_t most, Context& context);
+                                                  size_t max_count, Context& context);
   /// Wished speeds from now on, one for each id. Ids of nobody are left out. [m/s, > 0 to 100]
   void set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds);
 

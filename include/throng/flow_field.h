@@ -18,7 +18,7 @@
 namespace throng {
 
 struct FlowConfig {
-  double most = std::numeric_limits<double>::infinity();  ///< Costs to look up to. [> 0, m]
+  double max_distance = std::numeric_limits<double>::infinity();  ///< Costs to look up to. [> 0, m]
 };
 
 struct FlowSummary {
@@ -45,7 +45,7 @@ class THRONG_API FlowField {
   ~FlowField();
 
   /// Cost of the way to the nearest goal, as it goes over the points: in the mean 1 to 2 % above
-  /// the least. Infinite where none leads there, or none within `most`. [m]
+  /// the least. Infinite where none leads there, or none within `max_distance`. [m]
   [[nodiscard]] double distance(const Place& place);
   /// Where to walk to in a straight line, to come nearer to the goal: the farthest point of the way
   /// that such a line reaches. The goal itself at last; nowhere if no way leads there.

@@ -65,7 +65,7 @@ class THRONG_API GroundQuery {
   [[nodiscard]] Place slide(const Place& from, double dx, double dz);
   /// The nearest wall within `most` metres that a straight line from the place can meet. Time: the
   /// cells that are as near.
-  [[nodiscard]] NearestWall nearest_wall(const Place& from, double most);
+  [[nodiscard]] NearestWall nearest_wall(const Place& from, double max_distance);
   /// The n-th of a reproducible stream of places, uniform over those that hold together with
   /// `centre` inside the circle of that radius around it. Nowhere only if `centre` is no place of
   /// the class.

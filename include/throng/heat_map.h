@@ -22,7 +22,7 @@ struct HeatMap {
   double cell = 0.5;                    ///< [m, > 0]
   int32_t width = 0, depth = 0;         ///< [cells, 1 to 1000000]
   std::vector<double> values = {};      ///< width * depth. [finite, >= 0; 0 stays paper]
-  double most = 0;               ///< Value of the darkest colour, 0: the largest. Above: the same.
+  double max = 0;                ///< Value of the darkest colour, 0: the largest. Above: the same.
   int32_t picture_width = 1200;  ///< [px, 400 to 8000]
 };
 

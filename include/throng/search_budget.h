@@ -23,9 +23,9 @@ struct SearchBudget {
   static constexpr uint64_t kDefaultBytes = uint64_t{256} << 20;
 
   // NOLINTNEXTLINE(google-explicit-constructor)
-  SearchBudget(uint64_t most = UINT64_MAX, const std::atomic<bool>* stop = nullptr,
+  SearchBudget(uint64_t nodes = UINT64_MAX, const std::atomic<bool>* stop = nullptr,
                uint64_t bytes = kDefaultBytes)
-      : max_nodes(most), cancel(stop), max_bytes(bytes) {}
+      : max_nodes(nodes), cancel(stop), max_bytes(bytes) {}
 
   uint64_t max_nodes;
   /// Set from any thread to stop; looked at every 64 nodes. May be null.

@@ -117,14 +117,14 @@ struct CrowdMemory {
 
 /// What one step did.
 struct CrowdReport {
-  uint64_t step = 0;       ///< Number of the step just made, from 1.
-  uint64_t avatars = 0;    ///< All there are.
-  uint64_t flying = 0;     ///< Of these, in the air, or on the way up or down.
-  uint64_t climbing = 0;   ///< Of these, over nodes.
-  uint64_t stood = 0;      ///< Did not move.
-  uint64_t far = 0;        ///< Beyond all views.
-  uint64_t held = 0;       ///< Of these, stood because it was not their turn; not in `stood`.
-  uint64_t contested = 0;  ///< Could have touched somebody, so went through the rounds.
+  uint64_t step = 0;        ///< Number of the step just made, from 1.
+  uint64_t avatars = 0;     ///< All there are.
+  uint64_t flying = 0;      ///< Of these, in the air, or on the way up or down.
+  uint64_t climbing = 0;    ///< Of these, over nodes.
+  uint64_t stood = 0;       ///< Did not move.
+  uint64_t low_detail = 0;  ///< Beyond all views.
+  uint64_t skipped = 0;     ///< Of these, stood because it was not their turn; not in `stood`.
+  uint64_t contested = 0;   ///< Could have touched somebody, so went through the rounds.
   uint64_t arrived = 0;  ///< Came within 0.3 m of their goals, or into their targets, in this step.
   uint64_t planned = 0;  ///< Got a way, or another one.
   uint64_t no_path = 0;  ///< Of these, found that none leads to the goal: it is dropped.

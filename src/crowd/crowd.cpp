@@ -565,8 +565,8 @@ CrowdReport Crowd::step() {
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
   report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
   report.contested = counts.contested;
-  report.far = counts.far / static_cast<uint64_t>(s.sub_steps);
-  report.held = counts.held / static_cast<uint64_t>(s.sub_steps);
+  report.low_detail = counts.far / static_cast<uint64_t>(s.sub_steps);
+  report.skipped = counts.held / static_cast<uint64_t>(s.sub_steps);
   report.arrived = s.arrived.size();
   report.planned = planned;
   report.no_path = s.goal_unreachable.size();

@@ -33,7 +33,7 @@ struct LiveConfig {
 struct OffMeshLink {
   Place from, to;
   double cost = 0;  ///< [m]
-  bool both_ways = true;
+  bool two_way = true;
 };
 
 /// One change; 0 is none.
@@ -60,7 +60,7 @@ class THRONG_API LiveGround {
   /// Floors inside the prism are of this kind from now on; of several, the last one added counts.
   [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
   /// A way that moves do not know, given by hand: a jump over a ditch, a ladder, a lift. It leads
-  /// from one place of the class to another, and back if both_ways; nobody checks what is between.
+  /// from one place of the class to another, and back if two_way; nobody checks what is between.
   /// It costs as many metres, at least as many as it is long in the plane. Fails with kBadInput.
   [[nodiscard]] Result<ChangeId> add_off_mesh_link(const OffMeshLink& off_mesh_link);
   /// Takes a change back, for good or, as a door, until it is set again. False if there is none.

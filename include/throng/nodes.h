@@ -40,7 +40,7 @@ enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };
 struct NodeOffMeshLink {
   Vec3d from, to;  ///< Within a metre of places of the class. [m]
   int32_t avatar_class = 0;
-  bool both_ways = false;
+  bool two_way = false;
 };
 
 struct NodeConfig {

@@ -214,11 +214,11 @@ TEST(Nodes, OffMeshLinksJoinWhatNothingElseJoins) {
   EXPECT_EQ(make(world, scene).reach(0).size(), 2u);
   NodeConfig config;
   config.off_mesh_links = {
-      {.from = {4, 0, 3}, .to = {10, 0.5, 3}, .avatar_class = 0, .both_ways = true}};
+      {.from = {4, 0, 3}, .to = {10, 0.5, 3}, .avatar_class = 0, .two_way = true}};
   const Nodes joined = make(world, scene, config);
   EXPECT_EQ(joined.reach(0).size(), 1u);
   EXPECT_EQ(joined.reach(1).size(), 2u);  // For its class only.
-  config.off_mesh_links[0].both_ways = false;
+  config.off_mesh_links[0].two_way = false;
   const Nodes one_way = make(world, scene, config);
   EXPECT_EQ(one_way.reach(0).size(), 2u);  // Over a one-way link no body comes back.
   size_t off_mesh_links = 0, back = 0;

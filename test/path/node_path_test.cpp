@@ -293,7 +293,7 @@ TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {
   const auto nodes = Nodes::make(
       bake(scene, 0.2), scene,
       {.off_mesh_links =
-           {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .both_ways = false}}},
+           {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .two_way = false}}},
       context);
   ASSERT_TRUE(nodes);
   NodePathFinder found = finder(*nodes, 0);

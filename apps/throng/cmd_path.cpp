@@ -305,7 +305,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
   }
   for (const NodePathLink& link : path.links) {
     links.push_back(
-        {{"point", link.point}, {"kind", app::word_for(link.kind)}, {"leaps", link.leaps}});
+        {{"point", link.point}, {"kind", app::word_for(link.kind)}, {"leaps", link.over_hole}});
   }
   Json json = {{"world", options.world},
                {"class", options.avatar_class},
@@ -334,7 +334,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
 }
 
 const char* word_of_gap(const NodePathLink& link) {
-  return link.leaps && link.kind != LinkKind::kDrop ? " over a gap" : "";
+  return link.over_hole && link.kind != LinkKind::kDrop ? " over a gap" : "";
 }
 
 std::string node_path_text(const PathOptions& options, const NodePath& path, const NodePlace& to,

@@ -49,7 +49,7 @@ struct NodePathPoint {
 struct NodePathLink {
   uint32_t point = 0;
   LinkKind kind = LinkKind::kWalk;
-  bool leaps = false;  ///< Between places that do not touch.
+  bool over_hole = false;  ///< Between places that do not touch.
 };
 
 struct NodePath {

@@ -115,7 +115,7 @@ struct NodeArc {
   /// The nodes do not touch: a body goes straight between these two of their places, by parameters
   /// of their patches, turning evenly; or, if it drops, level from the first to above the second,
   /// upright there, and straight down.
-  bool leaps = false;
+  bool over_hole = false;
   double from_s = 0, from_t = 0, to_s = 0, to_t = 0;
 };
 

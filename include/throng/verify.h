@@ -62,7 +62,7 @@ struct VerifyReport {
 struct NodeVerifyReport {
   uint64_t places = 0;
   uint64_t arcs = 0;         ///< Looked at on the way.
-  uint64_t leaps = 0;        ///< Of these, between nodes that do not touch.
+  uint64_t hole_links = 0;   ///< Of these, between nodes that do not touch.
   uint64_t entered = 0;      ///< Places, or leaps, whose body meets a triangle.
   uint64_t unsupported = 0;  ///< Places without a surface at the feet.
   uint64_t steeper = 0;      ///< Places on a steeper surface than a node around them promises.
@@ -87,7 +87,7 @@ struct NodePathReport {
   uint64_t segments = 0;  ///< Of the ways, point to point.
   uint64_t links = 0;     ///< Used by them.
   std::array<uint64_t, kLinkKinds> links_of_kind{};
-  uint64_t leaps = 0;        ///< Of these, between places that do not touch.
+  uint64_t hole_links = 0;   ///< Of these, between places that do not touch.
   uint64_t poses = 0;        ///< Of bodies on them, at most a quarter of a radius apart.
   uint64_t entered = 0;      ///< Legs whose body meets a triangle. Must be 0.
   uint64_t unsupported = 0;  ///< Legs with no surface at the feet, but for leaps. Must be 0.

@@ -161,7 +161,7 @@ std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
     if (leap == nullptr || other == nullptr) continue;
     const double from_side = 1 << zone->patch_of(local).depth();
     const double to_side = 1 << other->patch_of(to).depth();
-    found.leaps = true;
+    found.over_hole = true;
     found.from_s = (leap->from_s() + 0.5) / from_side;
     found.from_t = (leap->from_t() + 0.5) / from_side;
     found.to_s = (leap->to_s() + 0.5) / to_side;

@@ -51,7 +51,7 @@ class THRONG_API FlowField {
   /// that such a line reaches. The goal itself at last; nowhere if no way leads there.
   [[nodiscard]] Place next(const Place& place);
   /// The whole way, drawn straight.
-  void way(const Place& place, Path& path);
+  void find_path(const Place& place, Path& path);
 
   [[nodiscard]] FlowSummary summary() const;
 

@@ -49,7 +49,7 @@ double FlowField::distance(const Place& place) {
 
 Place FlowField::next(const Place& place) { return state_->points->next(state_->ground, place); }
 
-void FlowField::way(const Place& place, Path& path) {
+void FlowField::find_path(const Place& place, Path& path) {
   state_->points->way(state_->ground, place, path);
 }
 

@@ -52,7 +52,7 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
         if (best.end == PathEnd::kReached) nearest = std::min(nearest, best.length);
       }
       const double distance = flow.distance(from);
-      flow.way(from, way);
+      flow.find_path(from, way);
       ASSERT_EQ(std::isfinite(distance), std::isfinite(nearest));
       if (!std::isfinite(nearest)) {
         EXPECT_EQ(way.end, PathEnd::kUnreachable);
@@ -134,7 +134,7 @@ TEST(FlowField, StopsWhereAsked) {
   EXPECT_FALSE(std::isfinite(near.distance(beside)));
   EXPECT_FALSE(near.next(beside));
   Path way;
-  near.way(beside, way);
+  near.find_path(beside, way);
   EXPECT_EQ(way.end, PathEnd::kUnreachable);
 }
 

@@ -20,19 +20,19 @@ namespace throng {
 
 /// What is looked at.
 enum class Observed : uint8_t {
-  kTime,         ///< From setting off to leaving, of each. [s]
-  kLeft,         ///< When each left. [s]
-  kPremovement,  ///< From coming to setting off, of each. [s]
-  kDelay,        ///< From setting off to the first step, of each. [s]
-  kWish,         ///< Speed that each wishes for. [m/s]
-  kSpeed,        ///< Way by time, of each, in an area or since he set off. [m/s]
-  kPeople,       ///< How many left.
-  kStayed,       ///< How many came and have not left.
-  kDensity,      ///< People in an area by its size, at each step. [1/m2]
-  kFlow,         ///< People a second over a line, or by its length. [p/s, p/(m s)]
-  kPassed,       ///< How many came over a line.
-  kRatio,        ///< Of two measures before this one.
-  kDifference,   ///< Of two measures before this one.
+  kTime,          ///< From setting off to leaving, of each. [s]
+  kLeft,          ///< When each left. [s]
+  kPremovement,   ///< From coming to setting off, of each. [s]
+  kDelay,         ///< From setting off to the first step, of each. [s]
+  kDesiredSpeed,  ///< Speed that each wishes for. [m/s]
+  kSpeed,         ///< Way by time, of each, in an area or since he set off. [m/s]
+  kPeople,        ///< How many left.
+  kStayed,        ///< How many came and have not left.
+  kDensity,       ///< People in an area by its size, at each step. [1/m2]
+  kFlow,          ///< People a second over a line, or by its length. [p/s, p/(m s)]
+  kPassed,        ///< How many came over a line.
+  kRatio,         ///< Of two measures before this one.
+  kDifference,    ///< Of two measures before this one.
   kRise,  ///< The least step up from one to the next of some measures before this one: 0 or more
           ///< if none falls.
 };
@@ -50,7 +50,7 @@ enum class Statistic : uint8_t {
 struct TrialMeasure {
   std::string name;
   Observed of = Observed::kTime;
-  Statistic take = Statistic::kMean;
+  Statistic statistic = Statistic::kMean;
   std::vector<int32_t> sources, profiles, journeys;  ///< Only these; empty: all.
   std::vector<int32_t> exits;                        ///< Only who left by these areas; empty: all.
   int32_t area = -1;                                 ///< kSpeed, kDensity.

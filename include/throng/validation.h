@@ -61,7 +61,7 @@ struct ValidationResult {
   std::vector<ValidationMeasure> measures;
   std::vector<ValidationChart> charts;
   CrowdCheck faults;     ///< Overlaps and wall entries, over all looks.
-  uint64_t looks = 0;    ///< How often all avatars were checked for them.
+  uint64_t checks = 0;   ///< How often all avatars were checked for them.
   double simulated = 0;  ///< [s]
   double seconds = 0;    ///< Wall clock.
 

@@ -105,7 +105,7 @@ void PlaneCrowd::step() {
 void PlaneCrowd::report(ValidationResult& result) const {
   result.faults.overlaps += faults_.overlaps;
   result.faults.wall_entries += faults_.wall_entries;
-  result.looks += checks_;
+  result.checks += checks_;
   result.simulated += time();
 }
 

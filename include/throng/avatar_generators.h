@@ -25,9 +25,9 @@ struct GeneratorConfig {
   /// Instead of a density, if not 0: so many on all of that ground, at most one on each square
   /// metre. [>= 0]
   double people = 0;
-  double reach = 100;         ///< Ground further from the eye is left alone. [m, > 0]
-  double band = 16;           ///< How far unseen ground beside what is seen is populated. [m, > 0]
-  int32_t steps_a_look = 10;  ///< Between two questions of what can be seen. [steps, > 0]
+  double radius = 100;  ///< Ground further from the eye is left alone. [m, > 0]
+  double band = 16;     ///< How far unseen ground beside what is seen is populated. [m, > 0]
+  int32_t steps_per_query = 10;  ///< Between two questions of what can be seen. [steps, > 0]
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };

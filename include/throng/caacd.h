@@ -135,7 +135,7 @@ struct Threat {
 
 /// No body farther away than this is a threat to `self`, if none is faster than model.max_speed and
 /// none has an alert field beyond `alert`.
-[[nodiscard]] THRONG_API double threat_reach(const Body& self, double alert, const Model& model);
+[[nodiscard]] THRONG_API double threat_radius(const Body& self, double alert, const Model& model);
 
 /// How far ahead the repulsive zone of a body reaches: a rectangle as wide as the repulsive field,
 /// from the position along the heading.

@@ -37,7 +37,7 @@ struct FrameView {
   std::span<const float> radii;       ///< Kept to the millimetre. [m, 0 to 65]
   std::span<const Heading> headings;  ///< Kept to 0.9 degrees; of who leans, before he leans.
   /// Along each body from its feet, kept to 0.06 degrees; nothing: all stand upright. [any length]
-  std::span<const Vec3d> ups = {};
+  std::span<const Vec3d> up_vectors = {};
 };
 
 /// The same, owned: what is read back, in ascending order of id.
@@ -49,8 +49,8 @@ struct THRONG_API RecordedFrame {
   std::vector<uint8_t> classes;
   std::vector<Vec3d> positions;
   std::vector<float> radii;
-  std::vector<Heading> headings;  ///< Unit vectors.
-  std::vector<Vec3d> ups = {};    ///< Unit vectors, empty if RecordingInfo::leans is not set.
+  std::vector<Heading> headings;       ///< Unit vectors.
+  std::vector<Vec3d> up_vectors = {};  ///< Unit vectors, empty if RecordingInfo::leans is not set.
 
   [[nodiscard]] size_t size() const { return ids.size(); }
   void resize(size_t avatars);
@@ -72,8 +72,8 @@ struct RecordingInfo {
   std::vector<RecordedClass> classes = {};  ///< [1 to 256]
   std::string model = {};                   ///< What made the steps: "wanderers" ...
   std::string settings = {};  ///< All that it takes to run again, as the model writes it.
-  /// Some may lean: frames hold FrameView::ups, and the file is of version 2. Else it is of version
-  /// 1, as it was before there were any, and a frame in which somebody leans is refused.
+  /// Some may lean: frames hold FrameView::up_vectors, and the file is of version 2. Else it is of
+  /// version 1, as it was before there were any, and a frame in which somebody leans is refused.
   bool leans = false;
   /// What the file stores positions relative to; those of frames are absolute all the same. If it
   /// is not zero the file is of version 3. [m, whole metres within 1 000 000 km]

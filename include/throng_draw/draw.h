@@ -88,7 +88,7 @@ struct DrawnCrowd {
   ImpostorArrays avatars;
   /// Unit vectors along each body from its feet; empty: all are upright. Headings are those before
   /// the lean (lean.h).
-  std::span<const Vec3d> ups = {};
+  std::span<const Vec3d> up_vectors = {};
 };
 
 /// How avatars are drawn.

@@ -33,10 +33,10 @@ std::shared_ptr<const TimelineFrame> ReplayPlayer::read(uint64_t index) {
   moment->resize(frame_.size());
   moment->ids = frame_.ids;
   moment->classes = frame_.classes;
-  const bool lean = std::any_of(frame_.ups.begin(), frame_.ups.end(), [](Vec3d up) {
+  const bool lean = std::any_of(frame_.up_vectors.begin(), frame_.up_vectors.end(), [](Vec3d up) {
     return !(up == Vec3d{0, 1, 0});
   });
-  if (lean) moment->ups = frame_.ups;
+  if (lean) moment->ups = frame_.up_vectors;
   for (size_t i = 0; i < frame_.size(); ++i) {
     const Vec3d p = frame_.positions[i] - origin_;
     moment->x[i] = static_cast<float>(p.x);

@@ -209,8 +209,8 @@ class THRONG_API Nodes {
   /// What a class can reach: connected parts of the graph, largest first. `of_node`, if given,
   /// takes the part of each node, UINT32_MAX for nodes that the class cannot stand on. Linear in
   /// nodes and arcs.
-  [[nodiscard]] std::vector<NodeComponent> reach(int32_t avatar_class,
-                                                 std::vector<uint32_t>* of_node = nullptr) const;
+  [[nodiscard]] std::vector<NodeComponent> components(
+      int32_t avatar_class, std::vector<uint32_t>* of_node = nullptr) const;
 
   [[nodiscard]] const std::shared_ptr<const NodeData>& data() const { return data_; }
 

@@ -266,8 +266,8 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
                (info.t + random_unit(seed, n, 2)) * side);
 }
 
-std::vector<NodeComponent> Nodes::reach(int32_t avatar_class,
-                                        std::vector<uint32_t>* of_node) const {
+std::vector<NodeComponent> Nodes::components(int32_t avatar_class,
+                                             std::vector<uint32_t>* of_node) const {
   THRONG_ASSERT(data_);
   const uint32_t count = data_->node_count;
   DisjointSets sets(count);

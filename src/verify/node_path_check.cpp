@@ -77,7 +77,7 @@ class Follower {
         built_(with_obstacles(scene, config.obstacles)),
         tree_(config.obstacles.empty() ? scene : built_, config.workers),
         avatar_(nodes.summary().classes[static_cast<size_t>(config.avatar_class)]) {
-    (void)nodes.reach(config.avatar_class, &part_);
+    (void)nodes.components(config.avatar_class, &part_);
     // What leads one way joins no parts, but leads from one into another.
     const auto bit = static_cast<uint16_t>(1u << config.avatar_class);
     for (uint32_t n = 0; n < nodes.node_count(); ++n) {

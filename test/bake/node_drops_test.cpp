@@ -241,7 +241,7 @@ TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
     EXPECT_EQ(path.end, PathEnd::kUnreachable) << c;
   }
   // What leads one way holds nothing together.
-  EXPECT_EQ(nodes.reach(0).size(), nodes.reach(1).size());
+  EXPECT_EQ(nodes.components(0).size(), nodes.components(1).size());
 }
 
 // The oracle of src/verify walks the paths; which node reaches which it finds from the arcs.

@@ -26,7 +26,7 @@ struct BuiltinWorldConfig {
 
 struct BuiltinWorldInfo {
   std::string_view name;
-  std::string_view summary;  ///< One line for `throng world --list`.
+  std::string_view summary;  ///< One line, for `throng world --list`.
   double default_size = 0;   ///< [m]
 };
 

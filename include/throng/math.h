@@ -25,7 +25,7 @@ inline Vec3d cross(Vec3d a, Vec3d b) {
 }
 inline double length(Vec3d a) { return std::sqrt(dot(a, a)); }
 
-/// Axis-aligned box; empty until a point is added.
+/// An axis-aligned box; empty until a point is added.
 struct Box3d {
   Vec3d min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
             std::numeric_limits<double>::infinity()};
@@ -38,7 +38,7 @@ struct Box3d {
   }
 };
 
-/// Affine map, row-major 3 x 4: out = m[0..2] * in + m[3] per row.
+/// An affine map, row-major 3 x 4: out = m[r][0..2] * in + m[r][3] in row r.
 struct Transform {
   std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
   [[nodiscard]] Vec3d operator()(Vec3d p) const {

@@ -175,7 +175,7 @@ class THRONG_API Nodes {
                                                     const NodeConfig& config, Context& context);
   /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.
   [[nodiscard]] static Result<Nodes> open(const std::string& world_path);
-  /// Does the folder that a world was opened from hold nodes?
+  /// Have nodes been written into the folder that a world was opened from?
   [[nodiscard]] static bool exist(const World& world);
   /// The same for a world that was opened from its folder.
   [[nodiscard]] static Result<Nodes> open(const World& world);

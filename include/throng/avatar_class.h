@@ -32,6 +32,7 @@ struct AvatarClass {
   bool flies = false;  ///< It also moves through the air.
 };
 
+/// Maximum number of classes of a world.
 inline constexpr int32_t kMaxAvatarClasses = 16;
 
 /// Does the class climb or drop, so that paths over level tiles lack some of its links and it needs

@@ -18,6 +18,7 @@
 /// band around it, is simulated. Source: [TC00] 5.
 namespace throng {
 
+/// Settings for AvatarGenerators::make.
 struct GeneratorConfig {
   Place home = {};  ///< Only ground that the class can reach from here is populated.
   int32_t avatar_class = 0;

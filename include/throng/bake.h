@@ -24,6 +24,7 @@ struct NodeConfig;
 /// Whether a bake into a folder reuses zones that were baked from the same input.
 enum class OldZones : uint8_t { kKeep, kBakeAgain };
 
+/// Settings for bake_world and bake_world_to.
 struct BakeConfig {
   double cell = 0.1;        ///< Side of a cell. [m, 0.02 to 5]
   double resolution = 0.1;  ///< Largest loss of headroom. [m, 0.001 to 1]

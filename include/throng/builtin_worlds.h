@@ -24,12 +24,14 @@ struct BuiltinWorldConfig {
   uint64_t seed = 1;
 };
 
+/// Description of a built-in world.
 struct BuiltinWorldInfo {
   std::string_view name;
   std::string_view summary;  ///< One line, for `throng world --list`.
   double default_size = 0;   ///< [m]
 };
 
+/// All built-in worlds.
 [[nodiscard]] THRONG_API std::span<const BuiltinWorldInfo> builtin_worlds();
 
 /// Fails with kNotFound (unknown name) or kBadConfig (size out of limits). Linear in the triangles.

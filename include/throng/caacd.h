@@ -98,6 +98,7 @@ struct Approach {
   /// parallel courses have no nearest approach, so the present distance counts.
   double time = 0;
 };
+/// The nearest approach of `other` to `self`.
 [[nodiscard]] THRONG_API Approach nearest_approach(const Body& self, const Body& other);
 
 /// Position of a body after a time, eq. 7 and 8.
@@ -187,6 +188,7 @@ struct Curvilinear {
   double tangential = 0;   ///< Negative when braking.
   double centripetal = 0;  ///< [>= 0]
 };
+/// Splits an acceleration into its parts along and across a heading.
 [[nodiscard]] THRONG_API Curvilinear curvilinear(Vec3d forward, Vec3d acceleration);
 
 /// Does `a` go first when both head to one place? The nearer one does, then the smaller id.

@@ -140,6 +140,7 @@ struct Reported {
   int32_t bad = 0;     ///< Figure 10: 1.0/1.0/0.06 and 1.0/0.8/0.06.
   int32_t others = 0;  ///< Figure 11: all other sets.
 };
+/// The paper's numbers of collisions for a number of avatars.
 [[nodiscard]] THRONG_API Reported reported_collisions(int32_t avatars);
 
 /// Settings of a study: one run for each set, number of avatars and seed.

@@ -16,6 +16,7 @@
 /// Pictures of the plane of throng/caacd_experiment.h.
 namespace throng::caacd {
 
+/// Settings for draw_simulation.
 struct PictureConfig {
   double side = 400;     ///< The square from (0, 0) that is shown. [> 0]
   int32_t width = 1200;  ///< [px, 400 to 8000]

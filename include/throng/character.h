@@ -20,6 +20,7 @@ namespace throng {
 /// The part of the body that a surface belongs to, so that avatars of a crowd can have different
 /// colours. It follows from the material's name.
 enum class BodyPart : uint8_t { kOther, kSkin, kHair, kShirt, kPants, kShoes };
+/// Number of BodyPart values.
 inline constexpr int32_t kBodyParts = 6;
 
 /// The body part that a material's name means: "Shirt", "suit_jacket" -> kShirt; "Socks" -> kShoes;
@@ -63,6 +64,7 @@ struct Clip {
   std::vector<JointTrack> tracks;
 };
 
+/// A material of a character.
 struct CharacterMaterial {
   std::string name;
   Vec3d colour;  ///< Red, green, blue as x, y, z; linear. [0 to 1]

@@ -13,6 +13,7 @@
 /// Line charts as pictures, for reports.
 namespace throng {
 
+/// How a line is drawn.
 enum class LineKind : uint8_t {
   kFaint,   ///< Thin and grey: one of many.
   kPlain,   ///< In its own colour.
@@ -20,6 +21,7 @@ enum class LineKind : uint8_t {
   kDashed,  ///< A bound, or a result from elsewhere.
 };
 
+/// A line of a chart.
 struct ChartLine {
   std::string name = {};            ///< Name in the legend; a line without one is not in it.
   std::vector<double> values = {};  ///< One per x of the chart. [finite, >= 0]

@@ -59,6 +59,7 @@ enum class Routing {
   kStraight,
 };
 
+/// Settings for Crowd::create.
 struct CrowdConfig {
   double dt = 0.1;  ///< Length of a step. [s, 0.001 to 1]
   uint64_t seed = 1;
@@ -78,10 +79,9 @@ struct CrowdConfig {
   /// than this, all avatars decide in each step. Shorter times cost more and gain little. [s, 0 to
   /// 1]
   double reaction = 0.2;
-  /// In low detail (beyond all views, see set_views) an avatar moves once in so many steps and then
-  /// as far as in all of them: as many as the radius of the narrowest body allows, at most this
-  /// number. If that is more than one, it ignores other avatars until it could touch them. [1 to
-  /// 16]
+  /// In low detail (beyond all views, see set_views) an avatar makes one move for several steps: as
+  /// many steps as the radius of the narrowest body allows, at most this number. If that is more
+  /// than one, it ignores other avatars that it could not touch in this move. [1 to 16]
   int32_t low_detail_steps = 4;
   double low_detail_reaction = 0.4;  ///< `reaction` in low detail. [s, 0 to 10]
   int32_t rounds = 3;                ///< Conflict resolution rounds of a step. [1 to 100]

@@ -31,6 +31,7 @@ struct ModelPaint {
   friend bool operator==(const ModelPaint&, const ModelPaint&) = default;
 };
 
+/// An animated mesh: triangles over vertices that have a position in each pose.
 struct FigureModel {
   std::vector<AtlasClip> clips;  ///< As those of an atlas with the same settings.
   uint32_t vertices = 0;

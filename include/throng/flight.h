@@ -39,6 +39,7 @@ struct AirSummary {
 /// without air) or kBadFile.
 [[nodiscard]] THRONG_API Result<AirSummary> air_summary(const World& world);
 
+/// Settings for FlightFinder::make.
 struct FlightConfig {
   int32_t avatar_class = 0;  ///< A class that flies.
   int32_t workers = 0;       ///< Threads for making the finder, 0 for all cores.
@@ -47,6 +48,7 @@ struct FlightConfig {
 /// How an avatar moves along a segment of a path.
 enum class SegmentKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
 
+/// Input of FlightFinder::find.
 struct FlightQuery {
   Vec3d from,
       to;  ///< Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
@@ -64,6 +66,7 @@ struct FlightQuery {
   bool nearest = true;
 };
 
+/// A path through the air and over the ground, or why there is none.
 struct FlightPath {
   PathEnd end = PathEnd::kNoPlace;
   /// Feet, from the start to the goal. If the goal is unreachable: to the nearest point of the air,
@@ -78,6 +81,7 @@ struct FlightPath {
   SpentBudget spent = SpentBudget::kNone;  ///< Which part of the budget was exhausted, if one was.
 };
 
+/// Sizes of a FlightFinder.
 struct FlightSummary {
   uint64_t boxes = 0;  ///< Air boxes that are legal.
   uint64_t bytes = 0;  ///< Of the boxes and their index.

@@ -18,11 +18,13 @@
 /// avatars that share these goals.
 namespace throng {
 
+/// Settings for FlowField::make.
 struct FlowConfig {
   /// Largest distance that is searched. [> 0, m]
   double max_distance = std::numeric_limits<double>::infinity();
 };
 
+/// Sizes of a flow field.
 struct FlowSummary {
   uint64_t points = 0;  ///< Points on borders of rectangles that the search reached from the goals.
   uint64_t bytes = 0;

@@ -17,10 +17,12 @@ namespace throng {
 
 struct GraphData;  // Internal: regions and links.
 
+/// Settings for Graph::make.
 struct GraphConfig {
   int32_t workers = 0;  ///< Threads, 0 for all cores; used if the graph is not on disk.
 };
 
+/// Sizes of a graph.
 struct GraphSummary {
   uint64_t regions = 0;  ///< Connected parts of level tiles, shared by classes.
   uint64_t links = 0;    ///< Undirected links: pairs of regions between which some class can walk.

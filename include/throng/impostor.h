@@ -28,10 +28,12 @@ enum class AtlasFormat : uint8_t {
   kEtc2a1,  ///< 4 bits (ETC2, punch-through alpha), alpha is 0 or 1; normals EAC RG11, 8 bits.
   kEtc2,    ///< 8 bits (ETC2 with EAC alpha); normals EAC RG11, 8 bits.
 };
+/// Number of AtlasFormat values.
 inline constexpr int32_t kAtlasFormats = 6;
 /// The name of a format: "rgba8", "rgb5a1", "bc1", "bc3", "etc2a1", "etc2".
 [[nodiscard]] THRONG_API const char* word_for(AtlasFormat format);
 
+/// Settings for build_atlas.
 struct AtlasConfig {
   std::vector<std::string> clips{"Walk"};  ///< See find_clip. [1 to 16]
   int32_t frames = 10;                     ///< Of each clip. [1, or even and up to 64]

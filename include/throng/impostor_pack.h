@@ -52,6 +52,7 @@ struct BlendedInstance {
   uint32_t shares = 0;
 };
 
+/// Settings for pack_impostors and pack_levels.
 struct PackConfig {
   EyeCamera camera;  ///< Relative to the same point as the arrays.
   size_t clip = 0;   ///< Index into Atlas::clips.
@@ -96,6 +97,7 @@ struct LevelSpans {
   std::span<ImpostorInstance> meshes, views, points;
   std::span<BlendedInstance> blends = {};
 };
+/// Numbers of instances that pack_levels wrote.
 struct LevelCounts {
   size_t meshes = 0, views = 0, points = 0, blends = 0;
 };
@@ -109,6 +111,7 @@ THRONG_API LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& ava
 struct CameraAxes {
   Vec3d right, up, forward;
 };
+/// The axes of a camera.
 [[nodiscard]] THRONG_API CameraAxes camera_axes(const EyeCamera& camera);
 
 }  // namespace throng

@@ -21,6 +21,7 @@
 /// over a world that does not change, use a PathFinder.
 namespace throng {
 
+/// Settings for LiveGround::make.
 struct LiveConfig {
   int32_t avatar_class = 0;
   /// Cost of a metre on a slope is 1 + slope_cost * rise. Rises are rounded up to 5, 10, 20, 35, 60

@@ -17,6 +17,7 @@ enum class Opacity : uint8_t {
   kBlended,  ///< As opaque as colour and texture are.
 };
 
+/// A material of surfaces.
 struct Material {
   std::string name;
   /// Red, green, blue in linear light, and opacity; texels of a texture are multiplied by it. [0 to

@@ -11,6 +11,7 @@
 /// Small vectors in metres. Y is up, right-handed.
 namespace throng {
 
+/// A point or vector.
 struct Vec3d {
   double x = 0, y = 0, z = 0;
   friend bool operator==(const Vec3d&, const Vec3d&) = default;

@@ -21,6 +21,7 @@
 /// Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
 namespace throng {
 
+/// Settings for NodePathFinder::make.
 struct NodePathConfig {
   int32_t avatar_class = 0;
   /// Cost of a metre on ground with an inclination a is 1 + slope_cost * (1 - cos a): level ground
@@ -52,6 +53,7 @@ struct NodePathLink {
   bool over_hole = false;  ///< Over a hole: between places that do not touch.
 };
 
+/// A path over nodes, or why there is none.
 struct NodePath {
   PathEnd end = PathEnd::kNoPlace;
   std::vector<NodePathPoint> points;
@@ -70,6 +72,7 @@ struct NodePath {
   SpentBudget spent = SpentBudget::kNone;  ///< Which part of the budget was exhausted, if one was.
 };
 
+/// Sizes of a NodePathFinder.
 struct NodePathSummary {
   uint64_t blocks = 0;     ///< Squares of patches where the class can stand.
   uint64_t crossings = 0;  ///< Connections between blocks.

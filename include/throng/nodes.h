@@ -32,8 +32,10 @@ enum class LinkKind : uint8_t {
   kLand,     ///< From the air. (Reserved.)
   kTakeOff,  ///< To the air. (Reserved.)
 };
+/// Number of LinkKind values.
 inline constexpr uint8_t kLinkKinds = 7;
 
+/// What a node is a part of.
 enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };
 
 /// An off-mesh link, given by hand: a ditch to jump, a ladder, a lift. The body is not tested on
@@ -44,6 +46,7 @@ struct NodeOffMeshLink {
   bool two_way = false;
 };
 
+/// Settings for Nodes::make.
 struct NodeConfig {
   /// Sub-patches of Bezier patches are halved down to this size. [m, 0.05 to 100]
   double size = 1.0;
@@ -121,6 +124,7 @@ struct NodeArc {
   double from_s = 0, from_t = 0, to_s = 0, to_t = 0;
 };
 
+/// Sizes of nodes, and what was made.
 struct NodeSummary {
   uint64_t nodes = 0;
   uint64_t terminal = 0;

@@ -53,6 +53,7 @@ struct THRONG_API BezierPatch {
 [[nodiscard]] THRONG_API BezierPatch raise_degree(int32_t degree_s, int32_t degree_t,
                                                   std::span<const Vec3d> points);
 
+/// Index of no patch.
 inline constexpr uint32_t kNoPatch = UINT32_MAX;
 
 /// One side of one patch.
@@ -71,7 +72,7 @@ enum class EdgeBind : uint8_t {
   kPart = 5,  ///< The whole edge is one half or quarter of a bigger patch's edge.
 };
 
-/// The neighbours of one edge. A neighbour's edge runs the opposite way around, so that both
+/// The neighbours of one edge. A neighbour's edge runs in the opposite direction, so that both
 /// patches face the same side. next[0] is the neighbour nearest to the edge's first vertex; unused
 /// ones are null. Part k of n ends at the bigger edge's parameters k / n and (k + 1) / n.
 struct PatchEdge {
@@ -114,7 +115,7 @@ struct THRONG_API PatchSet {
 };
 
 /// Checks the invariants of a set: finite points, runs that cover all patches, neighbours that
-/// exist, name each other and run the opposite way around, and curves that meet within 0.1 m. Fails
+/// exist, name each other and run in opposite directions, and curves that meet within 0.1 m. Fails
 /// with kBadInput, the first bad patch and its edge. Linear in the patches.
 [[nodiscard]] THRONG_API Result<void> check_patches(const PatchSet& set);
 

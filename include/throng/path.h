@@ -18,6 +18,7 @@ namespace throng {
 
 struct PathMesh;  // Internal: rectangles and portals.
 
+/// Settings for PathFinder::make.
 struct PathConfig {
   int32_t avatar_class = 0;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
@@ -42,6 +43,7 @@ enum class PathEnd {
   kBudgetExhausted,  ///< The budget was exhausted: `spent` names the part.
 };
 
+/// A path, or why there is none.
 struct Path {
   PathEnd end = PathEnd::kNoPlace;
   std::vector<Place> points;  ///< From the start to the goal; each segment is a legal move.
@@ -57,6 +59,7 @@ struct Path {
   SpentBudget spent = SpentBudget::kNone;
 };
 
+/// Sizes of a PathFinder.
 struct PathSummary {
   uint64_t rectangles = 0;
   uint64_t portals = 0;

@@ -23,6 +23,7 @@ struct PictureAvatar {
   double radius = 0.25;  ///< [m]
 };
 
+/// Settings for draw_world.
 struct PictureConfig {
   int32_t avatar_class = 0;  ///< The class whose clearance is shown.
   int32_t storey = -1;       ///< Only this storey, or all (-1).
@@ -31,6 +32,7 @@ struct PictureConfig {
   std::vector<Vec3d> path = {};  ///< A path to draw over the floors. [m]
 };
 
+/// Settings for draw_nodes.
 struct NodePictureConfig {
   int32_t width = 1600;  ///< Of the whole picture. [px, 200 to 16000]
   bool links = false;

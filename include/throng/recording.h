@@ -59,6 +59,7 @@ struct THRONG_API RecordedFrame {
   [[nodiscard]] FrameView view() const;
 };
 
+/// A class of the recorded avatars.
 struct RecordedClass {
   std::string name = "adult";
   double height = 1.75;  ///< [m]
@@ -126,12 +127,14 @@ class THRONG_API Recorder {
   std::unique_ptr<State> state_;
 };
 
+/// The hash of a step.
 struct StepHash {
   uint64_t step = 0;
   uint64_t state_hash = 0;
   friend bool operator==(const StepHash&, const StepHash&) = default;
 };
 
+/// The header of a frame.
 struct FrameInfo {
   uint64_t step = 0;
   double time = 0;  ///< [s]

@@ -20,8 +20,9 @@ struct ExportConfig {
   double highest = 1e9;  ///< Highest feet to export. [m]
 };
 
-/// Maps steps to frames at a constant rate: the largest interval by which every recorded frame
-/// falls on a frame of the film.
+/// Maps steps to frames at a constant rate, as films and many tools need. The interval of these
+/// frames is the shortest one between recorded frames, made smaller if a recorded step would fall
+/// between two of them.
 struct FilmRate {
   uint64_t first_step = 0;
   uint64_t steps = 1;  ///< From one film frame to the next.

@@ -19,6 +19,7 @@ struct FlowLine {
   double lowest = -1e9, highest = 1e9;    ///< Only feet between these heights count. [m]
 };
 
+/// Settings for summarise.
 struct SummaryConfig {
   std::vector<FlowLine> lines = {};
   double bin = 1;                          ///< Time bin of the flows. [s, >= 0.001]
@@ -44,6 +45,7 @@ struct SummaryMap {
   std::vector<double> waiting;  ///< Waiting time, summed over avatars. [s / m^2]
 };
 
+/// The summary of a recording.
 struct ReplaySummary {
   uint64_t positions = 0;  ///< Avatars summed over all frames.
   double mean_speed = 0;   ///< Over all avatars and frames. [m/s]

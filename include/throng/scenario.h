@@ -96,6 +96,7 @@ struct Stage {
   Distribution seconds;
 };
 
+/// A journey: the stages of an avatar, in order.
 struct Journey {
   std::string name;
   std::vector<Stage> stages;
@@ -153,6 +154,7 @@ struct ScenarioObstacle {
 /// The name of a policy in scenario files: "shut" or "wait".
 [[nodiscard]] THRONG_API const char* name_of(ObstaclePolicy policy);
 
+/// A whole scenario. Members refer to each other by index.
 struct Scenario {
   // The world: the first of these that is given.
   std::string world;  ///< A folder; relative paths start at the scenario file's folder.

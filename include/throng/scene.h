@@ -26,6 +26,7 @@ namespace throng {
 using AreaKind = uint8_t;
 inline constexpr AreaKind kAreaBlocked = 0;   ///< Solid on which no avatar may stand.
 inline constexpr AreaKind kAreaWalkable = 1;  ///< The default.
+/// The largest area kind.
 inline constexpr AreaKind kAreaLast = 63;
 inline constexpr AreaKind kAreaIgnored = 255;  ///< In a rule only: the triangles are dropped.
 
@@ -47,7 +48,7 @@ struct SceneReport {
   uint64_t degenerate = 0;  ///< Zero-area triangles: kept as solid lines and points.
   uint64_t duplicate = 0;   ///< Coincident triangles: harmless, counted.
   uint64_t ignored = 0;     ///< Triangles dropped by an `ignored` rule.
-  uint64_t spikes = 0;      ///< Triangles over 10 times longer than the extent of all others.
+  uint64_t spikes = 0;      ///< Triangles over 1 km and 10 times the extent of all others long.
   std::vector<std::string> warnings;  ///< Sentences: suspicious units, far-off parts ...
 };
 
@@ -101,7 +102,7 @@ struct AreaVolume {
   AreaKind kind = kAreaWalkable;
 };
 
-/// Whether to read materials and textures. The triangles are the same either way.
+/// Whether to read materials and textures. The triangles do not depend on it.
 enum class SceneLooks : uint8_t {
   kLeaveOut,
   /// Reads colours and textures (PNG, JPEG, TGA, BMP), in the file or beside it. Those that cannot

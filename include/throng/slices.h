@@ -15,6 +15,7 @@
 /// Source: [ML06], algorithms 2 and 3, with the readings of docs/algorithms.md.
 namespace throng {
 
+/// Settings for slice_scene.
 struct SliceConfig {
   double avatar_height = 1.75;  ///< Of the smallest avatar. [m, > 0]
   double resolution = 0.1;      ///< Largest loss of headroom. [m, >= 0.001]

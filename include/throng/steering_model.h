@@ -21,6 +21,7 @@ enum class SteeringModel : uint8_t {
 
 /// The name of a model in scenario files and on the command line.
 [[nodiscard]] THRONG_API const char* name_of(SteeringModel model);
+/// The model with a name, or none.
 [[nodiscard]] THRONG_API std::optional<SteeringModel> find_steering_model(std::string_view name);
 /// All names, "a, b or c", for messages.
 [[nodiscard]] THRONG_API const char* steering_model_names();

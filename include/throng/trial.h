@@ -48,6 +48,7 @@ enum class Statistic : uint8_t {
   kFit,      ///< Likelihood that they were drawn from the scenario's distribution [Stephens70].
 };
 
+/// A measure: which quantity of which avatars, and the bounds between which it passes.
 struct TrialMeasure {
   std::string name;
   Observed of = Observed::kTime;
@@ -64,6 +65,7 @@ struct TrialMeasure {
   double high = std::numeric_limits<double>::infinity();
 };
 
+/// A trial: a scenario and its measures.
 struct Trial {
   ValidationTest about;
   std::string note;  ///< What differs from the source.
@@ -83,8 +85,8 @@ struct Trial {
 [[nodiscard]] THRONG_API Result<std::vector<Trial>> load_trials(const std::string& folder);
 
 /// Runs a trial's scenario until its time is over or all avatars have left, and checks every step
-/// for overlaps and wall entries. The seed is added to the scenario's own: 1 is that one. Fails
-/// with kBadConfig (something is lacking), and as open_world and Simulation::make do.
+/// for overlaps and wall entries. config.seed counts from the scenario's own seed: 1 is that one.
+/// Fails with kBadConfig (something is lacking), and as open_world and Simulation::make do.
 [[nodiscard]] THRONG_API Result<ValidationResult> run_trial(const Trial& trial,
                                                             const ValidationConfig& config,
                                                             Context& context);

@@ -49,6 +49,7 @@ struct ValidationTest {
   std::string source;  ///< Source of the range: keys of docs/references.md.
 };
 
+/// Settings for run_validation and run_trial.
 struct ValidationConfig {
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
@@ -57,6 +58,7 @@ struct ValidationConfig {
   SteeringModel model = SteeringModel::kSampled;
 };
 
+/// The results of a test.
 struct ValidationResult {
   std::vector<ValidationMeasure> measures;
   std::vector<ValidationChart> charts;

@@ -19,6 +19,7 @@
 /// source triangles, with the exact body.
 namespace throng {
 
+/// Settings for the functions below.
 struct VerifyConfig {
   uint64_t samples = 100000;  ///< Sampled states; as many moves and as many surface points.
   uint64_t seed = 1;
@@ -42,7 +43,7 @@ struct VerifyReport {
   uint64_t moves = 0;  ///< Legal ones: those that the world let arrive.
   uint64_t surface_points = 0;
   uint64_t entered = 0;  ///< Legal states or moves whose body meets a triangle. Must be 0.
-  /// Legal states or moves with no surface within the step height. Must be 0.
+  /// Legal states or moves with no surface in support range. Must be 0.
   uint64_t unsupported = 0;
   uint64_t torn = 0;  ///< Legal moves over a point with no legal place. Must be 0.
   uint64_t no_surface_under_centre = 0;  ///< States that feet_error excludes (cracks and rims).
@@ -133,7 +134,7 @@ struct PathReport {
   /// Paths with a wrong length or a segment that is no legal move. Must be 0.
   uint64_t illegal = 0;
   uint64_t entered = 0;  ///< Paths on which the body meets a triangle. Must be 0.
-  /// Paths on which it has no surface within the step height. Must be 0.
+  /// Paths on which it has no surface in support range. Must be 0.
   uint64_t unsupported = 0;
   uint64_t torn = 0;  ///< Paths over a point with no legal place. Must be 0.
   /// Pairs with a path between different components, or the reverse. Must be 0.

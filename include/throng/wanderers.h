@@ -17,6 +17,7 @@
 /// blocked. They never enter a wall and never overlap. For avatars with goals see throng/crowd.h.
 namespace throng {
 
+/// Settings for Wanderers::create.
 struct WanderConfig {
   uint32_t avatars = 1000;
   int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.

@@ -29,6 +29,7 @@ struct Place {
 /// How a move ended.
 enum class MoveEnd { kArrived, kBlocked };
 
+/// The result of World::move.
 struct MoveResult {
   Place place;  ///< Where the body is now: the end of the line, or the start.
   MoveEnd end = MoveEnd::kBlocked;
@@ -47,10 +48,11 @@ struct LevelTileContent {
       clearance;
 };
 
-inline constexpr int32_t kNoFloor = INT32_MIN;
-inline constexpr int32_t kOpenSky = INT32_MAX;
-inline constexpr int32_t kTileCells = 64;
+inline constexpr int32_t kNoFloor = INT32_MIN;  ///< In LevelTileContent::floor.
+inline constexpr int32_t kOpenSky = INT32_MAX;  ///< In LevelTileContent::ceiling.
+inline constexpr int32_t kTileCells = 64;       ///< Cells along a side of a tile.
 
+/// Description and sizes of a world.
 struct WorldSummary {
   double cell = 0;        ///< [m]
   double resolution = 0;  ///< [m]
@@ -67,6 +69,7 @@ struct WorldSummary {
   uint64_t hash = 0;                  ///< XXH3 of the manifest; 0 if it was not read from a folder.
 };
 
+/// Settings for World::open.
 struct WorldConfig {
   /// Limit of the memory of zones: beyond it, the zones that have not been used for longest are
   /// given back to the system, and read again when they are used. 0: no limit. Never changes a

@@ -43,11 +43,13 @@ class THRONG_API PreparedScene {
 
 /// Red, green, blue and alpha, 8 bits each, red lowest; alpha is not multiplied in.
 using Rgba = uint32_t;
+/// Makes a colour of 8-bit channels.
 [[nodiscard]] constexpr Rgba rgba(uint32_t red, uint32_t green, uint32_t blue,
                                   uint32_t alpha = 255) {
   return red | green << 8 | blue << 16 | alpha << 24;
 }
 
+/// A vertex of marks.
 struct MarkVertex {
   float x = 0, y = 0, z = 0;  ///< Relative to the drawing's origin. [m]
   Rgba colour = 0;
@@ -60,8 +62,10 @@ struct Marks {
   float line_width = 2;               ///< [px]
   bool through_walls = false;         ///< Hidden parts are drawn faintly.
 };
+/// Number of slots for marks.
 inline constexpr size_t kMarkSlots = 16;
 
+/// A vertex of a panel.
 struct PanelVertex {
   float x = 0, y = 0;  ///< From the picture's upper left corner. [px]
   float u = 0, v = 0;  ///< Of the panel's texture. [0 to 1]
@@ -106,6 +110,7 @@ enum class HiddenCulling : uint8_t {
   kAlways,
 };
 
+/// Settings for Drawing::draw and show.
 struct DrawingConfig {
   EyeCamera camera;  ///< Relative to the drawing's origin; `aspect` follows from the picture.
   int32_t width = 1280, height = 720;  ///< [px, 16 to 8192]

@@ -20,9 +20,8 @@ struct ExportConfig {
   double highest = 1e9;  ///< Highest feet to export. [m]
 };
 
-/// Maps steps to frames at a constant rate, as films and many tools need. The interval of these
-/// frames is the shortest one between recorded frames, made smaller if a recorded step would fall
-/// between two of them.
+/// Maps steps to film frames at a constant rate. The interval is the greatest common divisor of the
+/// steps between recorded frames, so that each of these falls on a film frame.
 struct FilmRate {
   uint64_t first_step = 0;
   uint64_t steps = 1;  ///< From one film frame to the next.

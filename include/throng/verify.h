@@ -43,7 +43,8 @@ struct VerifyReport {
   uint64_t moves = 0;  ///< Legal ones: those that the world let arrive.
   uint64_t surface_points = 0;
   uint64_t entered = 0;  ///< Legal states or moves whose body meets a triangle. Must be 0.
-  /// Legal states or moves with no surface in support range. Must be 0.
+  /// Legal states or moves without a surface to stand on, within a cell and a step height. Must be
+  /// 0.
   uint64_t unsupported = 0;
   uint64_t torn = 0;  ///< Legal moves over a point with no legal place. Must be 0.
   uint64_t no_surface_under_centre = 0;  ///< States that feet_error excludes (cracks and rims).
@@ -134,7 +135,7 @@ struct PathReport {
   /// Paths with a wrong length or a segment that is no legal move. Must be 0.
   uint64_t illegal = 0;
   uint64_t entered = 0;  ///< Paths on which the body meets a triangle. Must be 0.
-  /// Paths on which it has no surface in support range. Must be 0.
+  /// Paths on which it has no such surface. Must be 0.
   uint64_t unsupported = 0;
   uint64_t torn = 0;  ///< Paths over a point with no legal place. Must be 0.
   /// Pairs with a path between different components, or the reverse. Must be 0.

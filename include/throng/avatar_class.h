@@ -41,8 +41,8 @@ inline constexpr int32_t kMaxAvatarClasses = 16;
   return avatar.climb_slope > 0 || avatar.max_drop > 0;
 }
 
-/// Solids up to this height above the feet do not stop a body: max(step, radius * tan(max_slope)).
-/// [m]
+/// Height above the feet from which a body's cylinder begins, so that lower solids do not stop it:
+/// max(step, radius * tan(max_slope)). [m]
 [[nodiscard]] THRONG_API double body_bottom(const AvatarClass& avatar);
 
 /// The default classes: adult, child (1.10 m), wheelchair (0.02 m step, 6 % slope), giant (3 m).

@@ -28,8 +28,8 @@ struct SpaceConfig {
   double min_obstacle = 8;       ///< Smallest repulsive radius of an obstacle. [> 0]
   double largest_obstacle = 24;  ///< [>= min_obstacle]
   double obstacle_precaution =
-      5;                       ///< From an obstacle's repulsive to its precaution radius. [>= 0]
-  double obstacle_alert = 15;  ///< From an obstacle's repulsive to its alert radius; not less.
+      5;                       ///< Precaution radius less repulsive radius, of an obstacle. [>= 0]
+  double obstacle_alert = 15;  ///< Alert radius less repulsive radius. [>= obstacle_precaution]
   uint64_t seed = 1;
 };
 

@@ -100,7 +100,7 @@ struct CrowdConfig {
 struct AvatarSpawn {
   Place place = {};  ///< The feet: on the ground of the class, or an air_place if it flies.
   int32_t avatar_class = 0;
-  /// Of the body, 0: the class's. Walls are kept at the class's radius in any case. [m]
+  /// Of the body, 0: the class's. Its distance to walls follows the class's radius. [m]
   double radius = 0;
   double speed = 0;  ///< Desired speed, also its maximum. 0: the class's. [m/s]
   /// For avatars that walk over nodes, in place of `place`. Nowhere: the place of the nodes that is
@@ -178,24 +178,25 @@ class THRONG_API Crowd {
   /// Removes avatars. Unknown ids are ignored.
   void remove(std::span<const AvatarId> ids);
 
-  /// Puts up an obstacle. Until it is removed, no avatar stands where its body could touch the
-  /// obstacle, whose bottom counts from above the avatar's step height. If bodies are in it, it
-  /// comes up later, as a door that closes: before the first step that begins with no body in it;
-  /// ObstaclePolicy says what happens until then. Paths lead around kStatic obstacles: an avatar
-  /// whose path is cut gets another one, or, if there is none, its goal is unreachable. Fails with
-  /// kBadInput. Time: all avatars, and the cells that it touches.
+  /// Puts up an obstacle. Until it is removed, no avatar stands where its body, from body_bottom()
+  /// up, could touch the obstacle. If bodies are in it, it comes up later, as a door that closes:
+  /// before the first step that begins with no body in it; ObstaclePolicy says what happens until
+  /// then. Paths lead around kStatic obstacles: an avatar whose path is cut gets another one or, if
+  /// there is none, its goal is unreachable. Fails with kBadInput. Time: all avatars, and the cells
+  /// that the obstacle touches.
   [[nodiscard]] Result<ObstacleId> add_obstacle(
       const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic,
       ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
   /// Moves an obstacle to a new place. It waits while an avatar stands within the convex hull of
   /// the old and the new place, so move it by small distances; avatars may enter the hull, whatever
-  /// the policy. The last call counts. Fails with kBadInput, kNotFound.
+  /// the policy. A later call replaces the order of an earlier one. Fails with kBadInput,
+  /// kNotFound.
   [[nodiscard]] Result<void> move_obstacle(ObstacleId id, const Prism& prism);
   /// Switches an obstacle on and off, as a door: true closes it by its policy; false opens it at
   /// once, or ends its closing. Returns false for unknown ids.
   bool set_obstacle_active(ObstacleId id, bool active);
   bool remove_obstacle(ObstacleId id);
-  /// Fails with kNotFound.
+  /// The state of an obstacle. Fails with kNotFound.
   [[nodiscard]] Result<ObstacleState> obstacle(ObstacleId id) const;
   /// All obstacles that are up, in order of slot.
   [[nodiscard]] std::vector<Prism> obstacles() const;
@@ -205,20 +206,20 @@ class THRONG_API Crowd {
   [[nodiscard]] std::span<const AvatarId> blockers() const;
 
   /// Sets goals, one for each id: places of the avatar's class. An avatar that has arrived keeps
-  /// its goal, and yields to others. A goal of nowhere: it stands, or hovers. An avatar that flies
-  /// takes off and lands as its path requires, and its goal may be an air_place. Unknown ids are
-  /// ignored.
+  /// its goal, and yields to others. With a goal of nowhere it stands, or hovers. An avatar that
+  /// flies takes off and lands as its path requires, and its goal may be an air_place. Unknown ids
+  /// are ignored.
   void set_goals(std::span<const AvatarId> ids, std::span<const Place> goals);
   /// Sets goals of avatars that walk over nodes. Ids of others are ignored, too.
   void set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> goals);
   /// Makes a target: a region, the union of prisms, that many avatars can head to. One search
-  /// outwards from it serves them all ([FlowField]). An avatar has arrived when its middle is
-  /// inside. Fails with kBadInput (a bad prism), kBadConfig (Routing::kStraight), kLimit (65535
-  /// targets) or kCancelled. Time: the ground of all classes in use. Targets cannot be removed.
+  /// outwards from it serves them all (FlowField). An avatar has arrived when its middle is inside.
+  /// Fails with kBadInput (a bad prism), kBadConfig (Routing::kStraight), kLimit (65535 targets) or
+  /// kCancelled. Time: the ground of all classes in use. Targets cannot be removed.
   [[nodiscard]] Result<TargetId> add_target(std::span<const Prism> areas, Context& context);
-  /// Sends avatars to a target instead of a goal, each to the place of it that is nearest; an
-  /// avatar that flies does so where no path on foot leads there. Unknown ids are ignored. [target:
-  /// of this crowd]
+  /// Sends avatars to a target of this crowd instead of a goal, each to the place of it that is
+  /// nearest; an avatar that flies does so where no path on foot leads there. Unknown ids are
+  /// ignored.
   void set_targets(std::span<const AvatarId> ids, TargetId target);
   /// Length of an avatar's path on foot to a target, on average 1 to 2 % above the shortest.
   /// Infinite if no path leads there, the avatar is in the air, or the id is unknown. [m]

@@ -50,8 +50,8 @@ enum class SegmentKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
 
 /// Input of FlightFinder::find.
 struct FlightQuery {
-  Vec3d from,
-      to;  ///< Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
+  /// Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
+  Vec3d from, to;
   double vertical_tolerance = 0.5;  ///< [m, >= 0]
   /// Limit of air boxes expanded; of nodes, for each path on foot.
   uint64_t max_nodes = UINT64_MAX;
@@ -112,9 +112,9 @@ class THRONG_API FlightFinder {
   void find(const FlightQuery& query, FlightPath& path);
 
   /// Puts up an obstacle: no path leads where the body could touch the prism; on the ground, as in
-  /// LiveGround, its bottom counts from above the step height. A start or goal inside is no place.
-  /// Fails with kBadInput. Time: the air boxes that it touches and those of what it cuts off, up to
-  /// 65 536.
+  /// LiveGround, the body counts from body_bottom() up. A start or goal inside is no place. Fails
+  /// with kBadInput. Time: the air boxes that it touches and those of what it cuts off, up to 65
+  /// 536.
   [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
   /// The same for triangles. Only these are solid: a closed shell is hollow.
   [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,

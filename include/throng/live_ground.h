@@ -53,8 +53,8 @@ class THRONG_API LiveGround {
   LiveGround& operator=(LiveGround&&) noexcept;
   ~LiveGround();
 
-  /// Puts up an obstacle: the class is illegal where its body could touch the prism, whose bottom
-  /// counts from above the step height. Fails with kBadInput. Time: the tiles that it touches.
+  /// Puts up an obstacle: the class is illegal where its body, from body_bottom() up, could touch
+  /// the prism. Fails with kBadInput. Time: the tiles that it touches.
   [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
   /// The same for triangles. Only these are solid: a closed shell is hollow.
   [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,

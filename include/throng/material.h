@@ -20,8 +20,7 @@ enum class Opacity : uint8_t {
 /// A material of surfaces.
 struct Material {
   std::string name;
-  /// Red, green, blue in linear light, and opacity; texels of a texture are multiplied by it. [0 to
-  /// 1]
+  /// Red, green, blue in linear light, and opacity; multiplies the texels of a texture. [0 to 1]
   std::array<float, 4> colour{1, 1, 1, 1};
   uint32_t texture1 = 0;  ///< Index into Scene::textures plus one; 0: none.
   Opacity opacity = Opacity::kOpaque;

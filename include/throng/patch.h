@@ -125,7 +125,7 @@ struct THRONG_API PatchSet {
 
 /// Settings of tessellation.
 struct TessellationConfig {
-  double tolerance = 0.02;  ///< Largest gap between a patch and its triangles. [m, > 0]
+  double tolerance = 0.02;  ///< Largest distance of a patch from its triangles. [m, > 0]
   int32_t workers = 0;      ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   uint64_t max_triangles = 100'000'000;  ///< More are refused. [<= 4 thousand million]
 };

@@ -48,13 +48,12 @@ struct Path {
   PathEnd end = PathEnd::kNoPlace;
   std::vector<Place> points;  ///< From the start to the goal; each segment is a legal move.
   double length = 0;          ///< Along the ground's plane. [m]
-  std::vector<uint32_t>
-      /// Of LiveGround: indices of points that an off-mesh link leads to, not a move.
-      off_mesh_links;
+  /// Of LiveGround: indices of points that an off-mesh link leads to, not a move.
+  std::vector<uint32_t> off_mesh_links;
   double cost = 0;  ///< Of LiveGround: metres times their costs.
-  Obstacle obstacle =
-      Obstacle::kNone;  ///< Of LiveGround: what blocks the path to an unreachable goal.
-  uint64_t nodes = 0;   ///< Intervals that the search expanded; 0 with labels.
+  /// Of LiveGround: what blocks the path to an unreachable goal.
+  Obstacle obstacle = Obstacle::kNone;
+  uint64_t nodes = 0;  ///< Intervals that the search expanded; 0 with labels.
   /// Which part of the budget was exhausted, if one was.
   SpentBudget spent = SpentBudget::kNone;
 };

@@ -47,8 +47,8 @@ struct Distribution {
 struct ScenarioArea {
   std::string name;
   std::vector<Prism> prisms;
-  /// Speed factor: share of its desired speed at which an avatar walks inside: stairs, sand. [0.01
-  /// to 10]
+  /// Speed factor: share of its desired speed at which an avatar walks inside, as on stairs or
+  /// sand. [0.01 to 10]
   double pace = 1;
 };
 

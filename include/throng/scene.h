@@ -117,9 +117,8 @@ struct SceneConfig {
   std::vector<SceneSource> sources;
   std::vector<AreaRule> rules;
   std::vector<AreaVolume> volumes;
-  double plan_height = 3.0;  ///< Height of obstacles of 2D plans. [m, > 0]
-  double curve_tolerance =
-      0.02;  ///< Largest gap between a curved patch and its triangles. [m, > 0]
+  double plan_height = 3.0;       ///< Height of obstacles of 2D plans. [m, > 0]
+  double curve_tolerance = 0.02;  ///< Largest distance of a patch from its triangles. [m, > 0]
   SceneLooks looks = SceneLooks::kLeaveOut;
 };
 

@@ -42,10 +42,9 @@ struct LevelTileContent {
   std::vector<int32_t> floor;    ///< 4096, row by row; kNoFloor where the level has none. [mm]
   std::vector<int32_t> ceiling;  ///< 4096; kOpenSky where nothing is above. [mm]
   std::vector<uint8_t> area;     ///< 4096 area kinds.
-  std::vector<std::vector<uint8_t>>
-      /// Per class 4096: 0 is illegal, k: every point within k - 1 cells of this cell is legal,
-      /// too. [0 to 8]
-      clearance;
+  /// Per class 4096: 0 is illegal, k: every point within k - 1 cells of this cell is legal, too.
+  /// [0 to 8]
+  std::vector<std::vector<uint8_t>> clearance;
 };
 
 inline constexpr int32_t kNoFloor = INT32_MIN;  ///< In LevelTileContent::floor.

@@ -27,8 +27,8 @@ struct NodePathConfig {
   /// Cost of a metre on ground with an inclination a is 1 + slope_cost * (1 - cos a): level ground
   /// 1, a wall 1 + slope_cost, a ceiling 1 + 2 slope_cost. [>= 0]
   double slope_cost = 0;
-  /// Makes an overlay where there are many crossings (2^15): it knows the costs of crossing squares
-  /// of ground, and long paths are searched over it, which are seldom much longer than the best.
+  /// Makes an overlay where there are many crossings (2^15), over which long paths are searched: it
+  /// knows the costs of crossing squares of ground. Its paths are seldom much longer than the best.
   /// Making it takes as long as a few searches of the whole world.
   bool overlay = true;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
@@ -109,10 +109,10 @@ class THRONG_API NodePathFinder {
   [[nodiscard]] std::optional<NodeSquare> square(uint32_t node, double from_s, double from_t,
                                                  double to_s, double to_t) const;
 
-  /// Finds a path of low cost: A* over the middles of the lines along which nodes touch, for long
-  /// paths over the overlay, then string pulling within the nodes of the corridor. `spacing` is the
-  /// largest distance between its points on curved ground. [m, > 0] `path` is reused: its memory
-  /// stays. Stops when the budget is exhausted.
+  /// Finds a path of low cost: A* over the middles of the lines along which nodes touch, or over
+  /// the overlay if the path is long, then string pulling within the nodes of the corridor.
+  /// `spacing` is the largest distance between points of the path on curved ground. [m, > 0] `path`
+  /// is reused: its memory stays. Stops when the budget is exhausted.
   void find(const NodePlace& from, const NodePlace& to, NodePath& path, double spacing = 0.25,
             const SearchBudget& budget = {});
 

@@ -36,7 +36,7 @@ struct Visit {
   int32_t source = 0;    ///< Of the scenario.
   int32_t profile = -1;  ///< -1: none.
   int32_t journey = -1;  ///< -1: none.
-  double entered = -1;   ///< -1: no free space yet. [s]
+  double entered = -1;   ///< -1: not yet, for lack of free space. [s]
   double started = 0;    ///< After the premovement time. [s]
   double left = -1;      ///< -1: not yet. [s]
   int32_t exit = -1;     ///< Area by which it left.
